@@ -1,0 +1,115 @@
+"""Checks of arguments: each failure names the owner, the requirement, what was got and the remedy.
+
+Concrete values are checked and copied into read-only float64 arrays; traced values (inside `jax.jit` or `jax.grad`)
+are checked for shape alone, since their values are not known yet.
+"""
+
+import math
+import numbers
+import sys
+from typing import Any
+
+import numpy as np
+
+from nonholo._types import Array
+
+
+def error(where: str, requirement: str, got: str, remedy: str) -> ValueError:
+    """Build the error every check raises: owner and argument, requirement, fact, remedy.
+
+    Example:
+        >>> str(error("simulate(steps=...)", "be a positive integer", "0", "Pass steps=1 or more."))
+        '`simulate(steps=...)` must be a positive integer. Got 0. Pass steps=1 or more.'
+    """
+    return ValueError(f"`{where}` must {requirement}. Got {got}. {remedy}")
+
+
+def is_traced(value: Any) -> bool:
+    """Tell whether a value is a JAX tracer, without importing JAX."""
+    jax = sys.modules.get("jax")
+    return jax is not None and isinstance(value, jax.core.Tracer)
+
+
+def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "Check the argument.") -> Array:
+    """Return `value` as a read-only float64 array of the given shape (None: any length), finite and real."""
+    if is_traced(value):
+        if not _fits(value.shape, shape):
+            raise error(where, f"have shape {_shown(shape)}", f"shape {value.shape}", remedy)
+        return value
+    try:
+        raw = np.asarray(value)
+        if np.iscomplexobj(raw):
+            raise error(where, "be real", "complex numbers", remedy)
+        result = np.array(raw, dtype=np.float64)
+    except (TypeError, ValueError) as failure:
+        if str(failure).startswith("`"):
+            raise
+        raise error(where, "be an array of real numbers", repr(value), remedy) from None
+    if not _fits(result.shape, shape):
+        raise error(where, f"have shape {_shown(shape)}", f"shape {result.shape}", remedy)
+    if not np.all(np.isfinite(result)):
+        position = tuple(int(i) for i in np.argwhere(~np.isfinite(result))[0])
+        raise error(where, "be finite", f"{result[position]} at index {position}", remedy)
+    result.setflags(write=False)
+    return result
+
+
+def _fits(actual: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
+    return len(actual) == len(wanted) and all(w is None or a == w for a, w in zip(actual, wanted, strict=True))
+
+
+def _shown(shape: tuple[int | None, ...]) -> str:
+    sizes = ", ".join("any" if size is None else str(size) for size in shape)
+    return f"({sizes},)" if len(shape) == 1 else f"({sizes})"
+
+
+def number(where: str, value: Any, remedy: str = "Pass one real number.") -> Array:
+    """Return a finite real scalar as float64 (or the tracer)."""
+    if isinstance(value, bool):
+        raise error(where, "be a real number", repr(value), remedy)
+    result = array(where, value, (), remedy)
+    return result if is_traced(result) else np.float64(result)
+
+
+def positive(where: str, value: Any, remedy: str) -> Array:
+    """Return a strictly positive scalar."""
+    result = number(where, value, remedy)
+    if not is_traced(result) and not result > 0:
+        raise error(where, "be positive", f"{float(result)!r}", remedy)
+    return result
+
+
+def count(where: str, value: Any, remedy: str) -> int:
+    """Return a strictly positive Python integer."""
+    integral = isinstance(value, numbers.Integral) and not isinstance(value, bool)
+    if not integral or value <= 0:
+        raise error(where, "be a positive integer", repr(value), remedy)
+    return int(value)
+
+
+def choice(where: str, value: Any, allowed: tuple[Any, ...], remedy: str = "Choose one of them.") -> Any:
+    """Return `value` if it is one of the allowed ones."""
+    if not any(value is a or value == a for a in allowed if isinstance(value, type(a))):
+        raise error(where, "be one of " + ", ".join(repr(a) for a in allowed), repr(value), remedy)
+    return value
+
+
+def symmetric(where: str, value: Array, remedy: str) -> Array:
+    """Return a square matrix, refused with the worst pair of entries if it is not symmetric to rounding."""
+    if is_traced(value):
+        return value
+    gap = np.abs(value - value.T)
+    if gap.max() > 8 * np.finfo(np.float64).eps * np.abs(value).max():
+        i, j = (int(k) for k in np.unravel_index(gap.argmax(), gap.shape))
+        got = f"entries {float(value[i, j])!r} and {float(value[j, i])!r} at {(i, j)} and {(j, i)}"
+        raise error(where, "be symmetric", got, remedy)
+    return value
+
+
+def positive_definite(where: str, matrix: Array, what: str, remedy: str) -> None:
+    """Refuse a symmetric matrix with an eigenvalue that is not clearly positive, and name the eigenvalue."""
+    if is_traced(matrix):
+        return
+    eigenvalues = np.linalg.eigvalsh(matrix)
+    if not eigenvalues[0] > 4 * np.finfo(np.float64).eps * max(abs(eigenvalues[-1]), math.ulp(0.0)):
+        raise error(where, f"make {what} positive definite", f"an eigenvalue {eigenvalues[0]:.6g}", remedy)

@@ -1,0 +1,63 @@
+"""Outcomes of a run: one enumeration, whose texts are the messages that users read.
+
+Three failures are never confused: the solve did not converge, the root lies on another branch, the branch ends here.
+"""
+
+import enum
+
+
+class Outcome(enum.IntEnum):
+    """How a step or a run ended.
+
+    The integer value is what arrays of outcomes hold; `message` says what happened, why it can be expected, and what to try.
+
+    Example:
+        >>> print(Outcome.no_real_branch, int(Outcome.successful))
+        no_real_branch 0
+    """
+
+    successful = 0
+    no_real_branch = 1
+    branch_unverified = 2
+    not_converged = 3
+    off_momentum_locus = 4
+    nonfinite = 5
+
+    def __str__(self) -> str:
+        return self.name
+
+    @property
+    def message(self) -> str:
+        """What happened, why, and what to try."""
+        return _MESSAGES[self]
+
+
+_MESSAGES = {
+    Outcome.successful: "Every step succeeded.",
+    Outcome.no_real_branch: (
+        "The principal branch ends before it reaches this momentum: it folds, and a real next point on it does not exist. "
+        "The map is multivalued and folds at large step angles. Try a smaller time_step or a slower motion."
+    ),
+    Outcome.branch_unverified: (
+        "A root was found, but it could not be verified to be the principal one: it lies on another branch, "
+        "or the path from momentum zero to it runs through a singular point. Try a smaller time_step."
+    ),
+    Outcome.not_converged: (
+        "The iteration for the next displacement did not converge, though no fold was met. "
+        "Try a smaller time_step, and check that the system is well scaled."
+    ),
+    Outcome.off_momentum_locus: (
+        "The momentum is not the discrete momentum of any displacement on the principal branch. "
+        "Pass its components along the constraint subspace instead, or a momentum made by discrete_legendre."
+    ),
+    Outcome.nonfinite: "A number overflowed or became undefined. Try a smaller time_step or rescale the units.",
+}
+
+
+class OutcomeError(RuntimeError):
+    """A run that cannot go on; `outcome` says why and `orbit`, where there is one, holds every good step."""
+
+    def __init__(self, outcome: Outcome, where: str, orbit: object | None = None) -> None:
+        super().__init__(f"{where}: {outcome.name}. {outcome.message}")
+        self.outcome = outcome
+        self.orbit = orbit

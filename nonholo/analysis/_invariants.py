@@ -1,0 +1,75 @@
+"""What an orbit should keep, measured: energy, constraint, group, reversibility."""
+
+import dataclasses
+
+import numpy as np
+
+from nonholo._results import Outcome
+from nonholo.discrete import Discretization
+from nonholo.discrete._structured import reversal_defects
+from nonholo.orbit import Orbit
+
+_SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
+
+
+@dataclasses.dataclass(frozen=True)
+class Invariants:
+    """Measured defects of an orbit; None where a quantity is not defined for it.
+
+    Attributes:
+        states: Saved states.
+        steps: Steps they span (0 for a flow).
+        energy_drift: Largest change of the reduced constrained energy, relative to it (absolute at rest).
+        constraint_residual: Largest forbidden part of the logarithm of a displacement, or of a body velocity.
+        group_residual: Largest distance of a pose from the group.
+        reversal_defect: Largest relative miss of one step forward and back.
+        largest_step_angle: In degrees.
+        outcome: How the run ended.
+    """
+
+    states: int
+    steps: int
+    energy_drift: float
+    constraint_residual: float
+    group_residual: float | None
+    reversal_defect: float | None
+    largest_step_angle: float | None
+    outcome: Outcome
+
+
+def invariants(orbit: Orbit) -> Invariants:
+    """Measure what an orbit should keep.
+
+    Example:
+        >>> orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), body_velocity=(1, 0, 0), steps=100)
+        >>> invariants(orbit).energy_drift < 1e-14
+        True
+    """
+    sample = orbit[:: max(1, len(orbit) // _SAMPLED)]
+    discrete = sample.cayley is not None
+    moved = orbit.system.group.log(sample.displacement) if discrete else sample.body_velocity
+    energy = orbit.energy
+    return Invariants(
+        states=len(orbit),
+        steps=(len(orbit) - 1) * orbit.save_every if discrete else 0,
+        energy_drift=float(np.abs(energy - energy[0]).max() / (energy[0] or 1.0)),
+        constraint_residual=float(np.abs(moved @ orbit.system.annihilator.T).max()),
+        group_residual=None if orbit.pose is None else _group_residual(sample),
+        reversal_defect=_reversal_defect(sample),
+        largest_step_angle=float(np.degrees(orbit.system.group.angle(moved).max())) if discrete else None,
+        outcome=orbit.outcome,
+    )
+
+
+def _group_residual(orbit: Orbit) -> float:
+    R = orbit.system.group.rotation(orbit.configuration)
+    return float(np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(R.shape[-1])).max())
+
+
+def _reversal_defect(orbit: Orbit) -> float | None:
+    motion = orbit.motion
+    if not isinstance(motion, Discretization) or motion.difference != "matrix" or orbit.cayley is None:
+        return None
+    moving = np.abs(orbit.cayley).sum(axis=1) > 0
+    defects = reversal_defects(motion, orbit.reduced_momentum[moving], orbit.cayley[moving])
+    return float(np.nanmax(defects)) if defects.size else 0.0

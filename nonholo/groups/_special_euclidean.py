@@ -1,0 +1,82 @@
+"""The group of rigid motions of the plane, SE(2); the compact pose is (cos, sin, x, y)."""
+
+import dataclasses
+from typing import ClassVar
+
+import numpy as np
+
+from nonholo._types import Array, Float
+from nonholo.groups import _rodrigues
+from nonholo.groups._base import AbstractMatrixGroup
+from nonholo.numerics import half_cotangent
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class SpecialEuclidean2(AbstractMatrixGroup):
+    r"""Motions of the plane as matrices $\begin{pmatrix} R & x \\ 0 & 1\end{pmatrix}$; coordinates $(\omega, v_1, v_2)$."""
+
+    basis: ClassVar[np.ndarray] = np.array(
+        [
+            [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+            [[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+            [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]],
+        ]
+    )
+    pose_size: ClassVar[int] = 4
+
+    def __repr__(self) -> str:
+        return "SE(2)"
+
+    def exp(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
+        """Return the motion of a body that keeps the body velocity `x` for unit time."""
+        return _rodrigues.exponential(self.hat(x), x[..., 0] * x[..., 0])
+
+    def log(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3"]:
+        """Return the body velocity that leads to `g` in unit time, turning by at most pi."""
+        xp = g.__array_namespace__()
+        angle = xp.arctan2(g[..., 1, 0], g[..., 0, 0])
+        along, across = half_cotangent(angle * angle), angle / 2
+        x, y = g[..., 0, 2], g[..., 1, 2]
+        return xp.stack([angle, along * x + across * y, along * y - across * x], axis=-1)
+
+    def cayley(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
+        """Return the motion with tan(angle / 2) = x[0] / 2 about the same centre as `exp(x)`."""
+        return _rodrigues.cayley(self.hat(x), x[..., 0] * x[..., 0])
+
+    def cayley_increment(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
+        """Return `cayley(x)` minus the identity, without cancellation."""
+        return _rodrigues.cayley_increment(self.hat(x), x[..., 0] * x[..., 0])
+
+    def inverse(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:
+        """Return the inverse motion."""
+        xp = g.__array_namespace__()
+        turned = xp.swapaxes(g[..., :2, :2], -1, -2)
+        upper = xp.concatenate([turned, -(turned @ g[..., :2, 2:])], axis=-1)
+        return xp.concatenate([upper, g[..., 2:, :]], axis=-2)
+
+    def rotation(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 2 2"]:
+        """Return the orthogonal part of `g`."""
+        return g[..., :2, :2]
+
+    def angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
+        """Return the angle through which `exp(x)` turns."""
+        return abs(x[..., 0])
+
+    def random(self, rng: np.random.Generator) -> Float[np.ndarray, "3 3"]:
+        """Draw a uniform heading and a standard normal position."""
+        angle = rng.uniform(-np.pi, np.pi)
+        return self.matrix_from_pose(np.array([np.cos(angle), np.sin(angle), *rng.normal(size=2)]))
+
+    def matrix_from_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:
+        """Return the matrix of (cos, sin, x, y); the heading is normalised first."""
+        xp = pose.__array_namespace__()
+        scale = 1 / xp.sqrt(pose[..., 0] * pose[..., 0] + pose[..., 1] * pose[..., 1])
+        cos, sin = pose[..., 0] * scale, pose[..., 1] * scale
+        zero, one = xp.zeros_like(cos), xp.ones_like(cos)
+        rows = ((cos, -sin, pose[..., 2]), (sin, cos, pose[..., 3]), (zero, zero, one))
+        return xp.stack([xp.stack(row, axis=-1) for row in rows], axis=-2)
+
+    def pose_from_matrix(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 4"]:
+        """Return (cos, sin, x, y)."""
+        xp = g.__array_namespace__()
+        return xp.stack([g[..., 0, 0], g[..., 1, 0], g[..., 0, 2], g[..., 1, 2]], axis=-1)

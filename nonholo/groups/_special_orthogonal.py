@@ -1,0 +1,74 @@
+"""The rotation group of space, SO(3); the compact pose is a unit quaternion, scalar first."""
+
+import dataclasses
+from typing import ClassVar
+
+import numpy as np
+
+from nonholo._types import Array, Float
+from nonholo.groups import _rodrigues
+from nonholo.groups._base import AbstractMatrixGroup
+from nonholo.groups._quaternion import matrix_from_quaternion, quaternion_from_matrix
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class SpecialOrthogonal3(AbstractMatrixGroup):
+    """Rotations of space; the coordinates of the algebra are the angular velocity vector."""
+
+    basis: ClassVar[np.ndarray] = np.array(
+        [
+            [[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]],
+            [[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]],
+            [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+        ]
+    )
+    pose_size: ClassVar[int] = 4
+
+    def __repr__(self) -> str:
+        return "SO(3)"
+
+    def exp(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
+        """Return the rotation by the vector `x` (axis times angle)."""
+        return _rodrigues.exponential(self.hat(x), (x * x).sum(axis=-1))
+
+    def log(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3"]:
+        """Return the rotation vector, of length at most pi; accurate near 0 and near pi."""
+        xp = g.__array_namespace__()
+        q = quaternion_from_matrix(g)
+        squared = (q[..., 1:] * q[..., 1:]).sum(axis=-1)
+        tiny = squared < np.finfo(np.float64).tiny
+        sine = xp.sqrt(xp.where(tiny, 1.0, squared))
+        scale = xp.where(tiny, 2.0, 2 * xp.arctan2(sine, q[..., 0]) / sine)
+        return scale[..., None] * q[..., 1:]
+
+    def cayley(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
+        """Return the rotation about `x` with tan(angle / 2) = |x| / 2."""
+        return _rodrigues.cayley(self.hat(x), (x * x).sum(axis=-1))
+
+    def cayley_increment(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
+        """Return `cayley(x)` minus the identity, without cancellation."""
+        return _rodrigues.cayley_increment(self.hat(x), (x * x).sum(axis=-1))
+
+    def inverse(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:
+        """Return the transpose."""
+        return g.__array_namespace__().swapaxes(g, -1, -2)
+
+    def rotation(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:
+        """Return the orthogonal part of `g`."""
+        return g
+
+    def angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
+        """Return the angle through which `exp(x)` turns."""
+        return x.__array_namespace__().sqrt((x * x).sum(axis=-1))
+
+    def random(self, rng: np.random.Generator) -> Float[np.ndarray, "3 3"]:
+        """Draw a uniformly distributed rotation."""
+        return matrix_from_quaternion(rng.normal(size=4))
+
+    def matrix_from_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:
+        """Return the rotation matrix of a quaternion, scalar first."""
+        return matrix_from_quaternion(pose)
+
+    def pose_from_matrix(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 4"]:
+        """Return the unit quaternion, scalar first and non-negative."""
+        return quaternion_from_matrix(g)

@@ -1,0 +1,113 @@
+"""The compiled loop over steps: warm start, correction, certificate, restart from zero, compensated momentum.
+
+The state is one array, so that a run can stop after any step and go on with the same bits:
+momentum (2), its compensation (2), the last three Cayley coordinates (6), pose (4).
+"""
+
+import numba
+import numpy as np
+
+from nonholo.kernels._interface import Body, certified, correction, increment, move, principal
+from nonholo.kernels._scalar import COMPILED
+
+STATE_SIZE = 14
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def start(p: Body, momentum: np.ndarray, pose: np.ndarray, state: np.ndarray) -> int:
+    """Fill the state of a run that begins with scaled momenta and a pose; return the outcome of the first root."""
+    code, y1, y2 = _solve(p, momentum[0], momentum[1], 0.0, 0.0)
+    state[0:2] = momentum
+    state[2:4] = 0.0
+    for i in (4, 6, 8):
+        state[i], state[i + 1] = y1, y2
+    state[10:14] = pose
+    return code
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def advance(
+    p: Body, state: np.ndarray, steps: int, every: int, momenta: np.ndarray, charts: np.ndarray, poses: np.ndarray
+) -> tuple[int, int]:
+    """Take up to `steps` steps, saving each `every`-th one; return how many were good and the outcome.
+
+    After a failure the state is that of the last good step.
+    """
+    m1, m2, k1, k2, y1, y2, u1, u2, v1, v2, q0, q1, q2, q3 = _unpack(state)
+    code, done = 0, 0
+    while done < steps:
+        d1, d2 = increment(p, m1, m2, y1, y2)
+        n1, l1 = _compensated(m1, k1, d1)
+        n2, l2 = _compensated(m2, k2, d2)
+        code, w1, w2 = _solve(p, n1, n2, 3 * (y1 - u1) + v1, 3 * (y2 - u2) + v2)
+        if code != 0:
+            break
+        q0, q1, q2, q3 = move(p, y1, y2, q0, q1, q2, q3)
+        m1, m2, k1, k2 = n1, n2, l1, l2
+        v1, v2, u1, u2, y1, y2 = u1, u2, y1, y2, w1, w2
+        done += 1
+        if done % every == 0:
+            row = done // every - 1
+            momenta[row, 0], momenta[row, 1] = m1, m2
+            charts[row, 0], charts[row, 1] = y1, y2
+            poses[row, 0], poses[row, 1], poses[row, 2], poses[row, 3] = q0, q1, q2, q3
+    state[:] = np.array((m1, m2, k1, k2, y1, y2, u1, u2, v1, v2, q0, q1, q2, q3))
+    return done, code
+
+
+@numba.njit(cache=True, inline="always", **COMPILED)
+def _unpack(s: np.ndarray):  # noqa: ANN202
+    return s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8], s[9], s[10], s[11], s[12], s[13]
+
+
+@numba.njit(cache=True, **COMPILED)
+def _compensated(total: float, lost: float, term: float) -> tuple[float, float]:
+    """Add by Kahan's summation; return the sum and the rounding it lost."""
+    term = term - lost
+    result = total + term
+    return result, (result - total) - term
+
+
+@numba.njit(cache=True, **COMPILED)
+def _solve(p: Body, m1: float, m2: float, y1: float, y2: float) -> tuple[int, float, float]:
+    """Correct a guess and verify that it is the principal root, or restart from momentum zero."""
+    good, y1, y2 = _newton(p, m1, m2, y1, y2)
+    if good and certified(p, m1, m2, y1, y2):
+        return 0, y1, y2
+    code, y1, y2 = principal(p, m1, m2)
+    if code == 0:
+        good, y1, y2 = _newton(p, m1, m2, y1, y2)
+    return code, y1, y2
+
+
+@numba.njit(cache=True, **COMPILED)
+def _newton(p: Body, m1: float, m2: float, y1: float, y2: float) -> tuple[bool, float, float]:
+    """Correct a guess until the next correction would be below rounding."""
+    for _ in range(8):
+        d1, d2 = correction(p, m1, m2, y1, y2)
+        y1 += d1
+        y2 += d2
+        if d1 * d1 + d2 * d2 <= 1e-18 * (1 + y1 * y1 + y2 * y2):
+            return True, y1, y2
+    return False, y1, y2
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def step_each(p: Body, momenta: np.ndarray, charts: np.ndarray, near: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Take one step from each row; return momenta, charts and outcomes.
+
+    The root is the principal one or, with `near`, the one Newton's method reaches from the present displacement.
+    """
+    next_momenta, next_charts = np.empty_like(momenta), np.empty_like(charts)
+    codes = np.zeros(len(momenta), dtype=np.int64)
+    for k in range(len(momenta)):
+        y1, y2 = charts[k]
+        d1, d2 = increment(p, momenta[k, 0], momenta[k, 1], y1, y2)
+        m1, m2 = momenta[k, 0] + d1, momenta[k, 1] + d2
+        if near:
+            good, w1, w2 = _newton(p, m1, m2, y1, y2)
+            codes[k] = 0 if good else 3
+        else:
+            codes[k], w1, w2 = _solve(p, m1, m2, y1, y2)
+        next_momenta[k], next_charts[k] = (m1, m2), (w1, w2)
+    return next_momenta, next_charts, codes

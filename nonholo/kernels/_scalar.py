@@ -1,0 +1,22 @@
+"""What scalar kernels need: a decorator for numba and JAX, and a square root for both."""
+
+import math
+from typing import Any
+
+from numba.extending import overload, register_jitable
+
+COMPILED = {"error_model": "numpy", "fastmath": {"contract", "arcp", "nsz"}}
+"""Options of every compiled kernel: no exceptions on division, contraction but no reordering (Kahan sums survive)."""
+
+scalar = register_jitable(**COMPILED)
+"""Mark a scalar function: numba inlines it, plain Python and JAX call it as it is."""
+
+
+def sqrt(x: Any) -> Any:
+    """Return the square root of a float or of a traced array."""
+    return x.__array_namespace__().sqrt(x) if hasattr(x, "__array_namespace__") else math.sqrt(x)
+
+
+@overload(sqrt, jit_options=COMPILED, strict=False)
+def _compiled_sqrt(x: Any) -> Any:
+    return lambda x: math.sqrt(x)

@@ -1,0 +1,180 @@
+r"""The step of the Suslov top on SO(3) in Cayley coordinates (docs/theory/suslov-top.md).
+
+Canonical frame, momenta in units of the displacement: $m = h\,r/2$. The displacement $W$ has Cayley coordinates $y$
+(tan of half the step angle times its direction in $\mathfrak{d}$) that satisfy two quadratics,
+
+$$ B y + (c\cdot y^\perp)\,y^\perp - (1 + |y|^2)\,m = 0, \qquad y^\perp = (-y_2, y_1), $$
+
+and $m' = m - 2\,(c\cdot y^\perp)\,y^\perp / (1 + |y|^2)$. The fold curve is where the Jacobian determinant vanishes.
+"""
+
+from typing import Any, NamedTuple
+
+import numba
+import numpy as np
+
+from nonholo.kernels._scalar import COMPILED, scalar, sqrt
+
+
+class SuslovBody(NamedTuple):
+    """B, c and the squared radius within which every root is the principal one."""
+
+    b11: Any
+    b12: Any
+    b22: Any
+    c1: Any
+    c2: Any
+    certain: Any
+
+
+def suslov_body(constrained_inertia: Any, coupling: Any) -> SuslovBody:
+    """Pack the parameters of a top; concrete ones get the radius of the certificate, traced ones a radius of zero."""
+    (b11, b12), (_, b22) = constrained_inertia
+    c1, c2 = coupling
+    concrete = isinstance(constrained_inertia, np.ndarray) and isinstance(coupling, np.ndarray)
+    radius = _certain_radius(constrained_inertia, coupling) if concrete else 0.0
+    body = (b11, b12, b22, c1, c2, radius * radius)
+    return SuslovBody(*(float(x) for x in body)) if concrete else SuslovBody(*body)
+
+
+def _certain_radius(B: np.ndarray, c: np.ndarray) -> float:
+    low, high = np.linalg.eigvalsh(B)
+    length, pull = np.linalg.norm(c), np.linalg.norm(B @ c)
+    bound = np.roots([-pull - 2 * length * high, -low * high, -pull, low * high])
+    smallest = min(root.real for root in bound if abs(root.imag) <= 1e-9 * abs(root) and root.real > 0)
+    return 0.999 * min(smallest, 0.7 * low / length if length > 0 else np.inf)
+
+
+@scalar
+def c_perp(p: SuslovBody, y1: float, y2: float) -> float:
+    """Return c . y_perp, which drives the momentum."""
+    return p.c2 * y1 - p.c1 * y2
+
+
+@scalar
+def residual(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> tuple[float, float]:
+    """Return the two quadratics at y."""
+    s = c_perp(p, y1, y2)
+    weight = 1 + y1 * y1 + y2 * y2
+    return p.b11 * y1 + p.b12 * y2 - s * y2 - weight * m1, p.b12 * y1 + p.b22 * y2 + s * y1 - weight * m2
+
+
+@scalar
+def correction(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> tuple[float, float]:
+    """Return the Newton correction of y."""
+    s = c_perp(p, y1, y2)
+    g1, g2 = residual(p, m1, m2, y1, y2)
+    j11 = p.b11 - p.c2 * y2 - 2 * y1 * m1
+    j12 = p.b12 + p.c1 * y2 - s - 2 * y2 * m1
+    j21 = p.b12 + p.c2 * y1 + s - 2 * y1 * m2
+    j22 = p.b22 - p.c1 * y1 - 2 * y2 * m2
+    inverse = 1 / (j11 * j22 - j12 * j21)
+    return (j12 * g2 - j22 * g1) * inverse, (j21 * g1 - j11 * g2) * inverse
+
+
+@scalar
+def certified(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> bool:
+    """Tell whether a root is certainly the principal one: it lies in the disc that no fold reaches."""
+    return y1 * y1 + y2 * y2 <= p.certain
+
+
+@scalar
+def increment(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> tuple[float, float]:
+    """Return m' - m."""
+    push = 2 * c_perp(p, y1, y2) / (1 + y1 * y1 + y2 * y2)
+    return push * y2, -push * y1
+
+
+@scalar
+def move(
+    p: SuslovBody, y1: float, y2: float, q0: float, q1: float, q2: float, q3: float
+) -> tuple[float, float, float, float]:
+    """Return the quaternion of g W, renormalised: W turns about the body axis (-y2, y1, 0)."""
+    z0 = 1 / sqrt(1 + y1 * y1 + y2 * y2)
+    x, y = -y2 * z0, y1 * z0
+    r0, r1 = q0 * z0 - q1 * x - q2 * y, q0 * x + q1 * z0 - q3 * y
+    r2, r3 = q0 * y + q2 * z0 + q3 * x, q3 * z0 + q1 * y - q2 * x
+    unit = (3 - (r0 * r0 + r1 * r1 + r2 * r2 + r3 * r3)) / 2
+    return r0 * unit, r1 * unit, r2 * unit, r3 * unit
+
+
+_LONGEST_ARC = 0.1  # radians of the half-turn sphere per continuation step
+_CLOSE = 0.02  # a corrector that moves further has left the branch
+
+
+@numba.njit(cache=True, **COMPILED)
+def principal(p: SuslovBody, m1: float, m2: float) -> tuple[int, float, float]:
+    """Follow the root from momentum zero along s m, 0 <= s <= 1; return the outcome and y.
+
+    Works on the sphere of half-angle quaternions, where the branch is smooth through angle pi.
+    """
+    z = (1.0, 0.0, 0.0)
+    s, size = 0.0, 1.0
+    while s < 1.0:
+        d0, d1, d2, det = _tangent(p, s * m1, s * m2, z, m1, m2)
+        size = min(size, 1.0 - s, _LONGEST_ARC / np.sqrt(d0 * d0 + d1 * d1 + d2 * d2))
+        guess = (z[0] + size * d0, z[1] + size * d1, z[2] + size * d2)
+        good, found = _correct(p, (s + size) * m1, (s + size) * m2, guess)
+        if good:
+            z, s, size = found, (1.0 if size == 1.0 - s else s + size), 2 * size
+        elif size > 1e-9:
+            size /= 4
+        elif det < 1e-2 * (p.b11 * p.b22 - p.b12 * p.b12):
+            return 1, np.nan, np.nan
+        else:
+            return (3 if np.isfinite(det) else 5), np.nan, np.nan
+    z0 = z[0] if z[0] != 0 else 1e-150
+    return 0, z[1] / z0, z[2] / z0
+
+
+@numba.njit(cache=True, **COMPILED)
+def _correct(p, m1, m2, guess):  # noqa: ANN001, ANN202
+    z = guess
+    for _ in range(6):
+        g1, g2 = _homogeneous_residual(p, m1, m2, z)
+        d0, d1, d2, det = _solve(p, m1, m2, z, -g1, -g2, (1 - z[0] * z[0] - z[1] * z[1] - z[2] * z[2]) / 2)
+        z = (z[0] + d0, z[1] + d1, z[2] + d2)
+        moved = (z[0] - guess[0]) ** 2 + (z[1] - guess[1]) ** 2 + (z[2] - guess[2]) ** 2
+        if not (det > 0 and moved < _CLOSE * _CLOSE):
+            return False, z
+        if d0 * d0 + d1 * d1 + d2 * d2 < 1e-24:
+            return True, z
+    return False, z
+
+
+@numba.njit(cache=True, **COMPILED)
+def _tangent(p, m1, m2, z, r1, r2):  # noqa: ANN001, ANN202
+    weight = z[0] * z[0] + z[1] * z[1] + z[2] * z[2]
+    return _solve(p, m1, m2, z, r1 * weight, r2 * weight, 0.0)
+
+
+@scalar
+def _homogeneous_residual(p, m1, m2, z):  # noqa: ANN001, ANN202
+    z0, z1, z2 = z
+    s = c_perp(p, z1, z2)
+    weight = z0 * z0 + z1 * z1 + z2 * z2
+    g1 = z0 * (p.b11 * z1 + p.b12 * z2) - s * z2 - weight * m1
+    return g1, z0 * (p.b12 * z1 + p.b22 * z2) + s * z1 - weight * m2
+
+
+@scalar
+def _solve(p, m1, m2, z, g1, g2, g3):  # noqa: ANN001, ANN202
+    """Solve the linearised homogeneous equations with the third right-hand side along z; also the determinant."""
+    z0, z1, z2 = z
+    s = c_perp(p, z1, z2)
+    a0 = p.b11 * z1 + p.b12 * z2 - 2 * z0 * m1
+    a1 = z0 * p.b11 - p.c2 * z2 - 2 * z1 * m1
+    a2 = z0 * p.b12 + p.c1 * z2 - s - 2 * z2 * m1
+    b0 = p.b12 * z1 + p.b22 * z2 - 2 * z0 * m2
+    b1 = z0 * p.b12 + p.c2 * z1 + s - 2 * z1 * m2
+    b2 = z0 * p.b22 - p.c1 * z1 - 2 * z2 * m2
+    n0, n1, n2 = a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0
+    det = z0 * n0 + z1 * n1 + z2 * n2
+    u0, u1, u2 = b1 * z2 - b2 * z1, b2 * z0 - b0 * z2, b0 * z1 - b1 * z0
+    v0, v1, v2 = z1 * a2 - z2 * a1, z2 * a0 - z0 * a2, z0 * a1 - z1 * a0
+    return (
+        (g1 * u0 + g2 * v0 + g3 * n0) / det,
+        (g1 * u1 + g2 * v1 + g3 * n1) / det,
+        (g1 * u2 + g2 * v2 + g3 * n2) / det,
+        det,
+    )

@@ -1,0 +1,54 @@
+"""Mass tensors, inertia tensors and the inertia operator of a mass distribution moved by a matrix group."""
+
+import numpy as np
+
+from nonholo._checks import array, symmetric
+from nonholo._types import Array, Float
+from nonholo.groups import AbstractMatrixGroup
+
+
+def inertia_tensor(mass_tensor: Float[Array, "3 3"]) -> Float[Array, "3 3"]:
+    r"""Return $\mathrm{tr}(J)\,\mathrm{Id} - J$, the inertia tensor of a body with mass tensor $J = \int r r^T dm$.
+
+    Example:
+        >>> inertia_tensor(np.diag([1.0, 2.0, 3.0])).diagonal()
+        array([5., 4., 3.])
+    """
+    xp = mass_tensor.__array_namespace__()
+    return xp.trace(mass_tensor) * xp.eye(3) - mass_tensor
+
+
+def mass_tensor_from_inertia(inertia: Float[Array, "3 3"]) -> Float[Array, "3 3"]:
+    r"""Return the mass tensor $J = \tfrac12\mathrm{tr}(I)\,\mathrm{Id} - I$ of a body with inertia tensor $I$.
+
+    Raises:
+        ValueError: `inertia` is not a finite symmetric (3, 3) matrix.
+
+    Example:
+        >>> mass_tensor_from_inertia(np.diag([5.0, 4.0, 3.0])).diagonal()
+        array([1., 2., 3.])
+    """
+    where = "mass_tensor_from_inertia(inertia=...)"
+    tensor = symmetric(where, array(where, inertia, (3, 3)), "Pass the inertia tensor about the fixed point.")
+    xp = tensor.__array_namespace__()
+    return xp.trace(tensor) / 2 * xp.eye(3) - tensor
+
+
+def inertia_from_mass_tensor(group: AbstractMatrixGroup, mass_tensor: Float[Array, "N N"]) -> Float[Array, "dim dim"]:
+    r"""Return the inertia operator $\mathbb{I}_{ij} = \mathrm{tr}(E_i\,\mathbb{J}\,E_j^T)$ in the basis $E_i$ of the algebra.
+
+    The kinetic energy of a body that moves with the group is $\tfrac12\mathrm{tr}(\xi\,\mathbb{J}\,\xi^T)$ with its
+    (homogeneous) mass tensor $\mathbb{J}$.
+    """
+    xp = mass_tensor.__array_namespace__()
+    basis = xp.asarray(group.basis)
+    return xp.einsum("iab,bc,jac->ij", basis, mass_tensor, basis)
+
+
+def rotation_to(axis: np.ndarray) -> np.ndarray:
+    """Return the shortest rotation taking e3 to the unit vector `axis`; diag(1, -1, -1) for -e3."""
+    x, y, z = axis
+    if z < 0 and x == 0 and y == 0:
+        return np.diag([1.0, -1.0, -1.0])
+    scale = 1 / (1 + z) if z > -0.5 else (1 - z) / (x * x + y * y)
+    return np.array([[1 - scale * x * x, -scale * x * y, x], [-scale * x * y, 1 - scale * y * y, y], [-x, -y, z]])

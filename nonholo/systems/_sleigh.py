@@ -1,0 +1,103 @@
+"""The Chaplygin sleigh: a rigid body in the plane on a blade that cannot slip sideways."""
+
+import dataclasses
+from typing import ClassVar
+
+import numpy as np
+
+from nonholo._checks import number, positive
+from nonholo._types import Array, Float
+from nonholo.groups import SE, AbstractMatrixGroup
+from nonholo.systems._base import AbstractLLSystem, Equilibria
+from nonholo.systems._mass import inertia_from_mass_tensor
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class ChaplyginSleigh(AbstractLLSystem):
+    r"""A sleigh on SE(2): body velocity $(\omega, v_1, v_2)$ with $v_2 = 0$ at the blade, which points along body axis 1.
+
+    $$ l = \tfrac12\bigl[(J + m(a^2 + b^2))\omega^2 + m(v_1^2 + v_2^2) - 2mb\,\omega v_1 + 2ma\,\omega v_2\bigr]. $$
+
+    Reference: [fedorov-zenkov-2004], section 5 (whose J is about the centre of mass, as its formulas show).
+
+    Args:
+        mass: m.
+        inertia: J, about the centre of mass.
+        a: Coordinate of the centre of mass along the blade, from the contact point; the sleigh settles to move with the
+            sign of a; a = 0 is balanced.
+        b: Coordinate of the centre of mass across the blade.
+
+    Raises:
+        ValueError: A mass or inertia that is not positive, a value that is not finite.
+
+    Example:
+        >>> ChaplyginSleigh(mass=2.0, inertia=1.0, a=0.5).inertia_operator
+        array([[1.5, 0. , 1. ],
+               [0. , 2. , 0. ],
+               [1. , 0. , 2. ]])
+    """
+
+    mass: Array
+    inertia: Array
+    a: Array
+    b: Array = 0.0
+    group: ClassVar[AbstractMatrixGroup] = SE(2)
+
+    def __post_init__(self) -> None:
+        about = "Pass the moment of inertia about the centre of mass."
+        object.__setattr__(self, "mass", positive("ChaplyginSleigh(mass=...)", self.mass, "Pass the mass of the body."))
+        object.__setattr__(self, "inertia", positive("ChaplyginSleigh(inertia=...)", self.inertia, about))
+        object.__setattr__(self, "a", number("ChaplyginSleigh(a=...)", self.a))
+        object.__setattr__(self, "b", number("ChaplyginSleigh(b=...)", self.b))
+
+    def __repr__(self) -> str:
+        return f"ChaplyginSleigh(mass={self.mass:g}, inertia={self.inertia:g}, a={self.a:g}, b={self.b:g})"
+
+    @property
+    def homogeneous_mass_tensor(self) -> Float[Array, "3 3"]:
+        """The mass tensor about the contact point in homogeneous coordinates; the moment J is shared by both axes."""
+        m, a, b = self.mass, self.a, self.b
+        xp = (m * a * b * self.inertia).__array_namespace__()
+        half = self.inertia / 2
+        rows = ((half + m * a * a, m * a * b, m * a), (m * a * b, half + m * b * b, m * b), (m * a, m * b, m))
+        return xp.stack([xp.stack(row) for row in rows])
+
+    @property
+    def inertia_operator(self) -> Float[Array, "3 3"]:
+        """The inertia operator in the coordinates (omega, v1, v2)."""
+        return inertia_from_mass_tensor(self.group, self.homogeneous_mass_tensor)
+
+    @property
+    def constraint_subspace(self) -> Float[np.ndarray, "2 3"]:
+        """Rows (omega) and (v1)."""
+        return np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+
+    @property
+    def annihilator(self) -> Float[np.ndarray, "1 3"]:
+        """The velocity across the blade."""
+        return np.array([[0.0, 0.0, 1.0]])
+
+    @property
+    def frame(self) -> Float[Array, "3 3"]:
+        """The translation to the foot of the centre of mass on the line through the contact point across the blade."""
+        xp = (self.b * self.mass).__array_namespace__()
+        zero, one = xp.zeros_like(self.b), xp.ones_like(self.b)
+        rows = ((one, zero, zero), (zero, one, self.b), (zero, zero, one))
+        return xp.stack([xp.stack(row) for row in rows])
+
+    @property
+    def canonical(self) -> "ChaplyginSleigh":
+        """The same sleigh with b = 0: the offset across the blade does not enter the reduced motion."""
+        return ChaplyginSleigh(self.mass, self.inertia, self.a)
+
+    def equilibria(self) -> Equilibria:
+        """Return the straight motions, with the half that attracts; every admissible velocity if a = 0.
+
+        Example:
+            >>> ChaplyginSleigh(mass=1.0, inertia=1.0, a=-0.5).equilibria().attracting
+            array([ 0., -1.,  0.])
+        """
+        if self.a == 0:
+            return Equilibria(self.constraint_subspace, None)
+        forward = np.array([0.0, 1.0, 0.0])
+        return Equilibria(forward[None, :], np.copysign(1.0, self.a) * forward)

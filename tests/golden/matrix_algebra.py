@@ -1,0 +1,187 @@
+"""Small matrices of mpmath numbers and the two bodies, for the scripts that make reference data.
+
+Conventions of so(3) and se(2): docs/conventions.md. Nothing of the library is imported here.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from mpmath import mp, mpf
+
+Number = Any  # an mpf, or an int that is exact
+Vector = list[Number]
+Matrix = list[list[Number]]
+
+SO3 = [
+    [[0, 0, 0], [0, 0, -1], [0, 1, 0]],
+    [[0, 0, 1], [0, 0, 0], [-1, 0, 0]],
+    [[0, -1, 0], [1, 0, 0], [0, 0, 0]],
+]
+SE2 = [
+    [[0, -1, 0], [1, 0, 0], [0, 0, 0]],
+    [[0, 0, 1], [0, 0, 0], [0, 0, 0]],
+    [[0, 0, 0], [0, 0, 1], [0, 0, 0]],
+]
+IDENTITY = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+ANNIHILATOR = [0, 0, 1]
+
+
+@dataclass(frozen=True)
+class Body:
+    """A Suslov top or a Chaplygin sleigh: float inputs and the matrices made from them exactly."""
+
+    system: str
+    name: str
+    parameters: dict[str, Any]
+    mass_tensor: Matrix
+    basis: Sequence[Matrix]
+    subspace: Sequence[Sequence[int]]
+
+
+def suslov_top(name: str, mass_tensor: list[list[float]]) -> Body:
+    """Return the top with forbidden axis e3."""
+    tensor = [[mpf(entry) for entry in row] for row in mass_tensor]
+    subspace = [[0, 1, 0], [-1, 0, 0]]
+    return Body("suslov", name, {"mass_tensor": mass_tensor}, tensor, SO3, subspace)
+
+
+def chaplygin_sleigh(name: str, mass: float, inertia: float, a: float, b: float) -> Body:
+    """Return the sleigh with its homogeneous mass tensor; inertia is about the centre of mass."""
+    m, x, y = mpf(mass), mpf(a), mpf(b)
+    half = mpf(inertia) / 2
+    tensor = [
+        [half + m * x * x, m * x * y, m * x],
+        [m * x * y, half + m * y * y, m * y],
+        [m * x, m * y, m],
+    ]
+    parameters = {"mass": mass, "inertia": inertia, "a": a, "b": b}
+    return Body("sleigh", name, parameters, tensor, SE2, [[1, 0, 0], [0, 1, 0]])
+
+
+def transpose(x: Matrix) -> Matrix:
+    """Return the transpose."""
+    return [list(column) for column in zip(*x, strict=True)]
+
+
+def multiply(x: Matrix, y: Matrix) -> Matrix:
+    """Return the matrix product x y."""
+    columns = transpose(y)
+    return [[mp.fdot(row, column) for column in columns] for row in x]
+
+
+def subtract(x: Matrix, y: Matrix) -> Matrix:
+    """Return x - y."""
+    return [[p - q for p, q in zip(r, s, strict=True)] for r, s in zip(x, y, strict=True)]
+
+
+def trace_product(x: Matrix, y: Matrix) -> Number:
+    """Return tr(x y)."""
+    return mp.fsum(mp.fdot(row, column) for row, column in zip(x, transpose(y), strict=True))
+
+
+def largest(x: Matrix) -> Number:
+    """Return the largest modulus of an entry."""
+    return max(abs(entry) for row in x for entry in row)
+
+
+def apply(x: Matrix, v: Vector) -> Vector:
+    """Return the vector x v."""
+    return [mp.fdot(row, v) for row in x]
+
+
+def combine(coefficients: Vector, matrices: Sequence[Matrix]) -> Matrix:
+    """Return the linear combination of matrices."""
+    size = range(len(matrices[0]))
+    return [
+        [mp.fdot(coefficients, [matrix[i][j] for matrix in matrices]) for j in size] for i in size
+    ]
+
+
+def coordinates(basis: Sequence[Matrix], x: Matrix) -> Vector:
+    """Return the coordinates of x in an orthogonal basis; raise if x is not in the algebra."""
+    found = [
+        trace_product(element, transpose(x)) / trace_product(element, transpose(element))
+        for element in basis
+    ]
+    require(largest(subtract(x, combine(found, basis))), "algebra element", mpf(10) ** (8 - mp.dps))
+    return found
+
+
+def exponential(x: Matrix) -> Matrix:
+    """Return expm(x) by scaling, Taylor series and squaring."""
+    halvings = 10
+    with mp.workdps(mp.dps + 10):
+        scaled = [[mp.ldexp(entry, -halvings) for entry in row] for row in x]
+        result = term = IDENTITY
+        order = 0
+        while order == 0 or largest(term) > mp.eps:
+            order += 1
+            term = [[entry / order for entry in row] for row in multiply(term, scaled)]
+            result = [
+                [p + q for p, q in zip(r, s, strict=True)]
+                for r, s in zip(result, term, strict=True)
+            ]
+        for _ in range(halvings):
+            result = multiply(result, result)
+    return result
+
+
+def inertia_operator(basis: Sequence[Matrix], mass_tensor: Matrix) -> Matrix:
+    """Return the matrix tr(E_i JJ E_j^T)."""
+    products = [multiply(element, mass_tensor) for element in basis]
+    return [[trace_product(x, transpose(y)) for y in basis] for x in products]
+
+
+def solve2(matrix: Matrix, right: Vector) -> tuple[Vector, Number]:
+    """Solve two linear equations; return the solution and the determinant."""
+    (p, q), (r, s) = matrix
+    determinant = p * s - q * r
+    u, v = right
+    return [(s * u - q * v) / determinant, (p * v - r * u) / determinant], determinant
+
+
+def constrained_energy(body: Body, momentum: Vector) -> Number:
+    """Return 1/2 P_d . (I|_d)^-1 P_d."""
+    rows = [combine(list(row), body.basis) for row in body.subspace]
+    restricted = apply([list(row) for row in body.subspace], momentum)
+    solution, _ = solve2(inertia_operator(rows, body.mass_tensor), restricted)
+    return mp.fdot(restricted, solution) / 2
+
+
+def group_residual(body: Body, g: Matrix) -> Number:
+    """Return how far g is from SO(3) or SE(2)."""
+    block = g if body.system == "suslov" else [row[:2] for row in g[:2]]
+    size = range(len(block))
+    identity = [[int(i == j) for j in size] for i in size]
+    residual = largest(subtract(multiply(block, transpose(block)), identity))
+    if body.system == "sleigh":
+        residual = max(residual, largest(subtract([g[2]], [IDENTITY[2]])))
+    return max(residual, abs(mp.det(mp.matrix(g)) - 1))
+
+
+def require(defect: Number, what: str, tolerance: Number) -> None:
+    """Raise if a defect exceeds its tolerance."""
+    if not abs(defect) <= tolerance:
+        raise ArithmeticError(f"{what}: {mp.nstr(defect, 3)} exceeds {mp.nstr(tolerance, 3)}")
+
+
+def decimals(value: Number | list[Any], digits: int = 25) -> str | list[Any]:
+    """Turn nested lists of numbers into decimal strings; below 1e-50 is written as zero."""
+    if isinstance(value, list):
+        return [decimals(entry, digits) for entry in value]
+    number = mpf(value)
+    return "0.0" if abs(number) < mpf(10) ** -50 else mp.nstr(number, digits, min_fixed=-3)
+
+
+def write_cases(path: Path, cases: list[dict[str, Any]]) -> None:
+    """Write the cases, one key a line."""
+    blocks = []
+    for case in cases:
+        lines = [f"  {json.dumps(key)}: {json.dumps(value)}" for key, value in case.items()]
+        blocks.append("{\n" + ",\n".join(lines) + "\n}")
+    path.write_text("[\n" + ",\n".join(blocks) + "\n]\n", encoding="utf-8")
