@@ -5,14 +5,27 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from nonholo import plotting as plot
-    from nonholo._results import Outcome, OutcomeError
-    from nonholo.analysis import invariants
-    from nonholo.discrete import Discretization, discrete_legendre, discretize
-    from nonholo.groups import SE, SO
-    from nonholo.orbit import Orbit
-    from nonholo.simulation import simulate
-    from nonholo.systems import ChaplyginSleigh, SuslovTop
+    from nonholo import plotting as plot  # noqa: F401
+    from nonholo._results import Outcome as Outcome
+    from nonholo._results import OutcomeError as OutcomeError
+    from nonholo.analysis import invariants as invariants
+    from nonholo.discrete import (
+        Discretization as Discretization,
+    )
+    from nonholo.discrete import (
+        discrete_legendre as discrete_legendre,
+    )
+    from nonholo.discrete import (
+        discretize as discretize,
+    )
+    from nonholo.discrete._precision import allow_float32 as allow_float32
+    from nonholo.discrete._step import step as step
+    from nonholo.groups import SE as SE
+    from nonholo.groups import SO as SO
+    from nonholo.orbit import Orbit as Orbit
+    from nonholo.simulation import simulate as simulate
+    from nonholo.systems import ChaplyginSleigh as ChaplyginSleigh
+    from nonholo.systems import SuslovTop as SuslovTop
 
 _HOMES = {
     "Outcome": "_results",
@@ -22,8 +35,10 @@ _HOMES = {
     "ChaplyginSleigh": "systems",
     "SuslovTop": "systems",
     "Discretization": "discrete",
+    "allow_float32": "discrete._precision",
     "discrete_legendre": "discrete",
     "discretize": "discrete",
+    "step": "discrete._step",
     "Orbit": "orbit",
     "invariants": "analysis",
     "simulate": "simulation",

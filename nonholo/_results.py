@@ -9,7 +9,7 @@ import enum
 class Outcome(enum.IntEnum):
     """How a step or a run ended.
 
-    The integer value is what arrays of outcomes hold; `message` says what happened, why it can be expected, and what to try.
+    Arrays of outcomes hold the integer value; `message` says what happened, why it can be expected, and what to try.
 
     Example:
         >>> print(Outcome.no_real_branch, int(Outcome.successful))
@@ -35,7 +35,7 @@ class Outcome(enum.IntEnum):
 _MESSAGES = {
     Outcome.successful: "Every step succeeded.",
     Outcome.no_real_branch: (
-        "The principal branch ends before it reaches this momentum: it folds, and a real next point on it does not exist. "
+        "The principal branch ends before it reaches this momentum: it folds, and has no real next point. "
         "The map is multivalued and folds at large step angles. Try a smaller time_step or a slower motion."
     ),
     Outcome.branch_unverified: (
@@ -50,7 +50,7 @@ _MESSAGES = {
         "The momentum is not the discrete momentum of any displacement on the principal branch. "
         "Pass its components along the constraint subspace instead, or a momentum made by discrete_legendre."
     ),
-    Outcome.nonfinite: "A number overflowed or became undefined. Try a smaller time_step or rescale the units.",
+    Outcome.nonfinite: "A number overflowed or became undefined. Try a smaller time_step or other units.",
 }
 
 

@@ -41,7 +41,8 @@ def invariants(orbit: Orbit) -> Invariants:
     """Measure what an orbit should keep.
 
     Example:
-        >>> orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), body_velocity=(1, 0, 0), steps=100)
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        >>> orbit = nh.simulate(sleigh, body_velocity=(1, 0, 0), steps=100)
         >>> invariants(orbit).energy_drift < 1e-14
         True
     """

@@ -26,13 +26,14 @@ class Discretization(AbstractMotion):
     order: int = 2
 
     def full_momentum(
-        self, reduced_momentum: Float[np.ndarray, "K k"], cayley: Float[np.ndarray, "K k"] | None
+        self, reduced_momentum: Float[np.ndarray, "K k"], cayley: Float[np.ndarray, "K k"]
     ) -> Float[np.ndarray, "K dim"]:
         """Return the discrete momenta at the displacements."""
+        del reduced_momentum
         return legendre_of_chart(self, cayley, "left")
 
     def multipliers(
-        self, reduced_momentum: Float[np.ndarray, "K k"], cayley: Float[np.ndarray, "K k"] | None, save_every: int
+        self, reduced_momentum: Float[np.ndarray, "K k"], cayley: Float[np.ndarray, "K k"], save_every: int
     ) -> Float[np.ndarray, "L s"]:
         r"""Return the impulses $\lambda$ in $P_{k+1} - \mathrm{Ad}^*_{W_k} P_k = \sum_j \lambda_j a^j$."""
         following = cayley[1:] if save_every == 1 else next_charts(self, reduced_momentum[:-1], cayley[:-1])
@@ -49,7 +50,7 @@ def discretize(
 ) -> Discretization:
     r"""Discretise a system: choose the discrete Lagrangian and the variety that displacements lie on.
 
-    $$ l_d(W) = h\, l\bigl((W - I)/h\bigr) \ \text{(matrix)}, \qquad l_d(W) = h\, l(\log W / h)\ \text{(logarithmic)}, $$
+    $$ l_d(W) = h\, l\bigl((W - I)/h\bigr) \ \text{(matrix)}, \qquad l_d(W) = h\, l(\log W/h)\ \text{(logarithmic)}, $$
 
     with $h$ the time step and, for matrices, $l(X) = \tfrac12\mathrm{tr}(X\,\mathbb{J}\,X^T)$. With "matrix" and "skew"
     the step conserves the reduced constrained energy exactly; with "logarithmic" or a callable it does not.
@@ -60,8 +61,8 @@ def discretize(
         system: What moves.
         time_step: h > 0.
         difference: "matrix", "logarithmic" or a callable $L_d(W)$ of a JAX matrix that includes the factor h.
-        constraint: "skew", (W - W^-1)/2 in d on the component through the identity, or "exponential", exp d. For the
-            systems of this version both are the same set.
+        constraint: "skew", (W - W^-1)/2 in d on the component through the identity, or "exponential", exp d; the same
+            set for the systems of this version.
         order: 2.
 
     Raises:

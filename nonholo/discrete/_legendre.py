@@ -1,7 +1,7 @@
 r"""The discrete Legendre transformation $W \mapsto P(W)$ and its right-handed companion $\mathrm{Ad}^*_W P(W)$.
 
-For the matrix difference both are closed forms in $X = W - I$, free of cancellation; for every other discrete Lagrangian
-they are derivatives taken by JAX (`_definition`).
+For the matrix difference both are closed forms in $X = W - I$, free of cancellation; for every other discrete
+Lagrangian they are derivatives taken by JAX (`_definition`).
 """
 
 from typing import TYPE_CHECKING
@@ -62,7 +62,7 @@ def legendre(discrete: "Discretization", increment: Float[Array, "... N N"], sid
 def matrix_legendre(
     group: AbstractMatrixGroup, tensor: Float[Array, "N N"], X: Float[Array, "... N N"], side: str
 ) -> Float[Array, "... dim"]:
-    r"""Return $\mathrm{tr}(E_i W \mathbb{J} X^T)$ (left) or $\mathrm{tr}(W E_i \mathbb{J} X^T)$ (right), $W = I + X$."""
+    r"""Return $\mathrm{tr}(E_i W\mathbb{J}X^T)$ (left) or $\mathrm{tr}(W E_i\mathbb{J}X^T)$ (right), $W = I + X$."""
     xp = X.__array_namespace__()
     arm = xp.asarray(tensor) @ xp.swapaxes(X, -1, -2)
     carried = arm + X @ arm if side == "left" else arm + arm @ X

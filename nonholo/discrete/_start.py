@@ -16,7 +16,11 @@ _TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in 
 
 
 def initial_momentum(
-    owner: str, system: AbstractLLSystem, body_velocity: Any = None, restricted_velocity: Any = None, momentum: Any = None
+    owner: str,
+    system: AbstractLLSystem,
+    body_velocity: Any = None,
+    restricted_velocity: Any = None,
+    momentum: Any = None,
 ) -> Float[np.ndarray, "k"]:
     """Return the canonical momentum along the constraint subspace that a velocity or a momentum has."""
     subspace = system.constraint_subspace
@@ -96,7 +100,9 @@ def in_group(where: str, group: AbstractMatrixGroup, element: Any) -> np.ndarray
     g = array(where, element, group.identity.shape, f"Pass an element of {group} as a matrix.")
     distance = np.linalg.norm(g - group.matrix_from_pose(group.pose_from_matrix(g)))
     if not distance <= _TOLERANCE * np.linalg.norm(g):
-        raise error(where, f"lie in {group}", f"a matrix at distance {distance:.3g}", "Build it with `exp` or `cayley`.")
+        raise error(
+            where, f"lie in {group}", f"a matrix at distance {distance:.3g}", "Build it with `exp` or `cayley`."
+        )
     return g
 
 

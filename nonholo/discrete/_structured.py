@@ -56,7 +56,9 @@ def reversal_defects(
     """Return, for each state, how far one step forward and one back (W to its inverse) miss it, relative to it."""
     closed = structured(discrete)
     if closed is None:
-        raise ValueError("`reversal_defects` needs a closed-form discretisation. Got another. Pass difference='matrix'.")
+        raise ValueError(
+            "`reversal_defects` needs a closed-form discretisation. Got another. Pass difference='matrix'."
+        )
     scaled = closed.scale * reduced_momentum
     momenta, charts, _ = kernels.step_each(closed.body, scaled, cayley, False)
     after, _, _ = kernels.step_each(closed.body, momenta, charts, True)

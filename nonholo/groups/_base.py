@@ -1,6 +1,6 @@
 r"""The interface of a matrix group, with everything that follows from a basis of its algebra.
 
-Elements are matrices, elements of the algebra and its dual are coordinate vectors, the pairing is the plain dot product.
+Elements are matrices, elements of the algebra and its dual coordinate vectors, the pairing is the plain dot product.
 All functions broadcast over leading axes.
 """
 
@@ -8,6 +8,7 @@ import abc
 
 import numpy as np
 
+from nonholo._checks import trailing
 from nonholo._types import Array, Float
 
 
@@ -74,22 +75,26 @@ class AbstractMatrixGroup(abc.ABC):
 
     def hat(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return the matrix of the algebra with coordinates `x`."""
+        x = self._vector(x)
         xp = x.__array_namespace__()
         return xp.tensordot(x, xp.asarray(self.basis), axes=1)
 
     def vee(self, X: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
         """Return the coordinates of a matrix of the algebra (of its orthogonal projection, if it lies outside)."""
+        X = self._matrix(X)
         xp = X.__array_namespace__()
         return xp.tensordot(X, xp.asarray(_dual_basis(self)), axes=((-2, -1), (1, 2)))
 
     def adjoint(self, g: Float[Array, "... N N"]) -> Float[Array, "... dim dim"]:
         r"""Return the matrix of $\mathrm{Ad}_g$: column i holds the coordinates of $g\,e_i\,g^{-1}$."""
+        g = self._matrix(g)
         xp = g.__array_namespace__()
         images = g[..., None, :, :] @ xp.asarray(self.basis) @ self.inverse(g)[..., None, :, :]
         return xp.swapaxes(self.vee(images), -1, -2)
 
     def coadjoint(self, g: Float[Array, "... N N"], p: Float[Array, "... dim"]) -> Float[Array, "... dim"]:
-        r"""Return $\mathrm{Ad}^*_g p$, the plain transpose: $\langle \mathrm{Ad}^*_g p, x\rangle = \langle p, \mathrm{Ad}_g x\rangle$."""
+        r"""Return the plain transpose: $\langle\mathrm{Ad}^*_g p, x\rangle = \langle p, \mathrm{Ad}_g x\rangle$."""
+        p = self._vector(p)
         return (p[..., None, :] @ self.adjoint(g))[..., 0, :]
 
     def bracket(self, x: Float[Array, "... dim"], y: Float[Array, "... dim"]) -> Float[Array, "... dim"]:
@@ -98,10 +103,19 @@ class AbstractMatrixGroup(abc.ABC):
         return self.vee(X @ Y - Y @ X)
 
     def coad(self, x: Float[Array, "... dim"], p: Float[Array, "... dim"]) -> Float[Array, "... dim"]:
-        r"""Return $\mathrm{ad}^*_x p$, the plain transpose: $\langle \mathrm{ad}^*_x p, y\rangle = \langle p, [x, y]\rangle$."""
+        r"""Return the plain transpose: $\langle\mathrm{ad}^*_x p, y\rangle = \langle p, [x, y]\rangle$."""
+        x, p = self._vector(x), self._vector(p)
         xp = x.__array_namespace__()
         brackets = self.bracket(x[..., None, :], xp.asarray(np.eye(self.dim)))
         return (brackets @ p[..., :, None])[..., 0]
+
+    def _vector(self, x: Array) -> Array:
+        where = f"{self!r} (coordinates)"
+        return trailing(where, x, (self.dim,), "Use `vee` to turn a matrix into coordinates.")
+
+    def _matrix(self, g: Array) -> Array:
+        where = f"{self!r} (element)"
+        return trailing(where, g, self.identity.shape, "Use `hat`, `exp` or `cayley` to make a matrix.")
 
 
 def _dual_basis(group: AbstractMatrixGroup) -> np.ndarray:

@@ -13,7 +13,7 @@ from nonholo.numerics import half_cotangent
 
 @dataclasses.dataclass(frozen=True, repr=False)
 class SpecialEuclidean2(AbstractMatrixGroup):
-    r"""Motions of the plane as matrices $\begin{pmatrix} R & x \\ 0 & 1\end{pmatrix}$; coordinates $(\omega, v_1, v_2)$."""
+    r"""Motions of the plane, $\begin{pmatrix} R & x \\ 0 & 1\end{pmatrix}$; coordinates $(\omega, v_1, v_2)$."""
 
     basis: ClassVar[np.ndarray] = np.array(
         [
@@ -29,10 +29,12 @@ class SpecialEuclidean2(AbstractMatrixGroup):
 
     def exp(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
         """Return the motion of a body that keeps the body velocity `x` for unit time."""
+        x = self._vector(x)
         return _rodrigues.exponential(self.hat(x), x[..., 0] * x[..., 0])
 
     def log(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3"]:
         """Return the body velocity that leads to `g` in unit time, turning by at most pi."""
+        g = self._matrix(g)
         xp = g.__array_namespace__()
         angle = xp.arctan2(g[..., 1, 0], g[..., 0, 0])
         along, across = half_cotangent(angle * angle), angle / 2
@@ -41,14 +43,17 @@ class SpecialEuclidean2(AbstractMatrixGroup):
 
     def cayley(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
         """Return the motion with tan(angle / 2) = x[0] / 2 about the same centre as `exp(x)`."""
+        x = self._vector(x)
         return _rodrigues.cayley(self.hat(x), x[..., 0] * x[..., 0])
 
     def cayley_increment(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
         """Return `cayley(x)` minus the identity, without cancellation."""
+        x = self._vector(x)
         return _rodrigues.cayley_increment(self.hat(x), x[..., 0] * x[..., 0])
 
     def inverse(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:
         """Return the inverse motion."""
+        g = self._matrix(g)
         xp = g.__array_namespace__()
         turned = xp.swapaxes(g[..., :2, :2], -1, -2)
         upper = xp.concatenate([turned, -(turned @ g[..., :2, 2:])], axis=-1)

@@ -29,10 +29,12 @@ class SpecialOrthogonal3(AbstractMatrixGroup):
 
     def exp(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
         """Return the rotation by the vector `x` (axis times angle)."""
+        x = self._vector(x)
         return _rodrigues.exponential(self.hat(x), (x * x).sum(axis=-1))
 
     def log(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3"]:
         """Return the rotation vector, of length at most pi; accurate near 0 and near pi."""
+        g = self._matrix(g)
         xp = g.__array_namespace__()
         q = quaternion_from_matrix(g)
         squared = (q[..., 1:] * q[..., 1:]).sum(axis=-1)
@@ -43,14 +45,17 @@ class SpecialOrthogonal3(AbstractMatrixGroup):
 
     def cayley(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
         """Return the rotation about `x` with tan(angle / 2) = |x| / 2."""
+        x = self._vector(x)
         return _rodrigues.cayley(self.hat(x), (x * x).sum(axis=-1))
 
     def cayley_increment(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
         """Return `cayley(x)` minus the identity, without cancellation."""
+        x = self._vector(x)
         return _rodrigues.cayley_increment(self.hat(x), (x * x).sum(axis=-1))
 
     def inverse(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:
         """Return the transpose."""
+        g = self._matrix(g)
         return g.__array_namespace__().swapaxes(g, -1, -2)
 
     def rotation(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:

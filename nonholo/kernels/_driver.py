@@ -74,10 +74,7 @@ def _solve(p: Body, m1: float, m2: float, y1: float, y2: float) -> tuple[int, fl
     good, y1, y2 = _newton(p, m1, m2, y1, y2)
     if good and certified(p, m1, m2, y1, y2):
         return 0, y1, y2
-    code, y1, y2 = principal(p, m1, m2)
-    if code == 0:
-        good, y1, y2 = _newton(p, m1, m2, y1, y2)
-    return code, y1, y2
+    return principal(p, m1, m2)
 
 
 @numba.njit(cache=True, **COMPILED)
@@ -93,7 +90,9 @@ def _newton(p: Body, m1: float, m2: float, y1: float, y2: float) -> tuple[bool, 
 
 
 @numba.njit(cache=True, nogil=True, **COMPILED)
-def step_each(p: Body, momenta: np.ndarray, charts: np.ndarray, near: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def step_each(
+    p: Body, momenta: np.ndarray, charts: np.ndarray, near: bool
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Take one step from each row; return momenta, charts and outcomes.
 
     The root is the principal one or, with `near`, the one Newton's method reaches from the present displacement.

@@ -5,7 +5,7 @@ from typing import Any
 
 from numba.extending import overload, register_jitable
 
-COMPILED = {"error_model": "numpy", "fastmath": {"contract", "arcp", "nsz"}}
+COMPILED: Any = {"error_model": "numpy", "fastmath": {"contract", "arcp", "nsz"}}
 """Options of every compiled kernel: no exceptions on division, contraction but no reordering (Kahan sums survive)."""
 
 scalar = register_jitable(**COMPILED)

@@ -100,7 +100,7 @@ def principal(p: SleighBody, m1: float, m2: float) -> tuple[int, float, float]:
         if certified(p, m1, m2, t, 0.0):
             return 0, t, slide(p, m2, t)
     if count == 1 and p.a != 0 and _passes_the_cusp(p, abs(m1), hat):
-        return 0, t1, slide(p, m2, t1)
+        return 0, t1, slide(p, m2, t1) if t1 * t1 < 3 else _far_slide(p, m1, t1)
     return (2 if m1 == 0 else 1), math.nan, math.nan
 
 
@@ -119,7 +119,13 @@ def _half_angle_roots(p: SleighBody, m1: float, hat: float) -> tuple[int, float,
 
 @scalar
 def _nonzero(s: float) -> float:
-    return s if s != 0 else 1e-150
+    return s if s != 0 else 1e-75
+
+
+@scalar
+def _far_slide(p: SleighBody, m1: float, t: float) -> float:
+    """Return the second Cayley coordinate of a root of the cubic, without p_1 + 2am, which cancels at angle pi."""
+    return ((m1 * (1 / t + t) - 2 * p.inertia) / p.a - 2 * p.a * p.mass) / (2 * p.mass)
 
 
 @scalar

@@ -123,7 +123,7 @@ def principal(p: SuslovBody, m1: float, m2: float) -> tuple[int, float, float]:
             return 1, np.nan, np.nan
         else:
             return (3 if np.isfinite(det) else 5), np.nan, np.nan
-    z0 = z[0] if z[0] != 0 else 1e-150
+    z0 = z[0] if z[0] != 0 else 1e-75
     return 0, z[1] / z0, z[2] / z0
 
 

@@ -9,8 +9,8 @@ import numba
 def real_cubic_roots(a: float, b: float, c: float, d: float) -> tuple[int, float, float, float]:
     r"""Return the number of real roots of $a t^3 + b t^2 + c t + d$, $a \ne 0$, and three slots that hold them.
 
-    Trigonometric form for three real roots, Cardano's with the sign that avoids cancellation for one; each root then gets
-    two Newton corrections on the polynomial itself. A double root counts twice.
+    Trigonometric form for three real roots, Cardano's with the sign that avoids cancellation for one; each root then
+    gets two Newton corrections on the polynomial itself. A double root counts twice.
 
     Example:
         >>> count, *roots = real_cubic_roots(1.0, -6.0, 11.0, -6.0)

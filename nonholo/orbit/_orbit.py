@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from nonholo._results import Outcome
-from nonholo._types import Float
+from nonholo._types import Array, Float
 from nonholo.systems import AbstractLLSystem
 
 
@@ -22,14 +22,12 @@ class AbstractMotion(abc.ABC):
     system: AbstractLLSystem
 
     @abc.abstractmethod
-    def full_momentum(
-        self, reduced_momentum: Float[np.ndarray, "K k"], cayley: Float[np.ndarray, "K k"] | None
-    ) -> Float[np.ndarray, "K dim"]:
+    def full_momentum(self, reduced_momentum: Float[np.ndarray, "K k"], cayley: Array) -> Float[np.ndarray, "K dim"]:
         """Return body momenta, in the user's body frame, of canonical compact states."""
 
     @abc.abstractmethod
     def multipliers(
-        self, reduced_momentum: Float[np.ndarray, "K k"], cayley: Float[np.ndarray, "K k"] | None, save_every: int
+        self, reduced_momentum: Float[np.ndarray, "K k"], cayley: Array, save_every: int
     ) -> Float[np.ndarray, "L s"]:
         """Return the multipliers that belong to canonical compact states."""
 
@@ -53,7 +51,8 @@ class Orbit:
         turned: Heading without ambiguity of full turns, where the run knows it, shape (K,).
 
     Example:
-        >>> orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), body_velocity=(1, 0, 0), steps=3)
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        >>> orbit = nh.simulate(sleigh, body_velocity=(1, 0, 0), steps=3)
         >>> orbit.configuration.shape, orbit.multipliers.shape, str(orbit.outcome)
         ((4, 3, 3), (3, 1), 'successful')
     """
@@ -105,7 +104,7 @@ class Orbit:
 
     @property
     def multipliers(self) -> Float[np.ndarray, "L s"]:
-        """Impulses between states of a discrete orbit, shape (K - 1, s); forces at the times of a flow, shape (K, s)."""
+        """Impulses between the states of a discrete orbit, (K - 1, s), or forces at the times of a flow, (K, s)."""
         return self.motion.multipliers(self.reduced_momentum, self.cayley, self.save_every)
 
     @property

@@ -39,8 +39,8 @@ def simulate(
 
     $$ P(W_{k+1})|_{\mathfrak{d}} = (\mathrm{Ad}^*_{W_k} P(W_k))|_{\mathfrak{d}}, \qquad g_{k+1} = g_k W_k. $$
 
-    The map is multivalued. The principal root is the one that momentum zero reaches along s r, 0 <= s <= 1; each root is
-    verified to be it, since energy cannot tell (every root conserves it).
+    The map is multivalued. The principal root is the one that momentum zero reaches along s r, 0 <= s <= 1; each root
+    is verified to be it, since energy cannot tell (every root conserves it).
 
     Reference: [fedorov-zenkov-2004], equation (disc.momentum.eqn).
 

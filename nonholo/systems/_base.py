@@ -88,7 +88,9 @@ class AbstractLLSystem(abc.ABC):
         return momentum @ self.constraint_subspace.T
 
     def constrained_energy(self, momentum: Float[Array, "... dim"] | Float[Array, "... k"]) -> Float[Array, "..."]:
-        r"""Return the reduced constrained energy $\tfrac12 r\cdot(\mathbb{I}|_{\mathfrak{d}})^{-1} r$, $r = p|_{\mathfrak{d}}$.
+        r"""Return the reduced constrained energy $\tfrac12\,r\cdot(\mathbb{I}|_\mathfrak{d})^{-1}\,r$ of a momentum.
+
+        Here $r = p|_\mathfrak{d}$ are its components along the constraint subspace.
 
         Args:
             momentum: A momentum, or its components along the rows of the constraint subspace.

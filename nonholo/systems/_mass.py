@@ -35,7 +35,7 @@ def mass_tensor_from_inertia(inertia: Float[Array, "3 3"]) -> Float[Array, "3 3"
 
 
 def inertia_from_mass_tensor(group: AbstractMatrixGroup, mass_tensor: Float[Array, "N N"]) -> Float[Array, "dim dim"]:
-    r"""Return the inertia operator $\mathbb{I}_{ij} = \mathrm{tr}(E_i\,\mathbb{J}\,E_j^T)$ in the basis $E_i$ of the algebra.
+    r"""Return the inertia operator $\mathbb{I}_{ij} = \mathrm{tr}(E_i\mathbb{J}E_j^T)$ in the basis $E_i$.
 
     The kinetic energy of a body that moves with the group is $\tfrac12\mathrm{tr}(\xi\,\mathbb{J}\,\xi^T)$ with its
     (homogeneous) mass tensor $\mathbb{J}$.

@@ -14,7 +14,7 @@ from nonholo.systems._mass import inertia_from_mass_tensor
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class ChaplyginSleigh(AbstractLLSystem):
-    r"""A sleigh on SE(2): body velocity $(\omega, v_1, v_2)$ with $v_2 = 0$ at the blade, which points along body axis 1.
+    r"""A sleigh on SE(2): body velocity $(\omega, v_1, v_2)$ with $v_2 = 0$; the blade points along body axis 1.
 
     $$ l = \tfrac12\bigl[(J + m(a^2 + b^2))\omega^2 + m(v_1^2 + v_2^2) - 2mb\,\omega v_1 + 2ma\,\omega v_2\bigr]. $$
 
@@ -51,7 +51,8 @@ class ChaplyginSleigh(AbstractLLSystem):
         object.__setattr__(self, "b", number("ChaplyginSleigh(b=...)", self.b))
 
     def __repr__(self) -> str:
-        return f"ChaplyginSleigh(mass={self.mass:g}, inertia={self.inertia:g}, a={self.a:g}, b={self.b:g})"
+        shown = (f"{name}={getattr(self, name)}" for name in ("mass", "inertia", "a", "b"))
+        return f"ChaplyginSleigh({', '.join(shown)})"
 
     @property
     def homogeneous_mass_tensor(self) -> Float[Array, "3 3"]:
@@ -95,7 +96,7 @@ class ChaplyginSleigh(AbstractLLSystem):
 
         Example:
             >>> ChaplyginSleigh(mass=1.0, inertia=1.0, a=-0.5).equilibria().attracting
-            array([ 0., -1.,  0.])
+            array([-0., -1., -0.])
         """
         if self.a == 0:
             return Equilibria(self.constraint_subspace, None)

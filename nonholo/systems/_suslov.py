@@ -19,8 +19,9 @@ class SuslovTop(AbstractLLSystem):
     $$ l(\omega) = \tfrac12 \mathrm{tr}(\hat\omega J \hat\omega^T), \qquad \langle\gamma, \omega\rangle = 0, $$
 
     with the mass tensor $J = \int r r^T dm$ (not the inertia tensor $\mathrm{tr}(J)\,\mathrm{Id} - J$; `from_inertia`
-    takes that one). For $\gamma = e_3$ write $J = \begin{pmatrix} A & c \\ c^T & d\end{pmatrix}$; then $B = A + d\,\mathrm{Id}$ is the constrained inertia
-    and $c$ the `coupling`, which moves the top between two permanent rotations.
+    takes that one). For $\gamma = e_3$ write $J = \begin{pmatrix} A & c \\ c^T & d\end{pmatrix}$: then
+    $B = A + d\,\mathrm{Id}$ is the constrained inertia and $c$ the `coupling`, which drives the top from one permanent
+    rotation to another.
 
     Reference: [fedorov-zenkov-2004], section 4.
 
@@ -65,7 +66,9 @@ class SuslovTop(AbstractLLSystem):
     def __repr__(self) -> str:
         shown = (np.array2string(np.asarray(m), prefix=" " * 17) for m in (self.mass_tensor, self.inertia_operator))
         mass, inertia = shown
-        return f"SuslovTop(axis={np.asarray(self.axis).tolist()},\n  mass tensor J = {mass},\n  inertia tensor  {inertia})"
+        return (
+            f"SuslovTop(axis={np.asarray(self.axis).tolist()},\n  mass tensor J = {mass},\n  inertia tensor  {inertia})"
+        )
 
     @property
     def homogeneous_mass_tensor(self) -> Float[Array, "3 3"]:
@@ -110,7 +113,7 @@ class SuslovTop(AbstractLLSystem):
 
         Example:
             >>> SuslovTop([[1.0, 0.0, 0.5], [0.0, 1.0, 0.0], [0.5, 0.0, 1.0]]).equilibria().attracting
-            array([ 0. , -0.5,  0. ])
+            array([-0. , -0.5, -0. ])
         """
         if np.linalg.norm(self.coupling) <= 8 * np.finfo(np.float64).eps * np.abs(self.mass_tensor).max():
             return Equilibria(self.constraint_subspace, None)

@@ -114,10 +114,7 @@ def restrict(body: Body, p: Vector) -> Vector:
 def coadjoint(body: Body, y: Vector, p: Vector) -> Vector:
     """Return Ad*_W p, the transpose of the matrix of Ad_W applied to p."""
     w, inverse = displacement(body, y), displacement(body, [-entry for entry in y])
-    return [
-        mp.fdot(p, coordinates(body.basis, multiply(multiply(w, element), inverse)))
-        for element in body.basis
-    ]
+    return [mp.fdot(p, coordinates(body.basis, multiply(multiply(w, element), inverse))) for element in body.basis]
 
 
 def newton(body: Body, h: Number, target: Vector, y: Vector, tolerance: Number) -> Vector:
@@ -170,9 +167,7 @@ def orbit(body: Body, h: Number, velocity: Vector, verify: bool) -> dict[str, li
     for _ in range(STEPS):
         carried = coadjoint(body, y, found["momentum"][-1])
         target = restrict(body, carried)
-        found["configurations"].append(
-            multiply(found["configurations"][-1], found["displacement"][-1])
-        )
+        found["configurations"].append(multiply(found["configurations"][-1], found["displacement"][-1]))
         y = newton(body, h, target, y, tolerance)
         if verify:
             w = displacement(body, principal(body, h, target))
@@ -199,9 +194,7 @@ def check(body: Body, h: Number, velocity: Vector, found: dict[str, list[Any]]) 
     group = max(group_residual(body, g) for g in found["configurations"])
     with mp.workdps(DIGITS + 15):
         again = orbit(body, h, velocity, verify=False)
-        precision = max(
-            largest(subtract(found[key], again[key])) for key in ("momentum", "multipliers")
-        )
+        precision = max(largest(subtract(found[key], again[key])) for key in ("momentum", "multipliers"))
         for g, finer in zip(found["configurations"], again["configurations"], strict=True):
             precision = max(precision, largest(subtract(g, finer)))
     defects = [energy, constraint, group, precision]
@@ -219,7 +212,7 @@ def make_case(body: Body, time_step: float, velocity: list[float]) -> dict[str, 
     rotations = [y if body.system == "suslov" else y[:1] for y in found.pop("chart")]
     angle = max(mp.degrees(mp.norm(rotation)) for rotation in rotations)
     seconds = time.perf_counter() - began
-    figures = " ".join(mp.nstr(defect, 2) for defect in [angle, *defects])
+    figures = " ".join(str(mp.nstr(defect, 2)) for defect in [angle, *defects])
     print(f"{body.system} {body.name} h={time_step}: {figures}, {seconds:.1f} s", flush=True)
     return {
         "system": body.system,

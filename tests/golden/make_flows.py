@@ -6,6 +6,7 @@ Integrates p' = ad*_omega p + lambda a, g' = g omega as matrix equations; no clo
 from __future__ import annotations
 
 import time
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -48,7 +49,7 @@ SLEIGHS = [
     ("b-zero", (1.2, 0.5, 0.6, 0.0), [1.1, -0.4, 0.0]),
     ("b-nonzero", (0.9, 0.4, 0.7, 0.35), [-0.9, -0.5, 0.0]),
     ("a-negative", (1.5, 0.6, -0.5, 0.2), [0.8, 0.7, 0.0]),
-    ("lambda-two", (1.0, 0.75, 0.5, 0.1), [0.75, -0.3, 0.0]),
+    ("lambda-two", (1.0, 0.75, 0.5, 0.1), [-0.75, -0.3, 0.0]),
     ("equilibrium", (1.2, 0.5, 0.6, 0.25), [0.0, 0.8, 0.0]),
     ("far-start", (1.1, 0.45, 0.5, -0.2), [0.001, -0.9, 0.0]),
 ]
@@ -67,8 +68,7 @@ class Flow:
         self.inertia = inertia_operator(body.basis, body.mass_tensor)
         self.inverse: Matrix = (mp.matrix(self.inertia) ** -1).tolist()
         self.brackets = [
-            [coordinates(body.basis, subtract(multiply(x, y), multiply(y, x))) for y in body.basis]
-            for x in body.basis
+            [coordinates(body.basis, subtract(multiply(x, y), multiply(y, x))) for y in body.basis] for x in body.basis
         ]
         self.reaction = apply(self.inverse, ANNIHILATOR)
 
@@ -125,7 +125,7 @@ def integrate(flow: Flow, velocity: Vector, step: Number) -> list[tuple[Vector, 
     g = [[mpf(entry) for entry in row] for row in START[flow.body.system]]
     turn = mpf(0)
     found = [(p, g, turn)]
-    for begin, end in zip(TIMES, TIMES[1:], strict=False):
+    for begin, end in pairwise(TIMES):
         for _ in range(round((end - begin) / step)):
             momenta, configurations = flow.coefficients(p, g)
             rates = [apply(flow.inverse, q)[0] for q in momenta]
@@ -184,7 +184,7 @@ def make_case(body: Body, velocity: list[float]) -> dict[str, Any]:
     start = [mpf(entry) for entry in velocity]
     table = tabulate(flow, integrate(flow, start, mpf(1) / 8))
     defects = check(flow, table, tabulate(flow, integrate(flow, start, mpf(1) / 4)))
-    figures = " ".join(mp.nstr(defect, 2) for defect in defects)
+    figures = " ".join(str(mp.nstr(defect, 2)) for defect in defects)
     seconds = time.perf_counter() - began
     print(f"{body.system} {body.name}: {figures}, {seconds:.1f} s", flush=True)
     return {

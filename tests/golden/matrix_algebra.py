@@ -97,17 +97,12 @@ def apply(x: Matrix, v: Vector) -> Vector:
 def combine(coefficients: Vector, matrices: Sequence[Matrix]) -> Matrix:
     """Return the linear combination of matrices."""
     size = range(len(matrices[0]))
-    return [
-        [mp.fdot(coefficients, [matrix[i][j] for matrix in matrices]) for j in size] for i in size
-    ]
+    return [[mp.fdot(coefficients, [matrix[i][j] for matrix in matrices]) for j in size] for i in size]
 
 
 def coordinates(basis: Sequence[Matrix], x: Matrix) -> Vector:
     """Return the coordinates of x in an orthogonal basis; raise if x is not in the algebra."""
-    found = [
-        trace_product(element, transpose(x)) / trace_product(element, transpose(element))
-        for element in basis
-    ]
+    found = [trace_product(element, transpose(x)) / trace_product(element, transpose(element)) for element in basis]
     require(largest(subtract(x, combine(found, basis))), "algebra element", mpf(10) ** (8 - mp.dps))
     return found
 
@@ -122,10 +117,7 @@ def exponential(x: Matrix) -> Matrix:
         while order == 0 or largest(term) > mp.eps:
             order += 1
             term = [[entry / order for entry in row] for row in multiply(term, scaled)]
-            result = [
-                [p + q for p, q in zip(r, s, strict=True)]
-                for r, s in zip(result, term, strict=True)
-            ]
+            result = [[p + q for p, q in zip(r, s, strict=True)] for r, s in zip(result, term, strict=True)]
         for _ in range(halvings):
             result = multiply(result, result)
     return result
@@ -175,7 +167,7 @@ def decimals(value: Number | list[Any], digits: int = 25) -> str | list[Any]:
     if isinstance(value, list):
         return [decimals(entry, digits) for entry in value]
     number = mpf(value)
-    return "0.0" if abs(number) < mpf(10) ** -50 else mp.nstr(number, digits, min_fixed=-3)
+    return "0.0" if abs(number) < mpf(10) ** -50 else str(mp.nstr(number, digits, min_fixed=-3))
 
 
 def write_cases(path: Path, cases: list[dict[str, Any]]) -> None:

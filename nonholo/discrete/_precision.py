@@ -1,0 +1,44 @@
+"""Precision of the JAX route: eager calls run in a local 64-bit scope, traced calls must already be 64-bit."""
+
+import contextlib
+import contextvars
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import jax
+import numpy as np
+
+from nonholo._checks import is_traced
+from nonholo.discrete import _pytrees
+
+_float32 = contextvars.ContextVar("float32_allowed", default=False)
+_pytrees.register()
+
+
+@contextlib.contextmanager
+def allow_float32() -> Iterator[None]:
+    """Let the JAX route be traced in 32 bits, where energy is conserved to 1e-7 instead of rounding.
+
+    Example:
+        >>> with nh.allow_float32():
+        ...     pass
+    """
+    token = _float32.set(True)
+    try:
+        yield
+    finally:
+        _float32.reset(token)
+
+
+def in_double(function: Callable[..., Any], *arguments: Any) -> Any:
+    """Call a JAX function: eagerly in a 64-bit scope with NumPy results, or as it is on traced 64-bit input."""
+    traced = [x for x in jax.tree.leaves(arguments) if is_traced(x)]
+    if not traced:
+        with jax.enable_x64(True):
+            return jax.tree.map(np.asarray, function(*arguments))
+    if not _float32.get() and any(x.dtype == np.float32 for x in traced):
+        raise TypeError(
+            "`nonholo` must be traced in 64 bits. Got float32. Wrap the call in `with jax.enable_x64(True):`, "
+            "or accept single precision with `with nonholo.allow_float32():`."
+        )
+    return function(*arguments)
