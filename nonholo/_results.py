@@ -55,7 +55,12 @@ _MESSAGES = {
 
 
 class OutcomeError(RuntimeError):
-    """A run that cannot go on; `outcome` says why and `orbit`, where there is one, holds every good step."""
+    """A run that cannot go on; `outcome` says why and `orbit`, where there is one, holds every good step.
+
+    Example:
+        >>> str(OutcomeError(Outcome.nonfinite, "Step 7"))
+        'Step 7: nonfinite. A number overflowed or became undefined. Try a smaller time_step or other units.'
+    """
 
     def __init__(self, outcome: Outcome, where: str, orbit: object | None = None) -> None:
         super().__init__(f"{where}: {outcome.name}. {outcome.message}")

@@ -17,7 +17,20 @@ Difference = str | Callable[[Array], Array]
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Discretization(AbstractMotion):
-    """A discretised system, made by `discretize`."""
+    """A discretised system, made by `discretize`.
+
+    Attributes:
+        system: What moves.
+        time_step: h.
+        difference: "matrix", "logarithmic" or a callable.
+        constraint: "skew" or "exponential".
+        order: 2.
+
+    Example:
+        >>> discretize(ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        Discretization(system=ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5, b=0.0), time_step=np.float64(0.1),
+            difference='matrix', constraint='skew', order=2)
+    """
 
     system: AbstractLLSystem
     time_step: Array

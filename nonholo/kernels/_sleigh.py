@@ -61,7 +61,7 @@ def correction(p: SleighBody, m1: float, m2: float, y1: float, y2: float) -> tup
 @scalar
 def certified(p: SleighBody, m1: float, m2: float, y1: float, y2: float) -> bool:
     """Tell whether a root is certainly the principal one: on the middle sheet, turning by at most 120 degrees."""
-    return (slope(p, m1, m2, y1) > 0) & (y1 * y1 <= 3) & (y1 * m1 >= 0)
+    return (slope(p, m1, m2, y1) >= 0) & (y1 * y1 <= 3) & (y1 * m1 >= 0)
 
 
 @scalar
