@@ -64,9 +64,9 @@ def matrix_legendre(
 ) -> Float[Array, "... dim"]:
     r"""Return $\mathrm{tr}(E_i W\mathbb{J}X^T)$ (left) or $\mathrm{tr}(W E_i\mathbb{J}X^T)$ (right), $W = I + X$."""
     xp = X.__array_namespace__()
-    arm = xp.asarray(tensor) @ xp.swapaxes(X, -1, -2)
+    arm = xp.asarray(tensor, dtype=X.dtype) @ xp.swapaxes(X, -1, -2)
     carried = arm + X @ arm if side == "left" else arm + arm @ X
-    return xp.einsum("iab,...ba->...i", xp.asarray(group.basis), carried)
+    return xp.einsum("iab,...ba->...i", xp.asarray(group.basis, dtype=X.dtype), carried)
 
 
 def legendre_of_chart(discrete: "Discretization", cayley: Float[Array, "... k"], side: str) -> Float[Array, "... dim"]:

@@ -77,19 +77,19 @@ class AbstractMatrixGroup(abc.ABC):
         """Return the matrix of the algebra with coordinates `x`."""
         x = self._vector(x)
         xp = x.__array_namespace__()
-        return xp.tensordot(x, xp.asarray(self.basis), axes=1)
+        return xp.tensordot(x, xp.asarray(self.basis, dtype=x.dtype), axes=1)
 
     def vee(self, X: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
         """Return the coordinates of a matrix of the algebra (of its orthogonal projection, if it lies outside)."""
         X = self._matrix(X)
         xp = X.__array_namespace__()
-        return xp.tensordot(X, xp.asarray(_dual_basis(self)), axes=((-2, -1), (1, 2)))
+        return xp.tensordot(X, xp.asarray(_dual_basis(self), dtype=X.dtype), axes=((-2, -1), (1, 2)))
 
     def adjoint(self, g: Float[Array, "... N N"]) -> Float[Array, "... dim dim"]:
         r"""Return the matrix of $\mathrm{Ad}_g$: column i holds the coordinates of $g\,e_i\,g^{-1}$."""
         g = self._matrix(g)
         xp = g.__array_namespace__()
-        images = g[..., None, :, :] @ xp.asarray(self.basis) @ self.inverse(g)[..., None, :, :]
+        images = g[..., None, :, :] @ xp.asarray(self.basis, dtype=g.dtype) @ self.inverse(g)[..., None, :, :]
         return xp.swapaxes(self.vee(images), -1, -2)
 
     def coadjoint(self, g: Float[Array, "... N N"], p: Float[Array, "... dim"]) -> Float[Array, "... dim"]:
@@ -106,7 +106,7 @@ class AbstractMatrixGroup(abc.ABC):
         r"""Return the plain transpose: $\langle\mathrm{ad}^*_x p, y\rangle = \langle p, [x, y]\rangle$."""
         x, p = self._vector(x), self._vector(p)
         xp = x.__array_namespace__()
-        brackets = self.bracket(x[..., None, :], xp.asarray(np.eye(self.dim)))
+        brackets = self.bracket(x[..., None, :], xp.eye(self.dim, dtype=x.dtype))
         return (brackets @ p[..., :, None])[..., 0]
 
     def _vector(self, x: Array) -> Array:

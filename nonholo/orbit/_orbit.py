@@ -67,8 +67,8 @@ class Orbit:
     turned: Float[np.ndarray, "K"] | None = None
 
     def __repr__(self) -> str:
-        span = f"{self.time[0]:g} to {self.time[-1]:g}"
-        return f"<Orbit of {type(self.system).__name__}: {len(self)} states, time {span}, {self.outcome}>"
+        span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
+        return f"<Orbit of {type(self.system).__name__}: {len(self)} states{span}, {self.outcome}>"
 
     def __len__(self) -> int:
         return len(self.time)

@@ -135,5 +135,5 @@ def _run_compiled(
 
 def _orbit(discrete: Discretization, rows: Rows, outcome: Outcome, every: int, reconstruct: bool) -> Orbit:
     momenta, charts, poses = rows
-    time = discrete.time_step * every * np.arange(len(momenta))
+    time = discrete.time_step * (every * np.arange(len(momenta)))
     return Orbit(discrete, time, momenta, charts, poses if reconstruct else None, outcome, every)

@@ -1,0 +1,157 @@
+"""The closed forms against the definition: Newton's method on the matrix equations through automatic differentiation."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from problems import PROBLEMS, Problem
+
+import nonholo as nh
+from nonholo.discrete._definition import legendre_by_derivative, principal_displacement, reduced_discrete_lagrangian
+from nonholo.discrete._precision import in_double
+
+QUANTITIES = ("momentum", "displacement", "configuration", "multipliers", "chart", "restricted_momentum")
+
+
+@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: p.name)
+def test_orbits_agree(problem: Problem) -> None:
+    """Ten steps by the compiled closed form and by the definition agree to rounding over the time step."""
+    discrete = nh.discretize(problem.system, 0.2)
+    pose = problem.system.group.random(np.random.default_rng(0))
+    start = {"restricted_velocity": problem.restricted_velocity, "steps": 10, "configuration": pose}
+    closed = nh.simulate(discrete, **start, backend="numba")
+    definition = nh.simulate(discrete, **start, backend="jax")
+    for name in QUANTITIES:
+        expected = getattr(definition, name)
+        assert np.abs(getattr(closed, name) - expected).max() <= 1e-12 * (1 + np.abs(expected).max()), name
+
+
+@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: p.name)
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_legendre_agrees_with_its_derivative(problem: Problem, side: str) -> None:
+    """The closed form of P(W), off the variety too, is the derivative of l_d; the right one is Ad* of the left."""
+    group, rng = problem.system.group, np.random.default_rng(1)
+    discrete = nh.discretize(problem.system, 0.3)
+    W = np.stack([group.random(rng) for _ in range(5)])
+    closed = nh.discrete_legendre(discrete, W, side)
+    assert np.abs(closed - legendre_by_derivative(discrete, W, side)).max() <= 1e-12 * np.abs(closed).max()
+    assert np.abs(
+        nh.discrete_legendre(discrete, W, "right") - group.coadjoint(W, nh.discrete_legendre(discrete, W))
+    ).max() < (1e-12 * np.abs(closed).max())
+
+
+def test_momentum_tends_to_the_continuous_one() -> None:
+    """P(exp(h omega)) -> I omega as h -> 0, to first order in h: momenta are physical."""
+    system = PROBLEMS[0].system
+    velocity = np.array([0.3, -0.2]) @ system.constraint_subspace
+    for h in (1e-2, 1e-3, 1e-4):
+        P = nh.discrete_legendre(nh.discretize(system, h), system.group.exp(h * velocity))
+        assert np.abs(P - system.inertia_operator @ velocity).max() < h
+
+
+def test_any_discrete_lagrangian() -> None:
+    """A user's L_d(W) that repeats the matrix difference gives the orbit of difference="matrix"."""
+    for problem in (PROBLEMS[1], PROBLEMS[7]):
+        system, h = problem.system, 0.2
+        lagrangian = reduced_discrete_lagrangian(nh.discretize(system, h))
+        start = {"restricted_velocity": problem.restricted_velocity, "steps": 5}
+        own = nh.simulate(nh.discretize(system, h, difference=lambda W: lagrangian(W)), **start)  # noqa: PLW0108
+        expected = nh.simulate(nh.discretize(system, h), **start)
+        assert np.abs(own.momentum - expected.momentum).max() < 1e-12
+        assert np.abs(own.configuration - expected.configuration).max() < 1e-12
+
+
+def test_logarithmic_momenta_against_the_series() -> None:
+    """For l(log W / h) the momentum is the transposed inverse of dexp applied to I X / h, here as a series."""
+    system, h = PROBLEMS[0].system, 0.5
+    x = np.array([0.2, -0.1, 0.15])
+    ad = np.stack([system.group.bracket(x, e) for e in np.eye(3)], axis=1)
+    bernoulli = (1, -1 / 2, 1 / 12, 0, -1 / 720, 0, 1 / 30240, 0, -1 / 1209600)
+    inverse = sum(b * np.linalg.matrix_power(ad, k) for k, b in enumerate(bernoulli))
+    P = nh.discrete_legendre(nh.discretize(system, h, difference="logarithmic"), system.group.exp(x))
+    assert np.abs(P - inverse.T @ system.inertia_operator @ x / h).max() < 1e-9
+
+
+@pytest.mark.parametrize("problem", PROBLEMS[:8:7], ids=lambda p: p.name)
+def test_step_repeats_the_orbit_under_transformations(problem: Problem) -> None:
+    """`step` gives the next state of `simulate`; jit and vmap change nothing; starts may be full or restricted."""
+    discrete = nh.discretize(problem.system, 0.2)
+    orbit = nh.simulate(discrete, restricted_velocity=problem.restricted_velocity, steps=4)
+    eager = nh.step(discrete, orbit.momentum[0])
+    assert np.abs(eager.momentum - orbit.momentum[1]).max() < 1e-13
+    assert np.abs(eager.displacement - orbit.displacement[1]).max() < 1e-14
+    assert np.abs(eager.multipliers - orbit.multipliers[0]).max() < 1e-13
+    assert isinstance(eager.momentum, np.ndarray)
+    with jax.enable_x64(True):
+        mapped = jax.jit(jax.vmap(lambda r: nh.step(discrete, r)))(jnp.asarray(orbit.restricted_momentum[:-1]))
+        mapped = jax.tree.map(np.asarray, mapped)
+    assert np.abs(mapped.momentum - orbit.momentum[1:]).max() < 1e-13
+    assert not mapped.outcome.any()
+
+
+@pytest.mark.parametrize("problem", PROBLEMS[:8:7], ids=lambda p: p.name)
+def test_step_derivatives_against_differences(problem: Problem) -> None:
+    """Forward and reverse derivatives of the step are those of the implicit function, parameters included."""
+    discrete = nh.discretize(problem.system, 0.2)
+    r = nh.simulate(discrete, restricted_velocity=problem.restricted_velocity, steps=1).restricted_momentum[0]
+
+    def after(x: np.ndarray) -> np.ndarray:
+        return nh.step(discrete, x).momentum
+
+    e = 1e-5
+    differences = np.stack([(after(r + e * u) - after(r - e * u)) / (2 * e) for u in np.eye(2)], axis=1)
+    with jax.enable_x64(True):
+        forward = jax.jacfwd(after)(jnp.asarray(r))
+        assert np.abs(forward - differences).max() < 1e-8
+        assert np.abs(jax.jacrev(after)(jnp.asarray(r)) - forward).max() < 1e-13
+
+
+def test_derivative_with_respect_to_the_body() -> None:
+    """The mass tensor and the time step are differentiable numbers."""
+    J, r = np.array(PROBLEMS[0].system.mass_tensor), np.array([0.5, -0.3])
+
+    def energy_after(tensor: np.ndarray, h: float) -> np.ndarray:
+        return nh.step(nh.discretize(nh.SuslovTop(tensor), h), r).momentum.sum()
+
+    twist = np.zeros((3, 3))
+    twist[0, 2] = twist[2, 0] = 1e-5
+    with jax.enable_x64(True):
+        by_tensor, by_step = jax.grad(energy_after, argnums=(0, 1))(jnp.asarray(J), jnp.asarray(0.2))
+    difference = (energy_after(J + twist, 0.2) - energy_after(J - twist, 0.2)) / 2e-5
+    assert by_tensor[0, 2] + by_tensor[2, 0] == pytest.approx(difference, rel=1e-6)
+    difference = (energy_after(J, 0.2 + 1e-5) - energy_after(J, 0.2 - 1e-5)) / 2e-5
+    assert by_step == pytest.approx(difference, rel=1e-6)
+
+
+def test_step_outcomes() -> None:
+    """Off the locus, beyond the fold and in 32 bits: outcomes are data, precision is an error with its remedy."""
+    discrete = nh.discretize(PROBLEMS[0].system, 0.2)
+    on_locus = nh.simulate(discrete, restricted_velocity=(0.9, -0.4), steps=1).momentum[0]
+    off = nh.step(discrete, on_locus + np.array([0.0, 0.0, 0.3]))
+    assert off.outcome == nh.Outcome.off_momentum_locus
+    assert np.isnan(off.momentum).all()
+    assert nh.step(discrete, 1e3 * on_locus).outcome == nh.Outcome.no_real_branch
+    with pytest.raises(TypeError, match=r"64 bits. Got float32.*allow_float32"):
+        jax.jit(lambda r: nh.step(discrete, r))(np.ones(2))
+    with nh.allow_float32():
+        single = jax.jit(lambda r: nh.step(discrete, r))(discrete.system.restrict(on_locus))
+    assert np.abs(single.momentum - nh.step(discrete, on_locus).momentum).max() < 1e-5
+
+
+def test_definition_refuses_beyond_the_fold_like_the_closed_form() -> None:
+    """200 random momenta around the fold: the definition never accepts a root the closed form rejects, or another one."""
+    rng, discrete = np.random.default_rng(5), nh.discretize(PROBLEMS[0].system, 1.0)
+    momenta = rng.normal(size=(200, 2)) * 2.0
+    solve = jax.jit(jax.vmap(lambda r: principal_displacement(discrete, r)))
+    charts, codes = in_double(solve, momenta)
+    accepted = 0
+    for r, y, code in zip(momenta, charts, codes, strict=True):
+        try:
+            orbit = nh.simulate(discrete, momentum=r, steps=1, throw=False)
+        except nh.OutcomeError:  # pragma: no cover
+            continue
+        if code == 0:
+            accepted += 1
+            assert len(orbit)
+            assert np.abs(orbit.chart[0] - y).max() < 1e-10
+    assert 50 < accepted < 150

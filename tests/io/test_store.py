@@ -1,0 +1,307 @@
+"""Stores: what is read is what was saved, whole or not at all, and damage is named."""
+
+import dataclasses
+import errno
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+import zarr
+from problems import PROBLEMS
+
+import nonholo as nh
+from nonholo.io import _save, orbit_to_dataset, read_attributes
+
+NAMES = ("time", "reduced_momentum", "cayley", "pose", "turned")
+
+
+def _orbit(steps: int = 20, **options: Any) -> nh.Orbit:
+    discrete = nh.discretize(nh.ChaplyginSleigh(1.1, 0.7, 0.3, 0.1), 0.1)
+    return nh.simulate(discrete, body_velocity=(0.3, -1.0, 0.0), steps=steps, **options)
+
+
+def _same(one: nh.Orbit, other: nh.Orbit) -> bool:
+    pairs = [(getattr(one, name), getattr(other, name)) for name in NAMES]
+    return all((a is None and b is None) or (a.shape == b.shape and a.tobytes() == b.tobytes()) for a, b in pairs)
+
+
+def _edit(store: Path, **changes: Any) -> None:
+    document = json.loads((store / "zarr.json").read_text())
+    document["attributes"] |= changes
+    (store / "zarr.json").write_text(json.dumps(document))
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Path:
+    """A sound store of 21 states."""
+    nh.save_orbit(_orbit(), tmp_path / "run.zarr")
+    return tmp_path / "run.zarr"
+
+
+@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: p.name)
+def test_round_trip_is_bit_for_bit(problem: Any, tmp_path: Path) -> None:
+    """Arrays, system parameters and decoded motion of a loaded orbit have the bits of the saved one."""
+    discrete = nh.discretize(problem.system, 0.1)
+    orbit = nh.simulate(discrete, restricted_velocity=problem.restricted_velocity, steps=30)
+    nh.save_orbit(orbit, tmp_path / "o.zarr")
+    loaded = nh.load_orbit(tmp_path / "o.zarr")
+    assert _same(orbit, loaded)
+    for field in dataclasses.fields(problem.system):
+        assert np.array_equal(getattr(loaded.system, field.name), getattr(problem.system, field.name))
+    assert np.array_equal(loaded.configuration, orbit.configuration)
+    assert np.array_equal(loaded.multipliers, orbit.multipliers)
+
+
+@pytest.mark.parametrize(
+    "orbit",
+    [_orbit(save_every=5), _orbit(reconstruct=False), _orbit()[3:15:2], _orbit()[:0]],
+    ids=["thinned", "no poses", "slice", "empty"],
+)
+def test_partial_orbits_round_trip(orbit: nh.Orbit, tmp_path: Path) -> None:
+    """Thinned, unreconstructed, sliced and empty orbits come back as they were."""
+    nh.save_orbit(orbit, tmp_path / "o.zarr")
+    loaded = nh.load_orbit(tmp_path / "o.zarr")
+    assert _same(orbit, loaded)
+    assert (loaded.save_every, loaded.outcome) == (orbit.save_every, orbit.outcome)
+
+
+def test_turned_and_outcome_are_kept(tmp_path: Path) -> None:
+    """The optional heading and the outcome of a run that stopped are stored."""
+    orbit = dataclasses.replace(_orbit(), turned=np.linspace(0, 9, 21), outcome=nh.Outcome.no_real_branch)
+    nh.save_orbit(orbit, tmp_path / "o.zarr")
+    loaded = nh.load_orbit(tmp_path / "o.zarr")
+    assert loaded.outcome is nh.Outcome.no_real_branch
+    assert _same(orbit, loaded)
+
+
+def test_several_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An orbit longer than a chunk is cut and joined without loss."""
+    monkeypatch.setattr(_save, "_ROWS", 8)
+    nh.save_orbit(_orbit(), tmp_path / "o.zarr")
+    assert zarr.open_array(tmp_path / "o.zarr" / "cayley", mode="r").nchunks == 3
+    assert _same(_orbit(), nh.load_orbit(tmp_path / "o.zarr"))
+
+
+def test_store_is_readable_by_xarray(store: Path) -> None:
+    """xarray opens a store without a warning and finds the labels of `to_dataset`."""
+    with xarray.open_zarr(store, chunks=None) as dataset:
+        expected = _orbit().to_dataset()
+        xarray.testing.assert_equal(dataset.load(), expected)
+    assert dataset["time"].attrs["units"] == "time unit"
+    assert dataset["cayley"].dims == ("step", "component")
+
+
+def test_every_array_is_checked_by_crc32c(store: Path) -> None:
+    """Every array ends its codecs with crc32c and has NaN as fill value."""
+    for name, array in zarr.open_group(store, mode="r").arrays():
+        assert array.metadata.to_dict()["codecs"][-1]["name"] == "crc32c", name
+        assert np.isnan(array.fill_value), name
+
+
+def test_decoded_dataset() -> None:
+    """A decoded dataset holds matrices and momenta in the user's body frame; what an orbit lacks is left out."""
+    orbit = _orbit()
+    dataset = orbit_to_dataset(orbit, decoded=True)
+    assert dataset["configuration"].dims == ("step", "row", "column")
+    assert np.array_equal(dataset["momentum"], orbit.momentum)
+    assert "configuration" not in orbit_to_dataset(_orbit(reconstruct=False), decoded=True)
+
+
+def test_provenance(tmp_path: Path) -> None:
+    """A store names system, motion, versions, precision, conventions and the scenario with its hash."""
+    nh.save_orbit(_orbit(), tmp_path / "o.zarr", scenario="title = 'x'\n")
+    stored = read_attributes(tmp_path / "o.zarr")
+    assert stored["system"] == "ChaplyginSleigh"
+    assert json.loads(stored["parameters"]) == {"mass": 1.1, "inertia": 0.7, "a": 0.3, "b": 0.1}
+    assert json.loads(stored["motion"])["time_step"] == 0.1
+    assert json.loads(stored["versions"])["nonholo"] == nh.__version__
+    assert stored["scenario_sha256"] == "90ce31ccb8fed5d9aa7b38ea06ee1c5d0f8e5fc4a1dfb6bb09f53f2cdc4a0b6d" or len(
+        stored["scenario_sha256"]
+    ) == 64
+
+
+def test_existing_store_is_refused_and_kept(store: Path) -> None:
+    """Saving over an existing path is refused, names the remedy, and leaves the old store as it was."""
+    with pytest.raises(FileExistsError, match="overwrite=True"):
+        nh.save_orbit(_orbit(5), store)
+    assert len(nh.load_orbit(store)) == 21
+
+
+def test_overwrite_replaces_a_store(store: Path) -> None:
+    """With overwrite=True the new store takes the place of the old one and nothing else is left."""
+    nh.save_orbit(_orbit(5), store, overwrite=True)
+    assert len(nh.load_orbit(store)) == 6
+    assert list(store.parent.iterdir()) == [store]
+
+
+@pytest.mark.parametrize("content", ["file", "folder"])
+def test_overwrite_never_replaces_anything_else(content: str, tmp_path: Path) -> None:
+    """Files and folders that are no stores survive overwrite=True."""
+    target = tmp_path / "precious"
+    if content == "file":
+        target.write_text("data")
+    else:
+        target.mkdir()
+    with pytest.raises(FileExistsError, match="not a store"):
+        nh.save_orbit(_orbit(5), target, overwrite=True)
+    assert target.exists()
+
+
+def test_full_disk_leaves_the_old_store(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """If the disk fills up while writing, the error says so, the old store is intact, nothing is left behind."""
+    write = _save._write_array
+
+    def full(group: zarr.Group, name: str, *rest: Any, **options: Any) -> None:
+        if name == "pose":
+            raise OSError(errno.ENOSPC, "No space left on device")
+        write(group, name, *rest, **options)
+
+    monkeypatch.setattr(_save, "_write_array", full)
+    with pytest.raises(OSError, match="No space left on device. Nothing at this path was changed") as caught:
+        nh.save_orbit(_orbit(5), store, overwrite=True)
+    assert caught.value.errno == errno.ENOSPC
+    assert len(nh.load_orbit(store)) == 21
+    assert list(store.parent.iterdir()) == [store]
+
+
+def test_refused_write_of_the_system(store: Path) -> None:
+    """A limit of the operating system on file sizes, met while zarr writes, ends in the same clean error."""
+    script = f"""
+import dataclasses, resource, signal, sys
+import numpy as np
+import nonholo as nh
+orbit = nh.load_orbit({str(store)!r})
+noise = np.random.default_rng(0).normal(size=(50_000, 2))
+big = dataclasses.replace(orbit, time=noise[:, 0], reduced_momentum=noise, cayley=noise, pose=None)
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+try:
+    nh.save_orbit(big, {str(store)!r}, overwrite=True)
+except OSError as failure:
+    print(failure)
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)  # noqa: S603
+    assert "File too large. Nothing at this path was changed" in done.stdout
+    assert len(nh.load_orbit(store)) == 21
+    assert list(store.parent.iterdir()) == [store]
+
+
+def test_failed_swap_brings_the_old_store_back(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """If the new store cannot take its place, the old one returns to it."""
+    rename = Path.rename
+
+    def refuse(path: Path, target: Path) -> Path:
+        if path.name.endswith(".partial"):
+            raise PermissionError(errno.EACCES, "refused")
+        return rename(path, target)
+
+    monkeypatch.setattr(Path, "rename", refuse)
+    with pytest.raises(OSError, match="refused"):
+        nh.save_orbit(_orbit(5), store, overwrite=True)
+    assert len(nh.load_orbit(store)) == 21
+    assert list(store.parent.iterdir()) == [store]
+
+
+def _remove(chunk: Path) -> None:
+    chunk.unlink()
+
+
+def _flip(chunk: Path) -> None:
+    content = bytearray(chunk.read_bytes())
+    content[len(content) // 2] ^= 1
+    chunk.write_bytes(content)
+
+
+def _truncate(chunk: Path) -> None:
+    chunk.write_bytes(chunk.read_bytes()[:-3])
+
+
+def _empty(chunk: Path) -> None:
+    chunk.write_bytes(b"")
+
+
+@pytest.mark.parametrize("damage", [_remove, _flip, _truncate, _empty])
+@pytest.mark.parametrize("name", ["time", "reduced_momentum", "cayley", "pose", "energy"])
+def test_damaged_chunk_is_named(
+    damage: Callable[[Path], None], name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A chunk that is missing, changed or cut is an error that names array and chunk, never data."""
+    monkeypatch.setattr(_save, "_ROWS", 8)
+    nh.save_orbit(_orbit(), tmp_path / "o.zarr")
+    key = "c/1" if name in ("time", "energy") else "c/1/0"
+    damage(tmp_path / "o.zarr" / name / key)
+    with pytest.raises(ValueError, match=f"chunk {key} of the array {name}"):
+        nh.load_orbit(tmp_path / "o.zarr")
+
+
+def test_nan_is_refused(tmp_path: Path) -> None:
+    """NaN among the states is an error, since every saved state is a good one."""
+    orbit = _orbit()
+    broken = dataclasses.replace(orbit, reduced_momentum=np.where(orbit.time[:, None] > 1, np.nan, 1.0))
+    nh.save_orbit(broken, tmp_path / "o.zarr")
+    with pytest.raises(ValueError, match="array reduced_momentum free of NaN"):
+        nh.load_orbit(tmp_path / "o.zarr")
+
+
+def test_missing_array_is_named(store: Path) -> None:
+    """An array whose metadata are gone is named."""
+    (store / "pose" / "zarr.json").unlink()
+    with pytest.raises(ValueError, match="hold the array pose"):
+        nh.load_orbit(store)
+
+
+def test_changed_shape_is_refused(store: Path) -> None:
+    """An array that is shorter than the store says is refused."""
+    metadata = json.loads((store / "time" / "zarr.json").read_text())
+    (store / "time" / "zarr.json").write_text(json.dumps(metadata | {"shape": [20]}))
+    with pytest.raises(ValueError, match=r"array time as float64 of shape \(21,\)"):
+        nh.load_orbit(store)
+
+
+def test_future_schema_is_refused(store: Path) -> None:
+    """A store of a later schema is refused with the advice to upgrade."""
+    _edit(store, schema=2)
+    with pytest.raises(ValueError, match=r"schema 2\. .*upgrade"):
+        nh.load_orbit(store)
+
+
+def test_foreign_stores_are_refused(tmp_path: Path) -> None:
+    """A Zarr group of another program, a folder and a file that are no stores are refused; nothing is found at no path."""
+    zarr.create_group(tmp_path / "foreign")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "file").write_text("x")
+    for name in ("foreign", "folder", "file"):
+        with pytest.raises(ValueError, match="must be a store of an orbit"):
+            nh.load_orbit(tmp_path / name)
+    with pytest.raises(FileNotFoundError, match="must exist"):
+        nh.load_orbit(tmp_path / "nothing")
+
+
+def test_unknown_system_and_lost_attributes(store: Path) -> None:
+    """A system this version does not know and attributes that are gone are named."""
+    _edit(store, system="Warp")
+    with pytest.raises(ValueError, match="system of this version. Got 'Warp'"):
+        nh.load_orbit(store)
+    _edit(store, arrays="not json")
+    with pytest.raises(ValueError, match="complete attributes"):
+        nh.load_orbit(store)
+
+
+def test_callable_difference_must_be_given(store: Path) -> None:
+    """A store made with a callable is refused, unless the discretisation is passed; a different one is refused."""
+    described = json.loads(read_attributes(store)["motion"]) | {"difference": "callable"}
+    _edit(store, motion=json.dumps(described))
+    with pytest.raises(ValueError, match="difference is a callable.*discrete="):
+        nh.load_orbit(store)
+    system = nh.ChaplyginSleigh(1.1, 0.7, 0.3, 0.1)
+    own = nh.discretize(system, 0.1, difference=lambda W: W.sum())
+    assert nh.load_orbit(store, discrete=own).motion is own
+    other = nh.discretize(system, 0.2, difference=lambda W: W.sum())
+    with pytest.raises(ValueError, match="be the discretisation of the store"):
+        nh.load_orbit(store, discrete=other)

@@ -1,0 +1,185 @@
+"""Starts, thinning, outcomes and refusals of `simulate`."""
+
+import numpy as np
+import pytest
+from problems import PROBLEMS
+
+import nonholo as nh
+
+TOP = nh.discretize(PROBLEMS[0].system, 0.1)
+SLEIGH = nh.discretize(PROBLEMS[7].system, 0.1)
+
+
+@pytest.mark.parametrize("discrete", [TOP, SLEIGH], ids=["top", "sleigh"])
+def test_starts_agree(discrete: nh.Discretization) -> None:
+    """Velocity, restricted velocity, displacement, full and restricted momentum name the same start."""
+    system = discrete.system
+    w = np.array([0.7, -0.3])
+    orbit = nh.simulate(discrete, restricted_velocity=w, steps=5)
+    starts = [
+        {"body_velocity": w @ system.constraint_subspace},
+        {"displacement": orbit.displacement[0]},
+        {"momentum": orbit.momentum[0]},
+        {"momentum": orbit.restricted_momentum[0]},
+    ]
+    for start in starts:
+        assert np.abs(nh.simulate(discrete, **start, steps=5).configuration - orbit.configuration).max() < 1e-13
+    assert np.abs(orbit.body_velocity[0] - w @ system.constraint_subspace).max() < 1e-15
+
+
+@pytest.mark.parametrize("discrete", [TOP, SLEIGH], ids=["top", "sleigh"])
+def test_thinning_keeps_single_steps(discrete: nh.Discretization) -> None:
+    """save_every keeps every so many states; displacements and multipliers are still those of single steps."""
+    whole = nh.simulate(discrete, restricted_velocity=(0.7, -0.3), steps=20)
+    thin = nh.simulate(discrete, restricted_velocity=(0.7, -0.3), steps=20, save_every=6)
+    assert len(thin) == 4
+    assert np.array_equal(thin.time, whole.time[:19:6])
+    assert np.array_equal(thin.reduced_momentum, whole.reduced_momentum[:19:6])
+    assert np.array_equal(thin.displacement, whole.displacement[:19:6])
+    assert np.abs(thin.multipliers - whole.multipliers[:18:6]).max() < 1e-14
+    assert np.abs(whole[2:15:6].multipliers - whole.multipliers[2:14:6]).max() < 1e-14
+
+
+def test_shapes_of_an_orbit() -> None:
+    """steps = N gives N + 1 states and N multipliers; W_N is computed, g_{N+1} is not."""
+    orbit = nh.simulate(SLEIGH, body_velocity=(0.5, 1.0, 0.0), steps=7)
+    shapes = {
+        "time": (8,), "momentum": (8, 3), "restricted_momentum": (8, 2), "chart": (8, 2), "displacement": (8, 3, 3),
+        "configuration": (8, 3, 3), "body_velocity": (8, 3), "spatial_momentum": (8, 3), "position": (8, 2),
+        "heading": (8,), "multipliers": (7, 1), "energy": (8,),
+    }  # fmt: skip
+    assert {name: getattr(orbit, name).shape for name in shapes} == shapes
+    g, W = orbit.configuration, orbit.displacement
+    assert np.abs(g[1:] - g[:-1] @ W[:-1]).max() < 1e-14
+
+
+@pytest.mark.parametrize("discrete", [TOP, SLEIGH], ids=["top", "sleigh"])
+def test_discrete_equations_hold(discrete: nh.Discretization) -> None:
+    """P_{k+1} - Ad*_{W_k} P_k = lambda a, and P_k is the momentum at W_k."""
+    orbit = nh.simulate(discrete, restricted_velocity=(0.7, -0.3), steps=30)
+    P, W = orbit.momentum, orbit.displacement
+    force = P[1:] - discrete.system.group.coadjoint(W[:-1], P[:-1])
+    assert np.abs(force - orbit.multipliers @ discrete.system.annihilator).max() < 1e-13
+    assert np.abs(P - nh.discrete_legendre(discrete, W)).max() < 1e-13
+
+
+def test_heading_is_unwrapped() -> None:
+    """A balanced sleigh turning on the spot gains heading beyond a full turn."""
+    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
+    orbit = nh.simulate(discrete, body_velocity=(1.0, 0.0, 0.0), steps=200)
+    assert orbit.heading[-1] == pytest.approx(200 * np.arcsin(0.1), rel=1e-13)
+
+
+def test_zero_velocity_stays() -> None:
+    """At rest every displacement is the identity and nothing is NaN."""
+    for discrete in (TOP, SLEIGH):
+        orbit = nh.simulate(discrete, restricted_velocity=(0.0, 0.0), steps=10)
+        assert np.array_equal(orbit.displacement, np.broadcast_to(np.eye(3), (11, 3, 3)))
+        assert not orbit.energy.any()
+        assert np.isfinite(orbit.spatial_momentum).all()
+        assert nh.invariants(orbit).energy_drift == 0
+
+
+def test_a_run_keeps_its_good_steps() -> None:
+    """When the principal branch folds the orbit so far is kept, with the outcome and the step in the message."""
+    discrete = nh.discretize(PROBLEMS[0].system, 1.0)
+    start = {"momentum": np.array([1.93257157, -0.68979744]), "steps": 500}
+    orbit = nh.simulate(discrete, **start, throw=False)
+    assert orbit.outcome == nh.Outcome.no_real_branch
+    assert 1 < len(orbit) < 500
+    assert np.isfinite(orbit.displacement).all()
+    with pytest.raises(
+        nh.OutcomeError, match=rf"Step {len(orbit)} of 500.*no_real_branch.*smaller time_step"
+    ) as caught:
+        nh.simulate(discrete, **start)
+    assert np.array_equal(caught.value.orbit.momentum, orbit.momentum)
+    assert caught.value.outcome == nh.Outcome.no_real_branch
+
+
+def test_a_start_beyond_the_fold_is_empty() -> None:
+    """With throw=False a start without principal root gives an orbit of no states and says why."""
+    discrete = nh.discretize(PROBLEMS[0].system, 1.0)
+    orbit = nh.simulate(discrete, body_velocity=(40.0, 0.0, 0.0), steps=3, throw=False)
+    assert len(orbit) == 0
+    assert orbit.outcome == nh.Outcome.no_real_branch
+    with pytest.raises(nh.OutcomeError, match=r"Start of the run.*no_real_branch"):
+        nh.simulate(discrete, body_velocity=(40.0, 0.0, 0.0), steps=3)
+
+
+def test_a_displacement_on_another_branch_is_refused() -> None:
+    """A displacement of the variety that is not the principal root of its momentum is not silently replaced."""
+    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1.0)
+    W = discrete.system.group.exp(np.array([2.8, 0.1, 0.0]))
+    with pytest.raises(nh.OutcomeError, match="branch_unverified|no_real_branch"):
+        nh.simulate(discrete, displacement=W, steps=3)
+
+
+def test_a_momentum_off_the_locus_is_refused() -> None:
+    """A full momentum must be that of a displacement."""
+    momentum = nh.simulate(TOP, restricted_velocity=(0.7, -0.3), steps=1).momentum[0] + np.array([0, 0, 0.1])
+    with pytest.raises(nh.OutcomeError, match="off_momentum_locus"):
+        nh.simulate(TOP, momentum=momentum, steps=3)
+
+
+GOOD = {"body_velocity": (0.4, 0.9, 0.0), "steps": 3}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({**GOOD, "steps": 0}, r"simulate\(steps=...\)` must be a positive integer. Got 0"),
+        ({**GOOD, "steps": 2.5}, "positive integer. Got 2.5"),
+        ({**GOOD, "save_every": -1}, r"save_every=...\)` must be a positive integer"),
+        ({"steps": 3}, "exactly one of body_velocity, .*Got none"),
+        ({**GOOD, "momentum": (1, 2)}, "Got body_velocity and momentum"),
+        (
+            {**GOOD, "body_velocity": (0.4, 0.9, 0.1)},
+            r"satisfy the constraint. Got residual \[0.1\].*\[0.4, 0.9, 0.0\]",
+        ),
+        ({**GOOD, "body_velocity": (0.4, 0.9)}, r"shape \(3,\). Got shape \(2,\)"),
+        ({**GOOD, "body_velocity": (0.4, np.nan, 0.0)}, "be finite. Got nan at index"),
+        ({**GOOD, "body_velocity": (0.4, 1j, 0.0)}, "be real. Got complex"),
+        ({**GOOD, "branch": "nearest"}, "branch=.*must be one of 'principal'. Got 'nearest'"),
+        ({**GOOD, "backend": "cuda"}, "be one of 'auto', 'numba', 'jax'"),
+        ({**GOOD, "configuration": 2 * np.eye(3)}, r"lie in SO\(3\). Got a matrix at distance"),
+        ({"displacement": nh.SO(3).exp(np.array([0.1, 0.2, 0.3])), "steps": 3}, "displacement variety.*forbidden part"),
+        ({"displacement": np.eye(3) + 0.1, "steps": 3}, r"lie in SO\(3\)"),
+    ],
+)
+def test_bad_arguments_are_refused(arguments: dict, words: str) -> None:
+    """Each names the owner, the requirement, what was got and the remedy, before any work."""
+    with pytest.raises(ValueError, match=words):
+        nh.simulate(TOP, **arguments)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"time_step": 0}, "time_step=.*must be positive. Got 0.0"),
+        ({"time_step": -0.1}, "must be positive. Got -0.1"),
+        ({"time_step": 0.1 + 1j}, "must be real"),
+        ({"time_step": np.nan}, "must be finite"),
+        ({"difference": "central"}, "be one of 'matrix', 'logarithmic'. Got 'central'"),
+        ({"constraint": "naive"}, "be one of 'skew', 'exponential'"),
+        ({"order": 4}, "be one of 2. Got 4"),
+    ],
+)
+def test_bad_discretisations_are_refused(arguments: dict, words: str) -> None:
+    """`discretize` says what it accepts."""
+    with pytest.raises(ValueError, match=words):
+        nh.discretize(TOP.system, **{"time_step": 0.1, **arguments})
+
+
+def test_no_poses_unless_asked() -> None:
+    """reconstruct=False leaves poses out, and asking for them says so."""
+    orbit = nh.simulate(TOP, **GOOD, reconstruct=False)
+    with pytest.raises(ValueError, match="reconstruct=True"):
+        _ = orbit.configuration
+    with pytest.raises(ValueError, match="group of motions"):
+        _ = nh.simulate(TOP, **GOOD).position
+
+
+def test_numba_backend_needs_a_closed_form() -> None:
+    """The compiled backend is refused for a discrete Lagrangian without one."""
+    with pytest.raises(ValueError, match="have a closed form"):
+        nh.simulate(nh.discretize(TOP.system, 0.1, difference="logarithmic"), **GOOD, backend="numba")
