@@ -2,6 +2,7 @@
 
 import dataclasses
 import errno
+import hashlib
 import json
 import subprocess
 import sys
@@ -121,9 +122,7 @@ def test_provenance(tmp_path: Path) -> None:
     assert json.loads(stored["parameters"]) == {"mass": 1.1, "inertia": 0.7, "a": 0.3, "b": 0.1}
     assert json.loads(stored["motion"])["time_step"] == 0.1
     assert json.loads(stored["versions"])["nonholo"] == nh.__version__
-    assert stored["scenario_sha256"] == "90ce31ccb8fed5d9aa7b38ea06ee1c5d0f8e5fc4a1dfb6bb09f53f2cdc4a0b6d" or len(
-        stored["scenario_sha256"]
-    ) == 64
+    assert stored["scenario_sha256"] == hashlib.sha256(b"title = 'x'\n").hexdigest()
 
 
 def test_existing_store_is_refused_and_kept(store: Path) -> None:
@@ -243,7 +242,9 @@ def test_damaged_chunk_is_named(
 def test_nan_is_refused(tmp_path: Path) -> None:
     """NaN among the states is an error, since every saved state is a good one."""
     orbit = _orbit()
-    broken = dataclasses.replace(orbit, reduced_momentum=np.where(orbit.time[:, None] > 1, np.nan, 1.0))
+    momentum = orbit.reduced_momentum.copy()
+    momentum[7, 1] = np.nan
+    broken = dataclasses.replace(orbit, reduced_momentum=momentum)
     nh.save_orbit(broken, tmp_path / "o.zarr")
     with pytest.raises(ValueError, match="array reduced_momentum free of NaN"):
         nh.load_orbit(tmp_path / "o.zarr")

@@ -1,0 +1,281 @@
+"""The commands: what they keep, print and return."""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import Result
+
+import nonholo as nh
+from nonholo import plotting
+from nonholo.cli import _caches, _run
+from nonholo.cli._scenario_file import load_scenario
+
+Command = Callable[..., Result]
+Figures = Callable[..., dict[str, Any]]
+
+
+def test_json_is_all_that_is_printed(figures: Figures) -> None:
+    """`--json` prints one object with the figures of the run and the path of its store."""
+    told = figures("suslov")
+    assert told["steps"] == 800
+    assert told["outcome"] == "successful"
+    for name in ("energy_drift", "constraint_residual", "group_residual", "reversal_defect"):
+        assert 0 <= told[name] < 1e-14, name
+    assert told["seconds_per_step"] > 0
+    assert told["body"]["inertia_tensor"][2] == [-0.5, 0.3, 2.4]
+    assert told["picture"] is None
+    assert len(nh.load_orbit(told["store"])) == 801
+
+
+@pytest.mark.parametrize("name", ["suslov", "sleigh"])
+def test_built_in_scenarios_settle(name: str, figures: Figures) -> None:
+    """The built-in motions go over from the repelling to the attracting steady motion."""
+    orbit = nh.load_orbit(figures(name)["store"])
+    attracting = orbit.system.equilibria().attracting
+    along = orbit.body_velocity @ attracting / np.linalg.norm(orbit.body_velocity, axis=1) / np.linalg.norm(attracting)
+    assert along[0] < -0.99
+    assert along[-1] > 1 - 1e-9
+
+
+def test_table(nonholo: Command) -> None:
+    """Without `--json` a table shows the invariants, both tensors of the body, and where things are."""
+    result = nonholo("simulate", "suslov", "--no-plot")
+    assert result.exit_code == 0
+    for words in ("time per step", "relative energy drift", "reversal defect", "largest step angle"):
+        assert words in result.stdout
+    for words in ("mass tensor J", "inertia tensor", "runs/suslov-001.zarr", "800 of 800"):
+        assert words in result.stdout
+
+
+def test_runs_are_numbered(nonholo: Command) -> None:
+    """Each run without -o gets the next number, and earlier ones stay."""
+    paths = [nonholo("simulate", "sleigh", "--no-plot", "-q", "--steps", 3).stdout.strip() for _ in range(3)]
+    assert paths == [f"runs/sleigh-00{i}.zarr" for i in (1, 2, 3)]
+    assert all(Path(path).exists() for path in paths)
+
+
+def test_numbers_go_on_after_the_largest(nonholo: Command) -> None:
+    """A gap is not filled, and a picture that is left over is not overwritten."""
+    Path("runs").mkdir()
+    Path("runs/sleigh-007.png").touch()
+    assert nonholo("simulate", "sleigh", "--no-plot", "-q", "--steps", 3).stdout.strip() == "runs/sleigh-008.zarr"
+
+
+def test_runs_at_the_same_time_get_different_stores(tmp_path: Path) -> None:
+    """Runs that end together all keep their orbit."""
+    loaded = load_scenario("sleigh", [])
+    _run.check_output(None, overwrite=False)
+    orbit = _run.run(loaded, progress=False).orbit
+    with ThreadPoolExecutor(4) as pool:
+        stores = list(pool.map(lambda _: _run.keep(orbit, loaded, None, overwrite=False), range(8)))
+    assert len(set(stores)) == 8
+    assert len(list((tmp_path / "runs").iterdir())) == 8
+
+
+def test_existing_output_is_refused_before_the_run(nonholo: Command) -> None:
+    """An existing -o is refused with exit code 2 and the remedy; --overwrite replaces it."""
+    assert nonholo("simulate", "sleigh", "--no-plot", "-o", "a.zarr", "--steps", 3).exit_code == 0
+    refused = nonholo("simulate", "sleigh", "--no-plot", "-o", "a.zarr", "--steps", 4)
+    assert refused.exit_code == 2
+    assert "--overwrite" in refused.stderr
+    assert len(nh.load_orbit("a.zarr")) == 4
+    assert nonholo("simulate", "sleigh", "--no-plot", "-o", "a.zarr", "--steps", 4, "--overwrite").exit_code == 0
+    assert len(nh.load_orbit("a.zarr")) == 5
+
+
+def test_a_picture_of_the_user_is_not_overwritten(nonholo: Command) -> None:
+    """A picture that exists where the run would draw is refused like a store."""
+    Path("a.png").write_text("mine")
+    assert nonholo("simulate", "sleigh", "-o", "a.zarr", "--steps", 3).exit_code == 2
+    assert Path("a.png").read_text() == "mine"
+
+
+def test_a_run_that_stops_keeps_its_good_steps(nonholo: Command) -> None:
+    """A fold ends the run with exit code 1, the step reached and the reason; the good states are kept."""
+    result = nonholo("simulate", "sleigh", "--no-plot", "--time-step", 1.3)
+    assert result.exit_code == 1
+    assert "Step 5 of 300" in result.stderr
+    assert "no_real_branch" in result.stderr
+    orbit = nh.load_orbit("runs/sleigh-001.zarr")
+    assert (len(orbit), orbit.outcome) == (5, nh.Outcome.no_real_branch)
+
+
+def test_json_of_a_run_that_stops(nonholo: Command) -> None:
+    """The JSON object of such a run is complete and says why it stopped."""
+    result = nonholo("simulate", "sleigh", "--no-plot", "--time-step", 1.3, "--json")
+    assert result.exit_code == 1
+    told = json.loads(result.stdout)
+    assert told["steps"] == 4
+    assert "Step 5 of 300" in told["stopped"]
+
+
+def test_a_run_without_a_start_keeps_nothing(nonholo: Command) -> None:
+    """If not even the first displacement exists there is no store, and the message says so."""
+    result = nonholo("simulate", "suslov", "--time-step", 1.2)
+    assert result.exit_code == 1
+    assert "Nothing to keep. Start of the run" in result.stderr
+    assert not list(Path("runs").iterdir())
+
+
+def test_a_start_off_the_locus(nonholo: Command) -> None:
+    """A full momentum that no displacement has is an outcome, not a crash."""
+    result = nonholo("simulate", "sleigh", "--set", "start={momentum=[0.3, 1.0, 5.0]}")
+    assert result.exit_code == 1
+    assert "off_momentum_locus" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--set", "start.body_velocity=[0,1,1]"], "start.body_velocity: must satisfy the constraint"),
+        (["--set", "start.body_velocity=[0,1]"], "start.body_velocity: must have shape (3,)"),
+        (["--set", "start.configuration=[[1,0,0],[0,2,0],[0,0,1]]"], "start.configuration: must lie in SE(2)"),
+        (["--steps", 0], "--steps 0: run.steps: must be greater than 0"),
+        (["--time-step", "nan"], "--time-step nan: run.time_step: must be a finite number"),
+        (["--set", "body.mass"], "must be KEY=VALUE"),
+    ],
+)
+def test_usage_errors(arguments: list[Any], told: str, nonholo: Command) -> None:
+    """Wrong input ends with exit code 2, a sentence with the key path, and nothing made."""
+    result = nonholo("simulate", "sleigh", *arguments)
+    assert result.exit_code == 2
+    assert told in result.stderr
+    assert "Traceback" not in result.output
+    assert not list(Path("runs").iterdir()) if Path("runs").exists() else True
+
+
+def test_options_reach_the_run(figures: Figures) -> None:
+    """--steps, --time-step and --set are in force and kept in the store."""
+    told = figures("sleigh", "--steps", 7, "--time-step", 0.05, "--set", "body.a=0.25", "--set", "run.save_every=2")
+    orbit = nh.load_orbit(told["store"])
+    assert (len(orbit), float(orbit.system.a), float(orbit.time[1])) == (4, 0.25, 0.1)
+
+
+def test_a_failing_picture_does_not_cost_the_run(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    """If drawing fails there is a warning, and the run is kept and successful."""
+
+    def fail(*_: object, **__: object) -> None:
+        raise RuntimeError("no ink")
+
+    monkeypatch.setattr(plotting, "overview", fail)
+    result = nonholo("simulate", "suslov", "--steps", 5)
+    assert result.exit_code == 0
+    assert "no picture: RuntimeError: no ink" in result.stderr
+    assert len(nh.load_orbit("runs/suslov-001.zarr")) == 6
+
+
+@pytest.mark.parametrize("name", ["suslov", "sleigh"])
+def test_pictures(name: str, nonholo: Command) -> None:
+    """A run draws its picture beside the store; `plot` draws it again elsewhere, in the format of the name."""
+    result = nonholo("simulate", name, "--steps", 60)
+    assert result.exit_code == 0
+    assert result.stderr == ""
+    assert Path(f"runs/{name}-001.png").read_bytes().startswith(b"\x89PNG")
+    assert nonholo("plot", f"runs/{name}-001.zarr", "-o", "again.pdf").exit_code == 0
+    assert Path("again.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_info(nonholo: Command) -> None:
+    """`info` shows how a store was made and measures its invariants again, as a table and as JSON."""
+    nonholo("simulate", "suslov", "--no-plot", "-o", "a.zarr", "--steps", 50)
+    table = nonholo("info", "a.zarr")
+    assert table.exit_code == 0
+    assert "difference matrix" in table.stdout
+    told = json.loads(nonholo("info", "a.zarr", "--json").stdout)
+    assert told["provenance"]["motion"]["time_step"] == 0.1
+    assert told["provenance"]["versions"]["numpy"] == np.__version__
+    assert told["steps"] == 50
+
+
+def test_a_store_can_be_run_again(nonholo: Command, figures: Figures) -> None:
+    """The scenario kept in a store repeats the run bit for bit."""
+    first = figures("sleigh", "--set", "body.b=0.1234567890123456", "--steps", 40)
+    Path("again.toml").write_text(nonholo("info", first["store"], "--scenario").stdout)
+    second = figures("again.toml")
+    one, two = nh.load_orbit(first["store"]), nh.load_orbit(second["store"])
+    assert one.pose.tobytes() == two.pose.tobytes()
+
+
+def test_stores_that_cannot_be_read(nonholo: Command) -> None:
+    """No store is a usage error; a damaged one is a failure that names the chunk."""
+    assert nonholo("info", "nothing.zarr").exit_code == 2
+    nonholo("simulate", "suslov", "--no-plot", "-o", "a.zarr", "--steps", 5)
+    Path("a.zarr/cayley/c/0/0").unlink()
+    for command in ("info", "plot"):
+        result = nonholo(command, "a.zarr")
+        assert result.exit_code == 1
+        assert "chunk c/0/0 of the array cayley" in result.stderr
+
+
+def test_systems(nonholo: Command) -> None:
+    """`systems` lists the bodies with their parameters and the built-in scenarios."""
+    shown = nonholo("systems").stdout
+    for words in ("suslov", "sleigh", "mass_tensor", "inertia", "Built-in scenarios"):
+        assert words in shown
+
+
+def test_version(nonholo: Command) -> None:
+    """`--version` prints the version."""
+    assert nonholo("--version").stdout == f"nonholo {nh.__version__}\n"
+
+
+def test_help_loads_nothing_heavy() -> None:
+    """Neither `import nonholo` nor any help text loads the numerical libraries."""
+    script = """
+import sys
+import nonholo
+from typer.testing import CliRunner
+from nonholo.cli._app import app
+for command in ("", "simulate", "new", "systems", "info", "plot"):
+    result = CliRunner().invoke(app, [*command.split(), "--help"])
+    assert result.exit_code == 0 and "Usage" in result.stdout, command
+print([name for name in ("jax", "numba", "numpy", "scipy", "xarray", "zarr", "matplotlib", "pydantic") if name in sys.modules])
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)  # noqa: S603
+    assert done.stdout.strip() == "[]"
+
+
+def test_simulate_needs_no_jax() -> None:
+    """The first command runs without importing JAX."""
+    script = """
+import sys
+from typer.testing import CliRunner
+from nonholo.cli._app import app
+result = CliRunner().invoke(app, ["simulate", "sleigh", "--steps", "5", "--json"])
+assert result.exit_code == 0, result.output
+print("jax" in sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)  # noqa: S603
+    assert done.stdout.strip() == "False"
+
+
+@pytest.mark.parametrize("set_by_user", [True, False])
+def test_caches_of_a_read_only_installation(
+    set_by_user: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the package folder cannot be written numba keeps its code in the user's cache; a user's own choice stays."""
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    if set_by_user:
+        monkeypatch.setenv("NUMBA_CACHE_DIR", "/mine")
+    monkeypatch.setattr(_caches, "_can_write", lambda folder: "kernels" not in str(folder))
+    _caches.use_cache_folders()
+    kept = os.environ["NUMBA_CACHE_DIR"]
+    monkeypatch.setenv("NUMBA_CACHE_DIR", kept)
+    assert kept == ("/mine" if set_by_user else str(tmp_path / ".cache" / "nonholo" / "numba"))
+
+
+def test_no_cache_folder_at_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where no folder can be written a private temporary one is used, since numba would refuse to work without."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "")
+    monkeypatch.delenv("NUMBA_CACHE_DIR")
+    monkeypatch.setattr(_caches, "_can_write", lambda _: False)
+    _caches.use_cache_folders()
+    assert Path(os.environ["NUMBA_CACHE_DIR"]).is_dir()

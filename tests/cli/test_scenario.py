@@ -1,0 +1,165 @@
+"""Scenarios: everything wrong is told at once, with where it was said; settings pass the same checks."""
+
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from typer.testing import Result
+
+from nonholo.cli._problems import ScenarioError
+from nonholo.cli._scenario_file import built_in, effective_text, load_scenario, parse_setting
+
+_GOOD = """
+[body]
+kind = "sleigh"
+mass = 1
+inertia = 1.0
+a = 0.5
+[start]
+body_velocity = [0.1, 1, 0]
+[run]
+time_step = 0.1
+steps = 3
+"""
+
+
+def _problems(text: str, *settings: str) -> list[str]:
+    Path("my.toml").write_text(text)
+    with pytest.raises(ScenarioError) as caught:
+        load_scenario("my.toml", [parse_setting(setting) for setting in settings])
+    return [str(problem) for problem in caught.value.problems]
+
+
+def test_all_problems_at_once() -> None:
+    """Four mistakes in three tables are four problems, each with file, key path and what was got."""
+    text = (
+        _GOOD.replace("mass = 1", "mass = -1")
+        .replace("a = 0.5", "aa = 0.5")
+        .replace("steps = 3", 'steps = "3"')
+        .replace("[0.1, 1, 0]", "[0.1, true, 0]")
+    )
+    found = _problems(text)
+    assert len(found) == 5
+    assert "my.toml: body.mass: must be greater than 0. Got -1" in found
+    assert "my.toml: body.a: is missing" in found
+    assert "my.toml: body.aa: is not a known key. Did you mean a?" in found
+    assert any(f.startswith("my.toml: start.body_velocity[1]: must be a valid number") for f in found)
+    assert "my.toml: run.steps: must be a valid integer. Got '3'" in found
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ('kind = "slegh"', "body: must have kind \"suslov\" or \"sleigh\". Got 'slegh'"),
+        ("", 'body: needs kind = "suslov" or "sleigh"'),
+    ],
+)
+def test_kind_of_body(change: str, told: str) -> None:
+    """An unknown or missing kind lists the kinds there are."""
+    assert _problems(_GOOD.replace('kind = "sleigh"', change)) == [f"my.toml: {told}"]
+
+
+def test_unknown_table_and_no_table() -> None:
+    """A table that does not exist gets a suggestion; a value in place of a table is told."""
+    assert _problems(_GOOD + "\n[outptu]\nplot = true") == [
+        "my.toml: outptu: is not a known key. Did you mean output?"
+    ]
+    assert _problems("output = 1\n" + _GOOD) == ["my.toml: output: must be a table. Got 1"]
+
+
+def test_physical_refusals_have_key_paths() -> None:
+    """What the library refuses is told with the key that it came from."""
+    top = '[body]\nkind = "suslov"\nmass_tensor = [[1,0,0.5],[0,1,0],[0,0,1]]\naxis = [0, 0, 1]\n'
+    rest = _GOOD[_GOOD.index("[start]") :]
+    found = _problems(top + rest)
+    assert found[0].startswith("my.toml: body.mass_tensor: must be symmetric. Got entries 0.5 and 0.0")
+    found = _problems(top.replace("0.5", "0").replace("axis = [0, 0, 1]", "axis = [0, 1, 1]") + rest)
+    assert found[0].startswith("my.toml: body.axis: must be a unit vector. Got length 1.41")
+
+
+def test_exactly_one_start_and_one_tensor() -> None:
+    """Two starts, no start, and both tensors of a top are refused by name."""
+    two = _problems(_GOOD.replace("[run]", "momentum = [1, 2]\n[run]"))
+    assert two == [
+        "my.toml: start: must hold exactly one of body_velocity, restricted_velocity, momentum, displacement. "
+        "Got body_velocity and momentum."
+    ]
+    assert "Got none." in _problems(_GOOD.replace("body_velocity = [0.1, 1, 0]", ""))[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [("[body\n", "is not valid TOML"), ("a = 1\na = 2\n", "is not valid TOML")],
+    ids=["bracket", "twice"],
+)
+def test_broken_toml(text: str, told: str) -> None:
+    """A file that is not TOML is told with the place."""
+    assert told in _problems(text)[0]
+    assert "line" in _problems(text)[0]
+
+
+def test_unreadable_files(tmp_path: Path) -> None:
+    """A missing file, a folder and bytes that are no text are refused; a near miss of a built-in name is suggested."""
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    for name, told in (("sleig", "Did you mean sleigh?"), (".", "cannot be read"), ("binary.toml", "cannot be read")):
+        with pytest.raises(ScenarioError, match=told.replace("?", r"\?")):
+            load_scenario(name, [])
+
+
+def test_settings_name_their_option() -> None:
+    """A wrong value from the command line is told with the option, the rest with the file."""
+    found = _problems(_GOOD.replace("mass = 1", "mass = -1"), "body.a=nan", "start.velocity=1")
+    assert found[0] == "my.toml: body.mass: must be greater than 0. Got -1"
+    assert found[1] == "--set body.a=nan: body.a: must be a finite number. Got nan"
+    assert found[2].startswith("--set start.velocity=1: start.velocity: is not a known key. Did you mean body_velocity?")
+
+
+@pytest.mark.parametrize("text", ["body.a", "=1", "body..a=1", "body.a=x", "body.a=1\nb=2", "body.a="])
+def test_malformed_settings(text: str) -> None:
+    """A setting that is not KEY=VALUE with a TOML value is refused with an example."""
+    with pytest.raises(ScenarioError, match="must (be KEY=VALUE|have a TOML value)"):
+        parse_setting(text)
+
+
+def test_setting_a_key_below_a_value() -> None:
+    """A setting cannot descend into a number."""
+    assert "mass is a value, not a table" in _problems(_GOOD, "body.mass.x=1")[0]
+
+
+def test_setting_replaces_a_table() -> None:
+    """An inline table replaces a whole table, so that the start can be of another sort."""
+    Path("my.toml").write_text(_GOOD)
+    loaded = load_scenario("my.toml", [parse_setting("start={momentum=[0.1, 1.0]}")])
+    assert loaded.scenario.start.momentum == [0.1, 1.0]
+
+
+@given(
+    mass=st.floats(min_value=5e-324, max_value=1e300),
+    a=st.floats(allow_nan=False, allow_infinity=False),
+    steps=st.integers(1, 10**15),
+    title=st.text(st.characters(exclude_categories=["Cs", "Cc"])),
+)
+def test_effective_text_repeats_the_scenario(mass: float, a: float, steps: int, title: str) -> None:
+    """The text kept in a store, read again, is the same scenario, exact in every number."""
+    path = Path("any.toml")
+    path.write_text(_GOOD)
+    settings: list[Any] = [parse_setting(f"body.mass={mass!r}"), parse_setting(f"body.a={a!r}")]
+    scenario = load_scenario(str(path), [*settings, parse_setting(f"run.steps={steps}")]).scenario
+    scenario = scenario.model_copy(update={"title": title})
+    again = type(scenario).model_validate(tomllib.loads(effective_text(scenario)))
+    assert again == scenario
+
+
+@pytest.mark.parametrize("name", ["sleigh", "suslov"])
+def test_templates_are_valid(name: str, nonholo: Callable[..., Result]) -> None:
+    """What `nonholo new` writes is the built-in scenario, with comments, and can be loaded from a file."""
+    written = nonholo("new", name)
+    assert written.exit_code == 0
+    assert written.stdout == built_in()[name]
+    assert written.stdout.count("#") > 8
+    Path("my.toml").write_text(written.stdout)
+    assert load_scenario("my.toml", []).scenario == load_scenario(name, []).scenario
