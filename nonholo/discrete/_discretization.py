@@ -56,7 +56,7 @@ class Discretization(AbstractMotion):
 
 def discretize(
     system: AbstractLLSystem,
-    time_step: float,
+    time_step: Array,
     difference: Difference = "matrix",
     constraint: str = "skew",
     order: int = 2,

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 
 def discrete_legendre(
-    discrete: "Discretization", displacement: Float[Array, "N N"], side: str = "left"
-) -> Float[Array, "dim"]:
+    discrete: "Discretization", displacement: Float[Array, "... N N"], side: str = "left"
+) -> Float[Array, "... dim"]:
     r"""Return the discrete body momentum of a displacement, in physical units.
 
     $$ \langle P(W), x\rangle = \tfrac{d}{d\varepsilon} l_d(e^{\varepsilon x} W)\big|_0 \ \text{(left)}, \qquad

@@ -53,7 +53,7 @@ def _continue(residual: Residual, target: Array) -> tuple[Array, Array, Array]:
         return jax.jacfwd(residual)(y, s * target)
 
     def follow(y: Array, s: Array) -> tuple[Array, tuple[Array, Array]]:
-        def correct(_: int, z: Array) -> Array:
+        def correct(_: Array, z: Array) -> Array:
             return z - jnp.linalg.solve(slope(z, s), residual(z, s * target))
 
         z = jax.lax.fori_loop(0, _CORRECTIONS, correct, y)

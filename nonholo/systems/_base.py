@@ -6,7 +6,6 @@ $\mathfrak{d}$. Time steps and solvers live elsewhere.
 
 import abc
 import dataclasses
-from typing import Self
 
 import numpy as np
 
@@ -54,7 +53,7 @@ class AbstractLLSystem(abc.ABC):
 
     @property
     @abc.abstractmethod
-    def canonical(self) -> Self:
+    def canonical(self) -> "AbstractLLSystem":
         """The same body in the canonical frame."""
 
     @property

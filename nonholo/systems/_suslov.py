@@ -1,7 +1,7 @@
 """The Suslov top: a rigid body about a fixed point that may not spin about one of its own axes."""
 
 import dataclasses
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
@@ -39,8 +39,8 @@ class SuslovTop(AbstractLLSystem):
                [0.2, 1.9]])
     """
 
-    mass_tensor: Float[np.ndarray, "3 3"]
-    axis: Float[np.ndarray, "3"] = dataclasses.field(default=(0.0, 0.0, 1.0), kw_only=True)  # type: ignore[assignment]
+    mass_tensor: Array
+    axis: Array = dataclasses.field(default=(0.0, 0.0, 1.0), kw_only=True)
     group: ClassVar[AbstractMatrixGroup] = SO(3)
 
     def __post_init__(self) -> None:
@@ -52,7 +52,7 @@ class SuslovTop(AbstractLLSystem):
         positive_definite(where, self.constrained_inertia, "the inertia along the constraint", remedy)
 
     @classmethod
-    def from_inertia(cls, inertia: Float[Array, "3 3"], axis: Float[Array, "3"] = (0.0, 0.0, 1.0)) -> Self:  # type: ignore[assignment]
+    def from_inertia(cls, inertia: Array, axis: Array = (0.0, 0.0, 1.0)) -> "SuslovTop":
         """Build a top from its inertia tensor and the forbidden body axis; everything stays in the user's body frame.
 
         Example:
