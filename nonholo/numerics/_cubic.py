@@ -25,10 +25,11 @@ def real_cubic_roots(a: float, b: float, c: float, d: float) -> tuple[int, float
         big = -math.copysign((abs(q) + math.sqrt(discriminant)) ** (1 / 3), q)
         root = _polish(a, b, c, d, big - p / big - shift)
         return 1, root, root, root
-    if p == 0:
+    radius = math.sqrt(max(-p, 0.0))
+    cube = radius * radius * radius
+    if cube == 0:  # a triple root, or closer to one than numbers can tell
         return 3, -shift, -shift, -shift
-    radius = math.sqrt(-p)
-    angle = math.acos(max(-1.0, min(1.0, -q / (radius * radius * radius)))) / 3
+    angle = math.acos(max(-1.0, min(1.0, -q / cube))) / 3
     first = 2 * radius * math.cos(angle) - shift
     second = 2 * radius * math.cos(angle + 2 * math.pi / 3) - shift
     third = 2 * radius * math.cos(angle - 2 * math.pi / 3) - shift
