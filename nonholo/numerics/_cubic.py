@@ -36,11 +36,12 @@ def real_cubic_roots(a: float, b: float, c: float, d: float) -> tuple[int, float
     return 3, _polish(a, b, c, d, first), _polish(a, b, c, d, second), _polish(a, b, c, d, third)
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _polish(a: float, b: float, c: float, d: float, root: float) -> float:
+    value = ((a * root + b) * root + c) * root + d
     for _ in range(2):
-        slope = (3 * a * root + 2 * b) * root + c
-        if slope == 0:
-            return root
-        root -= (((a * root + b) * root + c) * root + d) / slope
+        better = root - value / ((3 * a * root + 2 * b) * root + c)
+        after = ((a * better + b) * better + c) * better + d
+        if abs(after) < abs(value):  # not so at a multiple root, where the slope is rounding, nor for a quotient 0/0
+            root, value = better, after
     return root
