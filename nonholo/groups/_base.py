@@ -63,6 +63,10 @@ class AbstractMatrixGroup(abc.ABC):
     def pose_from_matrix(self, g: Float[Array, "... N N"]) -> Float[Array, "... size"]:
         """Return the compact pose of a matrix."""
 
+    @abc.abstractmethod
+    def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:
+        """Return the rate of change of a compact pose that moves with the body velocity `x`."""
+
     @property
     def dim(self) -> int:
         """Dimension of the group."""

@@ -85,3 +85,11 @@ class SpecialEuclidean2(AbstractMatrixGroup):
         """Return (cos, sin, x, y)."""
         xp = g.__array_namespace__()
         return xp.stack([g[..., 0, 0], g[..., 1, 0], g[..., 0, 2], g[..., 1, 2]], axis=-1)
+
+    def pose_rate(self, pose: Float[Array, "... 4"], x: Float[Array, "... 3"]) -> Float[Array, "... 4"]:
+        """Return the rates of (cos, sin, x, y): the body velocity turned by the heading."""
+        xp = x.__array_namespace__()
+        cos, sin = pose[..., 0], pose[..., 1]
+        omega, v1, v2 = (x[..., i] for i in range(3))
+        rows = (-sin * omega, cos * omega, cos * v1 - sin * v2, sin * v1 + cos * v2)
+        return xp.stack(rows, axis=-1)

@@ -77,3 +77,10 @@ class SpecialOrthogonal3(AbstractMatrixGroup):
     def pose_from_matrix(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 4"]:
         """Return the unit quaternion, scalar first and non-negative."""
         return quaternion_from_matrix(g)
+
+    def pose_rate(self, pose: Float[Array, "... 4"], x: Float[Array, "... 3"]) -> Float[Array, "... 4"]:
+        """Return half the Hamilton product of the quaternion with the angular velocity."""
+        xp = x.__array_namespace__()
+        (q0, q1, q2, q3), (a, b, c) = (tuple(v[..., i] for i in range(v.shape[-1])) for v in (pose, x))
+        rows = (-q1 * a - q2 * b - q3 * c, q0 * a + q2 * c - q3 * b, q0 * b + q3 * a - q1 * c, q0 * c + q1 * b - q2 * a)
+        return xp.stack(rows, axis=-1) / 2

@@ -1,0 +1,6 @@
+"""The continuous mechanics: vector field, forces of constraint, closed-form solutions, numerical integration."""
+
+from nonholo.continuous._closed_form import closed_form
+from nonholo.continuous._equations import ContinuousFlow, vector_field
+
+__all__ = ["ContinuousFlow", "closed_form", "vector_field"]

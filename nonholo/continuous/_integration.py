@@ -1,0 +1,129 @@
+"""Numerical integration of momentum and pose: diffrax's Dopri8, one solve from each requested time to the next.
+
+Interpolated output would be much less accurate than the steps, so every requested time is stepped to. Each interval is
+mapped to [0, 1]: time units and the direction of time do not matter. Imported on first use, since diffrax loads slowly.
+"""
+
+import functools
+from collections.abc import Callable
+from typing import Any
+
+import diffrax
+import jax
+import numpy as np
+
+from nonholo._results import Outcome
+from nonholo._types import Array, Float
+from nonholo.continuous._closed_form import Heteroclinic
+from nonholo.continuous._equations import Body, body_of, momentum_rate
+from nonholo.groups import SE, AbstractMatrixGroup
+from nonholo.systems import AbstractLLSystem
+
+_SMALLEST_STEP = 1e-13  # of an interval; below it a solve is given up
+
+State = tuple[Array, ...]
+Rate = Callable[[AbstractMatrixGroup, Array, State, Any], State]
+
+
+def integrate(
+    system: AbstractLLSystem,
+    reduced_momentum: Float[np.ndarray, "k"],
+    pose: Float[np.ndarray, "size"],
+    elapsed: Float[np.ndarray, "K"],
+    tolerances: tuple[float, float],
+) -> tuple[Float[np.ndarray, "K k"], Float[np.ndarray, "K size"], Float[np.ndarray, "K"] | None, Outcome]:
+    """Return momenta, poses, on SE(2) the heading without ambiguity of full turns, and the outcome.
+
+    Times elapse from zero. After a failure only the good states are returned.
+    """
+    planar = system.group == SE(2)
+    turned = np.arctan2(pose[1:2], pose[0:1]) if planar else np.zeros(0)
+    start = (reduced_momentum, pose, turned)
+    rows, outcome = _solve(_motion_rate, system.group, start, body_of(system), elapsed, tolerances)
+    momenta, poses, headings = rows
+    return momenta, poses, _same_turn(headings[:, 0], poses) if planar else None, outcome
+
+
+def integrate_pose(
+    system: AbstractLLSystem,
+    motion: Heteroclinic,
+    pose: Float[np.ndarray, "size"],
+    elapsed: Float[np.ndarray, "K"],
+    tolerances: tuple[float, float],
+) -> tuple[Float[np.ndarray, "K size"], Outcome]:
+    """Return the poses of a body whose momentum is known in closed form."""
+    _, _, to_velocity = body_of(system)
+    known = (motion.across @ to_velocity, motion.along @ to_velocity, np.float64(motion.start), np.float64(motion.rate))
+    rows, outcome = _solve(_pose_rate, system.group, (pose,), known, elapsed, tolerances)
+    return rows[0], outcome
+
+
+def _same_turn(headings: np.ndarray, poses: np.ndarray) -> np.ndarray:
+    """Return the angles of the poses, each on the turn that the integrated heading tells."""
+    angles = np.arctan2(poses[:, 1], poses[:, 0])
+    return angles + 2 * np.pi * np.rint((headings - angles) / (2 * np.pi))
+
+
+def _motion_rate(group: AbstractMatrixGroup, time: Array, state: State, body: Body) -> State:
+    del time
+    momentum, pose, turned = state
+    rate, velocity, _ = momentum_rate(group, body, momentum)
+    return rate, group.pose_rate(pose, velocity), velocity[: turned.shape[0]]
+
+
+def _pose_rate(group: AbstractMatrixGroup, time: Array, state: State, known: tuple[Array, ...]) -> State:
+    return (group.pose_rate(state[0], Heteroclinic(*known).momentum(time)),)
+
+
+def _solve(
+    rate: Rate,
+    group: AbstractMatrixGroup,
+    state: State,
+    known: Any,
+    elapsed: np.ndarray,
+    tolerances: tuple[float, float],
+) -> tuple[list[np.ndarray], Outcome]:
+    with jax.enable_x64(True):
+        found, good = _sweep(rate, group, state, known, _padded(elapsed), tolerances)
+        rows = [np.concatenate([first[None], np.asarray(rest)]) for first, rest in zip(state, found, strict=True)]
+        rows, good = [row[: len(elapsed)] for row in rows], np.asarray(good)
+    if good.all():
+        return rows, Outcome.successful
+    return [row[: 1 + good.argmin()] for row in rows], Outcome.not_converged
+
+
+def _padded(elapsed: np.ndarray) -> np.ndarray:
+    """Repeat the last time until their number is one more than a power of two, so that few sizes are compiled."""
+    missing = (1 << max(len(elapsed) - 2, 0).bit_length()) + 1 - len(elapsed)
+    return np.append(elapsed, np.full(missing, elapsed[-1]))
+
+
+@functools.partial(jax.jit, static_argnums=(0, 1))
+def _sweep(
+    rate: Rate, group: AbstractMatrixGroup, state: State, known: Any, elapsed: Array, tolerances: tuple[Array, Array]
+) -> tuple[State, Array]:
+    """Carry the state from each time to the next; return all states but the first, and which solves succeeded."""
+
+    def scaled(fraction: Array, current: State, span: tuple[Array, Array]) -> State:
+        time, length = span
+        return jax.tree.map(lambda x: length * x, rate(group, time + length * fraction, current, known))
+
+    def advance(current: State, span: tuple[Array, Array]) -> tuple[State, tuple[State, Array]]:
+        controller = diffrax.PIDController(*tolerances, dtmin=_SMALLEST_STEP, force_dtmin=False)
+        solution = diffrax.diffeqsolve(
+            diffrax.ODETerm(scaled),
+            diffrax.Dopri8(),
+            t0=0.0,
+            t1=1.0,
+            dt0=1.0,
+            y0=current,
+            args=span,
+            stepsize_controller=controller,
+            adjoint=diffrax.ForwardMode(),
+            max_steps=None,
+            throw=False,
+        )
+        following = jax.tree.map(lambda rows: rows[-1], solution.ys)
+        return following, (following, solution.result == diffrax.RESULTS.successful)
+
+    return jax.lax.scan(advance, state, (elapsed[:-1], elapsed[1:] - elapsed[:-1]))[1]

@@ -1,0 +1,123 @@
+"""`flow`: an orbit of the continuous equations, from a checked start to a decoded result."""
+
+from typing import Any
+
+import numpy as np
+
+from nonholo._checks import array, choice, error, number, positive
+from nonholo._results import Outcome, OutcomeError
+from nonholo.continuous import ContinuousFlow, closed_form
+from nonholo.discrete._start import in_group, initial_momentum, one_start
+from nonholo.orbit import Orbit
+from nonholo.systems import AbstractLLSystem
+
+_LEAST_RTOL = 1e-14
+_TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
+
+
+def flow(
+    system: AbstractLLSystem,
+    *,
+    times: Any,
+    body_velocity: Any = None,
+    restricted_velocity: Any = None,
+    momentum: Any = None,
+    configuration: Any = None,
+    rtol: float = 1e-10,
+    atol: float = 1e-12,
+    method: str | None = None,
+) -> Orbit:
+    r"""Solve the Euler-Poincare-Suslov equations.
+
+    $$ p' = \mathrm{ad}^*_\omega p + \sum_j \lambda_j a^j, \qquad \langle a^j, \omega\rangle = 0, \qquad
+       g' = g\,\hat\omega, \qquad p = \mathbb{I}\omega. $$
+
+    By default an adaptive Runge-Kutta method of order 8 steps to every requested time. With "closed_form" the momentum
+    along the constraint is $r_\perp\,\mathrm{sech}\,s + r_\parallel\tanh s$, $s = s_0 + \nu t$, exact at all times.
+    Exact are also heading and path of the sleigh (a hypergeometric function); the pose of the top is a quadrature.
+
+    Reference: [fedorov-zenkov-2004], sections 2, 4 and 5.
+
+    Args:
+        system: What moves.
+        times: The times of the states, at least one, increasing or decreasing; the start is at the first.
+        body_velocity: Start with this velocity, which must satisfy the constraint.
+        restricted_velocity: The same, in rows of the constraint subspace.
+        momentum: Start with this momentum, full or along the constraint subspace.
+        configuration: First pose, a matrix of the group; the identity by default.
+        rtol: Relative error of a step, at least 1e-14.
+        atol: Absolute error of a step. Smaller components are not resolved: a numerical solution that starts so near a
+            repelling equilibrium leaves it at the wrong time.
+        method: None (numerical) or "closed_form".
+
+    Returns:
+        The orbit. It has no displacements, and its multipliers are the forces at its times.
+
+    Raises:
+        ValueError: A bad argument, before any work.
+        OutcomeError: The solver could not meet the tolerances; its `orbit` holds every good state.
+
+    Example:
+        The sleigh ends up gliding straight ahead, turned by pi sqrt(1 + J/(m a^2)) in all:
+
+        >>> sleigh = nh.ChaplyginSleigh(mass=1.0, inertia=0.75, a=0.5)
+        >>> orbit = nh.flow(sleigh, body_velocity=(1e-9, -2.0, 0.0), times=(0.0, 400.0), method="closed_form")
+        >>> print(orbit.body_velocity[:, 1].round(6), (np.ptp(orbit.heading) / np.pi).round(6))
+        [-2.  2.] 2.0
+    """
+    if not isinstance(system, AbstractLLSystem):
+        raise error("flow(system=...)", "be a system", repr(system), "Pass a SuslovTop or a ChaplyginSleigh.")
+    choice("flow(method=...)", method, (None, "closed_form"))
+    time, tolerances = _times(times), _tolerances(rtol, atol)
+    one_start("flow", body_velocity=body_velocity, restricted_velocity=restricted_velocity, momentum=momentum)
+    reduced = initial_momentum("flow", system, body_velocity, restricted_velocity, momentum)
+    motion = ContinuousFlow(system)
+    if momentum is not None:
+        _check_momentum(momentum, motion.full_momentum(reduced[None, :], None)[0])
+    group = system.group
+    g = group.identity if configuration is None else in_group("flow(configuration=...)", group, configuration)
+    pose = group.pose_from_matrix(g @ system.frame)
+    momenta, poses, turned, outcome = _solver(method)(system.canonical, reduced, pose, time - time[0], tolerances)
+    reached = len(momenta)
+    orbit = Orbit(motion, time[:reached], momenta, None, poses, outcome, turned=turned)
+    if outcome != Outcome.successful:
+        where = f"Flow from time {time[reached - 1]:g} to {time[reached]:g} (rtol {rtol:g}, atol {atol:g})"
+        raise OutcomeError(outcome, where, orbit)
+    return orbit
+
+
+def _solver(method: str | None) -> Any:
+    if method == "closed_form":
+        return closed_form
+    from nonholo.continuous._integration import integrate
+
+    return integrate
+
+
+def _check_momentum(given: Any, found: np.ndarray) -> None:
+    """Refuse a full momentum that no admissible velocity has."""
+    missed = np.linalg.norm(np.asarray(given) - found) if np.shape(given) == found.shape else 0.0
+    if missed > _TOLERANCE * np.linalg.norm(found):
+        remedy = f"With the same components along the constraint it is {found.tolist()}."
+        raise error("flow(momentum=...)", "belong to an admissible velocity", f"a distance {missed:.3g}", remedy)
+
+
+def _times(value: Any) -> np.ndarray:
+    where, remedy = "flow(times=...)", "Sort the times; the start is at the first."
+    times = array(where, value, (None,), "Pass a sequence of times.")
+    if times.size == 0:
+        raise error(where, "hold at least one time", "none", "Pass the time of the start first.")
+    gaps = np.diff(times)
+    forward = gaps * np.sign(gaps[:1])
+    if gaps.size and not forward.min() > 0:
+        at = int(np.argmin(forward))
+        got = f"{times[at + 1]} after {times[at]}"
+        raise error(where, "be strictly increasing or strictly decreasing", got, remedy)
+    return times
+
+
+def _tolerances(rtol: Any, atol: Any) -> tuple[float, float]:
+    relative = float(number("flow(rtol=...)", rtol))
+    if relative < _LEAST_RTOL:
+        raise error("flow(rtol=...)", "be at least 1e-14", f"{relative:g}", "Rounding errors are as large as that.")
+    return relative, float(positive("flow(atol=...)", atol, "Pass a positive absolute error."))

@@ -1,0 +1,138 @@
+"""What the closed forms say at large times and in special cases: turning, poles, straight lines, circles."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from problems import sleighs, tops, velocities
+
+import nonholo as nh
+
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+SLEIGHS = [
+    (1.0, 1.0, 0.5, 0.0),
+    (0.9, 0.4, 0.7, 0.35),
+    (1.5, 0.6, -0.5, 0.2),
+    (1.0, 0.75, 0.5, 0.1),
+    (1.0, 1.0, 0.02, 0.0),
+]
+
+
+def _closed(system: object, times: object, **start: object) -> nh.Orbit:
+    return nh.flow(system, times=times, method="closed_form", **start)
+
+
+@pytest.mark.parametrize("parameters", SLEIGHS)
+@pytest.mark.parametrize("omega", [0.8, -0.8])
+def test_heading_turns_by_the_asymptotic_angle(parameters: tuple, omega: float) -> None:
+    """From t = -inf to inf the heading turns by sgn(omega) pi sqrt(1 + J/(m a^2)), here with J = 3 m a^2 among them."""
+    mass, inertia, a, _ = parameters
+    sleigh = nh.ChaplyginSleigh(*parameters)
+    ends = [_closed(sleigh, [0.0, t], restricted_velocity=(omega, 0.3)).heading[-1] for t in (-1e4, 1e4)]
+    expected = np.sign(omega) * np.pi * np.sqrt(1 + inertia / (mass * a * a))
+    assert abs(ends[1] - ends[0] - expected) <= 1e-14 * abs(expected)
+
+
+@pytest.mark.parametrize("parameters", SLEIGHS)
+def test_path_becomes_a_straight_line(parameters: tuple) -> None:
+    """At late and at early times the blade moves along its axis at the speed sqrt(2E/m), to rounding."""
+    sleigh = nh.ChaplyginSleigh(*parameters)
+    for sign in (1, -1):
+        times = sign * np.array([0.0, 3000.0, 1e4, 1e6])
+        orbit = _closed(sleigh, times, restricted_velocity=(-0.7, 0.4))
+        speed = np.sign(sleigh.a * sign) * np.sqrt(2 * orbit.energy[0] / sleigh.mass)
+        direction = np.array([np.cos(orbit.heading[-1]), np.sin(orbit.heading[-1])])
+        moved = np.diff(orbit.position[1:], axis=0) - speed * np.diff(times[1:])[:, None] * direction
+        assert np.abs(moved).max() <= 1e-15 * abs(times[-1] * speed) * (5 + np.ptp(orbit.heading))
+
+
+def test_path_is_elementary_for_ratio_two() -> None:
+    """For J = 3 m a^2, u(0) = 0, phi = theta/2: x = 4a [sin^2 phi + log cos phi], y = 4a [phi - sin(2 phi)/2]."""
+    orbit = _closed(nh.ChaplyginSleigh(1.0, 0.75, 0.5), np.linspace(0.0, 6.0, 49), restricted_velocity=(1.0, 0.0))
+    phi = orbit.heading / 2
+    x, y = np.sin(phi) ** 2 + np.log(np.cos(phi)), phi - np.sin(2 * phi) / 2
+    assert np.abs(orbit.position - 2 * np.stack([x, y], axis=1)).max() <= 1e-14
+
+
+def test_balanced_sleigh_moves_on_a_circle() -> None:
+    """For a = 0 the contact point moves on the circle of radius |v1/omega| about a fixed centre, whatever b is."""
+    orbit = _closed(
+        nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.7), np.linspace(0.0, 50.0, 101), restricted_velocity=(0.4, -1.0)
+    )
+    facing = np.exp(1j * orbit.heading)
+    centre = orbit.position @ np.array([1.0, 1.0j]) + 1j * facing * (-1.0 / 0.4)
+    assert np.abs(centre - centre[0]).max() <= 1e-13
+    assert np.abs(orbit.heading - 0.4 * orbit.time).max() <= 1e-14
+
+
+def test_nearly_balanced_sleigh_is_continuous() -> None:
+    """As a tends to zero the closed form tends to the circle, uniformly down to the smallest number."""
+    times = np.linspace(0.0, 10.0, 21)
+    circle = _closed(nh.ChaplyginSleigh(1.0, 1.0, 0.0), times, restricted_velocity=(1.0, 0.5)).configuration
+    for a in (1e-14, -1e-20, 1e-100, 1e-160, 5e-324):
+        near = _closed(nh.ChaplyginSleigh(1.0, 1.0, a), times, restricted_velocity=(1.0, 0.5)).configuration
+        assert np.abs(near - circle).max() <= 1e-12
+
+
+@pytest.mark.parametrize("omega", [0.0, 1e-310])
+def test_straight_motion(omega: float) -> None:
+    """Without rotation, or with less than can grow within the range of numbers, the sleigh moves straight."""
+    orbit = _closed(nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3), [0.0, 7.0], restricted_velocity=(omega, -2.0))
+    assert np.abs(orbit.position[-1] - [-14.0, 0.0]).max() <= 1e-14
+
+
+def test_slow_start_leaves_on_time() -> None:
+    """From omega = 1e-200 beside the repelling line omega grows exponentially, until it is no longer small."""
+    sleigh, rate = nh.ChaplyginSleigh(1.0, 0.75, 0.5), 0.5
+    times = np.linspace(0.0, 800.0, 9)
+    orbit = _closed(sleigh, times, restricted_velocity=(1e-200, -1.0))
+    assert np.abs(np.log(orbit.body_velocity[:, 0]) - np.log(1e-200) - rate * times).max() <= 1e-10
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_top_ends_on_the_attracting_half_line(sign: int) -> None:
+    """A top goes from sqrt(h) c/sqrt(q_c) to its negative, and stays there when cosh overflows."""
+    start = np.array([0.3, 0.8])
+    orbit = _closed(TOP, [0.0, sign * 300.0, sign * 1e5], restricted_velocity=start)
+    c, B = TOP.coupling, TOP.constrained_inertia
+    limit = -sign * np.sqrt(start @ B @ start / (c @ B @ c)) * c @ TOP.constraint_subspace
+    assert np.abs(orbit.body_velocity[1:] - limit).max() <= 1e-14
+
+
+@pytest.mark.parametrize("along", [0.7, -0.7])
+def test_top_at_its_poles_does_not_move(along: float) -> None:
+    """Started exactly on a permanent rotation, the repelling one too, the momentum is constant for ever."""
+    top = nh.SuslovTop([[1.1, 0.0, 0.45], [0.0, 0.7, 0.0], [0.45, 0.0, 0.9]])
+    orbit = _closed(top, [0.0, 50.0, 100.0], restricted_velocity=(along, 0.0))
+    assert np.ptp(orbit.momentum, axis=0).max() == 0
+
+
+@pytest.mark.parametrize("coupling", [0.0, 5e-324, 1e-300])
+def test_balanced_top_keeps_its_velocity(coupling: float) -> None:
+    """For c = 0 the body velocity is constant and the pose an exponential, to rounding also for negligible c."""
+    top = nh.SuslovTop([[1.0, 0.0, coupling], [0.0, 2.0, coupling], [coupling, coupling, 3.0]])
+    orbit = _closed(top, [0.0, 2.0], restricted_velocity=(0.5, -0.2))
+    assert np.abs(orbit.configuration[-1] - top.group.exp(2 * orbit.body_velocity[0])).max() <= 1e-9
+
+
+@settings(max_examples=60)
+@given(sleighs(), velocities)
+def test_closed_form_of_random_sleighs(sleigh: nh.ChaplyginSleigh, velocity: np.ndarray) -> None:
+    """Closed form and numerical flow agree to 1e-8, backwards too, unless omega is too small for the latter."""
+    assume(abs(velocity[0]) > 1e-2)
+    for end in (2.0, -2.0):
+        start = {"restricted_velocity": velocity, "times": np.linspace(0.0, end, 5)}
+        numerical = nh.flow(sleigh, **start, rtol=1e-12, atol=1e-14)
+        closed = nh.flow(sleigh, **start, method="closed_form")
+        assert np.abs(numerical.configuration - closed.configuration).max() <= 1e-8
+        assert np.abs(numerical.heading - closed.heading).max() <= 1e-8
+        assert np.abs(numerical.body_velocity - closed.body_velocity).max() <= 1e-8
+
+
+@settings(max_examples=60)
+@given(tops(), velocities)
+def test_closed_form_of_random_tops(top: nh.SuslovTop, velocity: np.ndarray) -> None:
+    """Closed form and numerical flow of tops agree to 1e-8 over two units of time."""
+    start = {"restricted_velocity": velocity, "times": (0.0, 1.0, 2.0), "rtol": 1e-12, "atol": 1e-14}
+    numerical, closed = nh.flow(top, **start), nh.flow(top, **start, method="closed_form")
+    assert np.abs(numerical.momentum - closed.momentum).max() <= 1e-8
+    assert np.abs(numerical.configuration - closed.configuration).max() <= 1e-8

@@ -1,0 +1,143 @@
+"""Times, directions, starts, precision and refusals of `flow` and `vector_field`."""
+
+import jax
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.continuous import ContinuousFlow, closed_form
+from nonholo.systems import AbstractLLSystem
+
+SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
+TOP = nh.SuslovTop.from_inertia([[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3))
+BOTH = pytest.mark.parametrize("system", [SLEIGH, TOP], ids=["sleigh", "top"])
+METHODS = pytest.mark.parametrize("method", [None, "closed_form"])
+START = {"restricted_velocity": (0.8, -0.5)}
+
+
+@BOTH
+@METHODS
+def test_backward_in_time(system: AbstractLLSystem, method: str | None) -> None:
+    """Forward over 3 and back by decreasing times returns to the start, to 1e-8 at the default tolerances."""
+    there = nh.flow(system, **START, times=(0.0, 1.5, 3.0), method=method)
+    end = {"momentum": there.restricted_momentum[-1], "configuration": there.configuration[-1]}
+    back = nh.flow(system, **end, times=(3.0, 1.5, 0.0), method=method)
+    assert np.abs(back.configuration[::-1] - there.configuration).max() <= 1e-8
+    assert np.abs(back.momentum[::-1] - there.momentum).max() <= 1e-8
+    assert back.time.tolist() == [3.0, 1.5, 0.0]
+
+
+@BOTH
+@METHODS
+def test_only_elapsed_time_matters(system: AbstractLLSystem, method: str | None) -> None:
+    """The start is at the first time: a shift of all times, by a power of two, changes nothing at all."""
+    first, second = (nh.flow(system, **START, times=t + np.array([0.0, 1.0, 2.5]), method=method) for t in (0.0, 64.0))
+    assert np.array_equal(first.configuration, second.configuration)
+    assert np.array_equal(first.momentum, second.momentum)
+
+
+@BOTH
+@METHODS
+def test_single_time(system: AbstractLLSystem, method: str | None) -> None:
+    """One time gives the start alone."""
+    orbit = nh.flow(system, **START, times=[2.0], method=method)
+    assert len(orbit) == 1
+    assert np.abs(orbit.configuration[0] - np.eye(3)).max() <= 1e-15
+    assert orbit.multipliers.shape == (1, 1)
+
+
+@BOTH
+def test_states_do_not_depend_on_the_other_times(system: AbstractLLSystem) -> None:
+    """A state among few and among many times is the same to the tolerance: every time is stepped to."""
+    sparse = nh.flow(system, **START, times=(0.0, 4.0), rtol=1e-13, atol=1e-15)
+    dense = nh.flow(system, **START, times=np.linspace(0.0, 4.0, 1001), rtol=1e-13, atol=1e-15)
+    assert np.abs(sparse.configuration[-1] - dense.configuration[-1]).max() <= 1e-12
+
+
+@BOTH
+def test_equal_starts_are_equal(system: AbstractLLSystem) -> None:
+    """A velocity, its restriction, its momentum and the restricted momentum start the same motion."""
+    orbit = nh.flow(system, **START, times=(0.0, 2.0))
+    for start in ("body_velocity", "momentum"):
+        same = nh.flow(system, **{start: getattr(orbit, start)[0]}, times=(0.0, 2.0))
+        assert np.abs(same.configuration[-1] - orbit.configuration[-1]).max() <= 1e-10
+    same = nh.flow(system, momentum=orbit.restricted_momentum[0], times=(0.0, 2.0))
+    assert np.abs(same.configuration[-1] - orbit.configuration[-1]).max() <= 1e-10
+
+
+@BOTH
+def test_units_of_time_do_not_matter(system: AbstractLLSystem) -> None:
+    """A motion 2^40 times slower, observed 2^40 times longer, takes the same path."""
+    slow = nh.flow(system, restricted_velocity=np.array([0.8, -0.5]) / 2.0**40, times=(0.0, 2.0**41), atol=1e-24)
+    assert np.abs(slow.configuration - nh.flow(system, **START, times=(0.0, 2.0)).configuration).max() <= 1e-8
+
+
+def test_precision_is_local() -> None:
+    """The flow works in 64 bits and leaves JAX's global precision alone."""
+    before = jax.config.read("jax_enable_x64")
+    orbit = nh.flow(SLEIGH, **START, times=(0.0, 1.0))
+    assert orbit.configuration.dtype == np.float64
+    assert jax.config.read("jax_enable_x64") == before
+    assert jax.numpy.zeros(1).dtype == (np.float64 if before else np.float32)
+
+
+def test_an_orbit_of_a_flow_has_no_displacements() -> None:
+    """A flow's orbit says what it is and refuses displacements."""
+    orbit = nh.flow(SLEIGH, **START, times=(0.0, 1.0))
+    assert isinstance(orbit.motion, ContinuousFlow)
+    with pytest.raises(ValueError, match="continuous flow"):
+        _ = orbit.displacement
+
+
+def test_impossible_tolerance_is_an_outcome() -> None:
+    """A solve that cannot meet the tolerances raises with the good states, here the start alone."""
+    with pytest.raises(nh.OutcomeError, match=r"from time 0 to 1 \(rtol 1e-14, atol 1e-300\)") as caught:
+        nh.flow(TOP, restricted_velocity=(1e140, 2e140), times=(0.0, 1.0), rtol=1e-14, atol=1e-300)
+    assert caught.value.outcome == nh.Outcome.not_converged
+    assert len(caught.value.orbit) == 1
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"times": []}, r"`flow\(times=...\)` must hold at least one time"),
+        ({"times": 1.0}, r"`flow\(times=...\)` must have shape \(any,\)"),
+        ({"times": (0.0, 1.0, 1.0)}, r"strictly increasing or strictly decreasing. Got 1.0 after 1.0"),
+        ({"times": (0.0, 2.0, 1.0)}, r"Got 1.0 after 2.0. Sort the times"),
+        ({"times": (0.0, 1.0, 0.0)}, r"Got 0.0 after 1.0"),
+        (
+            {"restricted_velocity": None, "momentum": (1.0, 0.0, 9.0)},
+            r"`flow\(momentum=...\)` must belong to an admissible",
+        ),
+        ({"times": (0.0, np.inf)}, r"`flow\(times=...\)` must be finite"),
+        ({"rtol": 1e-15}, r"`flow\(rtol=...\)` must be at least 1e-14. Got 1e-15"),
+        ({"atol": 0.0}, r"`flow\(atol=...\)` must be positive"),
+        ({"method": "euler"}, r"`flow\(method=...\)` must be one of None, 'closed_form'. Got 'euler'"),
+        (
+            {"momentum": (1.0, 0.0)},
+            r"`flow\(...\)` must be given exactly one of .* Got restricted_velocity and momentum",
+        ),
+        ({"restricted_velocity": None}, r"must be given exactly one of .* Got none"),
+        ({"restricted_velocity": (1.0,)}, r"`flow\(restricted_velocity=...\)` must have shape \(2,\)"),
+        ({"restricted_velocity": None, "body_velocity": (1, 0, 1)}, r"`flow\(body_velocity=...\)` must satisfy"),
+        ({"configuration": 2 * np.eye(3)}, r"`flow\(configuration=...\)` must lie in SE\(2\)"),
+    ],
+)
+def test_refusals(options: dict, message: str) -> None:
+    """A bad argument is refused by name, with the requirement and what was got."""
+    with pytest.raises(ValueError, match=message):
+        nh.flow(SLEIGH, **({"times": (0.0, 1.0)} | START | options))
+
+
+def test_not_a_system() -> None:
+    """What is not a system is refused by both entry points."""
+    with pytest.raises(ValueError, match=r"`flow\(system=...\)` must be a system"):
+        nh.flow(SLEIGH.group, times=(0.0, 1.0), **START)
+    with pytest.raises(ValueError, match=r"`vector_field\(system=...\)` must be a system"):
+        nh.vector_field("sleigh")
+
+
+def test_no_closed_form() -> None:
+    """A system without a closed form is refused with the advice to integrate."""
+    with pytest.raises(ValueError, match=r"must have a closed-form solution. Got object. Leave method out"):
+        closed_form(object(), np.zeros(2), np.zeros(4), np.zeros(1), (1e-10, 1e-12))
