@@ -1,0 +1,90 @@
+"""Reading a store: every chunk must be there and intact; nothing missing is ever read as data."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import zarr
+
+from nonholo._checks import error
+from nonholo._results import Outcome
+from nonholo._types import Float
+from nonholo.discrete import Discretization
+from nonholo.io._attributes import FORMAT, SCHEMA, restore_motion
+from nonholo.orbit import Orbit
+
+_WHERE = "load_orbit(path=...)"
+_AGAIN = "The store is damaged: copy it again from its source, or run it again."
+
+
+def load_orbit(path: str | Path, *, discrete: Discretization | None = None) -> Orbit:
+    """Load an orbit saved by `save_orbit`, bit for bit.
+
+    Args:
+        path: The store.
+        discrete: The discretisation that made the store; needed only if its difference is a callable or its system is
+            one of your own, which a store cannot hold.
+
+    Raises:
+        FileNotFoundError: There is nothing at the path.
+        ValueError: The path is no store of an orbit, has another schema, or is damaged; the message names the array
+            and the chunk.
+
+    Example:
+        >>> orbit = load_orbit("orbit.zarr")  # doctest: +SKIP
+    """
+    root = Path(path)
+    stored = read_attributes(root)
+    try:
+        shapes = json.loads(stored["arrays"])
+        motion, outcome, every = restore_motion(stored, discrete), Outcome[stored["outcome"]], stored["save_every"]
+    except (KeyError, json.JSONDecodeError) as failure:
+        raise error(_WHERE, "hold complete attributes", f"'{path}' without {failure}", _AGAIN) from failure
+    arrays = {name: _read(root, name, tuple(shape)) for name, shape in shapes.items()}
+    compact = {name: arrays.get(name) for name in ("time", "reduced_momentum", "cayley", "pose", "turned")}
+    return Orbit(motion, outcome=outcome, save_every=every, **compact)  # type: ignore[arg-type]
+
+
+def read_attributes(path: str | Path) -> dict[str, Any]:
+    """Return the attributes of a store, after checking that it is one and that its schema is known."""
+    if not Path(path).exists():
+        raise FileNotFoundError(f"`{_WHERE}` must exist. Got '{path}'. Check the path; runs are kept under 'runs/'.")
+    try:
+        stored = dict(zarr.open_group(Path(path), mode="r", use_consolidated=False).attrs)
+    except Exception as failure:
+        remedy = f"Its metadata cannot be read: {failure}"
+        raise error(_WHERE, "be a store of an orbit", f"'{path}'", remedy) from failure
+    if stored.get("format") != FORMAT:
+        raise error(_WHERE, "be a store of an orbit", f"'{path}', made by another program", "Pass a store of nonholo.")
+    if stored.get("schema") != SCHEMA:
+        remedy = f"This version reads schema {SCHEMA}: upgrade nonholo ({stored.get('versions')} wrote it)."
+        raise error(_WHERE, f"have schema {SCHEMA}", f"schema {stored.get('schema')}", remedy)
+    return stored
+
+
+def _read(root: Path, name: str, shape: tuple[int, ...]) -> Float[np.ndarray, "..."]:
+    try:
+        array = zarr.open_array(root / name, mode="r")
+    except Exception as failure:
+        raise error(_WHERE, f"hold the array {name}", f"{type(failure).__name__}: {failure}", _AGAIN) from failure
+    if array.shape != shape or array.dtype != np.float64:
+        got = f"{array.dtype} of shape {array.shape}"
+        raise error(_WHERE, f"hold the array {name} as float64 of shape {shape}", got, _AGAIN)
+    blocks = [_block(root, name, array, index) for index in np.ndindex(array.cdata_shape)]
+    return np.concatenate(blocks) if blocks else np.empty(shape)
+
+
+def _block(root: Path, name: str, array: zarr.Array, index: tuple[int, ...]) -> np.ndarray:
+    """Return one chunk; a missing one would be read as its fill value, NaN, so its file is looked for first."""
+    key = array.metadata.encode_chunk_key(index)
+    requirement = f"hold chunk {key} of the array {name}"
+    if not (root / name / key).is_file():
+        raise error(_WHERE, requirement, "no such chunk", _AGAIN)
+    try:
+        block = np.asarray(array.blocks[index])
+    except Exception as failure:
+        raise error(_WHERE, requirement, f"a corrupt one ({failure})", _AGAIN) from failure
+    if np.isnan(block).any():
+        raise error(_WHERE, requirement + " free of NaN", "NaN", _AGAIN)
+    return block

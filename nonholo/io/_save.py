@@ -1,0 +1,125 @@
+"""Writing a store: all of it or nothing, beside the old one until the new one is complete."""
+
+import json
+import shutil
+import threading
+import uuid
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray
+import zarr
+from zarr.codecs import BloscCodec, Crc32cCodec
+
+from nonholo.io._attributes import FORMAT, attributes_of_text
+from nonholo.io._dataset import orbit_to_dataset
+from nonholo.orbit import Orbit
+
+_ROWS = 100_000  # states in one chunk
+_FILTERS = threading.Lock()  # warning filters belong to the whole process
+
+
+def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scenario: str | None = None) -> None:
+    """Save an orbit as a Zarr store that `load_orbit` reads back bit for bit and `xarray.open_zarr` opens.
+
+    The store appears at `path` only when it is complete; if writing fails, nothing is left behind and an old store
+    stays as it was.
+
+    Args:
+        orbit: What to save.
+        path: A new directory, usually named `*.zarr`.
+        overwrite: Replace an older store of an orbit (nothing else is ever replaced).
+        scenario: Text of the scenario that was run, kept with its SHA-256.
+
+    Raises:
+        FileExistsError: The path exists, and is not to be replaced.
+        OSError: The store cannot be written, for example because the disk is full.
+
+    Example:
+        >>> save_orbit(orbit, "orbit.zarr")  # doctest: +SKIP
+    """
+    target = Path(path).resolve()
+    check_target(target, overwrite=overwrite)
+    part = _sibling(target, "partial")
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        _write(orbit_to_dataset(orbit), {} if scenario is None else attributes_of_text(scenario), part)
+        _put_in_place(part, target, overwrite)
+    except FileExistsError:
+        raise
+    except OSError as failure:
+        reason = f"{failure.strerror}. Nothing at this path was changed. Free space, or choose another path"
+        raise OSError(failure.errno, reason, str(path)) from failure
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+
+
+def check_target(path: str | Path, *, overwrite: bool = False) -> None:
+    """Refuse a path that exists, unless it is a store of an orbit that may be replaced."""
+    if not Path(path).exists():
+        return
+    if not overwrite:
+        raise _exists(path, "Choose another path, or pass overwrite=True (--overwrite) to replace it.")
+    if not _is_store(Path(path)):
+        raise _exists(path, "It is not a store of an orbit, so it is not replaced. Choose another path.")
+
+
+def _exists(path: str | Path, remedy: str) -> FileExistsError:
+    return FileExistsError(f"`save_orbit(path=...)` must be new. Got '{path}', which exists. {remedy}")
+
+
+def _is_store(path: Path) -> bool:
+    try:
+        return json.loads((path / "zarr.json").read_text())["attributes"]["format"] == FORMAT
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+
+
+def _sibling(target: Path, purpose: str) -> Path:
+    return target.with_name(f".{target.name}.{uuid.uuid4().hex[:12]}.{purpose}")
+
+
+def _write(dataset: xarray.Dataset, extra: dict[str, Any], path: Path) -> None:
+    shapes = {str(name): variable.shape for name, variable in dataset.variables.items()}
+    group = zarr.create_group(path, zarr_format=3, attributes={**dataset.attrs, **extra, "arrays": json.dumps(shapes)})
+    for name, variable in dataset.variables.items():
+        _write_array(group, str(name), variable, is_coordinate=name in dataset.coords)
+    with _FILTERS, warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # zarr: consolidated metadata are not in the specification yet
+        zarr.consolidate_metadata(path)
+
+
+def _write_array(group: zarr.Group, name: str, variable: xarray.Variable, *, is_coordinate: bool) -> None:
+    """Write an array one chunk after the other, so that a failure leaves no writer behind."""
+    array = group.create_array(
+        name,
+        shape=variable.shape,
+        dtype="float64",
+        chunks=(max(1, min(_ROWS, len(variable))), *variable.shape[1:]),
+        compressors=(BloscCodec(cname="zstd", clevel=3, shuffle="shuffle"), Crc32cCodec()),
+        fill_value=float("nan"),
+        dimension_names=[str(dimension) for dimension in variable.dims],
+        attributes=variable.attrs | ({} if is_coordinate else {"coordinates": "time"}),
+    )
+    for first in range(0, len(variable), _ROWS):
+        array[first : first + _ROWS] = np.ascontiguousarray(variable.values[first : first + _ROWS])
+
+
+def _put_in_place(part: Path, target: Path, overwrite: bool) -> None:
+    if not (overwrite and target.exists()):
+        try:
+            part.rename(target)
+        except OSError:
+            check_target(target)
+            raise
+        return
+    old = _sibling(target, "old")
+    target.rename(old)
+    try:
+        part.rename(target)
+    except OSError:
+        old.rename(target)
+        raise
+    shutil.rmtree(old, ignore_errors=True)
