@@ -1,0 +1,24 @@
+"""Pictures for papers and slides (matplotlib): phase portraits, tracks, energy errors, overviews, animations.
+
+[fedorov-zenkov-2004], figures suslov, mom_dynamics and chsleigh. Nothing is simulated here.
+"""
+
+from nonholo.plotting._animation import animate
+from nonholo.plotting._blade_track import BladeTrack, blade_track
+from nonholo.plotting._body_axis_track import BodyAxisTrack, body_axis_track
+from nonholo.plotting._energy_error import EnergyError, energy_error
+from nonholo.plotting._overview import overview
+from nonholo.plotting._phase_portrait import PhasePortrait, phase_portrait
+
+__all__ = [
+    "BladeTrack",
+    "BodyAxisTrack",
+    "EnergyError",
+    "PhasePortrait",
+    "animate",
+    "blade_track",
+    "body_axis_track",
+    "energy_error",
+    "overview",
+    "phase_portrait",
+]

@@ -1,0 +1,189 @@
+"""Phase portraits: the momenta along a two-dimensional constraint subspace, on their energy ellipses.
+
+[fedorov-zenkov-2004], figures suslov and mom_dynamics.
+"""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import FancyArrowPatch
+
+from nonholo._checks import array, error
+from nonholo._types import Float
+from nonholo.orbit import Orbit
+from nonholo.plotting import _theme as theme
+from nonholo.plotting._subject import drawable, is_discrete
+from nonholo.plotting._thinning import evenly_in_box
+from nonholo.systems import AbstractLLSystem, ChaplyginSleigh, SuslovTop
+
+_MOST_DOTS = 1500
+_LABELS = {
+    ChaplyginSleigh: (r"angular momentum  $\pi = p_\theta + b\,p_1$", r"momentum along the blade  $p_1$"),
+    SuslovTop: (r"$M_{13}$, along $e_1\wedge e_3$", r"$M_{23}$, along $e_2\wedge e_3$"),
+}
+
+
+@dataclasses.dataclass(frozen=True)
+class PhasePortrait:
+    """What `phase_portrait` drew; None where there was nothing to draw.
+
+    Attributes:
+        axes: The axes.
+        levels: One closed line for each energy.
+        stable: Attracting equilibria, filled.
+        unstable: Repelling equilibria, empty.
+        neutral: Equilibria of a balanced system, which neither attract nor repel.
+        arrows: The direction of motion along the levels.
+        orbit: The orbit, coloured by time: dots if discrete, a line if a flow.
+    """
+
+    axes: Axes
+    levels: tuple[Line2D, ...]
+    stable: PathCollection | None
+    unstable: PathCollection | None
+    neutral: PathCollection | None
+    arrows: tuple[FancyArrowPatch, ...]
+    orbit: PathCollection | LineCollection | None
+
+
+@theme.styled
+def phase_portrait(
+    system: AbstractLLSystem, orbit: Orbit | None = None, axes: Axes | None = None, energies: Any = None
+) -> PhasePortrait:
+    r"""Draw the momenta along the constraint subspace: energy levels, equilibria, direction of motion, an orbit.
+
+    The levels of the reduced constrained energy are the ellipses
+
+    $$ \tfrac12\, r\cdot(\mathbb{I}|_{\mathfrak{d}})^{-1} r = E . $$
+
+    Equilibria are one line through the origin, filled where they attract and empty where they repel; all other
+    motions run along their ellipse from one to the other. In a balanced system every point is an equilibrium. Momenta
+    are those of the canonical body frame: $(p_\theta + b p_1, p_1)$ of a sleigh, $(M_{13}, M_{23})$ of a top whose
+    third body axis is the forbidden one.
+
+    Reference: [fedorov-zenkov-2004], figures suslov and mom_dynamics.
+
+    Args:
+        system: A system with two-dimensional constraint subspace.
+        orbit: An orbit of it.
+        axes: Where to draw; a new figure by default.
+        energies: Energies of the ellipses; by default four, evenly spread in size, one of them through the orbit.
+
+    Raises:
+        ValueError: A constraint subspace of another dimension, an orbit of another kind of system, energies that are
+            not positive.
+
+    Example:
+        >>> top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+        >>> portrait = nh.plot.phase_portrait(top, energies=[0.5, 1.0])
+        >>> len(portrait.levels), len(portrait.stable.get_offsets())
+        (2, 2)
+    """
+    _check(system, orbit)
+    levels = _energies(system, orbit, energies)
+    axes = theme.axes_or_new(axes)
+    half_axes = np.linalg.cholesky(np.asarray(system.canonical.constrained_inertia))
+    sizes = np.sqrt(2 * levels)
+    drawn = tuple(_ellipse(axes, size * half_axes) for size in sizes)
+    stable, unstable, neutral, arrows = _equilibria(axes, system, half_axes, sizes)
+    path = None if orbit is None else _orbit(axes, orbit)
+    _dress(axes, system)
+    return PhasePortrait(axes, drawn, stable, unstable, neutral, arrows, path)
+
+
+def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
+    where = "phase_portrait(system=...)"
+    if not isinstance(system, AbstractLLSystem):
+        raise error(where, "be a system", repr(system), "Pass `orbit.system` first, then the orbit.")
+    if len(system.constraint_subspace) != 2:
+        got = f"dimension {len(system.constraint_subspace)}"
+        raise error(where, "have a two-dimensional constraint subspace", got, "Plot `orbit.restricted_momentum`.")
+    if orbit is not None and type(drawable("phase_portrait(orbit=...)", orbit).system) is not type(system):
+        raise error("phase_portrait(orbit=...)", "be an orbit of the system", repr(orbit), "Pass `orbit.system`.")
+
+
+def _energies(system: AbstractLLSystem, orbit: Orbit | None, energies: Any) -> Float[np.ndarray, "L"]:
+    if energies is not None:
+        where, remedy = "phase_portrait(energies=...)", "Pass a list of positive energies."
+        levels = array(where, energies, (None,), remedy)
+        if not np.all(levels > 0):
+            raise error(where, "be positive", f"{levels.min():g}", remedy)
+        return levels
+    own = 0.0 if orbit is None else float(orbit[:1].energy[0])
+    # at rest, or without an orbit, the ellipse of unit velocities sets the size
+    scale = own if own > 0 else float(np.trace(system.canonical.constrained_inertia)) / 4
+    return scale * (np.arange(1, 5) / 3) ** 2
+
+
+def _ellipse(axes: Axes, half_axes: Float[np.ndarray, "2 2"]) -> Line2D:
+    angle = np.linspace(0.0, 2 * np.pi, 361)
+    x, y = half_axes @ np.array([np.cos(angle), np.sin(angle)])
+    return axes.plot(x, y, color=theme.LEVEL, linewidth=1.1, zorder=1)[0]
+
+
+def _equilibria(
+    axes: Axes, system: AbstractLLSystem, half_axes: Float[np.ndarray, "2 2"], sizes: Float[np.ndarray, "L"]
+) -> tuple[Any, ...]:
+    canonical = system.canonical
+    attracting = canonical.equilibria().attracting
+    if attracting is None:
+        return None, None, _every_point(axes, half_axes, sizes), ()
+    velocity = attracting @ np.linalg.pinv(canonical.constraint_subspace)
+    u = np.linalg.solve(half_axes, canonical.constrained_inertia @ velocity)
+    u /= np.linalg.norm(u)
+    points = sizes[:, None] * (half_axes @ u)
+    reach = 1.12 * points[sizes.argmax()]
+    axes.plot(*np.stack([0 * reach, reach], axis=1), color=theme.STABLE, linewidth=0.9, zorder=2)
+    axes.plot(*np.stack([0 * reach, -reach], axis=1), color=theme.UNSTABLE, linewidth=0.9, dashes=(5, 3), zorder=2)
+    stable = axes.scatter(*points.T, s=46, color=theme.STABLE, zorder=5, label="stable")
+    unstable = axes.scatter(
+        *-points.T, s=46, facecolors="white", edgecolors=theme.UNSTABLE, linewidths=1.5, zorder=5, label="unstable"
+    )
+    arrows = tuple(_arrow(axes, size * half_axes, u, side) for size in sizes for side in (1, -1))
+    return stable, unstable, None, arrows
+
+
+def _every_point(axes: Axes, half_axes: Float[np.ndarray, "2 2"], sizes: Float[np.ndarray, "L"]) -> PathCollection:
+    angle = np.arange(24) * (np.pi / 12)
+    circle = np.array([np.cos(angle), np.sin(angle)])
+    x, y = np.concatenate([size * half_axes @ circle for size in sizes], axis=1)
+    return axes.scatter(x, y, s=16, color=theme.MUTED, linewidths=0, zorder=3, label="equilibria")
+
+
+def _arrow(axes: Axes, half_axes: Float[np.ndarray, "2 2"], u: Float[np.ndarray, "2"], side: int) -> FancyArrowPatch:
+    across = side * np.array([-u[1], u[0]])
+    tail, head = (tuple(half_axes @ (across + lean * u)) for lean in (-0.02, 0.02))
+    arrow = FancyArrowPatch(
+        tail, head, arrowstyle="-|>", mutation_scale=13, shrinkA=0, shrinkB=0, linewidth=0, color=theme.MUTED, zorder=2
+    )
+    axes.add_patch(arrow)
+    return arrow
+
+
+def _orbit(axes: Axes, orbit: Orbit) -> PathCollection | LineCollection:
+    momentum = orbit.reduced_momentum
+    chosen = evenly_in_box(momentum, _MOST_DOTS)
+    colours = {"cmap": theme.TIME, "norm": theme.time_scale(orbit), "zorder": 6}
+    if is_discrete(orbit):
+        x, y = momentum[chosen].T
+        stays = np.ptp(momentum, axis=0).max() <= 1e-6 * np.abs(momentum).max()
+        size = 60 if stays else theme.dot_size(len(orbit))
+        return axes.scatter(x, y, c=orbit.time[chosen], s=size, linewidths=0, label="discrete orbit", **colours)
+    path = LineCollection(theme.pieces(momentum[chosen]), linewidth=2, **colours)
+    path.set(array=orbit.time[chosen[1:]], label="flow")
+    axes.add_collection(path)
+    return path
+
+
+def _dress(axes: Axes, system: AbstractLLSystem) -> None:
+    across, up = _LABELS.get(type(system), ("$r_1$", "$r_2$"))
+    axes.set(xlabel=across, ylabel=up)
+    axes.margins(0.06)
+    if isinstance(system, SuslovTop):
+        axes.set_aspect("equal", adjustable="datalim")
+    axes.set_title("Phase portrait")
+    theme.legend_above(axes)

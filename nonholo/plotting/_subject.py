@@ -1,0 +1,66 @@
+"""What may be drawn, and refusals in words: orbits that are not empty, of the right system, with poses if needed.
+
+Also the few questions that several pictures ask of an orbit. No mechanics.
+"""
+
+from typing import Any, TypeVar
+
+import numpy as np
+
+from nonholo._checks import error
+from nonholo._types import Float
+from nonholo.discrete import Discretization
+from nonholo.orbit import Orbit
+from nonholo.systems import AbstractLLSystem
+
+_System = TypeVar("_System", bound=AbstractLLSystem)
+
+NEAR_EQUILIBRIUM = 0.03  # sine, in the metric of the energy, of the angle to the line of equilibria
+
+
+def drawable(where: str, orbit: Any) -> Orbit:
+    """Return an orbit with at least one state."""
+    if not isinstance(orbit, Orbit):
+        raise error(where, "be an orbit", repr(orbit), "Pass what `simulate` returned.")
+    if len(orbit) == 0:
+        raise error(where, "have a state to draw", "none", "See `orbit.outcome` for why the run did not start.")
+    return orbit
+
+
+def system_of(where: str, orbit: Any, kind: type[_System], remedy: str) -> _System:
+    """Return the system of an orbit that has poses and is of one kind."""
+    drawable(where, orbit)
+    if not isinstance(orbit.system, kind):
+        raise error(where, f"be an orbit of a {kind.__name__}", repr(orbit), remedy)
+    if orbit.pose is None:
+        raise error(where, "have poses", "an orbit without them", "Run with reconstruct=True.")
+    return orbit.system
+
+
+def is_discrete(orbit: Orbit) -> bool:
+    """Tell a discrete orbit from a continuous flow."""
+    return orbit.cayley is not None
+
+
+def time_step(orbit: Orbit) -> float | None:
+    """Return the time step of a discrete orbit."""
+    return float(orbit.motion.time_step) if isinstance(orbit.motion, Discretization) else None
+
+
+def permanent_velocity(orbit: Orbit, state: int) -> Float[np.ndarray, "dim"] | None:
+    r"""Return the constant body velocity that a state is close to, up to its size; None if there is none.
+
+    Close means that the sine of the angle to the line of equilibria is small, in the metric of the kinetic energy.
+    """
+    system = orbit.system
+    velocity = orbit[state : state + 1].body_velocity[0]
+    equilibria, inertia = system.equilibria(), np.asarray(system.inertia_operator)
+    if not velocity @ inertia @ velocity > 0:
+        return None
+    if len(equilibria.subspace) == len(system.constraint_subspace):
+        return velocity
+    line = equilibria.subspace[0]
+    along = (velocity @ inertia @ line) / (line @ inertia @ line)
+    across = velocity - along * line
+    near = across @ inertia @ across <= NEAR_EQUILIBRIUM**2 * (velocity @ inertia @ velocity)
+    return along * line if near else None

@@ -1,0 +1,65 @@
+"""Which states of an orbit are drawn: enough for the eye, whatever the length of the run.
+
+Curves are thinned evenly along the drawn line, so that a short transition in a long run is not lost.
+"""
+
+import dataclasses
+
+import numpy as np
+
+from nonholo._types import Float, Int
+from nonholo.orbit import Orbit
+
+
+def evenly_spread(points: Float[np.ndarray, "K d"], most: int) -> Int[np.ndarray, "L"]:
+    """Return at most `most` + 2 indices, evenly along the polygon through the points, both ends kept.
+
+    Example:
+        >>> evenly_spread(np.array([[0.0], [0.0], [0.0], [1.0], [2.0]]), most=3).tolist()
+        [0, 3, 4]
+    """
+    if len(points) <= most:
+        return np.arange(len(points))
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    travelled = np.concatenate([[0.0], np.cumsum(steps)])
+    picked = np.searchsorted(travelled, np.linspace(0.0, travelled[-1], most))
+    return np.unique(np.concatenate([[0], picked, [len(points) - 1]]))
+
+
+def evenly_in_box(points: Float[np.ndarray, "K d"], most: int) -> Int[np.ndarray, "L"]:
+    """Do the same after scaling each coordinate to its own range, as axes do."""
+    extent = np.ptp(points, axis=0)
+    return evenly_spread(points / np.where(extent > 0, extent, 1.0), most)
+
+
+def states(orbit: Orbit, indices: Int[np.ndarray, "L"]) -> Orbit:
+    """Return the orbit at the chosen states."""
+    names = ("time", "reduced_momentum", "cayley", "pose", "turned")
+    kept = {name: None if (rows := getattr(orbit, name)) is None else rows[indices] for name in names}
+    return dataclasses.replace(orbit, **kept)
+
+
+def transition(orbit: Orbit) -> int:
+    """Return the state about which the momentum changes fastest; 0 if it does not change."""
+    momentum = orbit.reduced_momentum
+    change = np.abs(np.diff(momentum, axis=0)).sum(axis=1)
+    moving = len(change) > 0 and change.max() > 1e-9 * np.abs(momentum).max()
+    return int(change.argmax()) if moving else 0
+
+
+def turn_per_state(orbit: Orbit) -> float:
+    """Return the largest angle, in radians, between saved states: greatest angular speed times distance in time."""
+    if len(orbit) < 2:
+        return 0.0
+    sample = states(orbit, evenly_spread(orbit.reduced_momentum, 1000))
+    speed = orbit.system.group.angle(sample.body_velocity).max()
+    return float(speed * np.abs(np.diff(orbit.time)).max())
+
+
+def window(orbit: Orbit, stride: int, most: int) -> slice:
+    """Return at most `most` states, `stride` apart, about the transition; they start at the first state if they can."""
+    span = stride * most
+    if len(orbit) <= span:
+        return slice(0, len(orbit), stride)
+    first = min(max(0, transition(orbit) - span // 2), len(orbit) - span)
+    return slice(first, first + span, stride)
