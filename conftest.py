@@ -1,9 +1,13 @@
-"""Names that doctests use."""
+"""Names that doctests use, and no deadlines for drawn examples: the first one compiles."""
 
+import hypothesis
 import numpy as np
 import pytest
 
 import nonholo as nh
+
+hypothesis.settings.register_profile("nonholo", deadline=None)
+hypothesis.settings.load_profile("nonholo")
 
 
 @pytest.fixture(autouse=True)

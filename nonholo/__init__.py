@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from nonholo._results import Outcome as Outcome
     from nonholo._results import OutcomeError as OutcomeError
     from nonholo.analysis import invariants as invariants
+    from nonholo.continuous import vector_field as vector_field
     from nonholo.discrete import (
         Discretization as Discretization,
     )
@@ -22,7 +23,10 @@ if TYPE_CHECKING:
     from nonholo.discrete._step import step as step
     from nonholo.groups import SE as SE
     from nonholo.groups import SO as SO
+    from nonholo.io import load_orbit as load_orbit
+    from nonholo.io import save_orbit as save_orbit
     from nonholo.orbit import Orbit as Orbit
+    from nonholo.simulation import flow as flow
     from nonholo.simulation import simulate as simulate
     from nonholo.systems import ChaplyginSleigh as ChaplyginSleigh
     from nonholo.systems import SuslovTop as SuslovTop
@@ -32,6 +36,8 @@ _HOMES = {
     "OutcomeError": "_results",
     "SE": "groups",
     "SO": "groups",
+    "load_orbit": "io",
+    "save_orbit": "io",
     "ChaplyginSleigh": "systems",
     "SuslovTop": "systems",
     "Discretization": "discrete",
@@ -40,8 +46,10 @@ _HOMES = {
     "discretize": "discrete",
     "step": "discrete._step",
     "Orbit": "orbit",
+    "flow": "simulation",
     "invariants": "analysis",
     "simulate": "simulation",
+    "vector_field": "continuous",
 }
 
 __version__ = version("nonholo")

@@ -42,7 +42,7 @@ def test_built_in_scenarios_settle(name: str, figures: Figures) -> None:
     attracting = orbit.system.equilibria().attracting
     along = orbit.body_velocity @ attracting / np.linalg.norm(orbit.body_velocity, axis=1) / np.linalg.norm(attracting)
     assert along[0] < -0.99
-    assert along[-1] > 1 - 1e-9
+    assert along[-1] > 1 - 1e-6
 
 
 def test_table(nonholo: Command) -> None:
@@ -89,6 +89,14 @@ def test_existing_output_is_refused_before_the_run(nonholo: Command) -> None:
     assert len(nh.load_orbit("a.zarr")) == 4
     assert nonholo("simulate", "sleigh", "--no-plot", "-o", "a.zarr", "--steps", 4, "--overwrite").exit_code == 0
     assert len(nh.load_orbit("a.zarr")) == 5
+
+
+def test_a_picture_of_an_older_run_is_told(nonholo: Command) -> None:
+    """After --overwrite --no-plot a warning says that the picture beside the store is that of the run before."""
+    nonholo("simulate", "suslov", "-o", "a.zarr", "--steps", 20)
+    result = nonholo("simulate", "suslov", "-o", "a.zarr", "--steps", 10, "--overwrite", "--no-plot")
+    assert result.exit_code == 0
+    assert "'a.png' shows an older run" in result.stderr
 
 
 def test_a_picture_of_the_user_is_not_overwritten(nonholo: Command) -> None:
@@ -162,7 +170,8 @@ def test_options_reach_the_run(figures: Figures) -> None:
 def test_a_failing_picture_does_not_cost_the_run(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     """If drawing fails there is a warning, and the run is kept and successful."""
 
-    def fail(*_: object, **__: object) -> None:
+    def fail(_: object, path: str, **__: object) -> None:
+        Path(path).write_text("half")
         raise RuntimeError("no ink")
 
     monkeypatch.setattr(plotting, "overview", fail)
@@ -170,6 +179,7 @@ def test_a_failing_picture_does_not_cost_the_run(nonholo: Command, monkeypatch: 
     assert result.exit_code == 0
     assert "no picture: RuntimeError: no ink" in result.stderr
     assert len(nh.load_orbit("runs/suslov-001.zarr")) == 6
+    assert [path.name for path in Path("runs").iterdir()] == ["suslov-001.zarr"]
 
 
 @pytest.mark.parametrize("name", ["suslov", "sleigh"])
@@ -183,12 +193,30 @@ def test_pictures(name: str, nonholo: Command) -> None:
     assert Path("again.pdf").read_bytes().startswith(b"%PDF")
 
 
+def test_animation(nonholo: Command) -> None:
+    """--gif draws an animation beside the store."""
+    result = nonholo("simulate", "sleigh", "--steps", 8, "--gif", "--no-plot")
+    assert result.exit_code == 0
+    assert result.stderr == ""
+    assert Path("runs/sleigh-001.gif").read_bytes().startswith(b"GIF89a")
+
+
+def test_info_and_plot_of_a_flow(nonholo: Command) -> None:
+    """Stores of continuous orbits are shown and drawn like others."""
+    sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
+    nh.save_orbit(nh.flow(sleigh, body_velocity=(0.1, -1, 0), times=np.linspace(0, 9, 40)), "flow.zarr")
+    shown = nonholo("info", "flow.zarr")
+    assert shown.exit_code == 0
+    assert "kind ContinuousFlow" in shown.stdout
+    assert nonholo("plot", "flow.zarr").exit_code == 0
+
+
 def test_info(nonholo: Command) -> None:
     """`info` shows how a store was made and measures its invariants again, as a table and as JSON."""
     nonholo("simulate", "suslov", "--no-plot", "-o", "a.zarr", "--steps", 50)
     table = nonholo("info", "a.zarr")
     assert table.exit_code == 0
-    assert "difference matrix" in table.stdout
+    assert "difference matrix" in " ".join(table.stdout.split())
     told = json.loads(nonholo("info", "a.zarr", "--json").stdout)
     assert told["provenance"]["motion"]["time_step"] == 0.1
     assert told["provenance"]["versions"]["numpy"] == np.__version__
@@ -213,6 +241,7 @@ def test_stores_that_cannot_be_read(nonholo: Command) -> None:
         result = nonholo(command, "a.zarr")
         assert result.exit_code == 1
         assert "chunk c/0/0 of the array cayley" in result.stderr
+    assert "difference matrix" in " ".join(nonholo("info", "a.zarr").stdout.split())
 
 
 def test_systems(nonholo: Command) -> None:
@@ -237,7 +266,7 @@ from nonholo.cli._app import app
 for command in ("", "simulate", "new", "systems", "info", "plot"):
     result = CliRunner().invoke(app, [*command.split(), "--help"])
     assert result.exit_code == 0 and "Usage" in result.stdout, command
-print([name for name in ("jax", "numba", "numpy", "scipy", "xarray", "zarr", "matplotlib", "pydantic") if name in sys.modules])
+print([name for name in ("jax", "numba", "numpy", "scipy", "xarray", "zarr", "matplotlib") if name in sys.modules])
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)  # noqa: S603
     assert done.stdout.strip() == "[]"
@@ -258,10 +287,8 @@ print("jax" in sys.modules)
 
 
 @pytest.mark.parametrize("set_by_user", [True, False])
-def test_caches_of_a_read_only_installation(
-    set_by_user: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Where the package folder cannot be written numba keeps its code in the user's cache; a user's own choice stays."""
+def test_caches_of_a_read_only_installation(set_by_user: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the package folder cannot be written numba keeps its code in the user's cache; a user's choice stays."""
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     if set_by_user:
         monkeypatch.setenv("NUMBA_CACHE_DIR", "/mine")
@@ -279,3 +306,12 @@ def test_no_cache_folder_at_all(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_caches, "_can_write", lambda _: False)
     _caches.use_cache_folders()
     assert Path(os.environ["NUMBA_CACHE_DIR"]).is_dir()
+
+
+@pytest.mark.parametrize("steps", [10**13, 10**30])
+def test_more_states_than_memory(steps: int, nonholo: Command) -> None:
+    """A run that could never be held in memory is refused in words."""
+    result = nonholo("simulate", "sleigh", "--no-plot", "--steps", steps)
+    assert result.exit_code == 2
+    assert result.exception is None or isinstance(result.exception, SystemExit)
+    assert "save_every" in result.stderr or "less than or equal" in result.stderr

@@ -1,0 +1,49 @@
+"""The command `nonholo` itself: its help, its version, its subcommands."""
+
+from typing import Annotated
+
+import typer
+
+from nonholo import __version__
+from nonholo.cli._info import info
+from nonholo.cli._new import new
+from nonholo.cli._plot import plot
+from nonholo.cli._simulate import simulate
+from nonholo.cli._systems import systems
+
+app = typer.Typer(
+    name="nonholo",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+for _command in (simulate, new, systems, info, plot):
+    app.command()(_command)
+
+
+def main() -> None:
+    """Run the command line."""
+    app()
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"nonholo {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def describe(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    """Nonholonomic mechanics on Lie groups: simulate tops and sleighs, keep the runs, look at them.
+
+    nonholo simulate suslov             run a built-in scenario
+    nonholo new sleigh > my.toml        write a commented scenario to edit
+    nonholo simulate my.toml            run it; the result is kept under runs/
+    nonholo info runs/my-001.zarr       what was run, and how exact it is
+    """

@@ -1,0 +1,70 @@
+"""What `nonholo simulate` does, once the compilers know where to keep their code."""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from nonholo.cli._errors import FAILED, USAGE, leave, scenario_errors, store_errors
+from nonholo.cli._pictures import beside, draw, warn_of_older
+from nonholo.cli._report import as_json, duration, expected_energy, figures, show
+from nonholo.cli._run import Ran, check_output, keep, run
+from nonholo.cli._scenario_file import Loaded, Setting, load_scenario, parse_setting
+from nonholo.orbit import Orbit
+
+
+def simulate_and_keep(
+    name: str,
+    chosen: dict[str, tuple[str, Any]],
+    settings: list[str],
+    output: Path | None,
+    *,
+    json: bool,
+    overwrite: bool,
+    quiet: bool,
+) -> None:
+    """Load, run, save, draw, report; options of the command line come before the settings of `--set`."""
+    with scenario_errors():
+        given = [Setting(f"{opt} {value}", key, value) for key, (opt, value) in chosen.items() if value is not None]
+        loaded = load_scenario(name, given + [parse_setting(text) for text in settings])
+    with store_errors(USAGE):
+        check_output(output, overwrite=overwrite)
+    with scenario_errors():
+        ran = _run(loaded, progress=sys.stdout.isatty() and not (json or quiet))
+    if ran.orbit is None:
+        leave(f"Nothing to keep. {ran.stopped}", FAILED)
+    with store_errors(FAILED):
+        store = keep(ran.orbit, loaded, output, overwrite=overwrite)
+    wanted = loaded.scenario.output
+    drawn = draw(ran.orbit, beside(store, "png") if wanted.plot else None, beside(store, "gif") if wanted.gif else None)
+    warn_of_older(store, drawn)
+    _report(loaded, ran, ran.orbit, {"store": str(store), **drawn}, json=json, quiet=quiet)
+    if ran.stopped:
+        leave(f"Stopped early; the good steps are kept. {ran.stopped}", FAILED)
+
+
+def _run(loaded: Loaded, *, progress: bool) -> Ran:
+    try:
+        return run(loaded, progress=progress)
+    except MemoryError:
+        leave("So many states do not fit in memory. Keep fewer of them: raise run.save_every.", USAGE)
+
+
+def _report(loaded: Loaded, ran: Ran, orbit: Orbit, paths: dict[str, str | None], *, json: bool, quiet: bool) -> None:
+    if quiet and not json:
+        typer.echo(paths["store"])
+        return
+    measured = figures(orbit)
+    each = ran.seconds / max(1, measured["steps"])
+    if json:
+        times = {"seconds": ran.seconds, "seconds_per_step": each}
+        typer.echo(as_json({"scenario": loaded.name, **paths, **times, **measured, "stopped": ran.stopped}))
+        return
+    length = f"{measured['steps']} of {loaded.scenario.run.steps}, time step {loaded.scenario.run.time_step:g}"
+    title = loaded.scenario.title or loaded.name
+    heading = {"title": title, "steps": length, "time per step": f"{duration(each)}, once compiled"}
+    show(measured, heading, energy=expected_energy(loaded.scenario.run.difference))
+    for kind, path in paths.items():
+        if path:
+            typer.echo(f"{kind:<9} {path}")

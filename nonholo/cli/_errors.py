@@ -1,0 +1,43 @@
+"""Errors as users of the command line see them: a sentence on standard error and an exit code, never a traceback."""
+
+import contextlib
+from collections.abc import Iterator
+from typing import NoReturn
+
+import typer
+
+FAILED = 1
+USAGE = 2
+
+
+def leave(message: str, code: int) -> NoReturn:
+    """Print a message on standard error and end the command."""
+    typer.secho(message, fg=typer.colors.RED, err=True)
+    raise typer.Exit(code)
+
+
+def warn(message: str) -> None:
+    """Print a warning on standard error."""
+    typer.secho(f"Warning: {message}", fg=typer.colors.YELLOW, err=True)
+
+
+@contextlib.contextmanager
+def scenario_errors() -> Iterator[None]:
+    """Report everything that is wrong with a scenario."""
+    from nonholo.cli._problems import ScenarioError
+
+    try:
+        yield
+    except ScenarioError as failure:
+        count = len(failure.problems)
+        heading = "The scenario cannot be run" + (f", {count} problems:" if count > 1 else ":")
+        leave("\n".join([heading, *(f"  {problem}" for problem in failure.problems)]), USAGE)
+
+
+@contextlib.contextmanager
+def store_errors(code: int) -> Iterator[None]:
+    """Report a store that cannot be read or written."""
+    try:
+        yield
+    except (OSError, ValueError) as failure:
+        leave(str(failure), code)

@@ -1,0 +1,39 @@
+"""`nonholo info`: what a store holds, how it was made, how exact it is."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def info(
+    store: Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate or save_orbit.")],
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    scenario: Annotated[bool, typer.Option("--scenario", help="Print the scenario that was run, as TOML.")] = False,
+) -> None:
+    """Show the provenance of a run and measure again what it should keep.
+
+    nonholo info runs/suslov-001.zarr
+    nonholo info runs/suslov-001.zarr --scenario > again.toml
+    """
+    from nonholo.cli._caches import use_cache_folders
+
+    use_cache_folders()
+    from nonholo.cli._errors import FAILED, USAGE, leave, store_errors
+    from nonholo.cli._provenance import show_provenance
+    from nonholo.io import load_orbit, read_attributes
+
+    with store_errors(USAGE):
+        stored = read_attributes(store)
+    if scenario:
+        if "scenario" not in stored:
+            leave("This store was not made from a scenario.", FAILED)
+        typer.echo(stored["scenario"], nl=False)
+        return
+    try:
+        orbit, failure = load_orbit(store), None
+    except (OSError, ValueError) as caught:
+        orbit, failure = None, caught
+    show_provenance(store, stored, orbit, json=json)
+    if failure:
+        leave(f"Its orbit cannot be loaded. {failure}", FAILED)

@@ -1,0 +1,86 @@
+"""Pictures of a run, drawn beside its store; a picture that fails never costs the run."""
+
+import contextlib
+import os
+import uuid
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nonholo.cli._errors import warn
+
+if TYPE_CHECKING:
+    from nonholo.orbit import Orbit
+
+_MOST_TIMES = 20_000  # of the flow that is drawn along
+
+
+def beside(store: Path, suffix: str) -> Path:
+    """Return the path of a picture that belongs to a store."""
+    return store.with_name(f"{store.name.removesuffix('.zarr')}.{suffix}")
+
+
+def draw(orbit: "Orbit", picture: Path | None, animation: Path | None) -> dict[str, str | None]:
+    """Draw what is asked for; return the paths of what was drawn, None for the rest."""
+    drawn: dict[str, str | None] = {"picture": None, "animation": None}
+    if picture is None and animation is None:
+        return drawn
+    os.environ.setdefault("MPLBACKEND", "agg")
+    try:
+        from nonholo import plotting
+
+        if picture is not None:
+            with _complete(picture) as part:
+                plotting.overview(orbit, part, flow=_flow(orbit))
+            drawn["picture"] = str(picture)
+        if animation is not None:
+            with _complete(animation) as part, _progress() as progress:
+                plotting.animate(orbit, part, progress=progress)
+            drawn["animation"] = str(animation)
+    except Exception as failure:
+        warn(f"no picture: {type(failure).__name__}: {failure}")
+    return drawn
+
+
+def warn_of_older(store: Path, drawn: dict[str, str | None]) -> None:
+    """Say so if a picture beside a store that was replaced still shows the run before."""
+    for path in (beside(store, "png"), beside(store, "gif")):
+        if path.exists() and str(path) not in drawn.values():
+            warn(f"'{path}' shows an older run. Remove it, or draw it again with: nonholo plot {store}")
+
+
+@contextlib.contextmanager
+def _complete(path: Path) -> Iterator[str]:
+    """Give a path to draw to, which takes the name of the picture only when it is complete."""
+    part = path.with_name(f".{uuid.uuid4().hex[:12]}.{path.name}")
+    try:
+        yield str(part)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def _progress() -> Iterator[Callable[[int, int], None]]:
+    from rich.console import Console
+    from rich.progress import Progress
+
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("frames")
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+def _flow(orbit: "Orbit") -> "Orbit | None":
+    """Return the continuous motion from the same start where a closed form makes it cheap."""
+    import nonholo
+
+    if orbit.cayley is None or orbit.pose is None or not isinstance(orbit.system, nonholo.ChaplyginSleigh):
+        return None
+    times = orbit.time[:: max(1, len(orbit) // _MOST_TIMES)]
+    start = {"momentum": orbit.restricted_momentum[0], "configuration": orbit.configuration[0]}
+    try:
+        return nonholo.flow(orbit.system, times=times, method="closed_form", **start)
+    except Exception as failure:
+        warn(f"the continuous motion is not drawn along: {type(failure).__name__}: {failure}")
+        return None

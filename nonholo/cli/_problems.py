@@ -1,0 +1,90 @@
+"""What is wrong with a scenario, in words: every problem with its file or option and its key path."""
+
+import difflib
+import re
+import reprlib
+from typing import Any, NamedTuple
+
+from pydantic import ValidationError
+
+from nonholo.cli._scenario import BODIES, Output, Run, Scenario, Start
+
+_SECTIONS = {"start": Start, "run": Run, "output": Output}
+_CORE = re.compile(r"`[\w.]+\((\w+)=\.\.\.\)` (.*)", re.DOTALL)
+_TEXTS = {
+    "missing": "is missing",
+    "union_tag_not_found": "needs kind = " + " or ".join(f'"{kind}"' for kind in BODIES),
+    "union_tag_invalid": "must have kind " + " or ".join(f'"{kind}"' for kind in BODIES),
+    "model_type": "must be a table",
+    "model_attributes_type": "must be a table",
+}
+
+
+class Problem(NamedTuple):
+    """One thing wrong, and where it was said: a file or an option, and a key path."""
+
+    source: str
+    key: str
+    text: str
+
+    def __str__(self) -> str:
+        return ": ".join(part for part in self if part)
+
+
+class ScenarioError(Exception):
+    """A scenario that cannot be run, with everything that is wrong with it."""
+
+    def __init__(self, problems: list[Problem]) -> None:
+        super().__init__("\n".join(map(str, problems)))
+        self.problems = problems
+
+
+def problems_of(failure: ValidationError, source: str, options: dict[str, str]) -> list[Problem]:
+    """Return the problems a validation found; `options` says which key paths came from the command line."""
+    found = [_problem(dict(entry)) for entry in failure.errors(include_url=False)]
+    return [Problem(_source(key, source, options), key, text) for key, text in found]
+
+
+def problem_of_value(failure: ValueError, section: str, source: str, options: dict[str, str]) -> Problem:
+    """Return the problem behind an error of the library about an argument that a section gave."""
+    key, text = _split_core(section, str(failure))
+    return Problem(_source(key, source, options), key, text)
+
+
+def suggestion(name: str, known: list[str]) -> str:
+    """Return the known name that was probably meant, or all of them."""
+    close = difflib.get_close_matches(name, known, n=1)
+    return f"Did you mean {close[0]}?" if close else f"Known: {', '.join(known)}."
+
+
+def _problem(entry: dict[str, Any]) -> tuple[str, str]:
+    location = [part for i, part in enumerate(entry["loc"]) if not (i == 1 and part in BODIES)]
+    key = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in location).lstrip(".")
+    if entry["type"] == "value_error":
+        return _split_core(key, str(entry["ctx"]["error"]))
+    if entry["type"] == "extra_forbidden":
+        return key, f"is not a known key. {suggestion(str(location[-1]), _known(entry['loc']))}"
+    text = _TEXTS.get(entry["type"]) or entry["msg"].replace("Input should", "must", 1)
+    if entry["type"] in ("missing", "union_tag_not_found"):
+        return key, text
+    got = entry["ctx"]["tag"] if entry["type"] == "union_tag_invalid" else entry["input"]
+    return key, f"{text}. Got {reprlib.repr(got)}"
+
+
+def _known(location: tuple[int | str, ...]) -> list[str]:
+    if len(location) == 1:
+        return list(Scenario.model_fields)
+    section = BODIES[str(location[1])] if location[0] == "body" else _SECTIONS[str(location[0])]
+    return list(section.model_fields)
+
+
+def _split_core(section: str, message: str) -> tuple[str, str]:
+    named = _CORE.fullmatch(message)
+    return (f"{section}.{named[1]}", named[2]) if named else (section, message)
+
+
+def _source(key: str, source: str, options: dict[str, str]) -> str:
+    for path, option in options.items():
+        if key == path or key.startswith((f"{path}.", f"{path}[")) or path.startswith(f"{key}."):
+            return option
+    return source

@@ -1,0 +1,111 @@
+"""The figures of a run: measured, as plain numbers for `--json`, and as a table with what to expect of them."""
+
+import dataclasses
+import json
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from rich import box
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from nonholo.analysis import invariants
+from nonholo.orbit import Orbit
+
+ROUNDING = "rounding"
+_LABELS = {"mass_tensor": "mass tensor J", "inertia_tensor": "inertia tensor tr(J)-J"}
+
+
+def figures(orbit: Orbit) -> dict[str, Any]:
+    """Return the invariants of an orbit and its body as plain numbers; None where a figure is not defined."""
+    measured = dataclasses.asdict(invariants(orbit))
+    plain = {name: _plain(value) for name, value in measured.items()}
+    return {**plain, "outcome": orbit.outcome.name, "message": orbit.outcome.message, "body": _body(orbit)}
+
+
+def show(figures: dict[str, Any], heading: dict[str, str], *, energy: str) -> None:
+    """Print what was run, the table of invariants and the body.
+
+    `energy` says how well this motion should conserve it.
+    """
+    console = Console(highlight=False)
+    console.print(heading.pop("title"), style="bold", markup=False)
+    console.print(_table(("", ""), heading.items()))
+    if figures:
+        body = [(_label(name), _shown(value)) for name, value in figures["body"].items()]
+        console.print(_table(("", "measured", "expected"), _rows(figures, energy)), _table(("", ""), body))
+
+
+def _table(columns: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, show_header=any(columns))
+    for number, column in enumerate(columns):
+        table.add_column(column, min_width=24 if number == 0 else None, overflow="fold")
+    for row in rows:
+        table.add_row(*(escape(cell) for cell in row))
+    return table
+
+
+def expected_energy(difference: str | None) -> str:
+    """Say how well energy is conserved with a difference; None for a continuous flow."""
+    if difference == "matrix":
+        return ROUNDING
+    return "tolerance of the solver" if difference is None else "not exact with this difference"
+
+
+def as_json(document: dict[str, Any]) -> str:
+    """Return one JSON object."""
+    return json.dumps(document, indent=2, allow_nan=False)
+
+
+def duration(seconds: float) -> str:
+    """Write a duration in a unit that suits it.
+
+    Example:
+        >>> duration(4.2e-08)
+        '42 ns'
+    """
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
+        if seconds >= size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds / 1e-9:.3g} ns"
+
+
+def _rows(figures: dict[str, Any], energy: str) -> list[tuple[str, str, str]]:
+    """Return label, value and expectation of the figures that are defined for the orbit."""
+    expected = {
+        "energy_drift": ("relative energy drift", "", energy),
+        "constraint_residual": ("constraint residual", "", ROUNDING),
+        "group_residual": ("group residual", "", ROUNDING),
+        "reversal_defect": ("one-step reversal defect", "", ROUNDING),
+        "largest_step_angle": ("largest step angle", " degrees", "well below 90 degrees"),
+    }
+    rows = [(figures[name], *entry) for name, entry in expected.items()]
+    told = [(label, f"{value:.3g}{unit}", note) for value, label, unit, note in rows if value is not None]
+    return [*told, ("outcome", figures["outcome"], "successful")]
+
+
+def _label(name: str) -> str:
+    return _LABELS.get(name, name.replace("_", " "))
+
+
+def _body(orbit: Orbit) -> dict[str, Any]:
+    system: Any = orbit.system
+    parameters = {field.name: np.asarray(getattr(system, field.name)).tolist() for field in dataclasses.fields(system)}
+    name = "inertia_tensor" if "mass_tensor" in parameters else "inertia_operator"
+    return {"system": type(system).__name__, **parameters, name: np.asarray(system.inertia_operator).tolist()}
+
+
+def _plain(value: Any) -> Any:
+    return None if value is None or (isinstance(value, float) and not math.isfinite(value)) else value
+
+
+def _shown(value: Any) -> str:
+    """Write a name, a number, or the rows of an array in columns."""
+    if isinstance(value, str):
+        return value
+    cells = [[f"{number:.6g}" for number in row] for row in np.atleast_2d(value)]
+    width = max(len(cell) for row in cells for cell in row)
+    return "\n".join("  ".join(cell.rjust(width) for cell in row) for row in cells)

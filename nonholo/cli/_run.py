@@ -1,0 +1,80 @@
+"""Running a scenario and keeping what it gave: the orbit, its store, its pictures."""
+
+import itertools
+import os
+import re
+import time
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+from nonholo._results import OutcomeError
+from nonholo.cli._pictures import beside
+from nonholo.cli._problems import ScenarioError, problem_of_value
+from nonholo.cli._scenario_file import Loaded, effective_text
+from nonholo.io import check_target, save_orbit
+from nonholo.orbit import Orbit
+from nonholo.simulation import simulate
+
+RUNS = Path("runs")
+
+
+class Ran(NamedTuple):
+    """What a run gave: its good steps if there are any, how long it took, and why it stopped early, if it did."""
+
+    orbit: Orbit | None
+    seconds: float
+    stopped: str | None
+
+
+def run(loaded: Loaded, *, progress: bool) -> Ran:
+    """Run a scenario; compilation is over before the clock starts."""
+    scenario, discrete = loaded.scenario, loaded.scenario.discretization()
+    try:
+        simulate(discrete, steps=1, throw=False, **scenario.options())
+    except OutcomeError:
+        pass  # a start off the principal branch: the run proper says so
+    except ValueError as failure:
+        raise ScenarioError([problem_of_value(failure, "start", loaded.source, loaded.options)]) from None
+    begun = time.perf_counter()
+    try:
+        orbit = simulate(discrete, steps=scenario.run.steps, progress=progress, **scenario.options())
+    except OutcomeError as failure:
+        kept = failure.orbit if isinstance(failure.orbit, Orbit) and len(failure.orbit) else None
+        return Ran(kept, time.perf_counter() - begun, str(failure))
+    return Ran(orbit, time.perf_counter() - begun, None)
+
+
+def check_output(store: Path | None, *, overwrite: bool) -> None:
+    """Refuse, before any work is done, a place where the results cannot go."""
+    folder = RUNS if store is None else store.parent
+    folder.mkdir(parents=True, exist_ok=True)
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise PermissionError(f"The results cannot be kept in '{folder}': not writable. Choose another place with -o.")
+    if store is None:
+        return
+    check_target(store, overwrite=overwrite)
+    for picture in (beside(store, "png"), beside(store, "gif")):
+        if picture.exists() and not overwrite:
+            raise FileExistsError(f"A picture '{picture}' exists. Choose another name, or pass --overwrite.")
+
+
+def keep(orbit: Orbit, loaded: Loaded, store: Path | None, *, overwrite: bool) -> Path:
+    """Save a run at the path given or under the next free number; return where."""
+    text = effective_text(loaded.scenario)
+    if store is not None:
+        save_orbit(orbit, store, overwrite=overwrite, scenario=text)
+        return store
+    for path in _next_names(loaded.name):
+        try:
+            save_orbit(orbit, path, scenario=text)
+        except FileExistsError:  # another run was faster
+            continue
+        return path
+    raise AssertionError("the numbers do not end")
+
+
+def _next_names(name: str) -> Iterable[Path]:
+    pattern = re.compile(re.escape(name) + r"-(\d+)\.\w+")
+    taken = [int(match[1]) for path in RUNS.iterdir() if (match := pattern.fullmatch(path.name))]
+    return (RUNS / f"{name}-{number:03d}.zarr" for number in itertools.count(max(taken, default=0) + 1))

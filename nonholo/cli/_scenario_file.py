@@ -1,0 +1,110 @@
+"""Reading a scenario: a file or a built-in name, changed by options, checked as a whole."""
+
+import json
+import tomllib
+from importlib import resources
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from pydantic import ValidationError
+
+from nonholo.cli._problems import Problem, ScenarioError, problems_of, suggestion
+from nonholo.cli._scenario import Scenario
+
+
+class Setting(NamedTuple):
+    """A value given on the command line: the option as it is shown, the key path, the value."""
+
+    option: str
+    key: str
+    value: Any
+
+
+class Loaded(NamedTuple):
+    """A checked scenario, its short name, where it came from, and which key paths the command line set."""
+
+    scenario: Scenario
+    name: str
+    source: str
+    options: dict[str, str]
+
+
+def load_scenario(name: str, settings: list[Setting]) -> Loaded:
+    """Return the scenario of a file or a built-in name with settings applied, or raise with all its problems."""
+    source, text = _text_of(name)
+    document = _parsed(source, text)
+    for setting in settings:
+        _assign(document, setting)
+    options = {setting.key: setting.option for setting in settings}
+    try:
+        return Loaded(Scenario.model_validate(document), Path(name).stem, source, options)
+    except ValidationError as failure:
+        raise ScenarioError(problems_of(failure, source, options)) from None
+
+
+def parse_setting(text: str) -> Setting:
+    """Read KEY=VALUE with a dotted key and a TOML value.
+
+    Example:
+        >>> parse_setting("body.a=0.3").value
+        0.3
+    """
+    option = f"--set {text}"
+    key, equals, value = text.partition("=")
+    key = key.strip()
+    if not equals or not all(key.split(".")):
+        raise ScenarioError([Problem(option, "", "must be KEY=VALUE, for example --set body.a=0.3")])
+    try:
+        parsed = tomllib.loads(f"value = {value}")
+    except tomllib.TOMLDecodeError:
+        parsed = {}
+    if set(parsed) != {"value"}:
+        remedy = f"a number, true, [1, 2] or a quoted string: --set '{key}=\"{value}\"'"
+        raise ScenarioError([Problem(option, "", f"must have a TOML value: {remedy}")])
+    return Setting(option, key, parsed["value"])
+
+
+def built_in() -> dict[str, str]:
+    """Return the texts of the scenarios that come with the package, by name."""
+    folder = resources.files("nonholo.cli") / "scenarios"
+    files = sorted((f for f in folder.iterdir() if f.name.endswith(".toml")), key=lambda f: f.name)
+    return {file.name.removesuffix(".toml"): file.read_text("utf-8") for file in files}
+
+
+def effective_text(scenario: Scenario) -> str:
+    """Return a scenario as TOML with every value that was in force; running it again repeats the run."""
+    document = scenario.model_dump(exclude_none=True)
+    tables = {name: value for name, value in document.items() if isinstance(value, dict)}
+    lines = [f"title = {json.dumps(document['title'], ensure_ascii=False)}"]
+    for name, table in tables.items():
+        lines += ["", f"[{name}]", *(f"{key} = {json.dumps(value)}" for key, value in table.items())]
+    return "\n".join(lines) + "\n"
+
+
+def _text_of(name: str) -> tuple[str, str]:
+    own = built_in()
+    if name in own:
+        return f"{name} (built in)", own[name]
+    try:
+        return name, Path(name).read_text("utf-8-sig")
+    except FileNotFoundError:
+        text = f"there is no such file, and no built-in scenario of this name. {suggestion(name, list(own))}"
+    except (OSError, UnicodeDecodeError) as failure:
+        text = f"cannot be read as a text file: {failure}"
+    raise ScenarioError([Problem(name, "", text)])
+
+
+def _parsed(source: str, text: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as failure:
+        raise ScenarioError([Problem(source, "", f"is not valid TOML: {failure}")]) from None
+
+
+def _assign(document: dict[str, Any], setting: Setting) -> None:
+    *tables, last = setting.key.split(".")
+    for table in tables:
+        document = document.setdefault(table, {})
+        if not isinstance(document, dict):
+            raise ScenarioError([Problem(setting.option, setting.key, f"{table} is a value, not a table")])
+    document[last] = setting.value

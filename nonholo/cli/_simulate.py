@@ -1,0 +1,54 @@
+"""`nonholo simulate`: run a scenario and keep the result."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+Scenario = Annotated[
+    str, typer.Argument(metavar="SCENARIO", help="A TOML file, or a built-in scenario: suslov, sleigh.")
+]
+Store = Annotated[Path | None, typer.Option("-o", "--output", metavar="STORE", help="Where to keep the run.")]
+Steps = Annotated[int | None, typer.Option(metavar="N", help="Instead of run.steps.")]
+TimeStep = Annotated[float | None, typer.Option(metavar="H", help="Instead of run.time_step.")]
+Settings = Annotated[
+    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any value, in TOML; repeatable.")
+]
+Plot = Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a picture beside the store.")]
+Gif = Annotated[bool | None, typer.Option("--gif/--no-gif", help="Draw an animation beside the store.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of the table.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace an older run at STORE.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print only the path of the store.")]
+
+
+def simulate(
+    scenario: Scenario,
+    output: Store = None,
+    steps: Steps = None,
+    time_step: TimeStep = None,
+    settings: Settings = None,
+    plot: Plot = None,
+    gif: Gif = None,
+    json: Json = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run a scenario, keep the orbit and a picture, print how exact it was.
+
+    Without -o each run gets a new store under runs/: nothing is overwritten.
+    A run that cannot go on keeps its good steps, says why, exits with code 1.
+
+    nonholo simulate suslov
+    nonholo simulate sleigh --steps 1000 --time-step 0.05 --gif
+    nonholo simulate my.toml --set body.a=0.3 --set 'run.difference="logarithmic"'
+    nonholo simulate my.toml --set 'start={momentum=[0.1, 1.0]}'
+    nonholo simulate my.toml -o study/first.zarr --json
+    """
+    from nonholo.cli._caches import use_cache_folders
+
+    use_cache_folders()
+    from nonholo.cli._command import simulate_and_keep
+
+    chosen = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}
+    chosen |= {"output.plot": ("--plot", plot), "output.gif": ("--gif", gif)}
+    simulate_and_keep(scenario, chosen, settings or [], output, json=json, overwrite=overwrite, quiet=quiet)
