@@ -6,6 +6,8 @@ import pytest
 
 import nonholo as nh
 
+collect_ignore_glob = ["tests/golden/*"]  # programs that write references, not tests
+
 hypothesis.settings.register_profile("nonholo", deadline=None)
 hypothesis.settings.load_profile("nonholo")
 

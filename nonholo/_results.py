@@ -43,8 +43,8 @@ _MESSAGES = {
         "or the path from momentum zero to it runs through a singular point. Try a smaller time_step."
     ),
     Outcome.not_converged: (
-        "The iteration for the next displacement did not converge, though no fold was met. "
-        "Try a smaller time_step, and check that the system is well scaled."
+        "The iteration for the next state did not converge, though no fold was met. "
+        "Try smaller steps or looser tolerances, and check that the system is well scaled."
     ),
     Outcome.off_momentum_locus: (
         "The momentum is not the discrete momentum of any displacement on the principal branch. "

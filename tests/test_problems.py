@@ -11,6 +11,11 @@ from problems import PROBLEMS, Problem
 import nonholo as nh
 
 
+def _output(code: str) -> str:
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)  # noqa: S603
+    return done.stdout.strip()
+
+
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: p.name)
 def test_tags_are_true(problem: Problem) -> None:
     """Balanced problems have no coupling, flat ones a singular mass tensor, irregular ones D <= 2 |c|^2."""
@@ -26,17 +31,13 @@ def test_tags_are_true(problem: Problem) -> None:
 def test_importing_loads_nothing_heavy() -> None:
     """`import nonholo` loads neither JAX nor numba nor NumPy; the numba path does not load JAX."""
     code = "import sys, nonholo; print(sorted({'jax', 'numba', 'numpy'} & set(sys.modules)))"
-    assert (
-        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip() == "[]"
-    )
+    assert _output(code) == "[]"
     code = (
         "import sys, nonholo as nh; d = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1);"
         "o = nh.simulate(d, body_velocity=(1, 0, 0), steps=10); o.momentum, o.multipliers, nh.invariants(o);"
         "print(sorted({'jax', 'diffrax', 'matplotlib'} & set(sys.modules)))"
     )
-    assert (
-        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip() == "[]"
-    )
+    assert _output(code) == "[]"
 
 
 def test_no_module_shadows_a_public_name() -> None:

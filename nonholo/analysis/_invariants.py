@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 
+from nonholo._checks import error
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.discrete._structured import reversal_defects
@@ -40,12 +41,17 @@ class Invariants:
 def invariants(orbit: Orbit) -> Invariants:
     """Measure what an orbit should keep.
 
+    Raises:
+        ValueError: The orbit has no states.
+
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
         >>> orbit = nh.simulate(sleigh, body_velocity=(1, 0, 0), steps=100)
         >>> invariants(orbit).energy_drift < 1e-14
         True
     """
+    if len(orbit) == 0:
+        raise error("invariants(orbit=...)", "have at least one state", str(orbit), "Its outcome says why it has none.")
     sample = orbit[:: max(1, len(orbit) // _SAMPLED)]
     discrete = sample.cayley is not None
     moved = orbit.system.group.log(sample.displacement) if discrete else sample.body_velocity
@@ -63,8 +69,10 @@ def invariants(orbit: Orbit) -> Invariants:
 
 
 def _group_residual(orbit: Orbit) -> float:
-    R = orbit.system.group.rotation(orbit.configuration)
-    return float(np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(R.shape[-1])).max())
+    group, pose = orbit.system.group, orbit.pose
+    R = group.rotation(orbit.configuration)
+    decoded = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(R.shape[-1])).max()
+    return float(max(decoded, group.pose_residual(pose).max()))
 
 
 def _reversal_defect(orbit: Orbit) -> float | None:
@@ -73,4 +81,4 @@ def _reversal_defect(orbit: Orbit) -> float | None:
         return None
     moving = np.abs(orbit.cayley).sum(axis=1) > 0
     defects = reversal_defects(motion, orbit.reduced_momentum[moving], orbit.cayley[moving])
-    return float(np.nanmax(defects)) if defects.size else 0.0
+    return float(np.max(defects, initial=0.0, where=~np.isnan(defects)))

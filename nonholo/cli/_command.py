@@ -31,7 +31,7 @@ def simulate_and_keep(
     with store_errors(USAGE):
         check_output(output, overwrite=overwrite)
     with scenario_errors():
-        ran = _run(loaded, progress=sys.stdout.isatty() and not (json or quiet))
+        ran = _run(loaded, progress=sys.stderr.isatty() and not quiet)
     if ran.orbit is None:
         leave(f"Nothing to keep. {ran.stopped}", FAILED)
     with store_errors(FAILED):

@@ -2,11 +2,13 @@
 
 import contextlib
 import os
+import sys
 import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from nonholo._progress import progress_bar
 from nonholo.cli._errors import warn
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ def draw(orbit: "Orbit", picture: Path | None, animation: Path | None) -> dict[s
                 plotting.overview(orbit, part, flow=_flow(orbit))
             drawn["picture"] = str(picture)
         if animation is not None:
-            with _complete(animation) as part, _progress() as progress:
+            with _complete(animation) as part, progress_bar("frames", sys.stderr.isatty()) as progress:
                 plotting.animate(orbit, part, progress=progress)
             drawn["animation"] = str(animation)
     except Exception as failure:
@@ -58,17 +60,6 @@ def _complete(path: Path) -> Iterator[str]:
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
-
-
-@contextlib.contextmanager
-def _progress() -> Iterator[Callable[[int, int], None]]:
-    from rich.console import Console
-    from rich.progress import Progress
-
-    console = Console(stderr=True)
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task("frames")
-        yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
 def _flow(orbit: "Orbit") -> "Orbit | None":

@@ -10,8 +10,8 @@ import equinox
 import jax
 import jax.numpy as jnp
 import numpy as np
-from rich.progress import Progress
 
+from nonholo._progress import progress_bar
 from nonholo._results import Outcome
 from nonholo._types import Array, Float
 from nonholo.discrete._discretization import Discretization
@@ -92,21 +92,20 @@ def run_by_definition(
     y, code = in_double(equinox.filter_jit(principal_displacement), discrete, restricted)
     saved = [(restricted, y, pose)] if code == 0 else []
     done = 0
-    with Progress(disable=not progress, transient=True) as bar:
-        task = bar.add_task("steps", total=steps)
+    with progress_bar("steps", progress) as report:
         while code == 0 and done < steps:
             batch = min(every, steps - done)
-            good, code, r, y, pose = in_double(_advance, discrete, batch, y, pose)
+            good, code, r, y, pose = in_double(_advance, discrete, np.int64(batch), y, pose)
             done += int(good)
             if code == 0 and batch == every:
                 saved.append((r, y, pose))
-            bar.update(task, completed=done)
+            report(done, steps)
     rows = [np.array(column) for column in zip(*saved, strict=True)] or [np.empty((0, reduced.size))] * 2 + [pose[:0]]
     return (rows[0] @ C.T, rows[1] @ np.linalg.inv(C), rows[2]), Outcome(int(code)), done
 
 
 @equinox.filter_jit
-def _advance(discrete: Discretization, steps: int, y: Array, pose: Array) -> tuple[Array, ...]:
+def _advance(discrete: Discretization, steps: Array, y: Array, pose: Array) -> tuple[Array, ...]:
     group, system = discrete.system.group, discrete.system
     back = jnp.asarray(group.inverse(system.frame))
 

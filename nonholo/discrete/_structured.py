@@ -44,7 +44,7 @@ def next_charts(
         from nonholo.discrete._definition import next_charts_by_definition
 
         return next_charts_by_definition(discrete, cayley)
-    _, charts, codes = kernels.step_each(closed.body, closed.scale * reduced_momentum, cayley, False)
+    _, charts, codes = kernels.step_each(closed.body, closed.scale * reduced_momentum, cayley, cayley, True)
     if codes.any():
         raise OutcomeError(Outcome(int(codes.max())), "Step after a saved state")
     return charts
@@ -53,15 +53,20 @@ def next_charts(
 def reversal_defects(
     discrete: "Discretization", reduced_momentum: Float[np.ndarray, "K k"], cayley: Float[np.ndarray, "K k"]
 ) -> Float[np.ndarray, "K"]:
-    """Return, for each state, how far one step forward and one back (W to its inverse) miss it, relative to it."""
+    """Return, for each state, how far one step forward and one back (W to its inverse) miss it, relative to it.
+
+    The map is multivalued and its principal value is not always the way back: the nearest value counts. Infinite where
+    the iteration for it fails, NaN where there is no step forward.
+    """
     closed = structured(discrete)
     if closed is None:
         raise ValueError(
             "`reversal_defects` needs a closed-form discretisation. Got another. Pass difference='matrix'."
         )
     scaled = closed.scale * reduced_momentum
-    momenta, charts, _ = kernels.step_each(closed.body, scaled, cayley, False)
-    after, _, _ = kernels.step_each(closed.body, momenta, charts, True)
-    back, returned, _ = kernels.step_each(closed.body, -after, -charts, True)
+    momenta, charts, ahead = kernels.step_each(closed.body, scaled, cayley, cayley, True)
+    after, _, _ = kernels.step_each(closed.body, momenta, charts, charts, False)
+    back, returned, behind = kernels.step_each(closed.body, -after, -charts, -cayley, False)
     missed = np.linalg.norm(returned + cayley, axis=1) / np.linalg.norm(cayley, axis=1)
-    return np.maximum(missed, np.linalg.norm(back + momenta, axis=1) / np.linalg.norm(momenta, axis=1))
+    missed = np.maximum(missed, np.linalg.norm(back + momenta, axis=1) / np.linalg.norm(momenta, axis=1))
+    return np.where(ahead != 0, np.nan, np.where(behind != 0, np.inf, missed))

@@ -64,6 +64,10 @@ class AbstractMatrixGroup(abc.ABC):
         """Return the compact pose of a matrix."""
 
     @abc.abstractmethod
+    def pose_residual(self, pose: Float[Array, "... size"]) -> Float[Array, "..."]:
+        """Return how far a compact pose is from the group, before `matrix_from_pose` corrects it."""
+
+    @abc.abstractmethod
     def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:
         """Return the rate of change of a compact pose that moves with the body velocity `x`."""
 

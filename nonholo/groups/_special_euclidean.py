@@ -86,6 +86,10 @@ class SpecialEuclidean2(AbstractMatrixGroup):
         xp = g.__array_namespace__()
         return xp.stack([g[..., 0, 0], g[..., 1, 0], g[..., 0, 2], g[..., 1, 2]], axis=-1)
 
+    def pose_residual(self, pose: Float[Array, "... 4"]) -> Float[Array, "..."]:
+        """Return the defect of cos^2 + sin^2 = 1."""
+        return abs(pose[..., 0] * pose[..., 0] + pose[..., 1] * pose[..., 1] - 1)
+
     def pose_rate(self, pose: Float[Array, "... 4"], x: Float[Array, "... 3"]) -> Float[Array, "... 4"]:
         """Return the rates of (cos, sin, x, y): the body velocity turned by the heading."""
         xp = x.__array_namespace__()

@@ -78,6 +78,10 @@ class SpecialOrthogonal3(AbstractMatrixGroup):
         """Return the unit quaternion, scalar first and non-negative."""
         return quaternion_from_matrix(g)
 
+    def pose_residual(self, pose: Float[Array, "... 4"]) -> Float[Array, "..."]:
+        """Return the defect of the squared norm of the quaternion."""
+        return abs(pose.__array_namespace__().sum(pose * pose, axis=-1) - 1)
+
     def pose_rate(self, pose: Float[Array, "... 4"], x: Float[Array, "... 3"]) -> Float[Array, "... 4"]:
         """Return half the Hamilton product of the quaternion with the angular velocity."""
         xp = x.__array_namespace__()

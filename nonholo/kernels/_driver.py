@@ -91,11 +91,11 @@ def _newton(p: Body, m1: float, m2: float, y1: float, y2: float) -> tuple[bool, 
 
 @numba.njit(cache=True, nogil=True, **COMPILED)
 def step_each(
-    p: Body, momenta: np.ndarray, charts: np.ndarray, near: bool
+    p: Body, momenta: np.ndarray, charts: np.ndarray, guesses: np.ndarray, principal_only: bool
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Take one step from each row; return momenta, charts and outcomes.
 
-    The root is the principal one or, with `near`, the one Newton's method reaches from the present displacement.
+    The root is the principal one or else that value of the map which Newton's method reaches from the guess.
     """
     next_momenta, next_charts = np.empty_like(momenta), np.empty_like(charts)
     codes = np.zeros(len(momenta), dtype=np.int64)
@@ -103,10 +103,10 @@ def step_each(
         y1, y2 = charts[k]
         d1, d2 = increment(p, momenta[k, 0], momenta[k, 1], y1, y2)
         m1, m2 = momenta[k, 0] + d1, momenta[k, 1] + d2
-        if near:
-            good, w1, w2 = _newton(p, m1, m2, y1, y2)
-            codes[k] = 0 if good else 3
+        if principal_only:
+            codes[k], w1, w2 = _solve(p, m1, m2, guesses[k, 0], guesses[k, 1])
         else:
-            codes[k], w1, w2 = _solve(p, m1, m2, y1, y2)
+            good, w1, w2 = _newton(p, m1, m2, guesses[k, 0], guesses[k, 1])
+            codes[k] = 0 if good else 3
         next_momenta[k], next_charts[k] = (m1, m2), (w1, w2)
     return next_momenta, next_charts, codes

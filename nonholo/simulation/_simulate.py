@@ -4,10 +4,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from rich.progress import Progress
 
 from nonholo import kernels
 from nonholo._checks import choice, count, error
+from nonholo._progress import progress_bar
 from nonholo._results import Outcome, OutcomeError
 from nonholo.discrete import Discretization, initial_state
 from nonholo.discrete._start import check_first_state, in_group
@@ -57,14 +57,15 @@ def simulate(
         reconstruct: Also compute poses.
         backend: "numba" (closed forms, compiled), "jax" (the definition), or "auto" to choose.
         throw: Raise if the run cannot go on; otherwise return the good steps and the outcome.
-        progress: Show a progress bar.
+        progress: Show a progress bar on standard error.
 
     Returns:
         The orbit.
 
     Raises:
         ValueError: A bad argument, before any work.
-        OutcomeError: The run could not go on; its `orbit` holds every good step.
+        OutcomeError: The start is not on the principal branch, or, with `throw`, the run could not go on; then the
+            error's `orbit` holds every good step.
 
     Example:
         >>> top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -119,8 +120,7 @@ def _run_compiled(
     momenta, charts, poses = np.empty((saved, 2)), np.empty((saved, 2)), np.empty((saved, pose.size))
     momenta[0], charts[0], poses[0] = scaled, state[4:6], pose
     done, block = 0, max(1, _BLOCK // every) * every
-    with Progress(disable=not progress, transient=True) as bar:
-        task = bar.add_task("steps", total=steps)
+    with progress_bar("steps", progress) as report:
         while code == 0 and done < steps:
             first = 1 + done // every
             chunk = min(block, steps - done)
@@ -128,7 +128,7 @@ def _run_compiled(
                 closed.body, state, chunk, every, momenta[first:], charts[first:], poses[first:]
             )
             done += good
-            bar.update(task, completed=done)
+            report(done, steps)
     kept = 0 if code and not done and not np.isfinite(state[4]) else 1 + done // every
     return (momenta[:kept] / closed.scale, charts[:kept], poses[:kept]), Outcome(code), done
 

@@ -31,6 +31,15 @@ def test_energy_and_reversal_of_random_systems(system: AbstractLLSystem, velocit
         found = nh.invariants(orbit)
         assert found.energy_drift <= 1e-13
         assert found.group_residual <= 1e-14
+        assert found.reversal_defect <= 1e-7  # near a fold the root itself is known to half the digits only
+
+
+def test_a_principal_step_whose_way_back_is_not_principal() -> None:
+    """This sleigh's displacement jumps from 72 to 151 degrees: the way back is a value of the map, not the nearest."""
+    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3), 1.4)
+    orbit = nh.simulate(discrete, body_velocity=(0.05, -1.0, 0.0), steps=60)
+    assert nh.invariants(orbit).largest_step_angle > 150
+    assert nh.invariants(orbit).reversal_defect <= 1e-12
 
 
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: p.name)

@@ -41,7 +41,7 @@ def test_thinning_keeps_single_steps(discrete: nh.Discretization) -> None:
 
 
 def test_shapes_of_an_orbit() -> None:
-    """steps = N gives N + 1 states and N multipliers; W_N is computed, g_{N+1} is not."""
+    """An orbit of steps = N has N + 1 states and N multipliers; W_N is computed, g_{N+1} is not."""
     orbit = nh.simulate(SLEIGH, body_velocity=(0.5, 1.0, 0.0), steps=7)
     shapes = {
         "time": (8,), "momentum": (8, 3), "restricted_momentum": (8, 2), "chart": (8, 2), "displacement": (8, 3, 3),
@@ -110,7 +110,7 @@ def test_a_displacement_on_another_branch_is_refused() -> None:
     """A displacement of the variety that is not the principal root of its momentum is not silently replaced."""
     discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1.0)
     W = discrete.system.group.exp(np.array([2.8, 0.1, 0.0]))
-    with pytest.raises(nh.OutcomeError, match="branch_unverified|no_real_branch"):
+    with pytest.raises(nh.OutcomeError, match=r"branch_unverified|no_real_branch"):
         nh.simulate(discrete, displacement=W, steps=3)
 
 

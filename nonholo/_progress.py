@@ -1,0 +1,20 @@
+"""The progress bar of everything that takes long: on standard error, gone when the work is done."""
+
+import contextlib
+from collections.abc import Callable, Iterator
+
+from rich.console import Console
+from rich.progress import Progress
+
+
+@contextlib.contextmanager
+def progress_bar(title: str, wanted: bool) -> Iterator[Callable[[int, int], None]]:
+    """Give a function that reports how much is done, and of how much.
+
+    Example:
+        >>> with progress_bar("steps", wanted=False) as report:
+        ...     report(3, 10)
+    """
+    with Progress(console=Console(stderr=True), transient=True, disable=not wanted) as bar:
+        task = bar.add_task(title)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
