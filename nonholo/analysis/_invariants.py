@@ -72,7 +72,7 @@ def _group_residual(orbit: Orbit) -> float:
     group, pose = orbit.system.group, orbit.pose
     R = group.rotation(orbit.configuration)
     decoded = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(R.shape[-1])).max()
-    return float(max(decoded, group.pose_residual(pose).max()))
+    return float(max(decoded, np.abs(pose - group.normalize_pose(pose)).max()))
 
 
 def _reversal_defect(orbit: Orbit) -> float | None:

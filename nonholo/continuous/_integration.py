@@ -14,8 +14,8 @@ import numpy as np
 
 from nonholo._results import Outcome
 from nonholo._types import Array, Float
-from nonholo.continuous._closed_form import Heteroclinic
 from nonholo.continuous._equations import Body, body_of, momentum_rate
+from nonholo.continuous._heteroclinic import Heteroclinic
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems import AbstractLLSystem
 
@@ -41,6 +41,7 @@ def integrate(
     start = (reduced_momentum, pose, turned)
     rows, outcome = _solve(_motion_rate, system.group, start, body_of(system), elapsed, tolerances)
     momenta, poses, headings = rows
+    poses = system.group.normalize_pose(poses)
     return momenta, poses, _same_turn(headings[:, 0], poses) if planar else None, outcome
 
 
@@ -55,7 +56,7 @@ def integrate_pose(
     _, _, to_velocity = body_of(system)
     known = (motion.across @ to_velocity, motion.along @ to_velocity, np.float64(motion.start), np.float64(motion.rate))
     rows, outcome = _solve(_pose_rate, system.group, (pose,), known, elapsed, tolerances)
-    return rows[0], outcome
+    return system.group.normalize_pose(rows[0]), outcome
 
 
 def _same_turn(headings: np.ndarray, poses: np.ndarray) -> np.ndarray:

@@ -64,8 +64,8 @@ class AbstractMatrixGroup(abc.ABC):
         """Return the compact pose of a matrix."""
 
     @abc.abstractmethod
-    def pose_residual(self, pose: Float[Array, "... size"]) -> Float[Array, "..."]:
-        """Return how far a compact pose is from the group, before `matrix_from_pose` corrects it."""
+    def normalize_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... size"]:
+        """Return the compact pose of the group that is nearest to one in which errors have gathered."""
 
     @abc.abstractmethod
     def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:

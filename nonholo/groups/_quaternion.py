@@ -3,10 +3,16 @@
 from nonholo._types import Array, Float
 
 
+def normalized(q: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
+    """Return a quaternion divided by its length."""
+    xp = q.__array_namespace__()
+    return q / xp.sqrt(xp.sum(q * q, axis=-1, keepdims=True))
+
+
 def matrix_from_quaternion(q: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:
     """Return the active rotation matrix of a quaternion, which is normalised first."""
     xp = q.__array_namespace__()
-    unit = q / xp.sqrt(xp.sum(q * q, axis=-1, keepdims=True))
+    unit = normalized(q)
     w, x, y, z = (unit[..., i] for i in range(4))
     rows = (
         (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
@@ -25,8 +31,7 @@ def quaternion_from_matrix(R: Float[Array, "... 3 3"]) -> Float[Array, "... 4"]:
     products = _four_times_outer(R)
     diagonal = xp.stack([products[..., i, i] for i in range(4)], axis=-1)
     best = xp.argmax(diagonal, axis=-1)[..., None, None]
-    row = xp.take_along_axis(products, xp.broadcast_to(best, (*best.shape[:-1], 4)), axis=-2)[..., 0, :]
-    q = row / xp.sqrt(xp.sum(row * row, axis=-1, keepdims=True))
+    q = normalized(xp.take_along_axis(products, xp.broadcast_to(best, (*best.shape[:-1], 4)), axis=-2)[..., 0, :])
     return xp.where(q[..., :1] < 0, -q, q)
 
 

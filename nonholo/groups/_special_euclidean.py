@@ -75,10 +75,10 @@ class SpecialEuclidean2(AbstractMatrixGroup):
     def matrix_from_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:
         """Return the matrix of (cos, sin, x, y); the heading is normalised first."""
         xp = pose.__array_namespace__()
-        scale = 1 / xp.sqrt(pose[..., 0] * pose[..., 0] + pose[..., 1] * pose[..., 1])
-        cos, sin = pose[..., 0] * scale, pose[..., 1] * scale
+        unit = self.normalize_pose(pose)
+        cos, sin, x, y = (unit[..., i] for i in range(4))
         zero, one = xp.zeros_like(cos), xp.ones_like(cos)
-        rows = ((cos, -sin, pose[..., 2]), (sin, cos, pose[..., 3]), (zero, zero, one))
+        rows = ((cos, -sin, x), (sin, cos, y), (zero, zero, one))
         return xp.stack([xp.stack(row, axis=-1) for row in rows], axis=-2)
 
     def pose_from_matrix(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 4"]:
@@ -86,9 +86,11 @@ class SpecialEuclidean2(AbstractMatrixGroup):
         xp = g.__array_namespace__()
         return xp.stack([g[..., 0, 0], g[..., 1, 0], g[..., 0, 2], g[..., 1, 2]], axis=-1)
 
-    def pose_residual(self, pose: Float[Array, "... 4"]) -> Float[Array, "..."]:
-        """Return the defect of cos^2 + sin^2 = 1."""
-        return abs(pose[..., 0] * pose[..., 0] + pose[..., 1] * pose[..., 1] - 1)
+    def normalize_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
+        """Return the pose with cos^2 + sin^2 = 1."""
+        xp = pose.__array_namespace__()
+        length = xp.sqrt(pose[..., :1] * pose[..., :1] + pose[..., 1:2] * pose[..., 1:2])
+        return xp.concatenate([pose[..., :2] / length, pose[..., 2:]], axis=-1)
 
     def pose_rate(self, pose: Float[Array, "... 4"], x: Float[Array, "... 3"]) -> Float[Array, "... 4"]:
         """Return the rates of (cos, sin, x, y): the body velocity turned by the heading."""

@@ -8,7 +8,7 @@ import numpy as np
 from nonholo._types import Array, Float
 from nonholo.groups import _rodrigues
 from nonholo.groups._base import AbstractMatrixGroup
-from nonholo.groups._quaternion import matrix_from_quaternion, quaternion_from_matrix
+from nonholo.groups._quaternion import matrix_from_quaternion, normalized, quaternion_from_matrix
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
@@ -78,9 +78,9 @@ class SpecialOrthogonal3(AbstractMatrixGroup):
         """Return the unit quaternion, scalar first and non-negative."""
         return quaternion_from_matrix(g)
 
-    def pose_residual(self, pose: Float[Array, "... 4"]) -> Float[Array, "..."]:
-        """Return the defect of the squared norm of the quaternion."""
-        return abs(pose.__array_namespace__().sum(pose * pose, axis=-1) - 1)
+    def normalize_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
+        """Return the unit quaternion."""
+        return normalized(pose)
 
     def pose_rate(self, pose: Float[Array, "... 4"], x: Float[Array, "... 3"]) -> Float[Array, "... 4"]:
         """Return half the Hamilton product of the quaternion with the angular velocity."""
