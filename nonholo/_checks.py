@@ -49,7 +49,8 @@ def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "
         raise error(where, f"have shape {_shown(shape)}", f"shape {result.shape}", remedy)
     if not np.all(np.isfinite(result)):
         position = tuple(int(i) for i in np.argwhere(~np.isfinite(result))[0])
-        raise error(where, "be finite", f"{result[position]} at index {position}", remedy)
+        place = f" at index {position}" if position else ""
+        raise error(where, "be finite", f"{result[position]}{place}", remedy)
     result.setflags(write=False)
     return result
 

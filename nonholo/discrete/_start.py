@@ -29,20 +29,29 @@ def initial_momentum(
         where = f"{owner}(momentum=...)"
         size = k if np.shape(momentum) == (k,) else dim
         value = array(where, momentum, (size,), f"Pass {dim} body momenta or the {k} along the constraint subspace.")
-        return system.frame_map @ (value if size == k else system.restrict(value))
+        return _of_finite_energy(owner, system, system.frame_map @ (value if size == k else system.restrict(value)))
     if body_velocity is not None:
         velocity = _admissible(f"{owner}(body_velocity=...)", system, body_velocity)
     else:
         where = f"{owner}(restricted_velocity=...)"
         velocity = array(where, restricted_velocity, (k,), "Pass one number per admissible direction.") @ subspace
     canonical = system.group.adjoint(system.group.inverse(system.frame)) @ velocity
-    return system.canonical.restrict(system.canonical.inertia_operator @ canonical)
+    reduced = system.canonical.restrict(system.canonical.inertia_operator @ canonical)
+    return _of_finite_energy(owner, system, reduced)
+
+
+def _of_finite_energy(owner: str, system: AbstractLLSystem, reduced: np.ndarray) -> np.ndarray:
+    with np.errstate(over="ignore", invalid="ignore"):
+        energy = system.canonical.constrained_energy(reduced)
+    if not np.isfinite(energy):
+        raise error(f"{owner}(...)", "start with a finite energy", f"{energy}", "Start slower, or use other units.")
+    return reduced
 
 
 def _admissible(where: str, system: AbstractLLSystem, body_velocity: Any) -> np.ndarray:
     velocity = array(where, body_velocity, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
     forbidden = system.annihilator @ velocity
-    if np.linalg.norm(forbidden) > _TOLERANCE * np.linalg.norm(velocity):
+    if np.abs(forbidden).max() > _TOLERANCE * np.abs(velocity).max():
         nearest = velocity - np.linalg.pinv(system.annihilator) @ forbidden
         got = f"residual {np.array2string(forbidden, precision=6)}"
         raise error(where, "satisfy the constraint", got, f"The nearest admissible velocity is {nearest.tolist()}.")

@@ -67,6 +67,9 @@ def reversal_defects(
     momenta, charts, ahead = kernels.step_each(closed.body, scaled, cayley, cayley, True)
     after, _, _ = kernels.step_each(closed.body, momenta, charts, charts, False)
     back, returned, behind = kernels.step_each(closed.body, -after, -charts, -cayley, False)
-    missed = np.linalg.norm(returned + cayley, axis=1) / np.linalg.norm(cayley, axis=1)
-    missed = np.maximum(missed, np.linalg.norm(back + momenta, axis=1) / np.linalg.norm(momenta, axis=1))
+    missed = np.maximum(_largest(returned + cayley) / _largest(cayley), _largest(back + momenta) / _largest(momenta))
     return np.where(ahead != 0, np.nan, np.where(behind != 0, np.inf, missed))
+
+
+def _largest(rows: np.ndarray) -> np.ndarray:
+    return np.abs(rows).max(axis=1)

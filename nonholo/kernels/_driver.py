@@ -11,6 +11,7 @@ from nonholo.kernels._interface import Body, certified, correction, increment, m
 from nonholo.kernels._scalar import COMPILED
 
 STATE_SIZE = 14
+_SETTLED = 1e-150  # of one momentum to the other; squares below it underflow
 
 
 @numba.njit(cache=True, nogil=True, **COMPILED)
@@ -37,8 +38,8 @@ def advance(
     code, done = 0, 0
     while done < steps:
         d1, d2 = increment(p, m1, m2, y1, y2)
-        n1, l1 = _compensated(m1, k1, d1)
-        n2, l2 = _compensated(m2, k2, d2)
+        n1, l1 = _compensated(m1, k1, d1, _SETTLED * abs(m2))
+        n2, l2 = _compensated(m2, k2, d2, _SETTLED * abs(m1))
         code, w1, w2 = _solve(p, n1, n2, 3 * (y1 - u1) + v1, 3 * (y2 - u2) + v2)
         if code != 0:
             break
@@ -61,10 +62,15 @@ def _unpack(s: np.ndarray):  # noqa: ANN202
 
 
 @numba.njit(cache=True, **COMPILED)
-def _compensated(total: float, lost: float, term: float) -> tuple[float, float]:
-    """Add by Kahan's summation; return the sum and the rounding it lost."""
+def _compensated(total: float, lost: float, term: float, settled: float) -> tuple[float, float]:
+    """Add by Kahan's summation; return the sum and the rounding it lost.
+
+    A sum that has decayed below `settled` is put on the equilibrium: what is left would soon be denormal, and slow.
+    """
     term = term - lost
     result = total + term
+    if abs(result) < settled and (abs(result) < abs(total) or total == 0):
+        return 0.0, 0.0
     return result, (result - total) - term
 
 

@@ -75,6 +75,8 @@ class Orbit:
 
     def __getitem__(self, states: slice) -> "Orbit":
         """Return the orbit at a forward slice of its states."""
+        if not isinstance(states, slice):
+            raise TypeError(f"`Orbit[...]` takes slices. Got {states!r}. Index an array instead: orbit.momentum[0].")
         stride = states.indices(len(self))[2]
         if stride < 1:
             raise ValueError(f"`Orbit[...]` must be sliced forwards. Got stride {stride}. Reverse the arrays instead.")

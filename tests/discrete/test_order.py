@@ -7,7 +7,7 @@ from problems import PROBLEMS, Problem
 import nonholo as nh
 
 TIME = 3.0
-STEPS = np.array([150, 300, 600, 1200])
+STEPS = (150, 300, 600, 1200)
 QUANTITIES = {
     "matrix momentum": ("matrix", "restricted_momentum"),
     "matrix pose": ("matrix", "configuration"),

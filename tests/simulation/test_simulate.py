@@ -183,3 +183,22 @@ def test_numba_backend_needs_a_closed_form() -> None:
     """The compiled backend is refused for a discrete Lagrangian without one."""
     with pytest.raises(ValueError, match="have a closed form"):
         nh.simulate(nh.discretize(TOP.system, 0.1, difference="logarithmic"), **GOOD, backend="numba")
+
+
+def test_an_energy_that_overflows_is_refused() -> None:
+    """A start whose energy is not a number of double precision is refused before any work, without a warning."""
+    for velocity in ((0.0, 1e300, 0.0), (1e308, 1.0, 0.0)):
+        with pytest.raises(ValueError, match="finite energy"):
+            nh.simulate(SLEIGH, body_velocity=velocity, steps=3)
+
+
+def test_an_orbit_is_sliced_not_indexed() -> None:
+    """An index in place of a slice is refused with what to do instead."""
+    with pytest.raises(TypeError, match=r"takes slices.*orbit\.momentum\[0\]"):
+        nh.simulate(SLEIGH, body_velocity=(1, 0, 0), steps=3)[0]
+
+
+def test_denormal_motion_is_measured() -> None:
+    """A motion whose squared speed underflows still has defects, and no warning."""
+    found = nh.invariants(nh.simulate(SLEIGH, body_velocity=(1e-200, 1e-200, 0), steps=3))
+    assert found.reversal_defect <= 1e-12
