@@ -72,11 +72,15 @@ def number(where: str, value: Any, remedy: str = "Pass one real number.") -> Arr
     return result if is_traced(result) else np.float64(result)
 
 
+def as_floats(value: Any) -> Array:
+    """Return an array as it is (integers as float64), a sequence as a float64 array."""
+    result = value if hasattr(value, "__array_namespace__") else np.asarray(value, dtype=np.float64)
+    return result.astype(np.float64) if result.dtype.kind in "biu" else result
+
+
 def trailing(where: str, value: Any, shape: tuple[int, ...], remedy: str) -> Array:
     """Return an array (a sequence becomes float64) whose last axes have the given shape; leading axes are free."""
-    result = value if hasattr(value, "__array_namespace__") else np.asarray(value, dtype=np.float64)
-    if result.dtype.kind in "biu":
-        result = result.astype(np.float64)
+    result = as_floats(value)
     if result.shape[max(0, result.ndim - len(shape)) :] != shape:
         raise error(where, f"end in shape {_shown(shape)}", f"shape {result.shape}", remedy)
     return result

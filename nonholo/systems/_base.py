@@ -9,6 +9,7 @@ import dataclasses
 
 import numpy as np
 
+from nonholo._checks import as_floats
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 
@@ -84,7 +85,7 @@ class AbstractLLSystem(abc.ABC):
 
     def restrict(self, momentum: Float[Array, "... dim"]) -> Float[Array, "... k"]:
         """Return the components of a momentum along the rows of the constraint subspace."""
-        return momentum @ self.constraint_subspace.T
+        return as_floats(momentum) @ self.constraint_subspace.T
 
     def constrained_energy(self, momentum: Float[Array, "... dim"] | Float[Array, "... k"]) -> Float[Array, "..."]:
         r"""Return the reduced constrained energy $\tfrac12\,r\cdot(\mathbb{I}|_\mathfrak{d})^{-1}\,r$ of a momentum.
@@ -95,13 +96,15 @@ class AbstractLLSystem(abc.ABC):
             momentum: A momentum, or its components along the rows of the constraint subspace.
 
         Example:
-            >>> ChaplyginSleigh(mass=2.0, inertia=1.0, a=0.5).constrained_energy(np.array([0.0, 2.0, 0.0]))
+            >>> ChaplyginSleigh(mass=2.0, inertia=1.0, a=0.5).constrained_energy([0.0, 2.0, 0.0])
             np.float64(1.0)
         """
+        momentum = as_floats(momentum)
         restricted = momentum if momentum.shape[-1] == self.constraint_subspace.shape[0] else self.restrict(momentum)
         return (restricted * self.restricted_velocity(restricted)).sum(axis=-1) / 2
 
     def restricted_velocity(self, restricted_momentum: Float[Array, "... k"]) -> Float[Array, "... k"]:
         """Return the velocity, in rows of the constraint subspace, that has these momenta along it."""
+        restricted_momentum = as_floats(restricted_momentum)
         xp = restricted_momentum.__array_namespace__()
         return xp.linalg.solve(xp.asarray(self.constrained_inertia), restricted_momentum[..., None])[..., 0]
