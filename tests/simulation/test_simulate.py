@@ -192,7 +192,7 @@ def test_an_energy_that_overflows_is_refused() -> None:
             nh.simulate(SLEIGH, body_velocity=velocity, steps=3)
 
 
-def test_an_orbit_is_sliced_not_indexed() -> None:
+def test_an_index_of_an_orbit_is_refused() -> None:
     """An index in place of a slice is refused with what to do instead."""
     with pytest.raises(TypeError, match=r"takes slices.*orbit\.momentum\[0\]"):
         nh.simulate(SLEIGH, body_velocity=(1, 0, 0), steps=3)[0]
