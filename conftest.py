@@ -14,4 +14,4 @@ hypothesis.settings.load_profile("nonholo")
 
 @pytest.fixture(autouse=True)
 def _doctest_names(doctest_namespace: dict[str, object]) -> None:
-    doctest_namespace.update({"np": np, "nh": nh} | {name: getattr(nh, name) for name in dir(nh) if name != "plot"})
+    doctest_namespace.update({"np": np, "nh": nh} | {name: getattr(nh, name) for name in dir(nh)})

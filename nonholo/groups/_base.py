@@ -10,46 +10,60 @@ import numpy as np
 
 from nonholo._checks import trailing
 from nonholo._types import Array, Float
+from nonholo.groups._coordinates import AbstractCoordinates
+from nonholo.numerics._matrix_functions import identity_like
 
 
 class AbstractMatrixGroup(abc.ABC):
     """A group of (N, N) matrices with a chosen basis of its Lie algebra.
 
-    A new group states `basis`, `exp`, `log`, `inverse`, `random` and its compact pose; the rest is shared.
+    A new group states the attributes and the abstract methods; the rest is shared.
     """
 
+    dim: int
+    """Dimension of the group."""
+    size: int
+    """N, the number of rows of a matrix."""
     basis: np.ndarray
-    """The basis of the algebra, shape (dim, N, N); orthogonal in the Frobenius product."""
+    """The basis of the algebra, shape (dim, N, N)."""
+    coordinates: AbstractCoordinates
+    """The maps between coordinate vectors and matrices that the basis defines."""
     pose_size: int
     """Numbers in a compact pose."""
+    is_rigid: bool
+    """Whether the group moves a body with a mass tensor, SO(n) or SE(n); (W - W^-1)/2 lies in the algebra there."""
 
     @abc.abstractmethod
-    def exp(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
-        """Return the matrix exponential of `hat(x)`."""
+    def exp_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
+        """Return `exp(x)` minus the identity, without cancellation."""
 
     @abc.abstractmethod
     def log(self, g: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
-        """Return the shortest `x` with `exp(x) = g`; at angle pi one of the two."""
-
-    @abc.abstractmethod
-    def cayley(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
-        r"""Return $(I - X/2)^{-1}(I + X/2)$, $X$ = `hat(x)`; it agrees with `exp` to second order."""
+        """Return the shortest `x` with `exp(x) = g`; at angle pi one of several."""
 
     @abc.abstractmethod
     def cayley_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return `cayley(x)` minus the identity, without cancellation."""
 
     @abc.abstractmethod
+    def dexp_inverse(self, x: Float[Array, "... dim"]) -> Float[Array, "... dim dim"]:
+        r"""Return the matrix of $\mathrm{dexp}_x^{-1} = \sum_k B_k\,\mathrm{ad}_x^k/k!$, for angles below $2\pi$.
+
+        It is the inverse of $\mathrm{dexp}_x = \sum_k \mathrm{ad}_x^k/(k+1)!$, defined by
+        $\frac{d}{dt}e^{X(t)} = \mathrm{hat}(\mathrm{dexp}_x\dot x)\,e^{X}$.
+        """
+
+    @abc.abstractmethod
     def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
         """Return the inverse of `g`, using its structure."""
 
     @abc.abstractmethod
-    def rotation(self, g: Float[Array, "... N N"]) -> Float[Array, "... n n"]:
-        """Return the orthogonal part of `g`."""
+    def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
+        """Return how far matrices are from the group: zero on it, up to rounding."""
 
     @abc.abstractmethod
     def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:
-        """Return the angle through which `exp(x)` turns."""
+        """Return the angle through which `exp(x)` turns: the largest imaginary part of an eigenvalue of `hat(x)`."""
 
     @abc.abstractmethod
     def random(self, rng: np.random.Generator) -> Float[np.ndarray, "N N"]:
@@ -65,33 +79,40 @@ class AbstractMatrixGroup(abc.ABC):
 
     @abc.abstractmethod
     def normalize_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... size"]:
-        """Return the compact pose of the group that is nearest to one in which errors have gathered."""
+        """Return the compact pose of the group that is nearest to one in which rounding errors have gathered."""
 
     @abc.abstractmethod
     def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:
         """Return the rate of change of a compact pose that moves with the body velocity `x`."""
 
     @property
-    def dim(self) -> int:
-        """Dimension of the group."""
-        return self.basis.shape[0]
-
-    @property
     def identity(self) -> Float[np.ndarray, "N N"]:
         """The identity matrix."""
-        return np.eye(self.basis.shape[1])
+        return np.eye(self.size)
+
+    def exp(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
+        """Return the matrix exponential of `hat(x)`: where the body velocity `x` leads in unit time."""
+        return _from_identity(self.exp_increment(x))
+
+    def cayley(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
+        r"""Return $(I - X/2)^{-1}(I + X/2)$, $X$ = `hat(x)`; it agrees with `exp` to second order."""
+        return _from_identity(self.cayley_increment(x))
+
+    def retract(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
+        """Return the displacement with chart coordinates `x`: `cayley` on SO(n) and SE(n), else `exp`."""
+        return _from_identity(self.retract_increment(x))
+
+    def retract_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
+        """Return `retract(x)` minus the identity, without cancellation."""
+        return self.cayley_increment(x) if self.is_rigid else self.exp_increment(x)
 
     def hat(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return the matrix of the algebra with coordinates `x`."""
-        x = self._vector(x)
-        xp = x.__array_namespace__()
-        return xp.tensordot(x, xp.asarray(self.basis, dtype=x.dtype), axes=1)
+        return self.coordinates.matrix(self._vector(x))
 
     def vee(self, X: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
         """Return the coordinates of a matrix of the algebra (of its orthogonal projection, if it lies outside)."""
-        X = self._matrix(X)
-        xp = X.__array_namespace__()
-        return xp.tensordot(X, xp.asarray(_dual_basis(self), dtype=X.dtype), axes=((-2, -1), (1, 2)))
+        return self.coordinates.vector(self._matrix(X))
 
     def adjoint(self, g: Float[Array, "... N N"]) -> Float[Array, "... dim dim"]:
         r"""Return the matrix of $\mathrm{Ad}_g$: column i holds the coordinates of $g\,e_i\,g^{-1}$."""
@@ -101,21 +122,34 @@ class AbstractMatrixGroup(abc.ABC):
         return xp.swapaxes(self.vee(images), -1, -2)
 
     def coadjoint(self, g: Float[Array, "... N N"], p: Float[Array, "... dim"]) -> Float[Array, "... dim"]:
-        r"""Return the plain transpose: $\langle\mathrm{Ad}^*_g p, x\rangle = \langle p, \mathrm{Ad}_g x\rangle$."""
-        p = self._vector(p)
-        return (p[..., None, :] @ self.adjoint(g))[..., 0, :]
+        r"""Return the plain transpose: $\langle\mathrm{Ad}^*_g p, x\rangle = \langle p, \mathrm{Ad}_g x\rangle$.
+
+        For the matrix $P$ of the covector it is $g^TPg^{-T}$, on SO(n) $g^TPg$.
+        """
+        g, p = self._matrix(g), self._vector(p)
+        xp = g.__array_namespace__()
+        turned = xp.swapaxes(g, -1, -2) @ self.coordinates.dual_matrix(p) @ xp.swapaxes(self.inverse(g), -1, -2)
+        return self.coordinates.dual_vector(turned)
 
     def bracket(self, x: Float[Array, "... dim"], y: Float[Array, "... dim"]) -> Float[Array, "... dim"]:
         """Return the Lie bracket, in coordinates, of the matrix commutator."""
         X, Y = self.hat(x), self.hat(y)
         return self.vee(X @ Y - Y @ X)
 
-    def coad(self, x: Float[Array, "... dim"], p: Float[Array, "... dim"]) -> Float[Array, "... dim"]:
-        r"""Return the plain transpose: $\langle\mathrm{ad}^*_x p, y\rangle = \langle p, [x, y]\rangle$."""
-        x, p = self._vector(x), self._vector(p)
+    def ad(self, x: Float[Array, "... dim"]) -> Float[Array, "... dim dim"]:
+        r"""Return the matrix of $\mathrm{ad}_x$: column i holds the coordinates of $[x, e_i]$."""
+        x = self._vector(x)
         xp = x.__array_namespace__()
-        brackets = self.bracket(x[..., None, :], xp.eye(self.dim, dtype=x.dtype))
-        return (brackets @ p[..., :, None])[..., 0]
+        return xp.swapaxes(self.bracket(x[..., None, :], xp.eye(self.dim, dtype=x.dtype)), -1, -2)
+
+    def coad(self, x: Float[Array, "... dim"], p: Float[Array, "... dim"]) -> Float[Array, "... dim"]:
+        r"""Return the plain transpose: $\langle\mathrm{ad}^*_x p, y\rangle = \langle p, [x, y]\rangle$.
+
+        For the matrix $P$ of the covector it is $[X^T, P]$, on so(n) $[P, X]$.
+        """
+        X, P = self.hat(x), self.coordinates.dual_matrix(self._vector(p))
+        transposed = X.__array_namespace__().swapaxes(X, -1, -2)
+        return self.coordinates.dual_vector(transposed @ P - P @ transposed)
 
     def _vector(self, x: Array) -> Array:
         where = f"{self!r} (coordinates)"
@@ -123,9 +157,8 @@ class AbstractMatrixGroup(abc.ABC):
 
     def _matrix(self, g: Array) -> Array:
         where = f"{self!r} (element)"
-        return trailing(where, g, self.identity.shape, "Use `hat`, `exp` or `cayley` to make a matrix.")
+        return trailing(where, g, (self.size, self.size), "Use `hat`, `exp` or `cayley` to make a matrix.")
 
 
-def _dual_basis(group: AbstractMatrixGroup) -> np.ndarray:
-    squares = np.sum(group.basis * group.basis, axis=(1, 2))
-    return group.basis / squares[:, None, None]
+def _from_identity(increment: Array) -> Array:
+    return identity_like(increment) + increment

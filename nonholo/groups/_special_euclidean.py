@@ -6,8 +6,9 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo._types import Array, Float
-from nonholo.groups import _rodrigues
+from nonholo.groups import _rodrigues, _rotations
 from nonholo.groups._base import AbstractMatrixGroup
+from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
 from nonholo.numerics import half_cotangent
 
 
@@ -15,6 +16,8 @@ from nonholo.numerics import half_cotangent
 class SpecialEuclidean2(AbstractMatrixGroup):
     r"""Motions of the plane, $\begin{pmatrix} R & x \\ 0 & 1\end{pmatrix}$; coordinates $(\omega, v_1, v_2)$."""
 
+    dim: ClassVar[int] = 3
+    size: ClassVar[int] = 3
     basis: ClassVar[np.ndarray] = np.array(
         [
             [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
@@ -22,15 +25,17 @@ class SpecialEuclidean2(AbstractMatrixGroup):
             [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]],
         ]
     )
+    coordinates: ClassVar[AbstractCoordinates] = coordinates_of(basis)
     pose_size: ClassVar[int] = 4
+    is_rigid: ClassVar[bool] = True
 
     def __repr__(self) -> str:
         return "SE(2)"
 
-    def exp(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
-        """Return the motion of a body that keeps the body velocity `x` for unit time."""
+    def exp_increment(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
+        """Return `exp(x)` minus the identity, without cancellation."""
         x = self._vector(x)
-        return _rodrigues.exponential(self.hat(x), x[..., 0] * x[..., 0])
+        return _rodrigues.exp_increment(self.hat(x), x[..., 0] * x[..., 0])
 
     def log(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3"]:
         """Return the body velocity that leads to `g` in unit time, turning by at most pi."""
@@ -41,15 +46,15 @@ class SpecialEuclidean2(AbstractMatrixGroup):
         x, y = g[..., 0, 2], g[..., 1, 2]
         return xp.stack([angle, along * x + across * y, along * y - across * x], axis=-1)
 
-    def cayley(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
-        """Return the motion with tan(angle / 2) = x[0] / 2 about the same centre as `exp(x)`."""
-        x = self._vector(x)
-        return _rodrigues.cayley(self.hat(x), x[..., 0] * x[..., 0])
-
     def cayley_increment(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
-        """Return `cayley(x)` minus the identity, without cancellation."""
+        """Return, minus the identity, the motion with tan(angle / 2) = x[0] / 2 about the same centre as `exp(x)`."""
         x = self._vector(x)
         return _rodrigues.cayley_increment(self.hat(x), x[..., 0] * x[..., 0])
+
+    def dexp_inverse(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
+        r"""Return the matrix of $\mathrm{dexp}_x^{-1}$, in closed form."""
+        x = self._vector(x)
+        return _rodrigues.dexp_inverse(self.ad(x), x[..., 0] * x[..., 0])
 
     def inverse(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:
         """Return the inverse motion."""
@@ -59,9 +64,9 @@ class SpecialEuclidean2(AbstractMatrixGroup):
         upper = xp.concatenate([turned, -(turned @ g[..., :2, 2:])], axis=-1)
         return xp.concatenate([upper, g[..., 2:, :]], axis=-2)
 
-    def rotation(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 2 2"]:
-        """Return the orthogonal part of `g`."""
-        return g[..., :2, :2]
+    def residual(self, g: Float[Array, "... 3 3"]) -> Float[Array, "..."]:
+        """Return the residual of the rotation or the largest error of the last row, whichever is larger."""
+        return _rotations.motion_residual(self._matrix(g))
 
     def angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
         """Return the angle through which `exp(x)` turns."""

@@ -6,8 +6,9 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo._types import Array, Float
-from nonholo.groups import _rodrigues
+from nonholo.groups import _rodrigues, _rotations
 from nonholo.groups._base import AbstractMatrixGroup
+from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
 from nonholo.groups._quaternion import matrix_from_quaternion, normalized, quaternion_from_matrix
 
 
@@ -15,6 +16,8 @@ from nonholo.groups._quaternion import matrix_from_quaternion, normalized, quate
 class SpecialOrthogonal3(AbstractMatrixGroup):
     """Rotations of space; the coordinates of the algebra are the angular velocity vector."""
 
+    dim: ClassVar[int] = 3
+    size: ClassVar[int] = 3
     basis: ClassVar[np.ndarray] = np.array(
         [
             [[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]],
@@ -22,15 +25,17 @@ class SpecialOrthogonal3(AbstractMatrixGroup):
             [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
         ]
     )
+    coordinates: ClassVar[AbstractCoordinates] = coordinates_of(basis)
     pose_size: ClassVar[int] = 4
+    is_rigid: ClassVar[bool] = True
 
     def __repr__(self) -> str:
         return "SO(3)"
 
-    def exp(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
-        """Return the rotation by the vector `x` (axis times angle)."""
+    def exp_increment(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
+        """Return the rotation by the vector `x` (axis times angle) minus the identity, without cancellation."""
         x = self._vector(x)
-        return _rodrigues.exponential(self.hat(x), (x * x).sum(axis=-1))
+        return _rodrigues.exp_increment(self.hat(x), (x * x).sum(axis=-1))
 
     def log(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3"]:
         """Return the rotation vector, of length at most pi; accurate near 0 and near pi."""
@@ -43,24 +48,24 @@ class SpecialOrthogonal3(AbstractMatrixGroup):
         scale = xp.where(tiny, 2.0, 2 * xp.arctan2(sine, q[..., 0]) / sine)
         return scale[..., None] * q[..., 1:]
 
-    def cayley(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
-        """Return the rotation about `x` with tan(angle / 2) = |x| / 2."""
-        x = self._vector(x)
-        return _rodrigues.cayley(self.hat(x), (x * x).sum(axis=-1))
-
     def cayley_increment(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
-        """Return `cayley(x)` minus the identity, without cancellation."""
+        """Return the rotation about `x` with tan(angle / 2) = |x| / 2, minus the identity, without cancellation."""
         x = self._vector(x)
         return _rodrigues.cayley_increment(self.hat(x), (x * x).sum(axis=-1))
+
+    def dexp_inverse(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
+        r"""Return the matrix of $\mathrm{dexp}_x^{-1}$, in closed form."""
+        x = self._vector(x)
+        return _rodrigues.dexp_inverse(self.ad(x), (x * x).sum(axis=-1))
 
     def inverse(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:
         """Return the transpose."""
         g = self._matrix(g)
         return g.__array_namespace__().swapaxes(g, -1, -2)
 
-    def rotation(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:
-        """Return the orthogonal part of `g`."""
-        return g
+    def residual(self, g: Float[Array, "... 3 3"]) -> Float[Array, "..."]:
+        """Return the largest entry of g g^T - I; at least 2 for a reflection."""
+        return _rotations.residual(self._matrix(g))
 
     def angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
         """Return the angle through which `exp(x)` turns."""

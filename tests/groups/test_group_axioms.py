@@ -130,5 +130,7 @@ def test_wrong_shapes_are_refused() -> None:
         SO(3).exp(np.zeros(4))
     with pytest.raises(ValueError, match=r"SE\(2\) \(element\).*hat"):
         SE(2).log(np.zeros((2, 2)))
-    with pytest.raises(ValueError, match=r"SO\(n=\.\.\.\).*Got 4"):
-        SO(4)
+    with pytest.raises(ValueError, match=r"SO\(n=\.\.\.\).*at least 2.*Got 1"):
+        SO(1)
+    with pytest.raises(ValueError, match=r"SE\(n=\.\.\.\).*positive integer.*Got 2\.5"):
+        SE(2.5)

@@ -1,0 +1,60 @@
+"""The rotation groups and the groups of rigid motions by dimension: closed forms for SO(3) and SE(2)."""
+
+from nonholo._checks import count, error
+from nonholo.groups._base import AbstractMatrixGroup
+from nonholo.groups._special_euclidean import SpecialEuclidean2
+from nonholo.groups._special_euclidean_n import SpecialEuclideanN
+from nonholo.groups._special_orthogonal import SpecialOrthogonal3
+from nonholo.groups._special_orthogonal_n import SpecialOrthogonalN
+
+
+def SO(n: int) -> AbstractMatrixGroup:
+    r"""Return the rotation group $SO(n)$, $n \ge 2$.
+
+    Algebra coordinates: for n = 3 the usual vector, $\mathrm{hat}(v)\,x = v \times x$; otherwise $x_{ij}$, pairs
+    $i < j$ in lexicographic order, the coefficients of $e_i\wedge e_j = e_ie_j^T - e_je_i^T$.
+
+    Raises:
+        ValueError: `n` is not an integer of at least 2.
+
+    Example:
+        >>> SO(3).hat(np.array([0.0, 0.0, 1.0]))
+        array([[ 0., -1.,  0.],
+               [ 1.,  0.,  0.],
+               [ 0.,  0.,  0.]])
+        >>> SO(4).hat(np.arange(1.0, 7.0))
+        array([[ 0.,  1.,  2.,  3.],
+               [-1.,  0.,  4.,  5.],
+               [-2., -4.,  0.,  6.],
+               [-3., -5., -6.,  0.]])
+    """
+    n = _at_least_two("SO(n=...)", n)
+    return SpecialOrthogonal3() if n == 3 else SpecialOrthogonalN(n)
+
+
+def SE(n: int) -> AbstractMatrixGroup:
+    r"""Return the group $SE(n)$, $n \ge 2$, of rigid motions as $(n + 1) \times (n + 1)$ matrices.
+
+    Algebra coordinates: for n = 2 $(\omega, v_1, v_2)$; otherwise those of so(n), then $v_1, \dots, v_n$.
+
+    Raises:
+        ValueError: `n` is not an integer of at least 2.
+
+    Example:
+        >>> SE(2).exp(np.array([0.0, 3.0, 4.0]))
+        array([[1., 0., 3.],
+               [0., 1., 4.],
+               [0., 0., 1.]])
+        >>> SE(3).dim, SE(3).hat(np.arange(1.0, 7.0))[:3].tolist()
+        (6, [[0.0, -3.0, 2.0, 4.0], [3.0, 0.0, -1.0, 5.0], [-2.0, 1.0, 0.0, 6.0]])
+    """
+    n = _at_least_two("SE(n=...)", n)
+    return SpecialEuclidean2() if n == 2 else SpecialEuclideanN(n)
+
+
+def _at_least_two(where: str, n: int) -> int:
+    remedy = "Pass the dimension of the space, 2 or more."
+    n = count(where, n, remedy)
+    if n < 2:
+        raise error(where, "be at least 2", str(n), remedy)
+    return n

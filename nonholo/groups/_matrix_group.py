@@ -1,0 +1,191 @@
+"""A group of the user's, from a basis of its Lie algebra of matrices."""
+
+import dataclasses
+import functools
+from typing import ClassVar
+
+import numpy as np
+
+from nonholo._checks import error
+from nonholo._types import Array, Float
+from nonholo.groups import _dexp
+from nonholo.groups._base import AbstractMatrixGroup
+from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
+from nonholo.groups._lie_algebra import checked_basis
+from nonholo.numerics._matrix_functions import (
+    cayley_increment,
+    exponential_increment,
+    identity_like,
+    principal_logarithm,
+)
+
+_REPRODUCED = 1e-8  # relative error of exp(log(g)) beyond which there is no logarithm
+_HALVINGS = 3  # square roots before the integral of the logarithm: eigenvalues up to exp(16)
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class MatrixGroup(AbstractMatrixGroup):
+    r"""The connected group of matrices whose Lie algebra is spanned by a basis; coordinates are its coefficients.
+
+    The compact pose is the matrix row by row, never corrected; random elements are exponentials of standard normal
+    coordinates. `log` is the principal logarithm: it exists if no eigenvalue is real and negative.
+
+    Args:
+        basis: Matrices $E_1, \dots, E_{dim}$, linearly independent, with every commutator in their span.
+
+    Raises:
+        ValueError: The basis is not finite, dependent, or a commutator leaves its span (named with its distance).
+
+    Example:
+        The Heisenberg group, $[E_1, E_2] = E_3$:
+
+        >>> heisenberg = MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
+        >>> heisenberg.exp(np.array([1.0, 1.0, 0.0]))
+        array([[1. , 1. , 0.5],
+               [0. , 1. , 1. ],
+               [0. , 0. , 1. ]])
+
+        SL(2, R), the matrices of determinant one:
+
+        >>> sl2 = MatrixGroup([[[1, 0], [0, -1]], [[0, 1], [0, 0]], [[0, 0], [1, 0]]])
+        >>> sl2
+        MatrixGroup(dim=3, N=2)
+        >>> sl2.bracket(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))
+        array([0., 2., 0.])
+    """
+
+    basis: Array
+    is_rigid: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "basis", checked_basis("MatrixGroup(basis=...)", self.basis))
+
+    def __repr__(self) -> str:
+        return f"MatrixGroup(dim={self.dim}, N={self.size})"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, MatrixGroup) and np.array_equal(self.basis, other.basis)
+
+    def __hash__(self) -> int:
+        return hash((self.basis.shape, self.basis.tobytes()))
+
+    @property
+    def dim(self) -> int:
+        """Dimension, the number of basis matrices."""
+        return self.basis.shape[0]
+
+    @property
+    def size(self) -> int:
+        """Rows of a matrix."""
+        return self.basis.shape[1]
+
+    @property
+    def pose_size(self) -> int:
+        """Numbers in a compact pose, the entries of the matrix."""
+        return self.size * self.size
+
+    @functools.cached_property
+    def coordinates(self) -> AbstractCoordinates:
+        """The maps between coordinate vectors and matrices of the algebra."""
+        return coordinates_of(self.basis)
+
+    @functools.cached_property
+    def has_cayley(self) -> bool:
+        """Whether the Cayley map stays in the group, tried on random elements of the algebra."""
+        X = self.hat(np.random.default_rng(0).normal(size=(4, self.dim)))
+        X = X / np.abs(X).sum(axis=-1).max()
+        return bool(np.all(self.residual(np.eye(self.size) + cayley_increment(X)) < _REPRODUCED))
+
+    def exp_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
+        """Return `exp(x)` minus the identity, without cancellation."""
+        return exponential_increment(self.hat(x))
+
+    def log(self, g: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+        """Return the coordinates of the principal logarithm.
+
+        Raises:
+            ValueError: There is no real principal logarithm, or it lies outside the algebra (NumPy; nothing is checked
+                in traced code).
+        """
+        g = self._matrix(g)
+        if not isinstance(g, np.ndarray):
+            return self.vee(principal_logarithm(g, _HALVINGS))
+        where, X = f"{self!r}.log(g=...)", _checked_logarithm(g)
+        lost = np.isnan(X).any(axis=(-2, -1)) & np.isfinite(g).all(axis=(-2, -1))
+        if np.any(lost):
+            got = f"eigenvalues {np.linalg.eigvals(g[lost][0]).round(6).tolist()}"
+            raise error(where, "have a real principal logarithm", got, "Split g into factors nearer to the identity.")
+        x = self.vee(X)
+        gap = np.abs(X - self.hat(x)).max(axis=(-2, -1), initial=0.0)
+        if np.any(gap > _REPRODUCED * (1 + np.abs(X).max(axis=(-2, -1), initial=0.0))):
+            got = f"a matrix whose logarithm is {np.nanmax(gap):.3g} away from the algebra"
+            raise error(where, "lie in the group", got, "Build it with `exp`.")
+        return x
+
+    def cayley_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
+        """Return `cayley(x)` minus the identity.
+
+        Raises:
+            ValueError: The Cayley map leaves this group.
+        """
+        if not self.has_cayley:
+            where = f"{self!r}.cayley"
+            raise error(where, "stay in the group", "an algebra whose Cayley map leaves it", "Use `exp` or `retract`.")
+        return cayley_increment(self.hat(x))
+
+    def dexp_inverse(self, x: Float[Array, "... dim"]) -> Float[Array, "... dim dim"]:
+        r"""Return the matrix of $\mathrm{dexp}_x^{-1} = \sum_k B_k\,\mathrm{ad}_x^k/k!$."""
+        return _dexp.dexp_inverse(self.ad(x))
+
+    def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
+        """Return the inverse matrix."""
+        g = self._matrix(g)
+        return g.__array_namespace__().linalg.inv(g)
+
+    def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
+        """Return how far the logarithm is from the algebra; infinite where there is no logarithm (JAX: undefined)."""
+        g = self._matrix(g)
+        xp = g.__array_namespace__()
+        X = _checked_logarithm(g) if isinstance(g, np.ndarray) else principal_logarithm(g, _HALVINGS)
+        gap = xp.max(abs(X - self.hat(self.vee(X))), axis=(-2, -1))
+        return xp.where(xp.isnan(gap), xp.inf, gap)
+
+    def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:
+        """Return the largest imaginary part of an eigenvalue of `hat(x)`."""
+        X = self.hat(x)
+        xp = X.__array_namespace__()
+        return xp.max(abs(xp.imag(xp.linalg.eigvals(X))), axis=-1)
+
+    def random(self, rng: np.random.Generator) -> Float[np.ndarray, "N N"]:
+        """Draw the exponential of standard normal coordinates."""
+        return self.exp(rng.normal(size=self.dim))
+
+    def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... N N"]:
+        """Return the matrix with these rows."""
+        return pose.reshape(*pose.shape[:-1], self.size, self.size)
+
+    def pose_from_matrix(self, g: Float[Array, "... N N"]) -> Float[Array, "... size"]:
+        """Return the entries row by row."""
+        return g.reshape(*g.shape[:-2], self.pose_size)
+
+    def normalize_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... size"]:
+        """Return the pose as it is: nothing is known about the nearest element."""
+        return pose
+
+    def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:
+        """Return the entries of g hat(x)."""
+        return self.pose_from_matrix(self.matrix_from_pose(pose) @ self.hat(x))
+
+
+def _checked_logarithm(g: np.ndarray) -> np.ndarray:
+    """Return principal logarithms, NaN where the exponential does not lead back."""
+    with np.errstate(all="ignore"):
+        try:
+            X = principal_logarithm(g, _HALVINGS)
+        except np.linalg.LinAlgError:  # one singular W + I spoils the whole stack
+            if g.ndim == 2:
+                return np.full_like(g, np.nan)
+            return np.stack([_checked_logarithm(each) for each in g])
+        miss = np.abs(identity_like(g) + exponential_increment(X) - g).max(axis=(-2, -1), keepdims=True, initial=0.0)
+        size = np.abs(g).max(axis=(-2, -1), keepdims=True, initial=1.0)
+        return np.where(miss <= _REPRODUCED * size, X, np.nan)

@@ -1,0 +1,106 @@
+r"""Rotations of n-dimensional space and their skew-symmetric logarithms; coordinates of so(n)."""
+
+import numpy as np
+import scipy.linalg
+
+from nonholo._checks import error
+from nonholo._types import Array, Float, Int
+from nonholo.numerics._matrix_functions import (
+    exponential_increment,
+    identity_like,
+    inverse_cayley,
+    of_skew,
+    principal_logarithm,
+)
+
+_MODERATE = -0.5  # cosine of the angle, 120 degrees, up to which tan(angle / 2) loses no digits
+
+
+def planes(n: int) -> tuple[Int[np.ndarray, "dim 2"], Int[np.ndarray, "dim 2"], Float[np.ndarray, "dim 2"]]:
+    r"""Return rows, columns and values of the entries of the basis of so(n).
+
+    It is $e_i\wedge e_j = e_ie_j^T - e_je_i^T$, i < j in lexicographic order; for n = 3 the axes, whose matrices are
+    $-e_2\wedge e_3$, $e_1\wedge e_3$, $-e_1\wedge e_2$.
+    """
+    i, j = (np.array([1, 0, 0]), np.array([2, 2, 1])) if n == 3 else np.triu_indices(n, 1)
+    sign = np.array([-1.0, 1.0, -1.0]) if n == 3 else np.ones(len(i))
+    return np.stack([i, j], axis=1), np.stack([j, i], axis=1), np.stack([sign, -sign], axis=1)
+
+
+def exp_increment(X: Float[Array, "... n n"]) -> Float[Array, "... n n"]:
+    r"""Return $e^X - I$ of skew-symmetric matrices."""
+    return of_skew(X, lambda angle: np.expm1(1j * angle)) if isinstance(X, np.ndarray) else exponential_increment(X)
+
+
+def logarithm(R: Float[Array, "... n n"], where: str) -> Float[Array, "... n n"]:
+    """Return the skew-symmetric logarithm of rotations with the smallest angles.
+
+    NumPy: accurate for every angle; pairs of eigenvalues -1 become half turns of planes. JAX: for angles up to 3.14.
+
+    Raises:
+        ValueError: A matrix is not a rotation (NumPy).
+    """
+    if not isinstance(R, np.ndarray):
+        return principal_logarithm(R, halvings=1)
+    flat = R.reshape(-1, *R.shape[-2:])
+    result = np.full(flat.shape, np.nan)
+    finite = np.flatnonzero(np.isfinite(flat).all(axis=(1, 2)))
+    least_cosine = np.linalg.eigvalsh((flat[finite] + np.swapaxes(flat[finite], 1, 2)) / 2)[:, 0]
+    moderate = finite[least_cosine > _MODERATE]
+    result[moderate] = _moderate_logarithm(flat[moderate])
+    for k in finite[least_cosine <= _MODERATE]:
+        result[k] = _schur_logarithm(flat[k], where)
+    return result.reshape(R.shape)
+
+
+def _moderate_logarithm(R: np.ndarray) -> np.ndarray:
+    K = inverse_cayley(R)  # tan(angle / 2), to relative precision near the identity
+    return of_skew((K - np.swapaxes(K, -1, -2)) / 2, lambda tangent: 2j * np.arctan(tangent))
+
+
+def _schur_logarithm(R: np.ndarray, where: str) -> np.ndarray:
+    """The real Schur form of a rotation has blocks of one or two rows; those of one row hold 1 or -1."""
+    T, Z = scipy.linalg.schur(R, output="real")[:2]
+    X, n = np.zeros_like(R), len(R)
+    paired = np.append(np.diag(T, -1) != 0, False)
+    first = np.flatnonzero(paired)
+    cosine, sine = (T[first, first] + T[first + 1, first + 1]) / 2, (T[first + 1, first] - T[first, first + 1]) / 2
+    X[first + 1, first] = np.arctan2(sine, cosine)
+    alone = np.setdiff1d(np.arange(n), np.concatenate([first, first + 1]))
+    turned = alone[np.diag(T)[alone] < 0]
+    if len(turned) % 2:
+        raise error(where, "have determinant +1", "a reflection", "Use a rotation, built by `exp` or `cayley`.")
+    X[turned[1::2], turned[::2]] = np.pi
+    return Z @ (X - X.T) @ Z.T
+
+
+def nearest(R: Float[Array, "... n n"]) -> Float[Array, "... n n"]:
+    """Return the orthogonal polar factor of matrices that are rotations up to gathered rounding errors.
+
+    Two steps of Newton and Schulz: a defect d becomes about d**4.
+    """
+    for _ in range(2):
+        R = R @ (3 * identity_like(R) - R.__array_namespace__().swapaxes(R, -1, -2) @ R) / 2
+    return R
+
+
+def residual(R: Float[Array, "... n n"]) -> Float[Array, "..."]:
+    """Return the largest entry of R R^T - I; for reflections at least 2, the distance of -1 from 1."""
+    xp = R.__array_namespace__()
+    defect = xp.max(abs(R @ xp.swapaxes(R, -1, -2) - identity_like(R)), axis=(-2, -1))
+    return xp.maximum(defect, 1 - xp.sign(xp.linalg.det(R)))
+
+
+def motion_residual(g: Float[Array, "... N N"]) -> Float[Array, "..."]:
+    """Return the residual of the rotation or the largest error of the last row, whichever is larger."""
+    xp = g.__array_namespace__()
+    last = xp.max(abs(g[..., -1, :] - identity_like(g)[-1]), axis=-1)
+    return xp.maximum(residual(g[..., :-1, :-1]), last)
+
+
+def random(n: int, rng: np.random.Generator) -> Float[np.ndarray, "n n"]:
+    """Draw a uniform rotation: the QR factor with positive diagonal of normal numbers, reflections turned."""
+    Q, U = np.linalg.qr(rng.normal(size=(n, n)))
+    Q = Q * np.sign(np.diag(U))
+    Q[:, 0] *= np.sign(np.linalg.det(Q))
+    return Q

@@ -1,0 +1,80 @@
+"""The same functions under JAX: values of compiled code, derivatives at the identity, groups as static arguments."""
+
+from collections.abc import Iterator
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from groups.examples import HEISENBERG, OTHERS, RIGID, SL2, SL3, TWO_BODIES, close, vectors
+
+from nonholo.groups import SE, SO, AbstractMatrixGroup, ProductGroup, Translations
+
+# SO(5), SO(6), SE(4) and SE(5) run the code of SO(4) and SE(3)
+COMPILED = [group for group in [*RIGID, *OTHERS] if group not in (SO(5), SO(6), SE(4), SE(5), TWO_BODIES)]
+
+
+@pytest.fixture(autouse=True)
+def _double_precision() -> Iterator[None]:
+    with jax.enable_x64(True):
+        yield
+
+
+def _everything(group: AbstractMatrixGroup, x: jax.Array) -> dict[str, jax.Array]:
+    g = group.exp(x)
+    pose = group.pose_from_matrix(g)
+    return {
+        "exp": g,
+        "log": group.log(g),
+        "retract_increment": group.retract_increment(x),
+        "inverse": group.inverse(g),
+        "adjoint": group.adjoint(g),
+        "coadjoint": group.coadjoint(g, x),
+        "coad": group.coad(x, x[::-1]),
+        "dexp_inverse": group.dexp_inverse(x),
+        "angle": group.angle(x),
+        "residual": group.residual(g),
+        "matrix_from_pose": group.matrix_from_pose(pose),
+        "pose_rate": group.pose_rate(pose, x),
+    }
+
+
+@pytest.mark.parametrize("group", COMPILED, ids=str)
+def test_compiled_functions_agree_with_numpy(group: AbstractMatrixGroup) -> None:
+    """One jit over everything, the group a static argument, on several points at once."""
+    x = vectors(group, 4, 0.6)
+    found = jax.jit(_everything, static_argnums=0)(group, jnp.asarray(x))
+    for name, expected in _everything(group, x).items():
+        assert close(np.asarray(found[name]), expected, 300), name
+
+
+@pytest.mark.parametrize("group", [SO(4), SO(6), SE(3), SE(4)], ids=str)
+@pytest.mark.parametrize("angle", [1e-9, 0.5, 2.5, 3.1])
+def test_traced_logarithm_of_large_turns(group: AbstractMatrixGroup, angle: float) -> None:
+    """Accurate to rounding times the condition of I + W, which is 50 at angle 3.1, and relative near the identity."""
+    x = vectors(group, 10)
+    x = x * (angle / group.angle(x))[:, None]
+    found = np.asarray(jax.jit(group.log)(jnp.asarray(group.exp(x))))
+    assert np.abs(found - x).max() <= (2e-14 if angle < 3 else 1e-12) * np.abs(x).max()
+
+
+@pytest.mark.parametrize(
+    "group", [SO(2), SO(4), SE(3), HEISENBERG, SL2, SL3, ProductGroup(SE(2), Translations(1))], ids=str
+)
+@pytest.mark.parametrize("derivative", [jax.jacfwd, jax.jacrev], ids=["forward", "reverse"])
+def test_derivatives_at_the_identity(group: AbstractMatrixGroup, derivative: object) -> None:
+    """log(exp(v)) and log(retract(v)) have the identity as derivative at zero, in both modes."""
+    through = jax.jit(derivative(lambda v: (group.log(group.exp(v)), group.log(group.retract(v)))))(
+        jnp.zeros(group.dim)
+    )
+    for found in through:
+        assert close(np.asarray(found), np.eye(group.dim), 20)
+
+
+@pytest.mark.parametrize("group", [SO(4), SE(3), SL2], ids=str)
+def test_derivative_of_the_traced_logarithm(group: AbstractMatrixGroup) -> None:
+    """Automatic differentiation of log at a general point is dexp^-1."""
+    x = jnp.asarray(vectors(group, 1, 0.7)[0])
+    g = group.exp(x)
+    found = jax.jit(jax.jacfwd(lambda d: group.log(group.exp(d) @ g)))(jnp.zeros(group.dim))
+    assert close(np.asarray(found), np.asarray(group.dexp_inverse(x)), 1000)
