@@ -7,10 +7,11 @@ import numpy as np
 from nonholo._checks import error
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
-from nonholo.discrete._structured import reversal_defects
+from nonholo.discrete._structured import reversal_defects, structured
 from nonholo.orbit import Orbit
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
+_SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
 
 
 @dataclasses.dataclass(frozen=True)
@@ -21,7 +22,8 @@ class Invariants:
         states: Saved states.
         steps: Steps they span (0 for a flow).
         energy_drift: Largest change of the reduced constrained energy, relative to it (absolute at rest).
-        constraint_residual: Largest forbidden part of the logarithm of a displacement, or of a body velocity.
+        constraint_residual: Largest forbidden part of the logarithm of a displacement, or of a velocity; where the
+            variety is given by equations, their largest residual.
         group_residual: Largest distance of a pose from the group.
         reversal_defect: Largest relative miss of one step forward and back.
         largest_step_angle: In degrees.
@@ -52,33 +54,37 @@ def invariants(orbit: Orbit) -> Invariants:
     """
     if len(orbit) == 0:
         raise error("invariants(orbit=...)", "have at least one state", str(orbit), "Its outcome says why it has none.")
-    sample = orbit[:: max(1, len(orbit) // _SAMPLED)]
+    group = orbit.system.group
+    sample = orbit[:: max(1, len(orbit) // (_SAMPLED if group.dim == 3 else _SAMPLED_LARGE))]
     discrete = sample.cayley is not None
-    moved = orbit.system.group.log(sample.displacement) if discrete else sample.body_velocity
     energy = orbit.energy
     return Invariants(
         states=len(orbit),
         steps=(len(orbit) - 1) * orbit.save_every if discrete else 0,
         energy_drift=float(np.abs(energy - energy[0]).max() / (energy[0] or 1.0)),
-        constraint_residual=float(np.abs(moved @ orbit.system.annihilator.T).max()),
+        constraint_residual=float(np.abs(orbit.motion.constraint_residual(sample)).max(initial=0.0)),
         group_residual=None if orbit.pose is None else _group_residual(sample),
         reversal_defect=_reversal_defect(sample),
-        largest_step_angle=float(np.degrees(orbit.system.group.angle(moved).max())) if discrete else None,
+        largest_step_angle=_largest_angle(sample) if discrete else None,
         outcome=orbit.outcome,
     )
 
 
+def _largest_angle(orbit: Orbit) -> float:
+    group = orbit.system.group
+    return float(np.degrees(group.angle(group.log(orbit.displacement)).max()))
+
+
 def _group_residual(orbit: Orbit) -> float:
     group, pose = orbit.system.group, orbit.pose
-    R = group.rotation(orbit.configuration)
-    decoded = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(R.shape[-1])).max()
+    decoded = group.residual(orbit.configuration).max()
     return float(max(decoded, np.abs(pose - group.normalize_pose(pose)).max()))
 
 
 def _reversal_defect(orbit: Orbit) -> float | None:
     motion = orbit.motion
-    if not isinstance(motion, Discretization) or motion.difference != "matrix" or orbit.cayley is None:
+    if not isinstance(motion, Discretization) or structured(motion) is None:
         return None
-    moving = np.abs(orbit.cayley).sum(axis=1) > 0
-    defects = reversal_defects(motion, orbit.reduced_momentum[moving], orbit.cayley[moving])
+    moving = np.abs(orbit.canonical_chart).sum(axis=1) > 0
+    defects = reversal_defects(motion, orbit.chosen(moving))
     return float(np.max(defects, initial=0.0, where=~np.isnan(defects)))

@@ -1,16 +1,50 @@
 """What a system is: a group, an inertia operator and the subspace that velocities are constrained to."""
 
-from nonholo.systems._base import AbstractLLSystem, Equilibria
+from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, AbstractSystem, Equilibria, System
+from nonholo.systems._displacements import in_exp_d, trace_constraints
+from nonholo.systems._euler_angles import euler_angle_discrete_lagrangian
+from nonholo.systems._ll_system import LLSystem
+from nonholo.systems._lr_system import LRSystem, VeselovaTop
 from nonholo.systems._mass import inertia_from_mass_tensor, inertia_tensor, mass_tensor_from_inertia
+from nonholo.systems._multidimensional_sleigh import MultidimensionalSleigh
+from nonholo.systems._rigid_body import RigidBody
 from nonholo.systems._sleigh import ChaplyginSleigh
+from nonholo.systems._subspace import reference_point_subspace
 from nonholo.systems._suslov import SuslovTop
+from nonholo.systems._symmetric_pair import is_symmetric_pair, symmetric_complement
+
+SYSTEMS = (
+    SuslovTop,
+    ChaplyginSleigh,
+    MultidimensionalSleigh,
+    RigidBody,
+    LLSystem,
+    VeselovaTop,
+    LRSystem,
+)
+"""Every final class of this room."""
 
 __all__ = [
+    "SYSTEMS",
     "AbstractLLSystem",
+    "AbstractLRSystem",
+    "AbstractSystem",
     "ChaplyginSleigh",
     "Equilibria",
+    "LLSystem",
+    "LRSystem",
+    "MultidimensionalSleigh",
+    "RigidBody",
     "SuslovTop",
+    "System",
+    "VeselovaTop",
+    "euler_angle_discrete_lagrangian",
+    "in_exp_d",
     "inertia_from_mass_tensor",
     "inertia_tensor",
+    "is_symmetric_pair",
     "mass_tensor_from_inertia",
+    "reference_point_subspace",
+    "symmetric_complement",
+    "trace_constraints",
 ]

@@ -1,17 +1,20 @@
-r"""The interface of a left-invariant nonholonomic system, and what follows from it.
+r"""The interfaces of nonholonomic systems on matrix groups, and what follows from them.
 
-The kinetic energy is $\tfrac12\langle\omega, \mathbb{I}\omega\rangle$, body velocities lie in a subspace
-$\mathfrak{d}$. Time steps and solvers live elsewhere.
+The kinetic energy is $\tfrac12\langle\omega, \mathbb{I}\omega\rangle$ with the body velocity $\omega = g^{-1}\dot g$.
+The constraint is left-invariant, $\omega \in \mathfrak{d}$ (LL systems), or right-invariant,
+$\mathrm{Ad}_g\omega \in \mathfrak{d}$ (LR systems). Time steps and solvers live elsewhere.
 """
 
 import abc
 import dataclasses
+from typing import ClassVar
 
 import numpy as np
 
 from nonholo._checks import as_floats
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
+from nonholo.systems._mass import inertia_form
 
 
 @dataclasses.dataclass(frozen=True)
@@ -28,43 +31,23 @@ class Equilibria:
     attracting: Float[np.ndarray, "dim"] | None
 
 
-class AbstractLLSystem(abc.ABC):
-    """A left-invariant Lagrangian with a left-invariant constraint on a matrix group.
+class AbstractSystem(abc.ABC):
+    """A kinetic energy that is invariant under left translations, with a linear constraint on velocities.
 
     A system states its group, mass tensor, constraint subspace and annihilator in the user's body frame. Kernels work
     in its canonical body frame: `canonical` is the same body seen from `frame`, that is g_canonical = g @ frame.
     """
 
     group: AbstractMatrixGroup
+    leaves: ClassVar[tuple[str, ...]]
+    """Fields that are differentiable numbers; None where a field is not used."""
+    structure: ClassVar[tuple[str, ...]]
+    """Fields that are fixed: groups, subspaces, axes."""
 
     @property
     @abc.abstractmethod
-    def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
-        """The mass tensor on which the group's matrices act."""
-
-    @property
-    @abc.abstractmethod
-    def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
-        """Rows span the admissible body velocities."""
-
-    @property
-    @abc.abstractmethod
-    def annihilator(self) -> Float[np.ndarray, "s dim"]:
-        """Rows span the covectors that vanish on admissible body velocities; multipliers refer to them."""
-
-    @property
-    @abc.abstractmethod
-    def canonical(self) -> "AbstractLLSystem":
-        """The same body in the canonical frame."""
-
-    @property
-    @abc.abstractmethod
-    def frame(self) -> Float[np.ndarray, "N N"]:
-        """The canonical body frame as seen from the user's: a group element that maps the constraint to itself."""
-
-    @abc.abstractmethod
-    def equilibria(self) -> Equilibria:
-        """Return the constant body velocities and the attracting half."""
+    def homogeneous_mass_tensor(self) -> Float[Array, "N N"] | None:
+        """The mass tensor on which the group's matrices act; None if the inertia operator was given directly."""
 
     @property
     @abc.abstractmethod
@@ -72,20 +55,57 @@ class AbstractLLSystem(abc.ABC):
         """The symmetric matrix that takes body velocity to body momentum."""
 
     @property
-    def constrained_inertia(self) -> Float[Array, "k k"]:
-        r"""The inertia operator restricted to the constraint subspace, in its rows."""
-        rows = self.constraint_subspace
-        return rows @ self.inertia_operator @ rows.T
+    @abc.abstractmethod
+    def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
+        """Rows span the subspace of the constraint; k runs from 0 to dim."""
+
+    @property
+    @abc.abstractmethod
+    def annihilator(self) -> Float[np.ndarray, "s dim"]:
+        """Rows span the covectors that vanish on the constraint subspace; multipliers refer to them."""
+
+    @property
+    @abc.abstractmethod
+    def canonical(self) -> "AbstractSystem":
+        """The same body in the canonical frame; the system itself where no frame is better than the user's."""
+
+    @property
+    @abc.abstractmethod
+    def frame(self) -> Float[np.ndarray, "N N"]:
+        """The canonical body frame as seen from the user's: a group element that maps the constraint to itself."""
 
     @property
     def frame_map(self) -> Float[Array, "k k"]:
         """C with r_canonical = C r for momenta along the constraint subspace (and y = y_canonical C for charts)."""
+        if self.canonical is self:
+            return np.eye(len(self.constraint_subspace))
         images = self.canonical.constraint_subspace @ self.group.adjoint(self.frame).T
         return images @ np.linalg.pinv(self.constraint_subspace)
+
+    @property
+    def constrained_inertia(self) -> Float[Array, "k k"]:
+        r"""The inertia operator restricted to the constraint subspace, in its rows: $S\,\mathbb{I}\,S^T$."""
+        rows, mass_tensor = self.constraint_subspace, self.homogeneous_mass_tensor
+        if mass_tensor is None:
+            return rows @ self.inertia_operator @ rows.T
+        return inertia_form(self.group.hat(rows), mass_tensor)
 
     def restrict(self, momentum: Float[Array, "... dim"]) -> Float[Array, "... k"]:
         """Return the components of a momentum along the rows of the constraint subspace."""
         return as_floats(momentum) @ self.constraint_subspace.T
+
+
+class AbstractLLSystem(AbstractSystem):
+    r"""A left-invariant Lagrangian with a left-invariant constraint: body velocities lie in $\mathfrak{d}$."""
+
+    @property
+    @abc.abstractmethod
+    def canonical(self) -> "AbstractLLSystem":
+        """The same body in the canonical frame; the system itself where no frame is better than the user's."""
+
+    @abc.abstractmethod
+    def equilibria(self) -> Equilibria:
+        """Return the constant body velocities and the attracting half."""
 
     def constrained_energy(self, momentum: Float[Array, "... dim"] | Float[Array, "... k"]) -> Float[Array, "..."]:
         r"""Return the reduced constrained energy $\tfrac12\,r\cdot(\mathbb{I}|_\mathfrak{d})^{-1}\,r$ of a momentum.
@@ -93,18 +113,105 @@ class AbstractLLSystem(abc.ABC):
         Here $r = p|_\mathfrak{d}$ are its components along the constraint subspace.
 
         Args:
-            momentum: A momentum, or its components along the rows of the constraint subspace.
+            momentum: A momentum, or its components along the rows of the constraint subspace (what k numbers are taken
+                for, also when k = dim).
 
         Example:
             >>> ChaplyginSleigh(mass=2.0, inertia=1.0, a=0.5).constrained_energy([0.0, 2.0, 0.0])
             np.float64(1.0)
         """
         momentum = as_floats(momentum)
-        restricted = momentum if momentum.shape[-1] == self.constraint_subspace.shape[0] else self.restrict(momentum)
+        restricted = momentum if momentum.shape[-1] == len(self.constraint_subspace) else self.restrict(momentum)
         return (restricted * self.restricted_velocity(restricted)).sum(axis=-1) / 2
 
     def restricted_velocity(self, restricted_momentum: Float[Array, "... k"]) -> Float[Array, "... k"]:
         """Return the velocity, in rows of the constraint subspace, that has these momenta along it."""
-        restricted_momentum = as_floats(restricted_momentum)
-        xp = restricted_momentum.__array_namespace__()
-        return xp.linalg.solve(xp.asarray(self.constrained_inertia), restricted_momentum[..., None])[..., 0]
+        return _solve(self.constrained_inertia, restricted_momentum)
+
+
+class AbstractLRSystem(AbstractSystem):
+    r"""A left-invariant Lagrangian with a right-invariant constraint: spatial velocities lie in $\mathfrak{d}$.
+
+    $$ \dot p = \mathrm{ad}^*_\omega p + \sum_j \lambda_j \mathrm{Ad}^*_g a^j, \qquad \mathrm{Ad}_g\omega \in
+       \mathfrak{d}, \qquad \mu = \mathrm{Ad}^*_{g^{-1}} p, \quad \mu|_\mathfrak{d} = \mathrm{const}. $$
+
+    The subspace and its annihilator are fixed in space; the inertia along them turns with the body, and
+    `constrained_inertia` is that of a body at the identity.
+    """
+
+    @property
+    def canonical(self) -> "AbstractLRSystem":
+        """The system itself."""
+        return self
+
+    @property
+    def frame(self) -> Float[np.ndarray, "N N"]:
+        """The identity."""
+        return self.group.identity
+
+    def spatial_inertia(self, configuration: Float[Array, "... N N"]) -> Float[Array, "... k k"]:
+        r"""Return the inertia along the constraint subspace of a body with this configuration.
+
+        $$ B(g) = S\,\mathrm{Ad}_{g^{-1}}^T\,\mathbb{I}\,\mathrm{Ad}_{g^{-1}}\,S^T
+                = \bigl(\mathrm{tr}(D_i\, g\mathbb{J}g^T D_j^T)\bigr)_{ij}, $$
+
+        with the matrices $D_i$ of the rows $S$; the second form holds for a mass tensor.
+
+        Args:
+            configuration: g.
+
+        Example:
+            >>> from nonholo.systems import VeselovaTop
+            >>> VeselovaTop(np.diag([1.0, 2.0, 3.0])).spatial_inertia(np.eye(3))
+            array([[4., 0.],
+                   [0., 5.]])
+        """
+        g = as_floats(configuration)
+        xp, rows, mass_tensor = g.__array_namespace__(), self.constraint_subspace, self.homogeneous_mass_tensor
+        if mass_tensor is not None:
+            return inertia_form(self.group.hat(rows), g @ mass_tensor @ xp.swapaxes(g, -1, -2))
+        images = rows @ xp.swapaxes(self.group.adjoint(self.group.inverse(g)), -1, -2)
+        return images @ self.inertia_operator @ xp.swapaxes(images, -1, -2)
+
+    def restrict_in_space(
+        self, momentum: Float[Array, "... dim"], configuration: Float[Array, "... N N"]
+    ) -> Float[Array, "... k"]:
+        r"""Return the components $S\,\mathrm{Ad}^*_{g^{-1}}p$ of the spatial momentum of a body momentum."""
+        g = as_floats(configuration)
+        return self.restrict(self.group.coadjoint(self.group.inverse(g), momentum))
+
+    def restricted_velocity(
+        self, restricted_momentum: Float[Array, "... k"], configuration: Float[Array, "... N N"]
+    ) -> Float[Array, "... k"]:
+        """Return the spatial velocity, in rows of the constraint subspace, that has these spatial momenta along it."""
+        return _solve(self.spatial_inertia(configuration), restricted_momentum)
+
+    def constrained_energy(
+        self, momentum: Float[Array, "... dim"] | Float[Array, "... k"], configuration: Float[Array, "... N N"]
+    ) -> Float[Array, "..."]:
+        r"""Return the constrained energy $\tfrac12\,r\cdot B(g)^{-1}\,r$ of a momentum at a configuration.
+
+        Args:
+            momentum: r, the components of the spatial momentum along the rows of the constraint subspace (what k
+                numbers are taken for, also when k = dim), or a body momentum.
+            configuration: g.
+
+        Example:
+            >>> from nonholo.systems import VeselovaTop
+            >>> VeselovaTop(np.diag([1.0, 2.0, 3.0])).constrained_energy([4.0, 0.0], np.eye(3))
+            np.float64(2.0)
+        """
+        r = as_floats(momentum)
+        if r.shape[-1] != len(self.constraint_subspace):
+            r = self.restrict_in_space(r, configuration)
+        return (r * self.restricted_velocity(r, configuration)).sum(axis=-1) / 2
+
+
+System = AbstractLLSystem | AbstractLRSystem
+"""Any system on a group."""
+
+
+def _solve(matrix: Float[Array, "... k k"], vector: Float[Array, "... k"]) -> Float[Array, "... k"]:
+    vector = as_floats(vector)
+    xp = (matrix @ vector[..., None]).__array_namespace__()  # either may be traced
+    return xp.linalg.solve(xp.asarray(matrix), xp.asarray(vector)[..., None])[..., 0]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from nonholo._checks import array, symmetric
+from nonholo._checks import array, error, symmetric
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 
@@ -34,15 +34,46 @@ def mass_tensor_from_inertia(inertia: Float[Array, "3 3"]) -> Float[Array, "3 3"
     return xp.trace(tensor) / 2 * xp.eye(3) - tensor
 
 
+def inertia_form(matrices: Float[Array, "k N N"], mass_tensor: Float[Array, "... N N"]) -> Float[Array, "... k k"]:
+    r"""Return $\bigl(\mathrm{tr}(D_i\mathbb{J}D_j^T)\bigr)_{ij}$ for velocities $D_i$ and a (homogeneous) mass tensor.
+
+    A body that moves with the velocity $\xi$, a matrix, has kinetic energy $\tfrac12\mathrm{tr}(\xi\mathbb{J}\xi^T)$.
+    """
+    xp = mass_tensor.__array_namespace__()
+    matrices = xp.asarray(matrices)
+    size = matrices.shape[-1]
+    momenta = matrices @ mass_tensor[..., None, :, :]
+    flat = xp.reshape(momenta, (*momenta.shape[:-2], size * size))
+    return flat @ xp.reshape(matrices, (-1, size * size)).T
+
+
 def inertia_from_mass_tensor(group: AbstractMatrixGroup, mass_tensor: Float[Array, "N N"]) -> Float[Array, "dim dim"]:
     r"""Return the inertia operator $\mathbb{I}_{ij} = \mathrm{tr}(E_i\mathbb{J}E_j^T)$ in the basis $E_i$.
 
-    The kinetic energy of a body that moves with the group is $\tfrac12\mathrm{tr}(\xi\,\mathbb{J}\,\xi^T)$ with its
-    (homogeneous) mass tensor $\mathbb{J}$.
+    Example:
+        >>> inertia_from_mass_tensor(SO(3), np.diag([1.0, 2.0, 3.0])).diagonal()
+        array([5., 4., 3.])
     """
-    xp = mass_tensor.__array_namespace__()
-    basis = xp.asarray(group.basis)
-    return xp.einsum("iab,bc,jac->ij", basis, mass_tensor, basis)
+    return inertia_form(group.basis, mass_tensor)
+
+
+def body_tensor(where: str, value: Array, remedy: str) -> Array:
+    """Return a symmetric (n, n) mass tensor, n >= 3."""
+    tensor = array(where, value, (None, None), remedy)
+    rows, columns = tensor.shape
+    if rows != columns or rows < 3:
+        raise error(where, "have shape (n, n) with n >= 3", f"shape {tensor.shape}", remedy)
+    return symmetric(where, tensor, remedy)
+
+
+def group_mass_tensor(where: str, group: AbstractMatrixGroup, value: Array, instead: str) -> Array:
+    """Return a symmetric mass tensor on which the matrices of SO(n) or SE(n) act; refuse it on other groups."""
+    if not group.is_rigid:
+        reason = f"the group {group!r}, which does not move the points of a rigid body"
+        raise error(where, "be used on SO(n) or SE(n)", reason, instead)
+    size = group.identity.shape[0]
+    remedy = f"On {group!r} the mass tensor is ({size}, {size}): J on SO(n), homogeneous on SE(n)."
+    return symmetric(where, array(where, value, (size, size), remedy), remedy)
 
 
 def rotation_to(axis: np.ndarray) -> np.ndarray:

@@ -42,6 +42,8 @@ class ChaplyginSleigh(AbstractLLSystem):
     a: Array
     b: Array = 0.0
     group: ClassVar[AbstractMatrixGroup] = SE(2)
+    leaves: ClassVar[tuple[str, ...]] = ("mass", "inertia", "a", "b")
+    structure: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         about = "Pass the moment of inertia about the centre of mass."

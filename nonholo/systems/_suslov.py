@@ -1,4 +1,4 @@
-"""The Suslov top: a rigid body about a fixed point that may not spin about one of its own axes."""
+"""The Suslov top: a rigid body about a fixed point that may only turn in planes containing one of its own axes."""
 
 import dataclasses
 from typing import ClassVar
@@ -9,51 +9,65 @@ from nonholo._checks import array, error, is_traced, positive_definite, symmetri
 from nonholo._types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, Equilibria
-from nonholo.systems._mass import inertia_tensor, mass_tensor_from_inertia, rotation_to
+from nonholo.systems._mass import (
+    body_tensor,
+    inertia_from_mass_tensor,
+    inertia_tensor,
+    mass_tensor_from_inertia,
+    rotation_to,
+)
+from nonholo.systems._subspace import complement, plane_rows
+
+_E3 = (0.0, 0.0, 1.0)
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class SuslovTop(AbstractLLSystem):
-    r"""A top on SO(3) whose body angular velocity has no component along the body axis `axis`.
+    r"""A top on SO(n) that may only turn in planes that contain a body axis: $e_n$, or for n = 3 the axis `axis`.
 
-    $$ l(\omega) = \tfrac12 \mathrm{tr}(\hat\omega J \hat\omega^T), \qquad \langle\gamma, \omega\rangle = 0, $$
+    $$ l(\omega) = \tfrac12 \mathrm{tr}(\hat\omega J \hat\omega^T), \qquad
+       \omega \in \mathfrak{d} = \mathrm{span}\{e_i\wedge e_n\}; \qquad n = 3:\ \langle\gamma, \omega\rangle = 0, $$
 
-    with the mass tensor $J = \int r r^T dm$ (not the inertia tensor $\mathrm{tr}(J)\,\mathrm{Id} - J$; `from_inertia`
-    takes that one). For $\gamma = e_3$ write $J = \begin{pmatrix} A & c \\ c^T & d\end{pmatrix}$: then
+    with the mass tensor $J = \int r r^T dm$ (not, for n = 3, the inertia tensor $\mathrm{tr}(J)\,\mathrm{Id} - J$;
+    `from_inertia` takes that one). With $J = \begin{pmatrix} A & c \\ c^T & d\end{pmatrix}$ in the canonical frame,
     $B = A + d\,\mathrm{Id}$ is the constrained inertia and $c$ the `coupling`, which drives the top from one permanent
     rotation to another.
 
     Reference: [fedorov-zenkov-2004], section 4.
 
     Args:
-        mass_tensor: Symmetric (3, 3) with positive definite B; flat and rod-like bodies are allowed.
-        axis: Forbidden body axis, a unit vector.
+        mass_tensor: Symmetric (n, n), n >= 3, with positive definite B; flat and rod-like bodies are allowed.
+        axis: n = 3 alone: forbidden body axis, a unit vector; e3 if left out.
 
     Raises:
-        ValueError: A shape, an asymmetry, a value that is not finite, or B not positive definite.
+        ValueError: A shape, an asymmetry, a value that is not finite, B not positive definite, an axis for n > 3.
 
     Example:
         >>> top = SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
         >>> top.constrained_inertia
         array([[2.3, 0.2],
                [0.2, 1.9]])
+        >>> SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])).constraint_subspace  # e1^e4, e2^e4, e3^e4
+        array([[0., 0., 1., 0., 0., 0.],
+               [0., 0., 0., 0., 1., 0.],
+               [0., 0., 0., 0., 0., 1.]])
     """
 
     mass_tensor: Array
-    axis: Array = dataclasses.field(default=(0.0, 0.0, 1.0), kw_only=True)
-    group: ClassVar[AbstractMatrixGroup] = SO(3)
+    axis: Array = dataclasses.field(default=None, kw_only=True)
+    leaves: ClassVar[tuple[str, ...]] = ("mass_tensor",)
+    structure: ClassVar[tuple[str, ...]] = ("axis",)
 
     def __post_init__(self) -> None:
         where = "SuslovTop(mass_tensor=...)"
         remedy = "Pass the mass tensor J, not the inertia tensor; `SuslovTop.from_inertia` takes that one."
-        tensor = symmetric(where, array(where, self.mass_tensor, (3, 3), remedy), remedy)
-        object.__setattr__(self, "mass_tensor", tensor)
-        object.__setattr__(self, "axis", _unit_vector("SuslovTop(axis=...)", self.axis))
+        object.__setattr__(self, "mass_tensor", body_tensor(where, self.mass_tensor, remedy))
+        object.__setattr__(self, "axis", _forbidden_axis("SuslovTop(axis=...)", self.axis, len(self.mass_tensor)))
         positive_definite(where, self.constrained_inertia, "the inertia along the constraint", remedy)
 
     @classmethod
-    def from_inertia(cls, inertia: Array, axis: Array = (0.0, 0.0, 1.0)) -> "SuslovTop":
-        """Build a top from its inertia tensor and the forbidden body axis; everything stays in the user's body frame.
+    def from_inertia(cls, inertia: Array, axis: Array = _E3) -> "SuslovTop":
+        """Build a top (n = 3) from its inertia tensor and the forbidden body axis, all in the user's body frame.
 
         Example:
             >>> SuslovTop.from_inertia(np.diag([3.0, 2.0, 1.5]), axis=(0, 1, 0)).annihilator
@@ -64,49 +78,60 @@ class SuslovTop(AbstractLLSystem):
         return cls(mass_tensor_from_inertia(tensor), axis=axis)
 
     def __repr__(self) -> str:
-        shown = (np.array2string(np.asarray(m), prefix=" " * 17) for m in (self.mass_tensor, self.inertia_operator))
-        mass, inertia = shown
+        mass = np.array2string(np.asarray(self.mass_tensor), prefix=" " * 17)
+        if self.axis is None:
+            return f"SuslovTop(n={self.group.identity.shape[0]},\n  mass tensor J = {mass})"
+        inertia = np.array2string(np.asarray(self.inertia_operator), prefix=" " * 17)
         return (
             f"SuslovTop(axis={np.asarray(self.axis).tolist()},\n  mass tensor J = {mass},\n  inertia tensor  {inertia})"
         )
 
     @property
-    def homogeneous_mass_tensor(self) -> Float[Array, "3 3"]:
+    def group(self) -> AbstractMatrixGroup:
+        """The rotation group SO(n)."""
+        return SO(self.mass_tensor.shape[-1])
+
+    @property
+    def homogeneous_mass_tensor(self) -> Float[Array, "n n"]:
         """The mass tensor itself."""
         return self.mass_tensor
 
     @property
-    def inertia_operator(self) -> Float[Array, "3 3"]:
-        r"""The inertia tensor $\mathrm{tr}(J)\,\mathrm{Id} - J$."""
+    def inertia_operator(self) -> Float[Array, "dim dim"]:
+        r"""The operator $\omega \mapsto J\omega + \omega J$; for n = 3 it is $\mathrm{tr}(J)\,\mathrm{Id} - J$."""
+        if self.axis is None:
+            return inertia_from_mass_tensor(self.group, self.mass_tensor)
         return inertia_tensor(self.mass_tensor)
 
     @property
-    def constraint_subspace(self) -> Float[np.ndarray, "2 3"]:
-        """Rows S(0, 1, 0) and S(-1, 0, 0), with S the shortest rotation taking e3 to the axis."""
-        return np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]) @ self.frame.T
+    def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
+        r"""Rows $e_i\wedge e_n$; n = 3: S(0, 1, 0) and S(-1, 0, 0), S the shortest rotation taking e3 to the axis."""
+        n = self.mass_tensor.shape[-1]
+        rows = plane_rows(self.group, [(i, n - 1) for i in range(n - 1)])
+        return rows if self.axis is None else rows @ self.frame.T
 
     @property
-    def annihilator(self) -> Float[np.ndarray, "1 3"]:
-        """The forbidden axis."""
-        return np.array(self.axis)[None, :]
+    def annihilator(self) -> Float[np.ndarray, "s dim"]:
+        r"""The forbidden planes $e_i\wedge e_j$, i < j < n; for n = 3 the forbidden axis."""
+        return complement(self.constraint_subspace) if self.axis is None else np.array(self.axis)[None, :]
 
     @property
-    def frame(self) -> Float[np.ndarray, "3 3"]:
-        """The shortest rotation taking e3 to the forbidden axis."""
-        return rotation_to(self.axis)
+    def frame(self) -> Float[np.ndarray, "n n"]:
+        """The shortest rotation taking e3 to the forbidden axis; the identity for n > 3."""
+        return self.group.identity if self.axis is None else rotation_to(self.axis)
 
     @property
     def canonical(self) -> "SuslovTop":
-        """The same top in body axes whose third one is the forbidden axis."""
-        if np.array_equal(self.axis, (0.0, 0.0, 1.0)):
+        """The same top in body axes whose last one is the forbidden axis."""
+        if self.axis is None or np.array_equal(self.axis, _E3):
             return self
         turned = self.frame.T @ self.mass_tensor @ self.frame
         return SuslovTop((turned + turned.T) / 2)
 
     @property
-    def coupling(self) -> Float[Array, "2"]:
+    def coupling(self) -> Float[Array, "k"]:
         """The vector c of the mass tensor in the canonical frame; zero for a balanced top."""
-        return self.canonical.mass_tensor[:2, 2]
+        return self.canonical.mass_tensor[:-1, -1]
 
     def equilibria(self) -> Equilibria:
         """Return the permanent rotations: the line spanned by c, its negative half attracting; all of d if c = 0.
@@ -121,8 +146,13 @@ class SuslovTop(AbstractLLSystem):
         return Equilibria(line[None, :], -line)
 
 
-def _unit_vector(where: str, value: Array) -> Array:
-    axis = array(where, value, (3,), "Pass a unit vector in body coordinates.")
+def _forbidden_axis(where: str, value: Array, n: int) -> Array:
+    if n > 3:
+        if value is not None:
+            remedy = "Turn the body so that its planes of rotation contain e_n."
+            raise error(where, "be left out for n > 3", f"an axis for n = {n}", remedy)
+        return None
+    axis = array(where, _E3 if value is None else value, (3,), "Pass a unit vector in body coordinates.")
     if is_traced(axis):
         raise error(where, "be concrete", "a traced value", "Differentiate with respect to mass_tensor instead.")
     length = np.linalg.norm(axis)

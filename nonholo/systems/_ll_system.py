@@ -1,0 +1,128 @@
+"""Any left-invariant system: a group, a kinetic energy and a subspace of body velocities."""
+
+import dataclasses
+from typing import Any, ClassVar
+
+import numpy as np
+
+from nonholo._checks import array, error, positive_definite, symmetric
+from nonholo._types import Array, Float
+from nonholo.groups import AbstractMatrixGroup
+from nonholo.systems._base import AbstractLLSystem, Equilibria
+from nonholo.systems._drift import constant_velocities
+from nonholo.systems._mass import group_mass_tensor, inertia_from_mass_tensor
+from nonholo.systems._subspace import subspace_and_annihilator
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False, init=False)
+class LLSystem(AbstractLLSystem):
+    r"""A system on any matrix group whose body velocity stays in a subspace of the algebra, of any dimension.
+
+    $$ l(\omega) = \tfrac12\langle\mathbb{I}\omega, \omega\rangle \ \Bigl(= \tfrac12\mathrm{tr}(\hat\omega\,\mathbb{J}\,
+       \hat\omega^T)\Bigr), \qquad \omega \in \mathfrak{d}. $$
+
+    With a mass tensor on SO(n) or SE(n) the discrete map of this library conserves the energy exactly; with a general
+    inertia operator it does not.
+
+    Reference: [fedorov-zenkov-2004], section 2.
+
+    Args:
+        group: The configuration space.
+        mass_tensor: $\mathbb{J}$: (n, n) on SO(n), homogeneous (n + 1, n + 1) on SE(n); or else `inertia_operator`.
+        constraint_subspace: Rows span $\mathfrak{d}$; an empty (0, dim) array forbids all motion, dim rows forbid none.
+        annihilator: Rows span the covectors that vanish on $\mathfrak{d}$. One of the two may be left out: it is then
+            computed, as coordinate rows where the given rows are coordinate rows, orthonormal otherwise.
+        inertia_operator: $\mathbb{I}$, symmetric (dim, dim), on any group.
+
+    Raises:
+        ValueError: Both or none of mass_tensor and inertia_operator; a mass tensor on another group; no constraint;
+            dependent rows; a subspace and an annihilator that do not fit; a wrong shape, an asymmetry, a value that is
+            not finite; an inertia along the constraint that is not positive definite.
+
+    Example:
+        >>> from nonholo.systems import LLSystem
+        >>> top = LLSystem(nh.SO(3), np.diag([1.0, 2.0, 3.0]), annihilator=[[0.0, 0.0, 1.0]])
+        >>> top.constraint_subspace
+        array([[1., 0., 0.],
+               [0., 1., 0.]])
+        >>> top.constrained_inertia
+        array([[5., 0.],
+               [0., 4.]])
+    """
+
+    group: AbstractMatrixGroup
+    mass_tensor: Array
+    given_inertia: Array
+    constraint_subspace: Array = None
+    annihilator: Array = None
+    leaves: ClassVar[tuple[str, ...]] = ("mass_tensor", "given_inertia")
+    structure: ClassVar[tuple[str, ...]] = ("group", "constraint_subspace", "annihilator")
+
+    def __init__(
+        self,
+        group: AbstractMatrixGroup,
+        mass_tensor: Any = None,
+        constraint_subspace: Any = None,
+        *,
+        annihilator: Any = None,
+        inertia_operator: Any = None,
+    ) -> None:
+        if (mass_tensor is None) == (inertia_operator is None):
+            got = "neither" if mass_tensor is None else "both"
+            remedy = "Pass the mass tensor of a body on SO(n) or SE(n), the inertia operator of anything else."
+            raise error("LLSystem(mass_tensor=...)", "be given, or else inertia_operator=", got, remedy)
+        rows, covectors = subspace_and_annihilator("LLSystem", group.dim, constraint_subspace, annihilator)
+        if mass_tensor is not None:
+            where = "LLSystem(mass_tensor=...)"
+            mass_tensor = group_mass_tensor(where, group, mass_tensor, "Pass inertia_operator= instead.")
+        else:
+            where = "LLSystem(inertia_operator=...)"
+            inertia_operator = _operator(where, inertia_operator, group.dim)
+        values = (group, mass_tensor, inertia_operator, rows, covectors)
+        for field, value in zip(dataclasses.fields(self), values, strict=True):
+            object.__setattr__(self, field.name, value)
+        if len(rows):
+            remedy = "Every admissible velocity needs a positive kinetic energy."
+            positive_definite(where, self.constrained_inertia, "the inertia along the constraint", remedy)
+
+    def __repr__(self) -> str:
+        name = "inertia operator" if self.mass_tensor is None else "mass tensor J"
+        tensor = np.asarray(self.given_inertia if self.mass_tensor is None else self.mass_tensor)
+        shown = [(name, tensor), ("constraint subspace", np.asarray(self.constraint_subspace))]
+        lines = (f"{label} = {np.array2string(value, prefix=' ' * (len(label) + 5))}" for label, value in shown)
+        return f"LLSystem({self.group!r},\n  " + ",\n  ".join(lines) + ")"
+
+    @property
+    def homogeneous_mass_tensor(self) -> Float[Array, "N N"] | None:
+        """The mass tensor; None if the inertia operator was given."""
+        return self.mass_tensor
+
+    @property
+    def inertia_operator(self) -> Float[Array, "dim dim"]:
+        """The inertia operator, that of the mass tensor if there is one."""
+        if self.mass_tensor is None:
+            return self.given_inertia
+        return inertia_from_mass_tensor(self.group, self.mass_tensor)
+
+    @property
+    def canonical(self) -> "LLSystem":
+        """The system itself."""
+        return self
+
+    @property
+    def frame(self) -> Float[np.ndarray, "N N"]:
+        """The identity."""
+        return self.group.identity
+
+    def equilibria(self) -> Equilibria:
+        """Return all of the constraint subspace if every admissible velocity stays constant.
+
+        Raises:
+            ValueError: Velocities change: the equilibria of a general system are not linear spaces.
+        """
+        return constant_velocities(self, "LLSystem")
+
+
+def _operator(where: str, value: Any, dim: int) -> Array:
+    remedy = f"Pass the symmetric ({dim}, {dim}) matrix that takes body velocities to body momenta."
+    return symmetric(where, array(where, value, (dim, dim), remedy), remedy)

@@ -1,0 +1,131 @@
+"""The Chaplygin sleigh in n dimensions: its contact point moves along one body axis, about which alone it turns."""
+
+import dataclasses
+from typing import ClassVar
+
+import numpy as np
+
+from nonholo._checks import array, error, positive, positive_definite, symmetric
+from nonholo._types import Array, Float
+from nonholo.groups import SE, AbstractMatrixGroup
+from nonholo.systems._base import AbstractLLSystem, Equilibria
+from nonholo.systems._mass import inertia_from_mass_tensor
+from nonholo.systems._subspace import complement, plane_rows
+
+
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
+class MultidimensionalSleigh(AbstractLLSystem):
+    r"""A sleigh on SE(n), n >= 3: its reference point moves along body axis 1, it turns in planes that contain it.
+
+    $$ \mathfrak{d} = \{(w, v) : w = \textstyle\sum_{j\ge2} w_j\, e_1\wedge e_j,\ v = v_1 e_1\}, \qquad
+       l = \tfrac12\mathrm{tr}(\xi\,\mathbb{J}\,\xi^T), \qquad
+       \mathbb{J} = \begin{pmatrix} J_C + m\,aa^T & m\,a \\ m\,a^T & m \end{pmatrix}. $$
+
+    With $a = (a_1, \alpha)$, $J_C = \begin{pmatrix} J_{11} & c^T \\ c & A\end{pmatrix}$, $B_1 = A + (J_{11} +
+    m a_1^2)\,\mathrm{Id}$ and the velocity $u = v_1 + \alpha\cdot w$ the motion is $B_1\dot w = |w|^2c - (c\cdot w)w -
+    m a_1 u\,w$, $\dot u = a_1|w|^2$. For n = 2 there is `ChaplyginSleigh`.
+
+    Reference: [fedorov-zenkov-2004], section 5, "Left-invariant constraints on SE(n)".
+
+    Args:
+        mass: m.
+        center_of_mass: a, n body coordinates from the reference point.
+        mass_tensor: $J_C$, symmetric (n, n), about the centre of mass.
+
+    Raises:
+        ValueError: A mass that is not positive, a wrong shape, an asymmetry, a value that is not finite, an inertia
+            along the constraint that is not positive definite.
+
+    Example:
+        >>> from nonholo.systems import MultidimensionalSleigh
+        >>> MultidimensionalSleigh(2.0, [0.5, 0.0, 0.0], np.diag([1.0, 2.0, 3.0])).constrained_inertia
+        array([[3.5, 0. , 0. ],
+               [0. , 4.5, 0. ],
+               [0. , 0. , 2. ]])
+    """
+
+    mass: Array
+    center_of_mass: Array
+    mass_tensor: Array
+    leaves: ClassVar[tuple[str, ...]] = ("mass", "center_of_mass", "mass_tensor")
+    structure: ClassVar[tuple[str, ...]] = ()
+
+    def __post_init__(self) -> None:
+        owner = "MultidimensionalSleigh"
+        mass = positive(f"{owner}(mass=...)", self.mass, "Pass the mass of the body.")
+        where, remedy = f"{owner}(center_of_mass=...)", "Pass n body coordinates."
+        centre = array(where, self.center_of_mass, (None,), remedy)
+        n = centre.shape[0]
+        if n < 3:
+            raise error(where, "have at least 3 coordinates", f"{n}", "In the plane use `ChaplyginSleigh`.")
+        where, remedy = f"{owner}(mass_tensor=...)", "Pass the mass tensor about the centre of mass."
+        tensor = symmetric(where, array(where, self.mass_tensor, (n, n), remedy), remedy)
+        for field, value in zip(dataclasses.fields(self), (mass, centre, tensor), strict=True):
+            object.__setattr__(self, field.name, value)
+        positive_definite(where, self.constrained_inertia, "the inertia along the constraint", remedy)
+
+    def __repr__(self) -> str:
+        tensor = np.array2string(np.asarray(self.mass_tensor), prefix=" " * 39)
+        head = f"mass={self.mass}, center_of_mass={np.asarray(self.center_of_mass).tolist()}"
+        return f"MultidimensionalSleigh({head},\n  mass tensor about the centre of mass = {tensor})"
+
+    @property
+    def group(self) -> AbstractMatrixGroup:
+        """The group of rigid motions SE(n)."""
+        return SE(self.center_of_mass.shape[-1])
+
+    @property
+    def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
+        """The mass tensor about the reference point in homogeneous coordinates."""
+        xp = (self.mass * self.center_of_mass @ self.mass_tensor).__array_namespace__()
+        a = xp.asarray(self.center_of_mass)
+        lever = xp.concatenate([a, xp.ones_like(a[:1])])
+        return xp.pad(xp.asarray(self.mass_tensor), ((0, 1), (0, 1))) + self.mass * lever[:, None] * lever
+
+    @property
+    def inertia_operator(self) -> Float[Array, "dim dim"]:
+        """The inertia operator in the coordinates of so(n), then the velocity of the reference point."""
+        return inertia_from_mass_tensor(self.group, self.homogeneous_mass_tensor)
+
+    @property
+    def constraint_subspace(self) -> Float[np.ndarray, "n dim"]:
+        r"""Rows $e_1\wedge e_j$, j = 2..n, then the velocity along body axis 1."""
+        n, group = self.center_of_mass.shape[-1], self.group
+        along = np.zeros((1, group.dim))
+        along[0, -n] = 1.0
+        return np.concatenate([plane_rows(group, [(0, j) for j in range(1, n)]), along])
+
+    @property
+    def annihilator(self) -> Float[np.ndarray, "s dim"]:
+        """The remaining coordinate rows."""
+        return complement(self.constraint_subspace)
+
+    @property
+    def canonical(self) -> "MultidimensionalSleigh":
+        """The sleigh itself."""
+        return self
+
+    @property
+    def frame(self) -> Float[np.ndarray, "N N"]:
+        """The identity."""
+        return self.group.identity
+
+    def equilibria(self) -> Equilibria:
+        r"""Return the velocities that stay constant.
+
+        If $a_1 \ne 0$ the motions along axis 1, the direction of $a_1$ attracting. If $a_1 = 0$ the motions with $w$
+        parallel to $c$, the half of $c$ attracting; all of d if c = 0 too.
+
+        Example:
+            >>> sleigh = MultidimensionalSleigh(1.0, [-0.5, 0.0, 0.0], np.eye(3))
+            >>> sleigh.equilibria().attracting
+            array([-0., -0., -0., -1., -0., -0.])
+        """
+        rows, c = self.constraint_subspace, np.asarray(self.mass_tensor)[0, 1:]
+        along = rows[-1]
+        if self.center_of_mass[0] != 0:
+            return Equilibria(along[None, :], np.copysign(1.0, self.center_of_mass[0]) * along)
+        if np.linalg.norm(c) <= 8 * np.finfo(np.float64).eps * np.abs(self.mass_tensor).max():
+            return Equilibria(rows, None)
+        turn = c @ rows[:-1] - (self.center_of_mass[1:] @ c) * along  # u = 0: the centre of mass does not advance
+        return Equilibria(np.stack([turn, along]), turn)

@@ -1,0 +1,97 @@
+"""The free rigid body: no constraint at all."""
+
+import dataclasses
+from typing import ClassVar
+
+import numpy as np
+
+from nonholo._checks import positive_definite
+from nonholo._types import Array, Float
+from nonholo.groups import SO
+from nonholo.systems._base import AbstractLLSystem, Equilibria
+from nonholo.systems._drift import constant_velocities
+from nonholo.systems._mass import body_tensor, group_mass_tensor, inertia_from_mass_tensor
+
+
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
+class RigidBody(AbstractLLSystem):
+    r"""A free body on SO(n) (the top of Euler; discretised, of Moser and Veselov) or on SE(n).
+
+    $$ l(\omega) = \tfrac12\mathrm{tr}(\hat\omega\,\mathbb{J}\,\hat\omega^T), \qquad \mathfrak{d} = \mathfrak{g},
+       \qquad \dot p = \mathrm{ad}^*_\omega p; $$
+
+    every component of the spatial momentum is conserved.
+
+    Reference: [fedorov-zenkov-2004], section 4, whose discrete free top is that of [moser-veselov-1991].
+
+    Args:
+        mass_tensor: Symmetric: (n, n), n >= 3, on SO(n), homogeneous (n + 1, n + 1) on SE(n).
+        group: SO(n), by default, or SE(n).
+
+    Raises:
+        ValueError: A shape, an asymmetry, a value that is not finite, an inertia that is not positive definite,
+            another group.
+
+    Example:
+        >>> from nonholo.systems import RigidBody
+        >>> RigidBody(np.diag([1.0, 2.0, 3.0])).inertia_operator.diagonal()
+        array([5., 4., 3.])
+    """
+
+    mass_tensor: Array
+    group: Array = None
+    leaves: ClassVar[tuple[str, ...]] = ("mass_tensor",)
+    structure: ClassVar[tuple[str, ...]] = ("group",)
+
+    def __post_init__(self) -> None:
+        where, remedy = "RigidBody(mass_tensor=...)", "Pass the mass tensor J, not the inertia tensor."
+        if self.group is None:
+            tensor = body_tensor(where, self.mass_tensor, remedy)
+            object.__setattr__(self, "group", SO(tensor.shape[0]))
+        else:
+            instead = "`LLSystem` takes an inertia operator on any group."
+            tensor = group_mass_tensor(where, self.group, self.mass_tensor, instead)
+        object.__setattr__(self, "mass_tensor", tensor)
+        positive_definite(where, self.inertia_operator, "the inertia operator", remedy)
+
+    def __repr__(self) -> str:
+        mass = np.array2string(np.asarray(self.mass_tensor), prefix=" " * 17)
+        return f"RigidBody({self.group!r},\n  mass tensor J = {mass})"
+
+    @property
+    def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
+        """The mass tensor itself."""
+        return self.mass_tensor
+
+    @property
+    def inertia_operator(self) -> Float[Array, "dim dim"]:
+        """The inertia operator of the mass tensor."""
+        return inertia_from_mass_tensor(self.group, self.mass_tensor)
+
+    @property
+    def constraint_subspace(self) -> Float[np.ndarray, "dim dim"]:
+        """All coordinate rows."""
+        return np.eye(self.group.dim)
+
+    @property
+    def annihilator(self) -> Float[np.ndarray, "0 dim"]:
+        """No rows."""
+        return np.empty((0, self.group.dim))
+
+    @property
+    def canonical(self) -> "RigidBody":
+        """The body itself."""
+        return self
+
+    @property
+    def frame(self) -> Float[np.ndarray, "N N"]:
+        """The identity."""
+        return self.group.identity
+
+    def equilibria(self) -> Equilibria:
+        """Return all velocities if every one stays constant, as for a spherical top.
+
+        Raises:
+            ValueError: Velocities change: the permanent rotations of a body are several lines, not one linear space.
+        """
+        return constant_velocities(self, "RigidBody")

@@ -1,0 +1,141 @@
+r"""Constraint subspaces: rows that span $\mathfrak{d}$ and rows of its annihilator, the one from the other.
+
+Linear algebra alone; what a subspace means is said by the systems.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from nonholo._checks import array, error, is_traced
+from nonholo._types import Array, Float
+from nonholo.groups import AbstractMatrixGroup
+
+_ROUNDING = 64 * np.finfo(np.float64).eps  # times the larger side of a matrix: singular values below it count as zero
+
+
+def null_space(rows: Float[np.ndarray, "m dim"], tolerance: float = _ROUNDING) -> Float[np.ndarray, "m dim"]:
+    """Return orthonormal rows that span the vectors orthogonal to the given rows.
+
+    Args:
+        rows: Any number of rows, dependent ones included.
+        tolerance: Singular values below it, times the larger side and the largest singular value, count as zero.
+    """
+    count, dim = rows.shape
+    if count == 0:
+        return np.eye(dim)
+    _, values, right = np.linalg.svd(np.linalg.qr(rows, mode="r") if count > dim else rows)
+    rank = int(np.sum(values > tolerance * max(count, dim) * values[0]))
+    return _from_axes(right[rank:])
+
+
+def complement(rows: Float[np.ndarray, "k dim"]) -> Float[np.ndarray, "s dim"]:
+    """Return rows that span the vectors orthogonal to independent rows: coordinate rows for coordinate rows."""
+    if np.all(np.count_nonzero(rows, axis=1) == 1):
+        return np.eye(rows.shape[1])[~rows.any(axis=0)]
+    return null_space(rows)
+
+
+def spanned(rows: Float[np.ndarray, "m dim"], tolerance: float = _ROUNDING) -> Float[np.ndarray, "k dim"]:
+    """Return orthonormal rows that span the same space as the given rows."""
+    return null_space(null_space(rows, tolerance))
+
+
+def independent_rows(where: str, value: Any, dim: int) -> Float[np.ndarray, "k dim"]:
+    """Return linearly independent rows of width `dim`; none at all is allowed."""
+    remedy = f"Pass one row of {dim} coordinates for each dimension, and an array of shape (0, {dim}) for none."
+    if is_traced(value):
+        raise error(where, "be concrete", "a traced value", "A constraint is structure: differentiate in the masses.")
+    empty = isinstance(value, list | tuple) and not value
+    rows = array(where, np.empty((0, dim)) if empty else value, (None, dim), remedy)
+    if len(rows) == 0:
+        return rows
+    values = np.linalg.svd(rows, compute_uv=False)
+    if len(rows) > dim or values[-1] <= _ROUNDING * dim * values[0]:
+        got = (
+            f"{len(rows)} rows with singular values from {values[0]:.3g} (number 1) to {values[-1]:.3g} ({len(values)})"
+        )
+        raise error(where, "have linearly independent rows", got, "Leave out the rows that others span.")
+    return rows
+
+
+def subspace_and_annihilator(owner: str, dim: int, subspace: Any, annihilator: Any) -> tuple[Array, Array]:
+    """Return both from at least one of them, checked."""
+    if subspace is None and annihilator is None:
+        remedy = "The one that is left out is computed."
+        raise error(f"{owner}(constraint_subspace=...)", "be given, or annihilator=", "neither", remedy)
+    if annihilator is None:
+        rows = independent_rows(f"{owner}(constraint_subspace=...)", subspace, dim)
+        return rows, _read_only(complement(rows))
+    covectors = independent_rows(f"{owner}(annihilator=...)", annihilator, dim)
+    if subspace is None:
+        return _read_only(complement(covectors)), covectors
+    rows = independent_rows(f"{owner}(constraint_subspace=...)", subspace, dim)
+    _refuse_inconsistent(f"{owner}(annihilator=...)", rows, covectors)
+    return rows, covectors
+
+
+def _refuse_inconsistent(where: str, rows: np.ndarray, covectors: np.ndarray) -> None:
+    dim, remedy = rows.shape[1], "Leave one of the two out, it is computed from the other."
+    if len(rows) + len(covectors) != dim:
+        got = f"{len(covectors)} rows beside a constraint subspace of dimension {len(rows)}"
+        raise error(where, f"have {dim - len(rows)} rows, the codimension of the constraint subspace", got, remedy)
+    scale = np.abs(covectors) @ np.abs(rows).T
+    residual = np.max(np.abs(covectors @ rows.T), initial=0.0)
+    if residual > _ROUNDING * np.max(scale, initial=0.0):
+        raise error(where, "vanish on the constraint subspace", f"a pairing of {residual:.3g}", remedy)
+
+
+def plane_rows(group: AbstractMatrixGroup, planes: list[tuple[int, int]]) -> Float[np.ndarray, "k dim"]:
+    r"""Return the coordinates of $e_i\wedge e_j = e_ie_j^T - e_je_i^T$ for pairs (i, j) counted from 0."""
+    wedge = np.zeros((len(planes), *group.identity.shape))
+    for row, (i, j) in enumerate(planes):
+        wedge[row, i, j], wedge[row, j, i] = 1.0, -1.0
+    return group.vee(wedge) + 0.0
+
+
+def reference_point_subspace(n: int, plane: Float[Array, "k n"]) -> Float[np.ndarray, "m dim"]:
+    r"""Return the subspace of se(n) in which the velocity of the body's reference point stays in a plane of the body.
+
+    $$ \mathfrak{d} = \{(w, v) : w \in so(n),\ v \in \mathrm{span}(\text{plane})\}. $$
+
+    Reference: [fedorov-zenkov-2004], section 3, "Left-invariant constraints on SE(n)".
+
+    Args:
+        n: Dimension of the space, 2 or more.
+        plane: Rows span the directions, fixed in the body, in which the reference point may move.
+
+    Raises:
+        ValueError: n < 2, or dependent rows or rows of the wrong width.
+
+    Example:
+        >>> reference_point_subspace(2, [[1.0, 0.0]])
+        array([[1., 0., 0.],
+               [0., 1., 0.]])
+    """
+    if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 2:
+        raise error("reference_point_subspace(n=...)", "be an integer of at least 2", repr(n), "Pass the n of SE(n).")
+    rows = independent_rows("reference_point_subspace(plane=...)", plane, int(n))
+    turns = int(n) * (int(n) - 1) // 2
+    return np.block([[np.eye(turns), np.zeros((turns, int(n)))], [np.zeros((len(rows), turns)), rows]])
+
+
+def _from_axes(rows: Float[np.ndarray, "k dim"]) -> Float[np.ndarray, "k dim"]:
+    """Return the orthonormal rows that the coordinate axes, projected to the span of orthonormal rows, give in order.
+
+    Unlike singular vectors they do not depend on the library that computes them; coordinate subspaces get coordinate
+    rows. The squared residuals of the axes add up to the number of missing rows, so some axis always passes the bound.
+    """
+    dim = rows.shape[1]
+    chosen = np.empty((0, dim))
+    for projected in rows.T @ rows:
+        residual = projected - chosen.T @ (chosen @ projected)
+        if residual @ residual > 1 / (2 * dim):
+            residual = residual - chosen.T @ (chosen @ residual)
+            chosen = np.concatenate([chosen, residual[None, :] / np.linalg.norm(residual)])
+    return chosen
+
+
+def _read_only(rows: np.ndarray) -> np.ndarray:
+    rows.setflags(write=False)
+    return rows

@@ -1,0 +1,331 @@
+"""Left-invariant systems of any dimension: inertia, rows, energy, drift and equilibria against their definitions."""
+
+import dataclasses
+
+import jax
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.groups import MatrixGroup
+from nonholo.systems import (
+    SYSTEMS,
+    AbstractLLSystem,
+    LLSystem,
+    MultidimensionalSleigh,
+    RigidBody,
+    SuslovTop,
+    reference_point_subspace,
+)
+
+_HEISENBERG = MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
+
+
+def _points(n: int, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Mass points in general position: masses and positions."""
+    rng = np.random.default_rng(seed)
+    return rng.uniform(0.2, 1.0, size=2 * n), rng.normal(size=(2 * n, n))
+
+
+def _mass_tensor(n: int) -> np.ndarray:
+    masses, points = _points(n)
+    return (masses[:, None] * points).T @ points
+
+
+def _homogeneous(n: int) -> np.ndarray:
+    masses, points = _points(n)
+    lifted = np.column_stack([points, np.ones(len(points))])
+    return (masses[:, None] * lifted).T @ lifted
+
+
+def _sleigh(n: int, along: float | None = None, *, straight: bool = False) -> MultidimensionalSleigh:
+    """The sleigh of the mass points, its centre of mass moved along axis 1, its axis made principal."""
+    masses, points = _points(n)
+    centre = masses @ points / masses.sum()
+    tensor = (masses[:, None] * (points - centre)).T @ (points - centre)
+    if along is not None:
+        centre[0] = along
+    if straight:
+        tensor[0, 1:] = tensor[1:, 0] = 0.0
+    return MultidimensionalSleigh(masses.sum(), centre, tensor)
+
+
+def _random_rows(k: int, dim: int) -> np.ndarray:
+    return np.random.default_rng(5).normal(size=(k, dim))
+
+
+SYSTEMS_OF_POINTS = [
+    *(SuslovTop(_mass_tensor(n)) for n in (3, 4, 6)),
+    *(RigidBody(_mass_tensor(n)) for n in (3, 5)),
+    *(RigidBody(_homogeneous(n), nh.SE(n)) for n in (2, 3)),
+    *(_sleigh(n) for n in (3, 4)),
+    LLSystem(nh.SO(4), _mass_tensor(4), _random_rows(2, 6)),
+    LLSystem(nh.SE(3), _homogeneous(3), annihilator=_random_rows(2, 6)),
+    LLSystem(nh.SE(3), _homogeneous(3), reference_point_subspace(3, [[1.0, 1.0, 0.0]])),
+]
+
+
+def _name(system: AbstractLLSystem) -> str:
+    return f"{type(system).__name__}-{system.group!r}-{len(system.constraint_subspace)}"
+
+
+@pytest.mark.parametrize("system", SYSTEMS_OF_POINTS, ids=_name)
+def test_inertia_is_the_kinetic_energy_of_the_mass_points(system: AbstractLLSystem) -> None:
+    """<xi, I xi> is the sum of m |X r|^2 over the points of the body, X the matrix of the body velocity."""
+    n = system.group.identity.shape[0] - (repr(system.group)[:2] == "SE")
+    masses, points = _points(n)
+    if system.group.identity.shape[0] > n:
+        points = np.column_stack([points, np.ones(len(points))])
+    xi = np.random.default_rng(1).normal(size=system.group.dim)
+    speeds = points @ system.group.hat(xi).T
+    assert xi @ system.inertia_operator @ xi == pytest.approx(masses @ (speeds**2).sum(axis=1), rel=1e-13)
+
+
+@pytest.mark.parametrize("system", SYSTEMS_OF_POINTS, ids=_name)
+def test_constrained_inertia_is_the_restriction(system: AbstractLLSystem) -> None:
+    """The closed form tr(D_i J D_j^T) is S I S^T, and the energy of a momentum that of its velocity."""
+    S = system.constraint_subspace
+    assert np.allclose(system.constrained_inertia, S @ system.inertia_operator @ S.T, rtol=1e-13, atol=1e-12)
+    velocity = np.random.default_rng(2).normal(size=len(S)) @ S
+    momentum = system.inertia_operator @ velocity
+    assert system.constrained_energy(momentum) == pytest.approx(velocity @ momentum / 2, rel=1e-12)
+    assert system.constrained_energy(system.restrict(momentum)) == pytest.approx(velocity @ momentum / 2, rel=1e-12)
+    assert np.array_equal(system.frame_map, np.eye(len(S)))
+
+
+@pytest.mark.parametrize("system", SYSTEMS_OF_POINTS, ids=_name)
+def test_annihilator_is_complete(system: AbstractLLSystem) -> None:
+    """The annihilator vanishes on the subspace, and together they have the dimension of the group."""
+    S, a = system.constraint_subspace, system.annihilator
+    assert np.abs(a @ S.T).max(initial=0.0) < 1e-14
+    assert np.linalg.matrix_rank(np.concatenate([S, a])) == len(S) + len(a) == system.group.dim
+
+
+@pytest.mark.parametrize("n", [3, 4, 6])
+def test_drift_of_the_top(n: int) -> None:
+    """B w' = (c.w) w - |w|^2 c on SO(n), with the matrices of the definition on the left."""
+    top, w = SuslovTop(_mass_tensor(n)), np.linspace(-1, 1.3, n - 1)
+    velocity, c = w @ top.constraint_subspace, top.coupling
+    drift = top.restrict(top.group.coad(velocity, top.inertia_operator @ velocity))
+    assert np.allclose(drift, (c @ w) * w - (w @ w) * c, rtol=0, atol=1e-13 * np.abs(top.mass_tensor).max())
+    assert np.allclose(top.constrained_inertia, top.mass_tensor[:-1, :-1] + top.mass_tensor[-1, -1] * np.eye(n - 1))
+
+
+@pytest.mark.parametrize("n", [3, 4, 5])
+def test_drift_of_the_sleigh(n: int) -> None:
+    """The motion is pi' = |w|^2 c - (c.w) w - m a1 u w and p1' = m a1 |w|^2 pi = M_1 - alpha p1, u = v1 + alpha.w."""
+    sleigh, x = _sleigh(n), np.linspace(-0.7, 1.1, n)
+    velocity, w = x @ sleigh.constraint_subspace, x[:-1]
+    m, a, c = sleigh.mass, sleigh.center_of_mass, sleigh.mass_tensor[1:, 0]
+    drift = sleigh.restrict(sleigh.group.coad(velocity, sleigh.inertia_operator @ velocity))
+    u = x[-1] + a[1:] @ w
+    expected = (w @ w) * c - (c @ w) * w - m * a[0] * u * w
+    assert np.allclose(drift[:-1] - a[1:] * drift[-1], expected, rtol=0, atol=1e-13 * np.abs(sleigh.mass_tensor).max())
+    assert drift[-1] == pytest.approx(m * a[0] * (w @ w), rel=1e-12)
+
+
+WITH_EQUILIBRIA = [
+    *(SuslovTop(_mass_tensor(n)) for n in (3, 4, 5)),
+    SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])),
+    *(_sleigh(n) for n in (3, 4)),
+    *(_sleigh(n, 0.0) for n in (3, 4)),
+    _sleigh(3, -0.4),
+    _sleigh(4, 0.0, straight=True),
+    LLSystem(nh.SE(3), _homogeneous(3), np.eye(6)[3:]),
+    RigidBody(np.eye(4)),
+]
+
+
+@pytest.mark.parametrize("system", WITH_EQUILIBRIA, ids=_name)
+def test_equilibria_are_all_of_them(system: AbstractLLSystem) -> None:
+    """The drift vanishes on the linear space of equilibria, and at random admissible velocities beside it does not."""
+    S, found, rng = system.constraint_subspace, system.equilibria().subspace, np.random.default_rng(3)
+    scale = np.abs(system.inertia_operator).max()
+    assert np.abs(_drift(system, rng.normal(size=len(found)) @ found)).max() < 1e-13 * scale
+    if len(found) < len(S):
+        assert np.abs(_drift(system, rng.normal(size=len(S)) @ S)).max() > 1e-3 * scale
+
+
+@pytest.mark.parametrize("system", [s for s in WITH_EQUILIBRIA if s.equilibria().attracting is not None], ids=_name)
+def test_attracting_half(system: AbstractLLSystem) -> None:
+    """Transverse eigenvalues of the linearisation are negative at the attracting velocity, positive at its negative."""
+    S, equilibria = system.constraint_subspace, system.equilibria()
+    for sign in (1, -1):
+        x = sign * equilibria.attracting @ np.linalg.pinv(S)
+        step = 1e-6 * np.linalg.norm(x)
+        rates = [
+            (_drift(system, (x + e) @ S) - _drift(system, (x - e) @ S)) / (2 * step) for e in step * np.eye(len(S))
+        ]
+        values = np.sort(
+            -sign * np.linalg.eigvals(np.linalg.solve(system.constrained_inertia, np.transpose(rates))).real
+        )
+        along = len(equilibria.subspace)  # so many eigenvalues vanish, to the rounding of the quotient
+        assert np.all(values[along:] > 1e-3 * values[-1])
+        assert np.all(np.abs(values[:along]) < 1e-7 * values[-1])
+
+
+def _drift(system: AbstractLLSystem, velocity: np.ndarray) -> np.ndarray:
+    return system.restrict(system.group.coad(velocity, system.inertia_operator @ velocity))
+
+
+def test_documented_rows() -> None:
+    """Rows and annihilators are the coordinates that the contract prints."""
+    sleigh = _sleigh(3)
+    assert sleigh.constraint_subspace.tolist() == [[0, 0, -1, 0, 0, 0], [0, 1, 0, 0, 0, 0], [0, 0, 0, 1, 0, 0]]
+    assert sleigh.annihilator.tolist() == [[1, 0, 0, 0, 0, 0], [0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]]
+    top = SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0]))
+    assert top.annihilator.tolist() == [[1, 0, 0, 0, 0, 0], [0, 1, 0, 0, 0, 0], [0, 0, 0, 1, 0, 0]]
+    assert SuslovTop(np.eye(3)).constraint_subspace.tolist() == [[0, 1, 0], [-1, 0, 0]]
+
+
+def test_the_sleigh_of_two_dimensions_is_the_same_family() -> None:
+    """A plane sleigh lifted to a flat body in space has the constrained inertia of `ChaplyginSleigh`."""
+    plane = nh.ChaplyginSleigh(mass=2.0, inertia=1.0, a=0.5, b=0.3)
+    flat = MultidimensionalSleigh(2.0, [0.5, 0.3, 0.0], np.diag([0.6, 0.4, 0.0]))
+    kept = flat.constrained_inertia[np.ix_([0, 2], [0, 2])]  # e1^e2 is minus the plane's omega
+    flip = np.diag([-1.0, 1.0])
+    assert np.allclose(flip @ kept @ flip, plane.constrained_inertia, atol=1e-15)
+
+
+@pytest.mark.parametrize("k", [0, 6])
+def test_extreme_constraints(k: int) -> None:
+    """No admissible velocity at all, and no constraint at all, are systems like any other."""
+    system = LLSystem(nh.SO(4), _mass_tensor(4), np.eye(6)[:k])
+    assert system.annihilator.shape == (6 - k, 6)
+    assert system.constrained_inertia.shape == system.frame_map.shape == (k, k)
+    assert system.constrained_energy(np.zeros(k)) == 0
+    assert LLSystem(nh.SO(4), _mass_tensor(4), annihilator=np.eye(6)[k:]).constraint_subspace.shape == (k, 6)
+
+
+def test_coordinate_rows_are_kept() -> None:
+    """The complement of coordinate rows is made of coordinate rows, that of others is orthonormal and unique."""
+    assert LLSystem(nh.SO(3), np.eye(3), [[0, 2.0, 0]]).annihilator.tolist() == [[1, 0, 0], [0, 0, 1]]
+    rows = _random_rows(3, 6)
+    found, mixed = (LLSystem(nh.SO(4), np.eye(4), S).annihilator for S in (rows, _random_rows(3, 3) @ rows))
+    assert np.allclose(found @ found.T, np.eye(3), rtol=0, atol=1e-14)
+    assert np.allclose(found, mixed, rtol=0, atol=1e-13)
+
+
+def test_inertia_operator_in_place_of_a_mass_tensor() -> None:
+    """A system given by its inertia operator has no mass tensor and else is the system of the mass tensor."""
+    by_mass = LLSystem(nh.SO(3), _mass_tensor(3), np.eye(3)[:2])
+    by_inertia = LLSystem(nh.SO(3), constraint_subspace=np.eye(3)[:2], inertia_operator=by_mass.inertia_operator)
+    assert by_inertia.homogeneous_mass_tensor is None
+    assert np.allclose(by_inertia.constrained_inertia, by_mass.constrained_inertia, rtol=1e-14)
+
+
+def test_a_group_of_ones_own() -> None:
+    """On the Heisenberg group an inertia operator makes a system, a mass tensor is refused with that remedy."""
+    inertia = np.diag([1.0, 2.0, 3.0])
+    system = LLSystem(_HEISENBERG, constraint_subspace=np.eye(3)[:2], inertia_operator=inertia)
+    assert system.constrained_inertia.tolist() == [[1, 0], [0, 2]]
+    assert system.equilibria().subspace.shape == (2, 3)  # [d, d] is the centre, on which momenta in d vanish
+    with pytest.raises(ValueError, match=r"must be used on SO\(n\) or SE\(n\).*Pass inertia_operator= instead"):
+        LLSystem(_HEISENBERG, inertia, np.eye(3)[:2])
+
+
+def test_reference_point_subspace() -> None:
+    """All rotations, and velocities of the reference point in the plane."""
+    rows = reference_point_subspace(3, [[1.0, 1.0, 0.0], [0.0, 0.0, 2.0]])
+    assert rows.shape == (5, 6)
+    assert np.array_equal(rows[:3], np.eye(6)[:3])
+    assert np.array_equal(rows[3:, 3:], [[1, 1, 0], [0, 0, 2]])
+    assert reference_point_subspace(4, []).shape == (6, 10)
+
+
+@pytest.mark.parametrize("system", SYSTEMS_OF_POINTS, ids=_name)
+def test_parameters_may_be_traced(system: AbstractLLSystem) -> None:
+    """The inertia operator, mass tensor and constrained inertia of traced leaves are those of concrete ones."""
+
+    def numbers(leaves: dict[str, jax.Array]) -> tuple[jax.Array, ...]:
+        traced = _rebuilt(system, leaves)
+        return traced.inertia_operator, traced.homogeneous_mass_tensor, traced.constrained_inertia
+
+    with jax.enable_x64(True):
+        leaves = {name: getattr(system, name) for name in system.leaves if getattr(system, name) is not None}
+        for traced, concrete in zip(jax.jit(numbers)(leaves), numbers(leaves), strict=True):
+            assert np.allclose(traced, concrete, rtol=1e-13, atol=1e-13)
+
+
+def _rebuilt(system: AbstractLLSystem, leaves: dict[str, jax.Array]) -> AbstractLLSystem:
+    structure = {name: getattr(system, name) for name in system.structure}
+    return type(system)(**leaves, **structure)
+
+
+def test_constraints_may_not_be_traced() -> None:
+    """A traced subspace is refused with the reason."""
+    with pytest.raises(ValueError, match=r"must be concrete\. Got a traced value"):
+        jax.jit(lambda rows: LLSystem(nh.SO(3), np.eye(3), rows).constrained_inertia)(np.eye(3))
+
+
+def test_every_class_declares_its_fields() -> None:
+    """Leaves and structure together are the fields of a system, each once."""
+    for kind in SYSTEMS:
+        assert sorted(kind.leaves + kind.structure) == sorted(field.name for field in dataclasses.fields(kind))
+
+
+def test_repr_names_what_is_shown() -> None:
+    """For n > 3 the mass tensor alone is shown: tr(J) Id - J is not an inertia tensor there."""
+    shown = repr(SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])))
+    assert "n=4" in shown
+    assert "mass tensor J" in shown
+    assert "inertia" not in shown
+    assert "inertia operator" in repr(LLSystem(nh.SO(3), constraint_subspace=[[1, 0, 0]], inertia_operator=np.eye(3)))
+    assert "SE(2)" in repr(RigidBody(_homogeneous(2), nh.SE(2)))
+
+
+@pytest.mark.parametrize(
+    ("build", "words"),
+    [
+        (
+            lambda: SuslovTop(np.eye(4), axis=(0, 0, 1)),
+            r"axis=\.\.\.\)` must be left out for n > 3. Got an axis for n = 4",
+        ),
+        (lambda: SuslovTop(np.eye(4)[:3]), r"shape \(n, n\) with n >= 3. Got shape \(3, 4\)"),
+        (lambda: SuslovTop(np.diag([-9.0, 1, 1, 1])), "along the constraint positive definite. Got an eigenvalue -8"),
+        (
+            lambda: LLSystem(nh.SO(3)),
+            r"LLSystem\(mass_tensor=\.\.\.\)` must be given, or else inertia_operator=. Got neither",
+        ),
+        (lambda: LLSystem(nh.SO(3), np.eye(3), np.eye(3), inertia_operator=np.eye(3)), "Got both"),
+        (lambda: LLSystem(nh.SO(3), np.eye(3)), "be given, or annihilator=. Got neither"),
+        (lambda: LLSystem(nh.SO(3), np.eye(4), np.eye(3)), r"shape \(3, 3\). Got shape \(4, 4\). On SO\(3\)"),
+        (lambda: LLSystem(nh.SE(3), np.eye(3), np.eye(6)), r"shape \(4, 4\). Got shape \(3, 3\).*homogeneous on SE"),
+        (lambda: LLSystem(nh.SO(3), np.eye(3), np.eye(2)), r"shape \(any, 3\). Got shape \(2, 2\)"),
+        (
+            lambda: LLSystem(nh.SO(3), np.eye(3), [[1, 2, 3], [2, 4, 6]]),
+            r"independent rows. Got 2 rows.*1.*e-1\d \(2\)",
+        ),
+        (lambda: LLSystem(nh.SO(3), np.eye(3), np.ones((4, 3))), "independent rows. Got 4 rows"),
+        (lambda: LLSystem(nh.SO(3), np.eye(3), [[0, 0, 0]]), "independent rows"),
+        (lambda: LLSystem(nh.SO(3), np.eye(3), [[1, 0, 0]], annihilator=[[0, 1, 0]]), "have 2 rows, the codimension"),
+        (
+            lambda: LLSystem(nh.SO(3), np.eye(3), [[1, 0, 0]], annihilator=[[0, 1, 0], [0.1, 0, 1]]),
+            "vanish on the constraint subspace. Got a pairing of 0.1",
+        ),
+        (lambda: LLSystem(nh.SO(3), np.diag([-3.0, 1, 1]), [[0, 0, 1]]), "positive definite. Got an eigenvalue -2"),
+        (lambda: LLSystem(nh.SO(3), None, np.eye(3), inertia_operator=np.triu(np.ones((3, 3)))), "symmetric"),
+        (
+            lambda: LLSystem(nh.SO(3), None, np.eye(3), inertia_operator=np.eye(2)),
+            r"shape \(3, 3\). Got shape \(2, 2\)",
+        ),
+        (lambda: LLSystem(nh.SO(3), np.full((3, 3), np.inf), np.eye(3)), "finite. Got inf"),
+        (lambda: LLSystem(nh.SO(3), np.diag([1.0, 2, 3]), np.eye(3)).equilibria(), "linear space. Got a drift of"),
+        (lambda: RigidBody(np.diag([1.0, 2, 3])).equilibria(), r"RigidBody\.equilibria\(\)"),
+        (lambda: RigidBody(np.diag([1.0, 0, 0])), "inertia operator positive definite. Got an eigenvalue 0"),
+        (lambda: RigidBody(np.eye(3), nh.SE(3)), r"shape \(4, 4\). Got shape \(3, 3\)"),
+        (lambda: MultidimensionalSleigh(0.0, [1, 0, 0], np.eye(3)), r"mass=\.\.\.\)` must be positive"),
+        (lambda: MultidimensionalSleigh(1.0, [1, 0], np.eye(2)), "at least 3 coordinates. Got 2. In the plane"),
+        (lambda: MultidimensionalSleigh(1.0, [1, 0, 0], np.eye(4)), r"shape \(3, 3\). Got shape \(4, 4\)"),
+        (
+            lambda: MultidimensionalSleigh(1.0, [0, 0, 0], np.diag([-2.0, 1, 1])),
+            "positive definite. Got an eigenvalue -1",
+        ),
+        (lambda: reference_point_subspace(1, [[1.0]]), "at least 2. Got 1"),
+        (lambda: reference_point_subspace(3, [[1.0, 0.0]]), r"plane=\.\.\.\)` must have shape \(any, 3\)"),
+    ],
+)
+def test_bad_input_is_refused(build: object, words: str) -> None:
+    """Each error names the owner, the requirement, what was got and the remedy."""
+    with pytest.raises(ValueError, match=words):
+        build()

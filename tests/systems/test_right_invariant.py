@@ -1,0 +1,114 @@
+"""Right-invariant constraints: the turned inertia, energies, and the conservation of spatial momentum."""
+
+import jax
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.systems import AbstractLRSystem, LRSystem, VeselovaTop
+
+_RNG = np.random.default_rng(7)
+
+
+def _tensor(n: int) -> np.ndarray:
+    points = np.random.default_rng(n).normal(size=(3 * n, n))
+    return points.T @ points / n
+
+
+SYSTEMS = [
+    *(VeselovaTop(_tensor(n)) for n in (3, 4, 5)),
+    LRSystem(nh.SO(4), _tensor(4), _RNG.normal(size=(3, 6))),
+    LRSystem(nh.SE(2), _tensor(3), np.eye(3)[:2]),
+    LRSystem(nh.SE(3), _tensor(4), None, annihilator=_RNG.normal(size=(2, 6))),
+    LRSystem(nh.SO(3), _tensor(3), np.empty((0, 3))),
+]
+
+
+def _name(system: AbstractLRSystem) -> str:
+    return f"{type(system).__name__}-{system.group!r}-{len(system.constraint_subspace)}"
+
+
+@pytest.mark.parametrize("system", SYSTEMS, ids=_name)
+def test_spatial_inertia_by_its_definition(system: AbstractLRSystem) -> None:
+    """The trace form is S Ad^T I Ad S^T with Ad of the inverse, also for a stack of configurations."""
+    group, S = system.group, system.constraint_subspace
+    g = np.stack([group.random(_RNG) for _ in range(3)])
+    found = system.spatial_inertia(g)
+    for one, B in zip(g, found, strict=True):
+        Ad = group.adjoint(group.inverse(one))
+        assert np.allclose(B, S @ Ad.T @ system.inertia_operator @ Ad @ S.T, rtol=1e-12, atol=1e-12)
+    assert np.allclose(system.spatial_inertia(group.identity), system.constrained_inertia, rtol=1e-14, atol=0)
+
+
+@pytest.mark.parametrize("system", SYSTEMS, ids=_name)
+def test_energy_is_the_kinetic_energy(system: AbstractLRSystem) -> None:
+    """For an admissible motion 1/2 r.B(g)^-1 r is 1/2 <p, omega>, from the body momentum and from r."""
+    group, S = system.group, system.constraint_subspace
+    g = group.random(_RNG)
+    x = _RNG.normal(size=len(S))
+    omega = group.adjoint(group.inverse(g)) @ (x @ S)
+    p = system.inertia_operator @ omega
+    r = system.restrict_in_space(p, g)
+    assert np.allclose(r, system.spatial_inertia(g) @ x, rtol=1e-12, atol=1e-13)
+    assert np.allclose(system.restricted_velocity(r, g), x, rtol=1e-10, atol=1e-12)
+    assert system.constrained_energy(p, g) == pytest.approx(p @ omega / 2, rel=1e-12)
+    assert system.constrained_energy(r, g) == pytest.approx(p @ omega / 2, rel=1e-12)
+
+
+@pytest.mark.parametrize("system", SYSTEMS[:6], ids=_name)
+def test_kinetic_energy_is_constant_at_constant_spatial_momentum(system: AbstractLRSystem) -> None:
+    """With r constant and the spatial velocity xi = B(g)^-1 r the energy does not change: the force has no power."""
+    group, S = system.group, system.constraint_subspace
+    g, r = group.random(_RNG), _RNG.normal(size=len(S))
+    xi, step = group.hat(system.restricted_velocity(r, g) @ S), 1e-5
+    ahead, behind = (system.constrained_energy(r, g + sign * step * xi @ g) for sign in (1, -1))
+    energy = system.constrained_energy(r, g)
+    assert abs(ahead - behind) / (2 * step) < 1e-8 * energy * (
+        1 + np.abs(xi).max()
+    )  # truncation step^2, rounding eps/step
+
+
+@pytest.mark.parametrize("system", SYSTEMS, ids=_name)
+def test_the_users_frame_is_the_canonical_one(system: AbstractLRSystem) -> None:
+    """A system with a constraint in space is its own canonical form."""
+    assert system.canonical is system
+    assert np.array_equal(system.frame, system.group.identity)
+    assert np.array_equal(system.frame_map, np.eye(len(system.constraint_subspace)))
+
+
+def test_spatial_inertia_of_traced_numbers() -> None:
+    """The mass tensor and the configuration may be traced, and the energy differentiated in both."""
+    J, g, r = _tensor(3), nh.SO(3).exp(np.array([0.3, -0.2, 0.5])), np.array([0.4, -0.3])
+    with jax.enable_x64(True):
+        energy = jax.jit(lambda J, g: VeselovaTop(J).constrained_energy(r, g))
+        assert float(energy(J, g)) == pytest.approx(float(VeselovaTop(J).constrained_energy(r, g)), rel=1e-14)
+        slope = np.asarray(jax.grad(energy)(J, g))
+    change = np.diag([1e-6, 0.0, 2e-6])
+    ahead, behind = (VeselovaTop(J + sign * change).constrained_energy(r, g) for sign in (1, -1))
+    assert np.sum(slope * change) == pytest.approx((ahead - behind) / 2, rel=1e-8)
+
+
+def test_documented_rows_and_repr() -> None:
+    """The rows of the Veselova top are those of the Suslov top; both tensors are named."""
+    top = VeselovaTop(np.diag([1.0, 2.0, 3.0]))
+    assert top.constraint_subspace.tolist() == [[0, 1, 0], [-1, 0, 0]]
+    assert top.annihilator.tolist() == [[0, 0, 1]]
+    assert VeselovaTop(np.eye(4)).annihilator.tolist() == nh.SuslovTop(np.eye(4)).annihilator.tolist()
+    assert "mass tensor J" in repr(top)
+    assert "constraint subspace" in repr(SYSTEMS[3])
+
+
+@pytest.mark.parametrize(
+    ("build", "words"),
+    [
+        (lambda: VeselovaTop(np.eye(2)), r"n >= 3. Got shape \(2, 2\)"),
+        (lambda: VeselovaTop(np.diag([1.0, 0, 0])), "inertia operator positive definite. Got an eigenvalue 0"),
+        (lambda: LRSystem(nh.SO(3), np.eye(3)), r"LRSystem\(constraint_subspace=\.\.\.\)` must be given"),
+        (lambda: LRSystem(nh.SO(3), np.eye(4), np.eye(3)), r"shape \(3, 3\). Got shape \(4, 4\)"),
+        (lambda: LRSystem(nh.SO(3), np.eye(3), np.ones((2, 3))), "independent rows"),
+    ],
+)
+def test_bad_input_is_refused(build: object, words: str) -> None:
+    """Each error names the owner, the requirement, what was got and the remedy."""
+    with pytest.raises(ValueError, match=words):
+        build()
