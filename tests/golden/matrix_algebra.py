@@ -1,6 +1,6 @@
-"""Small matrices of mpmath numbers and the two bodies, for the scripts that make reference data.
+"""Matrices of mpmath numbers, bases of so(n) and se(n), and two bodies, for the scripts that make reference data.
 
-Conventions of so(3) and se(2): docs/conventions.md. Nothing of the library is imported here.
+Conventions of the algebras: docs/conventions.md. Nothing of the library is imported here.
 """
 
 from __future__ import annotations
@@ -29,6 +29,29 @@ SE2 = [
 ]
 IDENTITY = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
 ANNIHILATOR = [0, 0, 1]
+
+
+def identity(size: int) -> Matrix:
+    """Return the unit matrix."""
+    return [[int(i == j) for j in range(size)] for i in range(size)]
+
+
+def wedge(i: int, j: int, size: int) -> Matrix:
+    """Return e_i e_j^T - e_j e_i^T, indices counted from 0."""
+    return [[int((r, c) == (i, j)) - int((r, c) == (j, i)) for c in range(size)] for r in range(size)]
+
+
+def special_orthogonal(n: int) -> list[Matrix]:
+    """Return the basis of so(n): the vector basis for n = 3, else e_i ^ e_j, i < j, lexicographic."""
+    return SO3 if n == 3 else [wedge(i, j, n) for i in range(n) for j in range(i + 1, n)]
+
+
+def special_euclidean(n: int) -> list[Matrix]:
+    """Return the basis of se(n): rotations of so(n) first, then translations."""
+    if n == 2:
+        return SE2
+    rotations = [[*([*row, 0] for row in element), [0] * (n + 1)] for element in special_orthogonal(n)]
+    return rotations + [[[int((r, c) == (i, n)) for c in range(n + 1)] for r in range(n + 1)] for i in range(n)]
 
 
 @dataclass(frozen=True)
@@ -112,7 +135,7 @@ def exponential(x: Matrix) -> Matrix:
     halvings = 10
     with mp.workdps(mp.dps + 10):
         scaled = [[mp.ldexp(entry, -halvings) for entry in row] for row in x]
-        result = term = IDENTITY
+        result = term = identity(len(x))
         order = 0
         while order == 0 or largest(term) > mp.eps:
             order += 1
@@ -148,9 +171,7 @@ def constrained_energy(body: Body, momentum: Vector) -> Number:
 def group_residual(body: Body, g: Matrix) -> Number:
     """Return how far g is from SO(3) or SE(2)."""
     block = g if body.system == "suslov" else [row[:2] for row in g[:2]]
-    size = range(len(block))
-    identity = [[int(i == j) for j in size] for i in size]
-    residual = largest(subtract(multiply(block, transpose(block)), identity))
+    residual = largest(subtract(multiply(block, transpose(block)), identity(len(block))))
     if body.system == "sleigh":
         residual = max(residual, largest(subtract([g[2]], [IDENTITY[2]])))
     return max(residual, abs(mp.det(mp.matrix(g)) - 1))
