@@ -5,63 +5,90 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from nonholo import examples as examples
     from nonholo import plotting as plot  # noqa: F401
+    from nonholo import testing as testing
     from nonholo._results import Outcome as Outcome
     from nonholo._results import OutcomeError as OutcomeError
+    from nonholo.analysis import conserved_momenta as conserved_momenta
     from nonholo.analysis import invariants as invariants
     from nonholo.continuous import vector_field as vector_field
-    from nonholo.discrete import (
-        Discretization as Discretization,
-    )
-    from nonholo.discrete import (
-        discrete_legendre as discrete_legendre,
-    )
-    from nonholo.discrete import (
-        discretize as discretize,
-    )
+    from nonholo.discrete import Discretization as Discretization
+    from nonholo.discrete import discrete_legendre as discrete_legendre
+    from nonholo.discrete import discretize as discretize
     from nonholo.discrete._precision import allow_float32 as allow_float32
     from nonholo.discrete._step import step as step
     from nonholo.groups import SE as SE
     from nonholo.groups import SO as SO
+    from nonholo.groups import MatrixGroup as MatrixGroup
+    from nonholo.groups import ProductGroup as ProductGroup
+    from nonholo.groups import Translations as Translations
     from nonholo.io import load_orbit as load_orbit
     from nonholo.io import save_orbit as save_orbit
+    from nonholo.lagrange_dalembert import LagrangeDAlembert as LagrangeDAlembert
     from nonholo.orbit import Orbit as Orbit
     from nonholo.simulation import flow as flow
     from nonholo.simulation import simulate as simulate
     from nonholo.systems import ChaplyginSleigh as ChaplyginSleigh
+    from nonholo.systems import LLSystem as LLSystem
+    from nonholo.systems import LRSystem as LRSystem
+    from nonholo.systems import MultidimensionalSleigh as MultidimensionalSleigh
+    from nonholo.systems import RigidBody as RigidBody
     from nonholo.systems import SuslovTop as SuslovTop
+    from nonholo.systems import VeselovaTop as VeselovaTop
+    from nonholo.systems import euler_angle_discrete_lagrangian as euler_angle_discrete_lagrangian
+    from nonholo.systems import in_exp_d as in_exp_d
+    from nonholo.systems import is_symmetric_pair as is_symmetric_pair
+    from nonholo.systems import reference_point_subspace as reference_point_subspace
+    from nonholo.systems import trace_constraints as trace_constraints
 
 _HOMES = {
+    "ChaplyginSleigh": "systems",
+    "Discretization": "discrete",
+    "LLSystem": "systems",
+    "LRSystem": "systems",
+    "LagrangeDAlembert": "lagrange_dalembert",
+    "MatrixGroup": "groups",
+    "MultidimensionalSleigh": "systems",
+    "Orbit": "orbit",
     "Outcome": "_results",
     "OutcomeError": "_results",
+    "ProductGroup": "groups",
+    "RigidBody": "systems",
     "SE": "groups",
     "SO": "groups",
-    "load_orbit": "io",
-    "save_orbit": "io",
-    "ChaplyginSleigh": "systems",
     "SuslovTop": "systems",
-    "Discretization": "discrete",
+    "Translations": "groups",
+    "VeselovaTop": "systems",
     "allow_float32": "discrete._precision",
+    "conserved_momenta": "analysis",
     "discrete_legendre": "discrete",
     "discretize": "discrete",
-    "step": "discrete._step",
-    "Orbit": "orbit",
+    "euler_angle_discrete_lagrangian": "systems",
     "flow": "simulation",
+    "in_exp_d": "systems",
     "invariants": "analysis",
+    "is_symmetric_pair": "systems",
+    "load_orbit": "io",
+    "reference_point_subspace": "systems",
+    "save_orbit": "io",
     "simulate": "simulation",
+    "step": "discrete._step",
+    "trace_constraints": "systems",
     "vector_field": "continuous",
 }
+_ROOMS = {"examples": "examples", "plot": "plotting", "testing": "testing"}
 
 __version__ = version("nonholo")
 
 
 def __getattr__(name: str) -> Any:
-    if name == "plot":
-        return importlib.import_module("nonholo.plotting")
+    if name in _ROOMS:
+        return importlib.import_module(f"nonholo.{_ROOMS[name]}")
     if name not in _HOMES:
         raise AttributeError(f"module 'nonholo' has no attribute {name!r}")
     return getattr(importlib.import_module(f"nonholo.{_HOMES[name]}"), name)
 
 
 def __dir__() -> list[str]:
-    return sorted([*_HOMES, "plot"])
+    return sorted([*_HOMES, *_ROOMS])

@@ -8,13 +8,13 @@ from nonholo._types import Float
 from nonholo.continuous._blade_path import blade_path
 from nonholo.continuous._heteroclinic import Heteroclinic, heteroclinic
 from nonholo.numerics import sinc
-from nonholo.systems import AbstractLLSystem, ChaplyginSleigh, SuslovTop
+from nonholo.systems import AbstractSystem, ChaplyginSleigh, SuslovTop
 
 _LARGEST_RATIO = 1e150  # of turn to the Gudermannian; beyond it the centre of mass is as good as at the blade
 
 
 def closed_form(
-    system: AbstractLLSystem,
+    system: AbstractSystem,
     reduced_momentum: Float[np.ndarray, "k"],
     pose: Float[np.ndarray, "size"],
     elapsed: Float[np.ndarray, "K"],
@@ -28,7 +28,7 @@ def closed_form(
         motion = heteroclinic(system, reduced_momentum)
         poses, turned = _sleigh_poses(system, motion, reduced_momentum, pose, elapsed)
         return motion.momentum(elapsed), poses, turned, Outcome.successful
-    if isinstance(system, SuslovTop):
+    if isinstance(system, SuslovTop) and system.group.dim == 3:
         from nonholo.continuous._integration import integrate_pose
 
         motion = heteroclinic(system, reduced_momentum)

@@ -13,14 +13,15 @@ import numpy as np
 from nonholo._checks import error
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.orbit import AbstractMotion
-from nonholo.systems import AbstractLLSystem
+from nonholo.orbit import AbstractMotion, Orbit
+from nonholo.systems import AbstractLRSystem, AbstractSystem
+from nonholo.systems._mass import inertia_form
 
 Body = tuple[Array, Array, Array]
 r"""Constraint subspace $S$, inertia operator $\mathbb{I}$ and $(S\mathbb{I}S^T)^{-1}S$, which takes r to $\omega$."""
 
 
-def body_of(system: AbstractLLSystem) -> Body:
+def body_of(system: AbstractSystem) -> Body:
     """Return the numbers that the equations need of a system."""
     S, inertia = system.constraint_subspace, system.inertia_operator
     xp = inertia.__array_namespace__()
@@ -53,37 +54,72 @@ def reaction(
 class ContinuousFlow(AbstractMotion):
     """The continuous motion of a system, as the orbits of `flow` know it."""
 
-    system: AbstractLLSystem
+    system: AbstractSystem
 
-    def full_momentum(
-        self, reduced_momentum: Float[np.ndarray, "K k"], cayley: Float[np.ndarray, "K k"] | None
-    ) -> Float[np.ndarray, "K dim"]:
-        r"""Return the momenta $p = \mathbb{I}\omega$ in the user's frame."""
-        del cayley
-        _, inertia, to_velocity = body_of(self.system.canonical)
-        return self._in_users_frame(reduced_momentum @ to_velocity @ inertia.T)
+    def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
+        r"""Return the momenta $p = \mathbb{I}\omega$."""
+        return states.body_velocity @ self.system.inertia_operator.T
 
-    def multipliers(
-        self, reduced_momentum: Float[np.ndarray, "K k"], cayley: Float[np.ndarray, "K k"] | None, save_every: int
-    ) -> Float[np.ndarray, "K s"]:
-        r"""Return the forces $\lambda$ in $p' = \mathrm{ad}^*_\omega p + \sum_j \lambda_j a^j$ at the states."""
-        del cayley, save_every
-        force = reaction(self.system.group, body_of(self.system.canonical), reduced_momentum)
-        return self._in_users_frame(force) @ np.linalg.pinv(self.system.annihilator)
+    def multipliers(self, states: Orbit) -> Float[np.ndarray, "K s"]:
+        r"""Return the forces $\lambda$ in $p' = \mathrm{ad}^*_\omega p + \sum_j \lambda_j a^j$ at the states.
 
-    def _in_users_frame(self, covector: np.ndarray) -> np.ndarray:
-        group = self.system.group
-        return group.coadjoint(group.inverse(self.system.frame), covector)
+        For a right-invariant constraint the last term is $\sum_j \lambda_j \mathrm{Ad}^*_g a^j$.
+        """
+        system = self.system
+        if isinstance(system, AbstractLRSystem):
+            force = spatial_reaction(system, states.configuration, states.body_velocity)
+        else:
+            force = reaction(system.group, body_of(system), states.restricted_momentum)
+        return force @ np.linalg.pinv(system.annihilator)
+
+    def constraint_residual(self, states: Orbit) -> Float[np.ndarray, "K s"]:
+        """Return the forbidden velocities."""
+        velocity, system = states.body_velocity, self.system
+        if isinstance(system, AbstractLRSystem):
+            velocity = (system.group.adjoint(states.configuration) @ velocity[..., None])[..., 0]
+        return velocity @ system.annihilator.T
+
+    def displaced(self, cayley: Float[np.ndarray, "K m"]) -> Float[np.ndarray, "K N N"]:
+        """Refuse: a continuous motion has no displacements."""
+        got = f"chart coordinates {cayley} of a continuous flow"
+        raise ValueError(f"`Orbit.displacement` needs a discrete orbit. Got {got}. Use `simulate`.")
 
 
-def vector_field(system: AbstractLLSystem) -> Callable[[Array, Float[Array, "size"]], Float[Array, "size"]]:
+def spatial_velocity(
+    group: AbstractMatrixGroup, S: Array, tensor: Array, r: Array, g: Float[Array, "... N N"]
+) -> Float[Array, "... dim"]:
+    """Return the spatial velocity along rows S of a body at a pose with spatial momenta r along them."""
+    xp = g.__array_namespace__()
+    rows = xp.asarray(S, dtype=g.dtype)
+    inertia = inertia_form(group.hat(rows), g @ tensor @ xp.swapaxes(g, -1, -2))
+    return xp.linalg.solve(inertia, xp.broadcast_to(r, inertia.shape[:-1])[..., None])[..., 0] @ rows
+
+
+def spatial_reaction(
+    system: AbstractLRSystem, g: Float[np.ndarray, "K N N"], velocity: Float[np.ndarray, "K dim"]
+) -> Float[np.ndarray, "K dim"]:
+    r"""Return the constraint force in space, $\mathrm{Ad}^*_{g^{-1}}(\mathbb{I}\dot\omega - \mathrm{ad}^*_\omega p)$.
+
+    The spatial velocity $S^T w$ accelerates such that the momentum along $S$ stays:
+    $B(g)\,\dot w = S\,\mathrm{Ad}^*_{g^{-1}}\mathrm{ad}^*_\omega p$, and $\dot\omega = \mathrm{Ad}_{g^{-1}}S^T\dot w$.
+    """
+    group, S, inertia = system.group, system.constraint_subspace, system.inertia_operator
+    back = group.inverse(g)
+    torque = group.coadjoint(back, group.coad(velocity, velocity @ inertia.T))
+    rate = np.linalg.solve(system.spatial_inertia(g), (torque @ S.T)[..., None])[..., 0] @ S
+    acceleration = (group.adjoint(back) @ rate[..., None])[..., 0]
+    return group.coadjoint(back, acceleration @ inertia.T) - torque
+
+
+def vector_field(system: AbstractSystem) -> Callable[[Array, Float[Array, "size"]], Float[Array, "size"]]:
     r"""Return the equations of motion as a function (time, state) -> derivative, for a solver of your own.
 
     $$ r' = (\mathrm{ad}^*_\omega p)|_{\mathfrak{d}}, \qquad g' = g\,\hat\omega, \qquad
        p = \mathbb{I}\omega, \quad \omega \in \mathfrak{d}, \quad p|_{\mathfrak{d}} = r. $$
 
     The state is flat: the k components of the momentum along the rows of `constraint_subspace`, then the N x N entries
-    of the configuration, row by row, all in the user's body frame. It may be a NumPy array or, inside `jax.jit` or
+    of the configuration, row by row, all in the user's body frame. For a right-invariant constraint the momenta are
+    spatial, and constant. It may be a NumPy array or, inside `jax.jit` or
     diffrax, a traced one; leading axes broadcast.
 
     Reference: [fedorov-zenkov-2004], section 2, the Euler-Poincare-Suslov equations.
@@ -103,17 +139,22 @@ def vector_field(system: AbstractLLSystem) -> Callable[[Array, Float[Array, "siz
         >>> bool(np.allclose(end[2:].reshape(3, 3), orbit.configuration[-1], atol=1e-8))
         True
     """
-    if not isinstance(system, AbstractLLSystem):
-        raise error("vector_field(system=...)", "be a system", repr(system), "Pass a SuslovTop or a ChaplyginSleigh.")
-    body = body_of(system)
-    k, shape = len(system.constraint_subspace), system.group.identity.shape
+    if not isinstance(system, AbstractSystem):
+        raise error("vector_field(system=...)", "be a system", repr(system), "Pass a SuslovTop or an LLSystem.")
+    group, S = system.group, system.constraint_subspace
+    k, shape = len(S), group.identity.shape
+    body = None if isinstance(system, AbstractLRSystem) else body_of(system)
 
     def derivative(time: Array, state: Float[Array, "size"]) -> Float[Array, "size"]:
         del time
         xp = state.__array_namespace__()
-        rate, velocity, _ = momentum_rate(system.group, body, state[..., :k])
-        g = xp.reshape(state[..., k:], (*state.shape[:-1], *shape))
-        moved = xp.reshape(g @ system.group.hat(velocity), (*state.shape[:-1], -1))
-        return xp.concatenate([rate, moved], axis=-1)
+        r, g = state[..., :k], xp.reshape(state[..., k:], (*state.shape[:-1], *shape))
+        if body is None:
+            velocity = spatial_velocity(group, S, system.homogeneous_mass_tensor, r, g)
+            rate, moved = xp.zeros_like(r), group.hat(velocity) @ g
+        else:
+            rate, velocity, _ = momentum_rate(group, body, r)
+            moved = g @ group.hat(velocity)
+        return xp.concatenate([rate, xp.reshape(moved, (*state.shape[:-1], -1))], axis=-1)
 
     return derivative

@@ -11,7 +11,7 @@ import numpy as np
 
 from nonholo._types import Array, Float
 from nonholo.continuous._equations import body_of, momentum_rate
-from nonholo.systems import AbstractLLSystem
+from nonholo.systems import AbstractSystem
 
 _SMALLEST = 1e-290  # of a pull, or of the part of the momentum across the equilibria: below it digits are lost
 
@@ -40,7 +40,7 @@ class Heteroclinic:
         return (2 * decay / (1 + decay * decay)) * self.across + xp.tanh(phase) * self.along
 
 
-def heteroclinic(system: AbstractLLSystem, reduced_momentum: Float[np.ndarray, "2"]) -> Heteroclinic:
+def heteroclinic(system: AbstractSystem, reduced_momentum: Float[np.ndarray, "2"]) -> Heteroclinic:
     r"""Return the momentum of a system with a two-dimensional constraint in closed form.
 
     With $n = \gamma/|\gamma|$ and $|x|$ constant: $x(t) = |x|\,[\pm\mathrm{sech}\,s\; n + \tanh s\; Q n]$,
@@ -66,7 +66,7 @@ def heteroclinic(system: AbstractLLSystem, reduced_momentum: Float[np.ndarray, "
 
 
 def _rates(
-    system: AbstractLLSystem, lower: Float[np.ndarray, "2 2"], x: Float[np.ndarray, "... 2"]
+    system: AbstractSystem, lower: Float[np.ndarray, "2 2"], x: Float[np.ndarray, "... 2"]
 ) -> Float[np.ndarray, "... 2"]:
     rates, _, _ = momentum_rate(system.group, body_of(system), x @ lower.T)
     return np.linalg.solve(lower, rates[..., None])[..., 0]

@@ -14,10 +14,10 @@ import numpy as np
 
 from nonholo._results import Outcome
 from nonholo._types import Array, Float
-from nonholo.continuous._equations import Body, body_of, momentum_rate
+from nonholo.continuous._equations import Body, body_of, momentum_rate, spatial_velocity
 from nonholo.continuous._heteroclinic import Heteroclinic
 from nonholo.groups import SE, AbstractMatrixGroup
-from nonholo.systems import AbstractLLSystem
+from nonholo.systems import AbstractLRSystem, AbstractSystem
 
 _SMALLEST_STEP = 1e-13  # of an interval; below it a solve is given up
 
@@ -26,7 +26,7 @@ Rate = Callable[[AbstractMatrixGroup, Array, State, Any], State]
 
 
 def integrate(
-    system: AbstractLLSystem,
+    system: AbstractSystem,
     reduced_momentum: Float[np.ndarray, "k"],
     pose: Float[np.ndarray, "size"],
     elapsed: Float[np.ndarray, "K"],
@@ -39,14 +39,18 @@ def integrate(
     planar = system.group == SE(2)
     turned = np.arctan2(pose[1:2], pose[0:1]) if planar else np.zeros(0)
     start = (reduced_momentum, pose, turned)
-    rows, outcome = _solve(_motion_rate, system.group, start, body_of(system), elapsed, tolerances)
+    if isinstance(system, AbstractLRSystem):
+        rate, known = _spatial_rate, (system.constraint_subspace, system.homogeneous_mass_tensor)
+    else:
+        rate, known = _motion_rate, body_of(system)
+    rows, outcome = _solve(rate, system.group, start, known, elapsed, tolerances)
     momenta, poses, headings = rows
     poses = system.group.normalize_pose(poses)
     return momenta, poses, _same_turn(headings[:, 0], poses) if planar else None, outcome
 
 
 def integrate_pose(
-    system: AbstractLLSystem,
+    system: AbstractSystem,
     motion: Heteroclinic,
     pose: Float[np.ndarray, "size"],
     elapsed: Float[np.ndarray, "K"],
@@ -70,6 +74,15 @@ def _motion_rate(group: AbstractMatrixGroup, time: Array, state: State, body: Bo
     momentum, pose, turned = state
     rate, velocity, _ = momentum_rate(group, body, momentum)
     return rate, group.pose_rate(pose, velocity), velocity[: turned.shape[0]]
+
+
+def _spatial_rate(group: AbstractMatrixGroup, time: Array, state: State, known: tuple[Array, Array]) -> State:
+    del time
+    momentum, pose, turned = state
+    g = group.matrix_from_pose(pose)
+    spatial = spatial_velocity(group, *known, momentum, g)
+    velocity = group.adjoint(group.inverse(g)) @ spatial
+    return jax.numpy.zeros_like(momentum), group.pose_rate(pose, velocity), velocity[: turned.shape[0]]
 
 
 def _pose_rate(group: AbstractMatrixGroup, time: Array, state: State, known: tuple[Array, ...]) -> State:

@@ -1,6 +1,7 @@
 """The definition route: momenta as derivatives of the discrete Lagrangian, the step as a root of its equations.
 
-Written from the definitions for any discrete Lagrangian, in JAX; the closed forms are tested against it.
+Written from the definitions for any group, any discrete Lagrangian and any displacement variety, in JAX; the compiled
+steps are tested against it. With a right-invariant constraint the unknown is U = g W g^-1; the equations depend on g.
 """
 
 import functools
@@ -15,8 +16,12 @@ from nonholo._progress import progress_bar
 from nonholo._results import Outcome
 from nonholo._types import Array, Float
 from nonholo.discrete._discretization import Discretization
+from nonholo.discrete._legendre import legendre
 from nonholo.discrete._precision import in_double
 from nonholo.discrete._root import principal_root
+from nonholo.groups import AbstractMatrixGroup
+from nonholo.orbit import Orbit
+from nonholo.systems import AbstractLRSystem
 
 
 def reduced_discrete_lagrangian(discrete: Discretization) -> Callable[[Array], Array]:
@@ -34,6 +39,15 @@ def reduced_discrete_lagrangian(discrete: Discretization) -> Callable[[Array], A
         return x @ jnp.asarray(system.inertia_operator) @ x / (2 * h)
 
     return of_matrix if discrete.difference == "matrix" else of_logarithm
+
+
+def value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup) -> tuple[np.ndarray, np.ndarray]:
+    """Return a discrete Lagrangian and its derivative along the group at the identity."""
+
+    def at(x: Array) -> Array:
+        return lagrangian(group.exp(x))
+
+    return in_double(jax.value_and_grad(at), np.zeros(group.dim))
 
 
 def legendre_by_derivative(discrete: Discretization, W: Float[Array, "... N N"], side: str) -> Float[Array, "... dim"]:
@@ -56,66 +70,93 @@ def _legendre(discrete: Discretization, W: Array, side: str) -> Array:
     return jnp.reshape(jax.vmap(momentum)(flat), (*W.shape[:-2], group.dim))
 
 
-def displaced(discrete: Discretization, y: Float[Array, "k"]) -> Float[Array, "N N"]:
-    """Return the displacement with Cayley coordinates y in rows of the constraint subspace."""
-    return discrete.system.group.cayley(2 * y @ jnp.asarray(discrete.system.constraint_subspace))
+def displaced(discrete: Discretization, y: Float[Array, "m"]) -> Float[Array, "N N"]:
+    """Return the element of the variety, in the user's frame, with canonical chart coordinates y."""
+    frame = discrete.system.frame
+    return jnp.asarray(frame) @ discrete.variety.displaced(y) @ jnp.asarray(discrete.system.group.inverse(frame))
 
 
-def principal_displacement(discrete: Discretization, restricted: Float[Array, "k"]) -> tuple[Array, Array]:
-    """Return Cayley coordinates of the principal displacement with these momenta along d, and the outcome."""
-
-    def residual(y: Array, r: Array) -> Array:
-        return discrete.system.restrict(_legendre(discrete, displaced(discrete, y), "left")) - r
-
-    return principal_root(residual, restricted)
-
-
-def next_charts_by_definition(discrete: Discretization, cayley: Float[np.ndarray, "K k"]) -> Float[np.ndarray, "K k"]:
-    """Return the canonical Cayley coordinates that follow, one step from each row."""
-    C = discrete.system.frame_map
-    _, charts, _ = in_double(equinox.filter_jit(jax.vmap(_step, in_axes=(None, 0))), discrete, cayley @ C)
-    return charts @ np.linalg.inv(C)
+def momentum_of(discrete: Discretization, y: Array, g: Array, side: str) -> Array:
+    """Return the body momentum (left) or the one that arrives (right) of a displacement at a pose."""
+    group, system = discrete.system.group, discrete.system
+    X = discrete.variety.increment(y)
+    if isinstance(system, AbstractLRSystem):
+        return legendre(discrete, group.inverse(g) @ X @ g, side)
+    return legendre(discrete, jnp.asarray(system.frame) @ X @ jnp.asarray(group.inverse(system.frame)), side)
 
 
-def _step(discrete: Discretization, y: Array) -> tuple[Array, Array, Array]:
-    r = discrete.system.restrict(_legendre(discrete, displaced(discrete, y), "right"))
-    following, code = principal_displacement(discrete, r)
-    return r, following, code
+def restricted(discrete: Discretization, momentum: Array, g: Array) -> Array:
+    """Return the components of a body momentum along the constraint, in space where that is fixed in space."""
+    system = discrete.system
+    if isinstance(system, AbstractLRSystem):
+        momentum = system.group.coadjoint(system.group.inverse(g), momentum)
+    return jnp.asarray(system.constraint_subspace, dtype=momentum.dtype) @ momentum
+
+
+def principal_displacement(discrete: Discretization, r: Float[Array, "k"], g: Array) -> tuple[Array, Array]:
+    """Return chart coordinates of the principal displacement with these momenta along d, and the outcome."""
+    variety = discrete.variety
+
+    def residual(y: Array, target: Array) -> Array:
+        missed = restricted(discrete, momentum_of(discrete, y, g, "left"), g) - target
+        return jnp.concatenate([missed, variety.equations(variety.displaced(y))])
+
+    return principal_root(residual, r, variety.chart.shape[0])
+
+
+def next_charts_by_definition(discrete: Discretization, states: Orbit) -> Float[np.ndarray, "K m"]:
+    """Return the canonical chart coordinates that follow, one step from each state."""
+    poses = states.configuration if isinstance(states.system, AbstractLRSystem) else _identities(states)
+    step = equinox.filter_jit(jax.vmap(step_from, in_axes=(None, 0, 0)))
+    return in_double(step, discrete, states.canonical_chart, poses)[1]
+
+
+def _identities(states: Orbit) -> np.ndarray:
+    return np.broadcast_to(states.system.group.identity, (len(states), *states.system.group.identity.shape))
+
+
+def step_from(discrete: Discretization, y: Array, g: Array) -> tuple[Array, Array, Array, Array]:
+    """Return restricted momentum, chart and pose after one step, and the outcome."""
+    W = displaced(discrete, y)
+    after = W @ g if isinstance(discrete.system, AbstractLRSystem) else g @ W
+    r = restricted(discrete, momentum_of(discrete, y, g, "right"), after)
+    following, code = principal_displacement(discrete, r, after)
+    return r, following, after, code
 
 
 def run_by_definition(
     discrete: Discretization, reduced: np.ndarray, pose: np.ndarray, steps: int, every: int, progress: bool
 ) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], Outcome, int]:
     """Run the step; return the saved canonical states, the outcome and the number of good steps."""
-    C = discrete.system.frame_map
-    restricted = np.linalg.solve(C, reduced)
-    y, code = in_double(equinox.filter_jit(principal_displacement), discrete, restricted)
-    saved = [(restricted, y, pose)] if code == 0 else []
+    group, C, frame = discrete.system.group, discrete.system.frame_map, discrete.system.frame
+    r, g = np.linalg.solve(C, reduced), group.matrix_from_pose(pose) @ group.inverse(frame)
+    y, code = in_double(equinox.filter_jit(principal_displacement), discrete, r, g)
+    saved = [(r, y, g)] if code == 0 else []
     done = 0
     with progress_bar("steps", progress) as report:
         while code == 0 and done < steps:
             batch = min(every, steps - done)
-            good, code, r, y, pose = in_double(_advance, discrete, np.int64(batch), y, pose)
+            good, code, r, y, g = in_double(_advance, discrete, np.int64(batch), r, y, g)
             done += int(good)
             if code == 0 and batch == every:
-                saved.append((r, y, pose))
+                saved.append((r, y, g))
             report(done, steps)
-    rows = [np.array(column) for column in zip(*saved, strict=True)] or [np.empty((0, reduced.size))] * 2 + [pose[:0]]
-    return (rows[0] @ C.T, rows[1] @ np.linalg.inv(C), rows[2]), Outcome(int(code)), done
+    if not saved:
+        return (np.empty((0, r.size)), np.empty((0, y.size)), np.empty((0, pose.size))), Outcome(int(code)), done
+    momenta, charts, poses = (np.array(column) for column in zip(*saved, strict=True))
+    return (momenta @ C.T, charts, group.pose_from_matrix(poses @ frame)), Outcome(int(code)), done
 
 
 @equinox.filter_jit
-def _advance(discrete: Discretization, steps: Array, y: Array, pose: Array) -> tuple[Array, ...]:
-    group, system = discrete.system.group, discrete.system
-    back = jnp.asarray(group.inverse(system.frame))
+def _advance(discrete: Discretization, steps: Array, r: Array, y: Array, g: Array) -> tuple[Array, ...]:
+    group = discrete.system.group
 
     def body(carry: tuple[Array, ...]) -> tuple[Array, ...]:
-        done, _, _, y, pose = carry
-        r, following, code = _step(discrete, y)
-        W = back @ displaced(discrete, y) @ system.frame
-        moved = group.pose_from_matrix(group.matrix_from_pose(pose) @ W)
+        done, _, *now = carry
+        *ahead, code = step_from(discrete, now[1], now[2])
+        ahead[2] = group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(ahead[2])))
         good = code == 0
-        return done + good, code, r, jnp.where(good, following, y), jnp.where(good, moved, pose)
+        return done + good, code, *(jnp.where(good, new, old) for new, old in zip(ahead, now, strict=True))
 
-    start = (jnp.asarray(0), jnp.asarray(0), jnp.zeros_like(y), jnp.asarray(y), jnp.asarray(pose))
+    start = (jnp.asarray(0), jnp.asarray(0), jnp.asarray(r), jnp.asarray(y), jnp.asarray(g))
     return jax.lax.while_loop(lambda c: (c[0] < steps) & (c[1] == 0), body, start)

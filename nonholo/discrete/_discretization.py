@@ -7,10 +7,11 @@ import numpy as np
 
 from nonholo._checks import choice, error, positive
 from nonholo._types import Array, Float
-from nonholo.discrete._legendre import legendre_of_chart
+from nonholo.discrete._legendre import legendre, legendre_of_chart
 from nonholo.discrete._structured import next_charts
-from nonholo.orbit import AbstractMotion
-from nonholo.systems import AbstractLLSystem
+from nonholo.discrete._variety import Constraint, Variety, checked_constraint, variety_of
+from nonholo.orbit import AbstractMotion, Orbit
+from nonholo.systems import AbstractLRSystem, AbstractSystem, System
 
 Difference = str | Callable[[Array], Array]
 
@@ -23,7 +24,7 @@ class Discretization(AbstractMotion):
         system: What moves.
         time_step: h.
         difference: "matrix", "logarithmic" or a callable.
-        constraint: "skew" or "exponential".
+        constraint: "skew", "exponential", "naive" or functions.
         order: 2.
 
     Example:
@@ -32,33 +33,77 @@ class Discretization(AbstractMotion):
             difference='matrix', constraint='skew', order=2)
     """
 
-    system: AbstractLLSystem
+    system: System
     time_step: Array
     difference: Difference = "matrix"
-    constraint: str = "skew"
+    constraint: Constraint = "skew"
     order: int = 2
 
-    def full_momentum(
-        self, reduced_momentum: Float[np.ndarray, "K k"], cayley: Float[np.ndarray, "K k"]
-    ) -> Float[np.ndarray, "K dim"]:
-        """Return the discrete momenta at the displacements."""
-        del reduced_momentum
-        return legendre_of_chart(self, cayley, "left")
+    @property
+    def variety(self) -> Variety:
+        """The displacement variety in the canonical frame."""
+        return variety_of(self.system, self.constraint)
 
-    def multipliers(
-        self, reduced_momentum: Float[np.ndarray, "K k"], cayley: Float[np.ndarray, "K k"], save_every: int
-    ) -> Float[np.ndarray, "L s"]:
-        r"""Return the impulses $\lambda$ in $P_{k+1} - \mathrm{Ad}^*_{W_k} P_k = \sum_j \lambda_j a^j$."""
-        following = cayley[1:] if save_every == 1 else next_charts(self, reduced_momentum[:-1], cayley[:-1])
-        jump = legendre_of_chart(self, following, "left") - legendre_of_chart(self, cayley[:-1], "right")
-        return jump @ np.linalg.pinv(self.system.annihilator)
+    @property
+    def conserves_energy(self) -> bool:
+        """Whether the energy theorem holds: matrix difference, a variety closed under it, a left-invariant constraint.
+
+        Example:
+            >>> discretize(ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, difference="logarithmic").conserves_energy
+            False
+        """
+        variety = self.variety
+        skew = self.constraint == "skew" or (self.constraint == "exponential" and not variety.exponential)
+        return self.difference == "matrix" and skew and not isinstance(self.system, AbstractLRSystem)
+
+    def displaced(self, cayley: Float[np.ndarray, "K m"]) -> Float[np.ndarray, "K N N"]:
+        """Return the elements of the variety, in the user's frame, with canonical chart coordinates."""
+        frame = self.system.frame
+        return frame @ self.variety.displaced(cayley) @ self.system.group.inverse(frame)
+
+    def constraint_residual(self, states: Orbit) -> Float[np.ndarray, "K j"]:
+        """Return the forbidden parts of logarithms of displacements, or the residuals of the variety's equations."""
+        D = self.variety.displaced(states.canonical_chart)
+        if self.variety.exact:
+            return self.system.group.log(D) @ self.variety.annihilator.T
+        return self.variety.equations(D)
+
+    def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
+        """Return the discrete momenta at the displacements."""
+        return self._momentum(states, states.canonical_chart, "left")
+
+    def multipliers(self, states: Orbit) -> Float[np.ndarray, "L s"]:
+        r"""Return the impulses $\lambda$ in $P_{k+1} - \mathrm{Ad}^*_{W_k} P_k = \sum_j \lambda_j a^j$.
+
+        For a right-invariant constraint the right-hand side is $\sum_j \lambda_j \mathrm{Ad}^*_{g_{k+1}} a^j$.
+        """
+        before = states.chosen(slice(None, -1))
+        charts = states.canonical_chart[1:] if states.save_every == 1 else next_charts(self, before)
+        arriving = self._momentum(before, before.canonical_chart, "right")
+        if not isinstance(self.system, AbstractLRSystem):
+            jump = legendre_of_chart(self, charts, "left") - arriving
+            return jump @ np.linalg.pinv(self.system.annihilator)
+        group = self.system.group
+        g = self.displaced(before.canonical_chart) @ before.configuration
+        jump = _in_body(self, charts, g, "left") - arriving
+        return group.coadjoint(group.inverse(g), jump) @ np.linalg.pinv(self.system.annihilator)
+
+    def _momentum(self, states: Orbit, cayley: np.ndarray, side: str) -> np.ndarray:
+        if isinstance(self.system, AbstractLRSystem):
+            return _in_body(self, cayley, states.configuration, side)
+        return legendre_of_chart(self, cayley, side)
+
+
+def _in_body(discrete: Discretization, cayley: np.ndarray, g: np.ndarray, side: str) -> np.ndarray:
+    """Return the momenta of spatial displacements U at poses g: those of W = g^-1 U g."""
+    return legendre(discrete, discrete.system.group.inverse(g) @ discrete.variety.increment(cayley) @ g, side)
 
 
 def discretize(
-    system: AbstractLLSystem,
+    system: System,
     time_step: Array,
-    difference: Difference = "matrix",
-    constraint: str = "skew",
+    difference: Difference | None = None,
+    constraint: Constraint | Callable[[Array], Array] | None = None,
     order: int = 2,
 ) -> Discretization:
     r"""Discretise a system: choose the discrete Lagrangian and the variety that displacements lie on.
@@ -66,30 +111,74 @@ def discretize(
     $$ l_d(W) = h\, l\bigl((W - I)/h\bigr) \ \text{(matrix)}, \qquad l_d(W) = h\, l(\log W/h)\ \text{(logarithmic)}, $$
 
     with $h$ the time step and, for matrices, $l(X) = \tfrac12\mathrm{tr}(X\,\mathbb{J}\,X^T)$. With "matrix" and "skew"
-    the step conserves the reduced constrained energy exactly; with "logarithmic" or a callable it does not.
+    the step of a left-invariant system conserves the reduced constrained energy exactly, whatever the constraint
+    subspace; with any other choice it does not (`Discretization.conserves_energy` tells).
 
-    Reference: [fedorov-zenkov-2004], section 3.
+    Reference: [fedorov-zenkov-2004], section 3; docs/theory/energy-theorem.md.
 
     Args:
         system: What moves.
         time_step: h > 0.
-        difference: "matrix", "logarithmic" or a callable $L_d(W)$ of a JAX matrix that includes the factor h.
-        constraint: "skew", (W - W^-1)/2 in d on the component through the identity, or "exponential", exp d; the same
-            set for the systems of this version.
+        difference: "matrix", "logarithmic" or a callable $L_d(W)$ of a JAX matrix that includes the factor h. By
+            default "matrix" where it is defined, for a mass tensor on SO(n) or SE(n), and "logarithmic" elsewhere.
+        constraint: "skew", (W - W^-1)/2 in d on the component through the identity; "exponential", exp d; "naive",
+            W - I projected to the algebra, in d; or functions f_j(W) of a JAX matrix, zero on the variety. By default
+            "skew" where it is defined, on SO(n) and SE(n), and "exponential" elsewhere.
         order: 2.
 
     Raises:
-        ValueError: A time step that is not positive and real, an unknown choice.
+        ValueError: A time step that is not positive and real, an unknown choice, a difference or a constraint that is
+            not defined for the system, functions that do not fit d at the identity.
 
     Example:
         >>> discretize(ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), time_step=0.1).difference
         'matrix'
     """
-    if not isinstance(system, AbstractLLSystem):
-        raise error("discretize(system=...)", "be a system", repr(system), "Pass a SuslovTop or a ChaplyginSleigh.")
+    if not isinstance(system, AbstractSystem):
+        raise error("discretize(system=...)", "be a system", repr(system), "Pass a SuslovTop or an LLSystem.")
     step = positive("discretize(time_step=...)", time_step, "Pass a positive real time step.")
-    if not callable(difference):
-        choice("discretize(difference=...)", difference, ("matrix", "logarithmic"), "Or pass a callable L_d(W).")
-    choice("discretize(constraint=...)", constraint, ("skew", "exponential"))
+    chosen = _difference(system, difference)
+    variety = _constraint(system, constraint)
     choice("discretize(order=...)", order, (2,))
-    return Discretization(system, step, difference, constraint, order)
+    return Discretization(system, step, chosen, variety, order)
+
+
+def _difference(system: AbstractSystem, difference: Difference | None) -> Difference:
+    where, defined = "discretize(difference=...)", system.homogeneous_mass_tensor is not None
+    if difference is None:
+        return "matrix" if defined else "logarithmic"
+    if callable(difference):
+        return _scalar(where, system, difference)
+    choice(where, difference, ("matrix", "logarithmic"), "Or pass a callable L_d(W).")
+    if difference == "matrix" and not defined:
+        got = "a kinetic energy given by an inertia operator, which says nothing of W - I outside the algebra"
+        raise error(
+            where, "be defined for the system", got, "Pass 'logarithmic', or build the system of a mass tensor."
+        )
+    return difference
+
+
+def _scalar(where: str, system: AbstractSystem, difference: Callable[[Array], Array]) -> Callable[[Array], Array]:
+    """Refuse a discrete Lagrangian that is not a finite number with finite derivatives at the identity."""
+    from nonholo.discrete._definition import value_and_slope
+
+    try:
+        value, slope = value_and_slope(difference, system.group)
+    except TypeError as failure:
+        got = f"{failure}".splitlines()[0]
+        raise error(where, "be a real scalar function of a JAX matrix", got, "Return one number.") from failure
+    if not (np.isfinite(value) and np.all(np.isfinite(slope))):
+        raise error(where, "be differentiable at the identity", f"value {value}, slope {slope}", "Avoid 0/0 there.")
+    return difference
+
+
+def _constraint(system: AbstractSystem, constraint: object) -> Constraint:
+    rigid = system.group.is_rigid
+    if constraint is None:
+        return "skew" if rigid else "exponential"
+    where = "discretize(constraint=...)"
+    checked = checked_constraint(where, system, constraint)
+    if checked == "skew" and not rigid:
+        got = f"{system.group}, where (W - W^-1)/2 need not lie in the algebra"
+        raise error(where, "be defined on the group", got, "Pass 'exponential'.")
+    return checked

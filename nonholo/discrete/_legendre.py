@@ -1,7 +1,7 @@
 r"""The discrete Legendre transformation $W \mapsto P(W)$ and its right-handed companion $\mathrm{Ad}^*_W P(W)$.
 
-For the matrix difference both are closed forms in $X = W - I$, free of cancellation; for every other discrete
-Lagrangian they are derivatives taken by JAX (`_definition`).
+For the matrix difference both are closed forms in $X = W - I$, free of cancellation, for the logarithmic one in log W;
+for every other discrete Lagrangian they are derivatives taken by JAX (`_definition`).
 """
 
 from typing import TYPE_CHECKING
@@ -54,9 +54,21 @@ def legendre(discrete: "Discretization", increment: Float[Array, "... N N"], sid
     if discrete.difference == "matrix":
         tensor = discrete.system.homogeneous_mass_tensor
         return matrix_legendre(group, tensor, increment, side) / discrete.time_step
+    if discrete.difference == "logarithmic":
+        return logarithmic_legendre(discrete, increment + group.identity, side)
     from nonholo.discrete._definition import legendre_by_derivative
 
     return legendre_by_derivative(discrete, increment + group.identity, side)
+
+
+def logarithmic_legendre(discrete: "Discretization", W: Float[Array, "... N N"], side: str) -> Float[Array, "... dim"]:
+    r"""Return $(\mathrm{dexp}^{-1}_{\pm X})^*\,\mathbb{I}\,X/h$, $X = \log W$: plus on the left, minus on the right."""
+    group = discrete.system.group
+    x = group.log(W)
+    xp = x.__array_namespace__()
+    transport = group.dexp_inverse(x if side == "left" else -x)
+    p = x @ xp.asarray(discrete.system.inertia_operator).T / discrete.time_step
+    return (p[..., None, :] @ transport)[..., 0, :]
 
 
 def matrix_legendre(
@@ -73,8 +85,8 @@ def legendre_of_chart(discrete: "Discretization", cayley: Float[Array, "... k"],
     """Return the momenta, in the user's body frame, of displacements given by canonical Cayley coordinates."""
     system = discrete.system
     group, canonical, back = system.group, system.canonical, system.group.inverse(system.frame)
-    X = group.cayley_increment(2 * cayley @ canonical.constraint_subspace)
+    X = discrete.variety.increment(cayley)
     if discrete.difference == "matrix":
         reduced = matrix_legendre(group, canonical.homogeneous_mass_tensor, X, side) / discrete.time_step
-        return group.coadjoint(back, reduced)
+        return reduced if canonical is system else group.coadjoint(back, reduced)
     return legendre(discrete, system.frame @ X @ back, side)

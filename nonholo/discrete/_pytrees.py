@@ -1,19 +1,24 @@
 """Registration of systems and discretisations as JAX pytrees, when the JAX route is first imported."""
 
 import functools
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 import numpy as np
 
 from nonholo.discrete._discretization import Discretization
-from nonholo.systems import ChaplyginSleigh, SuslovTop
+from nonholo.systems import SYSTEMS
 
-_LEAVES = {
-    SuslovTop: (("mass_tensor",), ("axis",)),
-    ChaplyginSleigh: (("mass", "inertia", "a", "b"), ()),
-    Discretization: (("system", "time_step"), ("difference", "constraint", "order")),
-}
+_Names = tuple[str, ...]
+_LEAVES: dict[type, tuple[_Names, _Names]] = {kind: (kind.leaves, kind.structure) for kind in SYSTEMS}
+_LEAVES[Discretization] = (("system", "time_step"), ("difference", "constraint", "order"))
+
+
+class _FixedArray(NamedTuple):
+    """An array that is compared and hashed by its entries."""
+
+    entries: bytes
+    shape: tuple[int, ...]
 
 
 @functools.cache
@@ -31,11 +36,15 @@ def _flatten(leaves: tuple[str, ...], static: tuple[str, ...], thing: Any) -> tu
 
 
 def _hashable(value: Any) -> Any:
-    return tuple(value.tolist()) if isinstance(value, np.ndarray) else value
+    return _FixedArray(value.tobytes(), value.shape) if isinstance(value, np.ndarray) else value
+
+
+def _restored(value: Any) -> Any:
+    return np.frombuffer(value.entries).reshape(value.shape) if isinstance(value, _FixedArray) else value
 
 
 def _unflatten(kind: type, leaves: tuple[str, ...], static: tuple[str, ...], fixed: Any, children: Any) -> Any:
     thing = object.__new__(kind)
-    for name, value in (*zip(leaves, children, strict=True), *zip(static, fixed, strict=True)):
-        object.__setattr__(thing, name, np.array(value) if isinstance(value, tuple) else value)
+    for name, value in (*zip(leaves, children, strict=True), *zip(static, map(_restored, fixed), strict=True)):
+        object.__setattr__(thing, name, value)
     return thing

@@ -17,8 +17,11 @@ Residual = Callable[[Array, Array], Array]
 
 
 def principal_root(
-    residual: Residual, target: Float[Array, "k"], certified: Callable[[Array, Array], Array] | None = None
-) -> tuple[Float[Array, "k"], Array]:
+    residual: Residual,
+    target: Float[Array, "k"],
+    unknowns: int,
+    certified: Callable[[Array, Array], Array] | None = None,
+) -> tuple[Float[Array, "m"], Array]:
     r"""Solve residual(y, target) = 0 for the root that (0, 0) reaches along s target, 0 <= s <= 1.
 
     The sign of the Jacobian determinant is watched along the way: a change is a fold. Derivatives are those of the
@@ -27,12 +30,13 @@ def principal_root(
     Args:
         residual: A function of y and the momenta, zero at (0, 0).
         target: The momenta.
+        unknowns: Number m of components of y.
         certified: Tells of a root whether it is certainly the principal one, whatever the continuation saw.
 
     Returns:
         The root and the outcome as an integer array.
     """
-    guess, folded, jumped = jax.lax.stop_gradient(_continue(residual, jax.lax.stop_gradient(target)))
+    guess, folded, jumped = jax.lax.stop_gradient(_continue(residual, jax.lax.stop_gradient(target), unknowns))
     tolerance = float(jnp.finfo(guess.dtype).eps) ** 0.65
     solution = optimistix.root_find(
         residual, optimistix.Newton(rtol=tolerance, atol=tolerance), guess, target, max_steps=20, throw=False
@@ -48,7 +52,7 @@ def principal_root(
     return y, jnp.where(certain, int(Outcome.successful), code)
 
 
-def _continue(residual: Residual, target: Array) -> tuple[Array, Array, Array]:
+def _continue(residual: Residual, target: Array, unknowns: int) -> tuple[Array, Array, Array]:
     def slope(y: Array, s: Array) -> Array:
         return jax.jacfwd(residual)(y, s * target)
 
@@ -59,7 +63,7 @@ def _continue(residual: Residual, target: Array) -> tuple[Array, Array, Array]:
         z = jax.lax.fori_loop(0, _CORRECTIONS, correct, y)
         return z, (jnp.linalg.det(slope(z, s)), jnp.sum((z - y) ** 2) / (1 + jnp.sum(z * z)) ** 2)
 
-    start = jnp.zeros_like(target)
+    start = jnp.zeros(unknowns, target.dtype)
     steps = jnp.arange(1, _SUBSTEPS + 1, dtype=target.dtype) / _SUBSTEPS
     y, (determinants, moves) = jax.lax.scan(follow, start, steps)
     orientation = jnp.sign(jnp.linalg.det(slope(start, jnp.zeros_like(steps[0]))))

@@ -10,49 +10,65 @@ from nonholo._types import Float
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._legendre import legendre
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.systems import AbstractLLSystem
+from nonholo.systems import AbstractLRSystem, System
 
 _TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in floating point
 
 
 def initial_momentum(
     owner: str,
-    system: AbstractLLSystem,
+    system: System,
+    g: Float[np.ndarray, "N N"],
+    *,
     body_velocity: Any = None,
     restricted_velocity: Any = None,
     momentum: Any = None,
 ) -> Float[np.ndarray, "k"]:
-    """Return the canonical momentum along the constraint subspace that a velocity or a momentum has."""
-    subspace = system.constraint_subspace
-    k, dim = subspace.shape
+    """Return the canonical momentum along the constraint subspace that a velocity or a momentum has at a pose."""
+    k, dim = system.constraint_subspace.shape
     if momentum is not None:
         where = f"{owner}(momentum=...)"
         size = k if np.shape(momentum) == (k,) else dim
         value = array(where, momentum, (size,), f"Pass {dim} body momenta or the {k} along the constraint subspace.")
-        return _of_finite_energy(owner, system, system.frame_map @ (value if size == k else system.restrict(value)))
+        return _of_finite_energy(owner, system, g, value if size == k else _restricted(system, value, g))
     if body_velocity is not None:
-        velocity = _admissible(f"{owner}(body_velocity=...)", system, body_velocity)
+        velocity = _admissible(f"{owner}(body_velocity=...)", system, g, body_velocity)
     else:
         where = f"{owner}(restricted_velocity=...)"
-        velocity = array(where, restricted_velocity, (k,), "Pass one number per admissible direction.") @ subspace
-    canonical = system.group.adjoint(system.group.inverse(system.frame)) @ velocity
-    reduced = system.canonical.restrict(system.canonical.inertia_operator @ canonical)
-    return _of_finite_energy(owner, system, reduced)
+        rows = array(where, restricted_velocity, (k,), "Pass one number per admissible direction.")
+        velocity = _to_body(system, g) @ (rows @ system.constraint_subspace)
+    return _of_finite_energy(owner, system, g, _restricted(system, system.inertia_operator @ velocity, g))
 
 
-def _of_finite_energy(owner: str, system: AbstractLLSystem, reduced: np.ndarray) -> np.ndarray:
+def _restricted(system: System, momentum: np.ndarray, g: np.ndarray) -> np.ndarray:
+    if isinstance(system, AbstractLRSystem):
+        return system.restrict_in_space(momentum, g)
+    return system.restrict(momentum)
+
+
+def _to_body(system: System, g: np.ndarray) -> np.ndarray:
+    """Return the matrix from velocities in which the constraint is constant to body velocities."""
+    group = system.group
+    return group.adjoint(group.inverse(g)) if isinstance(system, AbstractLRSystem) else np.eye(group.dim)
+
+
+def _of_finite_energy(owner: str, system: System, g: np.ndarray, restricted: np.ndarray) -> np.ndarray:
     with np.errstate(over="ignore", invalid="ignore"):
-        energy = system.canonical.constrained_energy(reduced)
+        if isinstance(system, AbstractLRSystem):
+            energy = system.constrained_energy(restricted, g)
+        else:
+            energy = system.constrained_energy(restricted)
     if not np.isfinite(energy):
         raise error(f"{owner}(...)", "start with a finite energy", f"{energy}", "Start slower, or use other units.")
-    return reduced
+    return system.frame_map @ restricted
 
 
-def _admissible(where: str, system: AbstractLLSystem, body_velocity: Any) -> np.ndarray:
+def _admissible(where: str, system: System, g: np.ndarray, body_velocity: Any) -> np.ndarray:
     velocity = array(where, body_velocity, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
-    forbidden = system.annihilator @ velocity
-    if np.abs(forbidden).max() > _TOLERANCE * np.abs(velocity).max():
-        nearest = velocity - np.linalg.pinv(system.annihilator) @ forbidden
+    carried = np.linalg.solve(_to_body(system, g), velocity)
+    forbidden = system.annihilator @ carried
+    if np.abs(forbidden).max(initial=0.0) > _TOLERANCE * np.abs(carried).max():
+        nearest = _to_body(system, g) @ (carried - np.linalg.pinv(system.annihilator) @ forbidden)
         got = f"residual {np.array2string(forbidden, precision=6)}"
         raise error(where, "satisfy the constraint", got, f"The nearest admissible velocity is {nearest.tolist()}.")
     return velocity
@@ -67,32 +83,21 @@ def one_start(owner: str, **starts: Any) -> None:
 
 
 def initial_state(
-    discrete: Discretization,
-    *,
-    body_velocity: Any = None,
-    restricted_velocity: Any = None,
-    displacement: Any = None,
-    momentum: Any = None,
+    discrete: Discretization, g: Float[np.ndarray, "N N"], *, displacement: Any = None, **starts: Any
 ) -> tuple[Float[np.ndarray, "k"], Float[np.ndarray, "N N"] | Float[np.ndarray, "dim"] | None]:
     """Return the canonical restricted momentum of a start, and what the first state must reproduce, if anything.
 
     A displacement or a full momentum determines W_0 or P_0 completely; the run checks that the principal root agrees.
     """
-    one_start(
-        "simulate",
-        body_velocity=body_velocity,
-        restricted_velocity=restricted_velocity,
-        displacement=displacement,
-        momentum=momentum,
-    )
+    one_start("simulate", **starts, displacement=displacement)
     system = discrete.system
     if displacement is not None:
-        W = on_variety("simulate(displacement=...)", system, displacement)
+        W = on_variety("simulate(displacement=...)", discrete, g, displacement)
         found = legendre(discrete, W - system.group.identity, "left")
-        return initial_momentum("simulate", system, momentum=found), W
-    reduced = initial_momentum("simulate", system, body_velocity, restricted_velocity, momentum)
-    full = momentum is not None and np.shape(momentum) == (system.group.dim,)
-    return reduced, np.asarray(momentum, dtype=np.float64) if full else None
+        return initial_momentum("simulate", system, g, momentum=_restricted(system, found, g)), W
+    momentum, k = starts.get("momentum"), len(system.constraint_subspace)
+    full = momentum is not None and np.shape(momentum) != (k,)
+    return initial_momentum("simulate", system, g, **starts), np.asarray(momentum, dtype=np.float64) if full else None
 
 
 def check_first_state(demanded: np.ndarray, displacement: np.ndarray, momentum: np.ndarray) -> None:
@@ -107,20 +112,25 @@ def check_first_state(demanded: np.ndarray, displacement: np.ndarray, momentum: 
 def in_group(where: str, group: AbstractMatrixGroup, element: Any) -> np.ndarray:
     """Return a matrix of the group, refused with its distance from the group."""
     g = array(where, element, group.identity.shape, f"Pass an element of {group} as a matrix.")
-    distance = np.linalg.norm(g - group.matrix_from_pose(group.pose_from_matrix(g)))
+    distance = float(group.residual(g))
     if not distance <= _TOLERANCE * np.linalg.norm(g):
-        raise error(
-            where, f"lie in {group}", f"a matrix at distance {distance:.3g}", "Build it with `exp` or `cayley`."
-        )
+        remedy = "Build it with `exp` or `cayley`."
+        raise error(where, f"lie in {group}", f"a matrix at distance {distance:.3g}", remedy)
     return g
 
 
-def on_variety(where: str, system: AbstractLLSystem, displacement: Any) -> np.ndarray:
-    """Return a displacement on exp d, refused with the forbidden part of its logarithm."""
-    W = in_group(where, system.group, displacement)
-    logarithm = system.group.log(W)
-    forbidden = system.annihilator @ logarithm
+def on_variety(where: str, discrete: Discretization, g: np.ndarray, displacement: Any) -> np.ndarray:
+    """Return a displacement whose place on the variety is checked, refused with its forbidden part."""
+    system, group = discrete.system, discrete.system.group
+    W = in_group(where, group, displacement)
+    seen = g @ W @ group.inverse(g) if isinstance(system, AbstractLRSystem) else W
+    logarithm = group.log(seen)
+    if discrete.variety.exact:
+        forbidden, what = system.annihilator @ logarithm, "a logarithm with forbidden part"
+    else:
+        frame = system.frame
+        forbidden, what = discrete.variety.equations(group.inverse(frame) @ seen @ frame), "equations with residual"
     if np.linalg.norm(forbidden) > _TOLERANCE * max(1.0, float(np.linalg.norm(logarithm))):
-        got = f"a logarithm with forbidden part {np.array2string(forbidden, precision=6)}"
+        got = f"{what} {np.array2string(forbidden, precision=6)}"
         raise error(where, "lie on the displacement variety", got, "Build it as `group.exp(x)` with x admissible.")
     return W

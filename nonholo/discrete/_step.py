@@ -7,15 +7,15 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo import kernels
-from nonholo._checks import array, choice
+from nonholo._checks import array, choice, error
 from nonholo._results import Outcome
 from nonholo._types import Array, Float
-from nonholo.discrete._definition import displaced, principal_displacement
+from nonholo.discrete._definition import displaced, momentum_of, principal_displacement
 from nonholo.discrete._discretization import Discretization
-from nonholo.discrete._legendre import legendre
 from nonholo.discrete._precision import in_double
 from nonholo.discrete._root import principal_root
-from nonholo.discrete._structured import Structured, structured
+from nonholo.discrete._structured import ScalarStep, scalar_step
+from nonholo.systems import AbstractLRSystem
 
 _ON_LOCUS = 1e-6  # relative distance from the momentum locus that a computed momentum may have
 
@@ -58,7 +58,8 @@ def step(
         The new state and the outcome.
 
     Raises:
-        ValueError: A wrong shape, a value that is not finite, an unknown branch.
+        ValueError: A wrong shape, a value that is not finite, an unknown branch, a right-invariant constraint (whose
+            step depends on the configuration: use `simulate`).
         TypeError: Traced 32-bit input.
 
     Example:
@@ -68,25 +69,29 @@ def step(
         (array([0., 1., 0.]), 0)
     """
     choice("step(branch=...)", branch, ("principal",))
+    if isinstance(discrete.system, AbstractLRSystem):
+        got = f"{type(discrete.system).__name__}, whose step depends on the configuration"
+        raise error("step(discrete=...)", "have a left-invariant constraint", got, "Use simulate(..., steps=1).")
     k, dim = discrete.system.constraint_subspace.shape
     size = k if np.shape(momentum) == (k,) else dim
     where = "step(momentum=...)"
     value = array(where, momentum, (size,), f"Pass {dim} body momenta or the {k} along the constraint subspace.")
-    return in_double(_step, discrete, structured(discrete), value)
+    return in_double(_step, discrete, scalar_step(discrete), value)
 
 
 @equinox.filter_jit
-def _step(discrete: Discretization, closed: Structured | None, momentum: Array) -> StepResult:
+def _step(discrete: Discretization, closed: ScalarStep | None, momentum: Array) -> StepResult:
     system = discrete.system
     subspace = jnp.asarray(system.constraint_subspace)
     full = momentum.shape[0] != subspace.shape[0]
     y, code = _principal(discrete, closed, subspace @ momentum if full else momentum)
     if full:
         code = jnp.where((code == 0) & _off_locus(discrete, y, momentum), int(Outcome.off_momentum_locus), code)
-    arriving = _momentum(discrete, y, "right")
+    nowhere = system.group.identity
+    arriving = momentum_of(discrete, y, nowhere, "right")
     following, later = _principal(discrete, closed, subspace @ arriving)
     code = jnp.where(code == 0, later, code)
-    after = _momentum(discrete, following, "left")
+    after = momentum_of(discrete, following, nowhere, "left")
     multipliers = (after - arriving) @ jnp.linalg.pinv(jnp.asarray(system.annihilator))
     good = code == 0
     W = displaced(discrete, following)
@@ -94,13 +99,13 @@ def _step(discrete: Discretization, closed: Structured | None, momentum: Array) 
 
 
 def _off_locus(discrete: Discretization, y: Array, momentum: Array) -> Array:
-    missed = _momentum(discrete, y, "left") - momentum
+    missed = momentum_of(discrete, y, discrete.system.group.identity, "left") - momentum
     return jnp.sum(missed**2) > _ON_LOCUS**2 * jnp.sum(momentum**2)
 
 
-def _principal(discrete: Discretization, closed: Structured | None, restricted: Array) -> tuple[Array, Array]:
+def _principal(discrete: Discretization, closed: ScalarStep | None, restricted: Array) -> tuple[Array, Array]:
     if closed is None:
-        return principal_displacement(discrete, restricted)
+        return principal_displacement(discrete, restricted, discrete.system.group.identity)
     body, C = closed.body, jnp.asarray(discrete.system.frame_map)
 
     def residual(y: Array, m: Array) -> Array:
@@ -109,10 +114,4 @@ def _principal(discrete: Discretization, closed: Structured | None, restricted: 
     def certified(y: Array, m: Array) -> Array:
         return kernels.certified(body, *m, *y)
 
-    y, code = principal_root(residual, closed.scale * (C @ restricted), certified)
-    return y @ C, code
-
-
-def _momentum(discrete: Discretization, y: Array, side: str) -> Array:
-    group = discrete.system.group
-    return legendre(discrete, group.cayley_increment(2 * y @ jnp.asarray(discrete.system.constraint_subspace)), side)
+    return principal_root(residual, closed.scale * (C @ restricted), 2, certified)

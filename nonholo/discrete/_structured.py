@@ -1,4 +1,4 @@
-"""Which discretisations have a closed-form kernel, and in which units it works."""
+"""Which discretisations have a compiled step, in which units it works, and what one step from each state gives."""
 
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -7,52 +7,80 @@ import numpy as np
 from nonholo import kernels
 from nonholo._results import Outcome, OutcomeError
 from nonholo._types import Array, Float
-from nonholo.systems import AbstractLLSystem, ChaplyginSleigh, SuslovTop
+from nonholo.discrete._general import general_body
+from nonholo.orbit import Orbit
+from nonholo.systems import AbstractLRSystem, AbstractSystem, ChaplyginSleigh, SuslovTop
 
 if TYPE_CHECKING:
     from nonholo.discrete._discretization import Discretization
 
 
-class Structured(NamedTuple):
-    """A kernel's body and the factor from physical momenta to the kernel's scaled ones."""
+class ScalarStep(NamedTuple):
+    """The body of a scalar kernel and the factor from physical momenta to the kernel's scaled ones."""
 
     body: kernels.Body
     scale: Array
 
 
-def structured(discrete: "Discretization") -> Structured | None:
-    """Return the closed form of a discretisation, or None if it has none."""
-    if discrete.difference != "matrix":
+class MatrixStep(NamedTuple):
+    """The body of the general kernel and the factor to its momenta."""
+
+    body: kernels.GeneralBody
+    scale: Array
+
+
+Structured = ScalarStep | MatrixStep
+
+
+def scalar_step(discrete: "Discretization") -> ScalarStep | None:
+    """Return the step in closed form, which JAX can trace too: the top in space and the sleigh in the plane."""
+    if discrete.difference != "matrix" or discrete.constraint not in ("skew", "exponential"):
         return None
-    system: AbstractLLSystem = discrete.system.canonical
-    if isinstance(system, SuslovTop):
+    system: AbstractSystem = discrete.system.canonical
+    if isinstance(system, SuslovTop) and system.group.dim == 3:
         body = kernels.suslov_body(system.constrained_inertia, system.coupling)
-        return Structured(body, discrete.time_step / 2)
+        return ScalarStep(body, discrete.time_step / 2)
     if isinstance(system, ChaplyginSleigh):
         numbers = (system.mass, system.inertia, system.a)
         concrete = all(isinstance(x, np.floating) for x in numbers)
-        return Structured(kernels.SleighBody(*map(float, numbers) if concrete else numbers), discrete.time_step)
+        return ScalarStep(kernels.SleighBody(*map(float, numbers) if concrete else numbers), discrete.time_step)
     return None
 
 
-def next_charts(
-    discrete: "Discretization", reduced_momentum: Float[np.ndarray, "K k"], cayley: Float[np.ndarray, "K k"]
-) -> Float[np.ndarray, "K k"]:
+def structured(discrete: "Discretization") -> Structured | None:
+    """Return the compiled step of a discretisation, or None if only its definition can be run."""
+    closed = scalar_step(discrete)
+    if closed is not None or discrete.difference != "matrix":
+        return closed
+    variety = discrete.variety
+    if variety.exponential or discrete.constraint not in ("skew", "exponential"):
+        return None
+    return MatrixStep(general_body(discrete.system, variety), discrete.time_step)
+
+
+def next_charts(discrete: "Discretization", states: Orbit) -> Float[np.ndarray, "K m"]:
     """Return the displacements that follow, one step from each state."""
     closed = structured(discrete)
     if closed is None:
         from nonholo.discrete._definition import next_charts_by_definition
 
-        return next_charts_by_definition(discrete, cayley)
-    _, charts, codes = kernels.step_each(closed.body, closed.scale * reduced_momentum, cayley, cayley, True)
+        return next_charts_by_definition(discrete, states)
+    scaled = closed.scale * states.reduced_momentum
+    rows = (scaled, states.canonical_chart, matrices_of(states))
+    _, charts, codes = kernels.step_each(closed.body, rows, states.canonical_chart, True)
     if codes.any():
         raise OutcomeError(Outcome(int(codes.max())), "Step after a saved state")
     return charts
 
 
-def reversal_defects(
-    discrete: "Discretization", reduced_momentum: Float[np.ndarray, "K k"], cayley: Float[np.ndarray, "K k"]
-) -> Float[np.ndarray, "K"]:
+def matrices_of(states: Orbit) -> Float[np.ndarray, "K size"] | None:
+    """Return poses as rows of matrix entries where the step depends on them, for right-invariant constraints."""
+    if not isinstance(states.system, AbstractLRSystem):
+        return None
+    return np.ascontiguousarray(states.configuration.reshape(len(states), -1))
+
+
+def reversal_defects(discrete: "Discretization", states: Orbit) -> Float[np.ndarray, "K"]:
     """Return, for each state, how far one step forward and one back (W to its inverse) miss it, relative to it.
 
     The map is multivalued and its principal value is not always the way back: the nearest value counts. Infinite where
@@ -60,15 +88,23 @@ def reversal_defects(
     """
     closed = structured(discrete)
     if closed is None:
-        raise ValueError(
-            "`reversal_defects` needs a closed-form discretisation. Got another. Pass difference='matrix'."
-        )
-    scaled = closed.scale * reduced_momentum
-    momenta, charts, ahead = kernels.step_each(closed.body, scaled, cayley, cayley, True)
-    after, _, _ = kernels.step_each(closed.body, momenta, charts, charts, False)
-    back, returned, behind = kernels.step_each(closed.body, -after, -charts, -cayley, False)
+        raise ValueError("`reversal_defects` needs a compiled step. Got another. Pass difference='matrix'.")
+    scaled, cayley, poses = closed.scale * states.reduced_momentum, states.canonical_chart, matrices_of(states)
+    momenta, charts, ahead = kernels.step_each(closed.body, (scaled, cayley, poses), cayley, True)
+    if poses is None:
+        after, _, _ = kernels.step_each(closed.body, (momenta, charts, None), charts, False)
+        returning = (-after, -charts, None)
+    else:
+        returning = (-momenta, -charts, _two_ahead(states, charts))
+    back, returned, behind = kernels.step_each(closed.body, returning, -cayley, False)
     missed = np.maximum(_largest(returned + cayley) / _largest(cayley), _largest(back + momenta) / _largest(momenta))
     return np.where(ahead != 0, np.nan, np.where(behind != 0, np.inf, missed))
+
+
+def _two_ahead(states: Orbit, following: np.ndarray) -> Float[np.ndarray, "K size"]:
+    """Return the poses two steps after each state, from where a right-invariant constraint is run back."""
+    U, V = states.motion.displaced(states.canonical_chart), states.motion.displaced(following)
+    return np.ascontiguousarray((V @ U @ states.configuration).reshape(len(states), -1))
 
 
 def _largest(rows: np.ndarray) -> np.ndarray:

@@ -1,20 +1,24 @@
-"""The structured steps: the arithmetic of one update, written once for numba and JAX, and the compiled loops."""
+"""The compiled steps: scalar arithmetic written once for numba and JAX, the matrix step for any body, the loops."""
 
-from nonholo.kernels._driver import STATE_SIZE, advance, start, step_each
+from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
+from nonholo.kernels._general import GeneralBody
 from nonholo.kernels._interface import Body, certified, increment, move, residual
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body
 
 __all__ = [
-    "STATE_SIZE",
+    "AnyBody",
     "Body",
+    "GeneralBody",
     "SleighBody",
     "SuslovBody",
     "advance",
     "certified",
+    "chart_of",
     "increment",
     "move",
     "residual",
+    "sizes",
     "start",
     "step_each",
     "suslov_body",

@@ -1,7 +1,8 @@
 r"""Orbits store compact states in the canonical body frame of their system; matrices are computed on access.
 
-A state is the momentum along the constraint subspace, for a discrete orbit the Cayley coordinates of the displacement,
-and the compact pose. `AbstractMotion` is what a discretisation or a flow must know to decode them.
+A state is the momentum along the constraint subspace (spatial momentum for a right-invariant constraint), for a
+discrete orbit the chart coordinates of the displacement, and the compact pose. `AbstractMotion` is what a
+discretisation or a flow must know to decode them.
 """
 
 import abc
@@ -12,24 +13,31 @@ from typing import Any
 import numpy as np
 
 from nonholo._results import Outcome
-from nonholo._types import Array, Float
-from nonholo.systems import AbstractLLSystem
+from nonholo._types import Float
+from nonholo.groups import SE
+from nonholo.systems import AbstractLRSystem, System
 
 
 class AbstractMotion(abc.ABC):
     """A rule of motion of a system: a discretisation or the continuous flow."""
 
-    system: AbstractLLSystem
+    system: System
 
     @abc.abstractmethod
-    def full_momentum(self, reduced_momentum: Float[np.ndarray, "K k"], cayley: Array) -> Float[np.ndarray, "K dim"]:
-        """Return body momenta, in the user's body frame, of canonical compact states."""
+    def full_momentum(self, states: "Orbit") -> Float[np.ndarray, "K dim"]:
+        """Return body momenta in the user's body frame."""
 
     @abc.abstractmethod
-    def multipliers(
-        self, reduced_momentum: Float[np.ndarray, "K k"], cayley: Array, save_every: int
-    ) -> Float[np.ndarray, "L s"]:
-        """Return the multipliers that belong to canonical compact states."""
+    def multipliers(self, states: "Orbit") -> Float[np.ndarray, "L s"]:
+        """Return the multipliers that belong to the states."""
+
+    @abc.abstractmethod
+    def constraint_residual(self, states: "Orbit") -> Float[np.ndarray, "K j"]:
+        """Return what the constraint wants to be zero."""
+
+    @abc.abstractmethod
+    def displaced(self, cayley: Float[np.ndarray, "K m"]) -> Float[np.ndarray, "K N N"]:
+        """Return the elements of the displacement variety, in the user's frame, with canonical chart coordinates."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -44,7 +52,8 @@ class Orbit:
         motion: The discretisation or flow that made it.
         time: Times of the saved states, shape (K,).
         reduced_momentum: Compact momenta, canonical frame, shape (K, k).
-        cayley: Compact displacements, canonical frame, shape (K, k); None for a flow.
+        cayley: Chart coordinates of the displacements, canonical frame, shape (K, m), m = k where the constraint is
+            built into the chart; None for a flow.
         pose: Compact poses, canonical frame, shape (K, size); None if not reconstructed.
         outcome: How the run ended.
         save_every: Steps between saved states.
@@ -60,7 +69,7 @@ class Orbit:
     motion: AbstractMotion
     time: Float[np.ndarray, "K"]
     reduced_momentum: Float[np.ndarray, "K k"]
-    cayley: Float[np.ndarray, "K k"] | None
+    cayley: Float[np.ndarray, "K m"] | None
     pose: Float[np.ndarray, "K size"] | None
     outcome: Outcome = Outcome.successful
     save_every: int = 1
@@ -80,41 +89,71 @@ class Orbit:
         stride = states.indices(len(self))[2]
         if stride < 1:
             raise ValueError(f"`Orbit[...]` must be sliced forwards. Got stride {stride}. Reverse the arrays instead.")
+        return dataclasses.replace(self.chosen(states), save_every=self.save_every * stride)
+
+    def chosen(self, states: slice | np.ndarray) -> "Orbit":
+        """Return some of the states, by a slice or a mask, each with the same `save_every` as before."""
         names = ("time", "reduced_momentum", "cayley", "pose", "turned")
         kept = {name: None if (rows := getattr(self, name)) is None else rows[states] for name in names}
-        return dataclasses.replace(self, save_every=self.save_every * stride, **kept)
+        return dataclasses.replace(self, **kept)
 
     @property
-    def system(self) -> AbstractLLSystem:
+    def system(self) -> System:
         """The system that moves."""
         return self.motion.system
 
     @property
     def restricted_momentum(self) -> Float[np.ndarray, "K k"]:
-        """Momenta along the rows of the constraint subspace."""
+        """Momenta along the rows of the constraint subspace; spatial ones for a right-invariant constraint."""
         return np.linalg.solve(self.system.frame_map, self.reduced_momentum[..., None])[..., 0]
 
     @property
+    def canonical_chart(self) -> Float[np.ndarray, "K m"]:
+        """Coordinates of the displacements in the canonical frame, those that steps work with."""
+        if self.cayley is None:
+            raise ValueError("`Orbit.displacement` needs a discrete orbit. Got a continuous flow. Use `simulate`.")
+        return self.cayley
+
+    @property
     def chart(self) -> Float[np.ndarray, "K k"]:
-        """Cayley coordinates y of the displacements in rows of the constraint subspace, W = cayley(2 y)."""
-        return self._displaced() @ self.system.frame_map
+        """Coordinates of the displacements in rows S of the constraint subspace.
+
+        Where a retraction of the subspace covers the variety (Cayley on SO(n) and SE(n), else exp) they are the y of
+        W = retract(2 y S); otherwise the coordinates of (W - W^-1)/2.
+        """
+        y, S = self.canonical_chart, self.system.constraint_subspace
+        if y.shape[1] == len(S):
+            return y @ self.system.frame_map
+        D = self.motion.displaced(y)
+        return self.system.group.vee((D - self.system.group.inverse(D)) / 2) @ np.linalg.pinv(S)
 
     @property
     def momentum(self) -> Float[np.ndarray, "K dim"]:
         """Body momenta."""
-        return self.motion.full_momentum(self.reduced_momentum, self.cayley)
+        return self.motion.full_momentum(self)
 
     @property
     def multipliers(self) -> Float[np.ndarray, "L s"]:
         """Impulses between the states of a discrete orbit, (K - 1, s), or forces at the times of a flow, (K, s)."""
-        return self.motion.multipliers(self.reduced_momentum, self.cayley, self.save_every)
+        return self.motion.multipliers(self)
 
     @property
     def displacement(self) -> Float[np.ndarray, "K N N"]:
-        """Displacements of single steps at the saved states."""
-        group, canonical, frame = self.system.group, self.system.canonical, self.system.frame
-        W = group.cayley(2 * self._displaced() @ canonical.constraint_subspace)
-        return frame @ W @ group.inverse(frame)
+        """Displacements W_k = g_k^-1 g_(k+1) of single steps at the saved states."""
+        D = self.motion.displaced(self.canonical_chart)
+        if not isinstance(self.system, AbstractLRSystem):
+            return D
+        g = self.configuration
+        return self.system.group.inverse(g) @ D @ g
+
+    @property
+    def spatial_displacement(self) -> Float[np.ndarray, "K N N"]:
+        """Displacements U_k = g_(k+1) g_k^-1 seen from space; on the variety for a right-invariant constraint."""
+        D = self.motion.displaced(self.canonical_chart)
+        if isinstance(self.system, AbstractLRSystem):
+            return D
+        g = self.configuration
+        return g @ D @ self.system.group.inverse(g)
 
     @property
     def configuration(self) -> Float[np.ndarray, "K N N"]:
@@ -126,6 +165,10 @@ class Orbit:
     def body_velocity(self) -> Float[np.ndarray, "K dim"]:
         """Admissible body velocities whose momenta along the constraint are those of the states."""
         system = self.system
+        if isinstance(system, AbstractLRSystem):
+            g = self.configuration
+            spatial = system.restricted_velocity(self.reduced_momentum, g) @ system.constraint_subspace
+            return (system.group.adjoint(system.group.inverse(g)) @ spatial[..., None])[..., 0]
         velocity = system.canonical.restricted_velocity(self.reduced_momentum) @ system.canonical.constraint_subspace
         return velocity @ system.group.adjoint(system.frame).T
 
@@ -138,23 +181,26 @@ class Orbit:
     @property
     def position(self) -> Float[np.ndarray, "K n"]:
         """Translation parts of the poses; for groups of motions."""
-        configuration = self.configuration
-        if self.system.group.dim != 3 or configuration[0, -1, -1] != 1 or np.any(configuration[:, -1, :-1]):
-            raise ValueError(f"`Orbit.position` needs a group of motions. Got {self.system.group}. Use configuration.")
-        return configuration[:, :-1, -1]
+        group = self.system.group
+        if not group.is_rigid or np.any(group.basis[:, -1]):
+            raise ValueError(f"`Orbit.position` needs a group of motions. Got {group}. Use configuration.")
+        return self.configuration[:, :-1, -1]
 
     @property
     def heading(self) -> Float[np.ndarray, "K"]:
         """Unwrapped angle of the body on SE(2); between saved states the shorter turn is assumed unless it is known."""
         if self.turned is not None:
             return self.turned
-        _ = self.position
         pose = self._posed()
+        if self.system.group != SE(2):
+            raise ValueError(f"`Orbit.heading` needs motions of the plane. Got {self.system.group}.")
         return np.unwrap(np.arctan2(pose[:, 1], pose[:, 0]))
 
     @property
     def energy(self) -> Float[np.ndarray, "K"]:
         """Reduced constrained energy."""
+        if isinstance(self.system, AbstractLRSystem):
+            return self.system.constrained_energy(self.reduced_momentum, self.configuration)
         return self.system.canonical.constrained_energy(self.reduced_momentum)
 
     def to_dataset(self) -> Any:
@@ -164,11 +210,6 @@ class Orbit:
     def plot(self, path: str | None = None) -> Any:
         """Draw the overview picture of the orbit; return the matplotlib figure, saved to `path` if given."""
         return importlib.import_module("nonholo.plotting").overview(self, path)
-
-    def _displaced(self) -> np.ndarray:
-        if self.cayley is None:
-            raise ValueError("`Orbit.displacement` needs a discrete orbit. Got a continuous flow. Use `simulate`.")
-        return self.cayley
 
     def _posed(self) -> np.ndarray:
         if self.pose is None:

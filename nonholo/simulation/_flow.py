@@ -9,14 +9,14 @@ from nonholo._results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, closed_form
 from nonholo.discrete._start import in_group, initial_momentum, one_start
 from nonholo.orbit import Orbit
-from nonholo.systems import AbstractLLSystem
+from nonholo.systems import AbstractSystem, System
 
 _LEAST_RTOL = 1e-14
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
 
 
 def flow(
-    system: AbstractLLSystem,
+    system: System,
     *,
     times: Any,
     body_velocity: Any = None,
@@ -65,18 +65,18 @@ def flow(
         >>> print(orbit.body_velocity[:, 1].round(6), (np.ptp(orbit.heading) / np.pi).round(6))
         [-2.  2.] 2.0
     """
-    if not isinstance(system, AbstractLLSystem):
-        raise error("flow(system=...)", "be a system", repr(system), "Pass a SuslovTop or a ChaplyginSleigh.")
+    if not isinstance(system, AbstractSystem):
+        raise error("flow(system=...)", "be a system", repr(system), "Pass a SuslovTop or an LLSystem.")
     choice("flow(method=...)", method, (None, "closed_form"))
     time, tolerances = _times(times), _tolerances(rtol, atol)
-    one_start("flow", body_velocity=body_velocity, restricted_velocity=restricted_velocity, momentum=momentum)
-    reduced = initial_momentum("flow", system, body_velocity, restricted_velocity, momentum)
-    motion = ContinuousFlow(system)
-    if momentum is not None:
-        _check_momentum(momentum, motion.full_momentum(reduced[None, :], None)[0])
-    group = system.group
+    group, motion = system.group, ContinuousFlow(system)
     g = group.identity if configuration is None else in_group("flow(configuration=...)", group, configuration)
     pose = group.pose_from_matrix(g @ system.frame)
+    starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
+    one_start("flow", **starts)
+    reduced = initial_momentum("flow", system, g, **starts)
+    if momentum is not None:
+        _check_momentum(momentum, Orbit(motion, time[:1], reduced[None], None, pose[None]).momentum[0])
     momenta, poses, turned, outcome = _solver(method)(system.canonical, reduced, pose, time - time[0], tolerances)
     reached = len(momenta)
     orbit = Orbit(motion, time[:reached], momenta, None, poses, outcome, turned=turned)

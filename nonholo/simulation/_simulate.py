@@ -76,15 +76,16 @@ def simulate(
     steps = count("simulate(steps=...)", steps, "Pass the number of steps.")
     every = count("simulate(save_every=...)", save_every, "Pass the number of steps between saved states.")
     choice("simulate(branch=...)", branch, ("principal",))
+    group = discrete.system.group
+    g = group.identity if configuration is None else in_group("simulate(configuration=...)", group, configuration)
     reduced, demanded = initial_state(
         discrete,
+        g,
         body_velocity=body_velocity,
         restricted_velocity=restricted_velocity,
         displacement=displacement,
         momentum=momentum,
     )
-    group = discrete.system.group
-    g = group.identity if configuration is None else in_group("simulate(configuration=...)", group, configuration)
     pose = group.pose_from_matrix(g @ discrete.system.frame)
     run = _runner(discrete, backend)
     rows, outcome, done = run(reduced, pose, steps, every, progress)
@@ -101,7 +102,7 @@ def _runner(discrete: Discretization, backend: str) -> Callable[..., tuple[Rows,
     choice("simulate(backend=...)", backend, ("auto", "numba", "jax"))
     closed = structured(discrete)
     if closed is not None and backend != "jax":
-        return lambda *arguments: _run_compiled(closed, *arguments)
+        return lambda *arguments: _run_compiled(discrete, closed, *arguments)
     if backend == "numba":
         remedy = "Pass backend='jax', or difference='matrix'."
         raise error("simulate(backend=...)", "have a closed form of the step", repr(discrete.difference), remedy)
@@ -111,26 +112,35 @@ def _runner(discrete: Discretization, backend: str) -> Callable[..., tuple[Rows,
 
 
 def _run_compiled(
-    closed: Structured, reduced: np.ndarray, pose: np.ndarray, steps: int, every: int, progress: bool
+    discrete: Discretization,
+    closed: Structured,
+    reduced: np.ndarray,
+    pose: np.ndarray,
+    steps: int,
+    every: int,
+    progress: bool,
 ) -> tuple[Rows, Outcome, int]:
-    state = np.zeros(kernels.STATE_SIZE)
-    scaled = closed.scale * reduced
-    code = kernels.start(closed.body, scaled, pose, state)
+    group, general = discrete.system.group, isinstance(closed.body, kernels.GeneralBody)
+    scaled, coded = closed.scale * reduced, group.matrix_from_pose(pose).ravel() if general else pose
+    code, state = kernels.start(closed.body, scaled, coded)
+    started = code == 0
     saved = 1 + steps // every
-    momenta, charts, poses = np.empty((saved, 2)), np.empty((saved, 2)), np.empty((saved, pose.size))
-    momenta[0], charts[0], poses[0] = scaled, state[4:6], pose
+    momenta, charts, poses = (np.empty((saved, size)) for size in kernels.sizes(closed.body))
+    momenta[0], charts[0], poses[0] = scaled, kernels.chart_of(closed.body, state), coded
     done, block = 0, max(1, _BLOCK // every) * every
     with progress_bar("steps", progress) as report:
         while code == 0 and done < steps:
             first = 1 + done // every
             chunk = min(block, steps - done)
-            good, code = kernels.advance(
-                closed.body, state, chunk, every, momenta[first:], charts[first:], poses[first:]
-            )
+            rows = momenta[first:], charts[first:], poses[first:]
+            good, code = kernels.advance(closed.body, state, chunk, every, rows)
             done += good
             report(done, steps)
-    kept = 0 if code and not done and not np.isfinite(state[4]) else 1 + done // every
-    return (momenta[:kept] / closed.scale, charts[:kept], poses[:kept]), Outcome(code), done
+    kept = 1 + done // every if started else 0
+    momenta, charts, poses = momenta[:kept] / closed.scale, charts[:kept], poses[:kept]
+    if general:
+        poses = group.pose_from_matrix(poses.reshape(-1, *group.identity.shape))
+    return (momenta, charts, poses), Outcome(code), done
 
 
 def _orbit(discrete: Discretization, rows: Rows, outcome: Outcome, every: int, reconstruct: bool) -> Orbit:

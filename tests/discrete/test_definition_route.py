@@ -142,7 +142,7 @@ def test_definition_refuses_beyond_the_fold_like_the_closed_form() -> None:
     """At 200 random momenta around the fold the definition never accepts what the closed form rejects."""
     rng, discrete = np.random.default_rng(5), nh.discretize(PROBLEMS[0].system, 1.0)
     momenta = rng.normal(size=(200, 2)) * 2.0
-    solve = jax.jit(jax.vmap(lambda r: principal_displacement(discrete, r)))
+    solve = jax.jit(jax.vmap(lambda r: principal_displacement(discrete, r, discrete.system.group.identity)))
     charts, codes = in_double(solve, momenta)
     accepted = 0
     for r, y, code in zip(momenta, charts, codes, strict=True):

@@ -160,7 +160,7 @@ def test_bad_arguments_are_refused(arguments: dict, words: str) -> None:
         ({"time_step": 0.1 + 1j}, "must be real"),
         ({"time_step": np.nan}, "must be finite"),
         ({"difference": "central"}, "be one of 'matrix', 'logarithmic'. Got 'central'"),
-        ({"constraint": "naive"}, "be one of 'skew', 'exponential'"),
+        ({"constraint": "holonomic"}, "be one of 'skew', 'exponential', 'naive'"),
         ({"order": 4}, "be one of 2. Got 4"),
     ],
 )

@@ -1,0 +1,108 @@
+r"""From a discretisation to the body of the general kernel, with the ball in which a root is certainly principal.
+
+Let $\kappa$ be the coordinates of $K = (W - W^{-1})/2 \in \mathfrak{d}$ and $x = \mathbb{I}_\mathfrak{d}^{1/2}\kappa$.
+The equations read $x + \phi(x) = \tilde m$ with an even $\phi$. Where $\phi$ has a Lipschitz constant $L < 1$ on
+$|x| \le \rho$ and $|\tilde m| \le (1 - L)\rho$ there is exactly one root in the ball, and it is the principal one,
+since this holds for every $s\tilde m$. Energy is conserved: $|\tilde m|$ is the same at every step.
+
+Reference: docs/theory/general-step.md.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from nonholo import kernels
+from nonholo._types import Float
+from nonholo.discrete._variety import Variety
+from nonholo.systems import AbstractLRSystem, AbstractSystem, inertia_from_mass_tensor
+
+_SINES = np.linspace(0.0, 1.0, 401)[1:-1]  # of the largest angle in the ball
+_MARGIN = 1 - 1e-9
+
+
+def general_body(system: AbstractSystem, variety: Variety) -> kernels.GeneralBody:
+    """Return the body of the general kernel."""
+    group = system.group
+    radius, level = (0.0, 0.0) if isinstance(system, AbstractLRSystem) else _certain_ball(system)
+    return kernels.GeneralBody(
+        tensor=_plain(system.homogeneous_mass_tensor),
+        directions=_plain(group.hat(system.constraint_subspace)),
+        chart=_plain(group.hat(variety.chart)),
+        forbidden=_plain(_forbidden(variety)),
+        size=_size_of_rotations(system),
+        spatial=isinstance(system, AbstractLRSystem),
+        metric=_plain(np.linalg.inv(system.constrained_inertia)),
+        radius=radius,
+        level=level,
+    )
+
+
+def _plain(array: Any) -> np.ndarray:
+    """Return a writable copy row by row: every other layout would be compiled for itself."""
+    return np.array(array, dtype=np.float64, order="C")
+
+
+def _size_of_rotations(system: AbstractSystem) -> int:
+    """Return n: matrices of SO(n) have entries in the last row of their algebra, those of SE(n) have none."""
+    basis = system.group.basis
+    return basis.shape[1] if np.any(basis[:, -1]) else basis.shape[1] - 1
+
+
+def _forbidden(variety: Variety) -> Float[np.ndarray, "j N N"]:
+    """Return matrices whose sums of products of entries with X are the forbidden coordinates of X."""
+    N = variety.group.identity.shape[0]
+    rows = np.zeros((0, variety.group.dim)) if variety.exact else variety.annihilator
+    units = np.eye(N * N).reshape(N * N, N, N)
+    return (variety.group.vee(units) @ rows.T).T.reshape(-1, N, N)
+
+
+def _certain_ball(system: AbstractSystem) -> tuple[float, float]:
+    """Return the squared radius of the ball and the largest squared momentum for which it certifies; or zeros."""
+    unit = _length_unit(system)
+    slope, least = _stiffness(system, unit)
+    cosine = np.sqrt(1 - _SINES**2)
+    lipschitz = slope(_SINES, cosine)
+    reach = np.where(lipschitz < 1, (1 - lipschitz) * _SINES, 0.0)
+    best = int(np.argmax(reach))
+    size = least * unit**2 * _MARGIN
+    return float(_SINES[best] ** 2 * size), float(reach[best] ** 2 * size)
+
+
+def _length_unit(system: AbstractSystem) -> float:
+    """Return a length that makes translations comparable with rotations; one for rotations alone."""
+    tensor, n = np.asarray(system.homogeneous_mass_tensor), _size_of_rotations(system)
+    if n == len(tensor):
+        return 1.0
+    return float(np.sqrt(max(np.trace(tensor[:n, :n]), 0.0) / tensor[n, n])) or 1.0
+
+
+def _stiffness(system: AbstractSystem, unit: float) -> tuple[Callable[[np.ndarray, np.ndarray], np.ndarray], float]:
+    r"""Return the Lipschitz constant of $\phi$, by sine and cosine of the largest angle, and the least inertia.
+
+    $\phi(E) = \mathrm{tr}(E\,\mathbb{J}\,S^T)$ with $S = (W + W^{-1})/2 - I$; on SO(n) a multiple of the identity in
+    $\mathbb{J}$ does not count.
+    """
+    tensor, n = np.asarray(system.homogeneous_mass_tensor), _size_of_rotations(system)
+    N = len(tensor)
+    stretch = np.where(np.arange(N) < n, 1 / unit, 1.0)
+    scaled = tensor * np.outer(stretch, stretch)
+    turning = np.any(system.group.basis[:, :n, :n], axis=(1, 2))
+    rows = system.constraint_subspace * np.where(turning, 1.0, 1 / unit)
+    orthonormal = np.linalg.qr(rows.T)[0].T
+    inertia = orthonormal @ inertia_from_mass_tensor(system.group, scaled) @ orthonormal.T
+    least = float(np.linalg.eigvalsh(inertia)[0]) if len(inertia) else 1.0
+    spread = np.linalg.eigvalsh(scaled)
+    if n == N:
+        return (lambda s, c: (spread[-1] - spread[0]) / least * s / c), least
+    if spread[0] < -1e-12 * spread[-1]:
+        return (lambda s, _: np.full_like(s, np.inf)), least
+    ratio = np.sqrt(spread[-1] / least)
+
+    def of_motions(s: np.ndarray, c: np.ndarray) -> np.ndarray:
+        half = s / (1 + c)
+        shear = (1 + half**2) / (2 * c) * s
+        return ratio * np.sqrt(2 * (s / c) ** 2 + shear**2 + half**2)
+
+    return of_motions, least

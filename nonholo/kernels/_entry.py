@@ -1,0 +1,53 @@
+"""The compiled runs, whatever the body: the scalar steps of tops and sleighs, or the general one of matrices."""
+
+import numpy as np
+
+from nonholo.kernels import _driver, _general
+from nonholo.kernels._general import GeneralBody
+from nonholo.kernels._interface import Body
+
+AnyBody = Body | GeneralBody
+
+
+def sizes(body: AnyBody) -> tuple[int, int, int]:
+    """Return the numbers of momenta, chart coordinates and pose entries of a state."""
+    if isinstance(body, GeneralBody):
+        return len(body.directions), len(body.chart), body.tensor.size
+    return 2, 2, 4
+
+
+def start(body: AnyBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
+    """Return the outcome of the first root and the state of a run that begins with scaled momenta and a pose."""
+    if isinstance(body, GeneralBody):
+        return _general.start(body, np.array(momentum), np.array(pose))
+    state = np.zeros(_driver.STATE_SIZE)
+    return _driver.start(body, momentum, pose, state), state
+
+
+def chart_of(body: AnyBody, state: np.ndarray) -> np.ndarray:
+    """Return the chart coordinates of the displacement in a state."""
+    k, m, _ = sizes(body)
+    return state[2 * k : 2 * k + m]
+
+
+def advance(
+    body: AnyBody, state: np.ndarray, steps: int, every: int, rows: tuple[np.ndarray, np.ndarray, np.ndarray]
+) -> tuple[int, int]:
+    """Take up to `steps` steps into rows of momenta, charts and poses; return how many were good and the outcome."""
+    if isinstance(body, GeneralBody):
+        return _general.advance(body, state, steps, every, *rows)
+    return _driver.advance(body, state, steps, every, *rows)
+
+
+def step_each(
+    body: AnyBody,
+    states: tuple[np.ndarray, np.ndarray, np.ndarray | None],
+    guesses: np.ndarray,
+    principal_only: bool,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Take one step from each row of momenta, charts and, for right-invariant constraints, poses as matrices."""
+    momenta, charts, poses = states
+    if isinstance(body, GeneralBody):
+        carried = np.zeros((len(momenta), 0)) if poses is None else poses
+        return _general.step_each(body, momenta, charts, carried, guesses, principal_only)
+    return _driver.step_each(body, momenta, charts, guesses, principal_only)

@@ -1,0 +1,114 @@
+"""The energy theorem: with the matrix difference and the skew constraint every subspace keeps its energy."""
+
+import numpy as np
+import pytest
+from bodies import GENERAL, mass_tensor, random_rows
+
+import nonholo as nh
+
+GROUPS = [nh.SO(3), nh.SO(4), nh.SO(5), nh.SE(2), nh.SE(3)]
+CASES = [(group, k) for group in GROUPS for k in range(1, group.dim + 1)]
+
+
+def _orbit(group: object, k: int, constraint: str, steps: int) -> nh.Orbit:
+    rng = np.random.default_rng(100 * group.dim + k)
+    system = nh.LLSystem(group, mass_tensor(group, rng), random_rows(group, k, rng))
+    velocity = rng.normal(size=k)
+    velocity *= 1.5 / np.sqrt(2 * system.constrained_energy(system.constrained_inertia @ velocity))
+    return nh.simulate(nh.discretize(system, 0.1, constraint=constraint), restricted_velocity=velocity, steps=steps)
+
+
+@pytest.mark.parametrize(("group", "k"), CASES, ids=str)
+def test_energy_of_every_dimension(group: object, k: int) -> None:
+    """Random d of dimension k, 2000 steps: energy, constraint, group and reversal to rounding."""
+    found = nh.invariants(_orbit(group, k, "skew", 2000))
+    assert found.energy_drift <= 1e-12
+    assert found.constraint_residual <= 1e-12
+    assert found.group_residual <= 1e-12
+    assert found.reversal_defect <= 1e-12
+
+
+@pytest.mark.parametrize(("group", "k"), [(nh.SO(4), 3), (nh.SO(4), 4), (nh.SE(3), 3)], ids=str)
+def test_the_exponential_constraint_drifts(group: object, k: int) -> None:
+    """With exp d instead, and d no symmetric pair, the energy visibly changes."""
+    orbit = _orbit(group, k, "exponential", 40)
+    assert not orbit.motion.conserves_energy
+    assert nh.invariants(orbit).energy_drift >= 1e-5
+
+
+@pytest.mark.parametrize("constraint", ["skew", "exponential"])
+def test_a_symmetric_pair_of_rank_two(constraint: str) -> None:
+    """For so(4) / (so(2) + so(2)), the planes that mix (1, 2) with (3, 4), both constraints are one and conserve."""
+    rows = np.eye(6)[[1, 2, 3, 4]]
+    assert nh.is_symmetric_pair(nh.SO(4), rows)
+    rng = np.random.default_rng(3)
+    system = nh.LLSystem(nh.SO(4), mass_tensor(nh.SO(4), rng), rows)
+    discrete = nh.discretize(system, 0.2, constraint=constraint)
+    assert discrete.conserves_energy
+    assert (
+        nh.invariants(nh.simulate(discrete, restricted_velocity=rng.normal(size=4), steps=2000)).energy_drift <= 1e-12
+    )
+
+
+def test_all_branches_conserve_energy() -> None:
+    """No energy is left to choose a root by: Newton from random guesses on SO(4) finds others of the same energy."""
+    from nonholo.discrete._structured import structured
+    from nonholo.kernels._general import displaced, increments, newton
+
+    rng = np.random.default_rng(4)
+    system = nh.SuslovTop(mass_tensor(nh.SO(4), rng))
+    discrete = nh.discretize(system, 0.5)
+    orbit = nh.simulate(discrete, restricted_velocity=(0.8, -0.5, 0.6), steps=1)
+    body, m = structured(discrete).body, 0.5 * orbit.restricted_momentum[1]
+    found = set()
+    for guess in rng.normal(size=(200, 3)) * 3:
+        good, y, _ = newton(body, body.tensor, m, guess)
+        if good:
+            after = m + increments(body, body.tensor, displaced(body, y)[0])
+            assert abs(after @ body.metric @ after / (m @ body.metric @ m) - 1) < 1e-9
+            found.add(tuple(y.round(6)))
+    assert len(found) >= 2
+
+
+@pytest.mark.parametrize("name", GENERAL)
+def test_what_every_system_keeps(name: str) -> None:
+    """Energy where it is exact, constraint, group, reversal and, in space, momenta to rounding over 1000 steps."""
+    system, velocity = GENERAL[name]
+    pose = system.group.random(np.random.default_rng(5))
+    discrete = nh.discretize(system, 0.1)
+    orbit = nh.simulate(discrete, restricted_velocity=velocity, configuration=pose, steps=1000)
+    found = nh.invariants(orbit)
+    assert found.constraint_residual <= 1e-12
+    assert found.group_residual <= 1e-12
+    assert found.reversal_defect <= 1e-12
+    assert found.energy_drift <= 1e-12 or not discrete.conserves_energy
+    for direction in nh.conserved_momenta(system).spatial:
+        assert np.ptp(orbit.spatial_momentum @ direction) <= 1e-11 * np.abs(orbit.spatial_momentum).max()
+
+
+@pytest.mark.parametrize("name", GENERAL)
+def test_slope_two(name: str) -> None:
+    """Halving the step divides the errors of momentum and pose against the flow by four."""
+    system, velocity = GENERAL[name]
+    start = {"restricted_velocity": velocity, "configuration": system.group.random(np.random.default_rng(6))}
+    exact = nh.flow(system, times=[0.0, 1.0], rtol=1e-12, atol=1e-14, **start)
+    steps = (40, 80, 160)
+    orbits = [nh.simulate(nh.discretize(system, 1 / n), steps=n, save_every=n, **start) for n in steps]
+    for quantity in ("restricted_momentum", "configuration"):
+        errors = [np.abs(getattr(o, quantity)[-1] - getattr(exact, quantity)[-1]).max() for o in orbits]
+        if max(errors) > 1e-11:  # conserved momenta are exact
+            assert abs(-np.polyfit(np.log(steps), np.log(errors), 1)[0] - 2) <= 0.1
+
+
+@pytest.mark.parametrize("name", [name for name in GENERAL if "veselova" in name or "right" in name])
+def test_energy_of_right_invariant_constraints_oscillates(name: str) -> None:
+    """With the constraint fixed in space, the energy is not exact: its oscillation falls by four per halving."""
+    system, velocity = GENERAL[name]
+    start = {"restricted_velocity": velocity, "configuration": system.group.random(np.random.default_rng(7))}
+    sizes = []
+    for n in (10, 20, 40):
+        energy = nh.simulate(nh.discretize(system, 1 / n), steps=4 * n, **start).energy
+        sizes.append(np.ptp(energy - nh.flow(system, times=np.linspace(0, 4, 4 * n + 1), **start).energy))
+    assert not nh.discretize(system, 0.1).conserves_energy
+    assert 1.8 <= np.log2(sizes[0] / sizes[1]) <= 2.2
+    assert 1.9 <= np.log2(sizes[1] / sizes[2]) <= 2.1
