@@ -14,8 +14,10 @@ if TYPE_CHECKING:
     from nonholo.analysis import invariants as invariants
     from nonholo.continuous import vector_field as vector_field
     from nonholo.discrete import Discretization as Discretization
+    from nonholo.discrete import consistency_defect as consistency_defect
     from nonholo.discrete import discrete_legendre as discrete_legendre
     from nonholo.discrete import discretize as discretize
+    from nonholo.discrete import moser_veselov_displacement as moser_veselov_displacement
     from nonholo.discrete._precision import allow_float32 as allow_float32
     from nonholo.discrete._step import step as step
     from nonholo.groups import SE as SE
@@ -62,6 +64,7 @@ _HOMES = {
     "VeselovaTop": "systems",
     "allow_float32": "discrete._precision",
     "conserved_momenta": "analysis",
+    "consistency_defect": "discrete",
     "discrete_legendre": "discrete",
     "discretize": "discrete",
     "euler_angle_discrete_lagrangian": "systems",
@@ -70,6 +73,7 @@ _HOMES = {
     "invariants": "analysis",
     "is_symmetric_pair": "systems",
     "load_orbit": "io",
+    "moser_veselov_displacement": "discrete",
     "reference_point_subspace": "systems",
     "save_orbit": "io",
     "simulate": "simulation",

@@ -13,7 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo._progress import progress_bar
-from nonholo._results import Outcome
+from nonholo._results import Outcome, OutcomeError
 from nonholo._types import Array, Float
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._legendre import legendre
@@ -22,6 +22,9 @@ from nonholo.discrete._root import principal_root
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import Orbit
 from nonholo.systems import AbstractLRSystem
+
+_SAMPLES = 16
+_EVEN = 1e-10  # relative difference of values that counts as rounding
 
 
 def reduced_discrete_lagrangian(discrete: Discretization) -> Callable[[Array], Array]:
@@ -48,6 +51,31 @@ def value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixG
         return lagrangian(group.exp(x))
 
     return in_double(jax.value_and_grad(at), np.zeros(group.dim))
+
+
+def map_each(function: Callable[[Array], Array], W: Float[np.ndarray, "K N N"]) -> np.ndarray:
+    """Return the values of a function of one matrix at each of several."""
+    return in_double(jax.vmap(function), W)
+
+
+def is_even(function: Callable[[Array], Array], group: AbstractMatrixGroup) -> bool:
+    """Tell whether a function takes the same value at W and its inverse, tried at random elements."""
+    W = group.exp(0.5 * np.random.default_rng(0).normal(size=(_SAMPLES, group.dim)) / np.sqrt(group.dim))
+    there, back = map_each(function, W), map_each(function, group.inverse(W))
+    return bool(np.abs(there - back).max() <= _EVEN * np.abs(there).max())
+
+
+def sample_displacements(discrete: Discretization, count: int) -> Float[np.ndarray, "count N N"]:
+    """Draw displacements from the variety, the principal ones of velocities that turn by about 0.3 in a step."""
+    system, rng = discrete.system, np.random.default_rng(0)
+    velocities = rng.normal(size=(count, len(system.constraint_subspace)))
+    velocities *= 0.3 / (discrete.time_step * np.linalg.norm(velocities, axis=1, keepdims=True))
+    momenta = velocities @ np.asarray(system.constrained_inertia)
+    solve = equinox.filter_jit(jax.vmap(principal_displacement, in_axes=(None, 0, None)))
+    charts, codes = in_double(solve, discrete, momenta, system.group.identity)
+    if codes.any():
+        raise OutcomeError(Outcome(int(codes.max())), "A displacement of a step of 0.3")
+    return in_double(jax.vmap(functools.partial(displaced, discrete)), charts)
 
 
 def legendre_by_derivative(discrete: Discretization, W: Float[Array, "... N N"], side: str) -> Float[Array, "... dim"]:

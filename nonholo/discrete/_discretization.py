@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable
+from typing import Any, overload
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from nonholo.discrete._structured import next_charts
 from nonholo.discrete._variety import Constraint, Variety, checked_constraint, variety_of
 from nonholo.orbit import AbstractMotion, Orbit
 from nonholo.systems import AbstractLRSystem, AbstractSystem, System
+from nonholo.systems._coordinate_system import AbstractCoordinateSystem, DiscretizationT, refuse_in_coordinates
 
 Difference = str | Callable[[Array], Array]
 
@@ -56,6 +58,20 @@ class Discretization(AbstractMotion):
         skew = self.constraint == "skew" or (self.constraint == "exponential" and not variety.exponential)
         return self.difference == "matrix" and skew and not isinstance(self.system, AbstractLRSystem)
 
+    @property
+    def is_self_adjoint(self) -> bool:
+        """Whether l_d(W) = l_d(W^-1), so that the step is an even condition; tried at random W for a callable.
+
+        Example:
+            >>> discretize(ChaplyginSleigh(1.0, 1.0, 0.5), 0.1).is_self_adjoint
+            True
+        """
+        if not callable(self.difference):
+            return True
+        from nonholo.discrete._definition import is_even
+
+        return is_even(self.difference, self.system.group)
+
     def displaced(self, cayley: Float[np.ndarray, "K m"]) -> Float[np.ndarray, "K N N"]:
         """Return the elements of the variety, in the user's frame, with canonical chart coordinates."""
         frame = self.system.frame
@@ -66,7 +82,11 @@ class Discretization(AbstractMotion):
         D = self.variety.displaced(states.canonical_chart)
         if self.variety.exact:
             return self.system.group.log(D) @ self.variety.annihilator.T
-        return self.variety.equations(D)
+        if isinstance(self.constraint, str):
+            return self.variety.equations(D)
+        from nonholo.discrete._definition import map_each
+
+        return map_each(self.variety.equations, D)
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         """Return the discrete momenta at the displacements."""
@@ -99,13 +119,23 @@ def _in_body(discrete: Discretization, cayley: np.ndarray, g: np.ndarray, side: 
     return legendre(discrete, discrete.system.group.inverse(g) @ discrete.variety.increment(cayley) @ g, side)
 
 
+@overload
 def discretize(
     system: System,
     time_step: Array,
     difference: Difference | None = None,
     constraint: Constraint | Callable[[Array], Array] | None = None,
     order: int = 2,
-) -> Discretization:
+) -> Discretization: ...
+@overload
+def discretize(system: AbstractCoordinateSystem[DiscretizationT, Any], time_step: Array) -> DiscretizationT: ...
+def discretize(
+    system: System | AbstractCoordinateSystem,
+    time_step: Array,
+    difference: Difference | None = None,
+    constraint: Constraint | Callable[[Array], Array] | None = None,
+    order: int = 2,
+) -> Any:
     r"""Discretise a system: choose the discrete Lagrangian and the variety that displacements lie on.
 
     $$ l_d(W) = h\, l\bigl((W - I)/h\bigr) \ \text{(matrix)}, \qquad l_d(W) = h\, l(\log W/h)\ \text{(logarithmic)}, $$
@@ -115,6 +145,8 @@ def discretize(
     subspace; with any other choice it does not (`Discretization.conserves_energy` tells).
 
     Reference: [fedorov-zenkov-2004], section 3; docs/theory/energy-theorem.md.
+
+    A `LagrangeDAlembert` has its own rule, and takes no other argument than the time step.
 
     Args:
         system: What moves.
@@ -126,6 +158,9 @@ def discretize(
             "skew" where it is defined, on SO(n) and SE(n), and "exponential" elsewhere.
         order: 2.
 
+    Returns:
+        The discretisation; of a system in coordinates a `nonholo.lagrange_dalembert.CoordinateDiscretization`.
+
     Raises:
         ValueError: A time step that is not positive and real, an unknown choice, a difference or a constraint that is
             not defined for the system, functions that do not fit d at the identity.
@@ -134,6 +169,11 @@ def discretize(
         >>> discretize(ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), time_step=0.1).difference
         'matrix'
     """
+    if isinstance(system, AbstractCoordinateSystem):
+        refuse_in_coordinates(
+            "discretize", difference=(difference, None), constraint=(constraint, None), order=(order, 2)
+        )
+        return system.discretize(time_step)
     if not isinstance(system, AbstractSystem):
         raise error("discretize(system=...)", "be a system", repr(system), "Pass a SuslovTop or an LLSystem.")
     step = positive("discretize(time_step=...)", time_step, "Pass a positive real time step.")
@@ -164,9 +204,10 @@ def _scalar(where: str, system: AbstractSystem, difference: Callable[[Array], Ar
 
     try:
         value, slope = value_and_slope(difference, system.group)
-    except TypeError as failure:
-        got = f"{failure}".splitlines()[0]
-        raise error(where, "be a real scalar function of a JAX matrix", got, "Return one number.") from failure
+    except Exception as failure:
+        got = f"{type(failure).__name__}: {f'{failure}'.splitlines()[0]}"
+        remedy = "Write L_d(W) with jax.numpy, returning one number."
+        raise error(where, "be a real scalar function of a JAX matrix", got, remedy) from failure
     if not (np.isfinite(value) and np.all(np.isfinite(slope))):
         raise error(where, "be differentiable at the identity", f"value {value}, slope {slope}", "Avoid 0/0 there.")
     return difference

@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from nonholo import kernels
-from nonholo._types import Float
-from nonholo.discrete._variety import Variety
+from nonholo.discrete._variety import Variety, forbidden_matrices
 from nonholo.systems import AbstractLRSystem, AbstractSystem, inertia_from_mass_tensor
 
 _SINES = np.linspace(0.0, 1.0, 401)[1:-1]  # of the largest angle in the ball
@@ -23,19 +22,27 @@ _MARGIN = 1 - 1e-9
 
 
 def general_body(system: AbstractSystem, variety: Variety) -> kernels.GeneralBody:
-    """Return the body of the general kernel."""
-    group = system.group
+    """Return the body of the general kernel, in its own unit of length."""
+    group, unit = system.group, length_unit(system)
+    N, n = group.identity.shape[0], _size_of_rotations(system)
+    shrink = np.where(np.arange(N) < n, 1 / unit, 1.0)
+    motions = np.outer(shrink, 1 / shrink)
+    chart = group.hat(variety.chart) * motions
+    lengths = np.linalg.norm(chart, axis=(1, 2))
+    forbidden = np.zeros((0, group.dim)) if variety.exact else variety.annihilator
     radius, level = (0.0, 0.0) if isinstance(system, AbstractLRSystem) else _certain_ball(system)
     return kernels.GeneralBody(
-        tensor=_plain(system.homogeneous_mass_tensor),
-        directions=_plain(group.hat(system.constraint_subspace)),
-        chart=_plain(group.hat(variety.chart)),
-        forbidden=_plain(_forbidden(variety)),
-        size=_size_of_rotations(system),
+        tensor=_plain(system.homogeneous_mass_tensor * np.outer(shrink, shrink)),
+        directions=_plain(group.hat(system.constraint_subspace) * motions),
+        chart=_plain(chart / lengths[:, None, None]),
+        forbidden=_plain(forbidden_matrices(group, forbidden) / motions),
+        size=n,
         spatial=isinstance(system, AbstractLRSystem),
-        metric=_plain(np.linalg.inv(system.constrained_inertia)),
+        metric=_plain(np.linalg.inv(system.constrained_inertia) * unit**2),
         radius=radius,
         level=level,
+        unit=unit,
+        stretch=_plain(1 / lengths),
     )
 
 
@@ -50,28 +57,22 @@ def _size_of_rotations(system: AbstractSystem) -> int:
     return basis.shape[1] if np.any(basis[:, -1]) else basis.shape[1] - 1
 
 
-def _forbidden(variety: Variety) -> Float[np.ndarray, "j N N"]:
-    """Return matrices whose sums of products of entries with X are the forbidden coordinates of X."""
-    N = variety.group.identity.shape[0]
-    rows = np.zeros((0, variety.group.dim)) if variety.exact else variety.annihilator
-    units = np.eye(N * N).reshape(N * N, N, N)
-    return (variety.group.vee(units) @ rows.T).T.reshape(-1, N, N)
-
-
 def _certain_ball(system: AbstractSystem) -> tuple[float, float]:
-    """Return the squared radius of the ball and the largest squared momentum for which it certifies; or zeros."""
-    unit = _length_unit(system)
-    slope, least = _stiffness(system, unit)
+    """Return the squared radius of the ball and the largest squared momentum for which it certifies; or zeros.
+
+    In the unit of length of the body.
+    """
+    slope, least = _stiffness(system, length_unit(system))
     cosine = np.sqrt(1 - _SINES**2)
     lipschitz = slope(_SINES, cosine)
     reach = np.where(lipschitz < 1, (1 - lipschitz) * _SINES, 0.0)
     best = int(np.argmax(reach))
-    size = least * unit**2 * _MARGIN
+    size = least * _MARGIN
     return float(_SINES[best] ** 2 * size), float(reach[best] ** 2 * size)
 
 
-def _length_unit(system: AbstractSystem) -> float:
-    """Return a length that makes translations comparable with rotations; one for rotations alone."""
+def length_unit(system: AbstractSystem) -> float:
+    """Return the length that makes translations comparable with rotations; one for rotations alone."""
     tensor, n = np.asarray(system.homogeneous_mass_tensor), _size_of_rotations(system)
     if n == len(tensor):
         return 1.0

@@ -7,7 +7,7 @@ import numpy as np
 from nonholo import kernels
 from nonholo._results import Outcome, OutcomeError
 from nonholo._types import Array, Float
-from nonholo.discrete._general import general_body
+from nonholo.discrete._general import general_body, length_unit
 from nonholo.orbit import Orbit
 from nonholo.systems import AbstractLRSystem, AbstractSystem, ChaplyginSleigh, SuslovTop
 
@@ -55,7 +55,7 @@ def structured(discrete: "Discretization") -> Structured | None:
     variety = discrete.variety
     if variety.exponential or discrete.constraint not in ("skew", "exponential"):
         return None
-    return MatrixStep(general_body(discrete.system, variety), discrete.time_step)
+    return MatrixStep(general_body(discrete.system, variety), discrete.time_step / length_unit(discrete.system) ** 2)
 
 
 def next_charts(discrete: "Discretization", states: Orbit) -> Float[np.ndarray, "K m"]:
@@ -108,4 +108,4 @@ def _two_ahead(states: Orbit, following: np.ndarray) -> Float[np.ndarray, "K siz
 
 
 def _largest(rows: np.ndarray) -> np.ndarray:
-    return np.abs(rows).max(axis=1)
+    return np.abs(rows).max(axis=1, initial=0.0)

@@ -20,8 +20,7 @@ from nonholo.systems import AbstractSystem
 Constraint = str | tuple[Callable[[Array], Array], ...]
 
 _NAMES = ("skew", "exponential", "naive")
-_ROUNDING = 1e-10  # relative, of cubes that must stay in the subspace
-_STEP = 1e-6  # of the differences that compare the tangent space of functions with the subspace
+_ROUNDING = 1e-10  # relative, of cubes that must stay in the subspace, and of tangents of functions
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -34,6 +33,8 @@ class Variety:
         annihilator: Rows of the forbidden directions, shape (s, dim).
         constraint: "skew", "exponential", "naive" or functions.
         exponential: Whether the chart is exp, not the group's retraction.
+        frame: The canonical body frame as seen from the user's, in which "naive" and functions are meant; None for the
+            others, which are the same in every frame.
     """
 
     group: AbstractMatrixGroup
@@ -41,6 +42,7 @@ class Variety:
     annihilator: Float[np.ndarray, "s dim"]
     constraint: Constraint
     exponential: bool
+    frame: Float[Array, "N N"] | None = None
 
     @property
     def exact(self) -> bool:
@@ -62,17 +64,21 @@ class Variety:
         xp = W.__array_namespace__()
         if self.exact:
             return xp.zeros((*W.shape[:-2], 0), dtype=W.dtype)
-        if not isinstance(self.constraint, str):
-            return xp.stack([f(W) for f in self.constraint], axis=-1)
-        if self.constraint == "skew":
-            moved = (W - self.group.inverse(W)) / 2
-        else:
-            moved = W - xp.asarray(self.group.identity, dtype=W.dtype)
-        return self.group.vee(moved) @ xp.asarray(self.annihilator, dtype=W.dtype).T
+        annihilator = xp.asarray(self.annihilator, dtype=W.dtype)
+        if self.frame is None:
+            return self.group.vee((W - self.group.inverse(W)) / 2) @ annihilator.T
+        back, frame = (xp.asarray(g, dtype=W.dtype) for g in (self.group.inverse(self.frame), self.frame))
+        W = frame @ W @ back
+        if isinstance(self.constraint, str):
+            return self.group.vee(W - xp.asarray(self.group.identity, dtype=W.dtype)) @ annihilator.T
+        return xp.stack([f(W) for f in self.constraint], axis=-1)
 
 
 def variety_of(system: AbstractSystem, constraint: Constraint) -> Variety:
     """Return the displacement variety of a system, in its canonical frame."""
+    if constraint not in ("skew", "exponential"):
+        every, annihilator = np.eye(system.group.dim), np.asarray(system.annihilator)
+        return Variety(system.group, every, annihilator, constraint, exponential=False, frame=system.frame)
     canonical = system.canonical
     subspace, annihilator = np.asarray(canonical.constraint_subspace), np.asarray(canonical.annihilator)
     rows = (subspace.tobytes(), subspace.shape, annihilator.tobytes(), annihilator.shape)
@@ -80,23 +86,30 @@ def variety_of(system: AbstractSystem, constraint: Constraint) -> Variety:
 
 
 @functools.lru_cache(maxsize=256)
-def _variety(group: AbstractMatrixGroup, rows: tuple, constraint: Constraint) -> Variety:
+def _variety(group: AbstractMatrixGroup, rows: tuple, constraint: str) -> Variety:
     data, shape, other, other_shape = rows
     subspace = np.frombuffer(data).reshape(shape)
     annihilator = np.frombuffer(other).reshape(other_shape)
-    if constraint in ("skew", "exponential") and (group.is_rigid and _cubes_stay(group, subspace, annihilator)):
-        return Variety(group, subspace, annihilator, constraint, exponential=False)
-    if constraint == "exponential":
-        return Variety(group, subspace, annihilator, constraint, exponential=True)
-    return Variety(group, np.eye(group.dim), annihilator, constraint, exponential=False)
+    closed = group.is_rigid and _cubes_stay(group, subspace, annihilator)
+    exponential = constraint == "exponential" and not closed
+    chart = subspace if closed or exponential else np.eye(group.dim)
+    return Variety(group, chart, annihilator, constraint, exponential)
 
 
 def _cubes_stay(group: AbstractMatrixGroup, subspace: np.ndarray, annihilator: np.ndarray) -> bool:
     """Tell whether X^3 lies in the subspace for every X in it; a polynomial identity, tried on random X."""
-    draws = np.random.default_rng(0).normal(size=(4, len(subspace))) @ subspace
-    X = group.hat(draws)
-    cubes = group.vee(X @ X @ X)
-    return bool(np.abs(cubes @ annihilator.T).max(initial=0.0) <= _ROUNDING * np.abs(X).max(initial=0.0) ** 3)
+    X = group.hat(np.random.default_rng(0).normal(size=(4, len(subspace))) @ subspace)
+    forbidden = forbidden_matrices(group, annihilator)
+    escape = np.einsum("jab,iab->ij", forbidden, X @ X @ X)
+    terms = np.einsum("jab,iab->ij", np.abs(forbidden), np.abs(X) @ np.abs(X) @ np.abs(X))  # lengths in any unit
+    return bool(np.all(np.abs(escape) <= _ROUNDING * terms))
+
+
+def forbidden_matrices(group: AbstractMatrixGroup, annihilator: np.ndarray) -> Float[np.ndarray, "s N N"]:
+    """Return matrices whose sums of products of entries with X are the forbidden coordinates of X."""
+    N = group.size
+    units = np.eye(N * N).reshape(N * N, N, N)
+    return (group.vee(units) @ annihilator.T).T.reshape(-1, N, N)
 
 
 def checked_constraint(where: str, system: AbstractSystem, constraint: object) -> Constraint:
@@ -106,31 +119,36 @@ def checked_constraint(where: str, system: AbstractSystem, constraint: object) -
     if not isinstance(constraint, list | tuple):
         return choice(where, constraint, _NAMES, "Or pass functions f_j(W), zero on the variety.")
     functions = tuple(constraint)
-    group, canonical = system.group, system.canonical
-    s = len(canonical.annihilator)
+    s = len(system.annihilator)
     if len(functions) != s:
         raise error(where, f"be {s} functions, one per forbidden direction", f"{len(functions)}", "Pass as many.")
-    values = _values(where, functions, group.identity)
-    if np.abs(values).max(initial=0.0) > _STEP**2:
+    values, derivative = _at_identity(where, functions, system.group)
+    if np.abs(values).max(initial=0.0) > _ROUNDING:
         raise error(where, "vanish at the identity", f"values {values}", "Subtract them.")
-    directions = np.concatenate([canonical.constraint_subspace, canonical.annihilator])
-    ahead = np.stack([_values(where, functions, group.exp(_STEP * x)) for x in directions])
-    behind = np.stack([_values(where, functions, group.exp(-_STEP * x)) for x in directions])
-    slopes = (ahead - behind) / (2 * _STEP)
-    k = len(canonical.constraint_subspace)
-    if np.abs(slopes[:k]).max(initial=0.0) > 1e-6 * np.abs(slopes).max(initial=1.0):
-        got = f"a derivative {np.abs(slopes[:k]).max():.3g} along d"
+    along = np.abs(derivative @ system.constraint_subspace.T).max(initial=0.0)
+    if along > _ROUNDING * np.abs(derivative).max(initial=1.0):
+        got = f"a derivative {along:.3g} along d"
         raise error(where, "be tangent to d at the identity", got, "Check the functions against constraint_subspace.")
-    if s and np.linalg.matrix_rank(slopes[k:], tol=1e-6 * np.abs(slopes).max()) < s:
+    if np.linalg.matrix_rank(derivative, tol=_ROUNDING * np.abs(derivative).max(initial=0.0)) < s:
         raise error(where, "be independent at the identity", "dependent derivatives", "Drop what repeats another.")
     return functions
 
 
-def _values(where: str, functions: tuple[Callable[[Array], Array], ...], W: np.ndarray) -> np.ndarray:
-    values = [np.asarray(f(W), dtype=np.float64) for f in functions]
-    if any(value.shape != () for value in values):
-        shapes = [value.shape for value in values]
-        raise error(where, "be scalar functions of a matrix", f"values of shapes {shapes}", "Return one number each.")
-    if not np.all(np.isfinite(values)):
-        raise error(where, "be finite at the identity", f"{values}", "Check the functions.")
-    return np.stack(values) if values else np.zeros(0)
+def _at_identity(
+    where: str, functions: tuple[Callable[[Array], Array], ...], group: AbstractMatrixGroup
+) -> tuple[Float[np.ndarray, "s"], Float[np.ndarray, "s dim"]]:
+    """Return the values of functions at the identity and their derivatives along the group."""
+    from nonholo.discrete._definition import value_and_slope
+
+    values, slopes = np.zeros(len(functions)), np.zeros((len(functions), group.dim))
+    for j, function in enumerate(functions):
+        try:
+            values[j], slopes[j] = value_and_slope(function, group)
+        except Exception as failure:
+            got = f"{type(failure).__name__}: {f'{failure}'.splitlines()[0]}"
+            remedy = "Write each f_j(W) with jax.numpy, for one matrix, returning one number."
+            raise error(where, "be real scalar functions of a JAX matrix", got, remedy) from failure
+    if not (np.all(np.isfinite(values)) and np.all(np.isfinite(slopes))):
+        got = f"values {values}, derivatives {slopes.tolist()}"
+        raise error(where, "be differentiable at the identity", got, "Avoid 0/0 and square roots of zero there.")
+    return values, slopes

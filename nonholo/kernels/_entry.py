@@ -27,7 +27,8 @@ def start(body: AnyBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, n
 def chart_of(body: AnyBody, state: np.ndarray) -> np.ndarray:
     """Return the chart coordinates of the displacement in a state."""
     k, m, _ = sizes(body)
-    return state[2 * k : 2 * k + m]
+    chart = state[2 * k : 2 * k + m]
+    return chart * body.stretch if isinstance(body, GeneralBody) else chart
 
 
 def advance(

@@ -4,9 +4,10 @@ The displacement is $W = (I - Y)^{-1}(I + Y)$, $Y = \sum_a y_a C_a$. Unknowns ar
 
 $$ \mathrm{tr}(D_i W J (W - I)^T) = m_i \ (i \le k), \qquad \langle A_j, \tfrac12 (W - W^{-1})\rangle = 0, $$
 
-with $D_i$ a basis of $\mathfrak{d}$ and momenta in units of displacements, $m = h r$. Where $\exp\mathfrak{d}$ solves
-the constraint, the $C_a$ are the $D_i$ and there is no second kind; otherwise the $C_a$ span the algebra. With
-`spatial` the constraint is right-invariant: J is carried to space by the pose, and m is constant.
+with $D_i$ a basis of $\mathfrak{d}$ and momenta in units of displacements, $m = h r/\ell^2$. All lengths are in
+units of a length $\ell$ of the body, so that translations and rotations are numbers of one size. Where
+$\exp\mathfrak{d}$ solves the constraint, the $C_a$ are the $D_i$ and there is no second kind; otherwise the $C_a$
+span the algebra. With `spatial` the constraint is right-invariant: the pose carries J to space, and m is constant.
 """
 
 from typing import NamedTuple
@@ -16,8 +17,10 @@ import numpy as np
 
 _STEPS = 12  # of Newton's method
 _FIRST = 0.25  # first continuation step, in s
-_SMALLEST = 1e-7  # continuation step below which the branch is given up
-_FAR = 1e4  # |y| beyond which the Cayley chart ends: an angle of pi
+_SMALLEST = 1e-7  # continuation step, relative to s, below which the branch is given up
+_LEAST = 1e-300  # and the absolute one: a momentum may be any number of times too large
+_FAR = 1e4  # turning of a displacement beyond which the Cayley chart ends: an angle of 179 degrees
+_LOST = 1e12  # that of an iteration that runs away
 
 
 class GeneralBody(NamedTuple):
@@ -33,6 +36,8 @@ class GeneralBody(NamedTuple):
         metric: Inverse of the constrained inertia, (k, k).
         radius: Squared radius of the ball in which a root is certainly principal, in the metric of the energy.
         level: Largest squared norm of scaled momenta for which it is.
+        unit: The length l; poses are in the unit of the user's.
+        stretch: Factors from the coordinates y of this kernel to those of the caller, (m,).
     """
 
     tensor: np.ndarray
@@ -44,6 +49,17 @@ class GeneralBody(NamedTuple):
     metric: np.ndarray
     radius: float
     level: float
+    unit: float
+    stretch: np.ndarray
+
+
+@numba.njit(cache=True)
+def _turning(p: GeneralBody, y: np.ndarray) -> float:
+    """Return half the sum of the squared entries of the rotational part of Y: the sum of tan^2(angle / 2)."""
+    Y = np.zeros((p.size, p.size))
+    for a in range(len(y)):
+        Y += y[a] * p.chart[a, : p.size, : p.size]
+    return np.sum(Y * Y) / 2
 
 
 @numba.njit(cache=True)
@@ -104,6 +120,8 @@ def newton(p: GeneralBody, J: np.ndarray, m: np.ndarray, y: np.ndarray) -> tuple
     """Correct a guess until the next correction would be below rounding; also the Jacobian determinant at the end."""
     det = 1.0
     for _ in range(_STEPS if len(y) else 0):
+        if not _turning(p, y) < _LOST:  # I - Y may be singular to rounding beyond
+            return False, y, det
         residual, slope = equations(p, J, m, y)
         det = np.linalg.det(slope)
         if not (np.isfinite(det) and det != 0):
@@ -139,28 +157,32 @@ def principal(p: GeneralBody, J: np.ndarray, m: np.ndarray) -> tuple[int, np.nda
         return 0, y
     _, slope = equations(p, J, 0 * m, y)
     start = np.linalg.det(slope)
+    tangent = np.linalg.solve(slope, target)
     s, size, now = 0.0, _FIRST, start
     while s < 1.0:
         size = min(size, 1.0 - s)
         ahead = 1.0 if size == 1.0 - s else s + size
-        guess = y + size * np.linalg.solve(slope, target)
+        guess = y + size * tangent
         good, found, det = newton(p, J, ahead * m, guess)
         moved, off = found - y, found - guess
         close = np.sum(off * off) <= 0.01 * np.sum(moved * moved) or np.sum(moved * moved) < 1e-6
         if good and close and det * start > 0 and np.sum(moved * moved) <= 0.04 * (1 + np.sum(y * y)) ** 2:
             y, s, now, size = found, ahead, det, 2 * size
             _, slope = equations(p, J, s * m, y)
-        elif size > _SMALLEST:
+            if np.linalg.det(slope) * start <= 0:  # singular to rounding
+                return _why_it_ended(p, y, 0.0, start), y
+            tangent = np.linalg.solve(slope, target)
+        elif size > max(_SMALLEST * s, _LEAST):
             size /= 4
         else:
-            return _why_it_ended(y, now, start), y
+            return _why_it_ended(p, y, now, start), y
     return 0, y
 
 
 @numba.njit(cache=True)
-def _why_it_ended(y: np.ndarray, det: float, start: float) -> int:
+def _why_it_ended(p: GeneralBody, y: np.ndarray, det: float, start: float) -> int:
     """Tell a fold (1) from the end of the chart (2) and from a failure to converge (3)."""
-    if np.sum(y * y) > _FAR:
+    if _turning(p, y) > _FAR:
         return 2
     return 1 if abs(det) < 1e-2 * abs(start) else 3
 
@@ -177,13 +199,26 @@ def solve(p: GeneralBody, J: np.ndarray, m: np.ndarray, guess: np.ndarray) -> tu
 @numba.njit(cache=True)
 def tensor_at(p: GeneralBody, g: np.ndarray) -> np.ndarray:
     """Return the mass tensor that the equations see at a pose."""
-    return (g @ p.tensor) @ np.ascontiguousarray(g.T) if p.spatial else p.tensor
+    if not p.spatial:
+        return p.tensor
+    scaled = _in_units(p, g, 1 / p.unit)
+    return (scaled @ p.tensor) @ scaled.T.copy()
+
+
+@numba.njit(cache=True)
+def _in_units(p: GeneralBody, g: np.ndarray, factor: float) -> np.ndarray:
+    """Return a motion with its translation multiplied by a factor."""
+    scaled = g.copy()
+    if len(g) > p.size:
+        scaled[: p.size, p.size] *= factor
+    return scaled
 
 
 @numba.njit(cache=True)
 def moved(p: GeneralBody, g: np.ndarray, W: np.ndarray) -> np.ndarray:
     """Return the pose after one displacement, its rotation brought back to the group by one Newton-Schulz step."""
-    n, after = p.size, (W @ g if p.spatial else g @ W)
+    V = _in_units(p, W, p.unit)
+    n, after = p.size, (V @ g if p.spatial else g @ V)
     R = np.ascontiguousarray(after[:n, :n])
     after[:n, :n] = R @ (3 * np.eye(n) - R.T @ R) / 2
     return after
@@ -223,7 +258,7 @@ def advance(
         done += 1
         if done % every == 0:
             row = done // every - 1
-            momenta[row], charts[row], poses[row] = m, y, g.ravel()
+            momenta[row], charts[row], poses[row] = m, y * p.stretch, g.ravel()
     state[: 2 * k] = np.concatenate((m, lost))
     state[2 * k :] = np.concatenate((y, u, v, g.ravel()))
     return done, code
@@ -254,7 +289,7 @@ def step_each(
     next_momenta, next_charts = np.empty_like(momenta), np.empty_like(charts)
     codes = np.zeros(len(momenta), dtype=np.int64)
     for row in range(len(momenta)):
-        X, _ = displaced(p, charts[row])
+        X, _ = displaced(p, charts[row] / p.stretch)
         J, m = p.tensor, momenta[row]
         if p.spatial:
             J = tensor_at(p, moved(p, poses[row].copy().reshape(N, N), X + np.eye(N)))
@@ -262,8 +297,9 @@ def step_each(
             m = m + increments(p, J, X)
         next_momenta[row] = m
         if principal_only:
-            codes[row], next_charts[row] = solve(p, J, m, guesses[row])
+            codes[row], y = solve(p, J, m, guesses[row] / p.stretch)
         else:
-            good, next_charts[row], _ = newton(p, J, m, guesses[row])
+            good, y, _ = newton(p, J, m, guesses[row] / p.stretch)
             codes[row] = 0 if good else 3
+        next_charts[row] = y * p.stretch
     return next_momenta, next_charts, codes

@@ -1,6 +1,6 @@
 """`flow`: an orbit of the continuous equations, from a checked start to a decoded result."""
 
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
@@ -10,11 +10,13 @@ from nonholo.continuous import ContinuousFlow, closed_form
 from nonholo.discrete._start import in_group, initial_momentum, one_start
 from nonholo.orbit import Orbit
 from nonholo.systems import AbstractSystem, System
+from nonholo.systems._coordinate_system import AbstractCoordinateSystem, OrbitT, refuse_in_coordinates
 
 _LEAST_RTOL = 1e-14
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
 
 
+@overload
 def flow(
     system: System,
     *,
@@ -26,7 +28,30 @@ def flow(
     rtol: float = 1e-10,
     atol: float = 1e-12,
     method: str | None = None,
-) -> Orbit:
+) -> Orbit: ...
+@overload
+def flow(
+    system: AbstractCoordinateSystem[Any, OrbitT],
+    *,
+    times: Any,
+    configuration: Any,
+    body_velocity: Any = None,
+    momentum: Any = None,
+    rtol: float = 1e-10,
+    atol: float = 1e-12,
+) -> OrbitT: ...
+def flow(
+    system: System | AbstractCoordinateSystem,
+    *,
+    times: Any,
+    body_velocity: Any = None,
+    restricted_velocity: Any = None,
+    momentum: Any = None,
+    configuration: Any = None,
+    rtol: float = 1e-10,
+    atol: float = 1e-12,
+    method: str | None = None,
+) -> Any:
     r"""Solve the Euler-Poincare-Suslov equations.
 
     $$ p' = \mathrm{ad}^*_\omega p + \sum_j \lambda_j a^j, \qquad \langle a^j, \omega\rangle = 0, \qquad
@@ -35,6 +60,9 @@ def flow(
     By default an adaptive Runge-Kutta method of order 8 steps to every requested time. With "closed_form" the momentum
     along the constraint is $r_\perp\,\mathrm{sech}\,s + r_\parallel\tanh s$, $s = s_0 + \nu t$, exact at all times.
     Exact are also heading and path of the sleigh (a hypergeometric function); the pose of the top is a quadrature.
+
+    For a `LagrangeDAlembert` these are the equations of its `flow`, with q in place of the pose: it starts at a
+    `configuration`, and takes neither `restricted_velocity` nor `method`.
 
     Reference: [fedorov-zenkov-2004], sections 2, 4 and 5.
 
@@ -51,7 +79,8 @@ def flow(
         method: None (numerical) or "closed_form".
 
     Returns:
-        The orbit. It has no displacements, and its multipliers are the forces at its times.
+        The orbit. It has no displacements, and its multipliers are the forces at its times. Of a system in coordinates
+        it is a `nonholo.lagrange_dalembert.CoordinateOrbit`.
 
     Raises:
         ValueError: A bad argument, before any work.
@@ -65,6 +94,16 @@ def flow(
         >>> print(orbit.body_velocity[:, 1].round(6), (np.ptp(orbit.heading) / np.pi).round(6))
         [-2.  2.] 2.0
     """
+    if isinstance(system, AbstractCoordinateSystem):
+        refuse_in_coordinates("flow", restricted_velocity=(restricted_velocity, None), method=(method, None))
+        return system.flow(
+            configuration=configuration,
+            times=times,
+            body_velocity=body_velocity,
+            momentum=momentum,
+            rtol=rtol,
+            atol=atol,
+        )
     if not isinstance(system, AbstractSystem):
         raise error("flow(system=...)", "be a system", repr(system), "Pass a SuslovTop or an LLSystem.")
     choice("flow(method=...)", method, (None, "closed_form"))

@@ -1,7 +1,7 @@
 """`simulate`: an orbit of the discrete map, from a checked start to a decoded result."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
@@ -13,12 +13,14 @@ from nonholo.discrete import Discretization, initial_state
 from nonholo.discrete._start import check_first_state, in_group
 from nonholo.discrete._structured import Structured, structured
 from nonholo.orbit import Orbit
+from nonholo.systems._coordinate_system import AbstractCoordinateDiscretization, OrbitT, refuse_in_coordinates
 
 _BLOCK = 1 << 20  # steps between two reports of progress
 
 Rows = tuple[np.ndarray, np.ndarray, np.ndarray | None]
 
 
+@overload
 def simulate(
     discrete: Discretization,
     *,
@@ -34,13 +36,45 @@ def simulate(
     backend: str = "auto",
     throw: bool = True,
     progress: bool = False,
-) -> Orbit:
+) -> Orbit: ...
+@overload
+def simulate(
+    discrete: AbstractCoordinateDiscretization[OrbitT],
+    *,
+    steps: int,
+    configuration: Any,
+    body_velocity: Any = None,
+    displacement: Any = None,
+    momentum: Any = None,
+    save_every: int = 1,
+    throw: bool = True,
+    progress: bool = False,
+) -> OrbitT: ...
+def simulate(
+    discrete: Discretization | AbstractCoordinateDiscretization,
+    *,
+    steps: int,
+    body_velocity: Any = None,
+    restricted_velocity: Any = None,
+    displacement: Any = None,
+    momentum: Any = None,
+    configuration: Any = None,
+    save_every: int = 1,
+    branch: str = "principal",
+    reconstruct: bool = True,
+    backend: str = "auto",
+    throw: bool = True,
+    progress: bool = False,
+) -> Any:
     r"""Run the discrete Euler-Poincare-Suslov map.
 
     $$ P(W_{k+1})|_{\mathfrak{d}} = (\mathrm{Ad}^*_{W_k} P(W_k))|_{\mathfrak{d}}, \qquad g_{k+1} = g_k W_k. $$
 
     The map is multivalued. The principal root is the one that momentum zero reaches along s r, 0 <= s <= 1; each root
     is verified to be it, since energy cannot tell (every root conserves it).
+
+    A discretised `LagrangeDAlembert` runs the map of its `CoordinateDiscretization.simulate`. It starts at a
+    `configuration`, its q_0, and takes neither `restricted_velocity` nor `branch`, `reconstruct` and `backend`.
 
     Reference: [fedorov-zenkov-2004], equation (disc.momentum.eqn).
 
@@ -60,7 +94,7 @@ def simulate(
         progress: Show a progress bar on standard error.
 
     Returns:
-        The orbit.
+        The orbit; of a system in coordinates a `nonholo.lagrange_dalembert.CoordinateOrbit`.
 
     Raises:
         ValueError: A bad argument, before any work.
@@ -73,6 +107,28 @@ def simulate(
         >>> float(np.ptp(orbit.energy)) < 1e-14
         True
     """
+    if isinstance(discrete, AbstractCoordinateDiscretization):
+        refuse_in_coordinates(
+            "simulate",
+            restricted_velocity=(restricted_velocity, None),
+            branch=(branch, "principal"),
+            reconstruct=(reconstruct, True),
+            backend=(backend, "auto"),
+        )
+        return discrete.simulate(
+            configuration=configuration,
+            steps=steps,
+            body_velocity=body_velocity,
+            displacement=displacement,
+            momentum=momentum,
+            save_every=save_every,
+            throw=throw,
+            progress=progress,
+        )
+    if not isinstance(discrete, Discretization):
+        raise error(
+            "simulate(discrete=...)", "be a discretised system", repr(discrete), "Pass what discretize returns."
+        )
     steps = count("simulate(steps=...)", steps, "Pass the number of steps.")
     every = count("simulate(save_every=...)", save_every, "Pass the number of steps between saved states.")
     choice("simulate(branch=...)", branch, ("principal",))

@@ -1,24 +1,63 @@
 """The interface of systems in coordinates, which discretise, run and flow by themselves."""
 
 import abc
-from typing import Any
+from typing import Any, Generic, TypeVar
+
+from nonholo._checks import error
+
+OrbitT = TypeVar("OrbitT")
+DiscretizationT = TypeVar("DiscretizationT")
 
 
-class AbstractCoordinateDiscretization(abc.ABC):
+class AbstractCoordinateDiscretization(abc.ABC, Generic[OrbitT]):
     """A discretised system in coordinates: `nonholo.simulate` hands its arguments on to it."""
 
     @abc.abstractmethod
-    def simulate(self, **arguments: Any) -> Any:
+    def simulate(
+        self,
+        *,
+        configuration: Any,
+        steps: int,
+        body_velocity: Any = None,
+        displacement: Any = None,
+        momentum: Any = None,
+        save_every: int = 1,
+        throw: bool = True,
+        progress: bool = False,
+    ) -> OrbitT:
         """Run the discrete map."""
 
 
-class AbstractCoordinateSystem(abc.ABC):
+class AbstractCoordinateSystem(abc.ABC, Generic[DiscretizationT, OrbitT]):
     """A system in coordinates: `nonholo.discretize` and `nonholo.flow` hand their arguments on to it."""
 
     @abc.abstractmethod
-    def discretize(self, time_step: Any) -> AbstractCoordinateDiscretization:
+    def discretize(self, time_step: Any) -> DiscretizationT:
         """Return the discretised system."""
 
     @abc.abstractmethod
-    def flow(self, **arguments: Any) -> Any:
+    def flow(
+        self,
+        *,
+        configuration: Any,
+        times: Any,
+        body_velocity: Any = None,
+        momentum: Any = None,
+        rtol: float = 1e-10,
+        atol: float = 1e-12,
+    ) -> OrbitT:
         """Solve the continuous equations."""
+
+
+def refuse_in_coordinates(owner: str, **given: tuple[Any, Any]) -> None:
+    """Refuse arguments that only systems on a group have: each comes with its default.
+
+    Example:
+        >>> from nonholo.systems._coordinate_system import refuse_in_coordinates
+        >>> refuse_in_coordinates("discretize", order=(2, 2))
+    """
+    for name, (value, default) in given.items():
+        if value is not default and not (isinstance(value, type(default)) and value == default):
+            what = "keep its default for a Lagrange-d'Alembert system"
+            remedy = "Leave it out: only tops, sleighs and other LL and LR systems have it."
+            raise error(f"{owner}({name}=...)", what, repr(value), remedy)

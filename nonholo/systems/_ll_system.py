@@ -10,7 +10,7 @@ from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, Equilibria
 from nonholo.systems._drift import constant_velocities
-from nonholo.systems._mass import group_mass_tensor, inertia_from_mass_tensor
+from nonholo.systems._mass import checked_group, group_mass_tensor, inertia_from_mass_tensor
 from nonholo.systems._subspace import subspace_and_annihilator
 
 
@@ -67,6 +67,7 @@ class LLSystem(AbstractLLSystem):
         annihilator: Any = None,
         inertia_operator: Any = None,
     ) -> None:
+        checked_group("LLSystem(group=...)", group)
         if (mass_tensor is None) == (inertia_operator is None):
             got = "neither" if mass_tensor is None else "both"
             remedy = "Pass the mass tensor of a body on SO(n) or SE(n), the inertia operator of anything else."

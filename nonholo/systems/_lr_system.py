@@ -9,7 +9,7 @@ from nonholo._checks import positive_definite
 from nonholo._types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLRSystem
-from nonholo.systems._mass import body_tensor, group_mass_tensor, inertia_from_mass_tensor
+from nonholo.systems._mass import body_tensor, checked_group, group_mass_tensor, inertia_from_mass_tensor
 from nonholo.systems._subspace import complement, plane_rows, subspace_and_annihilator
 
 _REMEDY = "The constrained directions turn in the body, so the body needs a positive kinetic energy in every motion."
@@ -52,6 +52,7 @@ class LRSystem(AbstractLRSystem):
 
     def __post_init__(self) -> None:
         where, instead = "LRSystem(mass_tensor=...)", "LR systems on other groups are not offered."
+        checked_group("LRSystem(group=...)", self.group)
         given = (self.constraint_subspace, self.annihilator)
         rows, covectors = subspace_and_annihilator("LRSystem", self.group.dim, *given)
         tensor = group_mass_tensor(where, self.group, self.mass_tensor, instead)

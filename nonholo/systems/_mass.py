@@ -1,5 +1,7 @@
 """Mass tensors, inertia tensors and the inertia operator of a mass distribution moved by a matrix group."""
 
+from typing import Any
+
 import numpy as np
 
 from nonholo._checks import array, error, symmetric
@@ -64,6 +66,13 @@ def body_tensor(where: str, value: Array, remedy: str) -> Array:
     if rows != columns or rows < 3:
         raise error(where, "have shape (n, n) with n >= 3", f"shape {tensor.shape}", remedy)
     return symmetric(where, tensor, remedy)
+
+
+def checked_group(where: str, group: Any) -> AbstractMatrixGroup:
+    """Refuse what is not a matrix group."""
+    if not isinstance(group, AbstractMatrixGroup):
+        raise error(where, "be a matrix group", repr(group), "Pass SO(n), SE(n), or MatrixGroup(basis).")
+    return group
 
 
 def group_mass_tensor(where: str, group: AbstractMatrixGroup, value: Array, instead: str) -> Array:

@@ -10,7 +10,7 @@ from nonholo._types import Array, Float
 from nonholo.groups import SO
 from nonholo.systems._base import AbstractLLSystem, Equilibria
 from nonholo.systems._drift import constant_velocities
-from nonholo.systems._mass import body_tensor, group_mass_tensor, inertia_from_mass_tensor
+from nonholo.systems._mass import body_tensor, checked_group, group_mass_tensor, inertia_from_mass_tensor
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
@@ -49,6 +49,7 @@ class RigidBody(AbstractLLSystem):
             tensor = body_tensor(where, self.mass_tensor, remedy)
             object.__setattr__(self, "group", SO(tensor.shape[0]))
         else:
+            checked_group("RigidBody(group=...)", self.group)
             instead = "`LLSystem` takes an inertia operator on any group."
             tensor = group_mass_tensor(where, self.group, self.mass_tensor, instead)
         object.__setattr__(self, "mass_tensor", tensor)

@@ -1,0 +1,84 @@
+"""The discrete map in coordinates: a system with a time step, and its run."""
+
+import dataclasses
+from typing import Any
+
+from nonholo._checks import error, is_traced, positive
+from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
+from nonholo.lagrange_dalembert._simulate import simulate
+from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+from nonholo.systems._coordinate_system import AbstractCoordinateDiscretization
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class CoordinateDiscretization(AbstractCoordinateDiscretization[CoordinateOrbit]):
+    """A discretised system in coordinates, made by `nonholo.discretize`.
+
+    Attributes:
+        system: What moves.
+        time_step: h.
+
+    Example:
+        >>> from nonholo.lagrange_dalembert import CoordinateDiscretization, LagrangeDAlembert
+        >>> CoordinateDiscretization(LagrangeDAlembert(lambda q, v: v @ v, None, dimension=2), 0.5).time_step
+        0.5
+    """
+
+    system: LagrangeDAlembert
+    time_step: float
+
+    def __post_init__(self) -> None:
+        where = "discretize(time_step=...)"
+        if is_traced(self.time_step):
+            remedy = "Runs in coordinates are compiled by themselves: call them outside jax.jit and jax.grad."
+            raise error(where, "be a number", "a traced value", remedy)
+        h = float(positive(where, self.time_step, "Pass a positive real time step."))
+        object.__setattr__(self, "time_step", h)
+
+    def simulate(
+        self,
+        *,
+        configuration: Any,
+        steps: int,
+        body_velocity: Any = None,
+        displacement: Any = None,
+        momentum: Any = None,
+        save_every: int = 1,
+        throw: bool = True,
+        progress: bool = False,
+    ) -> CoordinateOrbit:
+        r"""Run the discrete Lagrange-d'Alembert map.
+
+        $$ D_1 L_d(q_k, q_{k+1}) + D_2 L_d(q_{k-1}, q_k) = -\sum_j \lambda_j A^j(q_k), \qquad F(q_k, q_{k+1}) = 0. $$
+
+        The map may be multivalued. Each step takes the root next to the last one, extrapolated; it is trusted if
+        Newton's corrections shrink and no determinant changes its sign, and otherwise followed from the last step by
+        continuation. Where the matrix of the equations is singular to rounding the run ends (`no_real_branch`).
+
+        A velocity $v_0$ sets out with $-D_1 L_d(q_0, q_1) = \partial L/\partial v + \sum_j \mu_j A^j(q_0)$ (second
+        order), a momentum with itself in place of $\partial L/\partial v$.
+
+        Args:
+            configuration: $q_0$.
+            steps: Number of steps N; unthinned orbits have N + 1 states.
+            body_velocity: Start with this velocity, which must satisfy the constraint.
+            displacement: Start with $q_1 - q_0$, which must satisfy the discrete constraint.
+            momentum: Start with this momentum; only its action on admissible velocities counts.
+            save_every: Keep every so many steps.
+            throw: Raise if the run cannot go on; otherwise return the good steps and the outcome.
+            progress: Show a progress bar on standard error.
+
+        Raises:
+            ValueError: A bad argument, before any work.
+            OutcomeError: With `throw`, the run could not go on; the error's `orbit` holds every good step.
+
+        Example:
+            >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
+            >>> free = LagrangeDAlembert(lambda q, v: v @ v / 2, None, dimension=2).discretize(0.5)
+            >>> free.simulate(configuration=(0, 0), body_velocity=(1, 2), steps=2).configuration
+            array([[0. , 0. ],
+                   [0.5, 1. ],
+                   [1. , 2. ]])
+        """
+        starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
+        return simulate(self.system, self.time_step, configuration, starts, steps, save_every, throw, progress)

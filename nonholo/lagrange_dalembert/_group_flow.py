@@ -1,0 +1,74 @@
+"""The continuous motion on a group: accelerations and forces of constraint, and the orbit of a solve."""
+
+import functools
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+
+from nonholo._results import Outcome, OutcomeError
+from nonholo._types import Array
+from nonholo.lagrange_dalembert import _group_equations as equations
+from nonholo.lagrange_dalembert import _group_start as start
+from nonholo.lagrange_dalembert._group_orbit import GroupOrbit
+from nonholo.lagrange_dalembert._on_group import GroupLagrangeDAlembert
+from nonholo.lagrange_dalembert._precision import in_double
+from nonholo.lagrange_dalembert._start import chosen
+from nonholo.lagrange_dalembert._sweep import Motion, State, padded, swept, times_of, tolerances
+
+
+def flow(
+    system: GroupLagrangeDAlembert, configuration: Any, starts: dict[str, Any], times: Any, rtol: float, atol: float
+) -> GroupOrbit:
+    """Check a start, solve the equations and return the orbit."""
+    time, errors, given = times_of(times), tolerances(rtol, atol), chosen("flow", starts)
+    g = start.pose("flow", system, configuration)
+    of = start.of_momentum if given == "momentum" else start.of_velocity
+    w, _ = of("flow", system, g, starts[given])
+    rows = swept(Motion(system, _rate, _projected), (g, w), time, errors)
+    reached = len(rows[0])
+    momentum, forces, energies, residual = (x[:reached] for x in in_double(_decode, system, *map(padded, rows)))
+    outcome = Outcome.successful if reached == len(time) else Outcome.not_converged
+    orbit = GroupOrbit(time[:reached], rows[0], None, rows[1], momentum, forces, energies, residual, outcome)
+    if outcome != Outcome.successful:
+        where = f"Flow from time {time[reached - 1]:g} to {time[reached]:g} (rtol {rtol:g}, atol {atol:g})"
+        raise OutcomeError(outcome, where, orbit)
+    return orbit
+
+
+def _bordered_solve(
+    system: GroupLagrangeDAlembert, g: Array, w: Array, force: Array, off: Array
+) -> tuple[Array, Array]:
+    r"""Solve $M x - a^T\lambda$ = force, a x = off."""
+    matrix, units = equations.acceleration_matrix(system, g, w)
+    solution = jnp.linalg.solve(matrix, jnp.concatenate([force * units.velocity, off / units.constraints]))
+    n = system.group.dim
+    return solution[:n] * units.velocity, solution[n:] / units.forms
+
+
+def _projected(system: GroupLagrangeDAlembert, state: State) -> State:
+    """Return the state on the group, with the admissible velocity next to its own in the kinetic energy."""
+    g, w = equations.normalized(system, state[0]), state[1]
+    return g, w - _bordered_solve(system, g, w, jnp.zeros_like(w), equations.forms(system, g) @ w)[0]
+
+
+def _acceleration(system: GroupLagrangeDAlembert, g: Array, w: Array) -> tuple[Array, Array]:
+    r"""Return the rate of $\omega$ and the forces $\lambda$, from the equations and $\tfrac{d}{dt}(a(g)\omega) = 0$."""
+    force = system.group.coad(w, equations.continuous_momentum(system, w))
+    _, turned = jax.jvp(lambda x: equations.forms(system, x) @ w, (g,), (g @ system.group.hat(w),))
+    return _bordered_solve(system, g, w, force, -turned)
+
+
+def _rate(system: GroupLagrangeDAlembert, state: State) -> State:
+    g, w = state
+    return g @ system.group.hat(w), _acceleration(system, g, w)[0]
+
+
+@functools.partial(jax.jit, static_argnums=0)
+def _decode(system: GroupLagrangeDAlembert, g: Array, w: Array) -> tuple[Array, ...]:
+    def one(g: Array, w: Array) -> tuple[Array, ...]:
+        residual = jnp.max(jnp.abs(equations.forms(system, g) @ w), initial=0.0)
+        momentum, energy = equations.continuous_momentum(system, w), equations.energy(system, w)
+        return momentum, _acceleration(system, g, w)[1], energy, residual
+
+    return jax.vmap(one)(g, w)

@@ -1,0 +1,75 @@
+"""Orbits on a group: plain arrays at the saved states, and their labels."""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from nonholo._results import Outcome
+from nonholo._types import Float
+
+# name: dimensions after `step`, and what the numbers are
+_VARIABLES = {
+    "configuration": (("row", "column"), "pose"),
+    "displacement": (("row", "column"), "displacement of a single step, seen from the body"),
+    "body_velocity": (("component",), "body velocity; of a discrete orbit log(displacement) / time_step"),
+    "momentum": (("component",), "body momentum at the start of the step; of a flow the Legendre transform"),
+    "multipliers": (("constraint",), "impulses of constraint to the next state; of a flow forces of constraint"),
+    "energy": ((), "energy"),
+    "constraint_residual": ((), "largest residual of the constraint"),
+}
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class GroupOrbit:
+    r"""A motion of a `GroupLagrangeDAlembert` at K saved states.
+
+    Attributes:
+        time: Times of the saved states, shape (K,).
+        configuration: $g_k$, shape (K, N, N).
+        displacement: $W_k = g_k^{-1}g_{k+1}$ of single steps, shape (K, N, N); None for a flow.
+        body_velocity: The body velocity; for a discrete orbit $\log(W_k)/h$, shape (K, dim).
+        momentum: $P_k = P(W_k)$, for a flow $\partial l/\partial\omega$, shape (K, dim).
+        multipliers: Impulses $\lambda$ in $P_{k+1} - \mathrm{Ad}^*_{W_k}P_k = \sum_j\lambda_j a^j(g_{k+1})$ of the
+            steps from the saved states but the last, shape (K - 1, s); for a flow the forces at its times, (K, s).
+        energy: $-\partial l_d/\partial h$ at $W_k$, for a flow $\omega\cdot\partial l/\partial\omega - l$, shape (K,).
+        constraint_residual: Largest $|F_j(g_k, W_k)|$, for a flow $|a^j(g)\omega|$, shape (K,).
+        outcome: How the run ended.
+
+    Example:
+        >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
+        >>> free = GroupLagrangeDAlembert(nh.SO(3), mass_tensor_lagrangian(nh.SO(3), np.diag([1.0, 2.0, 3.0])), None)
+        >>> free.discretize(0.1).simulate(body_velocity=(1.0, 0.2, 0.0), steps=10)
+        <GroupOrbit: 11 states of 3 x 3 matrices, time 0 to 1, successful>
+    """
+
+    time: Float[np.ndarray, "K"]
+    configuration: Float[np.ndarray, "K N N"]
+    displacement: Float[np.ndarray, "K N N"] | None
+    body_velocity: Float[np.ndarray, "K dim"]
+    momentum: Float[np.ndarray, "K dim"]
+    multipliers: Float[np.ndarray, "L s"]
+    energy: Float[np.ndarray, "K"]
+    constraint_residual: Float[np.ndarray, "K"]
+    outcome: Outcome = Outcome.successful
+
+    def __repr__(self) -> str:
+        span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
+        n = self.configuration.shape[-1]
+        return f"<GroupOrbit: {len(self)} states of {n} x {n} matrices{span}, {self.outcome}>"
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def to_dataset(self) -> Any:
+        """Return the orbit as a labelled `xarray.Dataset`; multipliers that do not exist are NaN."""
+        import xarray
+
+        variables = {}
+        for name, (dimensions, meaning) in _VARIABLES.items():
+            rows = getattr(self, name)
+            if rows is not None:
+                missing = np.full((len(self) - len(rows), *rows.shape[1:]), np.nan)
+                variables[name] = (("step", *dimensions), np.concatenate([rows, missing]), {"long_name": meaning})
+        time = ("step", self.time, {"long_name": "time"})
+        return xarray.Dataset(variables, coords={"time": time}, attrs={"outcome": self.outcome.name})

@@ -1,0 +1,76 @@
+"""Orbits in coordinates: plain arrays at the saved states, and their labels."""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from nonholo._results import Outcome
+from nonholo._types import Float
+
+# name: dimension after `step`, and what the numbers are
+_VARIABLES = {
+    "configuration": ("coordinate", "coordinates"),
+    "displacement": ("coordinate", "change of the coordinates in one step"),
+    "body_velocity": ("coordinate", "velocity; of a discrete orbit displacement / time_step"),
+    "momentum": ("coordinate", "momentum at the start of the step; of a flow the Legendre transform"),
+    "multipliers": ("constraint", "impulses of constraint to the next state; of a flow forces of constraint"),
+    "energy": (None, "energy"),
+    "constraint_residual": (None, "largest residual of the constraint"),
+}
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class CoordinateOrbit:
+    r"""A motion in coordinates at K saved states.
+
+    Attributes:
+        time: Times of the saved states, shape (K,).
+        configuration: $q_k$, shape (K, n).
+        displacement: $q_{k+1} - q_k$ of single steps, shape (K, n); None for a flow.
+        body_velocity: The velocity; for a discrete orbit displacement / time_step, shape (K, n).
+        momentum: $P_k = -D_1 L_d(q_k, q_{k+1})$, for a flow $\partial L/\partial v$, shape (K, n).
+        multipliers: Impulses $\lambda$ in $P_{k+1} - P^+_k = \sum_j \lambda_j A^j(q_{k+1})$ of the steps from the saved
+            states but the last, shape (K - 1, s); for a flow the forces at its times, shape (K, s).
+        energy: $-\partial L_d/\partial h$, for a flow $v\cdot\partial L/\partial v - L$, shape (K,).
+        constraint_residual: Largest $|F_j(q_k, q_{k+1})|$, for a flow $|A^j(q) v|$, shape (K,).
+        outcome: How the run ended.
+
+    Example:
+        >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
+        >>> spring = LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=1)
+        >>> spring.discretize(0.1).simulate(configuration=[1], body_velocity=[0], steps=10)
+        <CoordinateOrbit: 11 states of 1 coordinates, time 0 to 1, successful>
+    """
+
+    time: Float[np.ndarray, "K"]
+    configuration: Float[np.ndarray, "K n"]
+    displacement: Float[np.ndarray, "K n"] | None
+    body_velocity: Float[np.ndarray, "K n"]
+    momentum: Float[np.ndarray, "K n"]
+    multipliers: Float[np.ndarray, "L s"]
+    energy: Float[np.ndarray, "K"]
+    constraint_residual: Float[np.ndarray, "K"]
+    outcome: Outcome = Outcome.successful
+
+    def __repr__(self) -> str:
+        span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
+        n = self.configuration.shape[1]
+        return f"<CoordinateOrbit: {len(self)} states of {n} coordinates{span}, {self.outcome}>"
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def to_dataset(self) -> Any:
+        """Return the orbit as a labelled `xarray.Dataset`; multipliers that do not exist are NaN."""
+        import xarray
+
+        variables = {}
+        for name, (dimension, meaning) in _VARIABLES.items():
+            rows = getattr(self, name)
+            if rows is not None:
+                missing = np.full((len(self) - len(rows), *rows.shape[1:]), np.nan)
+                sizes = ("step",) if dimension is None else ("step", dimension)
+                variables[name] = (sizes, np.concatenate([rows, missing]), {"long_name": meaning})
+        time = ("step", self.time, {"long_name": "time"})
+        return xarray.Dataset(variables, coords={"time": time}, attrs={"outcome": self.outcome.name})

@@ -1,0 +1,13 @@
+"""Precision: every call of JAX runs in a local 64-bit scope and gives NumPy arrays."""
+
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import numpy as np
+
+
+def in_double(function: Callable[..., Any], *arguments: Any) -> Any:
+    """Call a JAX function with 64-bit numbers; return NumPy arrays."""
+    with jax.enable_x64(True):
+        return jax.tree.map(np.asarray, function(*arguments))

@@ -1,0 +1,170 @@
+"""Where a motion starts: checks of a system at a point, and the velocity or displacement it sets out with."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo._checks import array, error, positive
+from nonholo._types import Array, Float
+from nonholo.lagrange_dalembert._equations import acceleration_matrix, discrete_constraints, forms
+from nonholo.lagrange_dalembert._newton import orientation
+from nonholo.lagrange_dalembert._precision import in_double
+from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+
+_TOLERANCE = 1e-9  # relative, for velocities and displacements that a user computed in floating point
+_DEGENERATE = 1e-10  # least singular value of scaled matrices, below which they are called singular
+_CONSISTENT = 1e-7  # relative; looser, since the functions may difference numerically
+_CORRECTIONS = 8
+
+
+def chosen(owner: str, starts: dict[str, Any]) -> str:
+    """Return the name of the one start that is given."""
+    given = [name for name, value in starts.items() if value is not None]
+    if len(given) != 1:
+        got = " and ".join(given) if given else "none"
+        raise error(f"{owner}(...)", "be given exactly one of " + ", ".join(starts), got, "Choose one start.")
+    return given[0]
+
+
+def point(owner: str, system: LagrangeDAlembert, configuration: Any) -> Float[np.ndarray, "n"]:
+    """Return a configuration at which the constraint forms are finite and independent."""
+    where, n = f"{owner}(configuration=...)", system.dimension
+    if configuration is None:
+        raise error(where, "be given for a system in coordinates", "none", f"Pass the {n} coordinates of the start.")
+    q = array(where, configuration, (n,), f"Pass the {n} coordinates.")
+    A = in_double(_forms, system, q)
+    what = "LagrangeDAlembert(constraint_forms=...)"
+    if not np.all(np.isfinite(A)):
+        raise error(what, "be finite at the start", f"{A.tolist()}", "Start where the constraint is defined.")
+    lengths = np.linalg.norm(A, axis=1, keepdims=True)
+    least = np.linalg.svd(A / np.where(lengths == 0, 1, lengths), compute_uv=False)[-1] if len(A) else 1.0
+    if least < _DEGENERATE:
+        got = f"rank {np.linalg.matrix_rank(A)} of {len(A)} rows at {q.tolist()}"
+        raise error(what, "have independent rows", got, "Drop the constraints that follow from others.")
+    return q
+
+
+def consistent(system: LagrangeDAlembert, q: Float[np.ndarray, "n"], h: Any) -> None:
+    """Refuse discrete constraints that short steps along the constraint do not satisfy."""
+    if system.discrete_constraints is None:
+        return
+    where = "LagrangeDAlembert(discrete_constraints=...)"
+    at_rest, slope = in_double(_constraint_slope, system, q, np.zeros_like(q), h)
+    if not np.all(np.isfinite(at_rest)) or np.abs(at_rest).max() > _TOLERANCE * (1 + np.abs(slope).max()):
+        raise error(where, "vanish for q_next = q", f"{at_rest.tolist()} at {q.tolist()}", "Subtract its value there.")
+    A = in_double(_forms, system, q)
+    directions = np.linalg.svd(A)[2][len(A) :]
+    missed = np.abs(slope @ directions.T)
+    if not missed.max() <= _CONSISTENT * np.linalg.norm(slope, axis=1).max() or np.linalg.matrix_rank(slope) < len(A):
+        got = f"derivatives {slope.tolist()} beside the forms {A.tolist()} at {q.tolist()}"
+        remedy = "Discretise the same forms, or change the forms."
+        raise error(where, "have derivatives along q_next that span the constraint forms", got, remedy)
+
+
+def velocity(owner: str, system: LagrangeDAlembert, q: Float[np.ndarray, "n"], given: Any) -> Float[np.ndarray, "n"]:
+    """Return a velocity that satisfies the constraint, at which the Lagrangian is regular."""
+    where = f"{owner}(body_velocity=...)"
+    v = array(where, given, (system.dimension,), f"Pass the {system.dimension} velocities.")
+    regular(system, q, v)
+    A = in_double(_forms, system, q)
+    missed = A @ v
+    if np.any(np.abs(missed) > _TOLERANCE * (np.abs(A) @ np.abs(v))):
+        nearest = v - np.linalg.pinv(A) @ missed
+        got = f"residual {np.array2string(missed, precision=6)}"
+        raise error(where, "satisfy the constraint", got, f"The nearest admissible velocity is {nearest.tolist()}.")
+    return v
+
+
+def regular(system: LagrangeDAlembert, q: np.ndarray, v: np.ndarray) -> None:
+    """Refuse a Lagrangian without finite derivatives, or one that does not determine accelerations."""
+    what, at = "LagrangeDAlembert(lagrangian=...)", f"at {q.tolist()}, velocity {v.tolist()}"
+    value, gradients = in_double(_differentiated, system, q, v)
+    if not all(np.all(np.isfinite(x)) for x in (value, *gradients)):
+        got = f"value {value.tolist()}, gradients {[x.tolist() for x in gradients]} {at}"
+        raise error(what, "be finite and differentiable", got, "Start elsewhere, or smooth it with jnp.where.")
+    least = in_double(_least, system, q, v)
+    if not least > _DEGENERATE:
+        got = f"least singular value {float(least):.3g} of the equations {at}"
+        raise error(what, "determine the accelerations", got, "Give every admissible direction a kinetic energy.")
+
+
+def velocity_of_momentum(
+    owner: str, system: LagrangeDAlembert, q: np.ndarray, momentum: Any
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return a checked momentum and the admissible velocity that has the same components along the constraint."""
+    n = system.dimension
+    where = f"{owner}(momentum=...)"
+    p = array(where, momentum, (n,), f"Pass the {n} momenta; only their action on admissible velocities counts.")
+    regular(system, q, np.zeros(n))
+    v = in_double(_inverse_legendre, system, q, p)
+    regular(system, q, v)
+    return p, v
+
+
+def velocity_of_displacement(system: LagrangeDAlembert, q: np.ndarray, given: Any, h: float) -> np.ndarray:
+    """Return the velocity d/h of a displacement that satisfies the discrete constraint."""
+    where = "simulate(displacement=...)"
+    d = array(where, given, (system.dimension,), "Pass q_1 - q_0.")
+    v = d / h
+    regular(system, q, v)
+    missed, slope = in_double(_constraint_slope, system, q, v, h)
+    if np.any(np.abs(missed) > _TOLERANCE * (np.abs(slope) @ np.abs(v))):
+        nearest = h * in_double(_admissible, system, q, v, h)
+        got = f"residual {np.array2string(missed, precision=6)}"
+        remedy = f"The nearest admissible displacement is {nearest.tolist()}."
+        raise error(where, "satisfy the discrete constraint", got, remedy)
+    return v
+
+
+def regularity(system: LagrangeDAlembert, q: Any, q_next: Any, time_step: Any) -> float:
+    """Return the least singular value of the scaled regularity matrix of a step."""
+    owner, n = "regularity", system.dimension
+    h = positive(f"{owner}(time_step=...)", time_step, "Pass a positive time step.")
+    first = array(f"{owner}(q=...)", q, (n,), f"Pass the {n} coordinates.")
+    second = array(f"{owner}(q_next=...)", q_next, (n,), f"Pass the {n} coordinates.")
+    return float(in_double(_orientation, system, first, (second - first) / h, h)[1])
+
+
+_forms = jax.jit(forms, static_argnums=0)
+_orientation = jax.jit(orientation, static_argnums=0)
+
+
+def _differentiated_of(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, tuple[Array, Array]]:
+    return jax.value_and_grad(system.lagrangian, argnums=(0, 1))(q, v)
+
+
+def _least_of(system: LagrangeDAlembert, q: Array, v: Array) -> Array:
+    return jnp.linalg.svd(acceleration_matrix(system, q, v)[0], compute_uv=False)[-1]
+
+
+def _inverse_legendre_of(system: LagrangeDAlembert, q: Array, p: Array) -> Array:
+    def correct(_: Array, v: Array) -> Array:
+        matrix, units = acceleration_matrix(system, q, v)
+        missed = p - jax.grad(system.lagrangian, argnums=1)(q, v)
+        off = -(forms(system, q) @ v) / units.constraints
+        step = jnp.linalg.solve(matrix, jnp.concatenate([missed * units.velocity, off]))
+        return v + step[: q.shape[0]] * units.velocity
+
+    return jax.lax.fori_loop(0, _CORRECTIONS, correct, jnp.zeros_like(q))
+
+
+def _constraint_slope_of(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> tuple[Array, Array]:
+    slope = jax.jacfwd(discrete_constraints, argnums=2)(system, q, v, h)
+    return discrete_constraints(system, q, v, h), slope
+
+
+def _admissible_of(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> Array:
+    def correct(_: Array, w: Array) -> Array:
+        missed, slope = _constraint_slope_of(system, q, w, h)
+        return w - jnp.linalg.pinv(slope) @ missed
+
+    return jax.lax.fori_loop(0, _CORRECTIONS, correct, v)
+
+
+_differentiated = jax.jit(_differentiated_of, static_argnums=0)
+_least = jax.jit(_least_of, static_argnums=0)
+_inverse_legendre = jax.jit(_inverse_legendre_of, static_argnums=0)
+_constraint_slope = jax.jit(_constraint_slope_of, static_argnums=0)
+_admissible = jax.jit(_admissible_of, static_argnums=0)

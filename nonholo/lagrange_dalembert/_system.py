@@ -1,0 +1,195 @@
+"""What a system in coordinates is: a Lagrangian, constraint forms, and the rule that discretises both."""
+
+import dataclasses
+import importlib
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import jax
+
+from nonholo._checks import choice, count, error
+from nonholo._types import Array
+from nonholo.lagrange_dalembert._tracing import traced_shape
+from nonholo.systems._coordinate_system import AbstractCoordinateSystem
+
+if TYPE_CHECKING:
+    from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
+    from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
+
+
+@dataclasses.dataclass(frozen=True)
+class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "CoordinateOrbit"]):
+    r"""A mechanical system on $\mathbb{R}^n$ with linear velocity constraints, and its discrete principle.
+
+    $$ \frac{d}{dt}\frac{\partial L}{\partial v} - \frac{\partial L}{\partial q} = \sum_j \lambda_j A^j(q), \qquad
+       A(q)\,v = 0; \qquad P_{k+1} - P^+_k = \sum_j \lambda_j A^j(q_{k+1}), \qquad F(q_k, q_{k+1}) = 0, $$
+
+    where $P_k = -D_1 L_d(q_k, q_{k+1})$ and $P^+_k = D_2 L_d(q_k, q_{k+1})$. With v = (q' - q)/h the rule "midpoint" is
+    $L_d = h L((q + q')/2, v)$, $F = A((q + q')/2) v$; "trapezoidal" takes the means of L and A over both ends.
+    Nothing needs to be invariant under a group.
+
+    Reference: [cortes-martinez-2001]; [fedorov-zenkov-2004], section 2. The signs: docs/theory, "lagrange-dalembert".
+
+    Args:
+        lagrangian: `lagrangian(q, v)` -> scalar, written with `jax.numpy`.
+        constraint_forms: `constraint_forms(q)` -> (s, n), the rows $A^j(q)$; None for an unconstrained system.
+        dimension: n.
+        rule: "midpoint" or "trapezoidal".
+        discrete_lagrangian: `discrete_lagrangian(q, q_next, time_step)` -> scalar, in place of the rule; it includes
+            the factor time_step.
+        discrete_constraints: `discrete_constraints(q, q_next, time_step)` -> (s,), in place of the rule.
+
+    Raises:
+        ValueError: A function that JAX cannot trace, or whose result is not real or has the wrong shape; an unknown
+            rule.
+
+    Example:
+        A particle in space with the constraint z' = y x':
+
+        >>> import jax.numpy as jnp
+        >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
+        >>> def forms(q):
+        ...     return jnp.array([[-q[1], 0.0, 1.0]])
+        >>> particle = LagrangeDAlembert(lambda q, v: v @ v / 2, forms, dimension=3)
+        >>> discrete = particle.discretize(time_step=0.1)
+        >>> orbit = discrete.simulate(configuration=(0, 0, 0), body_velocity=(1, 1, 0), steps=100)
+        >>> orbit.configuration.shape, bool(orbit.constraint_residual.max() < 1e-13)
+        ((101, 3), True)
+    """
+
+    lagrangian: Callable[[Array, Array], Array]
+    constraint_forms: Callable[[Array], Array] | None
+    dimension: int = dataclasses.field(kw_only=True)
+    rule: str = dataclasses.field(default="midpoint", kw_only=True)
+    discrete_lagrangian: Callable[[Array, Array, Array], Array] | None = dataclasses.field(default=None, kw_only=True)
+    discrete_constraints: Callable[[Array, Array, Array], Array] | None = dataclasses.field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        where = "LagrangeDAlembert(dimension=...)"
+        object.__setattr__(self, "dimension", count(where, self.dimension, "Pass the number of coordinates."))
+        choice("LagrangeDAlembert(rule=...)", self.rule, ("midpoint", "trapezoidal"))
+        with jax.enable_x64(True):
+            q, h = jax.ShapeDtypeStruct((self.dimension,), float), jax.ShapeDtypeStruct((), float)
+            self._check("lagrangian", (), q, q)
+            if self.constraint_forms is not None:
+                self._check_forms(q)
+            self._check("discrete_lagrangian", (), q, q, h)
+            self._check("discrete_constraints", (self.constraints,), q, q, h)
+
+    def _check(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
+        found = self._shape(name, *arguments)
+        if found not in (None, shape):
+            wanted = "a scalar" if shape == () else f"an array of shape {shape}"
+            remedy = f"It is called with arrays of {self.dimension} coordinates."
+            raise error(f"LagrangeDAlembert({name}=...)", f"return {wanted}", f"shape {found}", remedy)
+
+    def _check_forms(self, q: Any) -> None:
+        n, found = self.dimension, self._shape("constraint_forms", q)
+        if found is None or len(found) != 2 or found[1] != n or not 0 < found[0] < n:
+            wanted = f"return an array of shape (s, {n}) with 0 < s < {n}"
+            remedy = "Stack one row per constraint; pass None for no constraint."
+            raise error("LagrangeDAlembert(constraint_forms=...)", wanted, f"shape {found}", remedy)
+
+    def _shape(self, name: str, *arguments: Any) -> tuple[int, ...] | None:
+        function, where = getattr(self, name), f"LagrangeDAlembert({name}=...)"
+        if function is None:
+            return None
+        return traced_shape(where, function, arguments, f"{self.dimension} coordinates")
+
+    @property
+    def constraints(self) -> int:
+        """The number s of constraints."""
+        if self.constraint_forms is None:
+            return 0
+        with jax.enable_x64(True):
+            return jax.eval_shape(self.constraint_forms, jax.ShapeDtypeStruct((self.dimension,), float)).shape[0]
+
+    def regularity(self, q: Any, q_next: Any, *, time_step: float) -> float:
+        r"""Return the smallest singular value of the scaled regularity matrix; zero at a fold of the map.
+
+        $$ \begin{pmatrix} -h\,D_2 D_1 L_d & -A(q)^T \\ h\,D_2 F & 0 \end{pmatrix} $$
+
+        is made free of units: coordinates are measured in units of $|\partial^2 L/\partial v_i^2|^{-1/2}$ and the rows
+        of A and D_2 F have length one. For h -> 0 and L = v.v/2 it tends to 1 without constraints, and to
+        $(\sqrt5 - 1)/2$ with orthogonal constraint rows. Where it is not zero, the next step is locally unique.
+
+        Args:
+            q: Configuration.
+            q_next: The next configuration.
+            time_step: h > 0.
+
+        Raises:
+            ValueError: A wrong shape, a value that is not finite, a time step that is not positive.
+
+        Example:
+            >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
+            >>> free = LagrangeDAlembert(lambda q, v: 3 * v @ v, None, dimension=2)
+            >>> round(free.regularity((0, 0), (1, 2), time_step=0.5), 12)
+            1.0
+        """
+        return _room("_start").regularity(self, q, q_next, time_step)
+
+    def discretize(self, time_step: float) -> "CoordinateDiscretization":
+        """Return the discrete map with this time step.
+
+        Args:
+            time_step: h > 0.
+
+        Raises:
+            ValueError: A time step that is not positive.
+
+        Example:
+            >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
+            >>> LagrangeDAlembert(lambda q, v: v @ v, None, dimension=2).discretize(0.1).time_step
+            0.1
+        """
+        return _room("_discretization").CoordinateDiscretization(self, time_step)
+
+    def flow(
+        self,
+        *,
+        configuration: Any,
+        times: Any,
+        body_velocity: Any = None,
+        momentum: Any = None,
+        rtol: float = 1e-10,
+        atol: float = 1e-12,
+    ) -> "CoordinateOrbit":
+        r"""Solve the continuous Lagrange-d'Alembert equations.
+
+        $$ \dot p = \frac{\partial L}{\partial q} + \sum_j \lambda_j A^j(q), \qquad p = \frac{\partial L}{\partial v},
+           \qquad A(q)\,v = 0. $$
+
+        The acceleration comes from the constraint differentiated once. Velocities are projected to the constraint,
+        orthogonally in the kinetic energy, at each evaluation and at each requested time; an adaptive Runge-Kutta
+        method of order 8 steps to every requested time.
+
+        Args:
+            configuration: The first configuration.
+            times: The times of the states, at least one, increasing or decreasing; the start is at the first.
+            body_velocity: Start with this velocity, which must satisfy the constraint.
+            momentum: Start with this momentum; only its action on admissible velocities counts.
+            rtol: Relative error of a step, at least 1e-14.
+            atol: Absolute error of a step.
+
+        Returns:
+            The orbit. It has no displacements, and its multipliers are the forces at its times.
+
+        Raises:
+            ValueError: A bad argument, before any work.
+            OutcomeError: The solver could not meet the tolerances; its `orbit` holds every good state.
+
+        Example:
+            >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
+            >>> spring = LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=1)
+            >>> orbit = spring.flow(configuration=[1], body_velocity=[0], times=[0, np.pi])
+            >>> print(orbit.configuration[-1].round(9))
+            [-1.]
+        """
+        starts = {"body_velocity": body_velocity, "momentum": momentum}
+        return _room("_flow").flow(self, configuration, starts, times, rtol, atol)
+
+
+def _room(name: str) -> Any:
+    """Import a module of this room when it is needed: they import this one, and diffrax loads slowly."""
+    return importlib.import_module(f"nonholo.lagrange_dalembert.{name}")

@@ -1,0 +1,148 @@
+"""General systems against special ones: the same bodies by other classes, free bodies, groups of the user's."""
+
+import numpy as np
+import pytest
+from bodies import GENERAL, mass_tensor
+from problems import PROBLEMS, Problem
+
+import nonholo as nh
+
+
+@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: p.name)
+def test_a_general_system_is_the_special_one(problem: Problem) -> None:
+    """Tops and sleighs given as `LLSystem` run by matrices and agree with the closed forms."""
+    special = problem.system
+    rows = {"constraint_subspace": special.constraint_subspace, "annihilator": special.annihilator}
+    general = nh.LLSystem(special.group, np.asarray(special.homogeneous_mass_tensor), **rows)
+    start = {"restricted_velocity": problem.restricted_velocity, "steps": 100}
+    expected = nh.simulate(nh.discretize(special, 0.1), **start)
+    found = nh.simulate(nh.discretize(general, 0.1), **start)
+    for name in ("momentum", "displacement", "configuration", "multipliers", "chart", "energy", "body_velocity"):
+        size = np.abs(getattr(expected, name)).max() or 1.0
+        # far from the centre of mass, and in the small multipliers, two or three digits cancel
+        assert np.abs(getattr(found, name) - getattr(expected, name)).max() <= 1e-12 * size
+
+
+def test_free_motion_in_the_plane_has_equal_differences() -> None:
+    """With the centre of mass at the reference point, heading and position advance by the same step each time."""
+    body = nh.RigidBody(np.diag([0.4, 0.9, 2.0]), nh.SE(2))
+    orbit = nh.simulate(nh.discretize(body, 0.5), body_velocity=(0.9, 1.0, -0.7), steps=200)
+    assert np.ptp(np.diff(orbit.heading)) <= 1e-13
+    assert np.ptp(np.diff(orbit.position, axis=0), axis=0).max() <= 1e-13
+
+
+@pytest.mark.parametrize("n", [3, 4, 7])
+def test_the_free_top_by_the_riccati_equation(n: int) -> None:
+    """Each displacement of the Moser-Veselov map is the one that the Riccati equation gives for its momentum."""
+    rng = np.random.default_rng(n)
+    J = mass_tensor(nh.SO(n), rng)
+    discrete = nh.discretize(nh.RigidBody(J), 0.2)
+    orbit = nh.simulate(discrete, momentum=2 * rng.normal(size=n * (n - 1) // 2) / n, steps=10)
+    for P, W in zip(orbit.momentum, orbit.displacement, strict=True):
+        # the Schur form of a Hamiltonian matrix of size 2 n that holds J^2
+        assert np.abs(nh.moser_veselov_displacement(J, P, 0.2) - W).max() <= 1e-15 * np.linalg.cond(J) ** 2
+    assert np.ptp(orbit.spatial_momentum, axis=0).max() <= 1e-13
+
+
+def test_the_riccati_equation_ends_with_the_branch() -> None:
+    """Along a growing momentum both ways end at the same one, to a thousandth."""
+    J, P = np.diag([1.0, 2.0, 3.0]), np.array([1.0, 0.5, -0.4])
+    discrete = nh.discretize(nh.RigidBody(J), 1.0)
+
+    def solvable(scale: float) -> tuple[bool, bool]:
+        ran = len(nh.simulate(discrete, momentum=scale * P, steps=1, throw=False)) > 0
+        try:
+            nh.moser_veselov_displacement(J, scale * P, 1.0)
+        except ValueError:
+            return ran, False
+        return ran, True
+
+    low, high = 1.0, 20.0
+    assert solvable(low) == (True, True)
+    assert solvable(high) == (False, False)
+    while high / low > 1.001:
+        middle = np.sqrt(low * high)
+        low, high = (middle, high) if solvable(middle)[0] else (low, middle)
+    assert solvable(0.999 * low)[1]
+    assert not solvable(1.001 * high)[1]
+
+
+@pytest.mark.parametrize("bad", [{"mass_tensor": np.diag([1.0, 2.0, 0.0])}, {"momentum": [1.0]}, {"time_step": -1.0}])
+def test_the_riccati_equation_refuses(bad: dict) -> None:
+    """Flat bodies, wrong shapes and time steps are refused with their reason."""
+    good = {"mass_tensor": np.diag([1.0, 2.0, 3.0]), "momentum": [0.1, 0.2, 0.3], "time_step": 0.1}
+    with pytest.raises(ValueError, match=next(iter(bad))):
+        nh.moser_veselov_displacement(**(good | bad))
+
+
+@pytest.mark.parametrize("length", [1e-6, 1e4])
+@pytest.mark.parametrize("name", ["any d on SE(3)", "right-invariant on SE(3)", "free on SE(3)"])
+def test_units_of_length_do_not_matter(name: str, length: float) -> None:
+    """The same body in micrometres or in steps of ten kilometres takes the same path, and is as exact."""
+    system, velocity = GENERAL[name]
+    rescaled = np.diag([length, length, length, 1.0])
+    coordinates = np.diag([1.0, 1.0, 1.0, length, length, length])
+    J = rescaled @ np.asarray(system.homogeneous_mass_tensor) @ rescaled
+    rows = system.constraint_subspace @ coordinates
+    other = type(system)(nh.SE(3), J, rows) if name != "free on SE(3)" else nh.RigidBody(J, nh.SE(3))
+    start = {"restricted_velocity": velocity if name != "free on SE(3)" else velocity @ coordinates}
+    expected = nh.simulate(nh.discretize(system, 0.3), restricted_velocity=velocity, steps=100)
+    found = nh.simulate(nh.discretize(other, 0.3), **start, steps=100)
+    # rows that mix lengths and angles lose the digits of the ratio
+    tolerance = 1e-12 * max(1.0, length)
+    assert np.abs(np.linalg.inv(rescaled) @ found.configuration @ rescaled - expected.configuration).max() <= tolerance
+
+
+@pytest.mark.parametrize("scale", [1e3, 1e6, 1e150])
+@pytest.mark.parametrize(
+    "name", ["suslov 4", "any d on SE(3)", "free on SO(4)", "veselova 3", "right-invariant on SE(3)"]
+)
+def test_however_far_beyond_the_fold_there_is_no_branch(name: str, scale: float) -> None:
+    """A momentum that no displacement has is told from an iteration that fails, by any factor."""
+    system, velocity = GENERAL[name]
+    orbit = nh.simulate(nh.discretize(system, 1.0), restricted_velocity=scale * velocity, steps=1, throw=False)
+    assert orbit.outcome == nh.Outcome.no_real_branch
+
+
+def _rolling_disk() -> tuple[nh.LLSystem, np.ndarray]:
+    """A disk that rolls on its edge: SE(2) x R with v1 = R phi', v2 = 0; m = 2, R = 0.5, inertias 0.3 and 0.25."""
+    group = nh.ProductGroup(nh.SE(2), nh.Translations(1))
+    inertia = np.diag([0.3, 2.0, 2.0, 0.25])
+    return nh.LLSystem(group, constraint_subspace=[[1, 0, 0, 0], [0, 0.5, 0, 1]], inertia_operator=inertia), np.array(
+        [0.7, 1.2]
+    )
+
+
+def _special_linear() -> tuple[nh.LLSystem, np.ndarray]:
+    group = nh.MatrixGroup([[[1, 0], [0, -1]], [[0, 1], [0, 0]], [[0, 0], [1, 0]]])
+    inertia = [[2.0, 0.3, 0.1], [0.3, 1.5, -0.2], [0.1, -0.2, 1.0]]
+    return nh.LLSystem(group, annihilator=[[0.0, 1.0, -1.0]], inertia_operator=inertia), np.array([0.4, 0.3])
+
+
+@pytest.mark.parametrize("build", [_rolling_disk, _special_linear], ids=lambda f: f.__name__[1:])
+def test_slope_two_on_other_groups(build: object) -> None:
+    """On groups without a mass tensor the logarithmic difference is of order two, in momenta along d and pose."""
+    system, velocity = build()
+    exact = nh.flow(system, restricted_velocity=velocity, times=[0.0, 1.0], rtol=1e-12, atol=1e-14)
+    steps, errors = (20, 40, 80), []
+    for n in steps:
+        orbit = nh.simulate(nh.discretize(system, 1 / n), restricted_velocity=velocity, steps=n)
+        assert nh.invariants(orbit).constraint_residual <= 1e-12
+        differences = [
+            getattr(orbit, name)[-1] - getattr(exact, name)[-1] for name in ("restricted_momentum", "configuration")
+        ]
+        errors.append([np.abs(x).max() for x in differences])
+    for column in np.transpose(errors):
+        if column.max() > 1e-12:  # uniform rolling is exact
+            assert abs(-np.polyfit(np.log(steps), np.log(column), 1)[0] - 2) <= 0.1
+
+
+def test_the_rolling_disk_rolls_on_a_circle() -> None:
+    """Heading and wheel angle advance uniformly, and the wheel rolls on a circle of their ratio times its radius."""
+    system, velocity = _rolling_disk()
+    g = nh.simulate(nh.discretize(system, 0.1), restricted_velocity=velocity, steps=80).configuration
+    turn, roll = np.diff(np.unwrap(np.arctan2(g[:, 1, 0], g[:, 0, 0]))), np.diff(g[:, 3, 4])
+    assert max(np.ptp(turn), np.ptp(roll)) <= 1e-12
+    assert roll.mean() / 0.1 == pytest.approx(velocity[1], rel=1e-3)
+    radius = 0.5 * roll.mean() / turn.mean()
+    assert np.abs(np.hypot(g[:, 0, 2], g[:, 1, 2] - radius) - radius).max() <= 1e-11

@@ -1,0 +1,135 @@
+"""Displacement varieties by name and by functions of the user's, their consistency, and what is refused."""
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from bodies import mass_tensor, random_rows
+
+import nonholo as nh
+from nonholo.systems import AbstractLLSystem
+
+SLEIGH = nh.ChaplyginSleigh(1.0, 0.75, 0.5, 0.3)
+TILTED = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]], axis=[0.6, 0.0, 0.8])
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+
+
+def _rotation_vector(W: jnp.ndarray) -> jnp.ndarray:
+    """The vector of (W - W^T)/2, a sine times the axis."""
+    return jnp.array([W[2, 1] - W[1, 2], W[0, 2] - W[2, 0], W[1, 0] - W[0, 1]]) / 2
+
+
+FUNCTIONS = {
+    "top": (TOP, lambda W: jnp.sin(_rotation_vector(W)[2])),
+    "tilted top": (TILTED, lambda W: _rotation_vector(W) @ np.array([0.6, 0.0, 0.8])),
+    "sleigh": (SLEIGH, lambda W: W[1, 2] - jnp.tan(jnp.arctan2(W[1, 0], W[0, 0]) / 2) * W[0, 2]),
+}
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_functions_of_the_same_variety_give_the_same_orbit(name: str) -> None:
+    """Equations f(W) = 0 of exp d in the user's frame reproduce the default, by another chart and more unknowns."""
+    system, function = FUNCTIONS[name]
+    start = {"restricted_velocity": (0.4, 0.9), "steps": 60}
+    found = nh.simulate(nh.discretize(system, 0.1, constraint=function), **start)
+    expected = nh.simulate(nh.discretize(system, 0.1), **start)
+    assert np.abs(found.configuration - expected.configuration).max() <= 1e-12
+    assert np.abs(found.momentum - expected.momentum).max() <= 1e-12
+    assert nh.invariants(found).constraint_residual <= 1e-14
+
+
+def test_the_naive_constraint_spirals() -> None:
+    """With W - I in d the balanced sleigh turns by a constant angle D and its steps shrink by cos D: a spiral."""
+    sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.0)
+    start = {"body_velocity": (0.8, 0.5, 0.0), "steps": 100}
+    naive = nh.simulate(nh.discretize(sleigh, 0.2, constraint="naive"), **start)
+    W = naive.displacement
+    turn, advance = np.arctan2(W[:, 1, 0], W[:, 0, 0]), W[:, 0, 2]
+    assert np.ptp(turn) <= 1e-13
+    assert np.abs(advance[1:] / advance[:-1] - np.cos(turn[0])).max() <= 1e-12
+    assert nh.invariants(naive).energy_drift > 0.2
+    assert nh.invariants(nh.simulate(nh.discretize(sleigh, 0.2), **start)).energy_drift <= 1e-13
+
+
+def _general(group: object) -> AbstractLLSystem:
+    rng = np.random.default_rng(8)
+    return nh.LLSystem(group, mass_tensor(group, rng), random_rows(group, 3, rng))
+
+
+@pytest.mark.parametrize(
+    ("system", "constraint", "difference", "consistent"),
+    [
+        (SLEIGH, "naive", "matrix", True),
+        (SLEIGH, "skew", "logarithmic", True),
+        (SLEIGH, "skew", "matrix", False),
+        (TILTED, "skew", "matrix", True),
+        (_general(nh.SO(4)), "exponential", "logarithmic", True),
+        (_general(nh.SO(4)), "skew", "logarithmic", False),
+        (_general(nh.SE(3)), "naive", "matrix", True),
+    ],
+)
+def test_consistency(system: AbstractLLSystem, constraint: str, difference: str, consistent: bool) -> None:
+    """A variety is consistent with the map that projects W - I, or with log W, and with nothing else of the names."""
+    defect = nh.consistency_defect(nh.discretize(system, 0.1, difference, constraint))
+    assert defect <= 1e-12 if consistent else defect >= 1e-3
+
+
+def test_consistency_with_a_map_of_the_users() -> None:
+    """The skew constraint is consistent with the map that takes W to (W - W^-1)/2; a callable l_d needs its map."""
+    group = SLEIGH.group
+    discrete = nh.discretize(SLEIGH, 0.1, difference=lambda W: jnp.trace((W - jnp.eye(3)) @ (W - jnp.eye(3)).T))
+    assert nh.consistency_defect(discrete, lambda W: group.vee(W - group.inverse(W)) / 2) <= 1e-14
+    with pytest.raises(ValueError, match=r"discretization_map=...\)` must be given"):
+        nh.consistency_defect(discrete)
+    with pytest.raises(ValueError, match="must return 3 finite coordinates"):
+        nh.consistency_defect(discrete, lambda W: W)
+
+
+def test_whether_a_discrete_lagrangian_is_even() -> None:
+    """Odd terms are found; both named differences are even."""
+    J = np.asarray(TOP.mass_tensor)
+
+    def even(W: jnp.ndarray) -> jnp.ndarray:
+        return jnp.trace((W - jnp.eye(3)) @ J @ (W - jnp.eye(3)).T) / 0.2
+
+    assert nh.discretize(TOP, 0.1, even).is_self_adjoint
+    assert not nh.discretize(TOP, 0.1, lambda W: even(W) + 0.1 * _rotation_vector(W)[0] ** 3).is_self_adjoint
+    assert nh.discretize(TOP, 0.1, "logarithmic").is_self_adjoint
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [
+        ("constraint", "skewed", "must be one of"),
+        ("constraint", lambda W: W[0, 2], "tangent to d"),
+        ("constraint", lambda W: W[1, 0] - W[0, 1] + 0.1, "vanish at the identity"),
+        ("constraint", [lambda W: W[1, 0] - W[0, 1]] * 2, "be 1 functions"),
+        ("constraint", lambda W: (W[1, 0] - W[0, 1]) ** 2, "independent"),
+        ("constraint", lambda W: W, "real scalar functions"),
+        ("constraint", lambda W: jnp.sqrt(W[1, 0] - W[0, 1]), "differentiable"),
+        ("constraint", lambda W: float(W[1, 0]), "real scalar functions"),
+        ("constraint", [3], "real scalar functions"),
+        ("difference", "matrices", "must be one of"),
+        ("difference", lambda W: W, "real scalar function"),
+        ("difference", lambda W: jnp.sqrt(jnp.sum((W - jnp.eye(3)) ** 2)), "differentiable"),
+        ("difference", lambda W, h: jnp.trace(W) / h, "real scalar function"),
+    ],
+)
+def test_bad_choices_are_refused(option: str, value: object, words: str) -> None:
+    """Each with what it must be, before any work."""
+    with pytest.raises(ValueError, match=words):
+        nh.discretize(TOP, 0.1, **{option: value})
+
+
+@pytest.mark.parametrize(("option", "value"), [("difference", "matrix"), ("constraint", "skew")])
+def test_what_is_undefined_on_a_group_is_refused(option: str, value: str) -> None:
+    """On the Heisenberg group the defaults are logarithmic and exponential; the others have no meaning there."""
+    heisenberg = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
+    system = nh.LLSystem(heisenberg, constraint_subspace=np.eye(3)[:2], inertia_operator=np.diag([1.0, 2.0, 3.0]))
+    discrete = nh.discretize(system, 0.1)
+    assert (discrete.difference, discrete.constraint, discrete.conserves_energy) == (
+        "logarithmic",
+        "exponential",
+        False,
+    )
+    with pytest.raises(ValueError, match=r"must be defined .* the"):
+        nh.discretize(system, 0.1, **{option: value})

@@ -1,0 +1,139 @@
+"""Systems in coordinates at the public doors: the same runs, and each bad argument refused by name."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import nonholo as nh
+
+
+def lagrangian(q, v):  # noqa: ANN001, ANN201, ARG001
+    """Return the kinetic energy of a particle."""
+    return v @ v / 2
+
+
+def forms(q):  # noqa: ANN001, ANN201
+    """Return the contact form dz - y dx."""
+    return jnp.array([[-q[1], 0.0, 1.0]])
+
+
+SYSTEM = nh.LagrangeDAlembert(lagrangian, forms, dimension=3)
+Q, V = (0.0, 1.0, 0.0), (1.0, 0.5, 1.0)
+
+
+def run(**changes) -> nh.lagrange_dalembert.CoordinateOrbit:  # noqa: ANN003
+    """Return a short orbit."""
+    return nh.simulate(nh.discretize(SYSTEM, 0.1), **({"configuration": Q, "body_velocity": V, "steps": 4} | changes))
+
+
+def flow(**changes) -> nh.lagrange_dalembert.CoordinateOrbit:  # noqa: ANN003
+    """Return a short flow."""
+    return nh.flow(SYSTEM, **({"configuration": Q, "body_velocity": V, "times": (0.0, 1.0)} | changes))
+
+
+def test_public_doors_are_the_methods() -> None:
+    """`discretize`, `simulate` and `flow` give what the system's own methods give."""
+    start = {"configuration": Q, "body_velocity": V}
+    there = SYSTEM.discretize(0.1).simulate(**start, steps=4)
+    assert np.array_equal(run().configuration, there.configuration)
+    assert np.array_equal(flow().configuration, SYSTEM.flow(**start, times=(0.0, 1.0)).configuration)
+
+
+def test_a_flow_starts_from_a_momentum() -> None:
+    """The velocity (1, 0.5, 1) has the momentum (1, 0.5, 1), and so has any multiple of the form added to it."""
+    orbit = flow(body_velocity=None, momentum=np.array(V) + 3.0 * np.array([-1.0, 0.0, 1.0]))
+    assert np.abs(orbit.configuration - flow().configuration).max() <= 1e-14
+
+
+def test_integer_forms_are_forms() -> None:
+    """A constant form may be written with integers; the particle then moves in the plane x = z."""
+    plane = nh.LagrangeDAlembert(lagrangian, lambda q: jnp.array([[1, 0, -1]]), dimension=3)  # noqa: ARG005
+    orbit = nh.simulate(nh.discretize(plane, 0.1), configuration=(0, 0, 0), body_velocity=(1, 2, 1), steps=10)
+    assert np.abs(orbit.configuration[-1] - [1.0, 2.0, 1.0]).max() <= 1e-14
+
+
+FOREIGN = {
+    "difference": (lambda: nh.discretize(SYSTEM, 0.1, difference="matrix"), r"discretize\(difference"),
+    "constraint": (lambda: nh.discretize(SYSTEM, 0.1, constraint=np.linalg.norm), r"discretize\(constraint"),
+    "order": (lambda: nh.discretize(SYSTEM, 0.1, order=4), r"discretize\(order"),
+    "restricted_velocity": (lambda: run(restricted_velocity=(1.0, 0.5)), r"simulate\(restricted_velocity"),
+    "branch": (lambda: run(branch="largest"), r"simulate\(branch"),
+    "reconstruct": (lambda: run(reconstruct=False), r"simulate\(reconstruct"),
+    "backend": (lambda: run(backend="numba"), r"simulate\(backend"),
+    "method": (lambda: flow(method="closed_form"), r"flow\(method"),
+}
+
+
+@pytest.mark.parametrize("name", FOREIGN)
+def test_arguments_of_other_systems_are_refused(name: str) -> None:
+    """What a Lagrange-d'Alembert system does not have must keep its default."""
+    call, words = FOREIGN[name]
+    with pytest.raises(ValueError, match=words + r"=\.\.\.\)` must keep its default .* Leave it out"):
+        call()
+
+
+BAD = {
+    "no configuration": (lambda: run(configuration=None), r"simulate\(configuration=.*Pass the 3 coordinates"),
+    "no configuration of a flow": (lambda: flow(configuration=None), r"flow\(configuration=.*Pass the 3 coordinates"),
+    "no start": (lambda: run(body_velocity=None), "exactly one of body_velocity, displacement, momentum. Got none"),
+    "two starts": (lambda: run(momentum=V), "Got body_velocity and momentum"),
+    "two starts of a flow": (lambda: flow(momentum=V), "Got body_velocity and momentum"),
+    "shape": (lambda: run(configuration=(0.0, 1.0)), r"must have shape \(3,\). Got shape \(2,\)"),
+    "nan": (lambda: run(configuration=(0.0, np.nan, 0.0)), r"must be finite. Got nan at index \(1,\)"),
+    "velocity": (lambda: run(body_velocity=(1.0, 1.0, 0.0)), r"Got residual \[-1.\]. The nearest admissible velocity"),
+    "displacement": (lambda: run(body_velocity=None, displacement=(1.0, 1.0, 0.0)), "nearest admissible displacement"),
+    "steps": (lambda: run(steps=0), "must be a positive integer"),
+    "save_every": (lambda: run(save_every=1.5), "must be a positive integer"),
+    "times": (lambda: flow(times=(0.0, 1.0, 1.0)), "strictly"),
+    "time step": (lambda: nh.discretize(SYSTEM, -0.1), r"discretize\(time_step=...\)` must be positive"),
+    "traced": (lambda: jax.jit(lambda h: nh.discretize(SYSTEM, h).time_step)(0.1), "outside jax.jit"),
+    "not discretised": (lambda: nh.simulate(SYSTEM, steps=3), "Pass what discretize returns"),
+    "rule": (lambda: nh.LagrangeDAlembert(lagrangian, forms, dimension=3, rule="simpson"), "'midpoint', 'trapezoidal'"),
+    "raises": (lambda: nh.LagrangeDAlembert(lambda q, v: 1 / 0, forms, dimension=3), "ZeroDivisionError"),  # noqa: ARG005
+    "branches": (
+        lambda: nh.LagrangeDAlembert(lambda q, v: v @ v if q[0] > 0 else 0.0, forms, dimension=3),
+        "jnp.where",
+    ),
+    "vector": (lambda: nh.LagrangeDAlembert(lambda q, v: v, forms, dimension=3), "return a scalar"),  # noqa: ARG005
+    "complex": (lambda: nh.LagrangeDAlembert(lambda q, v: 1j * v @ q, forms, dimension=3), "complex numbers"),
+    "constant": (lambda: nh.LagrangeDAlembert(lambda q, v: 1, forms, dimension=3), "an integer"),  # noqa: ARG005
+    "form": (lambda: nh.LagrangeDAlembert(lagrangian, lambda q: q, dimension=3), r"shape \(s, 3\) with 0 < s < 3"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_input_is_refused(name: str) -> None:
+    """Each refusal says what is wrong and what to pass."""
+    call, words = BAD[name]
+    with pytest.raises(ValueError, match=words):
+        call()
+
+
+def test_dependent_forms_are_refused_where_they_are() -> None:
+    """Two forms that agree at the start have rank 1 there."""
+    crossing = nh.LagrangeDAlembert(lagrangian, lambda q: jnp.array([[1.0, 0.0, 0.0], [1.0, q[1], 0.0]]), dimension=3)
+    with pytest.raises(ValueError, match=r"independent rows\. Got rank 1 of 2 rows"):
+        nh.simulate(nh.discretize(crossing, 0.1), configuration=(0, 0, 0), body_velocity=(0, 1, 1), steps=1)
+
+
+def test_a_lagrangian_without_inertia_is_refused() -> None:
+    """Admissible directions without kinetic energy leave the acceleration undetermined."""
+    flat = nh.LagrangeDAlembert(lambda q, v: v[0] ** 2, forms, dimension=3)  # noqa: ARG005
+    with pytest.raises(ValueError, match="determine the accelerations"):
+        nh.flow(flat, configuration=Q, body_velocity=V, times=(0.0, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("function", "words"),
+    [
+        (lambda q, r, h: jnp.ones(1) + 0 * q[:1] * r[0] * h, "vanish for q_next = q"),
+        (lambda q, r, h: (r - q)[:1] / h, "span the constraint forms"),
+    ],
+    ids=["value", "direction"],
+)
+def test_discrete_constraints_must_fit_the_forms(function: object, words: str) -> None:
+    """A discrete constraint vanishes at rest, and short steps along the forms satisfy it."""
+    other = nh.LagrangeDAlembert(lagrangian, forms, dimension=3, discrete_constraints=function)
+    with pytest.raises(ValueError, match=words):
+        nh.simulate(nh.discretize(other, 0.1), configuration=Q, body_velocity=V, steps=1)

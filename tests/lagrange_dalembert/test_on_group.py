@@ -1,0 +1,320 @@
+"""Left-invariant Lagrangians with any constraints on a group: special cases, mixed systems, what is not conserved."""
+
+import functools
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import nonholo as nh
+from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, GroupOrbit, mass_tensor_lagrangian
+
+TENSOR = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+PLANE, BODY = nh.SE(2), nh.ChaplyginSleigh(mass=1.3, inertia=0.7, a=0.0, b=0.2)
+ACTION = mass_tensor_lagrangian(PLANE, BODY.homogeneous_mass_tensor)
+START = {"configuration": PLANE.exp(np.array([0.4, 1.0, -2.0]))}
+
+
+def rewritten(system) -> GroupLagrangeDAlembert:  # noqa: ANN001
+    """Return an LL or LR system as forms a(g) and (D - D^-1)/2 in d, D the displacement in the frame of d."""
+    group, rows = system.group, np.asarray(system.annihilator)
+    right = isinstance(system, nh.VeselovaTop)
+
+    def forms(g):  # noqa: ANN001, ANN202
+        return group.coadjoint(g, jnp.asarray(rows)) if right else jnp.asarray(rows)
+
+    def constraints(g, W, h):  # noqa: ANN001, ANN202, ARG001
+        D = g @ W @ group.inverse(g) if right else W
+        return jnp.asarray(rows) @ group.vee((D - group.inverse(D)) / 2)
+
+    action = mass_tensor_lagrangian(group, system.homogeneous_mass_tensor)
+    return GroupLagrangeDAlembert(group, action, forms, constraints)
+
+
+CASES = {
+    "sleigh": (nh.ChaplyginSleigh(mass=1.3, inertia=0.7, a=0.5, b=0.2), (1.0, -1.0, 0.0)),
+    "top": (nh.SuslovTop(TENSOR), (0.7, -0.5, 0.0)),
+    "veselova": (nh.VeselovaTop(TENSOR), (0.7, -0.5, 0.0)),
+}
+
+
+@functools.cache
+def both(name: str) -> tuple[GroupOrbit, nh.Orbit]:
+    """Return the orbits of this route and of the closed forms from the same start."""
+    system, velocity = CASES[name]
+    g = system.group.random(np.random.default_rng(3))
+    if name == "veselova":
+        velocity = system.group.adjoint(system.group.inverse(g)) @ velocity
+    start = {"configuration": g, "body_velocity": velocity, "steps": 50}
+    return rewritten(system).discretize(0.15).simulate(**start), nh.simulate(nh.discretize(system, 0.15), **start)
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("what", ["momentum", "displacement", "configuration", "multipliers"])
+def test_invariant_constraints_give_the_known_maps(name: str, what: str) -> None:
+    """Constant forms are the LL map, forms Ad*_g a the LR map; rounding of 50 steps stays below 1e-12."""
+    ours, known = both(name)
+    assert np.abs(known.multipliers).max() > 0.01
+    assert np.abs(getattr(ours, what) - getattr(known, what)).max() <= 1e-12
+
+
+def blade(g):  # noqa: ANN001, ANN201
+    """Return the normal of a blade that is turned in the body by an angle which depends on the place, x < 1000."""
+    angle = 0.7 * jnp.sin(g[0, 2]) + 0.4 * jnp.cos(1.3 * g[1, 2])
+    angle = jnp.where(g[0, 2] < 1000, angle, jnp.nan)
+    return jnp.array([[0.0, -jnp.sin(angle), jnp.cos(angle)]])
+
+
+MIXED = GroupLagrangeDAlembert(PLANE, ACTION, blade)
+
+
+def admissible(turn: float, speed: float, g: np.ndarray = START["configuration"]) -> np.ndarray:
+    """Return a body velocity that satisfies the constraint at a pose, by default the start."""
+    x, y = g[:2, 2]
+    angle = 0.7 * np.sin(x) + 0.4 * np.cos(1.3 * y)
+    return np.array([turn, speed * np.cos(angle), speed * np.sin(angle)])
+
+
+def run(h: float, steps: int, **changes) -> GroupOrbit:  # noqa: ANN003
+    """Return an orbit of the mixed system."""
+    start = START | {"body_velocity": admissible(0.9, 1.0), "steps": steps}
+    if changes.keys() & {"displacement", "momentum"}:
+        del start["body_velocity"]
+    return MIXED.discretize(h).simulate(**(start | changes))
+
+
+@functools.cache
+def flow() -> GroupOrbit:
+    """Return the continuous motion of the mixed system at times 0, 1, 2."""
+    return MIXED.flow(**START, body_velocity=admissible(0.9, 1.0), times=[0.0, 1.0, 2.0], rtol=1e-13, atol=1e-14)
+
+
+def rates(_: float, z: np.ndarray) -> np.ndarray:
+    """Return the rates of (theta, x, y, omega, v1, v2), written out by hand."""
+    theta, x, y, omega, v1, v2 = z
+    inertia, p = BODY.inertia_operator, BODY.inertia_operator @ z[3:]
+    torque = np.array([p[1] * v2 - p[2] * v1, omega * p[2], -omega * p[1]])
+    dx, dy = np.cos(theta) * v1 - np.sin(theta) * v2, np.sin(theta) * v1 + np.cos(theta) * v2
+    angle, turning = 0.7 * np.sin(x) + 0.4 * np.cos(1.3 * y), 0.7 * np.cos(x) * dx - 0.52 * np.sin(1.3 * y) * dy
+    a, da = np.array([0, -np.sin(angle), np.cos(angle)]), -turning * np.array([0, np.cos(angle), np.sin(angle)])
+    matrix = np.block([[inertia, -a[:, None]], [a[None], np.zeros((1, 1))]])
+    solution = np.linalg.solve(matrix, np.append(torque, -da @ z[3:]))
+    return np.concatenate([[omega, dx, dy], solution[:3]])
+
+
+def test_the_flow_solves_the_equations() -> None:
+    """Pose and velocity agree with an independent integration of hand-written equations."""
+    x, y = START["configuration"][:2, 2]
+    first = np.concatenate([[0.4, x, y], admissible(0.9, 1.0)])
+    z = solve_ivp(rates, (0, 2), first, method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+    assert np.abs(flow().configuration[-1, :2, 2] - z[1:3]).max() <= 1e-11
+    assert np.abs(flow().body_velocity[-1] - z[3:]).max() <= 1e-11
+    assert np.ptp(flow().energy) <= 1e-12
+
+
+@functools.cache
+def errors() -> np.ndarray:
+    """Return the errors of pose, admissible momentum and force for 50, 100, 200, 400 steps to time 2."""
+    rows, exact = [], flow()
+    along = np.linalg.svd(np.asarray(blade(jnp.asarray(exact.configuration[-1]))))[2][1:]  # rows span the kernel of a
+    for n in (50, 100, 200, 400):
+        orbit = run(2 / n, n)
+        pose = np.abs(orbit.configuration[-1] - exact.configuration[-1]).max()
+        momentum = np.abs(along @ (orbit.momentum[-1] - exact.momentum[-1])).max()
+        force = abs(orbit.multipliers[n // 2 - 1, 0] * n / 2 - exact.multipliers[1, 0])
+        rows.append((pose, momentum, force))
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("what", ["pose", "momentum", "force"])
+def test_a_mixed_system_converges_with_order_two(what: str) -> None:
+    """Poses, momenta along the constraint and impulse / h, with its sign, tend to the flow; slope 2.0 +- 0.1."""
+    column = errors()[:, ["pose", "momentum", "force"].index(what)]
+    slope = -np.polyfit(np.log([50, 100, 200, 400]), np.log(column), 1)[0]
+    assert abs(slope - 2.0) <= 0.1
+
+
+def test_the_equations_hold_with_their_sign() -> None:
+    """P(W_k+1) - Ad*_W P(W_k) = lambda a(g_k+1), and a at the middle pose annihilates log W."""
+    orbit = run(0.1, 20)
+    with jax.enable_x64(True):
+        forms = np.stack([np.asarray(blade(jnp.asarray(g)))[0] for g in orbit.configuration])
+        x = PLANE.log(orbit.displacement)
+        middle = orbit.configuration @ PLANE.exp(x / 2)
+        missed = [np.asarray(blade(jnp.asarray(g)))[0] @ y for g, y in zip(middle, x, strict=True)]
+    arriving = PLANE.coadjoint(orbit.displacement[:-1], orbit.momentum[:-1])
+    force = orbit.multipliers * forms[1:]
+    assert np.abs(orbit.momentum[1:] - arriving - force).max() <= 1e-13
+    assert np.abs(missed).max() <= 1e-14
+    assert np.abs(orbit.configuration[1:] - orbit.configuration[:-1] @ orbit.displacement[:-1]).max() <= 1e-14
+
+
+def test_the_midpoint_rule_is_reversible() -> None:
+    """From g_20 with W_19 inverted the run goes back over the same poses."""
+    there = run(0.2, 20)
+    W = PLANE.inverse(there.displacement[19])
+    back = run(0.2, 20, configuration=there.configuration[20], displacement=W)
+    assert np.abs(back.configuration[::-1] - there.configuration).max() <= 1e-12
+
+
+def test_energy_drifts_though_the_rule_is_reversible() -> None:
+    """The flow's energy is constant; the map's falls steadily here, four times slower with half the step."""
+    fallen = []
+    for h in (0.2, 0.1):
+        energy = run(h, round(2000 / h), save_every=5).energy
+        eighths = [part.mean() for part in np.array_split(energy, 8)]
+        assert np.all(np.diff(eighths) < 0)
+        fallen.append(eighths[0] - eighths[-1])
+    assert fallen[1] > 1e-3
+    assert 3.0 < fallen[0] / fallen[1] < 5.0  # the next term of the expansion in h is still seen
+
+
+def test_a_momentum_starts_where_the_velocity_does() -> None:
+    """dl/domega plus any multiple of the form sets out with the same displacement."""
+    w = admissible(0.9, 1.0)
+    with jax.enable_x64(True):
+        p = BODY.inertia_operator @ w + 3 * np.asarray(blade(jnp.asarray(START["configuration"])))[0]
+    assert np.abs(run(0.1, 5, momentum=p).configuration - run(0.1, 5).configuration).max() <= 1e-14
+
+
+def test_the_public_verbs_hand_over() -> None:
+    """`discretize`, `simulate` and `flow` of the package run the same motions."""
+    velocity = admissible(0.9, 1.0)
+    orbit = nh.simulate(nh.discretize(MIXED, 0.1), **START, body_velocity=velocity, steps=5)
+    assert np.array_equal(orbit.configuration, run(0.1, 5).configuration)
+    again = nh.flow(MIXED, **START, body_velocity=velocity, times=[0.0, 1.0, 2.0], rtol=1e-13, atol=1e-14)
+    assert np.array_equal(again.configuration, flow().configuration)
+
+
+def test_thinning_keeps_the_numbers_and_labels_name_them() -> None:
+    """Saving every fourth step changes nothing else; the dataset holds the same numbers by name."""
+    full, thin = run(0.1, 20), run(0.1, 20, save_every=4)
+    assert repr(thin) == "<GroupOrbit: 6 states of 3 x 3 matrices, time 0 to 2, successful>"
+    assert np.array_equal(thin.configuration, full.configuration[::4])
+    assert np.array_equal(thin.multipliers, full.multipliers[::4])
+    data = thin.to_dataset()
+    assert data.configuration.dims == ("step", "row", "column")
+    assert np.array_equal(data.momentum, thin.momentum)
+    assert "displacement" not in flow().to_dataset()
+
+
+def test_chaplygins_ball_keeps_its_momentum_about_the_contact() -> None:
+    """On SO(3) x R^2: with the midpoint rule R I R^T Om + m x e3 x x' in space is constant to rounding."""
+    group, mass, tensor = nh.ProductGroup(nh.SO(3), nh.Translations(2)), 1.5, np.diag([0.2, 0.3, 0.45])
+    turning = mass_tensor_lagrangian(nh.SO(3), tensor)
+    roll = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])  # x' = Om x e3 for radius 1
+
+    def action(W, h):  # noqa: ANN001, ANN202
+        return turning(W[:3, :3], h) + mass * (W[3:5, 5] @ W[3:5, 5]) / (2 * h)
+
+    def rolling(g):  # noqa: ANN001, ANN202
+        return jnp.concatenate([-roll @ g[:3, :3], jnp.eye(2)], axis=1)
+
+    g = group.random(np.random.default_rng(1))
+    spin = np.array([1.0, -0.4, 0.8])
+    velocity = np.concatenate([spin, roll @ g[:3, :3] @ spin])
+    ball = GroupLagrangeDAlembert(group, action, rolling).discretize(0.1)
+    orbit = ball.simulate(configuration=g, body_velocity=velocity, steps=2000)
+    angular = np.einsum("kij,kj->ki", orbit.configuration[:, :3, :3], orbit.momentum[:, :3])
+    total = angular[:, :2] + orbit.momentum[:, 3:] @ roll[:, :2]
+    assert np.abs(np.diff(orbit.momentum[:, 3:], axis=0)).max() > 1e-3
+    assert np.abs(total - total[0]).max() <= 1e-11
+    assert np.abs(angular[:, 2] - angular[0, 2]).max() <= 1e-11
+    assert 1e-5 < np.ptp(orbit.energy) < 1e-2  # not constant; no trend is seen in 2000 steps
+    assert abs(orbit.energy[:1000].mean() - orbit.energy[1000:].mean()) < 0.05 * np.ptp(orbit.energy)
+
+
+def test_a_step_beyond_the_fold_has_no_branch() -> None:
+    """The matrix difference reaches spins up to about 1/h: a faster start has no displacement."""
+    with pytest.raises(nh.OutcomeError, match=r"Start of the run.*no_real_branch"):
+        run(0.2, 3, body_velocity=admissible(40.0, 1.0))
+
+
+def test_a_run_that_leaves_the_domain_keeps_its_good_steps() -> None:
+    """The form is undefined beyond x = 1000: a run ends there, with the states before."""
+    g = PLANE.exp(np.array([0.0, 999.0, 0.0]))
+    orbit = run(0.1, 50, configuration=g, body_velocity=admissible(0.0, 1.0, g), throw=False)
+    assert orbit.outcome == nh.Outcome.nonfinite
+    assert 5 <= len(orbit) < 50
+    assert np.all(np.isfinite(orbit.displacement))
+    assert np.all(orbit.configuration[:, 0, 2] < 1000)
+    assert len(orbit.multipliers) == len(orbit) - 1
+
+
+def rotation_only(W, h):  # noqa: ANN001, ANN201
+    """Return the discrete Lagrangian of a body without mass."""
+    return ((W[0, 0] - 1) ** 2 + W[1, 0] ** 2) / (2 * h)
+
+
+def branching(W, h):  # noqa: ANN001, ANN201
+    """Return a scalar by a Python branch that JAX cannot trace."""
+    return h if W[0, 0] > 0 else -h
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("SE(2)", ACTION, blade), "matrix group"),
+        ((PLANE, lambda W, h: W[0] / h, blade), "discrete_lagrangian.* scalar"),
+        ((PLANE, branching, blade), "discrete_lagrangian.*traceable"),
+        ((PLANE, ACTION, lambda g: g[0]), "constraint_forms.*shape"),
+        ((PLANE, ACTION, lambda g: g), "0 < s < 3"),
+        ((PLANE, ACTION, blade, lambda g, W, h: g[0] * W[0] * h), "discrete_constraints.*shape"),
+        ((PLANE, ACTION, 3.0), "constraint_forms.*function"),
+    ],
+    ids=["group", "vector", "branch", "form", "square", "constraints", "number"],
+)
+def test_bad_definitions_are_refused(arguments: tuple, message: str) -> None:
+    """Each error names the argument and the requirement."""
+    with pytest.raises(ValueError, match=message):
+        GroupLagrangeDAlembert(*arguments)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"body_velocity": (1.0, 1.0, 1.0)}, r"satisfy the constraint.*nearest admissible velocity is \["),
+        ({"body_velocity": (1.0, np.nan, 0.0)}, "finite"),
+        ({"configuration": np.diag([1.0, 2.0, 1.0])}, "lie in SE"),
+        ({"displacement": PLANE.exp(np.array([0.1, 0.0, 0.1]))}, "satisfy the discrete constraint"),
+        ({"steps": 0}, "positive integer"),
+        ({"body_velocity": None}, "exactly one of body_velocity, displacement, momentum"),
+    ],
+    ids=["velocity", "nan", "pose", "displacement", "steps", "none"],
+)
+def test_bad_starts_are_refused(changes: dict, message: str) -> None:
+    """Each error says what was got and what would do."""
+    with pytest.raises(ValueError, match=message):
+        run(0.1, **({"steps": 3} | changes))
+
+
+def twice(g):  # noqa: ANN001, ANN201
+    """Return the same form twice."""
+    return jnp.concatenate([blade(g), -2 * blade(g)])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((ACTION, twice), "independent rows.*rank 1 of 2"),
+        ((ACTION, lambda g: blade(g) / (g[0, 2] - g[0, 2])), "constraint_forms.*finite"),
+        ((lambda W, h: ACTION(W, h) / h, blade), "tend to time_step times the Lagrangian"),
+        ((rotation_only, blade), "determine the accelerations"),
+        ((ACTION, blade, lambda _g, W, _h: W[1:2, 2]), "span the constraint forms"),
+        ((ACTION, blade, lambda *_: jnp.ones(1)), "vanish at W = I"),
+    ],
+    ids=["dependent", "infinite", "factor", "degenerate", "tangent", "identity"],
+)
+def test_bad_systems_are_refused_at_the_start(arguments: tuple, message: str) -> None:
+    """What only numbers can show is checked at the first pose, before any work."""
+    system = GroupLagrangeDAlembert(PLANE, *arguments)
+    with pytest.raises(ValueError, match=message):
+        system.discretize(0.1).simulate(**START, body_velocity=admissible(0.9, 1.0), steps=3)
+
+
+def test_a_mass_tensor_needs_a_rigid_body() -> None:
+    """On other groups a mass tensor is refused with the remedy."""
+    with pytest.raises(ValueError, match="SO"):
+        mass_tensor_lagrangian(nh.Translations(2), np.eye(3))
