@@ -1,0 +1,59 @@
+"""What an example is: a system in coordinates, a start, and what is known."""
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from nonholo._checks import array
+from nonholo._types import Array, Float
+from nonholo.lagrange_dalembert import LagrangeDAlembert
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Example:
+    """A system of the literature with a start and with known facts.
+
+    Attributes:
+        name: The name of the function that makes it.
+        system: The system.
+        coordinates: Names of the coordinates.
+        configuration: Where it starts.
+        body_velocity: How it starts; it satisfies the constraint.
+        facts: What is known, a sentence each.
+        conserved: Functions (configuration, velocity) -> number, constant along the continuous motion. On a discrete
+            orbit the velocity is that of a step: take the middle of the step, configuration + displacement / 2.
+        exact: The configurations at given times, (K,) -> (K, n), from this start; None where no formula is known.
+
+    Example:
+        >>> nh.examples.particle().coordinates
+        ('x', 'y', 'z')
+    """
+
+    name: str
+    system: LagrangeDAlembert
+    coordinates: tuple[str, ...]
+    configuration: Float[np.ndarray, "n"]
+    body_velocity: Float[np.ndarray, "n"]
+    facts: tuple[str, ...]
+    conserved: Mapping[str, Callable[[Array, Array], Array]]
+    exact: Callable[[Array], Array] | None = None
+
+    def __repr__(self) -> str:
+        return f"<Example {self.name}: {', '.join(self.coordinates)}>"
+
+
+def rate(index: int) -> Callable[[Array, Array], Array]:
+    """Return the function (configuration, velocity) -> one component of the velocity."""
+
+    def component(q: Array, v: Array) -> Array:
+        del q
+        return v[..., index]
+
+    return component
+
+
+def numbers(owner: str, name: str, value: Any, size: int, what: str) -> Float[np.ndarray, "size"]:
+    """Return the numbers of a start."""
+    return array(f"examples.{owner}({name}=...)", value, (size,), f"Pass {what}.")

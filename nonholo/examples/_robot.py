@@ -1,0 +1,114 @@
+"""The robot on two driven wheels, rolling freely."""
+
+import functools
+
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo._checks import number, positive
+from nonholo._types import Array
+from nonholo.examples._example import Example, numbers
+from nonholo.lagrange_dalembert import LagrangeDAlembert
+
+_NAMES = ("x", "y", "theta", "right", "left")
+
+
+def two_wheeled_robot(
+    *,
+    mass: float = 1.0,
+    inertia: float = 0.5,
+    offset: float = 0.3,
+    half_width: float = 0.5,
+    wheel_radius: float = 0.25,
+    wheel_inertia: float = 0.01,
+    configuration: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0),
+    speed: float = -0.5,
+    turning: float = 1.0,
+) -> Example:
+    r"""A cart on two wheels with one axle: middle of the axle (x, y), heading theta, wheel angles right and left.
+
+    $$ L = \tfrac m2(\dot x^2 + \dot y^2) + m\ell\,\dot\theta(\dot y\cos\theta - \dot x\sin\theta)
+         + \tfrac12(J + m\ell^2)\dot\theta^2 + \tfrac12 J_w(\dot\varphi_r^2 + \dot\varphi_l^2), $$
+
+    $$ -\dot x\sin\theta + \dot y\cos\theta = 0, \qquad
+       \dot x\cos\theta + \dot y\sin\theta = \tfrac R2(\dot\varphi_r + \dot\varphi_l), \qquad
+       \dot\theta = \tfrac R{2c}(\dot\varphi_r - \dot\varphi_l). $$
+
+    The last one is integrable: $\theta - \tfrac R{2c}(\varphi_r - \varphi_l)$ is constant. Speed u and turning rate
+    $\omega$ move as those of a Chaplygin sleigh with $M = m + 2J_w/R^2$, $K = J + m\ell^2 + 2J_wc^2/R^2$,
+
+    $$ M\dot u = m\ell\,\omega^2, \qquad K\dot\omega = -m\ell\,u\,\omega, \qquad
+       u = u_\infty\tanh\kappa(t - t_0), \quad \omega = \omega_0\,\mathrm{sech}\,\kappa(t - t_0), $$
+
+    with $u_\infty = \mathrm{sgn}(\ell)\sqrt{2E/M}$, $|\omega_0| = \sqrt{2E/K}$, $\kappa = m\ell u_\infty/K$. With the
+    centre of mass on the axle both are constant and the robot drives on a circle.
+
+    Reference: [neimark-fufaev-1972] for the equations; [bloch-2003], section 1.7, for the sleigh.
+
+    Args:
+        mass: m, with the wheels.
+        inertia: J, about the centre of mass.
+        offset: l, of the centre of mass in front of the axle.
+        half_width: c, half the distance of the wheels.
+        wheel_radius: R.
+        wheel_inertia: J_w, of one wheel about its axle.
+        configuration: (x, y, theta, right, left) at the start.
+        speed: u at the start.
+        turning: omega at the start.
+
+    Raises:
+        ValueError: A parameter that is not positive, a wrong shape.
+
+    Example:
+        >>> ready = nh.examples.two_wheeled_robot()
+        >>> discrete = ready.system.discretize(0.05)
+        >>> orbit = discrete.simulate(
+        ...     configuration=ready.configuration, body_velocity=ready.body_velocity, steps=1000)
+        >>> float(np.ptp(ready.conserved["axle"](orbit.configuration, orbit.body_velocity)).round(9))
+        0.0
+    """
+    where, remedy = "examples.two_wheeled_robot", "Pass a positive number."
+    given = {
+        "mass": mass,
+        "inertia": inertia,
+        "half_width": half_width,
+        "wheel_radius": wheel_radius,
+        "wheel_inertia": wheel_inertia,
+    }
+    m, J, c, R, Jw = (float(positive(f"{where}({name}=...)", value, remedy)) for name, value in given.items())
+    given = {"offset": offset, "speed": speed, "turning": turning}
+    ell, u, omega = (float(number(f"{where}({name}=...)", value)) for name, value in given.items())
+    q = numbers("two_wheeled_robot", "configuration", configuration, 5, "x, y, theta, right and left")
+    M, K = m + 2 * Jw / R**2, J + m * ell**2 + 2 * Jw * c**2 / R**2
+    v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, (u + c * omega) / R, (u - c * omega) / R])
+
+    def energy(q: Array, v: Array) -> Array:
+        along = v[..., 0] * np.cos(q[..., 2]) + v[..., 1] * np.sin(q[..., 2])
+        return (M * along**2 + K * v[..., 2] ** 2) / 2
+
+    def axle(q: Array, v: Array) -> Array:
+        del v
+        return q[..., 2] - R / (2 * c) * (q[..., 3] - q[..., 4])
+
+    conserved = {"axle": axle, "energy of the sleigh": energy}
+    facts = (
+        "Speed and turning rate are those of a Chaplygin sleigh.",
+        "One constraint is integrable: theta - R (right - left) / (2 c) is constant, also in the midpoint rule.",
+        "The discrete energy settles to a constant; it does not drift.",
+    )
+    system = _system(m, J + m * ell**2, ell, c, R, Jw)
+    return Example("two_wheeled_robot", system, _NAMES, q, v, facts, conserved)
+
+
+@functools.cache
+def _system(m: float, about_axle: float, ell: float, c: float, R: float, Jw: float) -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array) -> Array:
+        across = v[1] * jnp.cos(q[2]) - v[0] * jnp.sin(q[2])
+        return jnp.array([m, m, about_axle, Jw, Jw]) @ v**2 / 2 + m * ell * v[2] * across
+
+    def forms(q: Array) -> Array:
+        cos, sin = jnp.cos(q[2]), jnp.sin(q[2])
+        turn = R / (2 * c)
+        return jnp.array([[-sin, cos, 0.0, 0.0, 0.0], [cos, sin, 0.0, -R / 2, -R / 2], [0.0, 0.0, 1.0, -turn, turn]])
+
+    return LagrangeDAlembert(lagrangian, forms, dimension=5)

@@ -1,0 +1,108 @@
+"""The snakeboard without a rider's control."""
+
+import functools
+
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo._checks import error, positive
+from nonholo._types import Array
+from nonholo.examples._example import Example, numbers, rate
+from nonholo.lagrange_dalembert import LagrangeDAlembert
+
+_NAMES = ("x", "y", "theta", "psi", "phi")
+
+
+def snakeboard(
+    *,
+    mass: float = 1.0,
+    half_length: float = 1.0,
+    rotor_inertia: float = 0.5,
+    wheel_inertia: float = 0.1,
+    configuration: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, -1.0),
+    speed: float = 1.0,
+    rotor_rate: float = 0.4,
+    wheel_rate: float = 0.05,
+) -> Example:
+    r"""A board on two steered wheel pairs with a rotor: place (x, y), heading theta, rotor angle psi, steering phi.
+
+    The front wheels are turned by phi, the rear ones by -phi. With the usual simplification of the inertias
+
+    $$ L = \tfrac m2(\dot x^2 + \dot y^2) + \tfrac12 m r^2\dot\theta^2 + \tfrac12 J_0\dot\psi^2 + J_0\dot\psi\dot\theta
+         + J_1\dot\varphi^2, $$
+
+    $$ -\sin(\theta \pm \varphi)\,\dot x + \cos(\theta \pm \varphi)\,\dot y \mp r\cos\varphi\,\dot\theta = 0 . $$
+
+    So the board moves along its axis with a speed u, and $\dot\theta = -(u/r)\tan\varphi$. Without control
+    $\dot\varphi$ and $J_0(\dot\theta + \dot\psi)$ are constant, and with the energy so is the momentum along the
+    constraint, $u\sqrt{m + (m - J_0/r^2)\tan^2\varphi}$. The forms are dependent at $|\varphi| = \pi/2$,
+    where the wheels are crossed: there the motion ends, with `branch_unverified`.
+
+    Reference: [bloch-krishnaprasad-marsden-murray-1996].
+
+    Args:
+        mass: m.
+        half_length: r, from the centre to the wheels.
+        rotor_inertia: J_0, less than m r^2.
+        wheel_inertia: J_1, of one wheel pair.
+        configuration: (x, y, theta, psi, phi) at the start, phi between -pi/2 and pi/2.
+        speed: u at the start.
+        rotor_rate: psi' at the start.
+        wheel_rate: phi', which stays.
+
+    Raises:
+        ValueError: A parameter that is not positive, a rotor that is too heavy, a steering angle out of range.
+
+    Example:
+        >>> ready = nh.examples.snakeboard()
+        >>> [round(float(f(ready.configuration, ready.body_velocity)), 6) for f in ready.conserved.values()]
+        [0.05, 1.957408, 1.487535]
+    """
+    where, remedy = "examples.snakeboard", "Pass a positive number."
+    given = {"mass": mass, "half_length": half_length, "rotor_inertia": rotor_inertia, "wheel_inertia": wheel_inertia}
+    m, r, J0, J1 = (float(positive(f"{where}({name}=...)", value, remedy)) for name, value in given.items())
+    if m * r * r <= J0:
+        raise error(f"{where}(rotor_inertia=...)", f"be less than m r^2 = {m * r * r:g}", f"{J0:g}", "Lighten it.")
+    q = numbers("snakeboard", "configuration", configuration, 5, "x, y, theta, psi and phi")
+    if not abs(q[4]) < np.pi / 2:
+        raise error(f"{where}(configuration=...)", "have |phi| < pi/2", f"{q[4]:g}", "The wheels must not be crossed.")
+    u, rotor, wheel = numbers("snakeboard", "...", (speed, rotor_rate, wheel_rate), 3, "speed and rates as numbers")
+    v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), -u / r * np.tan(q[4]), rotor, wheel])
+
+    def spin(q: Array, v: Array) -> Array:
+        del q
+        return v[..., 2] + v[..., 3]
+
+    def momentum(q: Array, v: Array) -> Array:
+        along = v[..., 0] * np.cos(q[..., 2]) + v[..., 1] * np.sin(q[..., 2])
+        return along * np.sqrt(m + (m - J0 / r**2) * np.tan(q[..., 4]) ** 2)
+
+    conserved = {
+        "phi'": rate(4),
+        "theta' + psi'": spin,
+        "momentum along the constraint": momentum,
+    }
+    facts = (
+        "phi' and theta' + psi' are constant, also in the midpoint rule.",
+        "The momentum along the constraint is constant.",
+        "The motion ends where the wheels are crossed, at |phi| = pi/2.",
+    )
+    return Example("snakeboard", _system(m, r, J0, J1), _NAMES, q, v, facts, conserved)
+
+
+@functools.cache
+def _system(m: float, r: float, J0: float, J1: float) -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array) -> Array:
+        del q
+        return jnp.array([m, m, m * r * r, J0, 2 * J1]) @ v**2 / 2 + J0 * v[2] * v[3]
+
+    def forms(q: Array) -> Array:
+        theta, phi = q[2], q[4]
+
+        def row(side: float) -> Array:
+            turned = theta + side * phi
+            return jnp.array([-jnp.sin(turned), jnp.cos(turned), -side * r * jnp.cos(phi), 0.0, 0.0])
+
+        return jnp.stack([row(1.0), row(-1.0)])
+
+    return LagrangeDAlembert(lagrangian, forms, dimension=5)
