@@ -1,0 +1,151 @@
+"""Reports of property checks: what was measured against which tolerance, and one error that names all that failed."""
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from typing import Any
+
+_HEADINGS = ("", "measured", "allowed", "", "what must hold")
+
+
+class NotApplicableError(Exception):
+    """Raised by a measurement of a property that its object does not claim; the text says why."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Check:
+    """A property that is measured by one number.
+
+    Attributes:
+        name: A short name.
+        requirement: What must hold.
+        tolerance: The largest number that passes; None if the number is reported only.
+        measure: The measurement.
+    """
+
+    name: str
+    requirement: str
+    tolerance: float | None
+    measure: Callable[[Any], float]
+
+
+@dataclasses.dataclass(frozen=True)
+class Result:
+    """The outcome of one check.
+
+    Attributes:
+        name: A short name.
+        requirement: What must hold.
+        value: The worst value measured; None if nothing could be measured.
+        tolerance: The largest value that passes; None if the value is reported only.
+        passed: Whether nothing speaks against the property.
+        note: Why nothing was measured.
+
+    Example:
+        >>> from nonholo.testing import Result
+        >>> Result("inverse", "g^-1 g = I", 0.5, 1e-13, passed=False).status
+        'FAILED'
+    """
+
+    name: str
+    requirement: str
+    value: float | None
+    tolerance: float | None
+    passed: bool
+    note: str = ""
+
+    @property
+    def status(self) -> str:
+        """One of "ok", "FAILED", "reported" (no tolerance), "not checked" (the note says why)."""
+        if not self.passed:
+            return "FAILED"
+        if self.value is None:
+            return "not checked"
+        return "ok" if self.tolerance is not None else "reported"
+
+    def __str__(self) -> str:
+        """Return what is required and what was found."""
+        found = f"raised {self.note}" if self.value is None else f"measured {self.value:.3g}"
+        allowed = "" if self.tolerance is None else f", allowed {self.tolerance:.3g}"
+        return f"{self.name}: must satisfy {self.requirement}; {found}{allowed}"
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class Report:
+    """The outcomes of all checks of one object, in order; printed as a table.
+
+    Attributes:
+        owner: The check and its object.
+        results: One for each property.
+
+    Example:
+        >>> report = nh.testing.check_group(nh.SO(3), compiled=False)
+        >>> report.passed, report["exp"].tolerance
+        (True, 1e-12)
+        >>> print(report)
+        check_group(SO(3)): all ... checks passed
+        ...
+    """
+
+    owner: str
+    results: tuple[Result, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check passed."""
+        return not self.failed
+
+    @property
+    def failed(self) -> tuple[Result, ...]:
+        """The results that failed."""
+        return tuple(result for result in self.results if not result.passed)
+
+    def __getitem__(self, name: str) -> Result:
+        """Return the result with a name."""
+        return {result.name: result for result in self.results}[name]
+
+    def __repr__(self) -> str:
+        judged = sum(result.status in ("ok", "FAILED") for result in self.results)
+        verdict = f"{len(self.failed)} of {judged} checks FAILED" if self.failed else f"all {judged} checks passed"
+        rows = [_HEADINGS, *map(_cells, self.results)]
+        widths = [max(len(row[i]) for row in rows) for i in range(4)]
+        lines = ["  ".join([*map(str.ljust, row, widths), row[4]]).rstrip() for row in rows]
+        return "\n  ".join([f"{self.owner}: {verdict}", *lines])
+
+
+def _cells(result: Result) -> tuple[str, ...]:
+    value = "" if result.value is None else f"{result.value:.2g}"
+    allowed = "" if result.tolerance is None or result.value is None else f"{result.tolerance:.2g}"
+    note = f" ({result.note})" if result.note else ""
+    return result.name, value, allowed, result.status, result.requirement + note
+
+
+def run_checks(owner: str, checks: Sequence[Check], subject: Any, factor: float, throw: bool) -> Report:
+    """Run every check, whatever the others say; a check that raises has failed.
+
+    Args:
+        owner: The check and its object, for messages.
+        checks: What to measure.
+        subject: What the measurements take.
+        factor: On every tolerance.
+        throw: Raise if a check failed.
+
+    Raises:
+        AssertionError: With `throw`: names every check that failed.
+    """
+    report = Report(owner, tuple(_measured(check, subject, factor) for check in checks))
+    if throw and report.failed:
+        lines = "\n  ".join(map(str, report.failed))
+        raise AssertionError(f"`{owner}` failed {len(report.failed)} of {len(checks)} checks.\n  {lines}")
+    return report
+
+
+def _measured(check: Check, subject: Any, factor: float) -> Result:
+    tolerance = None if check.tolerance is None else factor * check.tolerance
+    try:
+        value = float(check.measure(subject))
+    except NotApplicableError as reason:
+        return Result(check.name, check.requirement, None, tolerance, True, str(reason))
+    except Exception as failure:  # the code under test is a user's and may raise anything
+        line = (str(failure).splitlines() or [""])[0]
+        return Result(check.name, check.requirement, None, tolerance, False, f"{type(failure).__name__}: {line}")
+    return Result(check.name, check.requirement, value, tolerance, tolerance is None or value <= tolerance)

@@ -1,0 +1,57 @@
+"""The page on systems of one's own says what is so: its code runs, its numbers and messages are right."""
+
+import pathlib
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+
+PAGE = (pathlib.Path(__file__).parents[2] / "docs" / "how-to" / "define-your-own-system.md").read_text()
+
+
+@pytest.fixture(scope="module")
+def page() -> dict[str, Any]:
+    """Return the names that the Python blocks of the page leave behind, run one after another."""
+    names: dict[str, Any] = {"__name__": "how_to"}
+    for block in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL):
+        exec(compile(block, "define-your-own-system.md", "exec"), names)  # noqa: S102
+    return names
+
+
+def test_defaults_and_what_is_kept(page: dict[str, Any]) -> None:
+    """Defaults on a user's group are those of the table; group and constraint are kept, here energy too."""
+    discrete, found = page["discrete"], nh.invariants(page["orbit"])
+    assert (discrete.difference, discrete.constraint, discrete.conserves_energy) == (
+        "logarithmic",
+        "exponential",
+        False,
+    )
+    assert found.energy_drift < 1e-12
+    assert found.constraint_residual < 1e-12
+    assert found.group_residual < 1e-12
+    assert np.ptp(page["orbit"].momentum[:, 0]) > 0.1  # it does move
+    assert page["report"].passed
+    assert page["report"]["energy"].status == "reported"
+
+
+def test_both_groups_are_the_same(page: dict[str, Any]) -> None:
+    """The formulas of the page are those of the group from the basis."""
+    x = np.random.default_rng(0).normal(size=(5, 3))
+    g = page["group"].exp(x)
+    assert np.allclose(page["heisenberg"].exp(x), g, rtol=0, atol=1e-14)
+    assert np.allclose(page["heisenberg"].adjoint(g), page["group"].adjoint(g), rtol=0, atol=1e-13)
+    assert page["heisenberg"] == type(page["heisenberg"])()
+
+
+def test_the_message_that_is_shown(page: dict[str, Any]) -> None:
+    """A logarithm without its square gives the error of the page."""
+    kind = page["Heisenberg"]
+    wrong = type("Heisenberg", (kind,), {"log": lambda self, g: self.vee(g - self.identity)})()
+    (shown,) = re.findall(r"```text\n(.*?)```", PAGE, re.DOTALL)
+    with pytest.raises(AssertionError) as raised:
+        nh.testing.check_group(wrong)
+    for line in shown.splitlines()[:-1]:
+        assert re.search(re.escape(line).replace(re.escape("..."), ".*"), str(raised.value)), line

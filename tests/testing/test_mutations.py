@@ -1,0 +1,186 @@
+"""The checks catch what is wrong, and name it: groups, systems and discretisations with one error each."""
+
+import copy
+from collections.abc import Callable
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.discrete import _legendre
+from nonholo.groups._special_euclidean import SpecialEuclidean2
+from nonholo.systems import Equilibria
+from nonholo.testing import Report, check_discretization, check_group, check_system
+
+PLANE = nh.SE(2)
+SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
+STEP = 0.2
+
+
+def names(report: Report) -> set[str]:
+    """Return the names of the checks that failed."""
+    return {result.name for result in report.failed}
+
+
+def longer_way_round(_: object, g: Any) -> Any:
+    """Return the logarithm, beyond an angle of 2.9 the one of the turn the other way."""
+    x = PLANE.log(g)
+    xp = x.__array_namespace__()
+    angle = x[..., 0]
+    other = xp.where(xp.abs(angle) > 2.9, angle - 2 * np.pi * xp.sign(angle), angle)
+    return xp.concatenate([other[..., None], x[..., 1:] * (other / xp.where(angle == 0, 1.0, angle))[..., None]], -1)
+
+
+GROUP_ERRORS: dict[str, tuple[str, Callable[..., Any], set[str]]] = {
+    "adjoint of the inverse": (
+        "adjoint",
+        lambda _, g: PLANE.adjoint(PLANE.inverse(g)),
+        {"adjoint", "adjoint of products", "adjoint of exp"},
+    ),
+    "Ad* with an inverse": (
+        "coadjoint",
+        lambda _, g, p: PLANE.coadjoint(PLANE.inverse(g), p),
+        {"coadjoint"},
+    ),
+    "log that forgets the path": (
+        "log",
+        lambda _, g: PLANE.log(g) * np.array([1.0, 0.0, 0.0]) + PLANE.vee(g) * np.array([0.0, 1.0, 1.0]),
+        {"log of small motions", "log", "log of large turns", "exp of log", "dexp_inverse and log"},
+    ),
+    "log the longer way round": ("log", longer_way_round, {"log of large turns"}),
+    "dexp of the other side": (
+        "dexp_inverse",
+        lambda _, x: PLANE.dexp_inverse(-x),
+        {"dexp_inverse", "dexp_inverse and log"},
+    ),
+    "blind residual": ("residual", lambda _, g: 0 * g[..., 0, 0], {"residual"}),
+    "NumPy alone": ("angle", lambda _, x: np.abs(np.asarray(x)[..., 0]), {"JAX"}),
+    "random matrices": ("random", lambda _, rng: np.eye(3) + rng.normal(size=(3, 3)), {"random"}),
+}
+
+
+@pytest.mark.parametrize("error", GROUP_ERRORS)
+def test_errors_of_groups(error: str) -> None:
+    """A wrong function fails the checks of that function, in the error too, and no check of another one."""
+    method, function, expected = GROUP_ERRORS[error]
+    group = type("Wrong", (SpecialEuclidean2,), {method: function})()
+    compiled = error == "NumPy alone"  # JAX takes seconds
+    report = check_group(group, compiled=compiled, throw=False)
+    assert names(report) >= expected
+    if error != "random matrices":
+        assert names(report) == expected
+    with pytest.raises(AssertionError, match=rf"check_group\(SE\(2\)\)` failed {len(report.failed)} of") as raised:
+        check_group(group, compiled=compiled)
+    assert all(f"\n  {name}: must satisfy" in str(raised.value) for name in expected)
+
+
+def changed(system: Any, **fields: Any) -> Any:
+    """Return a copy of a system with fields that its class would refuse."""
+    other = copy.copy(system)
+    for name, value in fields.items():
+        object.__setattr__(other, name, np.asarray(value, dtype=float))
+    return other
+
+
+def overridden(system: Any, **members: Any) -> Any:
+    """Return a copy of a system of a class with other members."""
+    other = copy.copy(system)
+    object.__setattr__(other, "__class__", type("Wrong", (type(system),), members))
+    return other
+
+
+ANY = nh.LLSystem(nh.SE(2), SLEIGH.homogeneous_mass_tensor, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+REST = SLEIGH.equilibria()
+SYSTEM_ERRORS: dict[str, tuple[Any, set[str]]] = {
+    "annihilator of another subspace": (
+        changed(ANY, annihilator=[[0, 1, 0.5]]),
+        {"annihilator", "constraint"},
+    ),
+    "dependent annihilator": (changed(ANY, annihilator=[[0, 1, 0]]), {"complementary", "annihilator", "constraint"}),
+    "too few annihilators": (changed(ANY, annihilator=np.zeros((0, 3))), {"sizes", "complementary"}),
+    "inertia about another point": (
+        overridden(SLEIGH, inertia_operator=property(lambda _: nh.ChaplyginSleigh(1, 2, 0.5, 0.3).inertia_operator)),
+        {"inertia of the mass tensor", "constrained_inertia", "frame and inertia"},
+    ),
+    "asymmetric inertia": (
+        changed(
+            nh.LLSystem(PLANE, inertia_operator=np.eye(3), constraint_subspace=np.eye(3)[:2]),
+            given_inertia=np.eye(3) + np.eye(3, k=1) / 2,
+        ),
+        {"inertia symmetric"},
+    ),
+    "negative inertia": (
+        changed(
+            nh.LLSystem(PLANE, inertia_operator=np.eye(3), constraint_subspace=np.eye(3)[:2]), given_inertia=-np.eye(3)
+        ),
+        {"inertia positive"},
+    ),
+    "no frame": (overridden(SLEIGH, frame=np.eye(3)), {"frame and inertia", "frame and energy"}),
+    "twice the energy": (
+        overridden(SLEIGH, constrained_energy=lambda _, p: 2 * SLEIGH.constrained_energy(p)),
+        {"energy", "frame and energy"},
+    ),
+    "repelling for attracting": (
+        overridden(SLEIGH, equilibria=lambda _: Equilibria(REST.subspace, -REST.attracting)),
+        {"attraction"},
+    ),
+    "everything at rest": (
+        overridden(SLEIGH, equilibria=lambda _: Equilibria(SLEIGH.constraint_subspace, None)),
+        {"equilibria"},
+    ),
+}
+
+
+@pytest.mark.parametrize("error", SYSTEM_ERRORS)
+def test_errors_of_systems(error: str) -> None:
+    """A system that contradicts itself fails the checks of what contradicts."""
+    system, expected = SYSTEM_ERRORS[error]
+    report = check_system(system, throw=False)
+    assert names(report) >= expected
+    with pytest.raises(AssertionError, match=rf"failed {len(report.failed)} of"):
+        check_system(system)
+
+
+def energy(W: Any) -> Any:
+    """Return the discrete Lagrangian of the sleigh."""
+    X = W - jnp.eye(3)
+    return jnp.trace(X @ jnp.asarray(SLEIGH.homogeneous_mass_tensor) @ X.T) / (2 * STEP)
+
+
+def test_a_discrete_lagrangian_of_the_wrong_sign() -> None:
+    """Minus the kinetic energy is seen at the identity, and in the order of the motion that it gives."""
+    report = check_discretization(nh.discretize(SLEIGH, STEP, difference=lambda W: -energy(W)), throw=False)
+    assert report["inertia"].value == pytest.approx(2.0)
+    assert {"inertia", "order of the start", "order of poses"} <= names(report)
+    assert report["left momentum"].passed  # the momentum of the wrong Lagrangian is right
+
+
+def test_a_discrete_lagrangian_of_first_order() -> None:
+    """An odd cubic term leaves every equation in place, but the order falls to one."""
+
+    def lopsided(W: Any) -> Any:
+        return energy(W) + (W[1, 0] + W[0, 2]) ** 3 / (10 * STEP)
+
+    report = check_discretization(nh.discretize(SLEIGH, STEP, difference=lopsided), throw=False)
+    assert names(report) == {"order of the start", "order of momenta", "order of poses"}
+    # ten to forty steps give the slope 1 to a quarter
+    assert report["order of poses"].value == pytest.approx(1, abs=0.25)
+    assert report["self-adjoint"].value > 1e-2
+
+
+def test_a_wrong_momentum(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Momenta of the wrong side of the displacement are not the derivative of the discrete Lagrangian."""
+    right = _legendre.matrix_legendre
+    monkeypatch.setattr(_legendre, "matrix_legendre", lambda group, J, X, _: right(group, J, X, "right"))
+    report = check_discretization(nh.discretize(SLEIGH, STEP), definition=False, throw=False)
+    assert {"left momentum", "momentum equation"} <= names(report)
+
+
+def test_a_wrong_claim_of_energy() -> None:
+    """Energy that is claimed is judged: a constraint fixed in space does not keep it."""
+    top = nh.VeselovaTop(np.diag([1.0, 2.0, 3.0]))
+    claiming = type("Claiming", (nh.Discretization,), {"conserves_energy": True})
+    report = check_discretization(claiming(top, np.float64(STEP)), definition=False, throw=False)
+    assert names(report) == {"energy"}

@@ -1,0 +1,111 @@
+"""Every kind of group, system and discretisation of the library passes the checks that users run on their own."""
+
+import numpy as np
+import pytest
+from bodies import GENERAL
+from groups.examples import HEISENBERG, SL2, WHEELED
+from problems import PROBLEMS
+
+import nonholo as nh
+from nonholo.groups import AbstractMatrixGroup
+from nonholo.systems import AbstractSystem
+from nonholo.testing import check_discretization, check_group, check_system
+
+GROUPS = [nh.SO(3), nh.SE(2), nh.SO(4), nh.SE(3), HEISENBERG, SL2, WHEELED]
+INERTIA = np.array([[2.0, 0.3, 0.5], [0.3, 1.0, 0.2], [0.5, 0.2, 1.5]])
+ON_SL2 = nh.LLSystem(SL2, inertia_operator=INERTIA, constraint_subspace=[[1, 0, 0], [0, 1, 1]])
+ROBOT = nh.LLSystem(  # two wheels that roll without slipping turn a body in the plane
+    WHEELED,
+    inertia_operator=np.diag([1.0, 2.0, 2.0, 0.3, 0.3]) + 0.05,
+    annihilator=[[0, 0, 1, 0, 0], [0.5, 1, 0, -0.3, 0], [-0.5, 1, 0, 0, -0.3]],
+)
+COMPILED = {
+    **{problem.name: problem.system for problem in PROBLEMS},
+    **{name: system for name, (system, _) in GENERAL.items()},
+    "free top": nh.RigidBody(np.diag([1.0, 2.0, 3.0])),
+    "any d on SO(3)": nh.LLSystem(nh.SO(3), np.diag([1.0, 2.0, 3.0]), [[1.0, 0.5, 0.0], [0.0, 0.4, 1.0]]),
+    "all forbidden": nh.LLSystem(nh.SO(3), np.eye(3), []),
+}
+OTHERS = {
+    "Heisenberg": nh.LLSystem(HEISENBERG, inertia_operator=INERTIA, annihilator=[[0, 0, 1]]),
+    "SL(2)": ON_SL2,
+    "robot": ROBOT,
+}
+
+
+@pytest.mark.parametrize("group", GROUPS, ids=str)
+def test_groups(group: AbstractMatrixGroup) -> None:
+    """Closed forms, groups from a basis and products pass; what is left out has a reason."""
+    report = check_group(group, compiled=group == nh.SE(2))  # JAX takes seconds; tests/groups compares all
+    assert report.passed
+    unchecked = {result.name: result.note for result in report.results if result.status == "not checked"}
+    assert unchecked == ({"log of large turns": "no sample turns"} if group is HEISENBERG else {})
+
+
+@pytest.mark.parametrize("seed", [1, np.random.default_rng(2)], ids=["seed", "generator"])
+@pytest.mark.parametrize("name", [*COMPILED, *OTHERS])
+def test_systems(name: str, seed: object) -> None:
+    """Every system passes, from other random states too."""
+    assert check_system((COMPILED | OTHERS)[name], rng=seed).passed
+
+
+@pytest.mark.parametrize("name", COMPILED)
+@pytest.mark.parametrize("time_step", [0.1, 1e-3])
+def test_compiled_steps(name: str, time_step: float) -> None:
+    """Every compiled step passes, and energy is judged wherever the constraint is fixed in the body."""
+    discrete = nh.discretize(COMPILED[name], time_step)
+    report = check_discretization(discrete, definition=False)
+    assert report["energy"].status == (
+        "not checked" if name == "all forbidden" else "ok" if discrete.conserves_energy else "reported"
+    )
+
+
+def test_a_compiled_step_against_the_definition() -> None:
+    """With `definition` the report also compares with the steps of JAX."""
+    report = check_discretization(nh.discretize(COMPILED["offset sleigh"], 0.2))
+    assert report["definition"].status == "ok"
+
+
+@pytest.mark.parametrize(
+    ("system", "least", "most"), [(ON_SL2, 1e-3, 1e-1), (ROBOT, 1e-7, 1e-1)], ids=["SL(2)", "robot"]
+)
+def test_steps_on_other_groups(system: AbstractSystem, least: float, most: float) -> None:
+    """The defaults on a user's group follow their equations; energy is not exact, and the report says by how much."""
+    report = check_discretization(nh.discretize(system, 0.1))
+    assert report["compiled reversal"].status == report["definition"].status == "not checked"
+    assert report["energy"].status == "reported"
+    assert least < report["energy"].value < most
+
+
+def test_callables_in_place_of_names() -> None:
+    """The matrix difference and the skew constraint given as functions pass, and keep energy unclaimed."""
+    sleigh, h = nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.2
+    J = sleigh.homogeneous_mass_tensor
+
+    def lagrangian(W: np.ndarray) -> np.ndarray:
+        X = W - np.eye(3)
+        return (X @ J @ X.T).trace() / (2 * h)
+
+    def forbidden(W: np.ndarray) -> np.ndarray:
+        return (W[1, 2] - sleigh.group.inverse(W)[1, 2]) / 2
+
+    report = check_discretization(nh.discretize(sleigh, h, difference=lagrangian, constraint=forbidden))
+    assert report["energy"].status == report["reversal"].status == "reported"
+    assert report["energy"].value < 1e-12
+    assert report["self-adjoint"].value < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("check", "thing"),
+    [
+        (check_group, np.eye(3)),
+        (check_system, nh.SE(2)),
+        (check_discretization, ON_SL2),
+        (check_system, nh.LagrangeDAlembert(lambda _, v: v @ v, None, dimension=2)),
+        (check_discretization, nh.LagrangeDAlembert(lambda _, v: v @ v, None, dimension=2).discretize(0.1)),
+    ],
+)
+def test_other_things_are_refused(check: object, thing: object) -> None:
+    """Each check says what it takes; systems in coordinates are not among it."""
+    with pytest.raises(ValueError, match=rf"`{check.__name__}\(.*must be a .*Got .*Pass "):
+        check(thing)
