@@ -8,7 +8,7 @@ import typer
 
 from nonholo.cli._errors import FAILED, USAGE, leave, scenario_errors, store_errors
 from nonholo.cli._pictures import beside, draw, warn_of_older
-from nonholo.cli._report import as_json, duration, expected_energy, figures, show
+from nonholo.cli._report import as_json, duration, figures, show
 from nonholo.cli._run import Ran, check_output, keep, run
 from nonholo.cli._scenario_file import Loaded, Setting, load_scenario, parse_setting
 from nonholo.orbit import Orbit
@@ -64,7 +64,7 @@ def _report(loaded: Loaded, ran: Ran, orbit: Orbit, paths: dict[str, str | None]
     length = f"{measured['steps']} of {loaded.scenario.run.steps}, time step {loaded.scenario.run.time_step:g}"
     title = loaded.scenario.title or loaded.name
     heading = {"title": title, "steps": length, "time per step": f"{duration(each)}, once compiled"}
-    show(measured, heading, energy=expected_energy(loaded.scenario.run.difference))
+    show(measured, heading)
     for kind, path in paths.items():
         if path:
             typer.echo(f"{kind:<9} {path}")

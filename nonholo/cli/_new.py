@@ -4,8 +4,14 @@ from typing import Annotated, Literal
 
 import typer
 
+Kind = Literal[
+    "suslov", "sleigh", "multidimensional_sleigh", "rigid_body", "veselova", "left_invariant", "right_invariant"
+]
 
-def new(kind: Annotated[Literal["sleigh", "suslov"], typer.Argument(metavar="KIND", help="sleigh or suslov.")]) -> None:
+
+def new(
+    kind: Annotated[Kind, typer.Argument(metavar="KIND", help="A kind of body; `nonholo systems` describes them.")],
+) -> None:
     """Print a commented scenario: every key, with its meaning.
 
     nonholo new sleigh > my.toml

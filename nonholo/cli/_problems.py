@@ -7,14 +7,17 @@ from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
-from nonholo.cli._scenario import BODIES, Output, Run, Scenario, Start
+from nonholo.cli._bodies import BODIES
+from nonholo.cli._groups import NAME, TABLE, GroupTable
+from nonholo.cli._scenario import Output, Run, Scenario, Start
 
 _SECTIONS = {"start": Start, "run": Run, "output": Output}
 _CORE = re.compile(r"`[\w.]+\((\w+)=\.\.\.\)` (.*)", re.DOTALL)
+_KINDS = " or ".join(f'"{kind}"' for kind in BODIES)
 _TEXTS = {
     "missing": "is missing",
-    "union_tag_not_found": "needs kind = " + " or ".join(f'"{kind}"' for kind in BODIES),
-    "union_tag_invalid": "must have kind " + " or ".join(f'"{kind}"' for kind in BODIES),
+    "union_tag_not_found": "needs kind = " + _KINDS,
+    "union_tag_invalid": "must have kind " + _KINDS,
     "model_type": "must be a table",
     "model_attributes_type": "must be a table",
 }
@@ -59,6 +62,7 @@ def suggestion(name: str, known: list[str]) -> str:
 
 def _problem(entry: dict[str, Any]) -> tuple[str, str]:
     location = [part for i, part in enumerate(entry["loc"]) if not (i == 1 and part in BODIES)]
+    location = [part for part in location if part not in (NAME, TABLE)]
     key = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in location).lstrip(".")
     if entry["type"] == "value_error":
         return _split_core(key, str(entry["ctx"]["error"]))
@@ -74,6 +78,8 @@ def _problem(entry: dict[str, Any]) -> tuple[str, str]:
 def _known(location: tuple[int | str, ...]) -> list[str]:
     if len(location) == 1:
         return list(Scenario.model_fields)
+    if TABLE in location:
+        return list(GroupTable.model_fields)
     section = BODIES[str(location[1])] if location[0] == "body" else _SECTIONS[str(location[0])]
     return list(section.model_fields)
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import typer
 
-from nonholo.cli._report import as_json, expected_energy, figures, show
+from nonholo.cli._report import as_json, figures, show
 from nonholo.orbit import Orbit
 
 _NESTED = ("parameters", "motion", "versions", "arrays")
@@ -27,7 +27,7 @@ def show_provenance(store: Path, stored: dict[str, Any], orbit: Orbit | None, *,
         "made with": _listed(told["versions"]),
         "scenario": f"sha256 {told['scenario_sha256'][:16]}" if "scenario" in told else "none",
     }
-    show(measured, heading, energy=expected_energy(told["motion"].get("difference")))
+    show(measured, heading)
 
 
 def _listed(entries: dict[str, Any]) -> str:

@@ -13,9 +13,14 @@ from rich.markup import escape
 from rich.table import Table
 
 from nonholo.analysis import invariants
+from nonholo.discrete import Discretization
+from nonholo.groups import SO
+from nonholo.io import fields_of
 from nonholo.orbit import Orbit
 
 ROUNDING = "rounding"
+_WIDEST = 6  # columns of a matrix that is shown whole
+_LARGE = 100  # dimension of a group from which inertia operators are too large to print
 _LABELS = {"mass_tensor": "mass tensor J", "inertia_tensor": "inertia tensor tr(J)-J"}
 
 
@@ -23,20 +28,24 @@ def figures(orbit: Orbit) -> dict[str, Any]:
     """Return the invariants of an orbit and its body as plain numbers; None where a figure is not defined."""
     measured = dataclasses.asdict(invariants(orbit))
     plain = {name: _plain(value) for name, value in measured.items()}
-    return {**plain, "outcome": orbit.outcome.name, "message": orbit.outcome.message, "body": _body(orbit)}
+    exact = orbit.motion.conserves_energy if isinstance(orbit.motion, Discretization) else None
+    return {
+        **plain,
+        "energy_is_exact": exact,
+        "outcome": orbit.outcome.name,
+        "message": orbit.outcome.message,
+        "body": _body(orbit),
+    }
 
 
-def show(figures: dict[str, Any], heading: dict[str, str], *, energy: str) -> None:
-    """Print what was run, the table of invariants and the body.
-
-    `energy` says how well this motion should conserve it.
-    """
+def show(figures: dict[str, Any], heading: dict[str, str]) -> None:
+    """Print what was run, the table of invariants and the body."""
     console = Console(highlight=False)
     console.print(heading.pop("title"), style="bold", markup=False)
     console.print(_table(("", ""), heading.items()))
     if figures:
         body = [(_label(name), _shown(value)) for name, value in figures["body"].items()]
-        console.print(_table(("", "measured", "expected"), _rows(figures, energy)), _table(("", ""), body))
+        console.print(_table(("", "measured", "expected"), _rows(figures)), _table(("", ""), body))
 
 
 def _table(columns: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Table:
@@ -48,11 +57,11 @@ def _table(columns: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Table:
     return table
 
 
-def expected_energy(difference: str | None) -> str:
-    """Say how well energy is conserved with a difference; None for a continuous flow."""
-    if difference == "matrix":
-        return ROUNDING
-    return "tolerance of the solver" if difference is None else "not exact with this difference"
+def _expected_energy(exact: bool | None) -> str:
+    """Say how well energy should be conserved; None stands for a continuous flow."""
+    if exact is None:
+        return "tolerance of the solver"
+    return "exact by theorem" if exact else "oscillates: not exact for this discretisation"
 
 
 def as_json(document: dict[str, Any]) -> str:
@@ -73,10 +82,10 @@ def duration(seconds: float) -> str:
     return f"{seconds / 1e-9:.3g} ns"
 
 
-def _rows(figures: dict[str, Any], energy: str) -> list[tuple[str, str, str]]:
+def _rows(figures: dict[str, Any]) -> list[tuple[str, str, str]]:
     """Return label, value and expectation of the figures that are defined for the orbit."""
     expected = {
-        "energy_drift": ("relative energy drift", "", energy),
+        "energy_drift": ("relative energy drift", "", _expected_energy(figures["energy_is_exact"])),
         "constraint_residual": ("constraint residual", "", ROUNDING),
         "group_residual": ("group residual", "", ROUNDING),
         "reversal_defect": ("one-step reversal defect", "", ROUNDING),
@@ -92,10 +101,15 @@ def _label(name: str) -> str:
 
 
 def _body(orbit: Orbit) -> dict[str, Any]:
-    system: Any = orbit.system
-    parameters = {field.name: np.asarray(getattr(system, field.name)).tolist() for field in dataclasses.fields(system)}
-    name = "inertia_tensor" if "mass_tensor" in parameters else "inertia_operator"
-    return {"system": type(system).__name__, **parameters, name: np.asarray(system.inertia_operator).tolist()}
+    """Return the parameters of the system as plain data, with its inertia, unless that is large."""
+    system = orbit.system
+    given = {name: value for name, value in fields_of(system).items() if name != "group" and value is not None}
+    if system.group.dim > _LARGE:
+        return {"system": type(system).__name__, "group": repr(system.group), **given}
+    inertia = np.asarray(system.inertia_operator).tolist()
+    name = "inertia_tensor" if "mass_tensor" in given and system.group == SO(3) else "inertia_operator"
+    given.pop("given_inertia", None)
+    return {"system": type(system).__name__, "group": repr(system.group), **given, name: inertia}
 
 
 def _plain(value: Any) -> Any:
@@ -106,6 +120,9 @@ def _shown(value: Any) -> str:
     """Write a name, a number, or the rows of an array in columns."""
     if isinstance(value, str):
         return value
+    shape = np.shape(value)
+    if 0 in shape or max(shape, default=0) > _WIDEST:
+        return " x ".join(map(str, shape)) if shape != (0,) else "none"
     cells = [[f"{number:.6g}" for number in row] for row in np.atleast_2d(value)]
     width = max(len(cell) for row in cells for cell in row)
     return "\n".join("  ".join(cell.rjust(width) for cell in row) for row in cells)

@@ -12,6 +12,7 @@ from nonholo._results import OutcomeError
 from nonholo.cli._pictures import beside
 from nonholo.cli._problems import ScenarioError, problem_of_value
 from nonholo.cli._scenario_file import Loaded, effective_text
+from nonholo.discrete import Discretization
 from nonholo.io import check_target, save_orbit
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
@@ -29,7 +30,7 @@ class Ran(NamedTuple):
 
 def run(loaded: Loaded, *, progress: bool) -> Ran:
     """Run a scenario; compilation is over before the clock starts."""
-    scenario, discrete = loaded.scenario, loaded.scenario.discretization()
+    scenario, discrete = loaded.scenario, _discretized(loaded)
     try:
         simulate(discrete, steps=1, throw=False, **scenario.options())
     except OutcomeError:
@@ -43,6 +44,13 @@ def run(loaded: Loaded, *, progress: bool) -> Ran:
         kept = failure.orbit if isinstance(failure.orbit, Orbit) and len(failure.orbit) else None
         return Ran(kept, time.perf_counter() - begun, str(failure))
     return Ran(orbit, time.perf_counter() - begun, None)
+
+
+def _discretized(loaded: Loaded) -> Discretization:
+    try:
+        return loaded.scenario.discretization()
+    except ValueError as failure:
+        raise ScenarioError([problem_of_value(failure, "run", loaded.source, loaded.options)]) from None
 
 
 def check_output(store: Path | None, *, overwrite: bool) -> None:
@@ -61,7 +69,8 @@ def check_output(store: Path | None, *, overwrite: bool) -> None:
 
 def keep(orbit: Orbit, loaded: Loaded, store: Path | None, *, overwrite: bool) -> Path:
     """Save a run at the path given or under the next free number; return where."""
-    text = effective_text(loaded.scenario)
+    motion, scenario = orbit.motion, loaded.scenario
+    text = effective_text(scenario.in_force(motion) if isinstance(motion, Discretization) else scenario)
     if store is not None:
         save_orbit(orbit, store, overwrite=overwrite, scenario=text)
         return store

@@ -77,8 +77,14 @@ def effective_text(scenario: Scenario) -> str:
     tables = {name: value for name, value in document.items() if isinstance(value, dict)}
     lines = [f"title = {json.dumps(document['title'], ensure_ascii=False)}"]
     for name, table in tables.items():
-        lines += ["", f"[{name}]", *(f"{key} = {json.dumps(value)}" for key, value in table.items())]
+        lines += ["", f"[{name}]", *(f"{key} = {_as_toml(value)}" for key, value in table.items())]
     return "\n".join(lines) + "\n"
+
+
+def _as_toml(value: Any) -> str:
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key} = {_as_toml(entry)}" for key, entry in value.items()) + "}"
+    return json.dumps(value)
 
 
 def _text_of(name: str) -> tuple[str, str]:

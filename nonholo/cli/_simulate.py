@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 Scenario = Annotated[
-    str, typer.Argument(metavar="SCENARIO", help="A TOML file, or a built-in scenario: suslov, sleigh.")
+    str, typer.Argument(metavar="SCENARIO", help="A TOML file, or a built-in scenario; `nonholo systems` lists them.")
 ]
 Store = Annotated[Path | None, typer.Option("-o", "--output", metavar="STORE", help="Where to keep the run.")]
 Steps = Annotated[int | None, typer.Option(metavar="N", help="Instead of run.steps.")]

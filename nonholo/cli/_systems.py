@@ -12,7 +12,7 @@ def systems() -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from nonholo.cli._scenario import BODIES
+    from nonholo.cli._bodies import BODIES
     from nonholo.cli._scenario_file import built_in
 
     bodies = Table("kind", "what it is", "parameters", title="Bodies", title_justify="left")

@@ -1,6 +1,5 @@
 """What a store says about itself: system, motion, conventions, versions; and the way back to objects."""
 
-import dataclasses
 import hashlib
 import json
 import platform
@@ -8,24 +7,27 @@ from collections.abc import Callable
 from importlib.metadata import version
 from typing import Any
 
-import numpy as np
-
-from nonholo import systems
 from nonholo._checks import error
 from nonholo.continuous import ContinuousFlow
 from nonholo.discrete import discretize
+from nonholo.io._descriptions import fields_of, restore_system, unstored
 from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.systems import AbstractLLSystem
 
 FORMAT = "nonholo.orbit"
-SCHEMA = 1
-_CALLABLE = "callable"
+SCHEMA = 2
+"""Written by this version. Schema 1 had no groups among the parameters, and one dimension for momenta and charts."""
+READABLE = (1, 2)
 _MOTIONS: dict[str, Callable[..., AbstractMotion]] = {"Discretization": discretize, "ContinuousFlow": ContinuousFlow}
 _CONVENTIONS = (
-    "W_k = g_k^-1 g_(k+1), P_k is the momentum at W_k, momenta are physical (L_d includes time_step). "
-    "reduced_momentum: along the constraint subspace; cayley: y with W = cayley(2 y); pose: unit quaternion, scalar "
-    "first, on SO(3), (cos, sin, x, y) on SE(2); all three in the canonical body frame of the system. "
-    "se(2) coordinates are (omega, v1, v2), so(3) the usual vector; the pairing is the dot product."
+    "W_k = g_k^-1 g_(k+1), P_k is the momentum at W_k, momenta are physical (L_d includes time_step). Arrays are in "
+    "the canonical body frame of the system. reduced_momentum: along the constraint subspace; for a right-invariant "
+    "constraint (LR systems) that of the spatial momentum. cayley: coordinates y of the displacement along rows S, "
+    "W = retract(2 y S), the Cayley map on SO(n) and SE(n), else exp; S are the rows of the constraint subspace or, "
+    "where y has dim components, all of the algebra; for LR systems of the spatial displacement "
+    "U_k = g_(k+1) g_k^-1. pose: unit quaternion, scalar first, on SO(3); (cos, sin, x, y) on SE(2); rotation matrix "
+    "row by row on SO(n), followed by the position on SE(n); vector of translations; matrix row by row on other "
+    "groups; factors one after another. se(2) coordinates are (omega, v1, v2), so(3) the usual vector, so(n) the "
+    "coefficients of e_i ^ e_j, i < j, se(n) those of so(n), then v; the pairing is the dot product."
 )
 
 
@@ -51,17 +53,17 @@ def attributes_of_text(scenario: str) -> dict[str, str]:
 def restore_motion(stored: dict[str, Any], motion: AbstractMotion | None) -> AbstractMotion:
     """Rebuild the motion of a store, or check that the one given is the stored one.
 
-    A callable cannot be stored: such a motion has to be given.
+    Callables and groups of the user's own cannot be stored: such a motion has to be given.
     """
     if motion is not None:
         return _same(stored, motion)
-    described = json.loads(stored["motion"])
-    if _CALLABLE in described.values():
-        name = next(key for key, value in described.items() if value == _CALLABLE)
-        remedy = f"Pass load_orbit(path, discrete=...) with the discretisation whose {name} made this store."
-        raise error("load_orbit(path=...)", "be rebuilt from data", f"a store whose {name} is a callable", remedy)
+    described, parameters = json.loads(stored["motion"]), json.loads(stored["parameters"])
+    missing = unstored(described) or unstored(parameters)
+    if missing:
+        remedy = f"Pass load_orbit(path, discrete=...) with the {described['kind']} that made this store."
+        raise error("load_orbit(path=...)", "be rebuilt from data", f"a store whose {missing}", remedy)
     kind = described.pop("kind")
-    system = _restore_system(stored["system"], json.loads(stored["parameters"]))
+    system = restore_system(stored["system"], parameters)
     if kind not in _MOTIONS:
         raise error("load_orbit(path=...)", "hold a motion of this version", repr(kind), "Upgrade nonholo.")
     return _MOTIONS[kind](system, **described)
@@ -69,39 +71,20 @@ def restore_motion(stored: dict[str, Any], motion: AbstractMotion | None) -> Abs
 
 def _same(stored: dict[str, Any], motion: AbstractMotion) -> AbstractMotion:
     for key, value in _identity(motion).items():
-        if value != stored[key]:
+        if value != stored[key]:  # JSON text: floating-point numbers are compared exactly
             got = f"{key} {value} instead of {stored[key]}"
             raise error("load_orbit(discrete=...)", "be the discretisation of the store", got, "Pass that one.")
     return motion
 
 
 def _identity(motion: AbstractMotion) -> dict[str, str]:
-    """Return what a motion is, with floating-point numbers written so that they are read back exactly."""
-    described = {"kind": type(motion).__name__, **_fields(motion)}
-    parameters = _fields(motion.system)
+    """Return what a motion is."""
+    described = {"kind": type(motion).__name__, **fields_of(motion)}
     return {
         "system": type(motion.system).__name__,
-        "parameters": json.dumps(parameters),
+        "parameters": json.dumps(fields_of(motion.system)),
         "motion": json.dumps({key: value for key, value in described.items() if key != "system"}),
     }
-
-
-def _fields(owner: Any) -> dict[str, Any]:
-    return {field.name: _plain(getattr(owner, field.name)) for field in dataclasses.fields(owner)}
-
-
-def _plain(value: Any) -> Any:
-    if callable(value):
-        return _CALLABLE
-    return value if isinstance(value, str | AbstractLLSystem) else np.asarray(value).tolist()
-
-
-def _restore_system(kind: str, parameters: dict[str, Any]) -> AbstractLLSystem:
-    found = getattr(systems, kind, None)
-    if not (isinstance(found, type) and issubclass(found, AbstractLLSystem)):
-        remedy = "Upgrade nonholo or, for a system of your own, pass load_orbit(path, discrete=...)."
-        raise error("load_orbit(path=...)", "hold a system of this version", repr(kind), remedy)
-    return found(**parameters)
 
 
 def _versions() -> dict[str, str]:

@@ -11,7 +11,7 @@ from nonholo._checks import error
 from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.discrete import Discretization
-from nonholo.io._attributes import FORMAT, SCHEMA, restore_motion
+from nonholo.io._attributes import FORMAT, READABLE, SCHEMA, restore_motion
 from nonholo.orbit import Orbit
 
 _WHERE = "load_orbit(path=...)"
@@ -23,8 +23,8 @@ def load_orbit(path: str | Path, *, discrete: Discretization | None = None) -> O
 
     Args:
         path: The store.
-        discrete: The discretisation that made the store; needed only if its difference is a callable or its system is
-            one of your own, which a store cannot hold.
+        discrete: The discretisation that made the store; needed only if its difference or its constraint is callable,
+            or its system or group is of your own making, which a store cannot hold.
 
     Raises:
         FileNotFoundError: There is nothing at the path.
@@ -57,9 +57,9 @@ def read_attributes(path: str | Path) -> dict[str, Any]:
         raise error(_WHERE, "be a store of an orbit", f"'{path}'", remedy) from failure
     if stored.get("format") != FORMAT:
         raise error(_WHERE, "be a store of an orbit", f"'{path}', made by another program", "Pass a store of nonholo.")
-    if stored.get("schema") != SCHEMA:
-        remedy = f"This version reads schema {SCHEMA}: upgrade nonholo ({stored.get('versions')} wrote it)."
-        raise error(_WHERE, f"have schema {SCHEMA}", f"schema {stored.get('schema')}", remedy)
+    if stored.get("schema") not in READABLE:
+        remedy = f"This version reads schemas up to {SCHEMA}: upgrade nonholo ({stored.get('versions')} wrote it)."
+        raise error(_WHERE, f"have a schema of {READABLE}", f"schema {stored.get('schema')}", remedy)
     return stored
 
 

@@ -1,4 +1,4 @@
-"""Pictures for papers and slides (matplotlib): phase portraits, tracks, energy errors, overviews, animations.
+"""Pictures for papers and slides (matplotlib): momenta, tracks in space, energy errors, overviews, animations.
 
 [fedorov-zenkov-2004], figures suslov, mom_dynamics and chsleigh. Nothing is simulated here.
 """
@@ -7,18 +7,24 @@ from nonholo.plotting._animation import animate
 from nonholo.plotting._blade_track import BladeTrack, blade_track
 from nonholo.plotting._body_axis_track import BodyAxisTrack, body_axis_track
 from nonholo.plotting._energy_error import EnergyError, energy_error
+from nonholo.plotting._momentum_sphere import MomentumSphere, momentum_sphere
 from nonholo.plotting._overview import overview
 from nonholo.plotting._phase_portrait import PhasePortrait, phase_portrait
+from nonholo.plotting._point_track import PointTrack, point_track
 
 __all__ = [
     "BladeTrack",
     "BodyAxisTrack",
     "EnergyError",
+    "MomentumSphere",
     "PhasePortrait",
+    "PointTrack",
     "animate",
     "blade_track",
     "body_axis_track",
     "energy_error",
+    "momentum_sphere",
     "overview",
     "phase_portrait",
+    "point_track",
 ]

@@ -39,7 +39,7 @@ def animate(
     but does not flicker.
 
     Args:
-        orbit: An orbit of a top or a sleigh, with poses.
+        orbit: An orbit of a `SuslovTop` on SO(3) or of a `ChaplyginSleigh`, with poses.
         path: Where to write; ends in .gif.
         frames: Number of frames; fewer if the orbit has fewer states.
         fps: Frames per second.
@@ -81,8 +81,10 @@ def _scene_of(orbit: Orbit) -> tuple[Callable[[Orbit], float], Callable[..., tup
     where = "animate(orbit=...)"
     drawable(where, orbit)
     found = next((scene for kind, scene in _SCENES.items() if isinstance(orbit.system, kind)), None)
-    if found is None:
-        raise error(where, "be an orbit of a top or a sleigh", repr(orbit), "Draw `orbit.configuration` yourself.")
+    if found is None or orbit.system.group.dim != 3:
+        got = f"{orbit!r} on {orbit.system.group}"
+        requirement = "be an orbit of a Suslov top in space or a sleigh in the plane"
+        raise error(where, requirement, got, "Use `overview` for a still picture.")
     if orbit.pose is None:
         raise error(where, "have poses", "an orbit without them", "Run with reconstruct=True.")
     return found

@@ -16,7 +16,7 @@ from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
 from nonholo.plotting._enlargement import Square, corner_axes, detail, square_about
 from nonholo.plotting._subject import is_discrete, system_of
-from nonholo.plotting._thinning import evenly_spread, states
+from nonholo.plotting._thinning import evenly_spread
 from nonholo.systems import ChaplyginSleigh
 
 _MOST_DOTS = 1500
@@ -126,7 +126,7 @@ def _flow(axes: Axes, flow: Orbit) -> Line2D:
 
 
 def _blades(axes: Axes, orbit: Orbit, count: int, length: float) -> tuple[LineCollection, PathCollection]:
-    sleigh, shown = cast(ChaplyginSleigh, orbit.system), states(orbit, _now_and_then(orbit, count))
+    sleigh, shown = cast(ChaplyginSleigh, orbit.system), orbit.chosen(_now_and_then(orbit, count))
     points, along = shown.position, shown.configuration[:, :2, 0]
     half = length / 2 * along
     blades = LineCollection(

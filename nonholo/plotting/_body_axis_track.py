@@ -1,4 +1,4 @@
-"""The path of a top's forbidden body axis on the sphere in space, between its two permanent rotations.
+"""The path of a body axis on the sphere in space: a top's forbidden axis between its two permanent rotations.
 
 [fedorov-zenkov-2004], section 4: the theorem on bi-asymptotics.
 """
@@ -11,19 +11,20 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.colors import to_rgb
 
+from nonholo._checks import array, error
 from nonholo._types import Float
+from nonholo.groups import SO
 from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
-from nonholo.plotting._sphere import View, arcs, best_view, draw_curve, draw_globe, great_circle, opacity
-from nonholo.plotting._subject import is_discrete, permanent_velocity, system_of
+from nonholo.plotting._sphere import View, best_view, draw_curve, draw_globe
+from nonholo.plotting._sphere_path import draw_named_axes, draw_path, mark_ends
+from nonholo.plotting._subject import known_equilibria, permanent_velocity, posed, same_group
 from nonholo.plotting._thinning import turn_per_state, window
-from nonholo.systems import SuslovTop
+from nonholo.systems import AbstractLLSystem, AbstractLRSystem, RigidBody
 
 _MOST_DOTS = 1200
 _FINEST = np.radians(4.0)  # no need to draw states that are closer than this
-_PIECE = np.radians(3.0)  # longer steps are joined by arcs of pieces like this
-_SPARSE = np.radians(40.0)  # the eye cannot join states that are farther apart: dots come first
-_REMEDY = "Use `blade_track` for a sleigh."
+_REMEDY = "Use `blade_track` for a sleigh, `point_track` for other motions of SE(n)."
 
 
 @dataclasses.dataclass(frozen=True)
@@ -38,6 +39,8 @@ class BodyAxisTrack:
         dots: The states of a discrete orbit.
         axis_before: Unit vector in space of the angular velocity that the motion comes from, if the orbit starts there.
         axis_after: Unit vector in space of the angular velocity that the motion settles to, if the orbit gets there.
+        fixed_axis: Unit vector in space about which a right-invariant constraint allows no rotation, or along the
+            spatial momentum of a free body.
         flow: The path of the continuous motion.
     """
 
@@ -48,29 +51,37 @@ class BodyAxisTrack:
     dots: PathCollection | None
     axis_before: Float[np.ndarray, "3"] | None
     axis_after: Float[np.ndarray, "3"] | None
+    fixed_axis: Float[np.ndarray, "3"] | None
     flow: LineCollection | None
 
 
 @theme.styled
 def body_axis_track(
-    orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = None, view: tuple[float, float] | None = None
+    orbit: Orbit,
+    axes: Axes | None = None,
+    flow: Orbit | None = None,
+    view: tuple[float, float] | None = None,
+    body_axis: Any = None,
 ) -> BodyAxisTrack:
-    r"""Draw the path of the forbidden body axis, $R_k\gamma$, on the unit sphere in space.
+    r"""Draw the path of a body axis, $R_k\gamma$, on the unit sphere in space.
 
-    A permanent rotation carries the axis along the great circle about its angular velocity. If the orbit starts or ends
-    close to one, that angular velocity $R_k\omega$ is drawn as an axis, with its circle dashed. Of an orbit too long to
-    draw, the part about the transition is shown.
+    A permanent rotation carries the axis along a circle about its angular velocity. If the orbit of a Suslov top starts
+    or ends close to one, that angular velocity $R_k\omega$ is drawn as an axis, with its great circle dashed. For a
+    right-invariant constraint the axis about which there is no rotation is drawn, fixed in space; for a free body its
+    spatial momentum. Of an orbit too long to draw, the part about the transition is shown.
 
     Reference: [fedorov-zenkov-2004], section 4.
 
     Args:
-        orbit: An orbit of a `SuslovTop`, with poses.
+        orbit: An orbit on SO(3), with poses.
         axes: Where to draw (plain two-dimensional axes; the projection is orthographic); a new figure by default.
         flow: The continuous motion from the same initial data, drawn over it.
         view: Azimuth and elevation of the eye in degrees; by default chosen so that most of the path is in front.
+        body_axis: $\gamma$ in body coordinates, scaled to length 1; by default the body axis about which there is
+            no rotation, as for a Suslov top, otherwise body axis 3.
 
     Raises:
-        ValueError: An orbit of another system, or without poses.
+        ValueError: An orbit on another group, or without poses; a body axis of length 0.
 
     Example:
         >>> top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -79,24 +90,65 @@ def body_axis_track(
         >>> np.allclose(track.points[-1], orbit.configuration[-1] @ [0, 0, 1]), track.axis_before is None
         (True, True)
     """
-    gamma = system_of("body_axis_track(orbit=...)", orbit, SuslovTop, _REMEDY).axis
-    if flow is not None:
-        system_of("body_axis_track(flow=...)", flow, SuslovTop, _REMEDY)
+    _check(orbit, flow)
+    gamma = _body_axis(orbit, body_axis)
     axes = theme.axes_or_new(axes, (6.0, 6.0))
     part = _part(orbit)
     shown = orbit[part]
     points = shown.configuration @ gamma
     before, after = rotation_axes(orbit)
-    eye = best_view(points, known_axes(before, after)) if view is None else View(*view)
+    fixed = _fixed_axis(orbit)
+    eye = best_view(points, known_axes(before, after, fixed)) if view is None else View(*view)
     draw_globe(axes, eye)
     curve = None if flow is None else _flow(axes, eye, flow, gamma)
-    path, dots = _path(axes, eye, shown, points, orbit)
-    _rotation_axes(axes, eye, before, after)
+    path, dots = draw_path(axes, eye, shown, points, orbit)
+    draw_named_axes(axes, eye, _named(before, after, fixed, orbit))
     words = ("start" if part.start == 0 else "", "end" if part.stop == len(orbit) else "")
-    _ends(axes, eye, points, words, theme.end_colours(orbit))
-    axes.set_title("Forbidden body axis in space")
+    mark_ends(axes, eye, points, words, theme.end_colours(orbit))
+    axes.set_title(_title(orbit, body_axis))
     theme.legend_above(axes)
-    return BodyAxisTrack(axes, eye, points, path, dots, before, after, curve)
+    return BodyAxisTrack(axes, eye, points, path, dots, before, after, fixed, curve)
+
+
+def _check(orbit: Orbit, flow: Orbit | None) -> None:
+    where = "body_axis_track(orbit=...)"
+    if posed(where, orbit).system.group != SO(3):
+        raise error(where, "be an orbit on SO(3)", repr(orbit), _REMEDY)
+    if flow is not None:
+        same_group("body_axis_track(flow=...)", flow, orbit)
+
+
+def _body_axis(orbit: Orbit, chosen: Any) -> Float[np.ndarray, "3"]:
+    if chosen is None:
+        chosen = orbit.system.annihilator[0] if _forbids_an_axis(orbit) else (0.0, 0.0, 1.0)
+    where, remedy = "body_axis_track(body_axis=...)", "Pass a vector in body coordinates."
+    axis = array(where, chosen, (3,), remedy)
+    if not axis.any():
+        raise error(where, "have a direction", "the vector 0", remedy)
+    return axis / np.linalg.norm(axis)
+
+
+def _title(orbit: Orbit, chosen: Any) -> str:
+    if chosen is not None:
+        return "Body axis in space"
+    return "Forbidden body axis in space" if _forbids_an_axis(orbit) else "Body axis 3 in space"
+
+
+def _forbids_an_axis(orbit: Orbit) -> bool:
+    return isinstance(orbit.system, AbstractLLSystem) and len(orbit.system.annihilator) == 1
+
+
+def _fixed_axis(orbit: Orbit) -> Float[np.ndarray, "3"] | None:
+    """Return the direction in space that the constraint, or the lack of one, singles out."""
+    system = orbit.system
+    if isinstance(system, RigidBody):
+        axis = orbit[:1].spatial_momentum[0]
+    elif isinstance(system, AbstractLRSystem) and len(system.annihilator) == 1:
+        axis = system.annihilator[0]
+    else:
+        return None
+    length = np.linalg.norm(axis)
+    return axis / length if length > 0 else None
 
 
 def _part(orbit: Orbit) -> slice:
@@ -111,7 +163,8 @@ def rotation_axes(orbit: Orbit) -> tuple[Float[np.ndarray, "3"] | None, Float[np
 
 
 def _rotation_axis(orbit: Orbit, state: int, repelling: int) -> Float[np.ndarray, "3"] | None:
-    velocity, attracting = permanent_velocity(orbit, state), orbit.system.equilibria().attracting
+    velocity, equilibria = permanent_velocity(orbit, state), known_equilibria(orbit.system)
+    attracting = None if equilibria is None else equilibria.attracting
     if velocity is None or (attracting is not None and repelling * (velocity @ attracting) > 0):
         return None
     return orbit[state : state + 1].configuration[0] @ velocity / np.linalg.norm(velocity)
@@ -122,70 +175,23 @@ def known_axes(*axes: Float[np.ndarray, "3"] | None) -> Float[np.ndarray, "A 3"]
     return np.array([axis for axis in axes if axis is not None]).reshape(-1, 3)
 
 
-def _path(
-    axes: Axes, eye: View, shown: Orbit, points: Float[np.ndarray, "L 3"], whole: Orbit
-) -> tuple[LineCollection, PathCollection | None]:
-    scale = theme.time_scale(whole)
-    step = np.linalg.norm(np.diff(points, axis=0), axis=1).max(initial=0.0)
-    pieces = max(1, int(np.ceil(step / _PIECE)))
-    colours = np.repeat(theme.TIME(scale(shown.time[1:])), pieces, axis=0)
-    sparse = step > _SPARSE
-    width = 0.6 if sparse else 1.5
-    path = draw_curve(axes, eye, arcs(points, pieces), colours.reshape(-1, 4), width=width, zorder=4)
-    if not is_discrete(whole):
-        return path, None
-    flat, depth = eye(points)
-    faces = theme.TIME(scale(shown.time))
-    faces[:, 3] = opacity(depth)
-    order = np.argsort(depth)
-    return path, axes.scatter(*flat[order].T, s=18 if sparse else 7, color=faces[order], linewidths=0, zorder=5)
-
-
 def _flow(axes: Axes, eye: View, flow: Orbit, gamma: Float[np.ndarray, "3"]) -> LineCollection:
     points = flow[_part(flow)].configuration @ gamma
     axes.plot([], [], color=theme.CONTINUOUS, linewidth=1.0, label="continuous")  # the curve's own first piece is faint
     return draw_curve(axes, eye, points, np.array(to_rgb(theme.CONTINUOUS)), width=1.0, zorder=5.5)
 
 
-def _rotation_axes(
-    axes: Axes, eye: View, before: Float[np.ndarray, "3"] | None, after: Float[np.ndarray, "3"] | None
-) -> None:
+def _named(
+    before: Float[np.ndarray, "3"] | None,
+    after: Float[np.ndarray, "3"] | None,
+    fixed: Float[np.ndarray, "3"] | None,
+    orbit: Orbit,
+) -> list[tuple[Float[np.ndarray, "3"], str, str]]:
+    """Return the axes to draw, with their names and colours."""
+    names = ("rotation axis\nbefore", "rotation axis\nafter")
     if before is not None and after is not None and np.linalg.norm(before - after) < 1e-6:
         before, names = None, ("", "rotation axis")
-    else:
-        names = ("rotation axis\nbefore", "rotation axis\nafter")
-    axis_and_look = zip((before, after), names, (theme.UNSTABLE, theme.STABLE), strict=True)
-    drawn = [(axis, name, colour) for axis, name, colour in axis_and_look if axis is not None]
-    tips = [eye(1.26 * axis)[0] for axis, _, _ in drawn]
-    for (axis, name, colour), tip in zip(drawn, tips, strict=True):
-        _rotation_axis_line(axes, eye, axis, colour)
-        _name_beside(axes, name, tip, away=tip - np.mean(tips, axis=0), colour=colour)
-
-
-def _name_beside(axes: Axes, name: str, tip: Float[np.ndarray, "2"], away: Float[np.ndarray, "2"], colour: str) -> None:
-    """Write beside the tip of an arrow from the centre, on the side away from its neighbour or from the centre."""
-    aside = np.array([-tip[1], tip[0]]) / (np.linalg.norm(tip) or 1.0)
-    towards = away if np.linalg.norm(away) > 1e-9 else np.array([0.0, np.copysign(1.0, tip[1])])
-    aside = aside if aside @ towards >= 0 else -aside
-    horizontal = "left" if aside[0] > 0.3 else "right" if aside[0] < -0.3 else "center"
-    vertical = "bottom" if aside[1] > 0.3 else "top" if aside[1] < -0.3 else "center"
-    look: dict[str, Any] = {"color": colour, "ha": horizontal, "va": vertical, "linespacing": 1.0, "zorder": 9}
-    axes.text(tip[0] + 0.04 * aside[0], tip[1] + 0.04 * aside[1], name, path_effects=theme.HALO, **look)
-
-
-def _rotation_axis_line(axes: Axes, eye: View, axis: Float[np.ndarray, "3"], colour: str) -> None:
-    circle = great_circle(axis)
-    draw_curve(axes, eye, circle, np.array(to_rgb(colour)), width=0.9, zorder=2, linestyles=(0, (5, 4)))
-    (tip, pole, foot), depth = eye(np.array([1.26, 1.0, -1.0])[:, None] * axis)
-    axes.plot(*np.stack([foot, pole], axis=1), color=colour, linewidth=0.9, alpha=0.45, zorder=2.5)
-    look: dict[str, Any] = {"arrowstyle": "-|>", "linewidth": 1.8, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 14}
-    look |= {"color": colour, "alpha": float(opacity(depth[:1])[0])}
-    axes.annotate("", tip, xytext=pole, zorder=6, annotation_clip=False, arrowprops=look)
-
-
-def _ends(axes: Axes, eye: View, points: Float[np.ndarray, "L 3"], words: tuple[str, str], rim: list[Any]) -> None:
-    flat, depth = eye(points[[0, -1]])
-    for place, alpha, edge, face, word in zip(flat, opacity(depth), rim, ("white", rim[1]), words, strict=True):
-        if word and not (word == "end" and np.allclose(flat[0], flat[1])):
-            axes.scatter(*place, s=40, facecolors=[face], edgecolors=[edge], linewidths=1.6, alpha=alpha, zorder=7)
-            axes.annotate(word, place, xytext=(7, 7), textcoords="offset points", zorder=8, path_effects=theme.HALO)
+    third = "spatial\nmomentum" if isinstance(orbit.system, RigidBody) else "no rotation\nabout this axis"
+    colours = (theme.UNSTABLE, theme.STABLE, theme.STABLE)
+    every = zip((before, after, fixed), (*names, third), colours, strict=True)
+    return [(axis, name, colour) for axis, name, colour in every if axis is not None]

@@ -8,11 +8,13 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection, PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
+from matplotlib.text import Text
 
 from nonholo._types import Float
+from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
-from nonholo.plotting._subject import drawable, is_discrete
+from nonholo.plotting._subject import drawable, is_discrete, is_steered_in_space, posed
 from nonholo.plotting._thinning import evenly_in_box
 
 _MOST_DOTS = 2000
@@ -30,12 +32,14 @@ class EnergyError:
             largest error in each column; a line for a flow.
         rounding: The band of relative errors up to machine epsilon.
         unit: What 1 on the axis means.
+        expected: Whether the error should be zero but for rounding, in words.
     """
 
     axes: Axes
     error: PathCollection | PolyCollection | Line2D
     rounding: Rectangle
     unit: float
+    expected: Text
 
 
 @theme.styled
@@ -45,14 +49,15 @@ def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
     $$ (E_k - E_0)/E_0 , $$
 
     in units of 1e-16, or of a larger power of ten where rounding is not what is seen. The shaded band is the machine
-    epsilon 2.2e-16 of double precision to either side. At rest, where E_0 = 0, the error is absolute.
+    epsilon 2.2e-16 of double precision to either side. At rest, where E_0 = 0, the error is absolute. A line of
+    text says whether a theorem makes the energy of this discretisation exact (`Discretization.conserves_energy`).
 
     Args:
         orbit: The orbit.
         axes: Where to draw; a new figure by default.
 
     Raises:
-        ValueError: No orbit, or one without states.
+        ValueError: No orbit, one without states, or one without poses whose energy depends on them.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
@@ -61,6 +66,8 @@ def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
         1e-16
     """
     drawable("energy_error(orbit=...)", orbit)
+    if is_steered_in_space(orbit):
+        posed("energy_error(orbit=...)", orbit)
     axes = theme.axes_or_new(axes, (6.0, 2.6))
     energy = orbit.energy
     error = (energy - energy[0]) / (energy[0] or 1.0)
@@ -71,7 +78,17 @@ def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
     axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
     drawn = (_error if is_discrete(orbit) else _curve)(axes, orbit.time, error / unit)
     _dress(axes, error / unit, unit, relative=bool(energy[0]))
-    return EnergyError(axes, drawn, rounding, unit)
+    return EnergyError(axes, drawn, rounding, unit, _expected(axes, orbit))
+
+
+def _expected(axes: Axes, orbit: Orbit) -> Text:
+    words = "not exact for this discretisation"
+    if not isinstance(orbit.motion, Discretization):
+        words = "error of the solver"
+    elif orbit.motion.conserves_energy:
+        words = "exact by theorem, up to rounding"
+    look = {"color": "#555a62", "fontsize": 9, "va": "top", "path_effects": theme.HALO, "zorder": 6}
+    return axes.text(0.012, 0.97, words, transform=axes.transAxes, **look)
 
 
 def _unit(largest: float) -> float:
@@ -94,7 +111,7 @@ def _curve(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K
 def _dress(axes: Axes, error: Float[np.ndarray, "K"], unit: float, relative: bool) -> None:
     exponent = math.floor(math.log10(unit) + 0.5)
     axes.set(xlabel="time", ylabel=rf"$\Delta E{'/E' if relative else ''}$   [$10^{{{exponent}}}$]")
-    reach = 1.2 * max(float(np.abs(error).max()), 1.6 * _EPS / unit)
+    reach = 1.4 * max(float(np.abs(error).max()), 1.6 * _EPS / unit)
     axes.set_ylim(-reach, reach)
     axes.set_title("Energy error")
     theme.legend_above(axes)

@@ -1,37 +1,34 @@
-"""The picture of an orbit: four panels in one figure, for the screen, a slide or a page."""
+"""The picture of an orbit: its panels in one figure with a head, for the screen, a slide or a page."""
 
 from pathlib import Path
-from typing import cast
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from nonholo._checks import error
-from nonholo._results import Outcome
 from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
-from nonholo.plotting._blade_track import blade_track
-from nonholo.plotting._body_axis_track import body_axis_track
-from nonholo.plotting._energy_error import energy_error
-from nonholo.plotting._phase_portrait import phase_portrait
-from nonholo.plotting._subject import drawable, time_step
-from nonholo.plotting._time_series import heading_and_speed, velocity_components
-from nonholo.systems import AbstractLLSystem, ChaplyginSleigh, SuslovTop
+from nonholo.plotting._head import write_head
+from nonholo.plotting._panels import Panel, panels_of
+from nonholo.plotting._subject import drawable
 
 _SIZE = (13.0, 7.6)
+_LARGER = 2.2  # times as high as a panel against time
 
 
 @theme.styled
 def overview(orbit: Orbit, path: str | Path | None = None, flow: Orbit | None = None) -> Figure:
-    """Draw the path in space, the phase portrait, the velocity and the energy error of an orbit in one figure.
+    """Draw an orbit of any system: its path in space, its momentum, its velocity and the error of its energy.
 
-    Colour is time in all panels; the strip under the velocity is the key. Without poses the phase portrait takes the
-    place of the path.
+    The path is that of a body axis on SO(3), of the blade of a sleigh, of the reference point on SE(n); other groups,
+    and orbits without poses, have none. Momenta along the constraint are drawn as a phase portrait where they are two,
+    on their energy sphere where they are three, against time otherwise. With a right-invariant constraint velocity and
+    energy need poses, and are left out without them. Colour is time in all panels; the strip under a panel against time
+    is the key.
 
     Args:
-        orbit: An orbit of a top or a sleigh, discrete or continuous.
+        orbit: An orbit of any system, discrete or continuous.
         path: Where to save the figure; the suffix (.png, .svg, .pdf) chooses the format.
         flow: The continuous motion from the same initial data, drawn beside a discrete orbit.
 
@@ -51,16 +48,14 @@ def overview(orbit: Orbit, path: str | Path | None = None, flow: Orbit | None = 
     figure = Figure(figsize=_SIZE, layout=below_title)
     if path is not None:
         check_suffix(figure, path)
-    spatial = orbit.pose is not None and isinstance(orbit.system, (SuslovTop, ChaplyginSleigh))
-    large, *small = _panels(figure, 3 if spatial else 2)
-    if spatial:
-        _path(orbit, large, flow)
-        large = small.pop(0)
-    phase_portrait(orbit.system, orbit, axes=large)
-    _velocity(orbit, small[0], flow)
-    energy_error(orbit, axes=small[1])
-    _share_time(small)
-    _title(figure, orbit)
+    panels = panels_of(orbit, flow)
+    axes = _axes(figure, panels)
+    for panel, own in zip(panels, axes, strict=True):
+        panel.draw(own)
+    if panels[0].is_timed:
+        axes[0].set_xlabel("time")
+    _share_time([own for panel, own in zip(panels[1:], axes[1:], strict=True) if panel.is_timed])
+    write_head(figure, orbit)
     if path is not None:
         figure.savefig(path)
     return figure
@@ -74,69 +69,22 @@ def check_suffix(figure: Figure, path: str | Path) -> None:
         raise error("overview(path=...)", "end in a picture format", f"{str(path)!r}", remedy)
 
 
-def _panels(figure: Figure, rows: int) -> list[Axes]:
-    """Return one large panel on the left and the small ones on the right."""
-    heights = (2.2, 1.0, 1.0) if rows == 3 else (1.0, 1.0)
-    grid = figure.add_gridspec(rows, 2, width_ratios=(1.3, 1.0), height_ratios=heights)
-    return [figure.add_subplot(grid[:, 0]), *(figure.add_subplot(grid[row, 1]) for row in range(rows))]
-
-
-def _path(orbit: Orbit, axes: Axes, flow: Orbit | None) -> None:
-    posed = flow if flow is not None and flow.pose is not None else None
-    if isinstance(orbit.system, ChaplyginSleigh):
-        blade_track(orbit, axes=axes, flow=posed)
-    else:
-        body_axis_track(orbit, axes=axes, flow=posed)
-        _show_mass_tensor(axes, cast(SuslovTop, orbit.system))
-
-
-def _velocity(orbit: Orbit, axes: Axes, flow: Orbit | None) -> None:
-    headed = isinstance(orbit.system, ChaplyginSleigh) and orbit.pose is not None
-    if flow is not None and headed and flow.pose is None:
-        flow = None
-    (heading_and_speed if headed else velocity_components)(orbit, axes, flow)
+def _axes(figure: Figure, panels: list[Panel]) -> list[Axes]:
+    """Return the large axes on the left and the others on the right, those against time lower."""
+    first, *others = panels
+    heights = [1.0 if panel.is_timed else _LARGER for panel in others]
+    if len(heights) == 0:
+        return [figure.add_subplot(projection=first.projection)]
+    grid = figure.add_gridspec(len(others), 2, width_ratios=(1.3, 1.0), height_ratios=heights)
+    large = figure.add_subplot(grid[:, 0], projection=first.projection)
+    return [large, *(figure.add_subplot(grid[row, 1], projection=each.projection) for row, each in enumerate(others))]
 
 
 def _share_time(panels: list[Axes]) -> None:
-    upper, lower = panels
-    upper.sharex(lower)
-    upper.tick_params(labelbottom=False)
-
-
-def _title(figure: Figure, orbit: Orbit) -> None:
-    kind = {SuslovTop: "Suslov top", ChaplyginSleigh: "Chaplygin sleigh"}.get(type(orbit.system), "Orbit")
-    figure.text(0.012, 0.985, kind, va="top", fontsize=17, fontweight="bold")
-    figure.text(
-        0.012, 0.934, "      ".join(_facts(orbit)).replace("-", "\u2212"), va="top", fontsize=10.5, color="#555a62"
-    )
-
-
-def _facts(orbit: Orbit) -> list[str]:
-    step = time_step(orbit)
-    if step is None:
-        run = f"continuous flow from time {orbit.time[0]:g} to {orbit.time[-1]:g}"
-    else:
-        steps = (len(orbit) - 1) * orbit.save_every
-        run = f"{steps:,} step{'s' * (steps != 1)} of $h$ = {step:g}".replace(",", "\u2009")
-    stopped = [] if orbit.outcome == Outcome.successful else [f"stopped: {orbit.outcome}"]
-    return [_parameters(orbit.system), run, *stopped]
-
-
-def _parameters(system: AbstractLLSystem) -> str:
-    if isinstance(system, ChaplyginSleigh):
-        symbols = {"m": system.mass, "J": system.inertia, "a": system.a, "b": system.b}
-        return ",  ".join(f"${symbol}$ = {float(value):.4g}" for symbol, value in symbols.items())
-    if isinstance(system, SuslovTop):
-        axis = ", ".join(f"{number:.3g}" for number in np.asarray(system.axis) + 0.0)
-        return rf"SO(3),  $\langle\gamma,\omega\rangle = 0$  with  $\gamma$ = ({axis})"
-    return repr(system)
-
-
-def _show_mass_tensor(axes: Axes, system: SuslovTop) -> None:
-    cells = [[f"{number:.3g}".replace("-", "\u2212") for number in row] for row in np.asarray(system.mass_tensor) + 0.0]
-    width = max(len(cell) for row in cells for cell in row)
-    lines = ["  ".join(cell.rjust(width) for cell in row) for row in cells]
-    text = f"    \u23a1{lines[0]}\u23a4\nJ = \u23a2{lines[1]}\u23a5\n    \u23a3{lines[2]}\u23a6"
-    axes.text(
-        0.0, 0.0, text, transform=axes.transAxes, family="monospace", fontsize=9.5, linespacing=1.05, color="#555a62"
-    )
+    if not panels:
+        return
+    *upper, lowest = panels
+    lowest.set_xlabel("time")
+    for axes in upper:
+        axes.sharex(lowest)
+        axes.tick_params(labelbottom=False)

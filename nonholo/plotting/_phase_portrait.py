@@ -16,9 +16,9 @@ from nonholo._checks import array, error
 from nonholo._types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
-from nonholo.plotting._subject import drawable, is_discrete
+from nonholo.plotting._subject import drawable, is_discrete, known_equilibria
 from nonholo.plotting._thinning import evenly_in_box
-from nonholo.systems import AbstractLLSystem, ChaplyginSleigh, SuslovTop
+from nonholo.systems import AbstractLLSystem, AbstractSystem, ChaplyginSleigh, SuslovTop
 
 _MOST_DOTS = 1500
 _LABELS = {
@@ -61,21 +61,22 @@ def phase_portrait(
     $$ \tfrac12\, r\cdot(\mathbb{I}|_{\mathfrak{d}})^{-1} r = E . $$
 
     Equilibria are one line through the origin, filled where they attract and empty where they repel; all other
-    motions run along their ellipse from one to the other. In a balanced system every point is an equilibrium. Momenta
+    motions run along their ellipse from one to the other. In a balanced system every point is an equilibrium. Where the
+    library does not compute the equilibria of a system they are left out. Momenta
     are those of the canonical body frame: $(p_\theta + b p_1, p_1)$ of a sleigh, $(M_{13}, M_{23})$ of a top whose
     third body axis is the forbidden one.
 
     Reference: [fedorov-zenkov-2004], figures suslov and mom_dynamics.
 
     Args:
-        system: A system with two-dimensional constraint subspace.
+        system: A left-invariant system with two-dimensional constraint subspace.
         orbit: An orbit of it.
         axes: Where to draw; a new figure by default.
         energies: Energies of the ellipses; by default four, evenly spread in size, one of them through the orbit.
 
     Raises:
-        ValueError: A constraint subspace of another dimension, an orbit of another kind of system, energies that are
-            not positive.
+        ValueError: A right-invariant constraint, a subspace of another dimension, an orbit of another kind of system,
+            energies that are not positive.
 
     Example:
         >>> top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -98,6 +99,9 @@ def phase_portrait(
 def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
     where = "phase_portrait(system=...)"
     if not isinstance(system, AbstractLLSystem):
+        if isinstance(system, AbstractSystem):
+            remedy = "Its momenta along the constraint are conserved: draw `overview` instead."
+            raise error(where, "have a left-invariant constraint", repr(system), remedy)
         raise error(where, "be a system", repr(system), "Pass `orbit.system` first, then the orbit.")
     if len(system.constraint_subspace) != 2:
         got = f"dimension {len(system.constraint_subspace)}"
@@ -129,7 +133,10 @@ def _equilibria(
     axes: Axes, system: AbstractLLSystem, half_axes: Float[np.ndarray, "2 2"], sizes: Float[np.ndarray, "L"]
 ) -> tuple[Any, ...]:
     canonical = system.canonical
-    attracting = canonical.equilibria().attracting
+    equilibria = known_equilibria(canonical)
+    if equilibria is None:
+        return None, None, None, ()
+    attracting = equilibria.attracting
     if attracting is None:
         return None, None, _every_point(axes, half_axes, sizes), ()
     velocity = attracting @ np.linalg.pinv(canonical.constraint_subspace)

@@ -15,7 +15,7 @@ from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
 from nonholo.plotting._enlargement import square_about
 from nonholo.plotting._scene import stage
-from nonholo.plotting._thinning import evenly_spread, states, turn_per_state
+from nonholo.plotting._thinning import evenly_spread, some_states, turn_per_state
 from nonholo.systems import ChaplyginSleigh
 
 _SLENDER = 1.6  # length of the drawn body over its width
@@ -27,7 +27,7 @@ def sleigh_motion(orbit: Orbit) -> float:
     """Return how far the sleigh moves between saved states, in units of what the eye can follow from frame to frame."""
     if len(orbit) < 2:
         return 0.0
-    sample = states(orbit, evenly_spread(orbit.reduced_momentum, 1000))
+    sample = some_states(orbit, 1000)
     way = np.abs(sample.body_velocity[:, 1]).max() * np.abs(np.diff(orbit.time)).max()
     return float(
         max(turn_per_state(orbit) / _TURN, way / (_WAY * 2 * _half_length(cast(ChaplyginSleigh, orbit.system))))
@@ -39,10 +39,10 @@ def sleigh_scene(orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Figure, Cal
     figure, axes, set_clock = stage("Chaplygin sleigh", orbit, shown)
     sleigh = cast(ChaplyginSleigh, orbit.system)
     covered = np.arange(shown[0], shown[-1] + 1)
-    track = states(orbit, covered)
+    track = orbit.chosen(covered)
     kept = evenly_spread(track.position, _MOST_PIECES)
     points, times = track.position[kept], track.time[kept]
-    poses = states(orbit, shown).configuration
+    poses = orbit.chosen(shown).configuration
     outline = _outline(sleigh)
     _ground(axes, points, poses, outline)
     trail = LineCollection([], cmap=theme.TIME, norm=theme.time_scale(orbit), linewidth=2, zorder=2)

@@ -11,9 +11,9 @@ from nonholo._checks import error
 from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
-from nonholo.systems import AbstractLLSystem
+from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System
 
-_System = TypeVar("_System", bound=AbstractLLSystem)
+_System = TypeVar("_System", bound=AbstractSystem)
 
 NEAR_EQUILIBRIUM = 0.03  # sine, in the metric of the energy, of the angle to the line of equilibria
 
@@ -27,14 +27,26 @@ def drawable(where: str, orbit: Any) -> Orbit:
     return orbit
 
 
+def posed(where: str, orbit: Any) -> Orbit:
+    """Return an orbit with at least one state and with poses."""
+    if drawable(where, orbit).pose is None:
+        raise error(where, "have poses", "an orbit without them", "Run with reconstruct=True.")
+    return orbit
+
+
 def system_of(where: str, orbit: Any, kind: type[_System], remedy: str) -> _System:
     """Return the system of an orbit that has poses and is of one kind."""
-    drawable(where, orbit)
-    if not isinstance(orbit.system, kind):
+    system = drawable(where, orbit).system
+    if not isinstance(system, kind):
         raise error(where, f"be an orbit of a {kind.__name__}", repr(orbit), remedy)
-    if orbit.pose is None:
-        raise error(where, "have poses", "an orbit without them", "Run with reconstruct=True.")
-    return orbit.system
+    posed(where, orbit)
+    return system
+
+
+def same_group(where: str, orbit: Any, other: Orbit) -> None:
+    """Refuse an orbit that moves on another group than the orbit it is drawn beside."""
+    if posed(where, orbit).system.group != other.system.group:
+        raise error(where, f"move on {other.system.group}", f"{orbit.system.group}", "Pass a motion of the same body.")
 
 
 def is_discrete(orbit: Orbit) -> bool:
@@ -47,14 +59,31 @@ def time_step(orbit: Orbit) -> float | None:
     return float(orbit.motion.time_step) if isinstance(orbit.motion, Discretization) else None
 
 
+def is_steered_in_space(orbit: Orbit) -> bool:
+    """Tell a right-invariant constraint, whose velocities and energy need poses, from a left-invariant one."""
+    return not isinstance(orbit.system, AbstractLLSystem)
+
+
+def known_equilibria(system: System) -> Equilibria | None:
+    """Return the equilibria of a system; None where they are no linear space, or where the library has none."""
+    if not isinstance(system, AbstractLLSystem):
+        return None
+    try:
+        return system.equilibria()
+    except ValueError:
+        return None
+
+
 def permanent_velocity(orbit: Orbit, state: int) -> Float[np.ndarray, "dim"] | None:
     r"""Return the constant body velocity that a state is close to, up to its size; None if there is none.
 
     Close means that the sine of the angle to the line of equilibria is small, in the metric of the kinetic energy.
     """
     system = orbit.system
-    velocity = orbit[state : state + 1].body_velocity[0]
-    equilibria, inertia = system.equilibria(), np.asarray(system.inertia_operator)
+    equilibria = known_equilibria(system)
+    if equilibria is None or len(equilibria.subspace) == 0:
+        return None
+    velocity, inertia = orbit[state : state + 1].body_velocity[0], np.asarray(system.inertia_operator)
     if not velocity @ inertia @ velocity > 0:
         return None
     if len(equilibria.subspace) == len(system.constraint_subspace):

@@ -6,7 +6,7 @@ Colours are from the palette of Okabe and Ito, legible to colour-blind readers; 
 import functools
 from collections.abc import Callable
 from pathlib import Path
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 import matplotlib
 import matplotlib.patheffects
@@ -24,7 +24,7 @@ STABLE = "#1a1a1a"
 UNSTABLE = "#d55e00"
 DISCRETE = "#0072b2"
 CONTINUOUS = "#e69f00"
-COMPONENTS = ("#0072b2", "#cc79a7", "#009e73")
+COMPONENTS = ("#0072b2", "#cc79a7", "#009e73", "#d55e00", "#56b4e9", "#1a1a1a")
 LEVEL = "#c3c8d0"
 INK = "#222222"
 MUTED = "#8a8f98"
@@ -62,14 +62,21 @@ def time_scale(orbit: Orbit) -> Normalize:
     """
     first, last = float(orbit.time.min()), float(orbit.time.max())
     momentum = orbit.reduced_momentum
-    near = _SETTLED * np.abs(momentum).max()
-    left = np.flatnonzero(np.abs(momentum - momentum[0]).max(axis=1) > near)
-    settled = np.flatnonzero(np.abs(momentum - momentum[-1]).max(axis=1) > near)
+    near = _SETTLED * np.abs(momentum).max(initial=0.0)
+    left = np.flatnonzero(np.abs(momentum - momentum[0]).max(axis=1, initial=0.0) > near)
+    settled = np.flatnonzero(np.abs(momentum - momentum[-1]).max(axis=1, initial=0.0) > near)
     if len(left) and len(settled) and left[0] <= settled[-1]:
         begin, end = sorted((float(orbit.time[left[0]]), float(orbit.time[settled[-1]])))
         half = (end - begin) / 2
         first, last = max(first, begin - half), min(last, end + half)
     return Normalize(first, last if last > first else first + 1.0, clip=True)
+
+
+def component_colours(count: int) -> list[Any]:
+    """Return colours for so many lines: the palette, or shades from one end to the other if they are too many."""
+    if count <= len(COMPONENTS):
+        return list(COMPONENTS[:count])
+    return [tuple(shade) for shade in matplotlib.colormaps["plasma"](np.linspace(0.0, 0.88, count))]
 
 
 def end_colours(orbit: Orbit) -> list[tuple[float, float, float, float]]:
@@ -104,12 +111,21 @@ def dot_size(states: int) -> float:
     return 20.0 if states <= 100 else 10.0
 
 
+def is_narrow(axes: Axes) -> bool:
+    """Tell whether axes are too narrow for a title and a legend in one line."""
+    box = axes.get_window_extent()
+    is_square = axes.get_aspect() == 1.0 and axes.get_adjustable() == "box"
+    side = min(box.width, box.height) if is_square else box.width
+    return side < _NARROW * axes.figure.dpi
+
+
 def legend_above(axes: Axes) -> None:
     """Put a one-line legend at the right above the axes, in the line of the title; inside narrow axes instead."""
     handles, labels = axes.get_legend_handles_labels()
     if not handles:
         return
-    if axes.get_window_extent().width < _NARROW * axes.figure.dpi:
+    if is_narrow(axes):
         axes.legend(handles, labels, loc="best", fontsize="small", frameon=True, framealpha=0.8, edgecolor="none")
     else:
-        axes.legend(handles, labels, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=len(handles))
+        close = {"handlelength": 0.8, "columnspacing": 0.7} if len(handles) > 3 else {}
+        axes.legend(handles, labels, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=len(handles), **close)

@@ -3,8 +3,6 @@
 Curves are thinned evenly along the drawn line, so that a short transition in a long run is not lost.
 """
 
-import dataclasses
-
 import numpy as np
 
 from nonholo._types import Float, Int
@@ -32,18 +30,17 @@ def evenly_in_box(points: Float[np.ndarray, "K d"], most: int) -> Int[np.ndarray
     return evenly_spread(points / np.where(extent > 0, extent, 1.0), most)
 
 
-def states(orbit: Orbit, indices: Int[np.ndarray, "L"]) -> Orbit:
-    """Return the orbit at the chosen states."""
-    names = ("time", "reduced_momentum", "cayley", "pose", "turned")
-    kept = {name: None if (rows := getattr(orbit, name)) is None else rows[indices] for name in names}
-    return dataclasses.replace(orbit, **kept)
+def some_states(orbit: Orbit, most: int) -> Orbit:
+    """Return the orbit at about so many states, evenly in momentum and, as momentum may be conserved, in time."""
+    evenly_in_time = np.linspace(0, len(orbit) - 1, min(most, len(orbit))).round().astype(int)
+    return orbit.chosen(np.union1d(evenly_spread(orbit.reduced_momentum, most), evenly_in_time))
 
 
 def transition(orbit: Orbit) -> int:
     """Return the state about which the momentum changes fastest; 0 if it does not change."""
     momentum = orbit.reduced_momentum
     change = np.abs(np.diff(momentum, axis=0)).sum(axis=1)
-    moving = len(change) > 0 and change.max() > 1e-9 * np.abs(momentum).max()
+    moving = len(change) > 0 and change.max() > 1e-9 * np.abs(momentum).max(initial=0.0)
     return int(change.argmax()) if moving else 0
 
 
@@ -51,8 +48,7 @@ def turn_per_state(orbit: Orbit) -> float:
     """Return the largest angle, in radians, between saved states: greatest angular speed times distance in time."""
     if len(orbit) < 2:
         return 0.0
-    sample = states(orbit, evenly_spread(orbit.reduced_momentum, 1000))
-    speed = orbit.system.group.angle(sample.body_velocity).max()
+    speed = orbit.system.group.angle(some_states(orbit, 1000).body_velocity).max()
     return float(speed * np.abs(np.diff(orbit.time)).max())
 
 

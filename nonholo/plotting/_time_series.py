@@ -1,6 +1,7 @@
-"""What an orbit does in time: body velocity, heading and speed. These are panels of the overview."""
+"""What an orbit does in time: velocity, momentum, heading and speed. These are panels of the overview."""
 
 import dataclasses
+import itertools
 from typing import Any
 
 import numpy as np
@@ -8,10 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from nonholo._types import Float
+from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
+from nonholo.plotting._subject import is_steered_in_space
 from nonholo.plotting._thinning import evenly_in_box
-from nonholo.systems import ChaplyginSleigh
 
 _MOST_POINTS = 2000
 
@@ -31,19 +33,25 @@ class TimeSeries:
 
 def velocity_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> TimeSeries:
     """Draw the components of the body velocity that the constraint leaves free, against time."""
-    free = np.flatnonzero(np.abs(orbit.system.constraint_subspace).max(axis=0) > 0)
-    names, velocity = _names(orbit), orbit.body_velocity
-    lines = tuple(_line(axes, orbit.time, velocity[:, i], theme.COMPONENTS[i % 3], label=names[i]) for i in free)
+    free = np.flatnonzero(np.abs(_allowed(orbit)).max(axis=0, initial=0.0) > 0)
+    names = _velocity_names(orbit.system.group)
+    lines = _components(orbit, axes, orbit.body_velocity[:, free], [names[i] for i in free])
     if flow is not None:
         for component in free:
             _flow(axes, flow.time, flow.body_velocity[:, component], named=component == free[-1])
-    axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
-    if not velocity.any():
-        axes.set_ylim(-1.0, 1.0)
-    axes.set_title("Body velocity")
-    axes.margins(y=0.12)
-    theme.mark_time(axes, orbit)
-    theme.legend_above(axes)
+    _dress(axes, orbit, "Body velocity")
+    return TimeSeries((axes,), lines)
+
+
+def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> TimeSeries:
+    """Draw the momenta along the rows of the constraint subspace, in space for a right-invariant one, against time."""
+    momentum = orbit.restricted_momentum
+    lines = _components(orbit, axes, momentum, [f"$r_{{{i + 1}}}$" for i in range(momentum.shape[1])])
+    if flow is not None:
+        for component, values in enumerate(flow.restricted_momentum.T):
+            _flow(axes, flow.time, values, named=component == momentum.shape[1] - 1)
+    kind = "Spatial momentum" if is_steered_in_space(orbit) else "Momentum"
+    _dress(axes, orbit, f"{kind} along the constraint")
     return TimeSeries((axes,), lines)
 
 
@@ -89,7 +97,41 @@ def _flow(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K
     line.set(linewidth=1.3, dashes=(3, 3), zorder=4)
 
 
-def _names(orbit: Orbit) -> tuple[str, ...]:
-    if isinstance(orbit.system, ChaplyginSleigh):
-        return (r"$\omega$", "$v_1$", "$v_2$")
-    return tuple(rf"$\omega_{{{i + 1}}}$" for i in range(orbit.system.group.dim))
+def _components(orbit: Orbit, axes: Axes, values: Float[np.ndarray, "K m"], names: list[str]) -> tuple[Line2D, ...]:
+    """Draw one line for each column, thin and without names where there are too many to tell apart."""
+    colours = theme.component_colours(len(names))
+    few = len(names) <= len(theme.COMPONENTS)
+    rows = zip(values.T, colours, names, strict=True)
+    lines = tuple(_line(axes, orbit.time, row, colour, label=name if few else None) for row, colour, name in rows)
+    if not few:
+        for line in lines:
+            line.set_linewidth(1.0)
+        axes.text(0.99, 0.97, f"{names[0]} to {names[-1]}", transform=axes.transAxes, ha="right", va="top")
+    return lines
+
+
+def _dress(axes: Axes, orbit: Orbit, title: str) -> None:
+    axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
+    if not any(np.any(line.get_ydata()) for line in axes.lines):
+        axes.set_ylim(-1.0, 1.0)
+    axes.set_title(title)
+    axes.margins(y=0.12)
+    theme.mark_time(axes, orbit)
+    theme.legend_above(axes)
+
+
+def _allowed(orbit: Orbit) -> Float[np.ndarray, "m dim"]:
+    """Return rows that span all body velocities the orbit could have."""
+    return np.eye(orbit.system.group.dim) if is_steered_in_space(orbit) else orbit.system.constraint_subspace
+
+
+def _velocity_names(group: AbstractMatrixGroup) -> list[str]:
+    if group == SE(2):
+        return [r"$\omega$", "$v_1$", "$v_2$"]
+    if not group.is_rigid:
+        return [rf"$\xi_{{{i + 1}}}$" for i in range(group.dim)]
+    moves = group != SO(group.size)
+    n = group.size - 1 if moves else group.size
+    comma = "" if n < 10 else ","
+    planes = ["1", "2", "3"] if n == 3 else [f"{i}{comma}{j}" for i, j in itertools.combinations(range(1, n + 1), 2)]
+    return [rf"$\omega_{{{plane}}}$" for plane in planes] + [f"$v_{{{i + 1}}}$" for i in range(n * moves)]

@@ -15,7 +15,7 @@ from nonholo.plotting import _theme as theme
 from nonholo.plotting._body_axis_track import known_axes, rotation_axes
 from nonholo.plotting._scene import stage
 from nonholo.plotting._sphere import View, arcs, best_view, draw_globe, set_curve
-from nonholo.plotting._thinning import states, turn_per_state
+from nonholo.plotting._thinning import turn_per_state
 from nonholo.systems import SuslovTop
 
 _TURN = np.radians(22.0)  # most between two frames
@@ -40,7 +40,7 @@ def top_scene(orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Figure, Callab
     """Return the figure and what shows a frame in it."""
     figure, axes, set_clock = stage("Suslov top", orbit, shown)
     show_trace, view = _trace(axes, orbit, shown)
-    moving = states(orbit, shown)
+    moving = orbit.chosen(shown)
     poses = moving.configuration
     spin = np.einsum("kij,kj->ki", poses, moving.body_velocity)
     spin *= 1.12 / (np.linalg.norm(spin, axis=1).max() or 1.0)

@@ -108,7 +108,7 @@ def test_store_is_readable_by_xarray(store: Path) -> None:
         expected = _orbit().to_dataset()
         xarray.testing.assert_equal(dataset.load(), expected)
     assert dataset["time"].attrs["units"] == "time unit"
-    assert dataset["cayley"].dims == ("step", "component")
+    assert dataset["cayley"].dims == ("step", "chart")
 
 
 def test_every_array_is_checked_by_crc32c(store: Path) -> None:
@@ -280,8 +280,8 @@ def test_changed_shape_is_refused(store: Path) -> None:
 
 def test_future_schema_is_refused(store: Path) -> None:
     """A store of a later schema is refused with the advice to upgrade."""
-    _edit(store, schema=2)
-    with pytest.raises(ValueError, match=r"schema 2\. .*upgrade"):
+    _edit(store, schema=3)
+    with pytest.raises(ValueError, match=r"schema 3\. .*upgrade"):
         nh.load_orbit(store)
 
 

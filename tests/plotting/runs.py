@@ -1,5 +1,7 @@
 """Short runs that the tests of the pictures share."""
 
+import numpy as np
+
 import nonholo as nh
 
 MASS_TENSOR = [[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]
@@ -14,3 +16,24 @@ def sleigh_run(body_velocity: tuple[float, float, float], a: float = 0.5, b: flo
     """Run a sleigh of unit mass and inertia."""
     sleigh = nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=a, b=b)
     return nh.simulate(nh.discretize(sleigh, 0.1), body_velocity=body_velocity, **options)
+
+
+def body_tensor(n: int) -> np.ndarray:
+    """Return the homogeneous mass tensor of a body in n dimensions, of four points in each that lie askew."""
+    points = np.random.default_rng(n).normal(size=(4 * n, n))
+    askew = np.column_stack([points, np.ones(4 * n)])
+    return askew.T @ askew / (4 * n)
+
+
+def run_of(system: nh.SuslovTop, steps: int = 40, **options: object) -> nh.Orbit:
+    """Run any system from a start without symmetry."""
+    velocity = 0.6 * np.cos(np.arange(len(system.constraint_subspace)))
+    return nh.simulate(nh.discretize(system, 0.1), restricted_velocity=velocity, steps=steps, **options)
+
+
+def made_up(system: nh.LLSystem, states: int = 5) -> nh.Orbit:
+    """Return an orbit at rest in its first pose: for groups whose steps would have to be compiled first."""
+    k, group = len(system.constraint_subspace), system.group
+    momentum = 1.0 + np.arange(states * k, dtype=float).reshape(states, k)
+    pose = np.tile(group.pose_from_matrix(group.identity), (states, 1))
+    return nh.Orbit(nh.discretize(system, 0.1), np.arange(states) / 10, momentum, np.zeros((states, k)), pose)

@@ -102,5 +102,5 @@ def test_curves_on_the_sphere() -> None:
 
 def test_refuses_a_sleigh(sleigh_orbit: nh.Orbit) -> None:
     """A sleigh has no forbidden axis of rotation; the refusal names the picture for it."""
-    with pytest.raises(ValueError, match=r"must be an orbit of a SuslovTop. .* Use `blade_track` for a sleigh"):
+    with pytest.raises(ValueError, match=r"must be an orbit on SO\(3\). .* Use `blade_track` for a sleigh"):
         nh.plot.body_axis_track(sleigh_orbit)

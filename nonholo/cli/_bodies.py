@@ -1,0 +1,173 @@
+"""The bodies that a scenario can hold, one class for each kind; each checks itself by building its system."""
+
+import abc
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
+
+from pydantic import model_validator
+
+from nonholo.cli._groups import Group, group_of
+from nonholo.cli._sections import Matrix, Number, Positive, Section, Vector, exactly_one
+
+if TYPE_CHECKING:
+    from nonholo.systems import System
+
+Keys = tuple[tuple[str, ...], ...]
+
+
+class AbstractBody(Section, abc.ABC):
+    """A body of any kind: its system is built once when it is read, so that what the library refuses is told."""
+
+    one_of: ClassVar[Keys] = ()
+    """Groups of keys of which exactly one must be there."""
+
+    @abc.abstractmethod
+    def system(self) -> "System":
+        """Return what moves."""
+
+    @model_validator(mode="after")
+    def _is_a_body(self) -> Self:
+        for names in self.one_of:
+            exactly_one(self, names)
+        self.system()
+        return self
+
+
+class SuslovBody(AbstractBody):
+    """A body about a fixed point, in n dimensions, that may only turn in planes containing one of its axes."""
+
+    kind: Literal["suslov"]
+    mass_tensor: Matrix | None = None
+    inertia: Matrix | None = None
+    axis: Vector | None = None
+    one_of: ClassVar[Keys] = (("mass_tensor", "inertia"),)
+
+    def system(self) -> "System":
+        """Return the top."""
+        from nonholo.systems import SuslovTop
+
+        if self.inertia is not None:
+            return SuslovTop.from_inertia(self.inertia, axis=(0.0, 0.0, 1.0) if self.axis is None else self.axis)
+        return SuslovTop(self.mass_tensor, axis=self.axis)
+
+
+class SleighBody(AbstractBody):
+    """A rigid body in the plane on a blade that cannot slip sideways; it turns round until its mass leads."""
+
+    kind: Literal["sleigh"]
+    mass: Positive
+    inertia: Positive
+    a: Number
+    b: Number = 0.0
+
+    def system(self) -> "System":
+        """Return the sleigh."""
+        from nonholo.systems import ChaplyginSleigh
+
+        return ChaplyginSleigh(self.mass, self.inertia, self.a, self.b)
+
+
+class MultidimensionalSleighBody(AbstractBody):
+    """A sleigh in n dimensions: its reference point moves along body axis 1, which may turn but not twist."""
+
+    kind: Literal["multidimensional_sleigh"]
+    mass: Positive
+    center_of_mass: Vector
+    mass_tensor: Matrix
+
+    def system(self) -> "System":
+        """Return the sleigh."""
+        from nonholo.systems import MultidimensionalSleigh
+
+        return MultidimensionalSleigh(self.mass, self.center_of_mass, self.mass_tensor)
+
+
+class RigidBodyBody(AbstractBody):
+    """A free body: about a fixed point in n dimensions, or with group = "SE(n)" moving about in them."""
+
+    kind: Literal["rigid_body"]
+    mass_tensor: Matrix
+    group: Group | None = None
+
+    def system(self) -> "System":
+        """Return the body."""
+        from nonholo.systems import RigidBody
+
+        return RigidBody(self.mass_tensor, None if self.group is None else group_of(self.group))
+
+
+class VeselovaBody(AbstractBody):
+    """A body about a fixed point, in n dimensions, that may only turn in planes containing an axis fixed in space."""
+
+    kind: Literal["veselova"]
+    mass_tensor: Matrix
+
+    def system(self) -> "System":
+        """Return the top."""
+        from nonholo.systems import VeselovaTop
+
+        return VeselovaTop(self.mass_tensor)
+
+
+class LeftInvariantBody(AbstractBody):
+    """Anything on a matrix group whose velocity, seen from the body, stays in a subspace fixed in the body."""
+
+    kind: Literal["left_invariant"]
+    group: Group
+    mass_tensor: Matrix | None = None
+    inertia_operator: Matrix | None = None
+    constraint_subspace: Matrix | None = None
+    annihilator: Matrix | None = None
+    one_of: ClassVar[Keys] = (
+        ("mass_tensor", "inertia_operator"),
+        ("constraint_subspace", "annihilator"),
+    )
+
+    def system(self) -> "System":
+        """Return the system."""
+        from nonholo.systems import LLSystem
+
+        energy: dict[str, Any] = {"mass_tensor": self.mass_tensor, "inertia_operator": self.inertia_operator}
+        return LLSystem(
+            group_of(self.group),
+            constraint_subspace=self.constraint_subspace,
+            annihilator=self.annihilator,
+            **energy,
+        )
+
+
+class RightInvariantBody(AbstractBody):
+    """A body on SO(n) or SE(n) whose velocity, seen from space, stays in a subspace fixed in space."""
+
+    kind: Literal["right_invariant"]
+    group: Group
+    mass_tensor: Matrix
+    constraint_subspace: Matrix | None = None
+    annihilator: Matrix | None = None
+    one_of: ClassVar[Keys] = (("constraint_subspace", "annihilator"),)
+
+    def system(self) -> "System":
+        """Return the system."""
+        from nonholo.systems import LRSystem
+
+        given: Any = (self.mass_tensor, self.constraint_subspace)
+        return LRSystem(group_of(self.group), *given, annihilator=self.annihilator)
+
+
+AnyBody = (
+    SuslovBody
+    | SleighBody
+    | MultidimensionalSleighBody
+    | RigidBodyBody
+    | VeselovaBody
+    | LeftInvariantBody
+    | RightInvariantBody
+)
+BODIES: dict[str, type[AbstractBody]] = {
+    "suslov": SuslovBody,
+    "sleigh": SleighBody,
+    "multidimensional_sleigh": MultidimensionalSleighBody,
+    "rigid_body": RigidBodyBody,
+    "veselova": VeselovaBody,
+    "left_invariant": LeftInvariantBody,
+    "right_invariant": RightInvariantBody,
+}

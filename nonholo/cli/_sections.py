@@ -1,0 +1,24 @@
+"""What every table of a scenario is made of: checked numbers, no unknown keys, one of several keys."""
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Count = Annotated[int, Field(gt=0, le=10**15)]
+Vector = list[Number]
+Matrix = list[Vector]
+
+
+class Section(BaseModel):
+    """A table of a scenario: no unknown keys, no silent conversions."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+def exactly_one(section: Section, names: tuple[str, ...]) -> None:
+    """Refuse a table that holds none or several of the keys."""
+    given = [name for name in names if getattr(section, name) is not None]
+    if len(given) != 1:
+        raise ValueError(f"must hold exactly one of {', '.join(names)}. Got {' and '.join(given) or 'none'}.")

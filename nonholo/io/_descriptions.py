@@ -1,0 +1,90 @@
+"""Systems and motions as plain JSON data and back; what data cannot hold is named by a marker instead."""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from nonholo import systems
+from nonholo._checks import error
+from nonholo.groups import SE, SO, AbstractMatrixGroup, MatrixGroup, ProductGroup, Translations
+from nonholo.systems import AbstractSystem
+
+_CALLABLE = "callable"  # schema 1 wrote the same word
+_OWN = "of your own"
+_ARGUMENTS = {"given_inertia": "inertia_operator"}  # fields that the constructor calls otherwise
+_FAMILIES = {"SO": SO, "SE": SE, "Translations": Translations}
+
+
+def fields_of(owner: Any) -> dict[str, Any]:
+    """Return the fields of a dataclass as plain data, floating-point numbers such that they are read back exactly."""
+    return {field.name: _plain(getattr(owner, field.name)) for field in dataclasses.fields(owner)}
+
+
+def unstored(described: dict[str, Any]) -> str | None:
+    """Name the first entry that a store cannot hold, and why; None if there is none."""
+    for name, value in described.items():
+        if value == _CALLABLE:
+            return f"{name} is a callable"
+        if isinstance(value, dict) and _is_own(value):
+            return f"{name} holds an object of your own"
+    return None
+
+
+def restore_system(kind: str, parameters: dict[str, Any]) -> AbstractSystem:
+    """Build the system of a class of this version from its parameters."""
+    found = getattr(systems, kind, None)
+    if not (isinstance(found, type) and issubclass(found, AbstractSystem)):
+        remedy = "Upgrade nonholo or, for a system of your own, pass load_orbit(path, discrete=...)."
+        raise error("load_orbit(path=...)", "hold a system of this version", repr(kind), remedy)
+    return found(**{_ARGUMENTS.get(name, name): _restored(value) for name, value in parameters.items()})
+
+
+def describe_group(group: AbstractMatrixGroup) -> dict[str, Any]:
+    """Return a group as plain data: its family and dimension, its basis, or its factors.
+
+    Example:
+        >>> describe_group(nh.ProductGroup(nh.SE(2), nh.Translations(3)))
+        {'group': 'ProductGroup', 'factors': [{'group': 'SE', 'n': 2}, {'group': 'Translations', 'n': 3}]}
+    """
+    if isinstance(group, ProductGroup):
+        return {"group": "ProductGroup", "factors": [describe_group(factor) for factor in group.factors]}
+    if isinstance(group, MatrixGroup):
+        return {"group": "MatrixGroup", "basis": group.basis.tolist()}
+    for family, n in (("SO", group.size), ("SE", group.size - 1), ("Translations", group.size - 1)):
+        least = 1 if family == "Translations" else 2
+        if n >= least and group == _FAMILIES[family](n):
+            return {"group": family, "n": n}
+    return {"group": _OWN}
+
+
+def restore_group(described: dict[str, Any]) -> AbstractMatrixGroup:
+    """Return the group of a description."""
+    kind = described["group"]
+    if kind == "ProductGroup":
+        return ProductGroup(*map(restore_group, described["factors"]))
+    if kind == "MatrixGroup":
+        return MatrixGroup(described["basis"])
+    if kind not in _FAMILIES:
+        raise error("load_orbit(path=...)", "hold a group of this version", repr(kind), "Upgrade nonholo.")
+    return _FAMILIES[kind](described["n"])
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, AbstractMatrixGroup):
+        return describe_group(value)
+    if callable(value) or (isinstance(value, tuple) and any(map(callable, value))):
+        return _CALLABLE
+    if value is None or isinstance(value, str | AbstractSystem):
+        return value
+    plain = np.asarray(value)
+    return {"object": _OWN} if plain.dtype.kind == "O" else plain.tolist()
+
+
+def _restored(value: Any) -> Any:
+    return restore_group(value) if isinstance(value, dict) else value
+
+
+def _is_own(described: dict[str, Any]) -> bool:
+    factors = described.get("factors", [])
+    return _OWN in (described.get("group"), described.get("object")) or any(map(_is_own, factors))

@@ -1,0 +1,214 @@
+"""Every kind of body: its built-in scenario, its store, its refusals."""
+
+import json
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, get_args
+
+import numpy as np
+import pytest
+from typer.testing import Result
+
+import nonholo as nh
+from nonholo.cli._bodies import BODIES, AnyBody
+from nonholo.cli._new import Kind
+from nonholo.cli._problems import ScenarioError
+from nonholo.cli._scenario_file import built_in, effective_text, load_scenario, parse_setting
+from nonholo.systems import SYSTEMS
+
+Command = Callable[..., Result]
+Figures = Callable[..., dict[str, Any]]
+EXACT = {"suslov", "sleigh", "multidimensional_sleigh", "rigid_body", "left_invariant"}
+HEISENBERG = "{basis = [[[0,1,0],[0,0,0],[0,0,0]], [[0,0,0],[0,0,1],[0,0,0]], [[0,0,1],[0,0,0],[0,0,0]]]}"
+OWN = f"""
+[body]
+kind = "left_invariant"
+group = {HEISENBERG}
+inertia_operator = [[2, 0, 0], [0, 1, 0], [0, 0, 1]]
+annihilator = [[0, 0, 1]]
+[start]
+restricted_velocity = [0.5, 0.2]
+[run]
+time_step = 0.1
+steps = 3
+"""
+
+
+def _problems(text: str, *settings: str) -> list[str]:
+    Path("my.toml").write_text(text)
+    with pytest.raises(ScenarioError) as caught:
+        load_scenario("my.toml", [parse_setting(setting) for setting in settings])
+    return [str(problem) for problem in caught.value.problems]
+
+
+def test_kinds_are_the_same_everywhere() -> None:
+    """The kinds of a body, the words of `new` and the built-in scenarios agree, and every system has its kind."""
+    assert set(get_args(Kind)) == set(BODIES) == set(built_in())
+    assert set(BODIES.values()) == set(get_args(AnyBody))
+    assert {tomllib.loads(text)["body"]["kind"] for text in built_in().values()} == set(BODIES)
+    assert {type(load_scenario(kind, []).scenario.body.system()) for kind in BODIES} == set(SYSTEMS)
+
+
+@pytest.mark.parametrize("kind", BODIES)
+def test_built_in_scenario(kind: str, figures: Figures, nonholo: Command) -> None:
+    """Each runs to its end, conserves what it says, and its store is shown and drawn again."""
+    told = figures(kind, "-o", "a.zarr")
+    assert told["outcome"] == "successful"
+    assert told["energy_is_exact"] == (kind in EXACT)
+    assert (told["energy_drift"] < 1e-13) == (kind in EXACT)  # the others oscillate by 1e-5 and more
+    for name in ("constraint_residual", "group_residual", "reversal_defect"):
+        assert told[name] < 1e-13, name
+    again = json.loads(nonholo("info", "a.zarr", "--json").stdout)
+    assert again["energy_drift"] == told["energy_drift"]
+    assert again["body"] == told["body"]
+    assert nonholo("plot", "a.zarr").stderr == ""
+    assert Path("a.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("kind", BODIES)
+def test_template(kind: str, nonholo: Command) -> None:
+    """What `new` writes is the built-in scenario with its comments, and every key of a run is in it."""
+    written = nonholo("new", kind).stdout
+    assert written == built_in()[kind]
+    assert written.count("#") > 8
+    assert max(map(len, written.splitlines())) <= 120
+    for key in ("title", "time_step", "steps", "save_every", "difference", "constraint", "branch", "plot", "gif"):
+        assert f"\n{key} = " in written, key
+
+
+def test_systems_lists_every_kind(nonholo: Command) -> None:
+    """`systems` names each kind and each title."""
+    shown = " ".join(nonholo("systems").stdout.split())
+    for kind, text in built_in().items():
+        assert kind in shown
+        assert tomllib.loads(text)["title"].split()[0] in shown
+
+
+def test_the_free_body_tumbles(figures: Figures) -> None:
+    """Body axis 3 goes over to the opposite side and back, as the title says."""
+    height = nh.load_orbit(figures("rigid_body")["store"]).body_velocity[:, 2]
+    assert np.count_nonzero(np.diff(np.sign(height))) == 2
+    assert height.min() < -0.99
+
+
+@pytest.mark.parametrize("kind", ["multidimensional_sleigh", "left_invariant"])
+def test_bodies_in_space_turn_round(kind: str, figures: Figures) -> None:
+    """The sleigh and the dart start backwards and end forwards, their reference point moving along body axis 1."""
+    orbit = nh.load_orbit(figures(kind)["store"])
+    along = orbit.body_velocity[:, 3]
+    assert along[0] < -0.9
+    assert along[-1] > 0.9
+    assert np.abs(orbit.body_velocity[:, 4:]).max() < 1e-15
+
+
+def test_the_veselova_top_never_spins_about_the_vertical(figures: Figures) -> None:
+    """The spatial angular velocity has no vertical component, though the body axes go everywhere."""
+    orbit = nh.load_orbit(figures("veselova")["store"])
+    spatial = np.einsum("kij,kj->ki", orbit.configuration, orbit.body_velocity)
+    assert np.abs(spatial[:, 2]).max() < 1e-14
+    assert orbit.configuration[:, 2, 2].min() < -0.5
+
+
+def test_the_plate_turns_as_it_passes(figures: Figures) -> None:
+    """What is over the blade moves along it; the plate comes from the left, turns and leaves to the right."""
+    orbit = nh.load_orbit(figures("right_invariant")["store"])
+    carried = np.einsum(
+        "kij,kjl,klm->kim", orbit.configuration, nh.SE(2).hat(orbit.body_velocity), np.linalg.inv(orbit.configuration)
+    )
+    assert np.abs(carried[:, 1, 2]).max() < 1e-14
+    assert orbit.position[0, 0] < -1 < 1 < orbit.position[-1, 0]
+    assert np.ptp(orbit.heading) > 0.5
+
+
+def test_table_says_what_to_expect_of_the_energy(nonholo: Command) -> None:
+    """The row of the energy drift says whether a theorem makes it exact, for runs and for stores."""
+    top = nonholo("simulate", "suslov", "--no-plot", "--steps", 20)
+    assert "exact by theorem" in top.stdout
+    other = nonholo("simulate", "veselova", "--no-plot", "--steps", 20)
+    for shown in (other, nonholo("info", "runs/veselova-001.zarr")):
+        assert "oscillates: not exact for this discretisation" in " ".join(shown.stdout.split())
+
+
+def test_group_and_large_matrices_in_the_table(nonholo: Command) -> None:
+    """The table names the group; matrices too wide for it are told by their shape."""
+    tensor = np.diag([1.0, 2.0, 3.0, 4.0, 5.0]).tolist()
+    setting = f"body={{kind='rigid_body', mass_tensor={tensor}}}"
+    start = f"start={{restricted_velocity={[0.1] * 10}}}"
+    shown = nonholo("simulate", "rigid_body", "--no-plot", "--steps", 3, "--set", setting, "--set", start).stdout
+    assert "SO(5)" in shown
+    assert "10 x 10" in shown
+
+
+def test_own_group_is_read_and_written() -> None:
+    """A group given by its basis survives the text that a store keeps, exactly."""
+    Path("my.toml").write_text(OWN)
+    scenario = load_scenario("my.toml", []).scenario
+    system = scenario.body.system()
+    assert system.group == nh.MatrixGroup(tomllib.loads(OWN)["body"]["group"]["basis"])
+    assert type(scenario).model_validate(tomllib.loads(effective_text(scenario))) == scenario
+
+
+def test_defaults_are_those_of_the_library() -> None:
+    """Without difference and constraint the library chooses, and what it chose is what a store keeps."""
+    Path("my.toml").write_text(OWN)
+    scenario = load_scenario("my.toml", []).scenario
+    discrete = scenario.discretization()
+    assert (discrete.difference, discrete.constraint) == ("logarithmic", "exponential")
+    kept = scenario.in_force(discrete).run
+    assert (kept.difference, kept.constraint) == ("logarithmic", "exponential")
+
+
+def test_what_a_group_does_not_allow_is_told_with_its_key(nonholo: Command) -> None:
+    """The matrix difference on a group of the user's own ends with the reason, the remedy and exit code 2."""
+    Path("my.toml").write_text(OWN)
+    result = nonholo("simulate", "my.toml", "--set", 'run.difference="matrix"')
+    assert result.exit_code == 2
+    assert "run.difference: must be defined for the system" in result.stderr
+    assert "Pass 'logarithmic'" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("group", "told"),
+    [
+        ('"SO(1)"', "body.group: must be a name such as"),
+        ('"GL(2)"', "Got 'GL(2)'"),
+        ('"SE(2) x so(3)"', "Got 'so(3)'"),
+        ("3", "body.group: must be a valid string. Got 3"),
+        ("{bassis = []}", "body.group.bassis: is not a known key. Did you mean basis?"),
+        ("{basis = [[[0,1],[0,0]], [[0,0],[1,0]]]}", "body.group.basis: must span a Lie algebra"),
+    ],
+)
+def test_groups_that_are_none(group: str, told: str) -> None:
+    """A group that cannot be read is told with its key path and what a group looks like."""
+    found = _problems(OWN.replace(HEISENBERG, group))
+    assert any(told in problem for problem in found), found
+
+
+def test_one_energy_and_one_constraint() -> None:
+    """Both or none of two ways to say the same are refused by name."""
+    both = _problems(OWN.replace("annihilator", "constraint_subspace = [[1, 0, 0]]\nannihilator"))
+    assert both[0].endswith(
+        "must hold exactly one of constraint_subspace, annihilator. Got constraint_subspace and annihilator."
+    )
+    none = _problems(OWN.replace("inertia_operator", "mass_tensor = [[1]]\ninertia_operator"))
+    assert "exactly one of mass_tensor, inertia_operator" in none[0]
+
+
+@pytest.mark.parametrize(
+    ("kind", "setting", "told"),
+    [
+        ("rigid_body", "body.mass_tensor=[[1,0],[0,1]]", "body.mass_tensor: must"),
+        ("veselova", "body.mass_tensor=[[1,0,0],[0,0,0],[0,0,0]]", "body.mass_tensor: must make the inertia operator"),
+        ("multidimensional_sleigh", "body.center_of_mass=[1,2]", "body.center_of_mass: must have at least 3"),
+        ("left_invariant", "body.constraint_subspace=[[1,0,0,0,0,0],[2,0,0,0,0,0]]", "must have linearly independent"),
+        ("right_invariant", "body.mass_tensor=[[1]]", "body.mass_tensor: must have shape (3, 3)"),
+        ("suslov", "body.axis=[0,0,2]", "body.axis: must be a unit vector"),
+    ],
+)
+def test_physical_refusals_have_key_paths(kind: str, setting: str, told: str) -> None:
+    """What the library refuses about a body is told with the option and the key that it came from."""
+    found = _problems(built_in()[kind], setting)
+    assert len(found) == 1
+    assert found[0].startswith(f"--set {setting}: body")
+    assert told in found[0]

@@ -1,0 +1,186 @@
+"""Orbits of every system, on every kind of group, come back from a store as they were."""
+
+import dataclasses
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+
+import nonholo as nh
+from nonholo.groups import AbstractMatrixGroup
+from nonholo.io import orbit_to_dataset, read_attributes
+from nonholo.io._descriptions import describe_group, restore_group
+from nonholo.systems import SYSTEMS, AbstractSystem
+
+_HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
+_PRODUCT = nh.ProductGroup(nh.SO(3), nh.ProductGroup(nh.SE(2), nh.Translations(2)), _HEISENBERG)
+_RNG = np.random.default_rng(3)
+
+
+def _tensor(n: int) -> np.ndarray:
+    points = _RNG.normal(size=(3 * n, n))
+    return points.T @ points / (3 * n)
+
+
+def _body(n: int) -> np.ndarray:
+    points = np.column_stack([_RNG.normal(size=(3 * n, n)), np.ones(3 * n)])
+    return points.T @ points / (3 * n)
+
+
+MOTIONS: dict[str, Callable[[], Any]] = {
+    "top of SO(4)": lambda: nh.discretize(nh.SuslovTop(_tensor(4)), 0.1),
+    "sleigh of SE(3)": lambda: nh.discretize(nh.MultidimensionalSleigh(1.5, [0.3, 0.1, 0.2], _tensor(3)), 0.1),
+    "body of SO(5)": lambda: nh.discretize(nh.RigidBody(_tensor(5)), 0.1),
+    "body of SE(3)": lambda: nh.discretize(nh.RigidBody(_body(3), nh.SE(3)), 0.1),
+    "Veselova top": lambda: nh.discretize(nh.VeselovaTop(_tensor(3)), 0.1),
+    "right-invariant on SE(2)": lambda: nh.discretize(nh.LRSystem(nh.SE(2), _body(2), [[1.0, 0, 0], [0, 1.0, 0]]), 0.1),
+    "left-invariant on SE(3)": lambda: nh.discretize(
+        nh.LLSystem(nh.SE(3), _body(3), [[0, 0, 1.0, 0.5, 0, 0], [0, 1.0, 0, 0, 0, 0.3]]), 0.1
+    ),
+    "nothing moves": lambda: nh.discretize(nh.LLSystem(nh.SO(3), _tensor(3), np.empty((0, 3))), 0.1),
+    "one direction": lambda: nh.discretize(nh.LLSystem(nh.SO(3), _tensor(3), [[1.0, 0.0, 0.0]]), 0.1),
+    "naive sleigh": lambda: nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, constraint="naive"),
+}
+
+
+def _run(motion: nh.Discretization, **options: Any) -> nh.Orbit:
+    k = len(motion.system.constraint_subspace)
+    return nh.simulate(motion, restricted_velocity=0.3 * np.cos(np.arange(k)), steps=6, **options)
+
+
+@pytest.mark.parametrize("make", MOTIONS.values(), ids=MOTIONS)
+def test_round_trip(make: Callable[[], Any], tmp_path: Path) -> None:
+    """Compact arrays, fields of the system and everything decoded from them have the bits of the saved orbit."""
+    orbit = _run(make())
+    nh.save_orbit(orbit, tmp_path / "o.zarr")
+    loaded = nh.load_orbit(tmp_path / "o.zarr")
+    for field in dataclasses.fields(orbit.system):
+        assert np.array_equal(getattr(loaded.system, field.name), getattr(orbit.system, field.name)), field.name
+    assert (loaded.motion.difference, loaded.motion.constraint) == (orbit.motion.difference, orbit.motion.constraint)
+    for name in ("time", "reduced_momentum", "cayley", "pose", "energy", "displacement", "multipliers", "momentum"):
+        one, two = getattr(orbit, name), getattr(loaded, name)
+        assert one.shape == two.shape, name
+        assert one.tobytes() == two.tobytes(), name
+
+
+MADE_UP: dict[str, Callable[[], Any]] = {
+    "inertia operator": lambda: nh.discretize(
+        nh.LLSystem(nh.SO(3), annihilator=[[0.0, 0, 1]], inertia_operator=_tensor(3)), 0.1
+    ),
+    "user group": lambda: nh.discretize(
+        nh.LLSystem(_HEISENBERG, constraint_subspace=np.eye(3)[:2], inertia_operator=_tensor(3)), 0.1
+    ),
+    "product of groups": lambda: nh.discretize(
+        nh.LLSystem(_PRODUCT, constraint_subspace=np.eye(11)[::2], inertia_operator=_tensor(11)), 0.1
+    ),
+    "logarithmic top of SO(4)": lambda: nh.discretize(nh.SuslovTop(_tensor(4)), 0.1, "logarithmic", "exponential"),
+}
+
+
+def _made_up(motion: nh.Discretization) -> nh.Orbit:
+    group, k = motion.system.group, len(motion.system.constraint_subspace)
+    pose = group.pose_from_matrix(np.stack([group.random(_RNG) for _ in range(6)]))
+    return nh.Orbit(motion, np.arange(6.0), _RNG.normal(size=(6, k)), _RNG.normal(size=(6, k)), pose)
+
+
+@pytest.mark.parametrize("make", MADE_UP.values(), ids=MADE_UP)
+def test_round_trip_of_motions_on_jax(make: Callable[[], Any], tmp_path: Path) -> None:
+    """The same for motions whose steps JAX would have to compile: their orbits are made up, of random numbers."""
+    motion = make()
+    orbit = _made_up(motion)
+    nh.save_orbit(orbit, tmp_path / "o.zarr")
+    loaded = nh.load_orbit(tmp_path / "o.zarr")
+    assert loaded.system.group == motion.system.group
+    assert (loaded.motion.difference, loaded.motion.constraint) == (motion.difference, motion.constraint)
+    for name in ("time", "reduced_momentum", "cayley", "pose", "energy", "displacement", "configuration"):
+        assert getattr(orbit, name).tobytes() == getattr(loaded, name).tobytes(), name
+
+
+@pytest.mark.parametrize(
+    "system",
+    [
+        nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])),
+        nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])),
+        nh.LRSystem(nh.SE(2), np.diag([1.0, 2.0, 3.0]), [[1.0, 0.0, 0.0]]),
+        nh.LLSystem(_HEISENBERG, constraint_subspace=np.eye(3)[:2], inertia_operator=np.eye(3)),
+    ],
+    ids=lambda system: f"{type(system).__name__} of {system.group!r}",
+)
+def test_flows_round_trip(system: AbstractSystem, tmp_path: Path) -> None:
+    """A continuous orbit of every kind of system comes back, with energy and forces."""
+    k = len(system.constraint_subspace)
+    orbit = nh.flow(system, restricted_velocity=0.3 * np.cos(np.arange(k)), times=np.linspace(0.0, 1.0, 4))
+    nh.save_orbit(orbit, tmp_path / "o.zarr")
+    loaded = nh.load_orbit(tmp_path / "o.zarr")
+    for name in ("reduced_momentum", "pose", "energy", "multipliers"):
+        assert getattr(orbit, name).tobytes() == getattr(loaded, name).tobytes(), name
+
+
+def test_every_system_is_tried() -> None:
+    """No final system is missing from the round trips of this file and of `test_store`."""
+    tried = {type(make().system) for make in MOTIONS.values()} | {nh.SuslovTop, nh.ChaplyginSleigh}
+    assert tried == set(SYSTEMS)
+
+
+@pytest.mark.parametrize(
+    "group",
+    [nh.SO(2), nh.SO(3), nh.SO(6), nh.SE(2), nh.SE(4), nh.Translations(1), _HEISENBERG, _PRODUCT],
+    ids=repr,
+)
+def test_groups_come_back(group: AbstractMatrixGroup) -> None:
+    """The group of a description is equal to the described one, nested products included."""
+    assert restore_group(describe_group(group)) == group
+
+
+def test_charts_have_their_own_dimension() -> None:
+    """Where the chart has more coordinates than the subspace the dataset is still labelled without contradiction."""
+    orbit = _run(MOTIONS["left-invariant on SE(3)"]())
+    sizes = orbit.to_dataset().sizes
+    assert (sizes["component"], sizes["chart"], sizes["pose_component"]) == (2, 6, 12)
+
+
+def test_right_invariant_labels(tmp_path: Path) -> None:
+    """Stores of right-invariant systems say that their momenta and displacements are spatial."""
+    nh.save_orbit(_run(MOTIONS["Veselova top"]()), tmp_path / "o.zarr")
+    with xarray.open_zarr(tmp_path / "o.zarr", chunks=None) as dataset:
+        assert "spatial momentum" in dataset["reduced_momentum"].attrs["long_name"]
+        assert "spatial displacement" in dataset["cayley"].attrs["long_name"]
+    assert "U_k = g_(k+1) g_k^-1" in read_attributes(tmp_path / "o.zarr")["conventions"]
+
+
+def test_right_invariant_orbits_without_poses(tmp_path: Path) -> None:
+    """Without poses the energy of a right-invariant system is unknown; the rest of the orbit is still kept."""
+    orbit = _run(MOTIONS["Veselova top"](), reconstruct=False)
+    assert set(orbit_to_dataset(orbit, decoded=True).variables) == {"time", "reduced_momentum", "cayley"}
+    nh.save_orbit(orbit, tmp_path / "o.zarr")
+    assert nh.load_orbit(tmp_path / "o.zarr").cayley.tobytes() == orbit.cayley.tobytes()
+
+
+def test_constraint_functions_must_be_given(tmp_path: Path) -> None:
+    """A variety given by functions cannot be stored: the refusal says to pass the discretisation, which then serves."""
+    own = nh.discretize(
+        nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, constraint=lambda W: (W[0, 2] * W[0, 0]) * W[1, 1] * 0 + W[1, 2]
+    )
+    orbit = nh.simulate(own, restricted_velocity=(0.1, 0.2), steps=2)
+    nh.save_orbit(orbit, tmp_path / "o.zarr")
+    with pytest.raises(ValueError, match=r"whose constraint is a callable\. Pass load_orbit\(path, discrete="):
+        nh.load_orbit(tmp_path / "o.zarr")
+    assert nh.load_orbit(tmp_path / "o.zarr", discrete=own).momentum.tobytes() == orbit.momentum.tobytes()
+
+
+class _Own(nh.Translations):
+    """A group that only its author knows."""
+
+
+def test_own_groups_must_be_given(tmp_path: Path) -> None:
+    """A group class of the user's own, also inside a product, is refused in the same way."""
+    group = nh.ProductGroup(_Own(2), nh.SO(3))
+    own = nh.discretize(nh.LLSystem(group, constraint_subspace=np.eye(5)[1:4], inertia_operator=np.eye(5)), 0.1)
+    orbit = _made_up(own)
+    nh.save_orbit(orbit, tmp_path / "o.zarr")
+    with pytest.raises(ValueError, match=r"whose group holds an object of your own\. Pass load_orbit\(path, discrete="):
+        nh.load_orbit(tmp_path / "o.zarr")
+    assert nh.load_orbit(tmp_path / "o.zarr", discrete=own).pose.tobytes() == orbit.pose.tobytes()
