@@ -8,7 +8,7 @@ from nonholo._checks import error
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.discrete._structured import reversal_defects, structured
-from nonholo.orbit import Orbit
+from nonholo.orbit import Orbit, as_orbit
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
 _SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
@@ -52,6 +52,7 @@ def invariants(orbit: Orbit) -> Invariants:
         >>> invariants(orbit).energy_drift < 1e-14
         True
     """
+    as_orbit("invariants(orbit=...)", orbit, "one in coordinates has energy and constraint_residual itself.")
     if len(orbit) == 0:
         raise error("invariants(orbit=...)", "have at least one state", str(orbit), "Its outcome says why it has none.")
     group = orbit.system.group

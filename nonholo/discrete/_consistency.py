@@ -6,7 +6,7 @@ import numpy as np
 
 from nonholo._checks import error
 from nonholo._types import Array
-from nonholo.discrete._discretization import Discretization
+from nonholo.discrete._discretization import Discretization, as_discretization
 
 _SAMPLES = 16
 
@@ -37,6 +37,7 @@ def consistency_defect(discrete: Discretization, discretization_map: Callable[[A
         >>> consistency_defect(nh.discretize(sleigh.system, 0.1)) > 0.01
         True
     """
+    as_discretization("consistency_defect(discrete=...)", discrete)
     from nonholo.discrete._definition import map_each, sample_displacements
 
     group, annihilator = discrete.system.group, np.asarray(discrete.system.annihilator)

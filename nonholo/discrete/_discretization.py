@@ -10,7 +10,7 @@ from nonholo._checks import choice, error, positive
 from nonholo._types import Array, Float
 from nonholo.discrete._legendre import legendre, legendre_of_chart
 from nonholo.discrete._structured import next_charts
-from nonholo.discrete._variety import Constraint, Variety, checked_constraint, variety_of
+from nonholo.discrete._variety import Constraint, Variety, checked_constraint, equations_of, variety_of
 from nonholo.orbit import AbstractMotion, Orbit
 from nonholo.systems import AbstractLRSystem, AbstractSystem, System
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem, DiscretizationT, refuse_in_coordinates
@@ -82,11 +82,7 @@ class Discretization(AbstractMotion):
         D = self.variety.displaced(states.canonical_chart)
         if self.variety.exact:
             return self.system.group.log(D) @ self.variety.annihilator.T
-        if isinstance(self.constraint, str):
-            return self.variety.equations(D)
-        from nonholo.discrete._definition import map_each
-
-        return map_each(self.variety.equations, D)
+        return equations_of(self.variety, D)
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         """Return the discrete momenta at the displacements."""
@@ -117,6 +113,13 @@ class Discretization(AbstractMotion):
 def _in_body(discrete: Discretization, cayley: np.ndarray, g: np.ndarray, side: str) -> np.ndarray:
     """Return the momenta of spatial displacements U at poses g: those of W = g^-1 U g."""
     return legendre(discrete, discrete.system.group.inverse(g) @ discrete.variety.increment(cayley) @ g, side)
+
+
+def as_discretization(where: str, value: Any) -> Discretization:
+    """Refuse what is not a discretised system on a group."""
+    if not isinstance(value, Discretization):
+        raise error(where, "be a discretised system on a group", repr(value), "Pass what `discretize` returned.")
+    return value
 
 
 @overload

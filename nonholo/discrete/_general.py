@@ -34,7 +34,8 @@ def general_body(system: AbstractSystem, variety: Variety) -> kernels.GeneralBod
     return kernels.GeneralBody(
         tensor=_plain(system.homogeneous_mass_tensor * np.outer(shrink, shrink)),
         directions=_plain(group.hat(system.constraint_subspace) * motions),
-        chart=_plain(chart / lengths[:, None, None]),
+        places=np.argwhere(chart),
+        entries=_plain((chart / lengths[:, None, None])[chart != 0]),
         forbidden=_plain(forbidden_matrices(group, forbidden) / motions),
         size=n,
         spatial=isinstance(system, AbstractLRSystem),
@@ -76,7 +77,9 @@ def length_unit(system: AbstractSystem) -> float:
     tensor, n = np.asarray(system.homogeneous_mass_tensor), _size_of_rotations(system)
     if n == len(tensor):
         return 1.0
-    return float(np.sqrt(max(np.trace(tensor[:n, :n]), 0.0) / tensor[n, n])) or 1.0
+    if tensor[n, n] <= 0 or np.trace(tensor[:n, :n]) <= 0:  # no length is distinguished
+        return 1.0
+    return float(np.sqrt(np.trace(tensor[:n, :n]) / tensor[n, n]))
 
 
 def _stiffness(system: AbstractSystem, unit: float) -> tuple[Callable[[np.ndarray, np.ndarray], np.ndarray], float]:

@@ -41,7 +41,9 @@ def discrete_legendre(
         >>> discrete_legendre(sleigh, SE(2).exp(np.array([0.0, 0.5, 0.0])))
         array([0., 1., 0.])
     """
-    group = discrete.system.group
+    from nonholo.discrete._discretization import as_discretization
+
+    group = as_discretization("discrete_legendre(discrete=...)", discrete).system.group
     where, shape = "discrete_legendre(displacement=...)", group.identity.shape
     leading = (None,) * (np.ndim(displacement) - 2)
     W = array(where, displacement, leading + shape, f"Pass an element of {group} as a matrix.")

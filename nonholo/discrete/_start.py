@@ -9,6 +9,7 @@ from nonholo._results import Outcome, OutcomeError
 from nonholo._types import Float
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._legendre import legendre
+from nonholo.discrete._variety import equations_of
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractLRSystem, System
 
@@ -129,7 +130,7 @@ def on_variety(where: str, discrete: Discretization, g: np.ndarray, displacement
         forbidden, what = system.annihilator @ logarithm, "a logarithm with forbidden part"
     else:
         frame = system.frame
-        forbidden, what = discrete.variety.equations(group.inverse(frame) @ seen @ frame), "equations with residual"
+        forbidden, what = equations_of(discrete.variety, group.inverse(frame) @ seen @ frame), "equations with residual"
     if np.linalg.norm(forbidden) > _TOLERANCE * max(1.0, float(np.linalg.norm(logarithm))):
         got = f"{what} {np.array2string(forbidden, precision=6)}"
         raise error(where, "lie on the displacement variety", got, "Build it as `group.exp(x)` with x admissible.")

@@ -11,7 +11,7 @@ from nonholo._checks import array, choice, error
 from nonholo._results import Outcome
 from nonholo._types import Array, Float
 from nonholo.discrete._definition import displaced, momentum_of, principal_displacement
-from nonholo.discrete._discretization import Discretization
+from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._precision import in_double
 from nonholo.discrete._root import principal_root
 from nonholo.discrete._structured import ScalarStep, scalar_step
@@ -68,6 +68,7 @@ def step(
         >>> after.momentum, int(after.outcome)
         (array([0., 1., 0.]), 0)
     """
+    as_discretization("step(discrete=...)", discrete)
     choice("step(branch=...)", branch, ("principal",))
     if isinstance(discrete.system, AbstractLRSystem):
         got = f"{type(discrete.system).__name__}, whose step depends on the configuration"

@@ -2,8 +2,8 @@ r"""The displacement variety: where displacements may lie, as a chart and the eq
 
 "skew": $(W - W^{-1})/2 \in \mathfrak{d}$, through the identity. "exponential": $\exp\mathfrak{d}$. "naive": $W - I$,
 projected to the algebra, in $\mathfrak{d}$. Or functions $f_j(W) = 0$. If $X^3 \in \mathfrak{d}$ for every
-$X \in \mathfrak{d}$ (symmetric pairs, the whole algebra, one dimension), the first two are the same set, and the Cayley
-image of $\mathfrak{d}$ too.
+$X \in \mathfrak{d}$ (tops, sleighs, the whole algebra, other symmetric pairs), the first two are the same set, and the
+Cayley image of $\mathfrak{d}$ too.
 """
 
 import dataclasses
@@ -110,6 +110,16 @@ def forbidden_matrices(group: AbstractMatrixGroup, annihilator: np.ndarray) -> F
     N = group.size
     units = np.eye(N * N).reshape(N * N, N, N)
     return (group.vee(units) @ annihilator.T).T.reshape(-1, N, N)
+
+
+def equations_of(variety: Variety, D: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "... j"]:
+    """Return the equations of a variety at displacements in the canonical frame, in 64 bits."""
+    if isinstance(variety.constraint, str):
+        return variety.equations(D)
+    from nonholo.discrete._definition import map_each
+
+    values = map_each(variety.equations, D.reshape(-1, *D.shape[-2:]))  # functions take one matrix at a time
+    return values.reshape(*D.shape[:-2], -1)
 
 
 def checked_constraint(where: str, system: AbstractSystem, constraint: object) -> Constraint:

@@ -15,7 +15,7 @@ from zarr.codecs import BloscCodec, Crc32cCodec
 
 from nonholo.io._attributes import FORMAT, attributes_of_text
 from nonholo.io._dataset import orbit_to_dataset
-from nonholo.orbit import Orbit
+from nonholo.orbit import Orbit, as_orbit
 
 _ROWS = 100_000  # states in one chunk
 _FILTERS = threading.Lock()  # warning filters belong to the whole process
@@ -40,6 +40,7 @@ def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scena
     Example:
         >>> save_orbit(orbit, "orbit.zarr")  # doctest: +SKIP
     """
+    as_orbit("save_orbit(orbit=...)", orbit, "for one in coordinates use orbit.to_dataset().to_zarr(path).")
     target = Path(path).resolve()
     check_target(target, overwrite=overwrite)
     part = _sibling(target, "partial")

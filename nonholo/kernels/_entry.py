@@ -12,7 +12,7 @@ AnyBody = Body | GeneralBody
 def sizes(body: AnyBody) -> tuple[int, int, int]:
     """Return the numbers of momenta, chart coordinates and pose entries of a state."""
     if isinstance(body, GeneralBody):
-        return len(body.directions), len(body.chart), body.tensor.size
+        return len(body.directions), len(body.stretch), body.tensor.size
     return 2, 2, 4
 
 

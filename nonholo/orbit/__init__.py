@@ -1,5 +1,5 @@
 """The orbit: compact states of a motion and their decoding by the group. Nothing is simulated here."""
 
-from nonholo.orbit._orbit import AbstractMotion, Orbit
+from nonholo.orbit._orbit import AbstractMotion, Orbit, as_orbit
 
-__all__ = ["AbstractMotion", "Orbit"]
+__all__ = ["AbstractMotion", "Orbit", "as_orbit"]

@@ -12,10 +12,19 @@ from typing import Any
 
 import numpy as np
 
+from nonholo._checks import error
 from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.groups import SE
 from nonholo.systems import AbstractLRSystem, System
+
+
+def as_orbit(where: str, value: Any, coordinates: str) -> "Orbit":
+    """Refuse what is not an orbit on a group; `coordinates` says what to do with an orbit in coordinates."""
+    if not isinstance(value, Orbit):
+        remedy = f"Pass what `simulate` or `flow` returned; {coordinates}"
+        raise error(where, "be an orbit of a system on a group", repr(value), remedy)
+    return value
 
 
 class AbstractMotion(abc.ABC):

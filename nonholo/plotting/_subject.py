@@ -10,7 +10,7 @@ import numpy as np
 from nonholo._checks import error
 from nonholo._types import Float
 from nonholo.discrete import Discretization
-from nonholo.orbit import Orbit
+from nonholo.orbit import Orbit, as_orbit
 from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System
 
 _System = TypeVar("_System", bound=AbstractSystem)
@@ -20,9 +20,7 @@ NEAR_EQUILIBRIUM = 0.03  # sine, in the metric of the energy, of the angle to th
 
 def drawable(where: str, orbit: Any) -> Orbit:
     """Return an orbit with at least one state."""
-    if not isinstance(orbit, Orbit):
-        raise error(where, "be an orbit", repr(orbit), "Pass what `simulate` returned.")
-    if len(orbit) == 0:
+    if len(as_orbit(where, orbit, "for one in coordinates plot its arrays, as docs/gallery does.")) == 0:
         raise error(where, "have a state to draw", "none", "See `orbit.outcome` for why the run did not start.")
     return orbit
 

@@ -10,6 +10,7 @@ from nonholo._checks import choice, count, error
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, OutcomeError
 from nonholo.discrete import Discretization, initial_state
+from nonholo.discrete._discretization import as_discretization
 from nonholo.discrete._start import check_first_state, in_group
 from nonholo.discrete._structured import Structured, structured
 from nonholo.orbit import Orbit
@@ -107,6 +108,7 @@ def simulate(
         >>> float(np.ptp(orbit.energy)) < 1e-14
         True
     """
+    starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
     if isinstance(discrete, AbstractCoordinateDiscretization):
         refuse_in_coordinates(
             "simulate",
@@ -115,33 +117,15 @@ def simulate(
             reconstruct=(reconstruct, True),
             backend=(backend, "auto"),
         )
-        return discrete.simulate(
-            configuration=configuration,
-            steps=steps,
-            body_velocity=body_velocity,
-            displacement=displacement,
-            momentum=momentum,
-            save_every=save_every,
-            throw=throw,
-            progress=progress,
-        )
-    if not isinstance(discrete, Discretization):
-        raise error(
-            "simulate(discrete=...)", "be a discretised system", repr(discrete), "Pass what discretize returns."
-        )
+        options = {"save_every": save_every, "throw": throw, "progress": progress}
+        return discrete.simulate(configuration=configuration, steps=steps, **starts, **options)
+    as_discretization("simulate(discrete=...)", discrete)
     steps = count("simulate(steps=...)", steps, "Pass the number of steps.")
     every = count("simulate(save_every=...)", save_every, "Pass the number of steps between saved states.")
     choice("simulate(branch=...)", branch, ("principal",))
     group = discrete.system.group
     g = group.identity if configuration is None else in_group("simulate(configuration=...)", group, configuration)
-    reduced, demanded = initial_state(
-        discrete,
-        g,
-        body_velocity=body_velocity,
-        restricted_velocity=restricted_velocity,
-        displacement=displacement,
-        momentum=momentum,
-    )
+    reduced, demanded = initial_state(discrete, g, restricted_velocity=restricted_velocity, **starts)
     pose = group.pose_from_matrix(g @ discrete.system.frame)
     run = _runner(discrete, backend)
     rows, outcome, done = run(reduced, pose, steps, every, progress)

@@ -23,7 +23,7 @@ def euler_angle_discrete_lagrangian(
 
     For a time step h the discrete Lagrangian of the library is this, divided by h.
 
-    Reference: [fedorov-zenkov-2004], section 4, the remark on Euler angles; the term of $A_3$ is corrected.
+    Reference: [fedorov-zenkov-2004], section 4, the remark on Euler angles; the terms of $A_1$ and $A_2$ are corrected.
 
     Args:
         principal_moments: $A_1, A_2, A_3$, the diagonal of the inertia tensor.

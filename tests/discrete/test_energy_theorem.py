@@ -53,18 +53,20 @@ def test_a_symmetric_pair_of_rank_two(constraint: str) -> None:
 def test_all_branches_conserve_energy() -> None:
     """No energy is left to choose a root by: Newton from random guesses on SO(4) finds others of the same energy."""
     from nonholo.discrete._structured import structured
-    from nonholo.kernels._general import displaced, increments, newton
+    from nonholo.kernels._general import displaced, increments, newton, workspace
 
     rng = np.random.default_rng(4)
     system = nh.SuslovTop(mass_tensor(nh.SO(4), rng))
     discrete = nh.discretize(system, 0.5)
     orbit = nh.simulate(discrete, restricted_velocity=(0.8, -0.5, 0.6), steps=1)
     body, m = structured(discrete).body, 0.5 * orbit.restricted_momentum[1]
-    found = set()
-    for guess in rng.normal(size=(200, 3)) * 3:
-        good, y, _ = newton(body, body.tensor, m, guess)
+    found, work, term = set(), workspace(body), np.zeros(3)
+    for y in rng.normal(size=(200, 3)) * 3:
+        good, _ = newton(body, work, m, y)
         if good:
-            after = m + increments(body, body.tensor, displaced(body, y)[0])
+            displaced(body, work, y)
+            increments(work, term)
+            after = m + term
             assert abs(after @ body.metric @ after / (m @ body.metric @ m) - 1) < 1e-9
             found.add(tuple(y.round(6)))
     assert len(found) >= 2

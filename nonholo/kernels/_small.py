@@ -1,0 +1,122 @@
+"""Linear algebra of small matrices without calls of libraries and without allocations."""
+
+import numba
+import numpy as np
+
+_LARGE = 24  # rows from which LAPACK is faster
+
+
+@numba.njit(cache=True, fastmath={"contract"})
+def multiply(A: np.ndarray, B: np.ndarray, out: np.ndarray) -> None:
+    """Write A B, for square matrices."""
+    n = len(A)
+    if n > _LARGE:
+        np.dot(A, B, out)
+    elif n == 4:  # a constant bound lets the compiler unroll: three times as fast
+        _product(A, B, out, 4)
+    else:
+        _product(A, B, out, n)
+
+
+@numba.njit(inline="always")
+def _product(A: np.ndarray, B: np.ndarray, out: np.ndarray, n: int) -> None:
+    for i in range(n):
+        for j in range(n):
+            total = 0.0
+            for k in range(n):
+                total += A[i, k] * B[k, j]
+            out[i, j] = total
+
+
+@numba.njit(cache=True, fastmath={"contract"})
+def sandwich(G: np.ndarray, Q: np.ndarray, half: np.ndarray, out: np.ndarray) -> None:
+    """Write G^T Q G^T; `half` is scratch."""
+    if len(G) == 4:
+        _sandwich(G, Q, half, out, 4)
+    else:
+        _sandwich(G, Q, half, out, len(G))
+
+
+@numba.njit(inline="always")
+def _sandwich(G: np.ndarray, Q: np.ndarray, half: np.ndarray, out: np.ndarray, n: int) -> None:
+    for i in range(n):
+        for j in range(n):
+            total = 0.0
+            for k in range(n):
+                total += Q[i, k] * G[j, k]
+            half[i, j] = total
+    for i in range(n):
+        for j in range(n):
+            total = 0.0
+            for k in range(n):
+                total += G[k, i] * half[k, j]
+            out[i, j] = total
+
+
+@numba.njit(cache=True)
+def transpose(A: np.ndarray, out: np.ndarray) -> None:
+    """Write the transpose of a square matrix."""
+    for i in range(len(A)):
+        for j in range(len(A)):
+            out[i, j] = A[j, i]
+
+
+@numba.njit(cache=True, fastmath={"contract"})
+def paired(A: np.ndarray, B: np.ndarray) -> float:
+    """Return the sum of products of entries."""
+    total = 0.0
+    for i in range(A.shape[0]):
+        for j in range(A.shape[1]):
+            total += A[i, j] * B[i, j]
+    return total
+
+
+@numba.njit(cache=True, fastmath={"contract"})
+def eliminate(A: np.ndarray, B: np.ndarray) -> float:
+    """Replace B by the solution of A X = B and return the determinant of A, zero or NaN if there is none.
+
+    A is destroyed.
+    """
+    det, n = 1.0, len(A)
+    if n > _LARGE:
+        det = np.linalg.det(A)
+        if np.isfinite(det) and det != 0:
+            B[:] = np.linalg.solve(A, B)
+        return det
+    for k in range(n):
+        det *= _swap(A, B, k) * A[k, k]
+        if not (np.isfinite(det) and det != 0):
+            return det
+        for i in range(k + 1, n):
+            factor = A[i, k] / A[k, k]
+            _subtract(A, i, factor, k, k + 1)
+            _subtract(B, i, factor, k, 0)
+    for k in range(n - 1, -1, -1):
+        for j in range(B.shape[1]):
+            B[k, j] /= A[k, k]
+        for i in range(k):
+            _subtract(B, i, A[i, k], k, 0)
+    return det
+
+
+@numba.njit(inline="always")
+def _swap(A: np.ndarray, B: np.ndarray, k: int) -> float:
+    """Bring the largest entry of column k to row k; return the sign of the exchange."""
+    pivot = k
+    for i in range(k + 1, len(A)):
+        if abs(A[i, k]) > abs(A[pivot, k]):
+            pivot = i
+    if pivot == k:
+        return 1.0
+    for j in range(A.shape[1]):
+        A[k, j], A[pivot, j] = A[pivot, j], A[k, j]
+    for j in range(B.shape[1]):
+        B[k, j], B[pivot, j] = B[pivot, j], B[k, j]
+    return -1.0
+
+
+@numba.njit(inline="always")
+def _subtract(A: np.ndarray, row: int, factor: float, other: int, begin: int) -> None:
+    """Subtract a multiple of another row, from a column on."""
+    for j in range(begin, A.shape[1]):
+        A[row, j] -= factor * A[other, j]
