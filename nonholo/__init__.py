@@ -27,7 +27,9 @@ if TYPE_CHECKING:
     from nonholo.groups import Translations as Translations
     from nonholo.io import load_orbit as load_orbit
     from nonholo.io import save_orbit as save_orbit
+    from nonholo.lagrange_dalembert import GroupLagrangeDAlembert as GroupLagrangeDAlembert
     from nonholo.lagrange_dalembert import LagrangeDAlembert as LagrangeDAlembert
+    from nonholo.lagrange_dalembert import mass_tensor_lagrangian as mass_tensor_lagrangian
     from nonholo.orbit import Orbit as Orbit
     from nonholo.simulation import flow as flow
     from nonholo.simulation import simulate as simulate
@@ -47,6 +49,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "ChaplyginSleigh": "systems",
     "Discretization": "discrete",
+    "GroupLagrangeDAlembert": "lagrange_dalembert",
     "LLSystem": "systems",
     "LRSystem": "systems",
     "LagrangeDAlembert": "lagrange_dalembert",
@@ -73,6 +76,7 @@ _HOMES = {
     "invariants": "analysis",
     "is_symmetric_pair": "systems",
     "load_orbit": "io",
+    "mass_tensor_lagrangian": "lagrange_dalembert",
     "moser_veselov_displacement": "discrete",
     "reference_point_subspace": "systems",
     "save_orbit": "io",

@@ -1,6 +1,7 @@
 """The principal root of a system of equations, for JAX: continuation from zero, then Newton's method."""
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -9,9 +10,11 @@ import optimistix
 from nonholo._results import Outcome
 from nonholo._types import Array, Float
 
-_SUBSTEPS = 16
-_CORRECTIONS = 5
-_JUMP = 0.25  # a continuation step that moves y further than this, relative to 1 + |y|^2, is not trusted
+_FIRST = 0.25  # first continuation step, in s
+_SMALLEST = 1e-7  # continuation step, relative to s, below which the branch is given up
+_CORRECTIONS = 8  # of Newton's method
+_JUMP = 0.2  # a continuation step that moves y further than this, relative to 1 + |y|^2, is not trusted
+_NEAR_FOLD = 1e-2  # of the Jacobian determinant at zero, where a continuation that stops has met a fold
 
 Residual = Callable[[Array, Array], Array]
 
@@ -24,8 +27,8 @@ def principal_root(
 ) -> tuple[Float[Array, "m"], Array]:
     r"""Solve residual(y, target) = 0 for the root that (0, 0) reaches along s target, 0 <= s <= 1.
 
-    The sign of the Jacobian determinant is watched along the way: a change is a fold. Derivatives are those of the
-    implicit function, not of the iteration.
+    The steps in s shrink where the corrector moves far from the tangent or the sign of the Jacobian determinant would
+    change, at a fold. Derivatives are those of the implicit function, not of the iteration.
 
     Args:
         residual: A function of y and the momenta, zero at (0, 0).
@@ -52,20 +55,65 @@ def principal_root(
     return y, jnp.where(certain, int(Outcome.successful), code)
 
 
+class _Path(NamedTuple):
+    """The continuation: the last root with its s, and Newton's method on the way to the next one.
+
+    Attributes:
+        s: How far the root has been followed.
+        size: Step of s that is being tried.
+        root: y at s.
+        tangent: Its derivative with respect to s.
+        now: Jacobian determinant at s.
+        guess: Where Newton's method started.
+        iterate: Where it is.
+        count: How many corrections it has made.
+    """
+
+    s: Array
+    size: Array
+    root: Array
+    tangent: Array
+    now: Array
+    guess: Array
+    iterate: Array
+    count: Array
+
+
 def _continue(residual: Residual, target: Array, unknowns: int) -> tuple[Array, Array, Array]:
-    def slope(y: Array, s: Array) -> Array:
-        return jax.jacfwd(residual)(y, s * target)
+    """Return the root at s = 1, or the last one that was reached, and whether it met a fold or was lost."""
+    one, zero = jnp.ones((), target.dtype), jnp.zeros(unknowns, target.dtype)
+    least = jnp.finfo(target.dtype).tiny * 1e3
 
-    def follow(y: Array, s: Array) -> tuple[Array, tuple[Array, Array]]:
-        def correct(_: Array, z: Array) -> Array:
-            return z - jnp.linalg.solve(slope(z, s), residual(z, s * target))
+    def evaluate(y: Array, s: Array) -> tuple[Array, Array, Array]:
+        missed, rate = jax.jvp(lambda s: residual(y, s * target), (s,), (one,))
+        slope = jax.jacfwd(residual)(y, s * target)
+        solved = jnp.linalg.solve(slope, jnp.stack([missed, -rate], axis=1))
+        return jnp.linalg.det(slope), solved[:, 0], solved[:, 1]
 
-        z = jax.lax.fori_loop(0, _CORRECTIONS, correct, y)
-        return z, (jnp.linalg.det(slope(z, s)), jnp.sum((z - y) ** 2) / (1 + jnp.sum(z * z)) ** 2)
+    def going(path: _Path) -> Array:
+        return (path.s < 1) & (path.size > jnp.maximum(_SMALLEST * path.s, least))
 
-    start = jnp.zeros(unknowns, target.dtype)
-    steps = jnp.arange(1, _SUBSTEPS + 1, dtype=target.dtype) / _SUBSTEPS
-    y, (determinants, moves) = jax.lax.scan(follow, start, steps)
-    orientation = jnp.sign(jnp.linalg.det(slope(start, jnp.zeros_like(steps[0]))))
-    folded = jnp.any(~(determinants * orientation > 0))
-    return y, folded, jnp.any(~(moves < _JUMP**2))
+    def advance(path: _Path) -> _Path:
+        ahead = jnp.minimum(path.s + path.size, 1.0)
+        det, correction, tangent = evaluate(path.iterate, ahead)
+        found = path.iterate - correction
+        done = jnp.sum(correction**2) <= jnp.finfo(target.dtype).eps * (1 + jnp.sum(found**2))
+        moved, off = jnp.sum((found - path.root) ** 2), jnp.sum((found - path.guess) ** 2)
+        near = ((off <= 0.01 * moved) | (moved < 1e-6)) & (moved <= _JUMP**2 * (1 + jnp.sum(path.root**2)) ** 2)
+        arrived = done & near & (det * path.now > 0)
+        ended = done | (path.count == _CORRECTIONS) | ~jnp.all(jnp.isfinite(found))
+        root, tangent = (jnp.where(arrived, x, y) for x, y in ((found, path.root), (tangent, path.tangent)))
+        s, now = jnp.where(arrived, ahead, path.s), jnp.where(arrived, det, path.now)
+        size = jnp.where(arrived, 2 * path.size, jnp.where(ended, path.size / 4, path.size))
+        guess = jnp.where(ended, root + jnp.minimum(size, 1 - s) * tangent, path.guess)
+        iterate = jnp.where(ended, guess, found)
+        return _Path(s, size, root, tangent, now, guess, iterate, jnp.where(ended, 0, path.count + 1))
+
+    start, _, tangent = evaluate(zero, 0 * one)
+    guess = _FIRST * tangent
+    begin = _Path(0 * one, _FIRST * one, zero, tangent, start, guess, guess, jnp.asarray(0))
+    finite = jnp.all(jnp.isfinite(target))
+    end = jax.lax.while_loop(lambda path: going(path) & finite, advance, begin)
+    lost = end.s < 1
+    folded = lost & (jnp.abs(end.now) < _NEAR_FOLD * jnp.abs(start))
+    return end.root, folded, lost & ~folded

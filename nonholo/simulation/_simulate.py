@@ -125,7 +125,7 @@ def simulate(
     choice("simulate(branch=...)", branch, ("principal",))
     group = discrete.system.group
     g = group.identity if configuration is None else in_group("simulate(configuration=...)", group, configuration)
-    reduced, demanded = initial_state(discrete, g, restricted_velocity=restricted_velocity, **starts)
+    reduced, demanded = initial_state(discrete, g, **starts, restricted_velocity=restricted_velocity)
     pose = group.pose_from_matrix(g @ discrete.system.frame)
     run = _runner(discrete, backend)
     rows, outcome, done = run(reduced, pose, steps, every, progress)
