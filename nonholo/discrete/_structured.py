@@ -77,7 +77,7 @@ def matrices_of(states: Orbit) -> Float[np.ndarray, "K size"] | None:
     """Return poses as rows of matrix entries where the step depends on them, for right-invariant constraints."""
     if not isinstance(states.system, AbstractLRSystem):
         return None
-    return np.ascontiguousarray(states.configuration.reshape(len(states), -1))
+    return np.ascontiguousarray(states.configuration.reshape(len(states), states.system.group.size**2))
 
 
 def reversal_defects(discrete: "Discretization", states: Orbit) -> Float[np.ndarray, "K"]:
@@ -104,7 +104,7 @@ def reversal_defects(discrete: "Discretization", states: Orbit) -> Float[np.ndar
 def _two_ahead(states: Orbit, following: np.ndarray) -> Float[np.ndarray, "K size"]:
     """Return the poses two steps after each state, from where a right-invariant constraint is run back."""
     U, V = states.motion.displaced(states.canonical_chart), states.motion.displaced(following)
-    return np.ascontiguousarray((V @ U @ states.configuration).reshape(len(states), -1))
+    return np.ascontiguousarray((V @ U @ states.configuration).reshape(len(states), states.system.group.size**2))
 
 
 def _largest(rows: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from nonholo.kernels import _driver, _general
+from nonholo.kernels import _driver, _general_run
 from nonholo.kernels._general import GeneralBody
 from nonholo.kernels._interface import Body
 
@@ -19,7 +19,7 @@ def sizes(body: AnyBody) -> tuple[int, int, int]:
 def start(body: AnyBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
     """Return the outcome of the first root and the state of a run that begins with scaled momenta and a pose."""
     if isinstance(body, GeneralBody):
-        return _general.start(body, np.array(momentum), np.array(pose))
+        return _general_run.start(body, np.array(momentum), np.array(pose))
     state = np.zeros(_driver.STATE_SIZE)
     return _driver.start(body, momentum, pose, state), state
 
@@ -36,7 +36,7 @@ def advance(
 ) -> tuple[int, int]:
     """Take up to `steps` steps into rows of momenta, charts and poses; return how many were good and the outcome."""
     if isinstance(body, GeneralBody):
-        return _general.advance(body, state, steps, every, *rows)
+        return _general_run.advance(body, state, steps, every, *rows)
     return _driver.advance(body, state, steps, every, *rows)
 
 
@@ -50,5 +50,5 @@ def step_each(
     momenta, charts, poses = states
     if isinstance(body, GeneralBody):
         carried = np.zeros((len(momenta), 0)) if poses is None else poses
-        return _general.step_each(body, momenta, charts, carried, guesses, principal_only)
+        return _general_run.step_each(body, momenta, charts, carried, guesses, principal_only)
     return _driver.step_each(body, momenta, charts, guesses, principal_only)

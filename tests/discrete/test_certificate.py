@@ -13,7 +13,8 @@ import nonholo as nh
 from nonholo.discrete._structured import structured
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.kernels import GeneralBody
-from nonholo.kernels._general import certified, displaced, newton, principal, workspace
+from nonholo.kernels._general import displaced, workspace
+from nonholo.kernels._general_root import certified, newton, principal
 
 GROUPS = [nh.SO(3), nh.SO(4), nh.SO(5), nh.SE(2), nh.SE(3)]
 INSIDE = 1 - 1e-5  # a difference quotient with a step of 1e-5 radii stays in the ball

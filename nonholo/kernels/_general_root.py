@@ -1,0 +1,135 @@
+"""The principal root of the general step: Newton's method, its certificate, and continuation where there is none."""
+
+import numba
+import numpy as np
+
+from nonholo.kernels._general import LOST, GeneralBody, Workspace, displaced, equations, skew_part
+from nonholo.kernels._small import eliminate, multiply, paired
+
+_STEPS = 12  # of Newton's method
+_FIRST = 0.25  # first continuation step, in s
+_SMALLEST = 1e-7  # continuation step, relative to s, below which the branch is given up
+_LEAST = 1e-300  # and the absolute one: a momentum may be any number of times too large
+_FAR = 1e4  # turning of a displacement beyond which the Cayley chart ends: an angle of 179 degrees
+
+
+@numba.njit(cache=True)
+def newton(p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray) -> tuple[bool, float]:
+    """Correct a guess until the next correction would be below rounding; return the Jacobian determinant at the end."""
+    det = 1.0
+    for _ in range(_STEPS if len(y) else 0):
+        if not displaced(p, w, y) < LOST:
+            return False, det
+        equations(p, w, m)
+        correction = w.residual
+        det = eliminate(w.slope, correction)
+        if not (np.isfinite(det) and det != 0):
+            return False, det
+        step = size = 0.0
+        for a in range(len(y)):
+            y[a] -= correction[a, 0]
+            step += correction[a, 0] ** 2
+            size += y[a] ** 2
+        if step <= 1e-18 * (1 + size):
+            return True, det
+    return len(y) == 0, det
+
+
+@numba.njit(cache=True)
+def certified(p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray) -> bool:
+    """Tell whether a root is certainly the principal one: it lies in the ball where there is only one.
+
+    The workspace holds its displacement afterwards.
+    """
+    displaced(p, w, y)
+    if p.spatial or not _energy(p.metric, m) <= p.level:
+        return False
+    X, K, carried = w.X, w.scratch, w.V
+    if _rotational(X, p.size) >= 4.0:  # no longer surely below 90 degrees, where K determines W
+        return False
+    skew_part(p, w)
+    multiply(K, p.tensor, carried)
+    return paired(carried, K) <= p.radius
+
+
+@numba.njit(cache=True)
+def _rotational(X: np.ndarray, n: int) -> float:
+    """Return the sum of the squares of the first n rows and columns."""
+    total = 0.0
+    for i in range(n):
+        for j in range(n):
+            total += X[i, j] ** 2
+    return total
+
+
+@numba.njit(cache=True)
+def _energy(metric: np.ndarray, m: np.ndarray) -> float:
+    total = 0.0
+    for i in range(len(m)):
+        for j in range(len(m)):
+            total += m[i] * metric[i, j] * m[j]
+    return total
+
+
+@numba.njit(cache=True)
+def _tangent(p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray, s: float) -> tuple[float, np.ndarray]:
+    """Return the determinant of the Jacobian at a root and the derivative of the root with respect to s."""
+    displaced(p, w, y)
+    equations(p, w, s * m)
+    w.residual[:] = 0.0
+    w.residual[: len(m), 0] = m
+    det = eliminate(w.slope, w.residual)
+    return det, w.residual[:, 0].copy()
+
+
+@numba.njit(cache=True)
+def principal(p: GeneralBody, w: Workspace, m: np.ndarray) -> tuple[int, np.ndarray]:
+    """Follow the root from momentum zero along s m, 0 <= s <= 1; return the outcome and y."""
+    y = np.zeros(len(p.stretch))
+    if not np.all(np.isfinite(m)):
+        return 5, y
+    if len(y) == 0:
+        return 0, y
+    start, tangent = _tangent(p, w, m, y, 0.0)
+    s, size, now = 0.0, _FIRST, start
+    while s < 1.0:
+        size = min(size, 1.0 - s)
+        ahead = 1.0 if size == 1.0 - s else s + size
+        guess = y + size * tangent
+        found = guess.copy()
+        good, det = newton(p, w, ahead * m, found)
+        moved, off = found - y, found - guess
+        close = np.sum(off * off) <= 0.01 * np.sum(moved * moved) or np.sum(moved * moved) < 1e-6
+        if good and close and det * start > 0 and np.sum(moved * moved) <= 0.04 * (1 + np.sum(y * y)) ** 2:
+            y, s, now, size = found, ahead, det, 2 * size
+            det, tangent = _tangent(p, w, m, y, s)
+            if not det * start > 0:  # singular to rounding
+                return _why_it_ended(p, w, y, 0.0, start), y
+        elif size > max(_SMALLEST * s, _LEAST):
+            size /= 4
+        else:
+            return _why_it_ended(p, w, y, now, start), y
+    return 0, y
+
+
+@numba.njit(cache=True)
+def _why_it_ended(p: GeneralBody, w: Workspace, y: np.ndarray, det: float, start: float) -> int:
+    """Tell a fold (1) from the end of the chart (2) and from a failure to converge (3)."""
+    if displaced(p, w, y) > _FAR:
+        return 2
+    return 1 if abs(det) < 1e-2 * abs(start) else 3
+
+
+@numba.njit(cache=True)
+def solve(p: GeneralBody, w: Workspace, m: np.ndarray, guess: np.ndarray) -> tuple[int, np.ndarray]:
+    """Correct a guess and verify that it is the principal root, or follow it from momentum zero.
+
+    The workspace holds its displacement afterwards.
+    """
+    y = guess.copy()
+    good, _ = newton(p, w, m, y)
+    if good and certified(p, w, m, y):
+        return 0, y
+    code, y = principal(p, w, m)
+    displaced(p, w, y)
+    return code, y

@@ -1,0 +1,149 @@
+"""Runs of the general step: the pose, the loop over steps, and one step from each of many states."""
+
+import numba
+import numpy as np
+
+from nonholo.kernels._general import GeneralBody, Workspace, displaced, increments, see_tensor, workspace
+from nonholo.kernels._general_root import newton, solve
+from nonholo.kernels._small import multiply
+
+
+@numba.njit(cache=True)
+def see_pose(p: GeneralBody, w: Workspace, g: np.ndarray) -> None:
+    """Let the equations of a right-invariant constraint see the mass tensor that a pose carries to space."""
+    if p.spatial:
+        scaled = _in_units(p, g, 1 / p.unit)
+        see_tensor(p, w, (scaled @ p.tensor) @ scaled.T.copy())
+
+
+@numba.njit(cache=True)
+def _in_units(p: GeneralBody, g: np.ndarray, factor: float) -> np.ndarray:
+    """Return a motion with its translation multiplied by a factor."""
+    scaled = g.copy()
+    if len(g) > p.size:
+        scaled[: p.size, p.size] *= factor
+    return scaled
+
+
+@numba.njit(cache=True)
+def move(p: GeneralBody, w: Workspace, g: np.ndarray) -> None:
+    """Advance a pose by the displacement; bring its rotation back to the group by one Newton-Schulz step."""
+    n, N, X, W, moved = p.size, len(g), w.X, w.V, w.H
+    for i in range(N):
+        for j in range(N):
+            W[i, j] = X[i, j]
+        W[i, i] += 1.0
+    for i in range(n, N):
+        for j in range(n):
+            W[j, i] *= p.unit
+    if p.spatial:
+        multiply(W, g, moved)
+    else:
+        multiply(g, W, moved)
+    _rectify(moved, n, w.scratch, g)
+
+
+@numba.njit(cache=True)
+def _rectify(moved: np.ndarray, n: int, scratch: np.ndarray, g: np.ndarray) -> None:
+    """Write a pose with its rotation R replaced by R (3 I - R^T R) / 2."""
+    for i in range(n):
+        for j in range(n):
+            total = 0.0
+            for k in range(n):
+                total += moved[k, i] * moved[k, j]
+            scratch[i, j] = -0.5 * total
+        scratch[i, i] += 1.5
+    g[:] = moved
+    for i in range(n):
+        for j in range(n):
+            g[i, j] = 0.0
+            for k in range(n):
+                g[i, j] += moved[i, k] * scratch[k, j]
+
+
+@numba.njit(cache=True, nogil=True)
+def advance(
+    p: GeneralBody,
+    state: np.ndarray,
+    steps: int,
+    every: int,
+    momenta: np.ndarray,
+    charts: np.ndarray,
+    poses: np.ndarray,
+) -> tuple[int, int]:
+    """Take up to `steps` steps, saving each `every`-th one; return how many were good and the outcome.
+
+    The state holds momenta and their compensations (k each), the last three charts (m each) and the pose (N N). After
+    a failure it is that of the last good step.
+    """
+    k, c, N, w = len(p.directions), len(p.stretch), len(p.tensor), workspace(p)
+    m, lost = state[:k].copy(), state[k : 2 * k].copy()
+    charts_now = state[2 * k : 2 * k + 3 * c].copy().reshape(3, c)
+    y, u, v = charts_now[0], charts_now[1], charts_now[2]
+    g = state[2 * k + 3 * c :].copy().reshape(N, N)
+    term, code, done = np.zeros(k), 0, 0
+    displaced(p, w, y)
+    while done < steps:
+        if not p.spatial:
+            increments(w, term)
+        change = term - lost
+        total = m + change
+        after = g.copy()
+        move(p, w, after)
+        see_pose(p, w, after)
+        code, found = solve(p, w, total, 3 * (y - u) + v)
+        if code != 0:
+            break
+        lost = (total - m) - change
+        m, v, u, y, g = total, u, y, found, after
+        done += 1
+        if done % every == 0:
+            row = done // every - 1
+            momenta[row], charts[row], poses[row] = m, y * p.stretch, g.ravel()
+    state[: 2 * k] = np.concatenate((m, lost))
+    state[2 * k :] = np.concatenate((y, u, v, g.ravel()))
+    return done, code
+
+
+@numba.njit(cache=True, nogil=True)
+def start(p: GeneralBody, m: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
+    """Return the outcome of the first root and the state of a run that begins with scaled momenta and a pose."""
+    w, N = workspace(p), len(p.tensor)
+    see_pose(p, w, pose.copy().reshape(N, N))
+    code, y = solve(p, w, m, np.zeros(len(p.stretch)))
+    return code, np.concatenate((m, np.zeros(len(p.directions)), y, y, y, pose))
+
+
+@numba.njit(cache=True, nogil=True)
+def step_each(
+    p: GeneralBody,
+    momenta: np.ndarray,
+    charts: np.ndarray,
+    poses: np.ndarray,
+    guesses: np.ndarray,
+    principal_only: bool,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Take one step from each row; return momenta, charts and outcomes.
+
+    The root is the principal one or else that value of the map which Newton's method reaches from the guess.
+    """
+    w, N, term = workspace(p), len(p.tensor), np.zeros(len(p.directions))
+    next_momenta, next_charts = np.empty_like(momenta), np.empty_like(charts)
+    codes = np.zeros(len(momenta), dtype=np.int64)
+    for row in range(len(momenta)):
+        displaced(p, w, charts[row] / p.stretch)
+        if p.spatial:
+            g = poses[row].copy().reshape(N, N)
+            move(p, w, g)
+            see_pose(p, w, g)
+        else:
+            increments(w, term)
+        next_momenta[row] = momenta[row] + term
+        y = guesses[row] / p.stretch
+        if principal_only:
+            codes[row], y = solve(p, w, next_momenta[row], y)
+        else:
+            good, _ = newton(p, w, next_momenta[row], y)
+            codes[row] = 0 if good else 3
+        next_charts[row] = y * p.stretch
+    return next_momenta, next_charts, codes
