@@ -82,3 +82,21 @@ class CoordinateDiscretization(AbstractCoordinateDiscretization[CoordinateOrbit]
         """
         starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
         return simulate(self.system, self.time_step, configuration, starts, steps, save_every, throw, progress)
+
+    def regularity(self, q: Any, q_next: Any) -> float:
+        """Return the smallest singular value of the scaled regularity matrix of a step; zero at a fold.
+
+        Args:
+            q: Configuration.
+            q_next: The next configuration.
+
+        Raises:
+            ValueError: A wrong shape, or a value that is not finite.
+
+        Example:
+            >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
+            >>> free = LagrangeDAlembert(lambda q, v: 3 * v @ v, None, dimension=2)
+            >>> round(free.discretize(0.5).regularity((0, 0), (1, 2)), 12)
+            1.0
+        """
+        return self.system.regularity(q, q_next, time_step=self.time_step)

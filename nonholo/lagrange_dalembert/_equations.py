@@ -10,6 +10,7 @@ import jax.numpy as jnp
 
 from nonholo._types import Array
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+from nonholo.lagrange_dalembert._tracing import TwoPoint
 
 
 def forms(system: LagrangeDAlembert, q: Array) -> Array:
@@ -45,8 +46,10 @@ def momenta(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> tuple[Ar
 
 
 def discrete_energy(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> Array:
-    r"""Return $E = -\partial L_d/\partial h$ at fixed end points."""
+    r"""Return $E = -\partial L_d/\partial h$ at fixed end points; where h is not known to L_d, E at the midpoint."""
     d = h * v
+    if isinstance(system.discrete_lagrangian, TwoPoint):
+        return energy(system, q + d / 2, v)
     return -jax.grad(lambda step: discrete_lagrangian(system, q, d / step, step))(h)
 
 

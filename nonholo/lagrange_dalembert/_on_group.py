@@ -12,7 +12,7 @@ from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert._tracing import traced_shape
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem
-from nonholo.systems._mass import group_mass_tensor, inertia_form
+from nonholo.systems._mass import checked_group, group_mass_tensor, inertia_form
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._group_discretization import GroupDiscretization
@@ -194,7 +194,8 @@ def mass_tensor_lagrangian(
         >>> float(action(np.diag([-1.0, -1.0, 1.0]), 0.5))  # a half-turn: (4 + 4)/(2 * 0.5)
         8.0
     """
-    where, instead = "mass_tensor_lagrangian(group=...)", "Write a discrete Lagrangian of your own."
+    checked_group("mass_tensor_lagrangian(group=...)", group)
+    where, instead = "mass_tensor_lagrangian(mass_tensor=...)", "Write a discrete Lagrangian of your own."
     tensor = group_mass_tensor(where, group, mass_tensor, instead)
 
     def discrete_lagrangian(W: Array, time_step: Array) -> Array:

@@ -9,7 +9,7 @@ import jax
 
 from nonholo._checks import choice, count, error
 from nonholo._types import Array
-from nonholo.lagrange_dalembert._tracing import traced_shape
+from nonholo.lagrange_dalembert._tracing import traced_shape, with_time_step
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem
 
 if TYPE_CHECKING:
@@ -36,8 +36,10 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         dimension: n.
         rule: "midpoint" or "trapezoidal".
         discrete_lagrangian: `discrete_lagrangian(q, q_next, time_step)` -> scalar, in place of the rule; it includes
-            the factor time_step.
-        discrete_constraints: `discrete_constraints(q, q_next, time_step)` -> (s,), in place of the rule.
+            the factor time_step. Or `discrete_lagrangian(q, q_next)`, made for one time step; the energy of an orbit
+            is then that of the Lagrangian at the midpoint.
+        discrete_constraints: `discrete_constraints(q, q_next, time_step)` or `(q, q_next)` -> (s,), in place of the
+            rule.
 
     Raises:
         ValueError: A function that JAX cannot trace, or whose result is not real or has the wrong shape; an unknown
@@ -68,6 +70,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         where = "LagrangeDAlembert(dimension=...)"
         object.__setattr__(self, "dimension", count(where, self.dimension, "Pass the number of coordinates."))
         choice("LagrangeDAlembert(rule=...)", self.rule, ("midpoint", "trapezoidal"))
+        object.__setattr__(self, "discrete_lagrangian", with_time_step(self.discrete_lagrangian))
+        object.__setattr__(self, "discrete_constraints", with_time_step(self.discrete_constraints))
         with jax.enable_x64(True):
             q, h = jax.ShapeDtypeStruct((self.dimension,), float), jax.ShapeDtypeStruct((), float)
             self._check("lagrangian", (), q, q)
@@ -91,8 +95,9 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             raise error("LagrangeDAlembert(constraint_forms=...)", wanted, f"shape {found}", remedy)
 
     def _shape(self, name: str, *arguments: Any) -> tuple[int, ...] | None:
-        function, where = getattr(self, name), f"LagrangeDAlembert({name}=...)"
-        if function is None:
+        function: Any = getattr(self, name)
+        where = f"LagrangeDAlembert({name}=...)"
+        if function is None and name != "lagrangian":
             return None
         return traced_shape(where, function, arguments, f"{self.dimension} coordinates")
 
@@ -104,7 +109,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         with jax.enable_x64(True):
             return jax.eval_shape(self.constraint_forms, jax.ShapeDtypeStruct((self.dimension,), float)).shape[0]
 
-    def regularity(self, q: Any, q_next: Any, *, time_step: float) -> float:
+    def regularity(self, q: Any, q_next: Any, *, time_step: float = 1.0) -> float:
         r"""Return the smallest singular value of the scaled regularity matrix; zero at a fold of the map.
 
         $$ \begin{pmatrix} -h\,D_2 D_1 L_d & -A(q)^T \\ h\,D_2 F & 0 \end{pmatrix} $$
@@ -116,7 +121,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         Args:
             q: Configuration.
             q_next: The next configuration.
-            time_step: h > 0.
+            time_step: h > 0; `discretize(h)` has this method with its own.
 
         Raises:
             ValueError: A wrong shape, a value that is not finite, a time step that is not positive.

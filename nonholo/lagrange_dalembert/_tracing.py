@@ -1,5 +1,7 @@
-"""Checks of functions that users pass: JAX must be able to trace them, in 64 bit."""
+"""Functions that users pass: with or without the time step, and such that JAX can trace them, in 64 bit."""
 
+import dataclasses
+import inspect
 from collections.abc import Callable
 from typing import Any
 
@@ -7,6 +9,7 @@ import jax
 import jax.numpy as jnp
 
 from nonholo._checks import error
+from nonholo._types import Array
 
 
 def traced_shape(where: str, function: Callable[..., Any], arguments: tuple[Any, ...], of: str) -> tuple[int, ...]:
@@ -14,7 +17,7 @@ def traced_shape(where: str, function: Callable[..., Any], arguments: tuple[Any,
     if not callable(function):
         raise error(where, "be a function", repr(function), "Pass a function of jax.numpy arrays.")
     try:
-        traced = jax.make_jaxpr(lambda *x: jnp.asarray(function(*x)))(*arguments)
+        traced = jax.make_jaxpr(lambda *x: _array(function(*x)))(*arguments)
     except Exception as failure:
         got = f"{type(failure).__name__}: {str(failure).splitlines()[0]}"
         remedy = f"Write it with jax.numpy, for arrays of {of}; use jnp.where, not `if`."
@@ -27,3 +30,38 @@ def traced_shape(where: str, function: Callable[..., Any], arguments: tuple[Any,
         got = "complex numbers" if kind == "c" else "an integer"
         raise error(where, "return real numbers that it computes from its arguments", got, "Return a smooth formula.")
     return shape
+
+
+def _array(value: Any) -> Any:
+    """Return a value as an array; lists are refused, because the functions are called again without this help."""
+    if isinstance(value, list | tuple):
+        raise TypeError(f"it returned a {type(value).__name__}, jnp.array makes an array of it")
+    return jnp.asarray(value)
+
+
+@dataclasses.dataclass(frozen=True)
+class TwoPoint:
+    """A function of two configurations that was made for one time step."""
+
+    function: Callable[[Array, Array], Array]
+
+    def __call__(self, q: Array, q_next: Array, time_step: Array) -> Array:
+        """Return the value, whatever the time step."""
+        del time_step
+        return self.function(q, q_next)
+
+
+def with_time_step(function: Any) -> Any:
+    """Return a function of (q, q_next, time_step): itself, or one of two arguments wrapped."""
+    if not callable(function):
+        return function
+    try:
+        signature = inspect.signature(function)
+        signature.bind(0, 0)
+    except (TypeError, ValueError):  # not of two arguments, or a builtin that does not tell
+        return function
+    try:
+        signature.bind(0, 0, 0)
+    except TypeError:
+        return TwoPoint(function)
+    return function

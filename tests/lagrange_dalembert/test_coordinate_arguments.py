@@ -88,7 +88,7 @@ BAD = {
     "times": (lambda: flow(times=(0.0, 1.0, 1.0)), "strictly"),
     "time step": (lambda: nh.discretize(SYSTEM, -0.1), r"discretize\(time_step=...\)` must be positive"),
     "traced": (lambda: jax.jit(lambda h: nh.discretize(SYSTEM, h).time_step)(0.1), "outside jax.jit"),
-    "not discretised": (lambda: nh.simulate(SYSTEM, steps=3), "Pass what discretize returns"),
+    "not discretised": (lambda: nh.simulate(SYSTEM, steps=3), "Pass what `discretize` returned"),
     "rule": (lambda: nh.LagrangeDAlembert(lagrangian, forms, dimension=3, rule="simpson"), "'midpoint', 'trapezoidal'"),
     "raises": (lambda: nh.LagrangeDAlembert(lambda q, v: 1 / 0, forms, dimension=3), "ZeroDivisionError"),  # noqa: ARG005
     "branches": (
@@ -98,6 +98,8 @@ BAD = {
     "vector": (lambda: nh.LagrangeDAlembert(lambda q, v: v, forms, dimension=3), "return a scalar"),  # noqa: ARG005
     "complex": (lambda: nh.LagrangeDAlembert(lambda q, v: 1j * v @ q, forms, dimension=3), "complex numbers"),
     "constant": (lambda: nh.LagrangeDAlembert(lambda q, v: 1, forms, dimension=3), "an integer"),  # noqa: ARG005
+    "no lagrangian": (lambda: nh.LagrangeDAlembert(None, forms, dimension=3), r"lagrangian=.*function. Got None"),
+    "list": (lambda: nh.LagrangeDAlembert(lagrangian, lambda q: [[q[0], 0, 1]], dimension=3), "returned a list"),
     "form": (lambda: nh.LagrangeDAlembert(lagrangian, lambda q: q, dimension=3), r"shape \(s, 3\) with 0 < s < 3"),
 }
 

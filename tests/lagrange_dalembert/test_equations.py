@@ -163,3 +163,24 @@ def test_regularity_of_one_constraint_is_the_golden_ratio() -> None:
     """For L = v.v/2 and one constant form the matrix is Id beside (0 -1; 1 1): least singular value 0.618."""
     plane = LagrangeDAlembert(lambda _, v: v @ v / 2, lambda _: jnp.ones((1, 3)), dimension=3)
     assert abs(plane.regularity(np.zeros(3), [1.0, -1.0, 0.0], time_step=0.1) - (np.sqrt(5) - 1) / 2) <= 1e-14
+
+
+def test_functions_of_two_configurations_are_taken_too() -> None:
+    """An L_d(q, q') and F(q, q') made for one time step give the orbit of the rule that they spell out."""
+    h = 0.1
+
+    def action(q: jax.Array, r: jax.Array) -> jax.Array:
+        return h * SYSTEM.lagrangian((q + r) / 2, (r - q) / h)
+
+    def constraint(q: jax.Array, r: jax.Array) -> jax.Array:
+        return SYSTEM.constraint_forms((q + r) / 2) @ (r - q) / h
+
+    options = {"dimension": 3, "discrete_lagrangian": action, "discrete_constraints": constraint}
+    found = LagrangeDAlembert(SYSTEM.lagrangian, SYSTEM.constraint_forms, **options).discretize(h)
+    expected = SYSTEM.discretize(h).simulate(**START, steps=20)
+    orbit = found.simulate(**START, steps=20)
+    assert np.abs(orbit.configuration - expected.configuration).max() <= 1e-12
+    assert np.abs(orbit.multipliers - expected.multipliers).max() <= 1e-12
+    assert np.abs(orbit.energy - expected.energy).max() <= 0.01 * np.abs(expected.energy).max()
+    q, r = expected.configuration[:2]
+    assert abs(found.regularity(q, r) - SYSTEM.regularity(q, r, time_step=h)) <= 1e-12

@@ -254,6 +254,19 @@ def branching(W, h):  # noqa: ANN001, ANN201
 
 
 @pytest.mark.parametrize(
+    ("group", "mass_tensor", "message"),
+    [
+        ("SE(2)", np.eye(3), r"mass_tensor_lagrangian\(group=\.\.\.\)` must be a matrix group"),
+        (PLANE, np.eye(2), r"mass_tensor_lagrangian\(mass_tensor=\.\.\.\)` must have shape \(3, 3\)"),
+    ],
+)
+def test_the_lagrangian_of_a_body_needs_its_group_and_tensor(group: object, mass_tensor: object, message: str) -> None:
+    """Each refusal names the argument at fault."""
+    with pytest.raises(ValueError, match=message):
+        mass_tensor_lagrangian(group, mass_tensor)
+
+
+@pytest.mark.parametrize(
     ("arguments", "message"),
     [
         (("SE(2)", ACTION, blade), "matrix group"),
