@@ -12,7 +12,7 @@ from nonholo._checks import error
 from nonholo._types import Array
 
 
-def traced_shape(where: str, function: Callable[..., Any], arguments: tuple[Any, ...], of: str) -> tuple[int, ...]:
+def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str) -> tuple[int, ...]:
     """Return the shape of a function's value; `of` says in words what it is called with."""
     if not callable(function):
         raise error(where, "be a function", repr(function), "Pass a function of jax.numpy arrays.")
