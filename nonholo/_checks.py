@@ -38,6 +38,8 @@ def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "
         return value
     try:
         raw = np.asarray(value)
+        if raw.dtype.kind == "O" and any(entry is None for entry in raw.flat):
+            raise TypeError("None would become nan")
         if np.iscomplexobj(raw):
             raise error(where, "be real", "complex numbers", remedy)
         result = np.array(raw, dtype=np.float64)
@@ -125,6 +127,8 @@ def positive_definite(where: str, matrix: Array, what: str, remedy: str) -> None
     """Refuse a symmetric matrix with an eigenvalue that is not clearly positive, and name the eigenvalue."""
     if is_traced(matrix):
         return
+    if not np.isfinite(matrix).all():
+        raise error(where, f"make {what} finite", "an overflow", "Pass smaller numbers, in other units.")
     eigenvalues = np.linalg.eigvalsh(matrix)
     if not eigenvalues[0] > 4 * np.finfo(np.float64).eps * max(abs(eigenvalues[-1]), math.ulp(0.0)):
         raise error(where, f"make {what} positive definite", f"an eigenvalue {eigenvalues[0]:.6g}", remedy)

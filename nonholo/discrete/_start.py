@@ -128,10 +128,12 @@ def on_variety(where: str, discrete: Discretization, g: np.ndarray, displacement
     logarithm = group.log(seen)
     if discrete.variety.exact:
         forbidden, what = system.annihilator @ logarithm, "a logarithm with forbidden part"
+        remedy = "Build it as `group.exp(x)` with x admissible."
     else:
         frame = system.frame
         forbidden, what = equations_of(discrete.variety, group.inverse(frame) @ seen @ frame), "equations with residual"
+        remedy = "Start from a velocity, or take a row of `orbit.displacement`: exp d is not this variety."
     if np.linalg.norm(forbidden) > _TOLERANCE * max(1.0, float(np.linalg.norm(logarithm))):
         got = f"{what} {np.array2string(forbidden, precision=6)}"
-        raise error(where, "lie on the displacement variety", got, "Build it as `group.exp(x)` with x admissible.")
+        raise error(where, "lie on the displacement variety", got, remedy)
     return W

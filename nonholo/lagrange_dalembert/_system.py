@@ -95,11 +95,10 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             raise error("LagrangeDAlembert(constraint_forms=...)", wanted, f"shape {found}", remedy)
 
     def _shape(self, name: str, *arguments: Any) -> tuple[int, ...] | None:
-        function: Any = getattr(self, name)
-        where = f"LagrangeDAlembert({name}=...)"
-        if function is None and name != "lagrangian":
+        if getattr(self, name) is None and name != "lagrangian":
             return None
-        return traced_shape(where, function, arguments, f"{self.dimension} coordinates")
+        where = f"LagrangeDAlembert({name}=...)"
+        return traced_shape(where, getattr(self, name), arguments, f"{self.dimension} coordinates")
 
     @property
     def constraints(self) -> int:

@@ -20,6 +20,7 @@ from nonholo.plotting._thinning import evenly_in_box
 _MOST_DOTS = 2000
 _COLUMNS = 600
 _EPS = float(np.finfo(np.float64).eps)
+_VISIBLE = 1e-3  # half-width of the band, in units of the axis, from which it is wider than a hairline
 
 
 @dataclasses.dataclass(frozen=True)
@@ -72,8 +73,9 @@ def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
     energy = orbit.energy
     error = (energy - energy[0]) / (energy[0] or 1.0)
     unit = _unit(float(np.abs(error).max()))
+    shown = "machine epsilon" if _EPS / unit > _VISIBLE else "_machine epsilon"  # a legend of what can be seen
     rounding = axes.axhspan(
-        -_EPS / unit, _EPS / unit, color=theme.LEVEL, alpha=0.45, linewidth=0, zorder=0, label="machine epsilon"
+        -_EPS / unit, _EPS / unit, color=theme.LEVEL, alpha=0.45, linewidth=0, zorder=0, label=shown
     )
     axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
     drawn = (_error if is_discrete(orbit) else _curve)(axes, orbit.time, error / unit)

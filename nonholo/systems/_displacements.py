@@ -5,7 +5,7 @@ The variety of a general system, with its charts, belongs to the discrete map.
 
 import numpy as np
 
-from nonholo._checks import as_floats, error
+from nonholo._checks import as_floats, error, trailing
 from nonholo._types import Array, Bool, Float
 
 
@@ -25,11 +25,18 @@ def trace_constraints(
         configuration: $R_k$.
         configuration_next: $R_{k+1}$.
 
+    Raises:
+        ValueError: Not two square matrices, or stacks of such, of one size.
+
     Example:
         >>> trace_constraints(np.eye(3), nh.SO(3).exp([0.3, -0.2, 0.0]))
         array([0.])
     """
-    R, R_next = as_floats(configuration), as_floats(configuration_next)
+    R = as_floats(configuration)
+    n = R.shape[-1] if R.ndim >= 2 else 0
+    R = trailing("trace_constraints(configuration=...)", R, (n, n), "Pass a matrix of SO(n).")
+    where, remedy = "trace_constraints(configuration_next=...)", "Pass a matrix of the same SO(n)."
+    R_next = trailing(where, configuration_next, (n, n), remedy)
     W = R.__array_namespace__().swapaxes(R, -1, -2) @ R_next
     i, j = np.triu_indices(W.shape[-1] - 1, 1)
     return W[..., j, i] - W[..., i, j]

@@ -7,6 +7,7 @@ import numpy as np
 
 from nonholo._types import Float
 from nonholo.groups import AbstractMatrixGroup
+from nonholo.systems._mass import checked_group
 from nonholo.systems._subspace import independent_rows, null_space, spanned
 
 _RANK = 1e-12  # relative size below which a singular value or a residual counts as zero
@@ -62,6 +63,7 @@ def symmetric_complement(
         >>> symmetric_complement(nh.SE(2), [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
         array([[0., 0., 1.]])
     """
+    checked_group("is_symmetric_pair(group=...)", group)
     where = "is_symmetric_pair(constraint_subspace=...)"
     d = spanned(independent_rows(where, constraint_subspace, group.dim))
     constants, everything = _structure_constants(group), np.eye(group.dim)

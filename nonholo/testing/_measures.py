@@ -5,6 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from nonholo._checks import error
+
 
 def gap(found: Any, expected: Any) -> float:
     """Return the largest difference between arrays of one shape, relative to one plus the largest entry expected.
@@ -62,4 +64,7 @@ def seeded(rng: Any) -> np.random.Generator:
         >>> float(seeded(None).normal()) == float(seeded(0).normal())
         True
     """
-    return np.random.default_rng(0 if rng is None else rng)
+    try:
+        return np.random.default_rng(0 if rng is None else rng)
+    except (TypeError, ValueError):
+        raise error("check_...(rng=...)", "be a seed or a generator", repr(rng), "Pass an integer >= 0.") from None

@@ -24,6 +24,16 @@ def test_rest() -> None:
     assert (found.energy_drift, found.reversal_defect, found.largest_step_angle) == (0.0, 0.0, 0.0)
 
 
+@pytest.mark.parametrize("velocity", [(0.0, 0.0), (0.9, -0.4)], ids=["at rest", "one state"])
+def test_edges_of_a_right_invariant_run(velocity: tuple[float, float]) -> None:
+    """Its steps depend on the pose: none that moves, or a single saved state, is measured all the same."""
+    discrete = nh.discretize(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), 0.1)
+    found = nh.invariants(nh.simulate(discrete, restricted_velocity=velocity, steps=3, save_every=4))
+    assert (found.states, found.energy_drift) == (1, 0.0)
+    assert found.reversal_defect is not None
+    assert found.reversal_defect < 1e-14
+
+
 def test_undefined_quantities_are_none() -> None:
     """A flow has no displacements, a run without poses no group residual, another difference no reversal defect."""
     flow = nh.invariants(nh.flow(SLEIGH.system, body_velocity=(1, 0, 0), times=[0.0, 1.0]))

@@ -114,6 +114,19 @@ def test_a_displacement_on_another_branch_is_refused() -> None:
         nh.simulate(discrete, displacement=W, steps=3)
 
 
+def test_the_way_to_a_variety_that_is_no_exponential() -> None:
+    """Where exp d is not the variety its elements are refused, and the error does not advise them."""
+    discrete = nh.discretize(nh.LLSystem(nh.SO(4), np.diag([1.0, 2.0, 3.0, 4.0]), np.eye(6)[:2]), 0.1)
+    orbit = nh.simulate(discrete, restricted_velocity=(0.7, -0.3), steps=1)
+    again = nh.simulate(discrete, displacement=orbit.displacement[0], steps=1)
+    assert np.abs(again.momentum - orbit.momentum).max() < 1e-14
+    tilted = np.array([[1.0, 0, 0, 0, 0, 0], [0, 1.0, 0, 0, 0.5, 1.0]])
+    discrete = nh.discretize(nh.LLSystem(nh.SO(4), np.diag([1.0, 2.0, 3.0, 4.0]), tilted), 0.1)
+    W = discrete.system.group.exp(np.array([0.7, -0.9]) @ tilted)
+    with pytest.raises(ValueError, match=r"take a row of `orbit\.displacement`: exp d is not this variety"):
+        nh.simulate(discrete, displacement=W, steps=1)
+
+
 def test_a_momentum_off_the_locus_is_refused() -> None:
     """A full momentum must be that of a displacement."""
     momentum = nh.simulate(TOP, restricted_velocity=(0.7, -0.3), steps=1).momentum[0] + np.array([0, 0, 0.1])

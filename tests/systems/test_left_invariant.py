@@ -313,6 +313,7 @@ def test_repr_names_what_is_shown() -> None:
         (lambda: LLSystem(nh.SO(3), np.diag([1.0, 2, 3]), np.eye(3)).equilibria(), "linear space. Got a drift of"),
         (lambda: RigidBody(np.diag([1.0, 2, 3])).equilibria(), r"RigidBody\.equilibria\(\)"),
         (lambda: RigidBody(np.diag([1.0, 0, 0])), "inertia operator positive definite. Got an eigenvalue 0"),
+        (lambda: RigidBody(None), r"RigidBody\(mass_tensor=\.\.\.\)` must be an array of real numbers. Got None"),
         (lambda: RigidBody(np.eye(3), nh.SE(3)), r"shape \(4, 4\). Got shape \(3, 3\)"),
         (lambda: MultidimensionalSleigh(0.0, [1, 0, 0], np.eye(3)), r"mass=\.\.\.\)` must be positive"),
         (lambda: MultidimensionalSleigh(1.0, [1, 0], np.eye(2)), "at least 3 coordinates. Got 2. In the plane"),
@@ -329,3 +330,12 @@ def test_bad_input_is_refused(build: object, words: str) -> None:
     """Each error names the owner, the requirement, what was got and the remedy."""
     with pytest.raises(ValueError, match=words):
         build()
+
+
+def test_an_inertia_that_overflows_is_refused() -> None:
+    """Finite entries whose sums are not finite are no inertia, and LAPACK is not asked."""
+    with (
+        np.errstate(over="ignore", invalid="ignore"),
+        pytest.raises(ValueError, match=r"make the inertia operator finite\. Got an overflow"),
+    ):
+        RigidBody(1e308 * np.eye(3))

@@ -89,3 +89,9 @@ def test_subspace_is_checked() -> None:
         ValueError, match=r"is_symmetric_pair\(constraint_subspace=\.\.\.\)` must have shape \(any, 3\)"
     ):
         is_symmetric_pair(nh.SO(3), np.eye(2))
+
+
+def test_group_is_checked() -> None:
+    """A name is no group."""
+    with pytest.raises(ValueError, match=r"is_symmetric_pair\(group=\.\.\.\)` must be a matrix group. Got 'SO\(3\)'"):
+        is_symmetric_pair("SO(3)", np.eye(3))

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+import nonholo as nh
+from nonholo.testing import check_group
 from nonholo.testing._measures import derivative, gap, relative
 from nonholo.testing._report import Check, NotApplicableError, Report, run_checks
 
@@ -76,3 +78,10 @@ def test_shapes_are_not_broadcast() -> None:
 def test_derivatives_are_of_order_four() -> None:
     """The central difference is exact for polynomials of degree four."""
     assert derivative(lambda t: 2 * t + 3 * t**2 + 5 * t**4, 0.5) == pytest.approx(2.0, abs=1e-14)
+
+
+@pytest.mark.parametrize("seed", ["today", -1])
+def test_a_seed_is_a_number(seed: object) -> None:
+    """What NumPy takes for no seed is refused by name."""
+    with pytest.raises(ValueError, match=r"rng=\.\.\.\)` must be a seed or a generator. Got ('today'|-1)"):
+        check_group(nh.SO(3), rng=seed)
