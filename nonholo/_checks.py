@@ -129,6 +129,8 @@ def positive_definite(where: str, matrix: Array, what: str, remedy: str) -> None
         return
     if not np.isfinite(matrix).all():
         raise error(where, f"make {what} finite", "an overflow", "Pass smaller numbers, in other units.")
-    eigenvalues = np.linalg.eigvalsh(matrix)
+    units = np.sqrt(np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0))  # rows may mix lengths and angles
+    eigenvalues = np.linalg.eigvalsh(matrix / units / units[:, None])
     if not eigenvalues[0] > 4 * np.finfo(np.float64).eps * max(abs(eigenvalues[-1]), math.ulp(0.0)):
-        raise error(where, f"make {what} positive definite", f"an eigenvalue {eigenvalues[0]:.6g}", remedy)
+        got = f"an eigenvalue {np.linalg.eigvalsh(matrix)[0]:.6g}"
+        raise error(where, f"make {what} positive definite", got, remedy)

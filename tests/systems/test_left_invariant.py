@@ -339,3 +339,10 @@ def test_an_inertia_that_overflows_is_refused() -> None:
         pytest.raises(ValueError, match=r"make the inertia operator finite\. Got an overflow"),
     ):
         RigidBody(1e308 * np.eye(3))
+
+
+@pytest.mark.parametrize("length", [1e-9, 1e9])
+def test_lengths_in_any_unit(length: float) -> None:
+    """Inertias that mix angles with lengths of nanometres are as positive as others."""
+    sleigh = MultidimensionalSleigh(1.0, np.array([0.5, 0.2, 0.1]) * length, np.diag([0.6, 0.4, 0.2]) * length**2)
+    assert np.all(np.linalg.eigvalsh(sleigh.constrained_inertia) > 0)
