@@ -88,5 +88,5 @@ def test_refuses_a_top_and_an_orbit_without_poses(top_orbit: nh.Orbit) -> None:
         nh.plot.blade_track(top_orbit)
     with pytest.raises(ValueError, match=r"must have poses. .* Run with reconstruct=True"):
         nh.plot.blade_track(sleigh_run((0.1, -1.0, 0.0), steps=5, reconstruct=False))
-    with pytest.raises(ValueError, match=r"must be an orbit. Got 3. Pass what `simulate` returned"):
+    with pytest.raises(ValueError, match=r"must be an orbit of a system on a group. Got 3. Pass what `simulate`"):
         nh.plot.blade_track(3)
