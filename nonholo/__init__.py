@@ -10,13 +10,24 @@ if TYPE_CHECKING:
     from nonholo import testing as testing
     from nonholo._results import Outcome as Outcome
     from nonholo._results import OutcomeError as OutcomeError
+    from nonholo.analysis import asymptotics as asymptotics
     from nonholo.analysis import conserved_momenta as conserved_momenta
+    from nonholo.analysis import critical_energies as critical_energies
+    from nonholo.analysis import equilibria as equilibria
+    from nonholo.analysis import invariant_curve as invariant_curve
     from nonholo.analysis import invariants as invariants
+    from nonholo.analysis import lyapunov_function as lyapunov_function
+    from nonholo.analysis import momentum_locus as momentum_locus
+    from nonholo.analysis import single_valued_region as single_valued_region
     from nonholo.continuous import vector_field as vector_field
     from nonholo.discrete import Discretization as Discretization
+    from nonholo.discrete import branches as branches
     from nonholo.discrete import consistency_defect as consistency_defect
     from nonholo.discrete import discrete_legendre as discrete_legendre
     from nonholo.discrete import discretize as discretize
+    from nonholo.discrete import displacements_over as displacements_over
+    from nonholo.discrete import fold_distance as fold_distance
+    from nonholo.discrete import inverse_discrete_legendre as inverse_discrete_legendre
     from nonholo.discrete import moser_veselov_displacement as moser_veselov_displacement
     from nonholo.discrete._precision import allow_float32 as allow_float32
     from nonholo.discrete._step import step as step
@@ -66,21 +77,32 @@ _HOMES = {
     "Translations": "groups",
     "VeselovaTop": "systems",
     "allow_float32": "discrete._precision",
+    "asymptotics": "analysis",
+    "branches": "discrete",
     "conserved_momenta": "analysis",
     "consistency_defect": "discrete",
+    "critical_energies": "analysis",
     "discrete_legendre": "discrete",
     "discretize": "discrete",
+    "displacements_over": "discrete",
+    "equilibria": "analysis",
     "euler_angle_discrete_lagrangian": "systems",
     "flow": "simulation",
+    "fold_distance": "discrete",
     "in_exp_d": "systems",
+    "invariant_curve": "analysis",
     "invariants": "analysis",
+    "inverse_discrete_legendre": "discrete",
     "is_symmetric_pair": "systems",
     "load_orbit": "io",
+    "lyapunov_function": "analysis",
     "mass_tensor_lagrangian": "lagrange_dalembert",
+    "momentum_locus": "analysis",
     "moser_veselov_displacement": "discrete",
     "reference_point_subspace": "systems",
     "save_orbit": "io",
     "simulate": "simulation",
+    "single_valued_region": "analysis",
     "step": "discrete._step",
     "trace_constraints": "systems",
     "vector_field": "continuous",

@@ -1,5 +1,7 @@
 """The discrete mechanics: discretisations, the discrete Legendre transformation, the step and its start."""
 
+from nonholo.discrete._branch_values import Branches
+from nonholo.discrete._branches import branches, displacements_over, fold_distance, inverse_discrete_legendre
 from nonholo.discrete._consistency import consistency_defect
 from nonholo.discrete._discretization import Discretization, discretize
 from nonholo.discrete._legendre import discrete_legendre
@@ -7,10 +9,15 @@ from nonholo.discrete._moser_veselov import moser_veselov_displacement
 from nonholo.discrete._start import initial_state
 
 __all__ = [
+    "Branches",
     "Discretization",
+    "branches",
     "consistency_defect",
     "discrete_legendre",
     "discretize",
+    "displacements_over",
+    "fold_distance",
     "initial_state",
+    "inverse_discrete_legendre",
     "moser_veselov_displacement",
 ]

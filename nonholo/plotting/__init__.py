@@ -6,7 +6,11 @@
 from nonholo.plotting._animation import animate
 from nonholo.plotting._blade_track import BladeTrack, blade_track
 from nonholo.plotting._body_axis_track import BodyAxisTrack, body_axis_track
+from nonholo.plotting._branch_counts import BranchCounts, branch_counts
 from nonholo.plotting._energy_error import EnergyError, energy_error
+from nonholo.plotting._invariant_curves import InvariantCurvesPicture, invariant_curves
+from nonholo.plotting._locus_section import LocusSection, locus_section
+from nonholo.plotting._momentum_locus import MomentumLocusPicture, momentum_locus
 from nonholo.plotting._momentum_sphere import MomentumSphere, momentum_sphere
 from nonholo.plotting._overview import overview
 from nonholo.plotting._phase_portrait import PhasePortrait, phase_portrait
@@ -15,14 +19,22 @@ from nonholo.plotting._point_track import PointTrack, point_track
 __all__ = [
     "BladeTrack",
     "BodyAxisTrack",
+    "BranchCounts",
     "EnergyError",
+    "InvariantCurvesPicture",
+    "LocusSection",
+    "MomentumLocusPicture",
     "MomentumSphere",
     "PhasePortrait",
     "PointTrack",
     "animate",
     "blade_track",
     "body_axis_track",
+    "branch_counts",
     "energy_error",
+    "invariant_curves",
+    "locus_section",
+    "momentum_locus",
     "momentum_sphere",
     "overview",
     "phase_portrait",

@@ -1,0 +1,51 @@
+r"""Momentum loci and invariant curves of the discrete top and the discrete sleigh, with one orbit on each.
+
+Run it to draw docs/images/gallery/loci.png.
+"""
+
+import io
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+from PIL import Image
+
+import nonholo as nh
+from nonholo.plotting import _theme as theme
+
+PICTURE = Path(__file__).parents[1] / "images" / "gallery" / "loci.png"
+
+
+def top() -> nh.Discretization:
+    """Return a top with a large step, so that its orbit covers much of the surface."""
+    return nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.6)
+
+
+def sleigh() -> nh.Discretization:
+    """Return a sleigh with a step so large that an orbit near its start has three real values."""
+    return nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5, b=0.3), 0.5)
+
+
+@theme.styled
+def draw(resolution: int = 70) -> Figure:
+    """Draw surfaces, foliations, a section and the deltoid."""
+    of_top = nh.simulate(top(), restricted_velocity=(0.95, -0.4), steps=60)
+    of_sleigh = nh.simulate(sleigh(), body_velocity=(0.3, -2.0, 0.0), steps=60)
+    surface, ruled = nh.momentum_locus(top(), resolution), nh.momentum_locus(sleigh(), resolution)
+    figure = Figure(figsize=(15.5, 10.0))
+    spaces: list[Any] = [figure.add_axes((0.0, bottom, 0.32, 0.49), projection="3d") for bottom in (0.505, 0.005)]
+    planes = [figure.add_axes((left, bottom, 0.262, 0.385)) for bottom in (0.565, 0.065) for left in (0.395, 0.725)]
+    curves = [nh.invariant_curve(top(), of_top.energy[0]), nh.invariant_curve(sleigh(), of_sleigh.energy[0])]
+    nh.plot.momentum_locus(surface, of_top, curves[0], spaces[0])
+    nh.plot.momentum_locus(ruled, of_sleigh, curves[1], spaces[1])
+    nh.plot.invariant_curves(top(), of_top, planes[0])
+    nh.plot.locus_section(surface, offset=0.35, axes=planes[1])
+    nh.plot.invariant_curves(sleigh(), of_sleigh, planes[2])
+    nh.plot.branch_counts(sleigh(), of_sleigh, planes[3])
+    return figure
+
+
+if __name__ == "__main__":
+    page = io.BytesIO()
+    draw().savefig(page, dpi=80)
+    Image.open(page).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE).save(PICTURE, optimize=True)

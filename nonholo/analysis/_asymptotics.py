@@ -1,0 +1,172 @@
+r"""What a motion comes from and tends to: velocities, axes in body and in space, how far a sleigh turns.
+
+Theory: docs/theory/critical-energies-and-limits.md. Orbits are followed to their limits by `_followed`.
+"""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from nonholo._checks import error
+from nonholo._types import Float
+from nonholo.analysis._critical_energies import critical_energies
+from nonholo.analysis._equilibria import EquilibriumSpectrum, equilibria
+from nonholo.analysis._followed import followed
+from nonholo.analysis._single_valued_region import single_valued_region
+from nonholo.discrete import Discretization
+from nonholo.orbit import Orbit
+from nonholo.systems import AbstractLLSystem, ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
+
+_ROUNDING = 8 * np.finfo(np.float64).eps
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Asymptotics:
+    r"""Limits at $t \to -\infty$ (before) and $t \to \infty$ (after); None where a quantity is not defined.
+
+    Attributes:
+        velocity_before: Limit of the body velocity; for an orbit alone.
+        velocity_after: The same.
+        axis_before: Limit of the unit body velocity, for a top with n = 3: the axis it turns about, as seen in the
+            body; opposite to `axis_after`.
+        axis_after: The same.
+        spatial_axis_before: That axis in space; for an orbit alone.
+        spatial_axis_after: The same.
+        heading_turn: How far a sleigh turns in all; its size alone for a system, with its sign for an orbit.
+        motion_turn: The same for its direction of motion, modulo full turns: the sleigh starts out backwards.
+        persists: Whether the branch is known never to end, so that the limits are reached. It is for a flow, for a
+            discrete sleigh in its single-valued region, and for a discrete top (n = 3) in the regular regime below the
+            saddle (this rests on the uniqueness of the inner root, which is observed, not proved). Elsewhere the limits
+            are those of an orbit that never loses its branch.
+    """
+
+    velocity_before: Float[np.ndarray, "dim"] | None = None
+    velocity_after: Float[np.ndarray, "dim"] | None = None
+    axis_before: Float[np.ndarray, "3"] | None = None
+    axis_after: Float[np.ndarray, "3"] | None = None
+    spatial_axis_before: Float[np.ndarray, "3"] | None = None
+    spatial_axis_after: Float[np.ndarray, "3"] | None = None
+    heading_turn: float | None = None
+    motion_turn: float | None = None
+    persists: bool = True
+
+
+def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
+    r"""Return where the motions of a system, or one orbit of a flow or of a discrete map, come from and go to.
+
+    Every motion goes from the repelling to the attracting equilibrium of its energy. The heading of a sleigh turns by
+
+    $$ \theta(\infty) - \theta(-\infty) = \mathrm{sgn}(\omega)\,\pi\sqrt{1 + J/(ma^2)} $$
+
+    along the flow. A discrete orbit has the same limits of the velocity, exactly, and a turn that differs by O(h^2);
+    its turn and the axes in space are found by following the orbit to both ends.
+
+    Reference: [fedorov-zenkov-2004], sections 5 and 6, "bi-asymptotic".
+
+    Args:
+        subject: A top, a sleigh, or an orbit of one. An orbit that starts on an equilibrium, to rounding, stays there.
+
+    Raises:
+        ValueError: Another system or orbit; a discrete orbit that needs more than a million steps.
+        OutcomeError: A discrete orbit loses its branch on the way.
+
+    Example:
+        >>> print(f"{asymptotics(nh.ChaplyginSleigh(1.0, 0.75, 0.5)).heading_turn / np.pi:.12f}")
+        2.000000000000
+        >>> top = nh.SuslovTop([[1.0, 0.0, 0.5], [0.0, 1.0, 0.0], [0.5, 0.0, 1.0]])
+        >>> asymptotics(top).axis_after
+        array([-0., -1., -0.])
+    """
+    system = subject.system if isinstance(subject, Orbit) else subject
+    if not isinstance(system, SuslovTop | ChaplyginSleigh | MultidimensionalSleigh):
+        remedy = "Pass a SuslovTop, a sleigh, or an orbit of one."
+        raise error("asymptotics(subject=...)", "be a top or a sleigh, or its orbit", type(subject).__name__, remedy)
+    if not isinstance(subject, Orbit):
+        return _of_system(system)
+    if len(subject) == 0:
+        raise error("asymptotics(subject=...)", "have at least one state", "none", "See the orbit's outcome.")
+    return _of_orbit(system, subject)
+
+
+def _of_system(system: AbstractLLSystem) -> Asymptotics:
+    attracting, turn = system.equilibria().attracting, None
+    if attracting is None:
+        return Asymptotics()
+    if isinstance(system, ChaplyginSleigh):
+        turn = float(np.pi * np.sqrt(1 + system.inertia / system.mass / system.a / system.a))
+        return Asymptotics(heading_turn=turn, motion_turn=turn - np.pi)
+    return Asymptotics(axis_before=_axis(system, -attracting), axis_after=_axis(system, attracting))
+
+
+def _axis(system: AbstractLLSystem, velocity: Float[np.ndarray, "dim"]) -> Float[np.ndarray, "3"] | None:
+    """Return the unit vector of a velocity on SO(3); None at rest and in other groups."""
+    size = float(np.linalg.norm(velocity))
+    return velocity / size if isinstance(system, SuslovTop) and len(velocity) == 3 and size > 0 else None
+
+
+def _of_orbit(system: AbstractLLSystem, orbit: Orbit) -> Asymptotics:
+    velocity, known = orbit.body_velocity[0], system.equilibria()
+    rows = known.subspace
+    beside = float(np.linalg.norm(velocity - velocity @ np.linalg.pinv(rows) @ rows) / (np.linalg.norm(velocity) or 1))
+    if known.attracting is None or beside <= _ROUNDING:
+        return _resting(system, orbit, velocity)
+    along = _kept(system, velocity)
+    energy = float(orbit.energy[0]) - float(system.constrained_energy(along @ np.asarray(system.inertia_operator)))
+    spectrum = equilibria(_subject(orbit), energy)
+    change = np.zeros_like(along) if spectrum.velocity is None else spectrum.velocity
+    persists = not isinstance(orbit.motion, Discretization) or _known_to_persist(orbit.motion, energy)
+    before, after = along - change, along + change
+    if isinstance(system, ChaplyginSleigh):
+        turn = _heading_turn(system, orbit, spectrum, beside)
+        backwards = float(np.copysign(np.pi, velocity[0]))
+        return Asymptotics(before, after, heading_turn=turn, motion_turn=turn - backwards, persists=persists)
+    axes = _axis(system, before), _axis(system, after)
+    in_space = _in_space(orbit, axes, spectrum, beside)
+    return Asymptotics(before, after, *axes, *in_space, persists=persists)
+
+
+def _in_space(orbit: Orbit, axes: tuple, spectrum: EquilibriumSpectrum, beside: float) -> tuple:
+    """Return both axes as seen in space; None without axes or poses."""
+    if axes[1] is None or orbit.pose is None:
+        return None, None
+    ends = followed(orbit, spectrum, beside)
+    return ends.first.configuration[-1] @ axes[0], ends.last.configuration[-1] @ axes[1]
+
+
+def _subject(orbit: Orbit) -> Any:
+    return orbit.motion if isinstance(orbit.motion, Discretization) else orbit.system
+
+
+def _resting(system: AbstractLLSystem, orbit: Orbit, velocity: Float[np.ndarray, "dim"]) -> Asymptotics:
+    """Return the limits of a motion with constant velocity: the heading of a balanced sleigh turns for ever."""
+    axis = _axis(system, velocity)
+    in_space = None if axis is None or orbit.pose is None else orbit.configuration[0] @ axis
+    straight = isinstance(system, ChaplyginSleigh) and system.a != 0
+    turn = 0.0 if straight else None
+    return Asymptotics(velocity, velocity, axis, axis, in_space, in_space, turn, turn)
+
+
+def _kept(system: AbstractLLSystem, velocity: Float[np.ndarray, "dim"]) -> Float[np.ndarray, "dim"]:
+    """Return the part of the velocity that never changes: the advance u of a sleigh with a_1 = 0."""
+    if not isinstance(system, MultidimensionalSleigh) or system.center_of_mass[0] != 0:
+        return np.zeros_like(velocity)
+    rows, w = system.constraint_subspace, velocity @ np.linalg.pinv(system.constraint_subspace)
+    return (w[-1] + system.center_of_mass[1:] @ w[:-1]) * rows[-1]
+
+
+def _known_to_persist(discrete: Discretization, energy: float) -> bool:
+    if isinstance(discrete.system, ChaplyginSleigh):
+        return energy < single_valued_region(discrete).energy
+    if discrete.system.group.dim != 3:
+        return False
+    found = critical_energies(discrete)
+    return found.regular and found.saddle is not None and energy < found.saddle
+
+
+def _heading_turn(system: ChaplyginSleigh, orbit: Orbit, spectrum: EquilibriumSpectrum, beside: float) -> float:
+    """Return the signed turn: in closed form for a flow, summed over all steps for a discrete orbit."""
+    if not isinstance(orbit.motion, Discretization):
+        return float(np.copysign(_of_system(system).heading_turn or 0.0, orbit.body_velocity[0, 0]))
+    first, last = followed(orbit, spectrum, beside)
+    return float(last.heading[-1] - last.heading[0] + first.heading[1] - first.heading[-1])

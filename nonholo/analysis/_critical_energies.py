@@ -1,0 +1,163 @@
+r"""Critical energies of the discrete Suslov top (n = 3): where the level curves on the displacement variety change.
+
+The variety is a projective plane, $W \leftrightarrow \pm(z_0, z)$; the energy on it is a quartic with isolated critical
+points. Branches and their regions live elsewhere. Theory: docs/theory/critical-energies-and-limits.md.
+"""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+
+from nonholo._checks import error
+from nonholo._types import Float
+from nonholo.discrete import Discretization
+from nonholo.systems import ChaplyginSleigh, SuslovTop
+
+_COINCIDENT = 1e-14  # relative distance of two energies below which a curve of critical points is assumed
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class CriticalPoint:
+    r"""A displacement at which the energy is stationary on the displacement variety.
+
+    Attributes:
+        energy: Physical energy.
+        kind: "minimum", "saddle" or "maximum".
+        on_equator: Whether the displacement is a half-turn.
+        stationary: Whether it is an equilibrium of the map (on the line of permanent rotations).
+        half_turn_vector: $z = \sin(\theta/2)\,u$ in the rows of the canonical constraint subspace, $u$ a unit vector;
+            $-z$ is critical too, the same displacement on the equator.
+    """
+
+    energy: float
+    kind: str
+    on_equator: bool
+    stationary: bool
+    half_turn_vector: Float[np.ndarray, "2"]
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class CriticalEnergies:
+    r"""Critical values of the energy of a discrete top, in physical units; None where there is no such point.
+
+    Attributes:
+        saddle: $h^*$: two opposite saddles off the equator. Below it, in the regular regime, the component of the
+            level curve around the identity is separate.
+        centre: $h^{**}$: two opposite maxima off the equator. Equal to `saddle` if a closed curve of maxima replaces
+            the four points.
+        equatorial_saddle: $h_e$: the highest saddle among half-turns.
+        regular: $\det B > 2|c|^2$.
+        points: All isolated critical points, the two (on the equator: one) opposite ones once, from low to high.
+    """
+
+    saddle: float | None
+    centre: float | None
+    equatorial_saddle: float | None
+    regular: bool
+    points: tuple[CriticalPoint, ...]
+
+
+def critical_energies(discrete: Discretization) -> CriticalEnergies:
+    r"""Return the critical values of the energy on the displacement variety of a top in three dimensions.
+
+    With $z = \sqrt\varrho\,u$, $|u| = 1$, $D = \det B$ and $\kappa(u) = 1 - (c\cdot u^\perp)^2/D$
+
+    $$ E = \tfrac{2}{h^2}\,(u\cdot Bu)\,(\varrho - \kappa\varrho^2), \qquad 0 \le \varrho \le 1 . $$
+
+    Off the equator $\varrho = 1/(2\kappa) < 1$ and $Bu = \mu\,(\mathrm{Id} - c^\perp c^{\perp T}/D)\,u$ with
+    $E = \mu/(2h^2)$; on it $\varrho = 1$ and $E = 2\,(u\cdot Bu)(c\cdot u^\perp)^2/(h^2D)$ is stationary, a cubic.
+
+    Reference: [fedorov-zenkov-2004], section 6, "Invariant curves", which lacks $h_e$ and the regular regime.
+
+    Args:
+        discrete: A `SuslovTop` with n = 3, difference "matrix" and constraint "skew" or "exponential".
+
+    Raises:
+        ValueError: Another system or discretisation.
+
+    Example:
+        >>> top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+        >>> found = critical_energies(nh.discretize(top, 1.0))
+        >>> print(f"{found.equatorial_saddle:.6f} {found.saddle:.6f} {found.centre:.6f}")
+        0.347449 0.930510 1.262473
+        >>> found.regular
+        True
+    """
+    top = _checked("critical_energies(discrete=...)", discrete)
+    c, balanced = np.asarray(top.coupling), top.equilibria().attracting is None
+    along = np.array([1.0, 0.0]) if balanced else c / np.hypot(*c)
+    axes = np.stack([along, [-along[1], along[0]]], axis=1)
+    B = axes.T @ np.asarray(top.constrained_inertia) @ axes
+    sharpness = 0.0 if balanced else float(c @ c / np.linalg.det(B))
+    unit = 2 / float(discrete.time_step) ** 2
+    off = _off_equator(B, sharpness, unit, axes)
+    points = _on_equator(B, sharpness, unit, axes) if sharpness > 0 else []
+    by_kind = {p.kind: p.energy for p in off}
+    saddles = [p.energy for p in points if p.kind == "saddle"]
+    if len(off) < 2 or off[0].energy - off[1].energy > _COINCIDENT * off[0].energy:
+        points = points + off
+    return CriticalEnergies(
+        saddle=by_kind.get("saddle"),
+        centre=by_kind.get("maximum"),
+        equatorial_saddle=max(saddles, default=None),
+        regular=bool(2 * sharpness < 1),
+        points=(CriticalPoint(0.0, "minimum", False, True, np.zeros(2)), *sorted(points, key=lambda p: p.energy)),
+    )
+
+
+def _checked(where: str, discrete: Any) -> SuslovTop:
+    remedy = "Pass `discretize(SuslovTop(J), time_step)` with n = 3."
+    if not isinstance(discrete, Discretization):
+        raise error(where, "be a discretised Suslov top", repr(discrete), remedy)
+    system = discrete.system.canonical
+    if isinstance(system, ChaplyginSleigh):
+        remedy = "Its level curves are ellipses; `single_valued_region` gives the energy where branches merge."
+    if not isinstance(system, SuslovTop) or system.group.dim != 3:
+        raise error(where, "be a discretised Suslov top with n = 3", f"{type(system).__name__}", remedy)
+    if not discrete.conserves_energy:
+        got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
+        raise error(where, "conserve the energy", got, "Use the defaults of `discretize`.")
+    return system
+
+
+def _off_equator(B: np.ndarray, sharpness: float, unit: float, axes: np.ndarray) -> list[CriticalPoint]:
+    r"""Return saddle and centre from $\kappa/(u\cdot Bu)$, which is greatest at the saddle.
+
+    B is seen from axes along and across c. A point exists if $\varrho = 1/(2\kappa)$ is less than one.
+    """
+    inverses, vectors = scipy.linalg.eigh(np.diag([1.0, 1.0 - sharpness]), B)
+    found = []
+    for inverse, vector, kind in zip(inverses, vectors.T, ("maximum", "saddle"), strict=True):
+        length = float(np.hypot(*vector))
+        kappa = float(inverse) / length**2
+        if kappa > 0.5:
+            z = vector / length / np.sqrt(2 * kappa)
+            found.append(CriticalPoint(unit / (4 * float(inverse)), kind, False, _along_c(z, sharpness), axes @ z))
+    return found
+
+
+def _on_equator(B: np.ndarray, sharpness: float, unit: float, axes: np.ndarray) -> list[CriticalPoint]:
+    """Return half-turns: the one along c, of energy zero, and those of the cubic, u = (s, 1)/|(s, 1)|."""
+    (p, q), (_, r) = B
+    found = [CriticalPoint(0.0, "minimum", True, True, axes[:, 0])]
+    for s in sorted(_real_roots(np.array([p, 3 * q, 2 * r - p, -q]))):
+        square = 1 + s * s
+        energy = unit * sharpness * float(p * s * s + 2 * q * s + r) / square**2
+        curvature = 3 * p * s * s + 6 * q * s + 2 * r - p  # the slope of the cubic: positive where E is greatest
+        highest, convex = curvature > 0, 2 * (1 - sharpness / square) > 1
+        kind = "saddle" if highest == convex else ("maximum" if highest else "minimum")
+        found.append(CriticalPoint(energy, kind, True, False, axes @ np.array([s, 1.0]) / np.sqrt(square)))
+    return found
+
+
+def _real_roots(cubic: np.ndarray) -> list[float]:
+    """Return the simple real roots; a merged pair, where the energy only has an inflection, counts as none."""
+    roots = np.roots(cubic)
+    real = np.abs(roots.imag) <= 1e-12 * np.maximum(1.0, np.abs(roots))
+    return [float(x) for x in roots[real].real]
+
+
+def _along_c(z: np.ndarray, sharpness: float) -> bool:
+    return sharpness == 0 or bool(abs(z[1]) <= 1e-12 * abs(z[0]))

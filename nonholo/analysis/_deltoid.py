@@ -1,0 +1,116 @@
+"""The deltoid in the plane of restricted momenta of a sleigh, inside which all three branches are real."""
+
+import dataclasses
+from typing import cast
+
+import numpy as np
+
+from nonholo._checks import array, count, error
+from nonholo._types import Array, Float
+from nonholo.analysis._variety_points import closed_form
+from nonholo.discrete import Discretization
+from nonholo.systems import ChaplyginSleigh
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Deltoid:
+    r"""The discriminant curve of the discrete sleigh; momenta are restricted ones, $(p_\theta, p_1)$, physical.
+
+    Attributes:
+        discrete: The discretised sleigh.
+        cusps: The lower one and the two upper ones (for a > 0), where all three branches meet; shape (3, 2).
+    """
+
+    discrete: Discretization
+    cusps: Float[np.ndarray, "3 2"]
+
+    def boundary(self, points: int = 361) -> Float[np.ndarray, "K 2"]:
+        r"""Return the closed curve where two branches meet, $\varkappa = 2e^{i\alpha} + e^{-2i\alpha}$.
+
+        Raises:
+            ValueError: A number of points that is not positive.
+        """
+        rows = count("Deltoid.boundary(points=...)", points, "Pass the number of points.")
+        turn = np.exp(1j * np.linspace(0.0, 2 * np.pi, rows))
+        return _restricted(self.discrete, 2 * turn + turn**-2)
+
+    def discriminant(self, restricted_momentum: Array) -> Float[np.ndarray, "..."]:
+        r"""Return $27 - 18|\varkappa|^2 + 8\,\mathrm{Re}\,\varkappa^3 - |\varkappa|^4$, positive inside."""
+        trace = _trace(self.discrete, self._plane("discriminant", restricted_momentum))
+        square = np.abs(trace) ** 2
+        return 27 - 18 * square + 8 * np.real(trace**3) - square**2
+
+    def real_branches(self, restricted_momentum: Array) -> np.ndarray:
+        """Return the number of displacements over restricted momenta, with multiplicity: 3 inside, 1 outside."""
+        where = self._plane("real_branches", restricted_momentum)
+        return np.where(self.discriminant(where) >= 0, 3, 1)
+
+    def resting(self, points: int = 361) -> Float[np.ndarray, "K 2"]:
+        r"""Return the ellipse $\pi = I\sin\Delta$, $p_1 = -am(1 - \cos\Delta)$: turns without translation.
+
+        For b = 0 these are the displacements with $V_1 = 0$ but for those of angle pi.
+        """
+        system = cast(ChaplyginSleigh, self.discrete.system)
+        rows = count("Deltoid.resting(points=...)", points, "Pass the number of points.")
+        m, a, angle = float(system.mass), float(system.a), np.linspace(0.0, 2 * np.pi, rows)
+        whole = float(system.inertia) + m * a * a
+        reduced = np.stack([whole * np.sin(angle), -a * m * (1 - np.cos(angle))], axis=-1)
+        return np.linalg.solve(system.frame_map, reduced.T).T / float(self.discrete.time_step)
+
+    def _plane(self, method: str, value: Array) -> Float[np.ndarray, "... 2"]:
+        leading = (None,) * (np.ndim(value) - 1)
+        where = f"Deltoid.{method}(restricted_momentum=...)"
+        return array(where, value, (*leading, 2), "Pass the two components (p_theta, p_1).")
+
+
+def deltoid(discrete: Discretization) -> Deltoid:
+    r"""Return the deltoid of a sleigh: inside it the map has three real values, outside it one.
+
+    The three step angles over a momentum are the angles of the roots U of
+
+    $$ U^3 - \varkappa U^2 + \bar\varkappa U - 1 = 0, \qquad
+       J\varkappa = -(2\hat p + J) + 2i\,h\pi, \qquad \hat p = a\,hp_1 + 2ma^2, $$
+
+    the characteristic polynomial of a matrix of SU(3) with trace $\varkappa$ if all three are real.
+
+    Reference: [fedorov-zenkov-2004], section 6, figure of the discriminant curve; docs/theory/chaplygin-sleigh.md.
+
+    Args:
+        discrete: A discretised sleigh with a not zero.
+
+    Raises:
+        ValueError: Another system or discretisation, or a = 0 (then two values are real if h |pi| < J, none beyond).
+
+    Example:
+        >>> found = deltoid(nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=1.0), 1.0))
+        >>> found.cusps
+        array([[ 0.        , -4.        ],
+               [ 1.29903811, -1.75      ],
+               [-1.29903811, -1.75      ]])
+        >>> found.real_branches([[0.0, -2.5], [0.0, 0.0]]).tolist()
+        [3, 1]
+    """
+    checked = closed_form("deltoid(discrete=...)", discrete)
+    if not isinstance(checked.system, ChaplyginSleigh):
+        raise error("deltoid(discrete=...)", "be of a sleigh", repr(checked.system), "Tops have no deltoid.")
+    if checked.system.a == 0:
+        remedy = "A balanced sleigh has two real values if h |pi| < J, none beyond."
+        raise error("deltoid(discrete=...)", "have a != 0", repr(checked.system), remedy)
+    return Deltoid(checked, _restricted(checked, 3 * np.exp(2j * np.pi * np.array([0.0, 1.0, -1.0]) / 3)))
+
+
+def _trace(discrete: Discretization, restricted: Float[np.ndarray, "... 2"]) -> np.ndarray:
+    """Return kappa of restricted momenta."""
+    system = cast(ChaplyginSleigh, discrete.system)
+    pi, p1 = np.moveaxis(restricted @ np.asarray(system.frame_map).T * float(discrete.time_step), -1, 0)
+    phat = system.a * p1 + 2 * system.mass * system.a**2
+    return (-(2 * phat + system.inertia) + 2j * pi) / system.inertia
+
+
+def _restricted(discrete: Discretization, trace: np.ndarray) -> Float[np.ndarray, "... 2"]:
+    """Return the restricted momenta of kappa."""
+    system = cast(ChaplyginSleigh, discrete.system)
+    phat = -(np.real(trace) + 1) * system.inertia / 2
+    p1 = (phat - 2 * system.mass * system.a**2) / system.a
+    reduced = np.stack([np.imag(trace) * system.inertia / 2, p1], axis=-1)
+    return np.linalg.solve(system.frame_map, reduced[..., None])[..., 0] / float(discrete.time_step)

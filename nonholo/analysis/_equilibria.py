@@ -1,0 +1,121 @@
+r"""Motions with constant velocity and how they attract: rates of the flow, multipliers of the discrete map.
+
+Theory: docs/theory/critical-energies-and-limits.md. The equilibria themselves are a question to the system.
+"""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from nonholo._checks import error, positive
+from nonholo._types import Array, Float
+from nonholo.discrete import Discretization
+from nonholo.systems import ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
+from nonholo.systems._base import AbstractLLSystem
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class EquilibriumSpectrum:
+    """Constant body velocities, and what happens beside them within their energy level.
+
+    Attributes:
+        subspace: Rows span the equilibria, shape (m, dim).
+        attracting: A body velocity whose positive multiples attract; its negative multiples repel. None if every
+            admissible velocity stays constant.
+        velocity: The attracting velocity with the energy asked for; None as before.
+        rates: Transverse eigenvalues of the flow at `velocity`, all negative, sorted; of opposite sign at -`velocity`.
+        multipliers: Transverse eigenvalues of one step at the equilibrium with the momenta of `velocity`, in the order
+            of `rates`; reciprocal at the opposite one. None for a system without time step.
+    """
+
+    subspace: Float[np.ndarray, "m dim"]
+    attracting: Float[np.ndarray, "dim"] | None
+    velocity: Float[np.ndarray, "dim"] | None
+    rates: Float[np.ndarray, "j"]
+    multipliers: Float[np.ndarray, "j"] | None
+
+
+def equilibria(system: AbstractLLSystem | Discretization, energy: Array = 1.0) -> EquilibriumSpectrum:
+    r"""Return the equilibria of a system or of its discrete map, with their transverse spectrum at an energy.
+
+    Rates are $-\zeta|c|^2\,\mathrm{eig}(N^TB^{-1}N)$ for a top turning with $w = -\zeta c$ (N: orthonormal, across c),
+    and $-a_1p_1\,\mathrm{eig}(B_1^{-1})$ for a sleigh. A step of length h multiplies by the Cayley transform
+
+    $$ \mu = \frac{\varkappa + h\sigma/2}{\varkappa - h\sigma/2}, \qquad \varkappa = \cos^2(\theta/2), \quad
+       \sin\theta = h|w|, $$
+
+    of the rate $\sigma$, where $\theta$ is the angle of the step ($\varkappa = 1$ for sleighs with $a_1 \ne 0$). So
+    $|\mu| < 1$ for every step; $\mu < 0$, an alternating approach, for large ones.
+
+    Reference: [fedorov-zenkov-2004], sections 6 and 7, "stationary solutions".
+
+    Args:
+        system: A left-invariant system, or a discretisation with difference "matrix", constraint "skew".
+        energy: Reduced constrained energy of the equilibrium that is looked at; rates grow as its square root.
+
+    Raises:
+        ValueError: Another system or discretisation, an energy that is not positive, one at which no step with an angle
+            up to 90 degrees has the momenta of the equilibrium.
+
+    Example:
+        >>> sleigh = nh.ChaplyginSleigh(mass=2.0, inertia=1.5, a=0.5)
+        >>> found = equilibria(nh.discretize(sleigh, time_step=0.5), energy=1.0)
+        >>> found.velocity, found.rates, found.multipliers
+        (array([0., 1., 0.]), array([-0.5]), array([0.77777778]))
+    """
+    body, step = _checked("equilibria(system=...)", system)
+    level = float(positive("equilibria(energy=...)", energy, "Pass the energy of the equilibrium."))
+    known = body.equilibria()
+    if known.attracting is None:
+        nothing = np.zeros(0)
+        return EquilibriumSpectrum(known.subspace, None, None, nothing, None if step is None else nothing)
+    momentum = known.attracting @ np.asarray(body.inertia_operator)
+    velocity = known.attracting * np.sqrt(level / float(body.constrained_energy(momentum)))
+    rates = np.sort(_rates(body.canonical, velocity @ np.linalg.pinv(body.constraint_subspace)))
+    multipliers = None if step is None else _multipliers(body, velocity, rates, step)
+    return EquilibriumSpectrum(known.subspace, known.attracting, velocity, rates, multipliers)
+
+
+def _checked(where: str, value: Any) -> tuple[AbstractLLSystem, float | None]:
+    remedy = "Pass a SuslovTop, a sleigh, or a discretisation of one."
+    body = value.system if isinstance(value, Discretization) else value
+    if not isinstance(body, AbstractLLSystem):
+        raise error(where, "have a left-invariant constraint", type(body).__name__, remedy)
+    if not isinstance(value, Discretization):
+        return body, None
+    if not value.conserves_energy:
+        got = f"difference={value.difference!r}, constraint={value.constraint!r}"
+        raise error(where, "conserve the energy", got, "Use the defaults of `discretize`.")
+    return body, float(value.time_step)
+
+
+def _rates(body: AbstractLLSystem, w: Float[np.ndarray, "k"]) -> Float[np.ndarray, "j"]:
+    """Return the transverse rates at the equilibrium with this velocity in the rows of the constraint subspace."""
+    if isinstance(body, ChaplyginSleigh):
+        return np.array([-float(body.mass * body.a * w[1] / (body.inertia + body.mass * body.a**2))])
+    if isinstance(body, SuslovTop):
+        return _turning(np.asarray(body.constrained_inertia), np.asarray(body.coupling), w)
+    if not isinstance(body, MultidimensionalSleigh):
+        raise error("equilibria(system=...)", "be a top or a sleigh", type(body).__name__, "Pass one.")
+    J, a1 = np.asarray(body.mass_tensor), float(body.center_of_mass[0])
+    B = J[1:, 1:] + J[0, 0] * np.eye(len(J) - 1)
+    if a1 == 0:
+        return _turning(B, J[0, 1:], w[:-1])
+    m = float(body.mass)
+    return -m * a1 * w[-1] / np.linalg.eigvalsh(B + m * a1**2 * np.eye(len(B)))
+
+
+def _turning(B: Float[np.ndarray, "k k"], c: Float[np.ndarray, "k"], w: Float[np.ndarray, "k"]) -> np.ndarray:
+    across = np.linalg.svd(c[None, :])[2][1:].T
+    return -np.linalg.norm(w) * np.linalg.norm(c) * np.linalg.eigvalsh(across.T @ np.linalg.solve(B, across))
+
+
+def _multipliers(body: AbstractLLSystem, velocity: np.ndarray, rates: np.ndarray, step: float) -> np.ndarray:
+    sine = step * float(body.group.angle(velocity))
+    if sine > 1:
+        remedy = "Lower the energy or the time step."
+        got = f"time_step * angular velocity = {sine:.6g}"
+        raise error("equilibria(energy=...)", "belong to a step of at most 90 degrees", got, remedy)
+    share = (1 + np.sqrt((1 - sine) * (1 + sine))) / 2
+    return (share + step * rates / 2) / (share - step * rates / 2)

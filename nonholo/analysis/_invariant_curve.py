@@ -1,0 +1,89 @@
+"""The curve of all displacements of one energy, on which orbits run."""
+
+import dataclasses
+from typing import cast
+
+import numpy as np
+
+from nonholo._checks import count, positive
+from nonholo._types import Array, Float
+from nonholo.analysis._sleigh_level import SleighLevel
+from nonholo.analysis._top_level import TopLevel
+from nonholo.analysis._variety_points import closed_form, displacement_at, momentum_at
+from nonholo.discrete import Discretization
+from nonholo.systems import ChaplyginSleigh, SuslovTop
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class InvariantCurve:
+    r"""The displacements with one reduced constrained energy.
+
+    Attributes:
+        discrete: The discretised system.
+        energy: The energy, in physical units.
+        components: Connected curves, each of shape (K, c), as points of the variety in the canonical frame: unit
+            vectors $(z_0, z_1, z_2)$ of a top, which mean the same with the other sign, or $(\Delta, \nu)$ of a
+            sleigh, where $(\Delta + 2\pi, -\nu)$ means the same. They are continuous. No component: no displacement
+            has so large an energy.
+    """
+
+    discrete: Discretization
+    energy: float
+    components: tuple[Float[np.ndarray, "K c"], ...]
+
+    @property
+    def displacement(self) -> tuple[Float[np.ndarray, "K N N"], ...]:
+        """The displacements, for each component."""
+        return tuple(displacement_at(self.discrete, points) for points in self.components)
+
+    @property
+    def momentum(self) -> tuple[Float[np.ndarray, "K 3"], ...]:
+        """The body momenta, a curve on the momentum locus for each component."""
+        return tuple(momentum_at(self.discrete, points) for points in self.components)
+
+    def over(self, direction: float) -> Float[np.ndarray, "m c"]:
+        """Return the points, two at most, with a direction of z (tops, z_0 >= 0) or with a step angle (sleighs)."""
+        return level_of(self.discrete, self.energy).over(direction)
+
+
+def level_of(discrete: Discretization, energy: float) -> TopLevel | SleighLevel:
+    """Return the equation of the level."""
+    system, time_step = discrete.system, float(discrete.time_step)
+    if isinstance(system, ChaplyginSleigh):
+        return SleighLevel.of(system, energy * time_step**2)
+    return TopLevel.of(cast(SuslovTop, system), energy * time_step**2)
+
+
+def invariant_curve(discrete: Discretization, energy: Array, resolution: int = 400) -> InvariantCurve:
+    r"""Return the curve of displacements with a reduced constrained energy, all its components.
+
+    The map has several values, and each of them keeps the energy: from a point of the curve it leads to other points
+    of the curve. For a top, with $z = \sqrt\rho\,u$, $|u| = 1$, and the notation of the theory page,
+
+    $$ \tfrac{h^2}2 E = (u\cdot Bu)\,\bigl(\rho - (1 - (c\cdot u^\perp)^2/D)\rho^2\bigr); $$
+
+    for a sleigh, with $x = \sin^2(\Delta/2)$, the angles that occur satisfy $4x(I - Jx) \le 2Eh^2$, and over each
+    there are two translations. A component about the identity exists for every energy below the largest.
+
+    Reference: [fedorov-zenkov-2004], equations (sus_int) and (quatern_int); docs/theory/momentum-locus.md.
+
+    Args:
+        discrete: A top with n = 3 or a sleigh, discretised with "matrix" and "skew".
+        energy: The energy, positive.
+        resolution: Points for each arc.
+
+    Raises:
+        ValueError: Another system, another discretisation, an energy that is not positive.
+
+    Example:
+        >>> top = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.5)
+        >>> curve = invariant_curve(top, 0.5)
+        >>> len(curve.components)  # about the identity, and about a half-turn
+        2
+        >>> bool(np.ptp(top.system.constrained_energy(top.system.restrict(curve.momentum[1]))) < 1e-14)
+        True
+    """
+    checked = closed_form("invariant_curve(discrete=...)", discrete)
+    level = float(positive("invariant_curve(energy=...)", energy, "An orbit has one: `orbit.energy[0]`."))
+    rows = count("invariant_curve(resolution=...)", resolution, "Pass the points of an arc.")
+    return InvariantCurve(checked, level, level_of(checked, level).components(rows))

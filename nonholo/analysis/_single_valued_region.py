@@ -1,0 +1,90 @@
+r"""Up to which energy the discrete Chaplygin sleigh has exactly one real branch.
+
+The branches at scaled momenta $(\pi, \hat p)$ are the tangents of a deltoid; energy levels are ellipses. Theory:
+docs/theory/critical-energies-and-limits.md and docs/theory/chaplygin-sleigh.md.
+"""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from nonholo._checks import error
+from nonholo._types import Float
+from nonholo.discrete import Discretization
+from nonholo.systems import ChaplyginSleigh
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class SingleValuedRegion:
+    """Where the discrete sleigh has one real branch, and where its branches merge.
+
+    Attributes:
+        energy: The sharp bound: below it every momentum has exactly one real branch, and at it one has more.
+        bound_of_the_paper: The bound printed in the paper, between 3.79 and 4 times smaller.
+        contact: Momenta (p_theta, p_1) at the sharp bound where real branches merge, shape (j, 2).
+        cusps: Momenta (p_theta, p_1) of the three cusps of the deltoid, where all three branches merge, shape (3, 2).
+    """
+
+    energy: float
+    bound_of_the_paper: float
+    contact: Float[np.ndarray, "j 2"]
+    cusps: Float[np.ndarray, "3 2"]
+
+
+def single_valued_region(sleigh: Discretization) -> SingleValuedRegion:
+    r"""Return the energy below which the discrete sleigh is single-valued.
+
+    With $M = ma^2$ and $I = J + M$
+
+    $$ E^* = \frac{1}{2Mh^2}\,\min\Bigl\{4M^2,\ \bigl(\tfrac J4 - 2M\bigr)^2 + \frac{27MJ^2}{16\,I}\Bigr\}, \qquad
+       E_\mathrm{paper} = \frac{M}{2h^2} . $$
+
+    On $E < E^*$ the momentum $\pi = p_\theta + bp_1$ keeps its sign and $ap_1$ grows: the orbit runs from one straight
+    motion to the opposite one.
+
+    Reference: [fedorov-zenkov-2004], the theorem of section 7, which is not sharp.
+
+    Args:
+        sleigh: A discretised `ChaplyginSleigh`, difference "matrix", constraint "skew" or "exponential".
+
+    Raises:
+        ValueError: Another system or discretisation, or a = 0 (then two branches are real however small the energy).
+
+    Example:
+        >>> found = single_valued_region(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1))
+        >>> print(f"{found.energy:.10f} {found.bound_of_the_paper:.10f}")
+        50.0000000000 12.5000000000
+    """
+    system, h = _checked("single_valued_region(sleigh=...)", sleigh)
+    J, M, a = float(system.inertia), float(system.mass * system.a**2), float(system.a)
+    cusp_at = 3 * np.sqrt(3) / 4 * J, J / 4
+    cusps = np.array([[0.0, -2 * J], [-cusp_at[0], cusp_at[1]], cusp_at])
+    ratio = J / M  # the two entries divided by 4 M^2; Python numbers do not overflow where a tends to zero
+    at_cusp = (ratio / 8 - 1) ** 2 + 27 * ratio * (ratio / (1 + ratio)) / 64
+    touching = [[0.0, 0.0]] if at_cusp > 1 else cusps[1:] if at_cusp < 1 else [[0.0, 0.0], *cusps[1:]]
+    return SingleValuedRegion(
+        energy=float(2 * M / h**2 * min(1.0, at_cusp)),
+        bound_of_the_paper=float(M / (2 * h**2)),
+        contact=_momenta(np.array(touching), M, a, h, float(system.b)),
+        cusps=_momenta(cusps, M, a, h, float(system.b)),
+    )
+
+
+def _checked(where: str, discrete: Any) -> tuple[ChaplyginSleigh, float]:
+    remedy = "Pass `discretize(ChaplyginSleigh(...), time_step)`."
+    if not isinstance(discrete, Discretization) or not isinstance(discrete.system, ChaplyginSleigh):
+        raise error(where, "be a discretised Chaplygin sleigh", repr(discrete), remedy)
+    if not discrete.conserves_energy:
+        got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
+        raise error(where, "be the map with three branches", got, "Use the defaults of `discretize`.")
+    if discrete.system.a == 0:
+        remedy = "A balanced sleigh has two real branches, with angles D and pi - D, at every |p_theta + b p_1| < J/h."
+        raise error(where, "have its centre of mass off the blade's normal", "a = 0", remedy)
+    return discrete.system, float(discrete.time_step)
+
+
+def _momenta(plane: Float[np.ndarray, "j 2"], M: float, a: float, h: float, b: float) -> Float[np.ndarray, "j 2"]:
+    r"""Return $(p_\theta, p_1)$ of scaled points $(\pi, \hat p)$, $\hat p = ap_1 + 2M$."""
+    p1 = (plane[:, 1] - 2 * M) / (a * h)
+    return np.stack([plane[:, 0] / h - b * p1, p1], axis=1)

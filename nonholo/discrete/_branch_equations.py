@@ -1,0 +1,185 @@
+r"""The momentum equations of tops and sleighs on the sphere over their displacement variety, in units of the body.
+
+A displacement of $\exp\mathfrak{d}$ is a pair $\pm(z_0, z)$ with $z_0^2 + z\cdot z = 1$, of a sleigh also a length
+$u$; angle $\pi$ is $z_0 = 0$, and no other sheet exists here. Roots are found in `_branch_roots`.
+
+Reference: docs/theory/branches.md.
+"""
+
+import dataclasses
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nonholo._checks import error
+from nonholo._types import Array, Float
+from nonholo.systems import ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
+
+if TYPE_CHECKING:
+    from nonholo.discrete._discretization import Discretization
+
+_BALANCED = 8 * np.finfo(np.float64).eps  # coupling, relative to the inertia, that counts as zero
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Equations:
+    r"""The equations $z_0 B_1z + (z\cdot z)c - (c\cdot z)z + \tfrac\alpha2 uz = r$, $uz_0 - 2\alpha z\cdot z = p$.
+
+    Attributes:
+        stiffness: Diagonal of B, with B_1 = B + alpha^2.
+        coupling: c.
+        target: r.
+        lever: alpha; None for a top, which has no u and no p.
+        push: p.
+    """
+
+    stiffness: Float[Array, "k"]
+    coupling: Float[Array, "k"]
+    target: Float[Array, "k"]
+    lever: float | None = None
+    push: complex = 0.0
+
+    @property
+    def arm(self) -> float:
+        """The lever, zero for a top."""
+        return 0.0 if self.lever is None else self.lever
+
+    @property
+    def is_balanced(self) -> bool:
+        """Whether the equations are odd: two roots only."""
+        return self.arm == 0 and not np.any(self.coupling)
+
+    @property
+    def count(self) -> int:
+        """Number of complex roots in general."""
+        k = len(self.stiffness)
+        return 2 if self.is_balanced else 2 * k + (self.arm != 0)
+
+    def residual(self, x: Float[Array, "m"]) -> tuple[Float[Array, "m"], Float[Array, "m"]]:
+        """Return the equations, the last one that of the sphere, and the sizes of their terms."""
+        b, c, a = self.stiffness + self.arm**2, self.coupling, self.arm
+        z0, z, u = _parts(self, x)
+        along, square, length = c @ z, z @ z, np.abs(z) @ np.abs(z)
+        rows = [*(z0 * b * z + square * c - along * z + a / 2 * u * z - self.target), z0 * z0 + square - 1]
+        factor = np.abs(z0 * b) + np.abs(along) + np.abs(a * u)
+        sizes = [*(factor * np.abs(z) + length * np.abs(c) + np.abs(self.target)), 1 + abs(z0) ** 2 + length]
+        if self.lever is not None:
+            rows.insert(-1, u * z0 - 2 * a * square - self.push)
+            sizes.insert(-1, abs(u * z0) + 2 * abs(a) * length + abs(self.push))
+        return np.array(rows), np.array(sizes)
+
+    def slope(self, x: Float[Array, "m"]) -> Float[Array, "m m"]:
+        """Return the derivative of the residual."""
+        b, c, a, k = self.stiffness + self.arm**2, self.coupling, self.arm, len(self.stiffness)
+        z0, z, u = _parts(self, x)
+        J = np.zeros((len(x), len(x)), dtype=np.result_type(x, c, b))
+        J[:k, 0] = b * z
+        J[:k, 1 : k + 1] = np.diag(z0 * b - c @ z + a / 2 * u) + 2 * np.outer(c, z) - np.outer(z, c)
+        if self.lever is not None:
+            J[:k, -1] = a / 2 * z
+            J[k, 0], J[k, 1:-1], J[k, -1] = u, -4 * a * z, z0
+        J[-1, 0], J[-1, 1 : k + 1] = 2 * z0, 2 * z
+        return J
+
+    def regularity(self, x: Float[Array, "m"]) -> float:
+        """Return the least singular value of the derivative along the sphere, one at the identity, zero at a fold."""
+        J = self.slope(x)
+        along = np.linalg.svd(J[-1:])[2][1:].conj().T
+        inertia = np.ones(len(x) - 1)
+        inertia[: len(self.stiffness)] = np.abs(self.stiffness + self.arm**2)
+        return float(np.linalg.svd((J[:-1] @ along) / inertia[:, None], compute_uv=False)[-1])
+
+
+def _parts(equations: Equations, x: Array) -> tuple[Array, Array, Array]:
+    k = len(equations.stiffness)
+    return x[0], x[1 : k + 1], (x[-1] if equations.lever is not None else 0.0)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Frame:
+    r"""How a body in its canonical frame is brought to its equations.
+
+    Attributes:
+        axes: Columns are principal axes of B.
+        stiffness: Eigenvalues of B over `inertia`.
+        coupling: c in these axes over `inertia`.
+        inertia: Largest eigenvalue of B_1, the unit of inertia.
+        length: The unit of length; None for a top.
+        lever: a_1 over `length`; None for a top.
+        offset: The centre of mass across axis 1; empty for a top.
+    """
+
+    axes: Float[np.ndarray, "k k"]
+    stiffness: Float[np.ndarray, "k"]
+    coupling: Float[np.ndarray, "k"]
+    inertia: float
+    length: float | None
+    lever: float | None
+    offset: Float[np.ndarray, "j"]
+
+    def equations(self, momentum: Float[np.ndarray, "m"]) -> Equations:
+        """Return the equations for canonical restricted momenta, multiplied by the time step."""
+        if self.length is None:
+            return Equations(self.stiffness, self.coupling, self.axes.T @ momentum / (2 * self.inertia))
+        along, k = momentum[-1], len(self.stiffness)
+        turning = momentum[:-1] if k > 1 else -momentum[:-1]  # on SE(2) the plane e_1^e_2 turns against omega
+        r = self.axes.T @ (turning - self.offset * along) / (2 * self.inertia)
+        return Equations(self.stiffness, self.coupling, r, self.lever, along * self.length / self.inertia)
+
+    def increment(self, x: Float[Array, "m"]) -> Float[Array, "N N"]:
+        """Return the canonical displacement minus the identity, without cancellation."""
+        k = len(self.stiffness)
+        z0, z = x[0], self.axes @ x[1 : k + 1]
+        if self.length is None:
+            q, sign = np.append(z, z0), np.append(-np.ones(k), 1.0)
+            X = 2 * np.outer(q, q) * sign
+            X[-1, -1] = -2 * (z @ z)
+            return X
+        q, sign = np.append(z0, -z), np.append(1.0, -np.ones(k))
+        X = np.zeros((k + 2, k + 2), dtype=x.dtype)
+        X[:-1, :-1] = 2 * np.outer(q, q) * sign
+        X[0, 0] = -2 * (z @ z)
+        X[:-1, -1] = (self.length * x[-1] - 2 * self.offset @ z) * q
+        return X
+
+    def point(self, W: Float[np.ndarray, "N N"]) -> Float[np.ndarray, "m"]:
+        """Return the point over a canonical displacement of the variety."""
+        n = len(self.stiffness) + 1
+        sign = -np.ones(n)
+        sign[-1 if self.length is None else 0] = 1.0
+        square = (np.eye(n) + W[:n, :n] * sign) / 2  # q q^T
+        best = int(np.argmax(np.diag(square)))
+        q = square[best] / np.linalg.norm(square[best])
+        if self.length is None:
+            return np.append(q[-1], self.axes.T @ q[:-1])
+        nu, z = W[:-1, -1] @ q, -q[1:]
+        return np.concatenate([q[:1], self.axes.T @ z, [(nu + 2 * self.offset @ z) / self.length]])
+
+
+def frame_of(where: str, discrete: "Discretization") -> Frame:
+    """Return the frame of a system whose branches are known, or refuse it."""
+    system = discrete.system.canonical if isinstance(discrete.system, SuslovTop | ChaplyginSleigh) else discrete.system
+    known = isinstance(system, SuslovTop | ChaplyginSleigh | MultidimensionalSleigh)
+    if not known or discrete.difference != "matrix" or discrete.constraint not in ("skew", "exponential"):
+        requirement = "be a SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference 'matrix'"
+        got = f"{type(system).__name__}, difference {discrete.difference!r}, constraint {discrete.constraint!r}"
+        remedy = "Discretise one of them with constraint 'skew' or 'exponential'; of others only the principal "
+        raise error(where, requirement, got, remedy + "branch is computed (`step`, `simulate`).")
+    if isinstance(system, SuslovTop):
+        return _frame(system.constrained_inertia, system.coupling, None, 0.0, np.zeros(0))
+    if isinstance(system, ChaplyginSleigh):
+        inertia = np.array([[system.inertia]])
+        return _frame(inertia, np.zeros(1), system.mass, system.a, np.zeros(1))
+    J, a = np.asarray(system.mass_tensor), np.asarray(system.center_of_mass)
+    return _frame(J[1:, 1:] + J[0, 0] * np.eye(len(J) - 1), -J[0, 1:], system.mass, a[0], a[1:])
+
+
+def _frame(B: np.ndarray, c: np.ndarray, mass: float | None, a: float, offset: np.ndarray) -> Frame:
+    eigenvalues, axes = np.linalg.eigh(B)
+    unit = float(eigenvalues[-1] + (0.0 if mass is None else mass * a * a))
+    length = None if mass is None else float(np.sqrt(unit / mass))
+    coupling = axes.T @ c / unit
+    if np.linalg.norm(coupling) <= _BALANCED:
+        coupling = np.zeros_like(coupling)
+    lever = None if length is None else float(a / length)
+    return Frame(axes, eigenvalues / unit, coupling, unit, length, lever, offset)

@@ -1,0 +1,203 @@
+r"""All values of the multivalued discrete map, complex ones included, and what tells them apart.
+
+Reference: [fedorov-zenkov-2004], section 3; docs/theory/branches.md. The equations are in `_branch_equations`, their
+roots in `_branch_roots`; which value a run takes is not decided here.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from nonholo._checks import array, error
+from nonholo._types import Array, Float
+from nonholo.discrete._branch_equations import Frame, frame_of
+from nonholo.discrete._branch_values import SAME, Branches, values_over
+from nonholo.discrete._discretization import Discretization, as_discretization
+from nonholo.discrete._legendre import legendre
+from nonholo.groups import AbstractMatrixGroup
+
+_ON_VARIETY = 1e-9  # relative distance from the displacement variety
+_ROUNDING = 1e-13
+
+
+def displacements_over(
+    discrete: Discretization, restricted_momentum: Float[np.ndarray, "k"], certify: bool = False
+) -> Branches:
+    r"""Find every displacement whose discrete momentum has given components along the constraint subspace.
+
+    Solves, on the displacement variety $S$, for real and complex matrices,
+
+    $$ \langle P(W), e_i\rangle = r_i, \qquad i = 1, \dots, k, \qquad W \in S. $$
+
+    There are 3 solutions for a Chaplygin sleigh, 2(n-1) for a Suslov top on SO(n) and 2n-1 for a sleigh on SE(n),
+    counted with multiplicity. Fewer if some are at infinity (a balanced body: 2) or not isolated. Matrices of angle
+    $\pi$ that satisfy $(W - W^{-1})/2 \in \mathfrak{d}$ without lying on the variety are no solutions.
+
+    Reference: [fedorov-zenkov-2004], section 3, item 3; docs/theory/branches.md.
+
+    Args:
+        discrete: A discretised SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference "matrix".
+        restricted_momentum: r, in physical units.
+        certify: Not offered yet.
+
+    Raises:
+        ValueError: Another system or difference, a wrong shape, a value that is not finite, `certify=True`.
+
+    Example:
+        A top has four values, here two of them complex:
+
+        >>> top = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.5)
+        >>> found = displacements_over(top, [0.1, -0.05])
+        >>> found.is_real, found.principal
+        (array([ True,  True, False, False]), 0)
+    """
+    where = "displacements_over"
+    frame = _checked(where, discrete, certify)
+    r = _restricted(f"{where}(restricted_momentum=...)", discrete, restricted_momentum)
+    return values_over(discrete, frame, r)
+
+
+def branches(
+    discrete: Discretization, *, momentum: Any = None, displacement: Any = None, certify: bool = False
+) -> Branches:
+    r"""Find every value of the discrete map: all $W'$ that may follow a displacement $W$.
+
+    $$ P(W')|_{\mathfrak{d}} = (\mathrm{Ad}^*_W P(W))|_{\mathfrak{d}}, \qquad W' \in S. $$
+
+    Reference: [fedorov-zenkov-2004], equation (disc.momentum.eqn); docs/theory/branches.md.
+
+    Args:
+        discrete: As in `displacements_over`.
+        momentum: A full momentum on the locus, whose W is `inverse_discrete_legendre`, or components along the
+            constraint subspace, whose W is the principal displacement.
+        displacement: W itself, real and on the displacement variety.
+        certify: Not offered yet.
+
+    Raises:
+        ValueError: As `displacements_over` and `inverse_discrete_legendre`; none or both of momentum and displacement;
+            components that no principal displacement has; a displacement off the variety.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), time_step=0.1)
+        >>> found = branches(sleigh, momentum=[1.0, 0.2])
+        >>> after = nh.step(sleigh, np.array([1.0, 0.2]))
+        >>> bool(np.allclose(found.momentum[found.principal], after.momentum))
+        True
+    """
+    frame = _checked("branches", discrete, certify)
+    if (momentum is None) == (displacement is None):
+        got = "none" if momentum is None else "both"
+        raise error("branches(...)", "be given momentum or displacement", got, "Choose one.")
+    group = discrete.system.group
+    if displacement is not None:
+        where = "branches(displacement=...)"
+        X = array(where, displacement, group.identity.shape, f"Pass an element of {group}.") - group.identity
+        _point(where, discrete, frame, X + group.identity)
+    else:
+        X = _before("branches(momentum=...)", discrete, frame, momentum)
+    return values_over(discrete, frame, discrete.system.restrict(legendre(discrete, X, "right")))
+
+
+def inverse_discrete_legendre(discrete: Discretization, momentum: Float[np.ndarray, "dim"]) -> Float[Array, "N N"]:
+    r"""Return the displacement that a full momentum on the momentum locus belongs to: $P(W) = p$, $W \in S$.
+
+    Where the locus meets itself several displacements have one momentum: the principal one is returned.
+
+    Args:
+        discrete: As in `displacements_over`.
+        momentum: p, all components.
+
+    Raises:
+        ValueError: A momentum off the locus, named with its distance from the points of the locus that have the same
+            components along the constraint subspace; one of several displacements none of which is principal; as
+            `displacements_over`.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), time_step=0.1)
+        >>> W = nh.SE(2).exp(np.array([2.0, 0.3, 0.0]))
+        >>> bool(np.allclose(inverse_discrete_legendre(sleigh, nh.discrete_legendre(sleigh, W)), W))
+        True
+    """
+    where = "inverse_discrete_legendre"
+    frame = _checked(where, discrete, False)
+    return _inverse(f"{where}(momentum=...)", discrete, frame, momentum) + discrete.system.group.identity
+
+
+def fold_distance(discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> float:
+    r"""Return how regular the restricted Legendre map is at a displacement: 1 at the identity, 0 at a fold.
+
+    The least singular value of $(\mathbb{I}|_{\mathfrak{d}})^{-1}\,d(hP|_{\mathfrak{d}})$ along the displacement
+    variety, whose points are written $\pm(z_0, z)$ on the sphere $z_0^2 + |z|^2 = 1$, of a sleigh with a length too;
+    all in the body's units of inertia and length. It depends on no unit and not on the time step.
+
+    Args:
+        discrete: As in `displacements_over`.
+        displacement: W, real and on the displacement variety.
+
+    Raises:
+        ValueError: A displacement off the variety; as `displacements_over`.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.0), time_step=0.1)
+        >>> quarter = nh.SE(2).exp(np.array([np.pi / 2, 0.0, 0.0]))  # a = 0: the momentum J sin(angle)/h folds here
+        >>> fold_distance(sleigh, np.eye(3)), round(fold_distance(sleigh, quarter), 12)
+        (1.0, 0.0)
+    """
+    where = "fold_distance(displacement=...)"
+    frame = _checked("fold_distance", discrete, False)
+    group: AbstractMatrixGroup = discrete.system.group
+    W = array(where, displacement, group.identity.shape, f"Pass an element of {group} as a matrix.")
+    x = _point(where, discrete, frame, W)
+    return frame.equations(np.zeros(len(discrete.system.constraint_subspace))).regularity(x)
+
+
+def _checked(owner: str, discrete: Discretization, certify: bool) -> Frame:
+    frame = frame_of(f"{owner}(discrete=...)", as_discretization(f"{owner}(discrete=...)", discrete))
+    if certify:
+        raise error(f"{owner}(certify=...)", "be False", "True", "Certified enclosures are not offered yet.")
+    return frame
+
+
+def _restricted(where: str, discrete: Discretization, momentum: Any) -> Float[np.ndarray, "k"]:
+    k = len(discrete.system.constraint_subspace)
+    return array(where, momentum, (k,), f"Pass the {k} components along the constraint subspace.")
+
+
+def _before(where: str, discrete: Discretization, frame: Frame, momentum: Any) -> Float[np.ndarray, "N N"]:
+    """Return the displacement minus the identity that a full or restricted momentum belongs to."""
+    if np.shape(momentum) != (len(discrete.system.constraint_subspace),):
+        return _inverse(where, discrete, frame, momentum)
+    found = values_over(discrete, frame, _restricted(where, discrete, momentum))
+    if found.principal is None:
+        remedy = "Pass a full momentum or the displacement, or take a smaller time_step."
+        raise error(where, "have a principal displacement", "components that it does not reach", remedy)
+    return found.displacement[found.principal].real - discrete.system.group.identity
+
+
+def _inverse(where: str, discrete: Discretization, frame: Frame, momentum: Any) -> Float[np.ndarray, "N N"]:
+    system = discrete.system
+    p = array(where, momentum, (system.group.dim,), "Pass all components of a body momentum.")
+    found = values_over(discrete, frame, system.restrict(p))
+    missed = np.where(found.is_real, np.linalg.norm(found.momentum - p, axis=1), np.inf)
+    rounding = _ROUNDING * np.abs(found.momentum).max(initial=0.0)  # matters at rest
+    near = np.flatnonzero(missed <= SAME * np.linalg.norm(p) + rounding)
+    if len(near) == 0:
+        got = f"distance {missed.min():.3g}" if found.is_real.any() else "components that no displacement has"
+        raise error(where, "lie on the momentum locus", got, "Make it with `discrete_legendre`.")
+    if len(near) > 1 and found.principal not in near:
+        got = f"a momentum that {len(near)} of them have"
+        raise error(where, "determine the displacement", got, "Use `displacements_over` and choose.")
+    best = near[0] if len(near) == 1 else found.principal
+    return found.displacement[best].real - system.group.identity
+
+
+def _point(where: str, discrete: Discretization, frame: Frame, W: np.ndarray) -> Float[np.ndarray, "m"]:
+    """Return the point over a real displacement, refused with its distance from the variety."""
+    system = discrete.system
+    canonical = system.group.inverse(system.frame) @ W @ system.frame
+    x = frame.point(canonical)
+    missed = float(np.linalg.norm(frame.increment(x) + np.eye(len(W)) - canonical))
+    if not missed <= _ON_VARIETY * np.linalg.norm(W):
+        remedy = "Build it as `group.exp(x)` with x admissible."
+        raise error(where, "lie on the displacement variety", f"a matrix at distance {missed:.3g}", remedy)
+    return x

@@ -1,0 +1,222 @@
+"""The momentum locus in space: the translucent surface, its singular lines and points, an orbit on it."""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from mpl_toolkits.mplot3d.art3d import Line3D, Path3DCollection, Poly3DCollection
+from mpl_toolkits.mplot3d.axes3d import Axes3D
+
+from nonholo._checks import error
+from nonholo._types import Float
+from nonholo.analysis import InvariantCurve, MomentumLocus
+from nonholo.orbit import Orbit
+from nonholo.plotting import _theme as theme
+from nonholo.plotting._subject import drawable
+from nonholo.plotting._thinning import evenly_in_box
+from nonholo.systems import ChaplyginSleigh
+
+_MOST_DOTS = 600
+_SHEET = "#9cc4dd"
+_OPACITY = 0.42
+_VIEWS = {True: (24.0, -52.0), False: (26.0, -58.0)}  # elevation and azimuth: sleigh, top
+_LABELS = {
+    True: ("$p_1$, along the blade", "$p_2$, across", r"$p_\theta + bp_1 - ap_2$"),
+    False: ("$P_1$", "$P_2$", "$P_3$"),
+}
+_FLAT = 1e-9
+_WHISKER = 0.22  # of the length of its segment
+
+
+@dataclasses.dataclass(frozen=True)
+class MomentumLocusPicture:
+    """What `momentum_locus` drew; None where there was nothing to draw.
+
+    Attributes:
+        axes: The axes in space.
+        surface: The mesh.
+        double_lines: Segments along which the surface meets itself.
+        whiskers: Pieces of the same lines where the equation holds, off the surface.
+        pinch_points: Ends of the segments.
+        triple_point: Where three segments meet.
+        curves: The components of the curve of one energy.
+        rest: Momentum zero, the momentum of the identity.
+        orbit: The momenta of a discrete orbit, coloured by time.
+    """
+
+    axes: Axes3D
+    surface: Poly3DCollection
+    double_lines: tuple[Line3D, ...]
+    whiskers: tuple[Line3D, ...]
+    pinch_points: Path3DCollection | None
+    triple_point: Path3DCollection | None
+    curves: tuple[Line3D, ...]
+    rest: Path3DCollection | None
+    orbit: Path3DCollection | None
+
+
+@theme.styled
+def momentum_locus(
+    locus: MomentumLocus,
+    orbit: Orbit | None = None,
+    curve: InvariantCurve | None = None,
+    axes: Axes3D | None = None,
+    view: tuple[float, float] | None = None,
+) -> MomentumLocusPicture:
+    """Draw the surface of discrete momenta, where it meets itself, where it is pinched, and an orbit that runs on it.
+
+    Lines along which the surface meets itself are solid between their pinch points and dashed beyond: there the
+    equation of the surface still holds, but no real displacement has such a momentum. Axes are components of the body
+    momentum, each with its own scale; for a sleigh the angular momentum is that about the centre of mass.
+
+    Reference: [fedorov-zenkov-2004], equation (Steiner).
+
+    Args:
+        locus: What `nh.momentum_locus` returned.
+        orbit: A discrete orbit of the same system.
+        curve: What `nh.invariant_curve` returned: all momenta of one energy, on the surface.
+        axes: Axes in space; new ones by default.
+        view: Elevation and azimuth of the eye in degrees.
+
+    Raises:
+        ValueError: No locus, an orbit of another discretisation.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.5)
+        >>> picture = nh.plot.momentum_locus(nh.momentum_locus(sleigh, resolution=20))
+        >>> len(picture.double_lines), len(picture.whiskers)
+        (1, 2)
+    """
+    where = "plot.momentum_locus"
+    if not isinstance(locus, MomentumLocus):
+        raise error(f"{where}(locus=...)", "be a locus", repr(locus), "Pass what `nh.momentum_locus` returned.")
+    own_orbit(f"{where}(orbit=...)", orbit, locus.discrete)
+    space: Any = _new_axes() if axes is None else axes
+    drawn = _drawn(locus.discrete.system)
+    surface = _surface(space, locus.momentum @ drawn)
+    doubles = tuple(_segment(space, ends @ drawn, linewidth=2.6) for ends in locus.double_lines)
+    whiskers = tuple(_segment(space, ends @ drawn, linewidth=1.6, dashes=(3, 2)) for ends in locus.whiskers(_WHISKER))
+    name(doubles, "meets itself")
+    name(whiskers, "equation alone")
+    pinch = _dots(space, locus.pinch_points @ drawn, s=44, facecolors="white", label="pinch points")
+    triple = None if locus.triple_point is None else locus.triple_point[None] @ drawn
+    triple_dot = _dots(space, triple, s=52, facecolors=theme.UNSTABLE, marker="D", label="triple point")
+    rest = space.scatter(0.0, 0.0, 0.0, s=26, color=theme.INK, depthshade=False, label="rest")
+    curves = tuple(_curve(space, points @ drawn) for points in (() if curve is None else curve.momentum))
+    name(curves, "one energy")
+    path = None if orbit is None else _orbit(space, orbit, drawn)
+    _dress(space, locus, view)
+    return MomentumLocusPicture(space, surface, doubles, whiskers, pinch, triple_dot, curves, rest, path)
+
+
+def own_orbit(where: str, orbit: Any, discrete: Any) -> None:
+    """Refuse an orbit that belongs to another discretised system."""
+    if orbit is None:
+        return
+    motion = drawable(where, orbit).motion
+    mine, theirs = ((repr(d.system), getattr(d, "time_step", None)) for d in (discrete, motion))
+    if mine != theirs:
+        raise error(where, "be an orbit of the same discretised system", repr(orbit), "Run `nh.simulate` with it.")
+
+
+def _new_axes() -> Any:
+    return Figure(figsize=(7.2, 6.4)).add_axes((-0.02, 0.01, 0.94, 0.97), projection="3d")
+
+
+def name(lines: tuple[Any, ...], label: str) -> None:
+    """Give the first of several artists a label."""
+    for line in lines[:1]:
+        line.set_label(label)
+
+
+def _drawn(system: Any) -> Float[np.ndarray, "3 3"]:
+    """Return what takes rows of momenta to the components that are drawn; for a sleigh p_1, p_2, and that about C."""
+    if not isinstance(system, ChaplyginSleigh):
+        return np.eye(3)
+    return np.array([[0.0, 0.0, 1.0], [1.0, 0.0, system.b], [0.0, 1.0, -system.a]])
+
+
+def _surface(axes: Any, momentum: Float[np.ndarray, "R C 3"]) -> Any:
+    x, y, z = np.moveaxis(momentum, -1, 0)
+    scaled = momentum / _spans(momentum)
+    normal = np.cross(np.gradient(scaled, axis=0), np.gradient(scaled, axis=1))
+    length = np.linalg.norm(normal, axis=-1, keepdims=True)
+    light = np.abs(normal / np.where(length > 0, length, 1.0) @ (np.array([0.35, -0.45, 0.82])))
+    shade = 0.55 + 0.45 * light[..., None]
+    colours = np.concatenate([shade * to_rgb(_SHEET), np.full(shade.shape, _OPACITY)], axis=-1)
+    rows, columns = x.shape
+    return axes.plot_surface(
+        x, y, z, facecolors=colours, rcount=rows, ccount=columns, linewidth=0, antialiased=False, shade=False
+    )
+
+
+def _spans(momentum: Float[np.ndarray, "R C 3"]) -> Float[np.ndarray, "3"]:
+    """Return the extent of each component; that of the largest where a surface is flat but for rounding."""
+    span = np.ptp(momentum.reshape(-1, 3), axis=0)
+    return np.where(span > _FLAT * span.max(), span, span.max())
+
+
+def _segment(axes: Any, ends: Float[np.ndarray, "2 3"], **look: Any) -> Any:
+    return axes.plot(*ends.T, color=theme.UNSTABLE, **look)[0]
+
+
+def _curve(axes: Any, momentum: Float[np.ndarray, "K 3"]) -> Any:
+    return axes.plot(*momentum.T, color=theme.DISCRETE, linewidth=1.3, zorder=7)[0]
+
+
+def _dots(axes: Any, points: Float[np.ndarray, "L 3"] | None, **look: Any) -> Any:
+    if points is None or len(points) == 0:
+        return None
+    return axes.scatter(*points.T, linewidths=1.5, depthshade=False, edgecolors=theme.UNSTABLE, **look)
+
+
+def _orbit(axes: Any, orbit: Orbit, drawn: Float[np.ndarray, "3 3"]) -> Any:
+    momentum = orbit.momentum @ drawn
+    chosen = evenly_in_box(orbit.reduced_momentum, _MOST_DOTS)
+    return axes.scatter(
+        *momentum[chosen].T,
+        c=orbit.time[chosen],
+        cmap=theme.TIME,
+        norm=theme.time_scale(orbit),
+        s=16,
+        linewidths=0,
+        depthshade=False,
+        label="orbit",
+        zorder=8,
+    )
+
+
+def _kind(locus: MomentumLocus) -> str:
+    if isinstance(locus.discrete.system, ChaplyginSleigh):
+        return "Plücker's conoid"
+    return "Steiner's surface" if len(locus.double_lines) else "a flat disc"
+
+
+def _dress(axes: Any, locus: MomentumLocus, view: tuple[float, float] | None) -> None:
+    is_sleigh = isinstance(locus.discrete.system, ChaplyginSleigh)
+    across, deep, up = _LABELS[is_sleigh]
+    axes.set(xlabel=across, ylabel=deep, zlabel=up)
+    span = _spans(locus.momentum)[2]
+    if not is_sleigh and np.ptp(locus.momentum[..., 2]) < span:
+        axes.set_zlim(-span / 4, span / 4)
+    elevation, azimuth = _VIEWS[is_sleigh] if view is None else view
+    axes.view_init(elevation, azimuth)
+    axes.set_box_aspect((1.0, 1.0, 0.85), zoom=1.0)
+    axes.computed_zorder = False
+    axes.grid(False)
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
+        axis.set_major_locator(MaxNLocator(4))
+        axis.line.set_color(theme.MUTED)
+    axes.text2D(
+        0.03,
+        0.97,
+        f"Momentum locus: {_kind(locus)}",
+        transform=axes.transAxes,
+        fontsize="large",
+        fontweight="bold",
+    )
+    axes.legend(loc="upper right", bbox_to_anchor=(1.02, 1.0))

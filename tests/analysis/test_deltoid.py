@@ -1,0 +1,92 @@
+"""The deltoid: the number of real branches by the roots of the cubic, cusps, boundary, resting ellipse."""
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.analysis import deltoid
+from nonholo.analysis._variety_points import displacement_at
+
+SLEIGHS = {
+    "sleigh": nh.ChaplyginSleigh(1.3, 0.7, 0.5, 0.3),
+    "backward": nh.ChaplyginSleigh(1.3, 0.7, -0.4, 0.2),
+    "heavy": nh.ChaplyginSleigh(6.0, 1.0, 0.7),
+}
+
+
+def cubic(sleigh: nh.ChaplyginSleigh, h: float, restricted: np.ndarray) -> np.ndarray:
+    """Return the coefficients of the cubic in t = tan(Delta/2)."""
+    pi, p_1 = h * (restricted[0] + sleigh.b * restricted[1]), h * restricted[1]
+    phat = sleigh.a * p_1 + 2 * sleigh.mass * sleigh.a**2
+    return np.array([phat, -pi, 2 * sleigh.inertia + phat, -pi])
+
+
+@pytest.mark.parametrize("sleigh", SLEIGHS.values(), ids=SLEIGHS)
+def test_counts_are_those_of_the_cubic(sleigh: nh.ChaplyginSleigh) -> None:
+    """At 2000 random momenta about the deltoid the count is the number of real roots; both counts occur often."""
+    found = deltoid(nh.discretize(sleigh, 0.4))
+    low, high = found.cusps.min(axis=0), found.cusps.max(axis=0)
+    momenta = np.random.default_rng(0).uniform(low - (high - low) / 5, high + (high - low) / 5, size=(2000, 2))
+    counts = found.real_branches(momenta)
+    roots = [np.roots(cubic(sleigh, 0.4, r)) for r in momenta]
+    assert np.array_equal(counts, [np.count_nonzero(abs(t.imag) < 1e-9) for t in roots])
+    assert np.mean(counts == 3) > 0.1
+    assert np.mean(counts == 1) > 0.1
+
+
+@pytest.mark.parametrize("sleigh", SLEIGHS.values(), ids=SLEIGHS)
+def test_two_roots_meet_on_the_boundary(sleigh: nh.ChaplyginSleigh) -> None:
+    """The discriminant of the cubic vanishes on the boundary, relative to its terms."""
+    found = deltoid(nh.discretize(sleigh, 0.4))
+    for r in found.boundary(50):
+        a, b, c, d = cubic(sleigh, 0.4, r)
+        terms = np.array([18 * a * b * c * d, -4 * b**3 * d, b * b * c * c, -4 * a * c**3, -27 * a * a * d * d])
+        assert abs(terms.sum()) <= 1e-12 * max(1.0, np.abs(terms).max())
+
+
+@pytest.mark.parametrize("sleigh", SLEIGHS.values(), ids=SLEIGHS)
+def test_cusps(sleigh: nh.ChaplyginSleigh) -> None:
+    """In (h pi, phat) they are (0, -2J) and (+-3 sqrt(3) J/4, J/4); the boundary has them at its thirds."""
+    found = deltoid(nh.discretize(sleigh, 0.4))
+    J, shift = sleigh.inertia, 2 * sleigh.mass * sleigh.a**2
+    planes = [(0.0, -2 * J), (3 * np.sqrt(3) / 4 * J, J / 4), (-3 * np.sqrt(3) / 4 * J, J / 4)]
+    for cusp, (pi, phat) in zip(found.cusps, planes, strict=True):
+        p_1 = (phat - shift) / sleigh.a / 0.4
+        assert np.allclose(cusp, [pi / 0.4 - sleigh.b * p_1, p_1], rtol=1e-13, atol=1e-13)
+    assert np.allclose(found.boundary(4)[[0, 1, 2]], found.cusps, atol=1e-12)
+
+
+@pytest.mark.parametrize("sleigh", SLEIGHS.values(), ids=SLEIGHS)
+def test_discriminant_is_the_product_of_differences(sleigh: nh.ChaplyginSleigh) -> None:
+    """For roots U = exp(i Delta) of the cubic in U it is the product of |U_j - U_k|^2, where all are real angles."""
+    found = deltoid(nh.discretize(sleigh, 0.4))
+    inside = 0.4 * found.cusps[0] + 0.35 * found.cusps[1] + 0.25 * found.cusps[2]
+    t = np.roots(cubic(sleigh, 0.4, inside)).real
+    U = (1 + 1j * t) ** 2 / (1 + t * t)
+    product = np.prod([abs(U[j] - U[k]) ** 2 for j, k in ((0, 1), (0, 2), (1, 2))])
+    assert np.isclose(found.discriminant(inside), product, rtol=1e-9)
+
+
+@pytest.mark.parametrize("sleigh", SLEIGHS.values(), ids=SLEIGHS)
+def test_resting_ellipse_has_no_translation(sleigh: nh.ChaplyginSleigh) -> None:
+    """It is the momentum of turns about the foot of the centre of mass, by the definition; V_1 = 0 there if b = 0."""
+    discrete = nh.discretize(sleigh, 0.4)
+    angle = np.linspace(0.0, 2 * np.pi, 13)
+    W = displacement_at(discrete, np.stack([angle, 0 * angle], axis=1))
+    expected = sleigh.restrict(nh.discrete_legendre(discrete, W))
+    assert np.allclose(deltoid(discrete).resting(13), expected, atol=1e-13)
+
+
+def test_steps_of_an_orbit_are_counted_once() -> None:
+    """A slow orbit, whose momenta satisfy the sharp bound of the theory page, has one real value at every step."""
+    sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+    orbit = nh.simulate(sleigh, body_velocity=(0.3, -1.0, 0.0), steps=50)
+    assert np.all(deltoid(sleigh).real_branches(orbit.restricted_momentum) == 1)
+
+
+def test_refuses_other_systems() -> None:
+    """Tops and balanced sleighs are refused in words."""
+    with pytest.raises(ValueError, match=r"`deltoid\(discrete=...\)` must be of a sleigh"):
+        deltoid(nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1))
+    with pytest.raises(ValueError, match=r"must have a != 0. .*two real values"):
+        deltoid(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1))

@@ -1,0 +1,130 @@
+"""Transverse rates and multipliers in closed form against differences of the vector field and of the discrete map."""
+
+import mpmath
+import numpy as np
+import pytest
+from bodies import mass_tensor
+
+import nonholo as nh
+from nonholo.systems import AbstractLLSystem
+
+RNG = np.random.default_rng(7)
+SYSTEMS = {
+    "top 3": nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]),
+    "top 3, tilted": nh.SuslovTop.from_inertia(
+        [[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3)
+    ),
+    "top 4": nh.SuslovTop(mass_tensor(nh.SO(4), RNG)),
+    "top 6": nh.SuslovTop(mass_tensor(nh.SO(6), RNG)),
+    "sleigh 2": nh.ChaplyginSleigh(1.3, 0.7, 0.4, 0.3),
+    "sleigh 2, backward": nh.ChaplyginSleigh(1.3, 0.7, -0.4, 0.3),
+    "sleigh 3": nh.MultidimensionalSleigh(1.3, [0.3, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1),
+    "sleigh 4": nh.MultidimensionalSleigh(0.8, [-0.3, 0.2, 0.1, 0.5], mass_tensor(nh.SO(4), RNG)),
+    "turning sleigh 3": nh.MultidimensionalSleigh(1.3, [0.0, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1),
+    "turning sleigh 4": nh.MultidimensionalSleigh(1.3, [0.0, 0.2, -0.1, 0.3], mass_tensor(nh.SO(4), RNG)),
+}
+STEP, ENERGY = 0.3, 0.4
+
+
+def _momentum(system: AbstractLLSystem, velocity: np.ndarray) -> np.ndarray:
+    return system.restrict(np.asarray(system.inertia_operator) @ velocity)
+
+
+def _spectrum(function: object, r: np.ndarray) -> np.ndarray:
+    """Return the eigenvalues of the central difference quotient of a function of the restricted momentum."""
+    e = 1e-5 * np.abs(r).max()
+    columns = [(function(r + e * d) - function(r - e * d)) / (2 * e) for d in np.eye(len(r))]
+    values = np.linalg.eigvals(np.array(columns).T)
+    assert np.abs(values.imag).max() <= 1e-6
+    return np.sort(values.real)
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_rates_are_those_of_the_vector_field(name: str) -> None:
+    """The linearised flow has the given rates, and zero along each direction of equilibria."""
+    system, found = SYSTEMS[name], nh.equilibria(SYSTEMS[name], ENERGY)
+    field, pose = nh.vector_field(system), system.group.identity.ravel()
+
+    def rate(r: np.ndarray) -> np.ndarray:
+        return field(0.0, np.concatenate([r, pose]))[: len(r)]
+
+    for sign in (1, -1):
+        r = sign * _momentum(system, found.velocity)
+        expected = np.sort(np.concatenate([sign * found.rates, np.zeros(len(found.subspace))]))
+        assert np.abs(rate(r)).max() <= 1e-14
+        assert np.abs(_spectrum(rate, r) - expected).max() <= 1e-7  # zero may be a Jordan block of the turning sleigh
+    assert np.all(found.rates < 0)
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_multipliers_are_those_of_the_map(name: str) -> None:
+    """The linearised step has the given multipliers, reciprocals on the repelling half, and 1 along equilibria."""
+    discrete = nh.discretize(SYSTEMS[name], STEP)
+    system, found = discrete.system, nh.equilibria(discrete, ENERGY)
+
+    def following(r: np.ndarray) -> np.ndarray:
+        return nh.simulate(discrete, momentum=r, steps=1, reconstruct=False).restricted_momentum[1]
+
+    for sign in (1, -1):
+        r = sign * _momentum(system, found.velocity)
+        expected = np.sort(np.concatenate([found.multipliers**sign, np.ones(len(found.subspace))]))
+        assert np.abs(following(r) - r).max() <= 1e-13
+        assert np.abs(_spectrum(following, r) - expected).max() <= 1e-7
+    assert np.all(np.abs(found.multipliers) < 1)
+
+
+@pytest.mark.parametrize("name", ["top 3", "sleigh 2"])
+def test_multiplier_in_thirty_digits(name: str) -> None:
+    """For n = 3 (D z0 - zeta q_c)/(D z0 + zeta q_c), for the sleigh (2I - a p_1)/(2I + a p_1), to 1e-14."""
+    system = SYSTEMS[name]
+    found = nh.equilibria(nh.discretize(system, STEP), ENERGY)
+    with mpmath.workdps(30):
+        h, E = mpmath.mpf(STEP), mpmath.mpf(ENERGY)
+        if name == "sleigh 2":
+            m, J, a = (mpmath.mpf(float(x)) for x in (system.mass, system.inertia, system.a))
+            push = h * a * mpmath.sqrt(2 * m * E)
+            expected = (2 * (J + m * a * a) - push) / (2 * (J + m * a * a) + push)
+        else:
+            (p, q), (_, r) = ([mpmath.mpf(x) for x in row] for row in system.constrained_inertia.tolist())
+            c = [mpmath.mpf(x) for x in system.coupling.tolist()]
+            D, qc, square = p * r - q * q, p * c[0] ** 2 + 2 * q * c[0] * c[1] + r * c[1] ** 2, c[0] ** 2 + c[1] ** 2
+            half = mpmath.asin(h * mpmath.sqrt(2 * E / qc * square)) / 2
+            z0, zeta = mpmath.cos(half), mpmath.sin(half) / mpmath.sqrt(square)
+            expected = (D * z0 - zeta * qc) / (D * z0 + zeta * qc)
+    assert abs(found.multipliers[0] - float(expected)) <= 1e-14
+
+
+def test_large_steps_alternate() -> None:
+    """For a large step the multiplier is negative, and the orbit then changes sides at each step."""
+    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 0.1, 0.4), 1.0)
+    found = nh.equilibria(discrete, energy=2.0)
+    assert -1 < found.multipliers[0] < 0
+    start = _momentum(discrete.system, found.velocity) + np.array([1e-6, 0.0])
+    orbit = nh.simulate(discrete, momentum=start, steps=4, reconstruct=False)
+    ratios = orbit.restricted_momentum[1:, 0] / orbit.restricted_momentum[:-1, 0]
+    assert np.abs(ratios - found.multipliers[0]).max() <= 1e-5
+
+
+@pytest.mark.parametrize("system", [nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), nh.ChaplyginSleigh(1.0, 1.0, 0.0)])
+def test_balanced_bodies_have_no_transverse_direction(system: AbstractLLSystem) -> None:
+    """Where all velocities stay constant the spectrum is empty."""
+    found = nh.equilibria(nh.discretize(system, 0.1))
+    assert found.attracting is None
+    assert found.velocity is None
+    assert found.rates.shape == found.multipliers.shape == (0,)
+    assert np.array_equal(found.subspace, system.constraint_subspace)
+
+
+@pytest.mark.parametrize(
+    ("subject", "options", "text"),
+    [
+        (nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), {}, "left-invariant"),
+        (SYSTEMS["top 3"], {"energy": 0.0}, "positive"),
+        (nh.discretize(SYSTEMS["top 3"], 2.0), {"energy": 5.0}, "90 degrees"),
+        (nh.discretize(SYSTEMS["top 3"], 0.1, difference="logarithmic"), {}, "conserve the energy"),
+    ],
+)
+def test_refusals(subject: object, options: dict, text: str) -> None:
+    """Systems without such equilibria, energies without a step and other maps are refused."""
+    with pytest.raises(ValueError, match=text):
+        nh.equilibria(subject, **options)

@@ -1,0 +1,139 @@
+"""Invariant curves: energy, closedness, the number of components, orbits that run on them."""
+
+import numpy as np
+import pytest
+from bodies import mass_tensor
+
+import nonholo as nh
+from nonholo.analysis._variety_points import points_of
+
+TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.5)
+TILTED = nh.discretize(nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 1.5]), axis=np.array([2.0, 1.0, 2.0]) / 3), 0.3)
+BALANCED = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.5)
+ROD = nh.discretize(nh.SuslovTop([[1.0, 0.1, 0.9], [0.1, 0.3, 0.2], [0.9, 0.2, 1.1]]), 0.5)  # D < 2 |c|^2
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3), 0.5)
+HEAVY = nh.discretize(nh.ChaplyginSleigh(6.0, 1.0, -0.5, 0.3), 0.5)  # m a^2 > J: no saddle
+EVEN = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.3), 0.5)
+
+CASES = [(TOP, e) for e in (0.3, 2.0, 4.4)]
+CASES += [(TILTED, 2.0), (BALANCED, 2.0), (BALANCED, 9.0), (ROD, 0.5), (ROD, 4.0)]
+CASES += [(SLEIGH, e) for e in (0.5, 2.1, 6.0)]
+CASES += [(HEAVY, 2.0), (HEAVY, 20.0), (EVEN, 0.5), (EVEN, 3.0)]
+
+# number of components below and above each critical energy; the last entry is above the largest
+COUNTS = [
+    (TOP, [0.5, 2.0, 4.4, 5.2], [2, 2, 2, 0]),
+    (SLEIGH, [1.9, 2.1, 3.3], [1, 2, 1]),
+    (HEAVY, [11.0, 13.0], [1, 1]),
+]
+
+
+@pytest.mark.parametrize(("discrete", "energy"), CASES)
+def test_every_point_has_the_energy(discrete: nh.Discretization, energy: float) -> None:
+    """Momenta of all points have the energy, by the definition; far out on the balanced sleigh rounding is larger."""
+    curve = nh.invariant_curve(discrete, energy)
+    assert curve.components
+    for p in curve.momentum:
+        assert np.allclose(discrete.system.constrained_energy(discrete.system.restrict(p)), energy, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("discrete", "energy"), CASES)
+def test_momenta_lie_on_the_locus(discrete: nh.Discretization, energy: float) -> None:
+    """The curve is part of the surface: the polynomial vanishes, to rounding, which grows with the degree three."""
+    implicit = nh.momentum_locus(discrete, 3).implicit
+    for p in nh.invariant_curve(discrete, energy).momentum:
+        assert np.abs(implicit(p)).max() <= 1e-12 * max(1.0, np.abs(0.5 * p).max() ** 3)
+
+
+@pytest.mark.parametrize(("discrete", "energy"), [case for case in CASES if case[0] is not EVEN])
+def test_curves_are_closed_and_continuous(discrete: nh.Discretization, energy: float) -> None:
+    """The last displacement is the first, and no step is larger than a few times the share of one point."""
+    for W in nh.invariant_curve(discrete, energy, 400).displacement:
+        assert np.allclose(W[0], W[-1], atol=1e-12)
+        steps = np.abs(np.diff(W, axis=0)).max(axis=(1, 2))
+        assert steps.max() < 0.02 * np.ptp(W.reshape(len(W), -1), axis=0).max()
+
+
+@pytest.mark.parametrize(("discrete", "energies", "counts"), COUNTS)
+def test_number_of_components(discrete: nh.Discretization, energies: list[float], counts: list[int]) -> None:
+    """Inner and outer curve of a top, two about its maxima, none above; the sleigh has a second one between saddles."""
+    assert [len(nh.invariant_curve(discrete, energy).components) for energy in energies] == counts
+
+
+def test_no_displacement_of_the_energy_is_missing() -> None:
+    """A curve found on a grid by the change of sign of the energy is covered, on the whole disc and strip."""
+    for discrete, energy in ((TOP, 2.0), (TOP, 4.4), (ROD, 2.0), (SLEIGH, 2.1)):
+        locus = nh.momentum_locus(discrete, 120)
+        system = discrete.system
+        values = system.constrained_energy(system.restrict(locus.momentum)) - energy
+        rows, columns = np.nonzero(values[:-1] * values[1:] < 0)
+        grid = locus.displacement[rows, columns].reshape(len(rows), 9)
+        near = np.concatenate([W.reshape(-1, 9) for W in nh.invariant_curve(discrete, energy).displacement])
+        miss = np.array([np.linalg.norm(near - W, axis=1).min() for W in grid])
+        assert miss.max() < 0.1  # the mesh of the sleigh has steps of 0.084 in translation, that of the top 0.026
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_curves_of_random_bodies(seed: int) -> None:
+    """Whatever the arcs that make them up: closed, without jumps, and every change of sign on a grid is near them."""
+    rng = np.random.default_rng(seed)
+    discrete = nh.discretize(nh.SuslovTop(mass_tensor(nh.SO(3), rng)), 1.0)
+    locus = nh.momentum_locus(discrete, 60)
+    energies = discrete.system.constrained_energy(discrete.system.restrict(locus.momentum))
+    energy = rng.uniform(0.02, 0.98) * energies.max()
+    curves = nh.invariant_curve(discrete, energy, 1000).displacement
+    for W in curves:
+        assert np.array_equal(W[0], W[-1])
+        assert np.abs(np.diff(W, axis=0)).max() < 0.2  # entries are between -1 and 1
+    near = np.concatenate([W.reshape(-1, 9) for W in curves])
+    grid = locus.displacement[:-1][(energies[:-1] - energy) * (energies[1:] - energy) < 0].reshape(-1, 9)
+    assert max(np.linalg.norm(near - W, axis=1).min() for W in grid) < 0.15  # steps of the grid are 0.075
+
+
+@pytest.mark.parametrize("fraction", [0.5, 1.0, 1.5])
+def test_sleigh_levels_at_their_critical_energies(fraction: float) -> None:
+    """Just below and above h^2 E = 2M a second oval appears; just above I^2/(2J) both have become one curve."""
+    sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5 * fraction)
+    M, whole = 0.25 * fraction**2, 1.0 + 0.25 * fraction**2
+    found = [
+        len(nh.invariant_curve(nh.discretize(sleigh, 0.5), 4 * level * side).components)
+        for level in (2 * M, whole**2 / 2)
+        for side in (1 - 1e-9, 1 + 1e-9)
+    ]
+    assert found == [1, 2, 2, 1]
+
+
+@pytest.mark.parametrize("discrete", [TOP, TILTED, BALANCED, SLEIGH, HEAVY, EVEN])
+def test_orbits_run_on_their_curve(discrete: nh.Discretization) -> None:
+    """Every displacement of an orbit is one of the two points of its curve over its direction, to 1e-10."""
+    orbit = nh.simulate(discrete, restricted_velocity=(0.5, -0.9), steps=80)
+    curve = nh.invariant_curve(discrete, orbit.energy[0])
+    for point in points_of(discrete, orbit.displacement):
+        if isinstance(discrete.system, nh.SuslovTop):
+            upper = point * (1.0 if point[0] >= 0 else -1.0)
+            found = curve.over(np.arctan2(upper[2], upper[1]))
+            assert np.abs(found - upper).max(axis=1).min() < 1e-10
+        else:
+            assert np.abs(curve.over(point[0]) - point).max(axis=1).min() < 1e-10
+
+
+def test_all_branches_stay_on_the_curve() -> None:
+    """The rational body with four real branches: the points over all of them have one energy and are on one level."""
+    top = nh.discretize(nh.SuslovTop([[1.25, 0.0, -0.5], [0.0, 1.0, -0.75], [-0.5, -0.75, 1.25]]), 1.0)
+    charts = np.array([[-1 / 4, -3 / 8], [-16 / 13, -24 / 13], [-3.81310876, -0.50880833], [7.60258244, -8.96487588]])
+    energies = top.system.constrained_energy(top.system.restrict(_momentum(top, charts)))
+    assert np.allclose(energies, energies[0], rtol=1e-8)  # the digits of the charts
+    curve = nh.invariant_curve(top, energies[0])
+    for y in charts:
+        z = np.array([1.0, *y]) / np.sqrt(1 + y @ y)
+        assert np.abs(curve.over(np.arctan2(y[1], y[0])) - z).max(axis=1).min() < 1e-7
+
+
+def _momentum(discrete: nh.Discretization, charts: np.ndarray) -> np.ndarray:
+    return nh.discrete_legendre(discrete, discrete.displaced(charts))
+
+
+def test_refuses_an_energy_that_is_not_positive() -> None:
+    """Energy zero is a point and not a curve: refused in words."""
+    with pytest.raises(ValueError, match=r"`invariant_curve\(energy=...\)` must be positive"):
+        nh.invariant_curve(TOP, 0.0)

@@ -1,0 +1,129 @@
+"""The sharp bound on the energy of the single-valued sleigh, against 30-digit minimisation and against the cubic."""
+
+import mpmath
+import numpy as np
+import pytest
+
+import nonholo as nh
+
+RATIOS = [0.01, 0.2, 0.499, 0.5, 0.501, 0.8, 0.8256, 0.8258, 1.0, 2.0, 5.0, 50.0]  # of m a^2 to J
+
+
+def _sleigh(ratio: float, step: float = 0.25, b: float = 0.0, sign: int = 1) -> nh.Discretization:
+    mass, inertia = 1.3, 0.7
+    return nh.discretize(nh.ChaplyginSleigh(mass, inertia, sign * np.sqrt(ratio * inertia / mass), b), step)
+
+
+def _real_branches(discrete: nh.Discretization, momentum: np.ndarray) -> int:
+    """Count the real roots of the cubic with numpy."""
+    s, h = discrete.system, discrete.time_step
+    pi, phat = h * (momentum[0] + s.b * momentum[1]), s.a * h * momentum[1] + 2 * s.mass * s.a**2
+    return int(np.sum(np.abs(np.roots([phat, -pi, 2 * s.inertia + phat, -pi]).imag) < 1e-9))
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_sharp_bound_to_ten_digits(ratio: float) -> None:
+    """It is the least energy on the deltoid: all stationary points in T = tan^2(D/2), the cusps and T = infinity."""
+    discrete = _sleigh(ratio)
+    with mpmath.workdps(30):
+        s = discrete.system
+        J, m, a, h = (mpmath.mpf(float(x)) for x in (s.inertia, s.mass, s.a, discrete.time_step))
+        M, I = m * a * a, J + m * a * a  # noqa: E741 the moment of inertia
+
+        def level(T: mpmath.mpf) -> mpmath.mpf:
+            pi2, phat = 16 * J**2 * T**3 / (1 + T) ** 4, -2 * J * (1 - T) / (1 + T) ** 2
+            return (m * pi2 + I * ((phat - 2 * M) / a) ** 2) / (2 * m * I * h**2)
+
+        angles = [mpmath.pi / 2 * k / 2000 for k in range(2000)]
+        least = min(angles, key=lambda x: level(mpmath.tan(x) ** 2))
+        edge = mpmath.pi / 2 * mpmath.mpf(1999) / 2000
+        candidates = [level(mpmath.tan(least) ** 2), level(mpmath.mpf(3)), level(mpmath.mpf(10) ** 40)]
+        if 0 < least < edge:
+            ends = least - mpmath.mpf(1) / 1000, least + mpmath.mpf(1) / 1000
+            for _ in range(90):  # golden section: a cusp of the level in T = 3 does no harm
+                left, right = (ends[0] + (ends[1] - ends[0]) * f for f in (mpmath.mpf("0.382"), mpmath.mpf("0.618")))
+                lower = level(mpmath.tan(left) ** 2) < level(mpmath.tan(right) ** 2)
+                ends = (ends[0], right) if lower else (left, ends[1])
+            candidates.append(level(mpmath.tan(ends[0]) ** 2))
+        assert abs(min(candidates) / nh.single_valued_region(discrete).energy - 1) <= 1e-13
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+@pytest.mark.parametrize("sign", [1, -1])
+def test_bound_is_sharp(ratio: float, sign: int) -> None:
+    """Below it random momenta have one real branch each; from the contact just into the deltoid there are three."""
+    discrete, rng = _sleigh(ratio, b=0.4, sign=sign), np.random.default_rng(0)
+    system, found = discrete.system, nh.single_valued_region(discrete)
+    for momentum in rng.normal(size=(500, 2)):
+        scale = np.sqrt(0.999 * found.energy / system.constrained_energy(momentum))
+        assert _real_branches(discrete, scale * momentum) == 1
+    centre = found.cusps.mean(axis=0)
+    for contact in found.contact:
+        assert system.constrained_energy(contact) == pytest.approx(found.energy, rel=1e-13)
+        assert _real_branches(discrete, contact + 1e-3 * (centre - contact)) == 3
+
+
+@pytest.mark.parametrize("ratio", [0.2, 1.0, 5.0])
+def test_momentum_keeps_its_sign(ratio: float) -> None:
+    """Below the bound pi keeps its sign and a p_1 grows. False in the paper's proof: 2 a m V_2 > p_theta there."""
+    discrete, rng = _sleigh(ratio), np.random.default_rng(1)
+    system, level = discrete.system, 0.99 * nh.single_valued_region(discrete).energy
+    for start in rng.normal(size=(10, 2)):
+        start *= np.sign(start[0]) * np.sqrt(level / system.constrained_energy(start))
+        orbit = nh.simulate(discrete, momentum=start, steps=20)
+        assert np.all(orbit.momentum[:-1, 0] > 0)
+        assert np.all(np.diff(orbit.momentum[:, 1]) >= 0)
+        advance = 2 * system.a * system.mass * orbit.displacement[:, 1, 2] / discrete.time_step
+        assert np.all(advance[:-1] < orbit.momentum[:-1, 0])
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_bound_of_the_paper_is_not_sharp(ratio: float) -> None:
+    """False in the paper as a limit: it is 3.79 to 4 times too small (243/64 at m a^2 = 2J)."""
+    found = nh.single_valued_region(_sleigh(ratio))
+    assert 243 / 64 * (1 - 1e-14) <= found.energy / found.bound_of_the_paper <= 4
+    if ratio == 2.0:
+        assert found.energy / found.bound_of_the_paper == pytest.approx(243 / 64, rel=1e-14)
+
+
+def test_crossover() -> None:
+    """Origin and cusps are reached together at m a^2 = (3 + sqrt 13) J/8: on either side the contact is another."""
+    edge = (3 + np.sqrt(13)) / 8
+    assert nh.single_valued_region(_sleigh(edge * (1 - 1e-9))).contact.shape == (1, 2)
+    assert nh.single_valued_region(_sleigh(edge * (1 + 1e-9))).contact.shape == (2, 2)
+
+
+def test_proof_that_no_other_point_of_the_deltoid_is_lower() -> None:
+    """On 1 < T < 3, J >= 2M, the stationary point that is not a cusp stays above 4 M^2, by T^3/3 - T + 2."""
+    T, k = np.meshgrid(np.linspace(1.0, 3.0, 401), np.linspace(2.0, 200.0, 199))  # k = J/M, M = 1
+    excess = k * (T - 1) ** 2 - 2 * (T - 1) * (1 + T) ** 2 + 4 * k * T**3 / (1 + k)
+    assert np.all(excess >= 2 * (T**3 / 3 - T + 2) * (1 - 1e-12))
+
+
+def test_scaled_single_step_is_bounded() -> None:
+    """For M <= 0.8257 J the bound says h |u| < 2 |a| for the speed of the limiting straight motion."""
+    discrete = _sleigh(0.5)
+    speed = np.sqrt(2 * nh.single_valued_region(discrete).energy / discrete.system.mass)
+    assert discrete.time_step * speed == pytest.approx(2 * discrete.system.a, rel=1e-14)
+
+
+@pytest.mark.parametrize("a", [1e-8, 1e-160, 1e8])
+def test_extreme_offsets(a: float) -> None:
+    """Energies are finite numbers without warnings for tiny and huge a."""
+    found = nh.single_valued_region(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, a), 1.0))
+    assert 0 <= found.bound_of_the_paper <= found.energy < np.inf
+
+
+@pytest.mark.parametrize(
+    ("discrete", "text"),
+    [
+        (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1), "two real branches"),
+        (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, difference="logarithmic"), "three branches"),
+        (nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1), "discretised Chaplygin sleigh"),
+        (nh.ChaplyginSleigh(1.0, 1.0, 0.5), "discretised Chaplygin sleigh"),
+    ],
+)
+def test_refusals(discrete: object, text: str) -> None:
+    """Balanced sleighs and other systems are refused with the reason."""
+    with pytest.raises(ValueError, match=text):
+        nh.single_valued_region(discrete)

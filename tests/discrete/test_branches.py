@@ -1,0 +1,329 @@
+"""All values of the discrete map: against the definition on matrices, 50-digit references, and special cases."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.discrete import Branches, Discretization
+
+_GOLDEN = json.loads((Path(__file__).parents[1] / "golden" / "branches.json").read_text(encoding="utf-8"))
+_DEFINITION = 1e-12  # relative to the products of matrix entries, which are what rounding sees
+_SYSTEMS = {"top": nh.SuslovTop, "sleigh": nh.ChaplyginSleigh, "motion": nh.MultidimensionalSleigh}
+
+
+def _top(B: object, c: object, time_step: float = 1.0) -> Discretization:
+    """Build the top with given constrained inertia and coupling."""
+    B, k = np.asarray(B, dtype=float), len(np.asarray(c))
+    J = np.zeros((k + 1, k + 1))
+    J[:k, :k], J[k, k], J[k, :k], J[:k, k] = B - 0.3 * np.eye(k), 0.3, c, c
+    return nh.discretize(nh.SuslovTop(J), time_step)
+
+
+def _sleigh(a: float, b: float = 0.0) -> Discretization:
+    return nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, a, b), 1.0)
+
+
+def _motion(center_of_mass: list[float], mass_tensor: object) -> Discretization:
+    return nh.discretize(nh.MultidimensionalSleigh(1.3, center_of_mass, mass_tensor), 0.7)
+
+
+def _at(pi: float, phat: float, a: float = 0.5) -> list[float]:
+    """Return the momenta of `_sleigh(a)` at a point of the plane of the deltoid."""
+    return [pi, (phat - 2 * a * a) / a]
+
+
+def _check_definition(discrete: Discretization, found: Branches, r: object) -> None:
+    """Check group, variety and momentum of every displacement, straight from matrices."""
+    system, group = discrete.system, discrete.system.group
+    n = len(group.identity) - (0 if np.any(group.basis[:, -1]) else 1)
+    tensor = system.homogeneous_mass_tensor / np.abs(system.homogeneous_mass_tensor).max()
+    rows = np.einsum("ki,iab->kab", system.constraint_subspace, group.basis)
+    for W in found.displacement:
+        size = max(1.0, np.abs(W).max()) ** 2
+        R, inverse = W[:n, :n], np.linalg.inv(W)
+        assert np.abs(R @ R.T - np.eye(n)).max() <= _DEFINITION * size
+        assert np.array_equal(W[n:], group.identity[n:])
+        forbidden = group.vee((W - inverse) / 2) @ system.annihilator.T
+        assert np.abs(forbidden).max() <= _DEFINITION * size
+        paired = np.einsum("kab,bc,ac->k", rows, tensor, W - group.identity)
+        wanted = discrete.time_step * np.asarray(r) / np.abs(system.homogeneous_mass_tensor).max()
+        assert np.abs(paired - wanted).max() <= _DEFINITION * size
+        assert np.trace(R) - n == pytest.approx(-4 * _half_angle_sine(R), abs=1e-8 * size)
+
+
+def _half_angle_sine(R: np.ndarray) -> complex:
+    """Return sin^2 of half the angle of a rotation in one plane: its skew part squared is -2 sin^2 of the angle."""
+    cosine = (np.trace(R) - len(R)) / 2 + 1
+    sine_squared = -np.trace((R - R.T) @ (R - R.T)) / 8
+    assert cosine**2 + sine_squared == pytest.approx(1, abs=1e-9 * max(1.0, np.abs(R).max()) ** 2)
+    return (1 - cosine) / 2
+
+
+def _reference(case: dict) -> tuple[Discretization, np.ndarray]:
+    """Return the discretised system of a case and its displacements from their Cayley coordinates."""
+    discrete = nh.discretize(_SYSTEMS[case["system"]](**case["parameters"]), case["time_step"])
+    y = np.array(case["roots"]) @ [1, 1j]
+    Y = np.einsum("mi,ij,jab->mab", y, discrete.system.constraint_subspace, discrete.system.group.basis)
+    eye = discrete.system.group.identity
+    return discrete, np.linalg.solve(eye - Y, eye + Y)
+
+
+@pytest.mark.parametrize("case", _GOLDEN, ids=lambda case: f"{case['system']} {len(case['momentum'])}")
+def test_against_fifty_digits(case: dict) -> None:
+    """Every displacement is found, once, and equals its 50-digit value; none is invented."""
+    discrete, reference = _reference(case)
+    found = nh.displacements_over(discrete, case["momentum"])
+    assert found.multiplicity.tolist() == [1] * len(reference)
+    left = list(reference)
+    for W in found.displacement:
+        missed = [np.abs(W - other).max() / max(1.0, np.abs(other).max()) for other in left]
+        assert min(missed) < 1e-10
+        left.pop(int(np.argmin(missed)))
+    real = np.abs(reference.imag).max(axis=(1, 2)) < 1e-12
+    assert found.is_real.sum() == real.sum()
+
+
+_DEFINED = {
+    "top": (_top([[1.0, 0.2], [0.2, 1.5]], [0.3, -0.2], 0.5), [0.4, 0.7]),
+    "top, other axis": (
+        nh.discretize(nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]) + 0.2, (0.6, 0, 0.8)), 0.5),
+        [1, 2],
+    ),
+    "top on SO(5)": (_top(np.diag([1.0, 1.2, 2.0, 2.5]), [0.3, -0.2, 0.1, 0.4]), [0.4, 0.7, -0.3, 1.0]),
+    "sleigh with b": (_sleigh(-0.4, 0.3), [0.8, -0.3]),
+    "sleigh on SE(3)": (_motion([0.3, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1), [0.3, -0.4, 0.6]),
+    "sleigh on SE(4)": (_motion([0.3, 0.2, -0.1, 0.4], np.diag([0.5, 0.7, 0.4, 0.3]) + 0.1), [0.3, -0.4, 0.6, 0.2]),
+}
+
+
+@pytest.mark.parametrize(("discrete", "r"), _DEFINED.values(), ids=_DEFINED)
+def test_definition(discrete: Discretization, r: list[float]) -> None:
+    """Every displacement is in the complex group, on the variety, in one plane of rotation, and has the momentum."""
+    found = nh.displacements_over(discrete, r)
+    _check_definition(discrete, found, r)
+    k = len(r)
+    assert found.multiplicity.sum() == (2 * k if isinstance(discrete.system, nh.SuslovTop) else 2 * k - 1)
+
+
+@pytest.mark.parametrize(("discrete", "r"), _DEFINED.values(), ids=_DEFINED)
+def test_momenta_are_those_of_the_displacements(discrete: Discretization, r: list[float]) -> None:
+    """The momenta of real branches are what `discrete_legendre` says, and share the given components and energy."""
+    found = nh.displacements_over(discrete, r)
+    system = discrete.system
+    for W, P in zip(found.displacement[found.is_real].real, found.momentum[found.is_real], strict=True):
+        expected = nh.discrete_legendre(discrete, W)
+        np.testing.assert_allclose(P, expected, rtol=0, atol=1e-12 * np.abs(expected).max() * np.abs(W).max() ** 2)
+        assert system.constrained_energy(system.restrict(P.real)) == pytest.approx(found.energy, rel=1e-11)
+
+
+def test_four_real_branches() -> None:
+    """The rational equilibrium y = (-1/4, -3/8) of docs/theory/branches.md has four real values."""
+    discrete = nh.discretize(nh.SuslovTop([[1.25, 0, -0.5], [0, 1, -0.75], [-0.5, -0.75, 1.25]]), 1.0)
+    rows = discrete.system.constraint_subspace
+    W = discrete.system.group.cayley(2 * np.array([-0.25, -0.375]) @ rows)
+    found = nh.branches(discrete, displacement=W)
+    assert found.is_real.all()
+    y = found.displacement[:, :2, 2] / (1 + found.displacement[:, 2:, 2])
+    expected = [[-1 / 4, -3 / 8], [-16 / 13, -24 / 13], [-3.81310876, -0.50880833], [7.60258244, -8.96487588]]
+    np.testing.assert_allclose(y, expected, rtol=0, atol=6e-9)  # eight decimals
+
+
+_SPECIAL_B = np.diag([1.0, 1.5, 2.2])
+_SPECIAL = {
+    "c and r vanish along an axis": (_top(_SPECIAL_B, [0.3, 0, 0.2]), [0.4, 0, -0.3], 6),
+    "c and r almost vanish along an axis": (_top(_SPECIAL_B, [0.3, 1e-9, 0.2]), [0.4, 1e-9, -0.3], 6),
+    "c vanishes along an axis": (_top(_SPECIAL_B, [0.3, 0, 0.2]), [0.4, 0.1, -0.3], 6),
+    "r vanishes along an axis": (_top(_SPECIAL_B, [0.3, 0.1, 0.2]), [0.4, 0, -0.3], 6),
+    "c and r along one axis": (_top(_SPECIAL_B, [0.3, 0, 0]), [0.4, 0, 0], 6),
+    "round, n = 3": (_top(1.3 * np.eye(2), [0.3, 0.1]), [0.4, 0.3], 4),
+    "round, n = 4": (_top(1.3 * np.eye(3), [0.3, 0.1, 0.2]), [0.4, 0.3, -0.3], 4),
+    "c = 0": (_top(_SPECIAL_B, [0, 0, 0]), [0.4, 0.3, -0.3], 2),
+    "c = 0, r = 0": (_top(_SPECIAL_B, [0, 0, 0]), [0, 0, 0], 1),
+    "r = 0": (_top(_SPECIAL_B, [0.3, 0.1, 0.2]), [0, 0, 0], 6),
+    "r = c, n = 3": (_top(_SPECIAL_B[:2, :2], [0.3, 0.1]), [0.6, 0.2], 4),
+    "r = c, n = 4": (_top(_SPECIAL_B, [0.3, 0.1, 0.2]), [0.6, 0.2, 0.4], 4),
+    "r parallel c": (_top(_SPECIAL_B, [0.3, 0.1, 0.2]), [0.09, 0.03, 0.06], 6),
+    "sleigh, half-turn": (_sleigh(0.5), _at(0.8, 0.0), 3),
+    "sleigh, pi = 0": (_sleigh(0.5), _at(0.0, 0.7), 3),
+    "sleigh at rest": (_sleigh(0.5), [0.0, 0.0], 3),
+    "balanced sleigh": (_sleigh(0.0), [0.3, 0.2], 2),
+    "balanced sleigh, straight": (_sleigh(0.0), [0.0, 0.2], 1),
+    "SE(3), c = 0": (_motion([0.3, 0.2, 0.1], np.diag([0.5, 0.7, 0.4])), [0.3, 0.2, 0.1], 5),
+    "SE(3), c and r vanish along an axis": (_motion([0.3, 0, 0], np.diag([0.5, 0.7, 0.4])), [0.3, 0, 0.1], 5),
+    "SE(3), a1 = 0": (_motion([0, 0.2, 0.1], np.diag([0.5, 0.7, 0.4]) + 0.1), [0.3, 0.2, 0.1], 4),
+}
+
+
+@pytest.mark.parametrize(("discrete", "r", "count"), _SPECIAL.values(), ids=_SPECIAL)
+def test_special_bodies_and_momenta(discrete: Discretization, r: list[float], count: int) -> None:
+    """Where the secular polynomial degenerates the isolated roots are still all found, each once."""
+    found = nh.displacements_over(discrete, r)
+    _check_definition(discrete, found, r)
+    assert found.multiplicity.tolist() == [1] * count
+
+
+def test_a_half_turn_on_the_variety_is_a_branch() -> None:
+    """For r.(r - c) = 0 a root passes angle pi; it is exp d's half-turn, not one of the excluded sheets."""
+    c, u = np.array([0.3, 0.1]), np.array([0.6, 0.8])
+    found = nh.displacements_over(_top(np.diag([1.0, 1.5]), c), 2 * u * (u @ c))
+    assert found.multiplicity.sum() == 4
+    half_turn = found.displacement[np.argmin(np.abs(found.displacement[:, 2, 2] + 1))]
+    np.testing.assert_allclose(half_turn @ half_turn, np.eye(3), atol=1e-12)
+    assert half_turn[2, 2] == pytest.approx(-1, abs=1e-12)  # diag(-1, -1, 1) solves the skew equation, but has +1
+
+
+def test_a_fold_of_a_top_counts_twice() -> None:
+    """At a momentum on the fold two roots are one of multiplicity two, at fold distance zero."""
+    discrete = _top(np.diag([1.0, 1.5]), [0.3, -0.2])
+    rows, group = discrete.system.constraint_subspace, discrete.system.group
+    low, high = 0.1, 3.0
+    ray = np.array([0.6, 0.8]) @ rows
+    for _ in range(200):
+        middle = (low + high) / 2
+        if _orientation(discrete, group.exp(middle * ray)) > 0:
+            low = middle
+        else:
+            high = middle
+    folded = group.exp(low * ray)
+    assert nh.fold_distance(discrete, folded) < 1e-8  # of difference quotients
+    found = nh.displacements_over(discrete, discrete.system.restrict(nh.discrete_legendre(discrete, folded)))
+    assert sorted(found.multiplicity) == [1, 1, 2]
+    double = int(np.argmax(found.multiplicity))
+    assert found.is_real[double]
+    np.testing.assert_allclose(found.displacement[double], folded, atol=1e-6)  # square root of rounding
+    assert found.fold_distance[double] < 1e-6
+
+
+def _orientation(discrete: Discretization, W: np.ndarray) -> float:
+    """Return the determinant of the derivative of the restricted momentum along exp d, by central differences."""
+    group, rows, step = discrete.system.group, discrete.system.constraint_subspace, 1e-6
+    x = rows @ group.log(W)
+
+    def momentum(x: np.ndarray) -> np.ndarray:
+        return discrete.system.restrict(nh.discrete_legendre(discrete, group.exp(x @ rows)))
+
+    slope = [(momentum(x + step * e) - momentum(x - step * e)) / (2 * step) for e in np.eye(2)]
+    return float(np.linalg.det(slope))
+
+
+@pytest.mark.parametrize("t", [0.2, 0.7, -1.1, 2.5])
+def test_the_deltoid_is_the_fold_of_the_sleigh(t: float) -> None:
+    """On the deltoid two of the sleigh's three branches meet."""
+    pi, phat = 4 * t**3 / (1 + t * t) ** 2, -2 * (1 - t * t) / (1 + t * t) ** 2
+    found = nh.displacements_over(_sleigh(0.5), _at(pi, phat))
+    assert sorted(found.multiplicity) == [1, 2]
+    assert found.is_real.all()
+    assert found.fold_distance[np.argmax(found.multiplicity)] < 1e-6
+
+
+@pytest.mark.parametrize("off", [1e-15, -1e-13, 1e-13, -1e-11, 1e-9, -1e-6])
+@pytest.mark.parametrize("t", [1.2, -0.05])
+def test_no_branch_is_lost_near_a_fold(t: float, off: float) -> None:
+    """However close to the deltoid, three branches are counted and keep the sum rule to the root of rounding."""
+    pi, phat = 4 * t**3 / (1 + t * t) ** 2, -2 * (1 - t * t) / (1 + t * t) ** 2 + off
+    found = nh.displacements_over(_sleigh(0.5), _at(pi, phat))
+    turns = found.displacement[:, 0, 0] + 1j * found.displacement[:, 1, 0]
+    assert found.multiplicity.sum() == 3
+    assert (turns * found.multiplicity).sum() == pytest.approx(-(2 * phat + 1) + 2j * pi, abs=1e-6)
+
+
+@pytest.mark.parametrize("at", [(0.0, -2.0), (3 * np.sqrt(3) / 4, 0.25)])
+def test_three_branches_meet_at_a_cusp(at: tuple[float, float]) -> None:
+    """At a cusp of the deltoid the root is triple."""
+    found = nh.displacements_over(_sleigh(0.5), _at(*at))
+    assert found.multiplicity.tolist() == [3]
+    assert found.is_real.all()
+
+
+@pytest.mark.parametrize(("at", "real"), [((0.1, -0.5), 3), ((-1.0, 0.1), 3), ((0.4, 0.9), 1), ((1.5, -0.5), 1)])
+def test_sum_rule_of_the_sleigh(at: tuple[float, float], real: int) -> None:
+    """The angles of the three branches, complex ones included, sum to 0 mod 2 pi, their unit numbers to kappa."""
+    found = nh.displacements_over(_sleigh(0.5, 0.2), [at[0] - 0.2 * _at(*at)[1], _at(*at)[1]])
+    turns = found.displacement[:, 0, 0] + 1j * found.displacement[:, 1, 0]
+    assert np.prod(turns) == pytest.approx(1, abs=1e-13)
+    assert turns.sum() == pytest.approx(-(2 * at[1] + 1) + 2j * at[0], abs=1e-13)
+    assert found.is_real.sum() == real
+
+
+@pytest.mark.parametrize(("discrete", "r"), _DEFINED.values(), ids=_DEFINED)
+def test_the_principal_branch_is_that_of_a_run(discrete: Discretization, r: list[float]) -> None:
+    """`principal` names the displacement at which a run with this momentum starts, and the next one."""
+    r = 0.2 * np.array(r)
+    orbit = nh.simulate(discrete, momentum=r, steps=1)
+    here, after = nh.displacements_over(discrete, r), nh.branches(discrete, momentum=r)
+    np.testing.assert_allclose(here.displacement[here.principal], orbit.displacement[0], atol=1e-11)
+    np.testing.assert_allclose(after.displacement[after.principal], orbit.displacement[1], atol=1e-11)
+    same = nh.branches(discrete, displacement=orbit.displacement[0])
+    np.testing.assert_allclose(same.displacement, after.displacement, atol=1e-8 * np.abs(after.displacement).max())
+
+
+def test_no_principal_branch_beyond_the_fold() -> None:
+    """A momentum that the principal branch does not reach has values, but no principal one."""
+    found = nh.displacements_over(_top(np.diag([1.0, 1.5]), [0.3, -0.2]), [6.0, 5.0])
+    assert found.multiplicity.sum() == 4
+    assert found.principal is None
+    with pytest.raises(ValueError, match="must have a principal displacement"):
+        nh.branches(_top(np.diag([1.0, 1.5]), [0.3, -0.2]), momentum=[6.0, 5.0])
+
+
+@pytest.mark.parametrize(("discrete", "r"), _DEFINED.values(), ids=_DEFINED)
+def test_inverse_legendre(discrete: Discretization, r: list[float]) -> None:
+    """The displacement of a momentum is recovered, on every branch; a momentum off the locus is refused."""
+    found = nh.displacements_over(discrete, r)
+    for W in found.displacement[found.is_real].real:
+        P = nh.discrete_legendre(discrete, W)
+        np.testing.assert_allclose(nh.inverse_discrete_legendre(discrete, P), W, atol=1e-8 * np.abs(W).max())
+    off = nh.discrete_legendre(discrete, W) + 0.1 * discrete.system.annihilator[0]
+    with pytest.raises(ValueError, match=r"must lie on the momentum locus. Got (distance|components)"):
+        nh.inverse_discrete_legendre(discrete, off)
+
+
+@pytest.mark.parametrize("discrete", [case[0] for case in _DEFINED.values()], ids=_DEFINED)
+def test_momentum_zero_belongs_to_the_identity(discrete: Discretization) -> None:
+    """The displacement of momentum zero is the principal one, no displacement at all."""
+    W = nh.inverse_discrete_legendre(discrete, np.zeros(discrete.system.group.dim))
+    np.testing.assert_allclose(W, discrete.system.group.identity, atol=1e-14)
+
+
+def test_fold_distance_has_no_units() -> None:
+    """Units of mass, length and time, the body frame and the time step do not change the fold distance."""
+    sleigh = _motion([0.3, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1)
+    x = np.array([0.7, -0.4, 0.5]) @ sleigh.system.constraint_subspace
+    body, m, length = sleigh.system, 3.0, 10.0
+    scaled = nh.MultidimensionalSleigh(m * 1.3, length * body.center_of_mass, m * length**2 * body.mass_tensor)
+    stretched = x * np.array([1, 1, 1, length, length, length])
+    expected = nh.fold_distance(sleigh, nh.SE(3).exp(x))
+    assert nh.fold_distance(nh.discretize(scaled, 0.1), nh.SE(3).exp(stretched)) == pytest.approx(expected, rel=1e-12)
+    assert 0 < expected < 1
+
+
+_REFUSED = {
+    "free body": nh.discretize(nh.RigidBody(np.diag([1.0, 2.0, 3.0])), 0.1),
+    "right-invariant": nh.discretize(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), 0.1),
+    "logarithmic": nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, difference="logarithmic"),
+    "naive": nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, constraint="naive"),
+}
+
+
+@pytest.mark.parametrize("discrete", _REFUSED.values(), ids=_REFUSED)
+def test_other_systems_are_refused(discrete: Discretization) -> None:
+    """Where not all values are known the error says for which systems they are."""
+    with pytest.raises(ValueError, match="must be a SuslovTop, ChaplyginSleigh or MultidimensionalSleigh"):
+        nh.displacements_over(discrete, [0.1, 0.2])
+
+
+def test_wrong_arguments_are_named() -> None:
+    """Certificates, missing or double starts and displacements off the variety are refused with the reason."""
+    sleigh = _sleigh(0.5)
+    with pytest.raises(ValueError, match="not offered yet"):
+        nh.displacements_over(sleigh, [0.1, 0.2], certify=True)
+    with pytest.raises(ValueError, match=r"must be given momentum or displacement\. Got none"):
+        nh.branches(sleigh)
+    with pytest.raises(ValueError, match="must lie on the displacement variety"):
+        nh.fold_distance(sleigh, nh.SE(2).exp(np.array([0.1, 0.2, 0.3])))
+    spurious = np.array([[-1.0, 0.0, 0.4], [0.0, -1.0, 0.3], [0.0, 0.0, 1.0]])  # a half-turn with (W - W^-1)/2 in d
+    with pytest.raises(ValueError, match="must lie on the displacement variety"):
+        nh.branches(sleigh, displacement=spurious)

@@ -1,0 +1,152 @@
+"""Pictures of loci: what is drawn is what was computed, and nothing else is touched."""
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+
+import nonholo as nh
+from nonholo.analysis import deltoid
+
+TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.5)
+BALANCED = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.5)
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3), 0.5)
+BOTH = {"top": TOP, "sleigh": SLEIGH}
+
+
+def run(discrete: nh.Discretization) -> nh.Orbit:
+    """Run a short orbit."""
+    return nh.simulate(discrete, restricted_velocity=(0.4, -0.8), steps=20)
+
+
+def test_surface_and_singular_points_are_those_of_the_locus() -> None:
+    """The dots are the pinch points and the triple point; there are three segments and six whiskers."""
+    locus = nh.momentum_locus(TOP, 12)
+    picture = nh.plot.momentum_locus(locus)
+    assert np.allclose(np.stack(picture.pinch_points._offsets3d, axis=1), locus.pinch_points)
+    assert np.allclose(np.stack(picture.triple_point._offsets3d, axis=1), locus.triple_point)
+    assert (len(picture.double_lines), len(picture.whiskers)) == (3, 6)
+    assert np.allclose(np.stack(picture.double_lines[1].get_data_3d(), axis=1), locus.double_lines[1])
+
+
+def test_orbit_in_space_is_its_momentum() -> None:
+    """Dots of a top are momenta; those of a sleigh p_1, p_2 and the angular momentum about the centre of mass."""
+    orbit = run(TOP)
+    dots = nh.plot.momentum_locus(nh.momentum_locus(TOP, 12), orbit).orbit
+    assert np.allclose(np.sort(np.stack(dots._offsets3d, axis=1), axis=0), np.sort(orbit.momentum, axis=0))
+    orbit = run(SLEIGH)
+    dots = nh.plot.momentum_locus(nh.momentum_locus(SLEIGH, 12), orbit).orbit
+    p_theta, p_1, p_2 = orbit.momentum.T
+    expected = np.stack([p_1, p_2, p_theta + 0.3 * p_1 - 0.5 * p_2], axis=1)
+    assert np.allclose(np.sort(np.stack(dots._offsets3d, axis=1), axis=0), np.sort(expected, axis=0))
+
+
+def test_curves_on_the_surface_are_those_of_one_energy() -> None:
+    """Both components are drawn, point by point."""
+    curve = nh.invariant_curve(TOP, 0.5, 50)
+    drawn = nh.plot.momentum_locus(nh.momentum_locus(TOP, 8), curve=curve).curves
+    for line, momentum in zip(drawn, curve.momentum, strict=True):
+        assert np.allclose(np.stack(line.get_data_3d(), axis=1), momentum)
+
+
+@pytest.mark.parametrize("discrete", BOTH.values(), ids=BOTH)
+def test_pictures_can_be_drawn_on_given_axes(discrete: nh.Discretization) -> None:
+    """Axes that are passed are used, in space and in the plane, and the figure renders."""
+    figure = Figure(figsize=(8, 3))
+    space = figure.add_subplot(131, projection="3d")
+    assert nh.plot.momentum_locus(nh.momentum_locus(discrete, 8), axes=space).axes is space
+    section, disc = figure.add_subplot(132), figure.add_subplot(133)
+    assert nh.plot.locus_section(nh.momentum_locus(discrete, 8), offset=0.3, axes=section).axes is section
+    assert nh.plot.invariant_curves(discrete, axes=disc).axes is disc
+    figure.canvas.draw()
+
+
+def test_section_points_are_on_plane_and_locus() -> None:
+    """The polynomial vanishes along the drawn section, up to the grid; its crossings are zeros to rounding."""
+    locus = nh.momentum_locus(TOP, 40)
+    section = nh.plot.locus_section(locus, normal=(0.0, 0.0, 2.0), offset=0.4)
+    values, sizes = [], []
+    for path in section.curve.get_paths():
+        P = path.vertices @ section.plane + [0.0, 0.0, 0.4]
+        values.append(np.abs(locus.implicit(P)).max())
+        sizes.append(np.abs(locus.implicit(P + 0.05)).max())
+    assert max(values) < 1e-2 * max(sizes)
+    crossings = np.asarray(section.crossings.get_offsets()) @ section.plane + [0.0, 0.0, 0.4]
+    assert np.abs(locus.implicit(crossings)).max() < 1e-14
+
+
+def test_section_shows_isolated_points() -> None:
+    """Beyond the pinch point of the balanced top the line of the section's plane has an isolated zero, drawn empty."""
+    locus = nh.momentum_locus(BALANCED, 40)
+    beyond = 1.3 * locus.pinch_points[:, 2].max()
+    section = nh.plot.locus_section(locus, offset=beyond)
+    assert section.crossings is None
+    assert np.allclose(section.isolated.get_offsets(), 0.0, atol=1e-12)
+    assert np.allclose(section.isolated.get_facecolor()[0, :3], to_rgb("white"))
+
+
+@pytest.mark.parametrize("discrete", BOTH.values(), ids=BOTH)
+def test_orbit_dots_lie_on_the_own_curve(discrete: nh.Discretization) -> None:
+    """Every dot is within the spacing of the drawn curve of the orbit's energy."""
+    picture = nh.plot.invariant_curves(discrete, run(discrete))
+    curve = np.concatenate(picture.own.get_segments())
+    for dot in picture.orbit.get_offsets():
+        assert np.linalg.norm(curve - dot, axis=1).min() < 0.03
+
+
+@pytest.mark.parametrize("discrete", BOTH.values(), ids=BOTH)
+def test_equilibria_on_the_curves(discrete: nh.Discretization) -> None:
+    """Stable points are filled, unstable ones empty and opposite; a start on a stable one stays there."""
+    picture = nh.plot.invariant_curves(discrete, energies=[0.3])
+    stable, unstable = (np.asarray(dots.get_offsets()) for dots in (picture.stable, picture.unstable))
+    assert np.allclose(unstable, -stable)
+    assert np.allclose(picture.unstable.get_facecolor()[0, :3], to_rgb("white"))
+    attracting = discrete.system.equilibria().attracting
+    start = attracting * np.sqrt(0.6 / (attracting @ discrete.system.inertia_operator @ attracting))
+    orbit = nh.simulate(discrete, body_velocity=start, steps=3)
+    dots = nh.plot.invariant_curves(discrete, orbit, energies=[0.3]).orbit.get_offsets()
+    assert np.linalg.norm(stable - dots[-1], axis=1).min() < 1e-9
+
+
+def test_balanced_systems_have_no_equilibria_on_the_curves() -> None:
+    """Where every displacement repeats itself none is marked; the pictures of balanced systems are drawn."""
+    for system in (np.diag([1.0, 1.0, 3.0]), np.diag([1.0, 2.0, 3.0])):
+        discrete = nh.discretize(nh.SuslovTop(system), 0.5)
+        assert nh.plot.invariant_curves(discrete).stable is None
+        nh.plot.momentum_locus(nh.momentum_locus(discrete, 8)).axes.figure.canvas.draw()
+    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.5)
+    assert nh.plot.invariant_curves(discrete).stable is None
+    nh.plot.momentum_locus(nh.momentum_locus(discrete, 8)).axes.figure.canvas.draw()
+
+
+def test_curves_do_not_cross_the_rim() -> None:
+    """Runs are cut at the rim of the disc and at the edges of the strip: no piece is longer than its spacing allows."""
+    for discrete, energies, edge in ((TOP, [0.3, 1.0], 1.0), (SLEIGH, [2.1, 9.0], np.pi)):
+        for level in nh.plot.invariant_curves(discrete, energies=energies).levels:
+            for run_of_points in level.get_segments():
+                assert np.abs(run_of_points[:, 0]).max() <= edge + 1e-12
+                assert np.linalg.norm(np.diff(run_of_points, axis=0), axis=1).max() < 0.2
+
+
+def test_branch_counts_draw_the_deltoid() -> None:
+    """Boundary and cusps are those of `deltoid` in the plane of pi and p_1; the orbit's dots are its momenta."""
+    orbit = run(SLEIGH)
+    picture = nh.plot.branch_counts(SLEIGH, orbit)
+    found = deltoid(SLEIGH)
+    expected = found.cusps + np.outer(0.3 * found.cusps[:, 1], [1.0, 0.0])
+    assert np.allclose(picture.cusps.get_offsets(), expected)
+    assert np.allclose(picture.boundary.get_xydata()[0], expected[0])
+    assert np.allclose(orbit.system.canonical.constrained_energy(picture.level.get_xydata()), orbit.energy[0])
+    assert np.allclose(np.sort(picture.orbit.get_offsets(), axis=0), np.sort(orbit.reduced_momentum, axis=0))
+
+
+def test_refuses_what_does_not_belong() -> None:
+    """Orbits of another system, no locus, a zero normal and energies below zero are refused in words."""
+    with pytest.raises(ValueError, match=r"`plot.branch_counts\(orbit=...\)` must be an orbit of the same discretised"):
+        nh.plot.branch_counts(SLEIGH, run(TOP))
+    with pytest.raises(ValueError, match=r"`plot.momentum_locus\(locus=...\)` must be a locus"):
+        nh.plot.momentum_locus(TOP)
+    with pytest.raises(ValueError, match=r"`plot.locus_section\(normal=...\)` must not be zero"):
+        nh.plot.locus_section(nh.momentum_locus(TOP, 8), normal=(0, 0, 0))
+    with pytest.raises(ValueError, match=r"`plot.invariant_curves\(energies=...\)` must be positive"):
+        nh.plot.invariant_curves(TOP, energies=[-1.0])
