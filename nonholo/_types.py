@@ -5,8 +5,8 @@
 
 from typing import Any, TypeAlias
 
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float, Inexact, Int
 
 Array: TypeAlias = Any
 
-__all__ = ["Array", "Bool", "Float", "Int"]
+__all__ = ["Array", "Bool", "Float", "Inexact", "Int"]

@@ -79,7 +79,7 @@ class ContinuousFlow(AbstractMotion):
             velocity = (system.group.adjoint(states.configuration) @ velocity[..., None])[..., 0]
         return velocity @ system.annihilator.T
 
-    def displaced(self, cayley: Float[np.ndarray, "K m"]) -> Float[np.ndarray, "K N N"]:
+    def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Refuse: a continuous motion has no displacements."""
         got = f"chart coordinates {cayley} of a continuous flow"
         raise ValueError(f"`Orbit.displacement` needs a discrete orbit. Got {got}. Use `simulate`.")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nonholo._checks import error
-from nonholo._types import Array, Float
+from nonholo._types import Array, Float, Inexact
 from nonholo.systems import ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
 
 if TYPE_CHECKING:
@@ -33,11 +33,11 @@ class Equations:
         push: p.
     """
 
-    stiffness: Float[Array, "k"]
-    coupling: Float[Array, "k"]
-    target: Float[Array, "k"]
+    stiffness: Inexact[Array, "k"]
+    coupling: Inexact[Array, "k"]
+    target: Inexact[Array, "k"]
     lever: float | None = None
-    push: complex = 0.0
+    push: Array = 0.0
 
     @property
     def arm(self) -> float:
@@ -55,7 +55,7 @@ class Equations:
         k = len(self.stiffness)
         return 2 if self.is_balanced else 2 * k + (self.arm != 0)
 
-    def residual(self, x: Float[Array, "m"]) -> tuple[Float[Array, "m"], Float[Array, "m"]]:
+    def residual(self, x: Inexact[Array, "m"]) -> tuple[Inexact[Array, "m"], Inexact[Array, "m"]]:
         """Return the equations, the last one that of the sphere, and the sizes of their terms."""
         b, c, a = self.stiffness + self.arm**2, self.coupling, self.arm
         z0, z, u = _parts(self, x)
@@ -68,7 +68,7 @@ class Equations:
             sizes.insert(-1, abs(u * z0) + 2 * abs(a) * length + abs(self.push))
         return np.array(rows), np.array(sizes)
 
-    def slope(self, x: Float[Array, "m"]) -> Float[Array, "m m"]:
+    def slope(self, x: Inexact[Array, "m"]) -> Inexact[Array, "m m"]:
         """Return the derivative of the residual."""
         b, c, a, k = self.stiffness + self.arm**2, self.coupling, self.arm, len(self.stiffness)
         z0, z, u = _parts(self, x)
@@ -81,7 +81,7 @@ class Equations:
         J[-1, 0], J[-1, 1 : k + 1] = 2 * z0, 2 * z
         return J
 
-    def regularity(self, x: Float[Array, "m"]) -> float:
+    def regularity(self, x: Inexact[Array, "m"]) -> float:
         """Return the least singular value of the derivative along the sphere, one at the identity, zero at a fold."""
         J = self.slope(x)
         along = np.linalg.svd(J[-1:])[2][1:].conj().T
@@ -126,7 +126,7 @@ class Frame:
         r = self.axes.T @ (turning - self.offset * along) / (2 * self.inertia)
         return Equations(self.stiffness, self.coupling, r, self.lever, along * self.length / self.inertia)
 
-    def increment(self, x: Float[Array, "m"]) -> Float[Array, "N N"]:
+    def increment(self, x: Inexact[Array, "m"]) -> Inexact[Array, "N N"]:
         """Return the canonical displacement minus the identity, without cancellation."""
         k = len(self.stiffness)
         z0, z = x[0], self.axes @ x[1 : k + 1]

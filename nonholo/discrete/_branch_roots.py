@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo._types import Array, Float
+from nonholo._types import Array, Inexact
 from nonholo.discrete._branch_candidates import candidates
 from nonholo.discrete._branch_equations import Equations
 
@@ -30,7 +30,7 @@ _ARRIVED = 1e-12  # of the homotopy parameter, from where Newton's method takes 
 class Root(NamedTuple):
     """A point on the sphere, how often it is a root, and whether it is real."""
 
-    point: Float[Array, "m"]
+    point: Inexact[Array, "m"]
     multiplicity: int
     is_real: bool
 

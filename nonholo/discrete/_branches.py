@@ -20,9 +20,7 @@ _ON_VARIETY = 1e-9  # relative distance from the displacement variety
 _ROUNDING = 1e-13
 
 
-def displacements_over(
-    discrete: Discretization, restricted_momentum: Float[np.ndarray, "k"], certify: bool = False
-) -> Branches:
+def displacements_over(discrete: Discretization, restricted_momentum: Any, certify: bool = False) -> Branches:
     r"""Find every displacement whose discrete momentum has given components along the constraint subspace.
 
     Solves, on the displacement variety $S$, for real and complex matrices,
@@ -98,7 +96,7 @@ def branches(
     return values_over(discrete, frame, discrete.system.restrict(legendre(discrete, X, "right")))
 
 
-def inverse_discrete_legendre(discrete: Discretization, momentum: Float[np.ndarray, "dim"]) -> Float[Array, "N N"]:
+def inverse_discrete_legendre(discrete: Discretization, momentum: Any) -> Float[Array, "N N"]:
     r"""Return the displacement that a full momentum on the momentum locus belongs to: $P(W) = p$, $W \in S$.
 
     Where the locus meets itself several displacements have one momentum: the principal one is returned.
@@ -123,7 +121,7 @@ def inverse_discrete_legendre(discrete: Discretization, momentum: Float[np.ndarr
     return _inverse(f"{where}(momentum=...)", discrete, frame, momentum) + discrete.system.group.identity
 
 
-def fold_distance(discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> float:
+def fold_distance(discrete: Discretization, displacement: Any) -> float:
     r"""Return how regular the restricted Legendre map is at a displacement: 1 at the identity, 0 at a fold.
 
     The least singular value of $(\mathbb{I}|_{\mathfrak{d}})^{-1}\,d(hP|_{\mathfrak{d}})$ along the displacement

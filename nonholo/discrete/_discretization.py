@@ -72,7 +72,7 @@ class Discretization(AbstractMotion):
 
         return is_even(self.difference, self.system.group)
 
-    def displaced(self, cayley: Float[np.ndarray, "K m"]) -> Float[np.ndarray, "K N N"]:
+    def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Return the elements of the variety, in the user's frame, with canonical chart coordinates."""
         frame = self.system.frame
         return frame @ self.variety.displaced(cayley) @ self.system.group.inverse(frame)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nonholo._checks import array, choice
-from nonholo._types import Array, Float
+from nonholo._types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def discrete_legendre(
     return legendre(discrete, W - group.identity, choice("discrete_legendre(side=...)", side, ("left", "right")))
 
 
-def legendre(discrete: "Discretization", increment: Float[Array, "... N N"], side: str) -> Float[Array, "... dim"]:
+def legendre(discrete: "Discretization", increment: Inexact[Array, "... N N"], side: str) -> Inexact[Array, "... dim"]:
     """Return the momenta of displacements given as W - I."""
     group = discrete.system.group
     if discrete.difference == "matrix":
@@ -74,8 +74,8 @@ def logarithmic_legendre(discrete: "Discretization", W: Float[Array, "... N N"],
 
 
 def matrix_legendre(
-    group: AbstractMatrixGroup, tensor: Float[Array, "N N"], X: Float[Array, "... N N"], side: str
-) -> Float[Array, "... dim"]:
+    group: AbstractMatrixGroup, tensor: Inexact[Array, "N N"], X: Inexact[Array, "... N N"], side: str
+) -> Inexact[Array, "... dim"]:
     r"""Return $\mathrm{tr}(E_i W\mathbb{J}X^T)$ (left) or $\mathrm{tr}(W E_i\mathbb{J}X^T)$ (right), $W = I + X$."""
     xp = X.__array_namespace__()
     arm = xp.asarray(tensor, dtype=X.dtype) @ xp.swapaxes(X, -1, -2)

@@ -1,5 +1,7 @@
 r"""The free top by a matrix equation: one step of Moser and Veselov as the solution of a Riccati equation."""
 
+from typing import Any
+
 import numpy as np
 import scipy.linalg
 
@@ -8,9 +10,7 @@ from nonholo._types import Array, Float
 from nonholo.groups import SO
 
 
-def moser_veselov_displacement(
-    mass_tensor: Float[np.ndarray, "n n"], momentum: Float[np.ndarray, "dim"], time_step: Array
-) -> Float[np.ndarray, "n n"]:
+def moser_veselov_displacement(mass_tensor: Any, momentum: Any, time_step: Array) -> Float[np.ndarray, "n n"]:
     r"""Return the displacement of the free top on SO(n) with a given momentum, on the branch of small steps.
 
     $$ M = WJ - JW^T, \qquad W = (\tfrac12M + S)J^{-1}, \qquad S^2 + \tfrac12(SM - MS) = \tfrac14M^2 + J^2, $$

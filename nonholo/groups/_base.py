@@ -9,7 +9,7 @@ import abc
 import numpy as np
 
 from nonholo._checks import trailing
-from nonholo._types import Array, Float
+from nonholo._types import Array, Float, Inexact
 from nonholo.groups._coordinates import AbstractCoordinates
 from nonholo.numerics._matrix_functions import identity_like
 
@@ -110,7 +110,7 @@ class AbstractMatrixGroup(abc.ABC):
         """Return the matrix of the algebra with coordinates `x`."""
         return self.coordinates.matrix(self._vector(x))
 
-    def vee(self, X: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+    def vee(self, X: Inexact[Array, "... N N"]) -> Inexact[Array, "... dim"]:
         """Return the coordinates of a matrix of the algebra (of its orthogonal projection, if it lies outside)."""
         return self.coordinates.vector(self._matrix(X))
 

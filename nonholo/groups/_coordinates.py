@@ -8,7 +8,7 @@ import abc
 
 import numpy as np
 
-from nonholo._types import Array, Float, Int
+from nonholo._types import Array, Float, Inexact, Int
 
 
 class AbstractCoordinates(abc.ABC):
@@ -19,7 +19,7 @@ class AbstractCoordinates(abc.ABC):
         r"""Return $\sum x_i E_i$."""
 
     @abc.abstractmethod
-    def vector(self, X: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+    def vector(self, X: Inexact[Array, "... N N"]) -> Inexact[Array, "... dim"]:
         r"""Return $x_i = \mathrm{tr}\,D_i^TX$, the coordinates of the orthogonal projection of X on the algebra."""
 
     @abc.abstractmethod
@@ -27,7 +27,7 @@ class AbstractCoordinates(abc.ABC):
         r"""Return $\sum p_i D_i$."""
 
     @abc.abstractmethod
-    def dual_vector(self, P: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+    def dual_vector(self, P: Inexact[Array, "... N N"]) -> Inexact[Array, "... dim"]:
         r"""Return $p_i = \mathrm{tr}\,E_i^TP$."""
 
 
@@ -62,7 +62,7 @@ class SeparatedCoordinates(AbstractCoordinates):
         weight = x.__array_namespace__().asarray(self._weight, dtype=x.dtype)
         return x[..., self._owner] * weight + 0.0  # no negative zeros
 
-    def vector(self, X: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+    def vector(self, X: Inexact[Array, "... N N"]) -> Inexact[Array, "... dim"]:
         r"""Return $x_i = \mathrm{tr}\,E_i^TX/|E_i|^2$."""
         return self.dual_vector(X) / X.__array_namespace__().asarray(self._squares, dtype=X.dtype)
 
@@ -70,7 +70,7 @@ class SeparatedCoordinates(AbstractCoordinates):
         r"""Return $\sum p_i E_i/|E_i|^2$."""
         return self.matrix(p / p.__array_namespace__().asarray(self._squares, dtype=p.dtype))
 
-    def dual_vector(self, P: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+    def dual_vector(self, P: Inexact[Array, "... N N"]) -> Inexact[Array, "... dim"]:
         r"""Return $p_i = \mathrm{tr}\,E_i^TP$."""
         xp = P.__array_namespace__()
         return xp.sum(P[..., self._rows, self._columns] * xp.asarray(self._values, dtype=P.dtype), axis=-1)
@@ -92,7 +92,7 @@ class DenseCoordinates(AbstractCoordinates):
         r"""Return $\sum x_i E_i$."""
         return _combined(x, self._basis)
 
-    def vector(self, X: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+    def vector(self, X: Inexact[Array, "... N N"]) -> Inexact[Array, "... dim"]:
         r"""Return $x_i = \mathrm{tr}\,D_i^TX$."""
         return _paired(X, self._dual)
 
@@ -100,7 +100,7 @@ class DenseCoordinates(AbstractCoordinates):
         r"""Return $\sum p_i D_i$."""
         return _combined(p, self._dual)
 
-    def dual_vector(self, P: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+    def dual_vector(self, P: Inexact[Array, "... N N"]) -> Inexact[Array, "... dim"]:
         r"""Return $p_i = \mathrm{tr}\,E_i^TP$."""
         return _paired(P, self._basis)
 

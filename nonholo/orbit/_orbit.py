@@ -45,7 +45,7 @@ class AbstractMotion(abc.ABC):
         """Return what the constraint wants to be zero."""
 
     @abc.abstractmethod
-    def displaced(self, cayley: Float[np.ndarray, "K m"]) -> Float[np.ndarray, "K N N"]:
+    def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Return the elements of the displacement variety, in the user's frame, with canonical chart coordinates."""
 
 

@@ -42,7 +42,7 @@ def trace_constraints(
     return W[..., j, i] - W[..., i, j]
 
 
-def in_exp_d(displacement: Float[np.ndarray, "... n n"], tolerance: float = 1e-9) -> Bool[np.ndarray, "..."]:
+def in_exp_d(displacement: Float[np.ndarray, "... n n"], tolerance: float = 1e-9) -> Bool[Array, "..."]:
     r"""Tell whether a rotation is a displacement $\exp(\theta\,u\wedge e_n)$ of the Suslov top in its canonical frame.
 
     With $I_e = \mathrm{diag}(1, \dots, 1, -1)$: $I_eW$ is symmetric, that is an orthogonal reflection, and

@@ -1,12 +1,12 @@
 """The discrete Lagrangian of the free top in Euler angles, as the paper prints it, corrected."""
 
+from typing import Any
+
 from nonholo._checks import trailing
 from nonholo._types import Array, Float
 
 
-def euler_angle_discrete_lagrangian(
-    principal_moments: Float[Array, "... 3"], angles: Float[Array, "... 3"], angles_next: Float[Array, "... 3"]
-) -> Float[Array, "..."]:
+def euler_angle_discrete_lagrangian(principal_moments: Any, angles: Any, angles_next: Any) -> Float[Array, "..."]:
     r"""Return $\mathrm{tr}\,J - \mathrm{tr}(R_k^TR_{k+1}J)$ of two rotations given by z-x-z Euler angles.
 
     With $R = R_z(\varphi)R_x(\theta)R_z(\psi)$, $\Delta\varphi = \varphi' - \varphi$, $\Delta\psi = \psi' - \psi$,

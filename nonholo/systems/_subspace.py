@@ -14,7 +14,7 @@ from nonholo.groups import AbstractMatrixGroup
 _ROUNDING = 64 * np.finfo(np.float64).eps  # times the larger side of a matrix: singular values below it count as zero
 
 
-def null_space(rows: Float[np.ndarray, "m dim"], tolerance: float = _ROUNDING) -> Float[np.ndarray, "m dim"]:
+def null_space(rows: Float[np.ndarray, "m dim"], tolerance: float = _ROUNDING) -> Float[np.ndarray, "n dim"]:
     """Return orthonormal rows that span the vectors orthogonal to the given rows.
 
     Args:
@@ -94,7 +94,7 @@ def plane_rows(group: AbstractMatrixGroup, planes: list[tuple[int, int]]) -> Flo
     return group.vee(wedge) + 0.0
 
 
-def reference_point_subspace(n: int, plane: Float[Array, "k n"]) -> Float[np.ndarray, "m dim"]:
+def reference_point_subspace(n: int, plane: Any) -> Float[np.ndarray, "m dim"]:
     r"""Return the subspace of se(n) in which the velocity of the body's reference point stays in a plane of the body.
 
     $$ \mathfrak{d} = \{(w, v) : w \in so(n),\ v \in \mathrm{span}(\text{plane})\}. $$

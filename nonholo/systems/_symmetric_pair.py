@@ -3,6 +3,8 @@ r"""Whether a constraint subspace belongs to a symmetric pair, decided by linear
 For a symmetric pair $\exp\mathfrak{d}$ is a submanifold, the model of Cartan of the symmetric space G/H.
 """
 
+from typing import Any
+
 import numpy as np
 
 from nonholo._types import Float
@@ -13,7 +15,7 @@ from nonholo.systems._subspace import independent_rows, null_space, spanned
 _RANK = 1e-12  # relative size below which a singular value or a residual counts as zero
 
 
-def is_symmetric_pair(group: AbstractMatrixGroup, constraint_subspace: Float[np.ndarray, "k dim"]) -> bool:
+def is_symmetric_pair(group: AbstractMatrixGroup, constraint_subspace: Any) -> bool:
     r"""Tell whether the algebra has a subalgebra that forms a symmetric pair with the constraint subspace.
 
     $$ \mathfrak{g} = \mathfrak{h}\oplus\mathfrak{d}, \qquad [\mathfrak{h},\mathfrak{h}]\subset\mathfrak{h}, \quad
@@ -42,9 +44,7 @@ def is_symmetric_pair(group: AbstractMatrixGroup, constraint_subspace: Float[np.
     return symmetric_complement(group, constraint_subspace) is not None
 
 
-def symmetric_complement(
-    group: AbstractMatrixGroup, constraint_subspace: Float[np.ndarray, "k dim"]
-) -> Float[np.ndarray, "s dim"] | None:
+def symmetric_complement(group: AbstractMatrixGroup, constraint_subspace: Any) -> Float[np.ndarray, "s dim"] | None:
     r"""Return rows that span an $\mathfrak{h}$ of a symmetric pair with the constraint subspace, or None.
 
     Every such $\mathfrak{h}$ lies in the normaliser $\mathfrak{n} = \{x : [x, \mathfrak{d}]\subset\mathfrak{d}\}$,

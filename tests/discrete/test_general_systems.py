@@ -68,7 +68,7 @@ def test_the_riccati_equation_ends_with_the_branch() -> None:
 
 
 @pytest.mark.parametrize("bad", [{"mass_tensor": np.diag([1.0, 2.0, 0.0])}, {"momentum": [1.0]}, {"time_step": -1.0}])
-def test_the_riccati_equation_refuses(bad: dict) -> None:
+def test_what_the_riccati_equation_cannot_do_is_refused(bad: dict) -> None:
     """Flat bodies, wrong shapes and time steps are refused with their reason."""
     good = {"mass_tensor": np.diag([1.0, 2.0, 3.0]), "momentum": [0.1, 0.2, 0.3], "time_step": 0.1}
     with pytest.raises(ValueError, match=next(iter(bad))):

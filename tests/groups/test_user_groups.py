@@ -65,7 +65,7 @@ def test_equal_groups_hash_alike(first: object, second: object, other: object) -
     assert first != other
 
 
-def test_products_and_translations_refuse_what_is_no_group() -> None:
+def test_what_is_no_group_is_refused_by_products_and_translations() -> None:
     """No factors, numbers as factors, vectors without components."""
     with pytest.raises(ValueError, match=r"ProductGroup.*no factor"):
         ProductGroup()

@@ -58,7 +58,7 @@ def test_spurious_sheet_in_five_dimensions() -> None:
     assert in_exp_d(W_on_the_variety)
 
 
-def test_matrices_that_are_no_rotations() -> None:
+def test_matrices_that_are_no_rotations_are_refused() -> None:
     """A scaled displacement is refused by the test, and a vector by an error."""
     assert not in_exp_d(1.001 * _displacement(3))
     with pytest.raises(ValueError, match=r"in_exp_d\(displacement=\.\.\.\)` must be a square matrix. Got shape \(3,\)"):
@@ -66,7 +66,7 @@ def test_matrices_that_are_no_rotations() -> None:
 
 
 @pytest.mark.parametrize("pair", [(np.eye(3), np.eye(4)), (np.ones((3, 4)), np.eye(3)), (1.0, 2.0)])
-def test_traces_need_two_matrices_of_one_size(pair: tuple) -> None:
+def test_traces_of_other_than_two_matrices_of_one_size_are_refused(pair: tuple) -> None:
     """Other shapes are refused by the name of the argument."""
     with pytest.raises(ValueError, match=r"trace_constraints\(configuration(_next)?=\.\.\.\)` must end in shape"):
         trace_constraints(*pair)

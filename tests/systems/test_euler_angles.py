@@ -45,7 +45,7 @@ def test_it_is_the_discrete_lagrangian_of_the_library() -> None:
     assert np.allclose(nh.discrete_legendre(nh.discretize(top, h), W), momentum, atol=1e-7)  # rounding eps/step
 
 
-def test_triples_are_required() -> None:
+def test_other_than_triples_are_refused() -> None:
     """Angles and moments come as triples."""
     with pytest.raises(ValueError, match=r"angles_next=\.\.\.\)` must end in shape \(3,\)"):
         euler_angle_discrete_lagrangian((1, 1, 1), (0, 0, 0), (0, 0))

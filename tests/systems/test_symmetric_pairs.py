@@ -91,7 +91,7 @@ def test_subspace_is_checked() -> None:
         is_symmetric_pair(nh.SO(3), np.eye(2))
 
 
-def test_group_is_checked() -> None:
+def test_what_is_no_group_is_refused() -> None:
     """A name is no group."""
     with pytest.raises(ValueError, match=r"is_symmetric_pair\(group=\.\.\.\)` must be a matrix group. Got 'SO\(3\)'"):
         is_symmetric_pair("SO(3)", np.eye(3))
