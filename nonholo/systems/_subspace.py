@@ -86,7 +86,7 @@ def _refuse_inconsistent(where: str, rows: np.ndarray, covectors: np.ndarray) ->
         raise error(where, "vanish on the constraint subspace", f"a pairing of {residual:.3g}", remedy)
 
 
-def plane_rows(group: AbstractMatrixGroup, planes: list[tuple[int, int]]) -> Float[np.ndarray, "k dim"]:
+def plane_rows(group: AbstractMatrixGroup, planes: list) -> Float[np.ndarray, "k dim"]:
     r"""Return the coordinates of $e_i\wedge e_j = e_ie_j^T - e_je_i^T$ for pairs (i, j) counted from 0."""
     wedge = np.zeros((len(planes), *group.identity.shape))
     for row, (i, j) in enumerate(planes):
