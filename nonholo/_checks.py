@@ -13,6 +13,8 @@ import numpy as np
 
 from nonholo._types import Array
 
+_LEAST_RTOL = 1e-14
+
 
 def error(where: str, requirement: str, got: str, remedy: str) -> ValueError:
     """Build the error every check raises: owner and argument, requirement, fact, remedy.
@@ -104,6 +106,12 @@ def count(where: str, value: Any, remedy: str) -> int:
     return int(value)
 
 
+def step_counts(steps: Any, save_every: Any) -> tuple[int, int]:
+    """Return the numbers of steps of a run, in all and between saved states."""
+    steps = count("simulate(steps=...)", steps, "Pass the number of steps.")
+    return steps, count("simulate(save_every=...)", save_every, "Pass the number of steps between saved states.")
+
+
 def choice(where: str, value: Any, allowed: tuple[Any, ...], remedy: str = "Choose one of them.") -> Any:
     """Return `value` if it is one of the allowed ones."""
     if not any(value is a or value == a for a in allowed if isinstance(value, type(a))):
@@ -134,3 +142,26 @@ def positive_definite(where: str, matrix: Array, what: str, remedy: str) -> None
     if not eigenvalues[0] > 4 * np.finfo(np.float64).eps * max(abs(eigenvalues[-1]), math.ulp(0.0)):
         got = f"an eigenvalue {np.linalg.eigvalsh(matrix)[0]:.6g}"
         raise error(where, f"make {what} positive definite", got, remedy)
+
+
+def flow_times(value: Any) -> Array:
+    """Return the times of a flow: at least one, in strict order, in either direction."""
+    where, remedy = "flow(times=...)", "Sort the times; the start is at the first."
+    times = array(where, value, (None,), "Pass a sequence of times.")
+    if times.size == 0:
+        raise error(where, "hold at least one time", "none", "Pass the time of the start first.")
+    gaps = np.diff(times)
+    forward = gaps * np.sign(gaps[:1])
+    if gaps.size and not forward.min() > 0:
+        at = int(np.argmin(forward))
+        got = f"{times[at + 1]} after {times[at]}"
+        raise error(where, "be strictly increasing or strictly decreasing", got, remedy)
+    return times
+
+
+def flow_tolerances(rtol: Any, atol: Any) -> tuple[float, float]:
+    """Return the relative and absolute tolerances of a flow."""
+    relative = float(number("flow(rtol=...)", rtol))
+    if relative < _LEAST_RTOL:
+        raise error("flow(rtol=...)", "be at least 1e-14", f"{relative:g}", "Rounding errors are as large as that.")
+    return relative, float(positive("flow(atol=...)", atol, "Pass a positive absolute error."))

@@ -4,6 +4,7 @@ Three failures are never confused: the solve did not converge, the root lies on 
 """
 
 import enum
+from typing import Any
 
 
 class Outcome(enum.IntEnum):
@@ -66,3 +67,11 @@ class OutcomeError(RuntimeError):
         super().__init__(f"{where}: {outcome.name}. {outcome.message}")
         self.outcome = outcome
         self.orbit = orbit
+
+
+def finished(orbit: Any, time_step: float, done: int, steps: int, throw: bool) -> Any:
+    """Return the orbit of a run; with `throw`, raise if it ended early, naming the step."""
+    if throw and orbit.outcome != Outcome.successful:
+        where = f"Step {done + 1} of {steps}" if len(orbit) else "Start of the run"
+        raise OutcomeError(orbit.outcome, f"{where} (time_step {time_step:g})", orbit)
+    return orbit

@@ -1,14 +1,9 @@
-"""Numerical integration of momentum and pose: diffrax's Dopri8, one solve from each requested time to the next.
-
-Interpolated output would be much less accurate than the steps, so every requested time is stepped to. Each interval is
-mapped to [0, 1]: time units and the direction of time do not matter. Imported on first use, since diffrax loads slowly.
-"""
+"""Numerical integration of momentum and pose. Imported on first use, since diffrax loads slowly."""
 
 import functools
 from collections.abc import Callable
 from typing import Any
 
-import diffrax
 import jax
 import numpy as np
 
@@ -17,11 +12,9 @@ from nonholo._types import Array, Float
 from nonholo.continuous._equations import Body, body_of, momentum_rate, spatial_velocity
 from nonholo.continuous._heteroclinic import Heteroclinic
 from nonholo.groups import SE, AbstractMatrixGroup
+from nonholo.numerics._time_sweep import State, padded, reached, sweep
 from nonholo.systems import AbstractLRSystem, AbstractSystem
 
-_SMALLEST_STEP = 1e-13  # of an interval; below it a solve is given up
-
-State = tuple[Array, ...]
 Rate = Callable[[AbstractMatrixGroup, Array, State, Any], State]
 
 
@@ -98,46 +91,13 @@ def _solve(
     tolerances: tuple[float, float],
 ) -> tuple[list[np.ndarray], Outcome]:
     with jax.enable_x64(True):
-        found, good = _sweep(rate, group, state, known, _padded(elapsed), tolerances)
-        rows = [np.concatenate([first[None], np.asarray(rest)]) for first, rest in zip(state, found, strict=True)]
-        rows, good = [row[: len(elapsed)] for row in rows], np.asarray(good)
-    if good.all():
-        return rows, Outcome.successful
-    return [row[: 1 + good.argmin()] for row in rows], Outcome.not_converged
-
-
-def _padded(elapsed: np.ndarray) -> np.ndarray:
-    """Repeat the last time until their number is one more than a power of two, so that few sizes are compiled."""
-    missing = (1 << max(len(elapsed) - 2, 0).bit_length()) + 1 - len(elapsed)
-    return np.append(elapsed, np.full(missing, elapsed[-1]))
+        found, good = _sweep(rate, group, state, known, padded(elapsed), tolerances)
+    rows = reached(state, found, good, len(elapsed))
+    return rows, Outcome.successful if len(rows[0]) == len(elapsed) else Outcome.not_converged
 
 
 @functools.partial(jax.jit, static_argnums=(0, 1))
 def _sweep(
     rate: Rate, group: AbstractMatrixGroup, state: State, known: Any, elapsed: Array, tolerances: tuple[Array, Array]
 ) -> tuple[State, Array]:
-    """Carry the state from each time to the next; return all states but the first, and which solves succeeded."""
-
-    def scaled(fraction: Array, current: State, span: tuple[Array, Array]) -> State:
-        time, length = span
-        return jax.tree.map(lambda x: length * x, rate(group, time + length * fraction, current, known))
-
-    def advance(current: State, span: tuple[Array, Array]) -> tuple[State, tuple[State, Array]]:
-        controller = diffrax.PIDController(*tolerances, dtmin=_SMALLEST_STEP, force_dtmin=False)
-        solution = diffrax.diffeqsolve(
-            diffrax.ODETerm(scaled),
-            diffrax.Dopri8(),
-            t0=0.0,
-            t1=1.0,
-            dt0=1.0,
-            y0=current,
-            args=span,
-            stepsize_controller=controller,
-            adjoint=diffrax.ForwardMode(),
-            max_steps=None,
-            throw=False,
-        )
-        following = jax.tree.map(lambda rows: rows[-1], solution.ys)
-        return following, (following, solution.result == diffrax.RESULTS.successful)
-
-    return jax.lax.scan(advance, state, (elapsed[:-1], elapsed[1:] - elapsed[:-1]))[1]
+    return sweep(lambda time, current: rate(group, time, current, known), lambda end: end, state, elapsed, tolerances)

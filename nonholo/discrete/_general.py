@@ -23,7 +23,7 @@ _MARGIN = 1 - 1e-9
 
 def general_body(system: AbstractSystem, variety: Variety) -> kernels.GeneralBody:
     """Return the body of the general kernel, in its own unit of length."""
-    group, unit = system.group, length_unit(system)
+    group, unit = system.group, _length_unit(system)
     N, n = group.identity.shape[0], _size_of_rotations(system)
     shrink = np.where(np.arange(N) < n, 1 / unit, 1.0)
     motions = np.outer(shrink, 1 / shrink)
@@ -63,7 +63,7 @@ def _certain_ball(system: AbstractSystem) -> tuple[float, float]:
 
     In the unit of length of the body.
     """
-    slope, least = _stiffness(system, length_unit(system))
+    slope, least = _stiffness(system, _length_unit(system))
     cosine = np.sqrt(1 - _SINES**2)
     lipschitz = slope(_SINES, cosine)
     reach = np.where(lipschitz < 1, (1 - lipschitz) * _SINES, 0.0)
@@ -72,7 +72,7 @@ def _certain_ball(system: AbstractSystem) -> tuple[float, float]:
     return float(_SINES[best] ** 2 * size), float(reach[best] ** 2 * size)
 
 
-def length_unit(system: AbstractSystem) -> float:
+def _length_unit(system: AbstractSystem) -> float:
     """Return the length that makes translations comparable with rotations; one for rotations alone."""
     tensor, n = np.asarray(system.homogeneous_mass_tensor), _size_of_rotations(system)
     if n == len(tensor):

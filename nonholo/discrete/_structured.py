@@ -7,7 +7,7 @@ import numpy as np
 from nonholo import kernels
 from nonholo._results import Outcome, OutcomeError
 from nonholo._types import Array, Float
-from nonholo.discrete._general import general_body, length_unit
+from nonholo.discrete._general import general_body
 from nonholo.orbit import Orbit
 from nonholo.systems import AbstractLRSystem, AbstractSystem, ChaplyginSleigh, SuslovTop
 
@@ -55,7 +55,8 @@ def structured(discrete: "Discretization") -> Structured | None:
     variety = discrete.variety
     if variety.exponential or discrete.constraint not in ("skew", "exponential"):
         return None
-    return MatrixStep(general_body(discrete.system, variety), discrete.time_step / length_unit(discrete.system) ** 2)
+    body = general_body(discrete.system, variety)
+    return MatrixStep(body, discrete.time_step / body.unit**2)
 
 
 def next_charts(discrete: "Discretization", states: Orbit) -> Float[np.ndarray, "K m"]:

@@ -3,9 +3,9 @@
 import dataclasses
 from typing import Any
 
-from nonholo._checks import error, is_traced, positive
 from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
 from nonholo.lagrange_dalembert._simulate import simulate
+from nonholo.lagrange_dalembert._start import fixed_time_step
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 from nonholo.systems._coordinate_system import AbstractCoordinateDiscretization
 
@@ -28,12 +28,7 @@ class CoordinateDiscretization(AbstractCoordinateDiscretization[CoordinateOrbit]
     time_step: float
 
     def __post_init__(self) -> None:
-        where = "discretize(time_step=...)"
-        if is_traced(self.time_step):
-            remedy = "Runs in coordinates are compiled by themselves: call them outside jax.jit and jax.grad."
-            raise error(where, "be a number", "a traced value", remedy)
-        h = float(positive(where, self.time_step, "Pass a positive real time step."))
-        object.__setattr__(self, "time_step", h)
+        object.__setattr__(self, "time_step", fixed_time_step(self.time_step))
 
     def simulate(
         self,

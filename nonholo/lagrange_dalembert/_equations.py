@@ -82,6 +82,13 @@ def bordered(mass: Array, right: Array, below: Array, kinetic: Array) -> tuple[A
     return jnp.concatenate([upper, lower]), Scaled(unit, a, f)
 
 
+def solve_bordered(matrix: Array, units: Scaled, force: Array, off: Array) -> tuple[Array, Array]:
+    r"""Solve $M x - A^T\lambda$ = force, F x = off, given the matrix without units."""
+    n = force.shape[0]
+    solution = jnp.linalg.solve(matrix, jnp.concatenate([force * units.velocity, off / units.constraints]))
+    return solution[:n] * units.velocity, solution[n:] / units.forms
+
+
 def kinetic_matrix(system: LagrangeDAlembert, q: Array, v: Array) -> Array:
     r"""Return $\partial^2 L/\partial v^2$."""
     return jax.hessian(system.lagrangian, argnums=1)(q, v)

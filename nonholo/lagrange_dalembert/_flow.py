@@ -7,13 +7,12 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._results import Outcome, OutcomeError
+from nonholo._checks import flow_times, flow_tolerances
 from nonholo._types import Array
 from nonholo.lagrange_dalembert import _start
-from nonholo.lagrange_dalembert._equations import acceleration_matrix, energy, forms
+from nonholo.lagrange_dalembert._equations import acceleration_matrix, energy, forms, solve_bordered
 from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
-from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._sweep import Motion, State, padded, swept, times_of, tolerances
+from nonholo.lagrange_dalembert._sweep import Motion, State, flowed
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 
 
@@ -21,18 +20,10 @@ def flow(
     system: LagrangeDAlembert, configuration: Any, starts: dict[str, Any], times: Any, rtol: float, atol: float
 ) -> CoordinateOrbit:
     """Check a start, solve the equations and return the orbit."""
-    time, errors = times_of(times), tolerances(rtol, atol)
+    time, errors = flow_times(times), flow_tolerances(rtol, atol)
     q = _start.point("flow", system, configuration)
     v = _velocity(system, q, starts)
-    rows = swept(Motion(system, _rate, _projected), (q, v), time, errors)
-    reached = len(rows[0])
-    momentum, forces, energies, residual = (x[:reached] for x in in_double(_decode, system, *map(padded, rows)))
-    outcome = Outcome.successful if reached == len(time) else Outcome.not_converged
-    orbit = CoordinateOrbit(time[:reached], rows[0], None, rows[1], momentum, forces, energies, residual, outcome)
-    if outcome != Outcome.successful:
-        where = f"Flow from time {time[reached - 1]:g} to {time[reached]:g} (rtol {rtol:g}, atol {atol:g})"
-        raise OutcomeError(outcome, where, orbit)
-    return orbit
+    return flowed(CoordinateOrbit, Motion(_rate, _projected, _decode), system, (q, v), time, errors)
 
 
 def _velocity(system: LagrangeDAlembert, q: np.ndarray, starts: dict[str, Any]) -> np.ndarray:
@@ -43,10 +34,7 @@ def _velocity(system: LagrangeDAlembert, q: np.ndarray, starts: dict[str, Any]) 
 
 def _bordered_solve(system: LagrangeDAlembert, q: Array, v: Array, force: Array, off: Array) -> tuple[Array, Array]:
     r"""Solve $M x - A^T\lambda$ = force, A x = off."""
-    n = q.shape[0]
-    matrix, units = acceleration_matrix(system, q, v)
-    solution = jnp.linalg.solve(matrix, jnp.concatenate([force * units.velocity, off / units.constraints]))
-    return solution[:n] * units.velocity, solution[n:] / units.forms
+    return solve_bordered(*acceleration_matrix(system, q, v), force, off)
 
 
 def _projected(system: LagrangeDAlembert, state: State) -> State:

@@ -8,8 +8,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import count, positive
-from nonholo._results import Outcome, OutcomeError
+from nonholo._checks import step_counts
+from nonholo._results import Outcome, finished
 from nonholo._types import Array
 from nonholo.lagrange_dalembert import _group_equations as equations
 from nonholo.lagrange_dalembert import _group_start as start
@@ -18,7 +18,7 @@ from nonholo.lagrange_dalembert._group_orbit import GroupOrbit
 from nonholo.lagrange_dalembert._newton import root
 from nonholo.lagrange_dalembert._on_group import GroupLagrangeDAlembert
 from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._start import chosen
+from nonholo.lagrange_dalembert._start import chosen, fixed_time_step
 from nonholo.systems._coordinate_system import AbstractCoordinateDiscretization
 
 
@@ -41,8 +41,7 @@ class GroupDiscretization(AbstractCoordinateDiscretization):
     time_step: float
 
     def __post_init__(self) -> None:
-        h = float(positive("discretize(time_step=...)", self.time_step, "Pass a positive real time step."))
-        object.__setattr__(self, "time_step", h)
+        object.__setattr__(self, "time_step", fixed_time_step(self.time_step))
 
     def simulate(
         self,
@@ -90,18 +89,13 @@ class GroupDiscretization(AbstractCoordinateDiscretization):
             [0. 0. 2.]
         """
         system, h = self.system, np.float64(self.time_step)
-        steps = count("simulate(steps=...)", steps, "Pass the number of steps.")
-        every = count("simulate(save_every=...)", save_every, "Pass the number of steps between saved states.")
+        steps, every = step_counts(steps, save_every)
         starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
         given = chosen("simulate", starts)
         g = start.pose("simulate", system, configuration)
         start.consistent(system, g, h)
         rows, code, done = run(_step, system, h, _first(system, h, g, given, starts[given]), steps, every, progress)
-        orbit = _orbit(system, h, rows, Outcome(int(code)), every)
-        if throw and code:
-            where = f"Step {done + 1} of {steps}" if len(orbit) else "Start of the run"
-            raise OutcomeError(orbit.outcome, f"{where} (time_step {h:g})", orbit)
-        return orbit
+        return finished(_orbit(system, h, rows, Outcome(int(code)), every), h, done, steps, throw)
 
 
 def _first(system: GroupLagrangeDAlembert, h: Any, g: np.ndarray, given: str, value: Any) -> tuple[State, Array, Array]:

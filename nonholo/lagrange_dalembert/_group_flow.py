@@ -6,44 +6,33 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 
-from nonholo._results import Outcome, OutcomeError
+from nonholo._checks import flow_times, flow_tolerances
 from nonholo._types import Array
 from nonholo.lagrange_dalembert import _group_equations as equations
 from nonholo.lagrange_dalembert import _group_start as start
+from nonholo.lagrange_dalembert._equations import solve_bordered
 from nonholo.lagrange_dalembert._group_orbit import GroupOrbit
 from nonholo.lagrange_dalembert._on_group import GroupLagrangeDAlembert
-from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._start import chosen
-from nonholo.lagrange_dalembert._sweep import Motion, State, padded, swept, times_of, tolerances
+from nonholo.lagrange_dalembert._sweep import Motion, State, flowed
 
 
 def flow(
     system: GroupLagrangeDAlembert, configuration: Any, starts: dict[str, Any], times: Any, rtol: float, atol: float
 ) -> GroupOrbit:
     """Check a start, solve the equations and return the orbit."""
-    time, errors, given = times_of(times), tolerances(rtol, atol), chosen("flow", starts)
+    time, errors, given = flow_times(times), flow_tolerances(rtol, atol), chosen("flow", starts)
     g = start.pose("flow", system, configuration)
     of = start.of_momentum if given == "momentum" else start.of_velocity
     w, _ = of("flow", system, g, starts[given])
-    rows = swept(Motion(system, _rate, _projected), (g, w), time, errors)
-    reached = len(rows[0])
-    momentum, forces, energies, residual = (x[:reached] for x in in_double(_decode, system, *map(padded, rows)))
-    outcome = Outcome.successful if reached == len(time) else Outcome.not_converged
-    orbit = GroupOrbit(time[:reached], rows[0], None, rows[1], momentum, forces, energies, residual, outcome)
-    if outcome != Outcome.successful:
-        where = f"Flow from time {time[reached - 1]:g} to {time[reached]:g} (rtol {rtol:g}, atol {atol:g})"
-        raise OutcomeError(outcome, where, orbit)
-    return orbit
+    return flowed(GroupOrbit, Motion(_rate, _projected, _decode), system, (g, w), time, errors)
 
 
 def _bordered_solve(
     system: GroupLagrangeDAlembert, g: Array, w: Array, force: Array, off: Array
 ) -> tuple[Array, Array]:
     r"""Solve $M x - a^T\lambda$ = force, a x = off."""
-    matrix, units = equations.acceleration_matrix(system, g, w)
-    solution = jnp.linalg.solve(matrix, jnp.concatenate([force * units.velocity, off / units.constraints]))
-    n = system.group.dim
-    return solution[:n] * units.velocity, solution[n:] / units.forms
+    return solve_bordered(*equations.acceleration_matrix(system, g, w), force, off)
 
 
 def _projected(system: GroupLagrangeDAlembert, state: State) -> State:

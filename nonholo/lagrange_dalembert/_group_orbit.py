@@ -7,16 +7,14 @@ import numpy as np
 
 from nonholo._results import Outcome
 from nonholo._types import Float
+from nonholo.lagrange_dalembert._orbit import SHARED, Labels, labelled
 
-# name: dimensions after `step`, and what the numbers are
-_VARIABLES = {
+_VARIABLES: Labels = {
     "configuration": (("row", "column"), "pose"),
     "displacement": (("row", "column"), "displacement of a single step, seen from the body"),
     "body_velocity": (("component",), "body velocity; of a discrete orbit log(displacement) / time_step"),
     "momentum": (("component",), "body momentum at the start of the step; of a flow the Legendre transform"),
-    "multipliers": (("constraint",), "impulses of constraint to the next state; of a flow forces of constraint"),
-    "energy": ((), "energy"),
-    "constraint_residual": ((), "largest residual of the constraint"),
+    **SHARED,
 }
 
 
@@ -63,13 +61,4 @@ class GroupOrbit:
 
     def to_dataset(self) -> Any:
         """Return the orbit as a labelled `xarray.Dataset`; multipliers that do not exist are NaN."""
-        import xarray
-
-        variables = {}
-        for name, (dimensions, meaning) in _VARIABLES.items():
-            rows = getattr(self, name)
-            if rows is not None:
-                missing = np.full((len(self) - len(rows), *rows.shape[1:]), np.nan)
-                variables[name] = (("step", *dimensions), np.concatenate([rows, missing]), {"long_name": meaning})
-        time = ("step", self.time, {"long_name": "time"})
-        return xarray.Dataset(variables, coords={"time": time}, attrs={"outcome": self.outcome.name})
+        return labelled(self, _VARIABLES)

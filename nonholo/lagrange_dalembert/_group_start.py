@@ -13,6 +13,7 @@ from nonholo.lagrange_dalembert import _group_equations as equations
 from nonholo.lagrange_dalembert._newton import root
 from nonholo.lagrange_dalembert._on_group import GroupLagrangeDAlembert
 from nonholo.lagrange_dalembert._precision import in_double
+from nonholo.lagrange_dalembert._start import admissible
 
 _TOLERANCE = 1e-9  # relative, for matrices and velocities that a user computed in floating point
 _DEGENERATE = 1e-10  # least singular value of scaled matrices, below which they are called singular
@@ -39,13 +40,7 @@ def of_velocity(owner: str, system: GroupLagrangeDAlembert, g: np.ndarray, given
     where = f"{owner}(body_velocity=...)"
     w = array(where, given, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
     p = regular(system, g, w)
-    A = in_double(_forms, system, g)
-    missed = A @ w
-    if np.any(np.abs(missed) > _TOLERANCE * (np.abs(A) @ np.abs(w))):
-        nearest = w - np.linalg.pinv(A) @ missed
-        got = f"residual {np.array2string(missed, precision=6)}"
-        raise error(where, "satisfy the constraint", got, f"The nearest admissible velocity is {nearest.tolist()}.")
-    return w, p
+    return admissible(where, in_double(_forms, system, g), w), p
 
 
 def of_momentum(

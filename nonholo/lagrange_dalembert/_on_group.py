@@ -1,7 +1,6 @@
 """What a system on a group is whose Lagrangian is left-invariant and whose constraints need not be."""
 
 import dataclasses
-import importlib
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +9,7 @@ import jax
 from nonholo._checks import error
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
+from nonholo.lagrange_dalembert._room import room
 from nonholo.lagrange_dalembert._tracing import traced_shape
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem
 from nonholo.systems._mass import checked_group, group_mass_tensor, inertia_form
@@ -129,7 +129,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
             >>> GroupLagrangeDAlembert(nh.SO(3), action, None).discretize(0.1).time_step
             0.1
         """
-        return _room("_group_discretization").GroupDiscretization(self, time_step)
+        return room("_group_discretization").GroupDiscretization(self, time_step)
 
     def flow(
         self,
@@ -171,7 +171,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
             [-1. -1.  1.]
         """
         starts = {"body_velocity": body_velocity, "momentum": momentum}
-        return _room("_group_flow").flow(self, configuration, starts, times, rtol, atol)
+        return room("_group_flow").flow(self, configuration, starts, times, rtol, atol)
 
 
 def mass_tensor_lagrangian(
@@ -203,8 +203,3 @@ def mass_tensor_lagrangian(
         return inertia_form(X[None], X.__array_namespace__().asarray(tensor))[0, 0] / (2 * time_step)
 
     return discrete_lagrangian
-
-
-def _room(name: str) -> Any:
-    """Import a module of this room when it is needed: they import this one, and diffrax loads slowly."""
-    return importlib.import_module(f"nonholo.lagrange_dalembert.{name}")

@@ -8,15 +8,20 @@ import numpy as np
 from nonholo._results import Outcome
 from nonholo._types import Float
 
-# name: dimension after `step`, and what the numbers are
-_VARIABLES = {
-    "configuration": ("coordinate", "coordinates"),
-    "displacement": ("coordinate", "change of the coordinates in one step"),
-    "body_velocity": ("coordinate", "velocity; of a discrete orbit displacement / time_step"),
-    "momentum": ("coordinate", "momentum at the start of the step; of a flow the Legendre transform"),
-    "multipliers": ("constraint", "impulses of constraint to the next state; of a flow forces of constraint"),
-    "energy": (None, "energy"),
-    "constraint_residual": (None, "largest residual of the constraint"),
+Labels = dict[str, tuple[tuple[str, ...], str]]
+"""Name: dimensions after `step`, and what the numbers are."""
+
+SHARED: Labels = {
+    "multipliers": (("constraint",), "impulses of constraint to the next state; of a flow forces of constraint"),
+    "energy": ((), "energy"),
+    "constraint_residual": ((), "largest residual of the constraint"),
+}
+_VARIABLES: Labels = {
+    "configuration": (("coordinate",), "coordinates"),
+    "displacement": (("coordinate",), "change of the coordinates in one step"),
+    "body_velocity": (("coordinate",), "velocity; of a discrete orbit displacement / time_step"),
+    "momentum": (("coordinate",), "momentum at the start of the step; of a flow the Legendre transform"),
+    **SHARED,
 }
 
 
@@ -63,14 +68,18 @@ class CoordinateOrbit:
 
     def to_dataset(self) -> Any:
         """Return the orbit as a labelled `xarray.Dataset`; multipliers that do not exist are NaN."""
-        import xarray
+        return labelled(self, _VARIABLES)
 
-        variables = {}
-        for name, (dimension, meaning) in _VARIABLES.items():
-            rows = getattr(self, name)
-            if rows is not None:
-                missing = np.full((len(self) - len(rows), *rows.shape[1:]), np.nan)
-                sizes = ("step",) if dimension is None else ("step", dimension)
-                variables[name] = (sizes, np.concatenate([rows, missing]), {"long_name": meaning})
-        time = ("step", self.time, {"long_name": "time"})
-        return xarray.Dataset(variables, coords={"time": time}, attrs={"outcome": self.outcome.name})
+
+def labelled(orbit: Any, labels: Labels) -> Any:
+    """Return the arrays of an orbit as an `xarray.Dataset`; rows that do not exist are NaN."""
+    import xarray
+
+    variables = {}
+    for name, (dimensions, meaning) in labels.items():
+        rows = getattr(orbit, name)
+        if rows is not None:
+            missing = np.full((len(orbit) - len(rows), *rows.shape[1:]), np.nan)
+            variables[name] = (("step", *dimensions), np.concatenate([rows, missing]), {"long_name": meaning})
+    time = ("step", orbit.time, {"long_name": "time"})
+    return xarray.Dataset(variables, coords={"time": time}, attrs={"outcome": orbit.outcome.name})

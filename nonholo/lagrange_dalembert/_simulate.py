@@ -7,8 +7,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import count
-from nonholo._results import Outcome, OutcomeError
+from nonholo._checks import step_counts
+from nonholo._results import Outcome, finished
 from nonholo._types import Array
 from nonholo.lagrange_dalembert import _start
 from nonholo.lagrange_dalembert._blocks import State, decoded, run
@@ -30,17 +30,12 @@ def simulate(
     progress: bool,
 ) -> CoordinateOrbit:
     """Check a start, run the map and return its orbit."""
-    steps = count("simulate(steps=...)", steps, "Pass the number of steps.")
-    every = count("simulate(save_every=...)", save_every, "Pass the number of steps between saved states.")
+    steps, every = step_counts(steps, save_every)
     q = _start.point("simulate", system, configuration)
     _start.consistent(system, q, np.float64(h))
     start = _first(system, np.float64(h), q, starts)
     rows, code, done = run(_step, system, np.float64(h), start, steps, every, progress)
-    orbit = _orbit(system, np.float64(h), rows, Outcome(int(code)), every)
-    if throw and code:
-        where = f"Step {done + 1} of {steps}" if len(orbit) else "Start of the run"
-        raise OutcomeError(orbit.outcome, f"{where} (time_step {h:g})", orbit)
-    return orbit
+    return finished(_orbit(system, np.float64(h), rows, Outcome(int(code)), every), h, done, steps, throw)
 
 
 def _first(system: LagrangeDAlembert, h: Any, q: np.ndarray, starts: dict[str, Any]) -> tuple[State, Array, Array]:

@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import array, error, positive
+from nonholo._checks import array, error, is_traced, positive
 from nonholo._types import Array, Float
 from nonholo.lagrange_dalembert._equations import acceleration_matrix, discrete_constraints, forms
 from nonholo.lagrange_dalembert._newton import orientation
@@ -17,6 +17,15 @@ _TOLERANCE = 1e-9  # relative, for velocities and displacements that a user comp
 _DEGENERATE = 1e-10  # least singular value of scaled matrices, below which they are called singular
 _CONSISTENT = 1e-7  # relative; looser, since the functions may difference numerically
 _CORRECTIONS = 8
+
+
+def fixed_time_step(value: Any) -> float:
+    """Return a positive time step that is a number."""
+    where = "discretize(time_step=...)"
+    if is_traced(value):
+        remedy = "Runs in coordinates are compiled by themselves: call them outside jax.jit and jax.grad."
+        raise error(where, "be a number", "a traced value", remedy)
+    return float(positive(where, value, "Pass a positive real time step."))
 
 
 def chosen(owner: str, starts: dict[str, Any]) -> str:
@@ -68,7 +77,11 @@ def velocity(owner: str, system: LagrangeDAlembert, q: Float[np.ndarray, "n"], g
     where = f"{owner}(body_velocity=...)"
     v = array(where, given, (system.dimension,), f"Pass the {system.dimension} velocities.")
     regular(system, q, v)
-    A = in_double(_forms, system, q)
+    return admissible(where, in_double(_forms, system, q), v)
+
+
+def admissible(where: str, A: Float[np.ndarray, "s n"], v: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+    """Return a velocity that satisfies A v = 0, refused with its residual and the nearest one that does."""
     missed = A @ v
     if np.any(np.abs(missed) > _TOLERANCE * (np.abs(A) @ np.abs(v))):
         nearest = v - np.linalg.pinv(A) @ missed

@@ -1,7 +1,6 @@
 """What a system in coordinates is: a Lagrangian, constraint forms, and the rule that discretises both."""
 
 import dataclasses
-import importlib
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -9,6 +8,7 @@ import jax
 
 from nonholo._checks import choice, count, error
 from nonholo._types import Array
+from nonholo.lagrange_dalembert._room import room
 from nonholo.lagrange_dalembert._tracing import traced_shape, with_time_step
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem
 
@@ -131,7 +131,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             >>> round(free.regularity((0, 0), (1, 2), time_step=0.5), 12)
             1.0
         """
-        return _room("_start").regularity(self, q, q_next, time_step)
+        return room("_start").regularity(self, q, q_next, time_step)
 
     def discretize(self, time_step: float) -> "CoordinateDiscretization":
         """Return the discrete map with this time step.
@@ -147,7 +147,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             >>> LagrangeDAlembert(lambda q, v: v @ v, None, dimension=2).discretize(0.1).time_step
             0.1
         """
-        return _room("_discretization").CoordinateDiscretization(self, time_step)
+        return room("_discretization").CoordinateDiscretization(self, time_step)
 
     def flow(
         self,
@@ -191,9 +191,4 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             [-1.]
         """
         starts = {"body_velocity": body_velocity, "momentum": momentum}
-        return _room("_flow").flow(self, configuration, starts, times, rtol, atol)
-
-
-def _room(name: str) -> Any:
-    """Import a module of this room when it is needed: they import this one, and diffrax loads slowly."""
-    return importlib.import_module(f"nonholo.lagrange_dalembert.{name}")
+        return room("_flow").flow(self, configuration, starts, times, rtol, atol)

@@ -4,7 +4,7 @@ from typing import Any, overload
 
 import numpy as np
 
-from nonholo._checks import array, choice, error, number, positive
+from nonholo._checks import choice, error, flow_times, flow_tolerances
 from nonholo._results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, closed_form
 from nonholo.discrete._start import in_group, initial_momentum, one_start
@@ -12,7 +12,6 @@ from nonholo.orbit import Orbit
 from nonholo.systems import AbstractSystem, System
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem, OrbitT, refuse_in_coordinates
 
-_LEAST_RTOL = 1e-14
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
 
 
@@ -107,7 +106,7 @@ def flow(
     if not isinstance(system, AbstractSystem):
         raise error("flow(system=...)", "be a system", repr(system), "Pass a SuslovTop or an LLSystem.")
     choice("flow(method=...)", method, (None, "closed_form"))
-    time, tolerances = _times(times), _tolerances(rtol, atol)
+    time, tolerances = flow_times(times), flow_tolerances(rtol, atol)
     group, motion = system.group, ContinuousFlow(system)
     g = group.identity if configuration is None else in_group("flow(configuration=...)", group, configuration)
     pose = group.pose_from_matrix(g @ system.frame)
@@ -139,24 +138,3 @@ def _check_momentum(given: Any, found: np.ndarray) -> None:
     if missed > _TOLERANCE * np.linalg.norm(found):
         remedy = f"With the same components along the constraint it is {found.tolist()}."
         raise error("flow(momentum=...)", "belong to an admissible velocity", f"a distance {missed:.3g}", remedy)
-
-
-def _times(value: Any) -> np.ndarray:
-    where, remedy = "flow(times=...)", "Sort the times; the start is at the first."
-    times = array(where, value, (None,), "Pass a sequence of times.")
-    if times.size == 0:
-        raise error(where, "hold at least one time", "none", "Pass the time of the start first.")
-    gaps = np.diff(times)
-    forward = gaps * np.sign(gaps[:1])
-    if gaps.size and not forward.min() > 0:
-        at = int(np.argmin(forward))
-        got = f"{times[at + 1]} after {times[at]}"
-        raise error(where, "be strictly increasing or strictly decreasing", got, remedy)
-    return times
-
-
-def _tolerances(rtol: Any, atol: Any) -> tuple[float, float]:
-    relative = float(number("flow(rtol=...)", rtol))
-    if relative < _LEAST_RTOL:
-        raise error("flow(rtol=...)", "be at least 1e-14", f"{relative:g}", "Rounding errors are as large as that.")
-    return relative, float(positive("flow(atol=...)", atol, "Pass a positive absolute error."))

@@ -6,9 +6,9 @@ from typing import Any, overload
 import numpy as np
 
 from nonholo import kernels
-from nonholo._checks import choice, count, error
+from nonholo._checks import choice, error, step_counts
 from nonholo._progress import progress_bar
-from nonholo._results import Outcome, OutcomeError
+from nonholo._results import Outcome, finished
 from nonholo.discrete import Discretization, initial_state
 from nonholo.discrete._discretization import as_discretization
 from nonholo.discrete._start import check_first_state, in_group
@@ -120,8 +120,7 @@ def simulate(
         options = {"save_every": save_every, "throw": throw, "progress": progress}
         return discrete.simulate(configuration=configuration, steps=steps, **starts, **options)
     as_discretization("simulate(discrete=...)", discrete)
-    steps = count("simulate(steps=...)", steps, "Pass the number of steps.")
-    every = count("simulate(save_every=...)", save_every, "Pass the number of steps between saved states.")
+    steps, every = step_counts(steps, save_every)
     choice("simulate(branch=...)", branch, ("principal",))
     group = discrete.system.group
     g = group.identity if configuration is None else in_group("simulate(configuration=...)", group, configuration)
@@ -132,10 +131,7 @@ def simulate(
     orbit = _orbit(discrete, rows, outcome, every, reconstruct)
     if demanded is not None and len(orbit):
         check_first_state(demanded, orbit[:1].displacement[0], orbit[:1].momentum[0])
-    if throw and outcome != Outcome.successful:
-        where = f"Step {done + 1} of {steps}" if len(orbit) else "Start of the run"
-        raise OutcomeError(outcome, f"{where} (time_step {float(discrete.time_step):g})", orbit)
-    return orbit
+    return finished(orbit, float(discrete.time_step), done, steps, throw)
 
 
 def _runner(discrete: Discretization, backend: str) -> Callable[..., tuple[Rows, Outcome, int]]:
