@@ -14,13 +14,18 @@ if TYPE_CHECKING:
     from nonholo.analysis import conserved_momenta as conserved_momenta
     from nonholo.analysis import critical_energies as critical_energies
     from nonholo.analysis import equilibria as equilibria
+    from nonholo.analysis import flow_obstruction as flow_obstruction
+    from nonholo.analysis import half_planes as half_planes
+    from nonholo.analysis import heteroclinic as heteroclinic
     from nonholo.analysis import invariant_curve as invariant_curve
+    from nonholo.analysis import invariant_measure as invariant_measure
     from nonholo.analysis import invariants as invariants
     from nonholo.analysis import lyapunov_function as lyapunov_function
     from nonholo.analysis import momentum_locus as momentum_locus
     from nonholo.analysis import single_valued_region as single_valued_region
     from nonholo.continuous import vector_field as vector_field
     from nonholo.discrete import Discretization as Discretization
+    from nonholo.discrete import branch_tree as branch_tree
     from nonholo.discrete import branches as branches
     from nonholo.discrete import consistency_defect as consistency_defect
     from nonholo.discrete import discrete_legendre as discrete_legendre
@@ -78,6 +83,7 @@ _HOMES = {
     "VeselovaTop": "systems",
     "allow_float32": "discrete._precision",
     "asymptotics": "analysis",
+    "branch_tree": "discrete",
     "branches": "discrete",
     "conserved_momenta": "analysis",
     "consistency_defect": "discrete",
@@ -88,9 +94,13 @@ _HOMES = {
     "equilibria": "analysis",
     "euler_angle_discrete_lagrangian": "systems",
     "flow": "simulation",
+    "flow_obstruction": "analysis",
     "fold_distance": "discrete",
+    "half_planes": "analysis",
+    "heteroclinic": "analysis",
     "in_exp_d": "systems",
     "invariant_curve": "analysis",
+    "invariant_measure": "analysis",
     "invariants": "analysis",
     "inverse_discrete_legendre": "discrete",
     "is_symmetric_pair": "systems",

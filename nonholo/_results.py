@@ -36,12 +36,13 @@ class Outcome(enum.IntEnum):
 _MESSAGES = {
     Outcome.successful: "Every step succeeded.",
     Outcome.no_real_branch: (
-        "The principal branch ends before it reaches this momentum: it folds, and has no real next point. "
-        "The map is multivalued and folds at large step angles. Try a smaller time_step or a slower motion."
+        "The branch ends before it reaches this momentum: it folds, and has no real next point (or a branch rule found "
+        "none). The map is multivalued and folds at large step angles. Try a smaller time_step or a slower motion."
     ),
     Outcome.branch_unverified: (
-        "A root was found, but it could not be verified to be the principal one: it lies on another branch, "
-        "or the path from momentum zero to it runs through a singular point. Try a smaller time_step."
+        "A root was found, but it could not be verified to be the one that the branch rule means: it lies on another "
+        "branch, it ties with one, or the path to it runs through a singular point. Try a smaller time_step. "
+        "From a displacement off the principal branch branch='nearest' goes on."
     ),
     Outcome.not_converged: (
         "The iteration for the next state did not converge, though no fold was met. "

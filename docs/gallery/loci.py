@@ -1,9 +1,10 @@
 r"""Momentum loci and invariant curves of the discrete top and the discrete sleigh, with one orbit on each.
 
-Run it to draw docs/images/gallery/loci.png.
+Run it to print the numbers and to draw docs/images/gallery/loci.png.
 """
 
 import io
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -26,11 +27,29 @@ def sleigh() -> nh.Discretization:
     return nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5, b=0.3), 0.5)
 
 
+def orbits() -> tuple[nh.Orbit, nh.Orbit]:
+    """Return an orbit of each."""
+    of_top = nh.simulate(top(), restricted_velocity=(0.95, -0.4), steps=60)
+    return of_top, nh.simulate(sleigh(), body_velocity=(0.3, -2.0, 0.0), steps=60)
+
+
+def numbers() -> dict[str, float]:
+    """Count pinch points and crossings, and states of the orbits that miss their surface."""
+    surfaces = nh.momentum_locus(top(), 10), nh.momentum_locus(sleigh(), 10)
+    missed = [abs(s.implicit(orbit.momentum)) > 1e-12 for s, orbit in zip(surfaces, orbits(), strict=True)]
+    crossings = nh.plot.locus_section(surfaces[0], offset=0.35).crossings
+    return {
+        "pinch points of the top's surface": len(surfaces[0].pinch_points),
+        "pinch points of the sleigh's surface": len(surfaces[1].pinch_points),
+        "crossings of the section": 0 if crossings is None else len(crossings.get_offsets()),
+        "states of both orbits off their surface": sum(int(m.sum()) for m in missed),
+    }
+
+
 @theme.styled
 def draw(resolution: int = 70) -> Figure:
     """Draw surfaces, foliations, a section and the deltoid."""
-    of_top = nh.simulate(top(), restricted_velocity=(0.95, -0.4), steps=60)
-    of_sleigh = nh.simulate(sleigh(), body_velocity=(0.3, -2.0, 0.0), steps=60)
+    of_top, of_sleigh = orbits()
     surface, ruled = nh.momentum_locus(top(), resolution), nh.momentum_locus(sleigh(), resolution)
     figure = Figure(figsize=(15.5, 10.0))
     spaces: list[Any] = [figure.add_axes((0.0, bottom, 0.32, 0.49), projection="3d") for bottom in (0.505, 0.005)]
@@ -46,6 +65,7 @@ def draw(resolution: int = 70) -> Figure:
 
 
 if __name__ == "__main__":
+    sys.stdout.writelines(f"{name}: {value:.8g}\n" for name, value in numbers().items())
     page = io.BytesIO()
     draw().savefig(page, dpi=80)
-    Image.open(page).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE).save(PICTURE, optimize=True)
+    Image.open(page).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=2).save(PICTURE, optimize=True)

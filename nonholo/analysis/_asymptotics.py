@@ -4,21 +4,17 @@ Theory: docs/theory/critical-energies-and-limits.md. Orbits are followed to thei
 """
 
 import dataclasses
-from typing import Any
 
 import numpy as np
 
 from nonholo._checks import error
 from nonholo._types import Float
 from nonholo.analysis._critical_energies import critical_energies
-from nonholo.analysis._equilibria import EquilibriumSpectrum, equilibria
-from nonholo.analysis._followed import followed
+from nonholo.analysis._followed import Approach, approach, followed
 from nonholo.analysis._single_valued_region import single_valued_region
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.systems import AbstractLLSystem, ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
-
-_ROUNDING = 8 * np.finfo(np.float64).eps
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -106,36 +102,28 @@ def _axis(system: AbstractLLSystem, velocity: Float[np.ndarray, "dim"]) -> Float
 
 
 def _of_orbit(system: AbstractLLSystem, orbit: Orbit) -> Asymptotics:
-    velocity, known = orbit.body_velocity[0], system.equilibria()
-    rows = known.subspace
-    beside = float(np.linalg.norm(velocity - velocity @ np.linalg.pinv(rows) @ rows) / (np.linalg.norm(velocity) or 1))
-    if known.attracting is None or beside <= _ROUNDING:
+    velocity, found = orbit.body_velocity[0], approach(orbit)
+    if found is None:
         return _resting(system, orbit, velocity)
-    along = _kept(system, velocity)
-    energy = float(orbit.energy[0]) - float(system.constrained_energy(along @ np.asarray(system.inertia_operator)))
-    spectrum = equilibria(_subject(orbit), energy)
+    along, spectrum, energy = found.kept, found.spectrum, found.energy
     change = np.zeros_like(along) if spectrum.velocity is None else spectrum.velocity
     persists = not isinstance(orbit.motion, Discretization) or _known_to_persist(orbit.motion, energy)
     before, after = along - change, along + change
     if isinstance(system, ChaplyginSleigh):
-        turn = _heading_turn(system, orbit, spectrum, beside)
+        turn = _heading_turn(system, orbit, found)
         backwards = float(np.copysign(np.pi, velocity[0]))
         return Asymptotics(before, after, heading_turn=turn, motion_turn=turn - backwards, persists=persists)
     axes = _axis(system, before), _axis(system, after)
-    in_space = _in_space(orbit, axes, spectrum, beside)
+    in_space = _in_space(orbit, axes, found)
     return Asymptotics(before, after, *axes, *in_space, persists=persists)
 
 
-def _in_space(orbit: Orbit, axes: tuple, spectrum: EquilibriumSpectrum, beside: float) -> tuple:
+def _in_space(orbit: Orbit, axes: tuple, found: Approach) -> tuple:
     """Return both axes as seen in space; None without axes or poses."""
     if axes[1] is None or orbit.pose is None:
         return None, None
-    ends = followed(orbit, spectrum, beside)
+    ends = followed(orbit, found)
     return ends.first.configuration[-1] @ axes[0], ends.last.configuration[-1] @ axes[1]
-
-
-def _subject(orbit: Orbit) -> Any:
-    return orbit.motion if isinstance(orbit.motion, Discretization) else orbit.system
 
 
 def _resting(system: AbstractLLSystem, orbit: Orbit, velocity: Float[np.ndarray, "dim"]) -> Asymptotics:
@@ -147,14 +135,6 @@ def _resting(system: AbstractLLSystem, orbit: Orbit, velocity: Float[np.ndarray,
     return Asymptotics(velocity, velocity, axis, axis, in_space, in_space, turn, turn)
 
 
-def _kept(system: AbstractLLSystem, velocity: Float[np.ndarray, "dim"]) -> Float[np.ndarray, "dim"]:
-    """Return the part of the velocity that never changes: the advance u of a sleigh with a_1 = 0."""
-    if not isinstance(system, MultidimensionalSleigh) or system.center_of_mass[0] != 0:
-        return np.zeros_like(velocity)
-    rows, w = system.constraint_subspace, velocity @ np.linalg.pinv(system.constraint_subspace)
-    return (w[-1] + system.center_of_mass[1:] @ w[:-1]) * rows[-1]
-
-
 def _known_to_persist(discrete: Discretization, energy: float) -> bool:
     if isinstance(discrete.system, ChaplyginSleigh):
         return energy < single_valued_region(discrete).energy
@@ -164,9 +144,9 @@ def _known_to_persist(discrete: Discretization, energy: float) -> bool:
     return found.regular and found.saddle is not None and energy < found.saddle
 
 
-def _heading_turn(system: ChaplyginSleigh, orbit: Orbit, spectrum: EquilibriumSpectrum, beside: float) -> float:
+def _heading_turn(system: ChaplyginSleigh, orbit: Orbit, found: Approach) -> float:
     """Return the signed turn: in closed form for a flow, summed over all steps for a discrete orbit."""
     if not isinstance(orbit.motion, Discretization):
         return float(np.copysign(_of_system(system).heading_turn or 0.0, orbit.body_velocity[0, 0]))
-    first, last = followed(orbit, spectrum, beside)
+    first, last = followed(orbit, found)
     return float(last.heading[-1] - last.heading[0] + first.heading[1] - first.heading[-1])

@@ -8,11 +8,11 @@ import dataclasses
 from typing import Any
 
 import numpy as np
-import scipy.linalg
 
 from nonholo._checks import error
 from nonholo._types import Float
 from nonholo.discrete import Discretization
+from nonholo.discrete._regions import Landscape, landscape
 from nonholo.systems import ChaplyginSleigh, SuslovTop
 
 _COINCIDENT = 1e-14  # relative distance of two energies below which a curve of critical points is assumed
@@ -86,14 +86,10 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
         True
     """
     top = _checked("critical_energies(discrete=...)", discrete)
-    c, balanced = np.asarray(top.coupling), top.equilibria().attracting is None
-    along = np.array([1.0, 0.0]) if balanced else c / np.hypot(*c)
-    axes = np.stack([along, [-along[1], along[0]]], axis=1)
-    B = axes.T @ np.asarray(top.constrained_inertia) @ axes
-    sharpness = 0.0 if balanced else float(c @ c / np.linalg.det(B))
+    land = landscape(top)
     unit = 2 / float(discrete.time_step) ** 2
-    off = _off_equator(B, sharpness, unit, axes)
-    points = _on_equator(B, sharpness, unit, axes) if sharpness > 0 else []
+    off = _off_equator(land, unit)
+    points = _on_equator(land, unit) if land.sharpness > 0 else []
     by_kind = {p.kind: p.energy for p in off}
     saddles = [p.energy for p in points if p.kind == "saddle"]
     if len(off) < 2 or off[0].energy - off[1].energy > _COINCIDENT * off[0].energy:
@@ -102,7 +98,7 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
         saddle=by_kind.get("saddle"),
         centre=by_kind.get("maximum"),
         equatorial_saddle=max(saddles, default=None),
-        regular=bool(2 * sharpness < 1),
+        regular=land.is_regular,
         points=(CriticalPoint(0.0, "minimum", False, True, np.zeros(2)), *sorted(points, key=lambda p: p.energy)),
     )
 
@@ -122,25 +118,24 @@ def _checked(where: str, discrete: Any) -> SuslovTop:
     return system
 
 
-def _off_equator(B: np.ndarray, sharpness: float, unit: float, axes: np.ndarray) -> list[CriticalPoint]:
-    r"""Return saddle and centre from $\kappa/(u\cdot Bu)$, which is greatest at the saddle.
-
-    B is seen from axes along and across c. A point exists if $\varrho = 1/(2\kappa)$ is less than one.
-    """
-    inverses, vectors = scipy.linalg.eigh(np.diag([1.0, 1.0 - sharpness]), B)
+def _off_equator(land: Landscape, unit: float) -> list[CriticalPoint]:
+    r"""Return centre and saddle; each exists if $\varrho = 1/(2\kappa)$ is less than one."""
     found = []
-    for inverse, vector, kind in zip(inverses, vectors.T, ("maximum", "saddle"), strict=True):
+    for inverse, vector, kind in zip(land.inverses, land.vectors.T, ("maximum", "saddle"), strict=True):
         length = float(np.hypot(*vector))
         kappa = float(inverse) / length**2
         if kappa > 0.5:
             z = vector / length / np.sqrt(2 * kappa)
-            found.append(CriticalPoint(unit / (4 * float(inverse)), kind, False, _along_c(z, sharpness), axes @ z))
+            found.append(
+                CriticalPoint(unit / (4 * float(inverse)), kind, False, _along_c(z, land.sharpness), land.axes @ z)
+            )
     return found
 
 
-def _on_equator(B: np.ndarray, sharpness: float, unit: float, axes: np.ndarray) -> list[CriticalPoint]:
+def _on_equator(land: Landscape, unit: float) -> list[CriticalPoint]:
     """Return half-turns: the one along c, of energy zero, and those of the cubic, u = (s, 1)/|(s, 1)|."""
-    (p, q), (_, r) = B
+    (p, q), (_, r) = land.inertia
+    axes, sharpness = land.axes, land.sharpness
     found = [CriticalPoint(0.0, "minimum", True, True, axes[:, 0])]
     for s in sorted(_real_roots(np.array([p, 3 * q, 2 * r - p, -q]))):
         square = 1 + s * s

@@ -31,7 +31,16 @@ class Deltoid:
             ValueError: A number of points that is not positive.
         """
         rows = count("Deltoid.boundary(points=...)", points, "Pass the number of points.")
-        turn = np.exp(1j * np.linspace(0.0, 2 * np.pi, rows))
+        return self.touching(np.linspace(0.0, 2 * np.pi, rows))
+
+    def touching(self, angle: Array) -> Float[np.ndarray, "... 2"]:
+        r"""Return where the momenta of all displacements with a step angle, a line, touch the boundary.
+
+        The line over the angle $\alpha$ is the tangent at $\varkappa = 2e^{i\alpha} + e^{-2i\alpha}$: the values over a
+        momentum are the tangents through it.
+        """
+        where, remedy = "Deltoid.touching(angle=...)", "Pass step angles."
+        turn = np.exp(1j * array(where, angle, (None,) * np.ndim(angle), remedy))
         return _restricted(self.discrete, 2 * turn + turn**-2)
 
     def discriminant(self, restricted_momentum: Array) -> Float[np.ndarray, "..."]:

@@ -1,16 +1,18 @@
 """Both ends of an orbit: its first state followed backwards and forwards until its velocity has settled."""
 
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
 from nonholo._checks import error
 from nonholo._types import Float
-from nonholo.analysis._equilibria import EquilibriumSpectrum
+from nonholo.analysis._equilibria import EquilibriumSpectrum, equilibria
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.simulation import flow, simulate
+from nonholo.systems import AbstractLLSystem, MultidimensionalSleigh
 
+_ROUNDING = 8 * np.finfo(np.float64).eps
 _SETTLED = 34.0  # natural logarithm of the factor by which the distance from the equilibria has fallen: 6e14
 _LONGEST = 1_000_000  # steps
 
@@ -22,17 +24,49 @@ class Ends(NamedTuple):
     last: Orbit
 
 
-def followed(orbit: Orbit, spectrum: EquilibriumSpectrum, beside: float) -> Ends:
-    """Follow an orbit to both ends.
+class Approach(NamedTuple):
+    """What an orbit tends to.
 
-    Args:
-        orbit: From the identity if it has no poses.
-        spectrum: The equilibria that it tends to.
-        beside: Sine of the distance of its first state from the equilibria: near the repelling ones it leaves late.
+    Attributes:
+        kept: The part of the body velocity that never changes.
+        energy: The energy of the rest.
+        spectrum: The equilibria that the rest tends to.
+        beside: Sine of the distance of the first state from the equilibria: near the repelling ones it leaves late.
     """
-    decay = _SETTLED - float(np.log(beside))
+
+    kept: Float[np.ndarray, "dim"]
+    energy: float
+    spectrum: EquilibriumSpectrum
+    beside: float
+
+
+def approach(orbit: Orbit) -> Approach | None:
+    """Return what an orbit of a top or a sleigh tends to; None if its velocity never changes."""
+    system, velocity = cast("AbstractLLSystem", orbit.system), orbit.body_velocity[0]
+    known = system.equilibria()
+    rows = known.subspace
+    beside = float(np.linalg.norm(velocity - velocity @ np.linalg.pinv(rows) @ rows) / (np.linalg.norm(velocity) or 1))
+    if known.attracting is None or beside <= _ROUNDING:
+        return None
+    kept = _kept(system, velocity)
+    energy = float(orbit.energy[0]) - float(system.constrained_energy(kept @ np.asarray(system.inertia_operator)))
+    subject = orbit.motion if isinstance(orbit.motion, Discretization) else system
+    return Approach(kept, energy, equilibria(subject, energy), beside)
+
+
+def _kept(system: AbstractLLSystem, velocity: Float[np.ndarray, "dim"]) -> Float[np.ndarray, "dim"]:
+    """Return the part of the velocity that never changes: the advance u of a sleigh with a_1 = 0."""
+    if not isinstance(system, MultidimensionalSleigh) or system.center_of_mass[0] != 0:
+        return np.zeros_like(velocity)
+    rows, w = system.constraint_subspace, velocity @ np.linalg.pinv(system.constraint_subspace)
+    return (w[-1] + system.center_of_mass[1:] @ w[:-1]) * rows[-1]
+
+
+def followed(orbit: Orbit, found: Approach, where: str = "asymptotics(subject=...)") -> Ends:
+    """Follow an orbit, from the identity if it has no poses, to both ends; refuse in the name of `where`."""
+    spectrum, decay = found.spectrum, _SETTLED - float(np.log(found.beside))
     if isinstance(orbit.motion, Discretization):
-        return _discrete(orbit, orbit.motion, spectrum, decay)
+        return _discrete(orbit, orbit.motion, spectrum, decay, where)
     start = {"momentum": orbit.restricted_momentum[0], "configuration": _pose(orbit)}
     time = decay / float(np.abs(spectrum.rates).min())
     method = "closed_form" if orbit.system.group.dim == 3 else None
@@ -40,14 +74,14 @@ def followed(orbit: Orbit, spectrum: EquilibriumSpectrum, beside: float) -> Ends
     return Ends(*ends)
 
 
-def _discrete(orbit: Orbit, discrete: Discretization, spectrum: EquilibriumSpectrum, decay: float) -> Ends:
+def _discrete(orbit: Orbit, discrete: Discretization, spectrum: EquilibriumSpectrum, decay: float, where: str) -> Ends:
     """Run the map forwards, and backwards with the inverse displacement: the map is reversible."""
     slowest = float(np.abs(np.asarray(spectrum.multipliers)).max())
     wanted = decay / -np.log(slowest) if slowest < 1 else np.inf
     if wanted > _LONGEST:
         remedy = "Take a longer time step, or the limits of the flow."
         got = f"a slowest multiplier of {slowest:.17g}"
-        raise error("asymptotics(subject=...)", f"settle within {_LONGEST} steps", got, remedy)
+        raise error(where, f"settle within {_LONGEST} steps", got, remedy)
     group, W, g = discrete.system.group, orbit.displacement[0], _pose(orbit)
     steps = int(np.ceil(wanted)) + 1
     first = simulate(discrete, displacement=group.inverse(W), configuration=g @ W, steps=steps)

@@ -36,7 +36,8 @@ def run(loaded: Loaded, *, progress: bool) -> Ran:
     except OutcomeError:
         pass  # a start off the principal branch: the run proper says so
     except ValueError as failure:
-        raise ScenarioError([problem_of_value(failure, "start", loaded.source, loaded.options)]) from None
+        section = "run" if str(failure).startswith("`simulate(branch=") else "start"
+        raise ScenarioError([problem_of_value(failure, section, loaded.source, loaded.options)]) from None
     begun = time.perf_counter()
     try:
         orbit = simulate(discrete, steps=scenario.run.steps, progress=progress, **scenario.options())

@@ -34,7 +34,7 @@ class Run(Section):
     save_every: Count = 1
     difference: Literal["matrix", "logarithmic"] | None = None
     constraint: Literal["skew", "exponential", "naive"] | None = None
-    branch: Literal["principal"] = "principal"
+    branch: Literal["principal", "nearest", "smallest", "largest", "inner", "outer"] = "principal"
 
 
 class Output(Section):

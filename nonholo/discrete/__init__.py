@@ -1,5 +1,6 @@
 """The discrete mechanics: discretisations, the discrete Legendre transformation, the step and its start."""
 
+from nonholo.discrete._branch_tree import BranchTree, branch_tree
 from nonholo.discrete._branch_values import Branches
 from nonholo.discrete._branches import branches, displacements_over, fold_distance, inverse_discrete_legendre
 from nonholo.discrete._consistency import consistency_defect
@@ -9,8 +10,10 @@ from nonholo.discrete._moser_veselov import moser_veselov_displacement
 from nonholo.discrete._start import initial_state
 
 __all__ = [
+    "BranchTree",
     "Branches",
     "Discretization",
+    "branch_tree",
     "branches",
     "consistency_defect",
     "discrete_legendre",

@@ -3,54 +3,62 @@ r"""Approximate roots of the equations of `_branch_equations`: companion eigenva
 Reference: docs/theory/branches.md.
 """
 
-from collections.abc import Iterable
+import functools
 
 import numpy as np
 
-from nonholo._types import Array
+from nonholo._types import Array, Inexact
 from nonholo.discrete._branch_equations import Equations
 
 
-def candidates(equations: Equations) -> Iterable[Array]:
-    """Return approximate roots of the secular polynomial."""
+def candidates(equations: Equations) -> Inexact[Array, "B m"]:
+    """Return approximate roots, only finite ones."""
     with np.errstate(all="ignore"):
         if equations.is_balanced:
-            return _balanced(equations)
-        if len(equations.stiffness) == 1:
-            return _planar(equations)
-        N1, N2, Y = _secular(equations)
-        squares = np.zeros(1)
-        for row in Y:
-            squares = np.polyadd(squares, np.polymul(row, row))
-        polynomial = np.polysub(np.polymul(N2, np.polysub(N1, N2)), squares)
-        if not np.all(np.isfinite(polynomial)) or not np.any(polynomial):
-            return []
-        homogeneous = [np.array([np.polyval(row, mu) for row in (N2, *Y)]) for mu in np.roots(polynomial)]
-        return [_with_length(equations, v / np.sqrt(v @ v + 0j)) for v in homogeneous]
+            found = _balanced(equations)
+        elif len(equations.stiffness) == 1:
+            found = _planar(equations)
+        else:
+            found = _generic(equations)
+        points = equations.points([_with_length(equations, v) for v in found])
+    return points[np.isfinite(points).all(axis=1)]
+
+
+def _generic(equations: Equations) -> Array:
+    """Return the points (z_0, z) over the roots of the secular polynomial."""
+    N1, N2, Y = _secular(equations)
+    products = [np.convolve(N2, np.append(N1[:1], N1[1:] - N2)), *(-np.convolve(row, row) for row in Y)]
+    length = len(products[0])
+    polynomial = sum(np.pad(row, (length - len(row), 0)) for row in products)
+    if not np.all(np.isfinite(polynomial)) or not np.any(polynomial):
+        return np.zeros((0, len(Y) + 1))
+    mu = np.roots(polynomial)
+    points = np.array([np.polyval(row, mu) for row in (N2, *Y)]).T
+    return points / np.sqrt((points * points).sum(axis=1, keepdims=True) + 0j)
 
 
 def _secular(equations: Equations) -> tuple[Array, Array, list[Array]]:
     r"""Return polynomials in $\mu$: $y\cdot y + 1 = N_1/N_2$ and $y = Y/N_2$ where $N_2(N_1 - N_2) = Y\cdot Y$.
 
-    The cancellation of $b_i + \mu$ in $Y_i$ is done by hand, so equal eigenvalues do no harm.
+    The cancellation of $b_i + \mu$ in $Y_i$ is done by hand, so equal eigenvalues do no harm. N_1 has one coefficient
+    more than N_2 and the components of Y.
     """
     b, c, k = equations.stiffness, equations.coupling, len(equations.stiffness)
-    d = equations.target - c
-    half = _half_of_p(equations)
+    d, half = equations.target - c, _half_of_p(equations)
 
     def product(*left_out: int) -> Array:
-        return np.atleast_1d(np.poly([-b[i] for i in range(k) if i not in left_out]))
+        factors = [np.array([1.0, b[i]]) for i in range(k) if i not in left_out]
+        return functools.reduce(np.convolve, factors, np.ones(1))
 
-    without = [product(i) for i in range(k)]
-    N1, N2 = np.polymul(product(), [1.0, 0.0]), half * product()
-    for i in range(k):
-        N1 = np.polyadd(N1, c[i] ** 2 * without[i])
-        N2 = np.polysub(N2, c[i] * d[i] * without[i])
+    whole, without = product(), np.array([product(i) for i in range(k)])
+    N1 = np.append(whole, 0.0) + np.pad((c * c) @ without, (2, 0))
+    N2 = half * whole - np.pad((c * d) @ without, (1, 0))
+    pairs = {(i, j): np.pad(product(i, j), (2, 0)) for i in range(k) for j in range(i)}
     Y = []
     for i in range(k):
-        row = np.polymul(without[i], [d[i], c[i] * half])
+        row = np.convolve(without[i], np.array([d[i], c[i] * half]))
         for j in set(range(k)) - {i}:
-            row = np.polyadd(row, c[j] * (c[j] * d[i] - c[i] * d[j]) * product(i, j))
+            row = row + c[j] * (c[j] * d[i] - c[i] * d[j]) * pairs[max(i, j), min(i, j)]
         Y.append(row)
     return N1, N2, Y
 
@@ -60,8 +68,7 @@ def _planar(equations: Equations) -> list[Array]:
     b, r = equations.stiffness[0], equations.target[0]
     half = _half_of_p(equations)
     finite = [np.array([1.0, y]) / np.sqrt(1 + y * y + 0j) for y in np.roots([half, -r, half + b, -r])]
-    infinite = [np.array([0j, 1.0])] if half == 0 else []
-    return [_with_length(equations, v) for v in finite + infinite]
+    return finite + ([np.array([0j, 1.0])] if half == 0 else [])
 
 
 def _half_of_p(equations: Equations) -> Array:
@@ -75,7 +82,7 @@ def _balanced(equations: Equations) -> list[Array]:
     spread = np.sqrt(1 - 4 * (w @ w) + 0j)
     larger = (1 + spread) / 2
     squares = [larger, (w @ w) / larger] if w @ w else [larger]
-    return [_with_length(equations, np.array([z0, *(w / z0)])) for z0 in np.sqrt(np.array(squares))]
+    return [np.array([z0, *(w / z0)]) for z0 in np.sqrt(np.array(squares))]
 
 
 def _with_length(equations: Equations, v: Array) -> Array:

@@ -7,7 +7,8 @@ Reference: docs/theory/branches.md.
 """
 
 import dataclasses
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from nonholo.discrete._discretization import Discretization
 
 _BALANCED = 8 * np.finfo(np.float64).eps  # coupling, relative to the inertia, that counts as zero
+_AT_PI = 1e-75  # stands for the cosine of half the angle pi, which Cayley coordinates cannot be divided by
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -55,44 +57,59 @@ class Equations:
         k = len(self.stiffness)
         return 2 if self.is_balanced else 2 * k + (self.arm != 0)
 
-    def residual(self, x: Inexact[Array, "m"]) -> tuple[Inexact[Array, "m"], Inexact[Array, "m"]]:
+    def points(self, rows: Sequence[Inexact[Array, "m"]]) -> Inexact[np.ndarray, "B m"]:
+        """Stack points, none as well."""
+        return np.array(rows).reshape(-1, 1 + len(self.stiffness) + (self.lever is not None))
+
+    def residual(self, x: Inexact[Array, "... m"]) -> tuple[Inexact[Array, "... m"], Inexact[Array, "... m"]]:
         """Return the equations, the last one that of the sphere, and the sizes of their terms."""
         b, c, a = self.stiffness + self.arm**2, self.coupling, self.arm
         z0, z, u = _parts(self, x)
-        along, square, length = c @ z, z @ z, np.abs(z) @ np.abs(z)
-        rows = [*(z0 * b * z + square * c - along * z + a / 2 * u * z - self.target), z0 * z0 + square - 1]
+        along, square, length = (z @ c)[..., None], _square(z), _square(np.abs(z))
+        rows = [z0 * b * z + square * c - along * z + a / 2 * u * z - self.target, z0 * z0 + square - 1]
         factor = np.abs(z0 * b) + np.abs(along) + np.abs(a * u)
-        sizes = [*(factor * np.abs(z) + length * np.abs(c) + np.abs(self.target)), 1 + abs(z0) ** 2 + length]
+        sizes = [factor * np.abs(z) + length * np.abs(c) + np.abs(self.target), 1 + np.abs(z0) ** 2 + length]
         if self.lever is not None:
-            rows.insert(-1, u * z0 - 2 * a * square - self.push)
-            sizes.insert(-1, abs(u * z0) + 2 * abs(a) * length + abs(self.push))
-        return np.array(rows), np.array(sizes)
+            rows.insert(1, u * z0 - 2 * a * square - self.push)
+            sizes.insert(1, np.abs(u * z0) + 2 * abs(a) * length + abs(self.push))
+        return np.concatenate(rows, axis=-1), np.concatenate(sizes, axis=-1)
 
-    def slope(self, x: Inexact[Array, "m"]) -> Inexact[Array, "m m"]:
+    def slope(self, x: Inexact[Array, "... m"]) -> Inexact[Array, "... m m"]:
         """Return the derivative of the residual."""
         b, c, a, k = self.stiffness + self.arm**2, self.coupling, self.arm, len(self.stiffness)
         z0, z, u = _parts(self, x)
-        J = np.zeros((len(x), len(x)), dtype=np.result_type(x, c, b))
-        J[:k, 0] = b * z
-        J[:k, 1 : k + 1] = np.diag(z0 * b - c @ z + a / 2 * u) + 2 * np.outer(c, z) - np.outer(z, c)
+        J = np.zeros((*x.shape, x.shape[-1]), dtype=np.result_type(x, c, b))
+        J[..., :k, 0] = b * z
+        J[..., :k, 1 : k + 1] = 2 * c[:, None] * z[..., None, :] - z[..., :, None] * c
+        J[..., range(k), range(1, k + 1)] += z0 * b - (z @ c)[..., None] + a / 2 * u
         if self.lever is not None:
-            J[:k, -1] = a / 2 * z
-            J[k, 0], J[k, 1:-1], J[k, -1] = u, -4 * a * z, z0
-        J[-1, 0], J[-1, 1 : k + 1] = 2 * z0, 2 * z
+            J[..., :k, -1] = a / 2 * z
+            J[..., k, :1], J[..., k, 1:-1], J[..., k, -1:] = u, -4 * a * z, z0
+        J[..., -1, :1], J[..., -1, 1 : k + 1] = 2 * z0, 2 * z
         return J
 
-    def regularity(self, x: Inexact[Array, "m"]) -> float:
+    def kick(self, x: Inexact[Array, "m"]) -> tuple[Inexact[Array, "k"], Array]:
+        """Return how far the step after x moves the target and the push: twice the terms that are even in z and u."""
+        c, a = self.coupling, self.arm
+        _, z, u = _parts(self, x)
+        return 2 * ((c @ z) * z - (z @ z) * c) - a * u * z, 4 * a * (z @ z)
+
+    def regularity(self, x: Inexact[Array, "... m"]) -> Float[np.ndarray, "..."]:
         """Return the least singular value of the derivative along the sphere, one at the identity, zero at a fold."""
         J = self.slope(x)
-        along = np.linalg.svd(J[-1:])[2][1:].conj().T
-        inertia = np.ones(len(x) - 1)
+        along = np.swapaxes(np.linalg.svd(J[..., -1:, :])[2][..., 1:, :].conj(), -1, -2)
+        inertia = np.ones(x.shape[-1] - 1)
         inertia[: len(self.stiffness)] = np.abs(self.stiffness + self.arm**2)
-        return float(np.linalg.svd((J[:-1] @ along) / inertia[:, None], compute_uv=False)[-1])
+        return np.linalg.svd((J[..., :-1, :] @ along) / inertia[:, None], compute_uv=False)[..., -1]
 
 
 def _parts(equations: Equations, x: Array) -> tuple[Array, Array, Array]:
     k = len(equations.stiffness)
-    return x[0], x[1 : k + 1], (x[-1] if equations.lever is not None else 0.0)
+    return x[..., :1], x[..., 1 : k + 1], (x[..., -1:] if equations.lever is not None else 0.0)
+
+
+def _square(z: Array) -> Array:
+    return (z * z).sum(axis=-1, keepdims=True)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -126,6 +143,23 @@ class Frame:
         r = self.axes.T @ (turning - self.offset * along) / (2 * self.inertia)
         return Equations(self.stiffness, self.coupling, r, self.lever, along * self.length / self.inertia)
 
+    def momentum(self, target: Inexact[Array, "k"], push: Array) -> Inexact[Array, "m"]:
+        """Return the momenta, multiplied by the time step, that `equations` brings to a target and a push."""
+        turning = 2 * self.inertia * (self.axes @ target)
+        if self.length is None:
+            return turning
+        along, sign = push * self.inertia / self.length, 1.0 if len(turning) > 1 else -1.0
+        return np.append(sign * (turning + self.offset * along), along)
+
+    def chart(self, x: Float[np.ndarray, "m"]) -> Float[np.ndarray, "m"]:
+        """Return the canonical Cayley coordinates of a displacement; huge at angle pi."""
+        k, z0 = len(self.stiffness), x[0] if x[0] != 0 else _AT_PI
+        y = (self.axes @ x[1 : k + 1]) / z0
+        if self.length is None:
+            return y
+        nu = self.length * x[-1] - 2 * self.offset @ (y * z0)
+        return np.append(y if k > 1 else -y, nu / (2 * z0))
+
     def increment(self, x: Inexact[Array, "m"]) -> Inexact[Array, "N N"]:
         """Return the canonical displacement minus the identity, without cancellation."""
         k = len(self.stiffness)
@@ -142,34 +176,42 @@ class Frame:
         X[:-1, -1] = (self.length * x[-1] - 2 * self.offset @ z) * q
         return X
 
-    def point(self, W: Float[np.ndarray, "N N"]) -> Float[np.ndarray, "m"]:
-        """Return the point over a canonical displacement of the variety."""
+    def point(self, W: Inexact[np.ndarray, "N N"]) -> Inexact[np.ndarray, "m"]:
+        """Return the point over a canonical displacement of the variety, real or complex."""
         n = len(self.stiffness) + 1
         sign = -np.ones(n)
         sign[-1 if self.length is None else 0] = 1.0
         square = (np.eye(n) + W[:n, :n] * sign) / 2  # q q^T
-        best = int(np.argmax(np.diag(square)))
-        q = square[best] / np.linalg.norm(square[best])
+        best = int(np.argmax(np.abs(np.diag(square))))
+        row = square[best]
+        q = row / (np.sqrt(row[best]) if np.iscomplexobj(W) else np.linalg.norm(row))
         if self.length is None:
             return np.append(q[-1], self.axes.T @ q[:-1])
         nu, z = W[:-1, -1] @ q, -q[1:]
         return np.concatenate([q[:1], self.axes.T @ z, [(nu + 2 * self.offset @ z) / self.length]])
 
 
+def has_frame(discrete: "Discretization") -> bool:
+    """Tell whether all branches of a discretisation are known."""
+    known = isinstance(discrete.system, SuslovTop | ChaplyginSleigh | MultidimensionalSleigh)
+    return known and discrete.difference == "matrix" and discrete.constraint in ("skew", "exponential")
+
+
 def frame_of(where: str, discrete: "Discretization") -> Frame:
     """Return the frame of a system whose branches are known, or refuse it."""
-    system = discrete.system.canonical if isinstance(discrete.system, SuslovTop | ChaplyginSleigh) else discrete.system
-    known = isinstance(system, SuslovTop | ChaplyginSleigh | MultidimensionalSleigh)
-    if not known or discrete.difference != "matrix" or discrete.constraint not in ("skew", "exponential"):
+    if not has_frame(discrete):
         requirement = "be a SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference 'matrix'"
-        got = f"{type(system).__name__}, difference {discrete.difference!r}, constraint {discrete.constraint!r}"
+        name = type(discrete.system).__name__
+        got = f"{name}, difference {discrete.difference!r}, constraint {discrete.constraint!r}"
         remedy = "Discretise one of them with constraint 'skew' or 'exponential'; of others only the principal "
         raise error(where, requirement, got, remedy + "branch is computed (`step`, `simulate`).")
+    system = discrete.system.canonical if isinstance(discrete.system, SuslovTop | ChaplyginSleigh) else discrete.system
     if isinstance(system, SuslovTop):
         return _frame(system.constrained_inertia, system.coupling, None, 0.0, np.zeros(0))
     if isinstance(system, ChaplyginSleigh):
         inertia = np.array([[system.inertia]])
         return _frame(inertia, np.zeros(1), system.mass, system.a, np.zeros(1))
+    system = cast(MultidimensionalSleigh, system)
     J, a = np.asarray(system.mass_tensor), np.asarray(system.center_of_mass)
     return _frame(J[1:, 1:] + J[0, 0] * np.eye(len(J) - 1), -J[0, 1:], system.mass, a[0], a[1:])
 

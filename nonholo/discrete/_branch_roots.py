@@ -7,12 +7,11 @@ Reference: docs/theory/branches.md.
 """
 
 import dataclasses
-from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
 
-from nonholo._types import Array, Inexact
+from nonholo._types import Array, Bool, Float, Inexact
 from nonholo.discrete._branch_candidates import candidates
 from nonholo.discrete._branch_equations import Equations
 
@@ -24,6 +23,8 @@ _ISOLATED = 1e-10  # least singular value of a root that has no other close by
 _FAR = 1e5  # size of a root that counts as infinite
 _SETTLED = 1e-14  # relative residual below which an iteration that gains no more has converged
 _TINY = 1e-10  # part of the largest equation that others are measured by, where their own terms vanish
+_RANK = 1e-13  # relative singular value below which a direction is left alone
+_REACHED = 1e-13  # relative residual of a root
 _ARRIVED = 1e-12  # of the homotopy parameter, from where Newton's method takes over
 
 
@@ -36,64 +37,91 @@ class Root(NamedTuple):
 
 
 def roots_of(equations: Equations) -> list[Root]:
-    """Return the isolated roots of a real problem: real ones by step angle, then the complex ones."""
+    """Return the isolated roots: of a real problem the real ones by step angle, then the complex ones."""
     found = _merged(equations, _polished(equations, candidates(equations)))
-    if not equations.is_balanced and sum(root.multiplicity for root in found) != equations.count:
-        found = _merged(equations, _by_continuation(equations))
-    found = [_realified(equations, root) for root in found]
-    return sorted(found, key=lambda root: (not root.is_real, np.linalg.norm(root.point[1:]), root.point[0].imag))
+    complete = equations.is_balanced or _count(found) == equations.count
+    if not complete or _crowded(equations, found):
+        followed = _merged(equations, _by_continuation(equations))
+        found = followed if not complete or _count(followed) == equations.count else found
+    if not np.iscomplexobj(equations.target) and not np.iscomplexobj(equations.push):
+        found = _realified(equations, found)
+    return sorted(found, key=place)
 
 
-def _polished(equations: Equations, starts: Iterable[Array]) -> list[Array]:
-    roots = (_newton(equations, x) for x in starts if np.all(np.isfinite(x)) and np.abs(x).max() < _FAR)
-    return [x for x in roots if x is not None and np.abs(x).max() < _FAR]
+def _count(roots: list[Root]) -> int:
+    return sum(root.multiplicity for root in roots)
 
 
-def _newton(equations: Equations, x: Array, steps: int = 40, reach: float = np.inf) -> Array | None:
-    """Return the root that Newton's method reaches, moving no further than `reach` at first; or None."""
-    best, least = None, 1e-13
+def _crowded(equations: Equations, roots: list[Root]) -> bool:
+    """Tell whether iterations that missed hidden roots may have ended on a multiple root and been counted there."""
+    return len(equations.stiffness) > 1 and not equations.is_balanced and any(r.multiplicity > 2 for r in roots)
+
+
+def place(root: Root) -> tuple:
+    """Return what roots are sorted by: real ones first, by step angle."""
+    return not root.is_real, np.linalg.norm(root.point[1:]), root.point[0].imag
+
+
+def _polished(equations: Equations, starts: Inexact[Array, "B m"]) -> Inexact[Array, "B m"]:
+    roots, reached = _newton(equations, _finite(starts))
+    return _finite(roots[reached])
+
+
+def _finite(points: Inexact[Array, "B m"]) -> Inexact[Array, "B m"]:
+    return points[np.abs(points).max(axis=1) < _FAR]
+
+
+def _newton(
+    equations: Equations, x: Inexact[Array, "B m"], steps: int = 40, reach: float = np.inf
+) -> tuple[Inexact[Array, "B m"], Bool[np.ndarray, "B"]]:
+    """Return the roots that Newton's method reaches, moving no further than `reach` at first, and where it does."""
+    x, best, least, going = x.copy(), x.copy(), np.full(len(x), _REACHED), np.arange(len(x))
     for i in range(steps):
-        residual, sizes = equations.residual(x)
-        error = float((np.abs(residual) / (sizes + _TINY * sizes.max())).max())
-        stagnates = error > least / 2 and least < _SETTLED
-        if error < least:
-            best, least = x, error
-        if not np.isfinite(error) or stagnates or error == 0:
+        residual, sizes = equations.residual(x[going])
+        error = (np.abs(residual) / (sizes + _TINY * sizes.max(axis=1, keepdims=True))).max(axis=1)
+        stagnates = (error > least[going] / 2) & (least[going] < _SETTLED)
+        better = going[error < least[going]]
+        best[better], least[going] = x[better], np.fmin(error, least[going])
+        on = np.isfinite(error) & ~stagnates & (error != 0)
+        going, residual = going[on], residual[on]
+        if len(going) == 0:
             break
-        correction = np.linalg.lstsq(equations.slope(x), residual, rcond=1e-13)[0]
-        if i == 0 and np.linalg.norm(correction) > reach * np.linalg.norm(x):
-            break
-        x = x - correction
-    return best
+        correction = (np.linalg.pinv(equations.slope(x[going]), rcond=_RANK) @ residual[:, :, None])[..., 0]
+        if i == 0:
+            near = np.linalg.norm(correction, axis=1) <= reach * np.linalg.norm(x[going], axis=1)
+            going, correction = going[near], correction[near]
+        x[going] -= correction
+    return best, least < _REACHED
 
 
-def _merged(equations: Equations, points: list[Array]) -> list[Root]:
+def _merged(equations: Equations, points: Inexact[Array, "B m"]) -> list[Root]:
     """Join what rounding cannot tell from a multiple root; drop what is a point of a continuum of roots."""
-    left = [x if x[0].real >= 0 else -x for x in points]
-    found = []
-    while left:
-        x = left[0]
-        blur = _blur(equations, x)
-        group = [y for y in left if _distance(x, y) <= max(blur, _blur(equations, y))]
-        left = [y for y in left if not any(y is member for member in group)]
-        centre = sum(y if np.vdot(x, y).real >= 0 else -y for y in group) / len(group)
-        regularity = equations.regularity(x)
-        if regularity > _FOLDED:
-            found.append(Root(x, 1, False))
-        elif len(group) > 1:
-            found.append(Root(_centred(equations, centre), len(group), False))
-        elif regularity > _ISOLATED:
-            found.append(Root(x, 1, False))
+    points = np.where(points[:, :1].real >= 0, points, -points)
+    regularity = equations.regularity(points)
+    blur = _blur(regularity)
+    near = _distance(points[:, None], points) <= np.maximum(blur[:, None], blur)
+    left, found = np.ones(len(points), dtype=bool), []
+    while left.any():
+        i = int(np.argmax(left))
+        members = near[i] & left
+        left &= ~members
+        group = points[members]
+        if len(group) > 1 and regularity[i] <= _FOLDED:
+            sides = np.where((group @ points[i].conj()).real >= 0, 1.0, -1.0)
+            found.append(Root(_centred(equations, sides @ group / len(group)), len(group), False))
+        elif regularity[i] > _ISOLATED:
+            found.append(Root(points[i], 1, False))
     return found
 
 
-def _blur(equations: Equations, x: Array) -> float:
+def _blur(regularity: Float[np.ndarray, "B"]) -> Float[np.ndarray, "B"]:
     """Return the relative distance within which rounding may have moved a root."""
-    return min(_BLURRED, _CLOSE + 10 * _EPS / max(equations.regularity(x), _EPS))
+    return np.minimum(_BLURRED, _CLOSE + 10 * _EPS / np.maximum(regularity, _EPS))
 
 
-def _distance(x: Array, y: Array) -> float:
-    return float(min(np.linalg.norm(x - y), np.linalg.norm(x + y)) / max(1.0, np.linalg.norm(x)))
+def _distance(x: Inexact[Array, "... m"], y: Inexact[Array, "... m"]) -> Float[np.ndarray, "..."]:
+    apart = np.minimum(np.linalg.norm(x - y, axis=-1), np.linalg.norm(x + y, axis=-1))
+    return apart / np.maximum(1.0, np.linalg.norm(x, axis=-1))
 
 
 def _centred(equations: Equations, x: Array) -> Array:
@@ -105,26 +133,30 @@ def _centred(equations: Equations, x: Array) -> Array:
     return x
 
 
-def _realified(equations: Equations, root: Root) -> Root:
-    """Mark a root that cannot be told from its own conjugate as real, and make it so."""
-    x = root.point
-    if _distance(x, x.conj()) > _blur(equations, x):
-        return root
-    real = np.array(x.real)
-    polished = _newton(equations, real) if root.multiplicity == 1 else None
-    return Root(real if polished is None else polished, root.multiplicity, True)
+def _realified(equations: Equations, roots: list[Root]) -> list[Root]:
+    """Mark roots that cannot be told from their own conjugates as real, and make them so."""
+    x = equations.points([root.point for root in roots])
+    real = _distance(x, x.conj()) <= _blur(equations.regularity(x))
+    found = [
+        Root(root.point.real.copy(), root.multiplicity, True) if on else root
+        for root, on in zip(roots, real, strict=True)
+    ]
+    simple = [i for i, root in enumerate(found) if root.is_real and root.multiplicity == 1]
+    polished, reached = _newton(equations, np.real(x[simple]))
+    for i, point, good in zip(simple, polished, reached, strict=True):
+        found[i] = Root(point, 1, True) if good else found[i]
+    return found
 
 
-def _by_continuation(equations: Equations) -> list[Array]:
+def _by_continuation(equations: Equations) -> Inexact[Array, "B m"]:
     """Return the ends of all paths from a generic problem; roots at infinity have none."""
     rng = np.random.default_rng(0)
     for _ in range(5):
         generic = _disturbed(equations, rng)
         starts = _polished(generic, candidates(generic))
-        if sum(root.multiplicity for root in _merged(generic, starts)) == generic.count:
+        if _count(_merged(generic, starts)) == generic.count:
             break
-    ends = (_followed(equations, generic, x) for x in starts)
-    return [x for x in ends if x is not None and np.abs(x).max() < _FAR]
+    return _finite(_followed(equations, generic, starts))
 
 
 def _disturbed(equations: Equations, rng: np.random.Generator) -> Equations:
@@ -143,18 +175,19 @@ def _between(start: Equations, end: Equations, t: float) -> Equations:
     return dataclasses.replace(end, **mixed)
 
 
-def _followed(end: Equations, start: Equations, x: Array) -> Array | None:
-    """Follow a root while t falls from 1 to almost 0 by factors, then solve the given problem; None if it is lost."""
+def _followed(end: Equations, start: Equations, x: Inexact[Array, "B m"]) -> Inexact[Array, "B m"]:
+    """Follow roots while t falls from 1 to almost 0 by factors, then solve the given problem; some are lost."""
     t, ratio = 1.0, 0.8
-    while t > _ARRIVED:
-        here = _between(start, end, t)
+    while t > _ARRIVED and len(x) > 0:
         change = start.residual(x)[0] - end.residual(x)[0]
-        predicted = x + (1 - ratio) * t * np.linalg.lstsq(here.slope(x), change, rcond=1e-13)[0]
-        corrected = _newton(_between(start, end, ratio * t), predicted, 6, 0.05)
-        if corrected is not None and np.linalg.norm(corrected - x) <= 0.5 * np.linalg.norm(x):
-            x, t, ratio = corrected, ratio * t, max(ratio**1.5, 0.05)
-        else:
+        tangent = np.linalg.pinv(_between(start, end, t).slope(x), rcond=_RANK) @ change[:, :, None]
+        predicted = x + (1 - ratio) * t * tangent[..., 0]
+        corrected, reached = _newton(_between(start, end, ratio * t), predicted, 6, 0.05)
+        kept = reached & (np.linalg.norm(corrected - x, axis=1) <= 0.5 * np.linalg.norm(x, axis=1))
+        if not kept.all() and ratio < 1 - 1e-4:
             ratio = ratio**0.5
-        if ratio > 1 - 1e-4 or np.abs(x).max() > _FAR:
-            return None
-    return _newton(end, np.asarray(x, dtype=complex), 40, 1e-3)
+            continue
+        x, t = _finite(corrected[kept]), ratio * t
+        ratio = max(ratio**1.5, 0.05)
+    solved, reached = _newton(end, x.astype(complex), 40, 1e-3)
+    return solved[reached]

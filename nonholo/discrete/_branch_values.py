@@ -4,20 +4,23 @@ The roots come from `_branch_roots`; the questions that users ask are in `_branc
 """
 
 import dataclasses
-from typing import cast
+from typing import NamedTuple, cast
 
 import numpy as np
 
-from nonholo import kernels
-from nonholo._types import Array, Bool, Float, Int
-from nonholo.discrete._branch_equations import Frame
-from nonholo.discrete._branch_roots import roots_of
+from nonholo._checks import error
+from nonholo._results import Outcome
+from nonholo._types import Array, Bool, Float, Inexact, Int
+from nonholo.discrete._branch_equations import Equations, Frame
+from nonholo.discrete._branch_roots import Root, roots_of
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._legendre import legendre
-from nonholo.discrete._structured import structured
+from nonholo.discrete._regions import regions
+from nonholo.discrete._structured import first_root, structured
 from nonholo.systems import AbstractLLSystem
 
 SAME = 1e-6  # relative distance of a computed displacement or momentum from the branch that it is
+_ON_VARIETY = 1e-9  # relative distance from the displacement variety
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -33,7 +36,13 @@ class Branches:
         multiplicity: Two at a fold.
         fold_distance: See `fold_distance`.
         energy: Reduced constrained energy, the same for all.
+        region: "inner", "outer" or "between", of real displacements of a top with n = 3 and det B > 2|c|^2; otherwise
+            "", also from the energy h** on. See docs/theory/branches.md.
         principal: Index of the principal one; None if the principal branch does not reach this momentum.
+        certified: Whether `certify=True` was asked for and all that stands here is proved: that these are all isolated
+            displacements, each once, which of them are real, their multiplicities.
+        radius: Bounds of the distance of any entry of each displacement from the exact one; None if not certified.
+        uncertified: Why a certificate that was asked for could not be given; otherwise "".
     """
 
     displacement: Array
@@ -42,7 +51,11 @@ class Branches:
     multiplicity: Int[np.ndarray, "B"]
     fold_distance: Float[np.ndarray, "B"]
     energy: float
+    region: np.ndarray
     principal: int | None
+    certified: bool = False
+    radius: Float[np.ndarray, "B"] | None = None
+    uncertified: str = ""
 
     def __len__(self) -> int:
         return len(self.is_real)
@@ -50,36 +63,73 @@ class Branches:
 
 def values_over(discrete: Discretization, frame: Frame, r: Float[np.ndarray, "k"]) -> Branches:
     """Return all values over a restricted momentum in the user's frame."""
-    system = cast(AbstractLLSystem, discrete.system)
-    canonical = system.frame_map @ r
+    canonical = discrete.system.frame_map @ r
+    return branches_of(discrete, canonical, roots_over(discrete, frame, canonical))
+
+
+class Roots(NamedTuple):
+    """The roots of the equations of a restricted momentum, and the displacements minus the identity over them."""
+
+    equations: Equations
+    found: list[Root]
+    increments: Inexact[np.ndarray, "B N N"]
+
+
+def roots_over(discrete: Discretization, frame: Frame, canonical: Inexact[np.ndarray, "k"]) -> Roots:
+    """Return the roots over a canonical restricted momentum, real or complex."""
+    system = discrete.system
     equations = frame.equations(discrete.time_step * canonical)
-    roots = roots_of(equations)
+    found = roots_of(equations)
     back = system.group.inverse(system.frame)
-    X = np.array([system.frame @ frame.increment(root.point.astype(complex)) @ back for root in roots])
-    is_real = np.array([root.is_real for root in roots])
+    increments = [system.frame @ frame.increment(root.point.astype(complex)) @ back for root in found]
+    return Roots(equations, found, np.array(increments).reshape(-1, *system.group.identity.shape))
+
+
+def branches_of(discrete: Discretization, canonical: Float[np.ndarray, "k"], roots: Roots) -> Branches:
+    """Return what is known of the displacements over a canonical restricted momentum."""
+    system = cast(AbstractLLSystem, discrete.system)
+    equations, found, X = roots
+    is_real = np.array([root.is_real for root in found])
     return Branches(
         displacement=X + system.group.identity,
         momentum=legendre(discrete, X, "left"),
         is_real=is_real,
-        multiplicity=np.array([root.multiplicity for root in roots]),
-        fold_distance=np.array([equations.regularity(root.point) for root in roots]),
-        energy=float(system.constrained_energy(r)),
+        multiplicity=np.array([root.multiplicity for root in found]),
+        fold_distance=equations.regularity(equations.points([root.point for root in found])),
+        energy=float(system.canonical.constrained_energy(canonical)),
+        region=np.where(is_real, regions(discrete, X + system.group.identity), ""),
         principal=_principal(discrete, canonical, X, is_real),
     )
 
 
-def _principal(discrete: Discretization, canonical: np.ndarray, X: np.ndarray, is_real: np.ndarray) -> int | None:
-    """Return the index of the verified principal root among displacements minus the identity."""
+def point_over(where: str, discrete: Discretization, frame: Frame, W: np.ndarray) -> Float[np.ndarray, "m"]:
+    """Return the point over a real displacement, refused with its distance from the variety."""
+    system = discrete.system
+    canonical = system.group.inverse(system.frame) @ W @ system.frame
+    x = frame.point(canonical)
+    missed = float(np.linalg.norm(frame.increment(x) + np.eye(len(W)) - canonical))
+    if not missed <= _ON_VARIETY * np.linalg.norm(W):
+        remedy = "Build it as `group.exp(x)` with x admissible."
+        raise error(where, "lie on the displacement variety", f"a matrix at distance {missed:.3g}", remedy)
+    return x
+
+
+def principal_increment(discrete: Discretization, canonical: Float[np.ndarray, "k"]) -> tuple[Outcome, Array]:
+    """Return the outcome and the verified principal displacement, canonical, minus the identity."""
     step = structured(discrete)
     if step is None:
-        return None
-    group, body = discrete.system.group, step.body
-    pose = group.pose_from_matrix(discrete.system.frame)
-    coded = group.matrix_from_pose(pose).ravel() if isinstance(body, kernels.GeneralBody) else pose
-    code, state = kernels.start(body, step.scale * canonical, coded)
+        return Outcome.branch_unverified, None
+    outcome, chart = first_root(step, discrete.system, canonical)
+    return outcome, discrete.variety.increment(chart) if outcome == Outcome.successful else None
+
+
+def _principal(discrete: Discretization, canonical: np.ndarray, X: np.ndarray, is_real: np.ndarray) -> int | None:
+    """Return the index of the verified principal root among displacements minus the identity."""
+    code, reached = principal_increment(discrete, canonical)
     if code != 0:
         return None
-    found = discrete.displaced(kernels.chart_of(body, state)) - group.identity
+    frame = discrete.system.frame
+    found = frame @ reached @ discrete.system.group.inverse(frame)
     missed = np.where(is_real, np.linalg.norm(X - found, axis=(1, 2)), np.inf)
     best = int(np.argmin(missed))
     return best if missed[best] <= SAME * max(1.0, float(np.linalg.norm(found))) else None

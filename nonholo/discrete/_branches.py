@@ -11,12 +11,12 @@ import numpy as np
 from nonholo._checks import array, error
 from nonholo._types import Array, Float
 from nonholo.discrete._branch_equations import Frame, frame_of
-from nonholo.discrete._branch_values import SAME, Branches, values_over
+from nonholo.discrete._branch_values import SAME, Branches, point_over, values_over
+from nonholo.discrete._certified_values import certified_over
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._legendre import legendre
 from nonholo.groups import AbstractMatrixGroup
 
-_ON_VARIETY = 1e-9  # relative distance from the displacement variety
 _ROUNDING = 1e-13
 
 
@@ -36,10 +36,14 @@ def displacements_over(discrete: Discretization, restricted_momentum: Any, certi
     Args:
         discrete: A discretised SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference "matrix".
         restricted_momentum: r, in physical units.
-        certify: Not offered yet.
+        certify: Also prove that these are all of them, with exact multiplicities and enclosures; needs the extra
+            `certify` (python-flint). The statement is about the polynomial equations with the doubles of the canonical
+            body (`system.canonical`), of the time step and of the canonical r as exact numbers. Where it is not
+            decided, `certified` is False and `uncertified` says why.
 
     Raises:
-        ValueError: Another system or difference, a wrong shape, a value that is not finite, `certify=True`.
+        ValueError: Another system or difference, a wrong shape, a value that is not finite, `certify=True` without
+            python-flint.
 
     Example:
         A top has four values, here two of them complex:
@@ -48,11 +52,14 @@ def displacements_over(discrete: Discretization, restricted_momentum: Any, certi
         >>> found = displacements_over(top, [0.1, -0.05])
         >>> found.is_real, found.principal
         (array([ True,  True, False, False]), 0)
+        >>> certified = displacements_over(top, [0.1, -0.05], certify=True)
+        >>> certified.is_real, bool(certified.radius.max() < 1e-14)
+        (array([ True,  True, False, False]), True)
     """
     where = "displacements_over"
-    frame = _checked(where, discrete, certify)
+    frame = _checked(where, discrete)
     r = _restricted(f"{where}(restricted_momentum=...)", discrete, restricted_momentum)
-    return values_over(discrete, frame, r)
+    return certified_over(where, discrete, frame, r) if certify else values_over(discrete, frame, r)
 
 
 def branches(
@@ -69,7 +76,7 @@ def branches(
         momentum: A full momentum on the locus, whose W is `inverse_discrete_legendre`, or components along the
             constraint subspace, whose W is the principal displacement.
         displacement: W itself, real and on the displacement variety.
-        certify: Not offered yet.
+        certify: As in `displacements_over`, for the restricted momentum that arrives with W, as it is computed here.
 
     Raises:
         ValueError: As `displacements_over` and `inverse_discrete_legendre`; none or both of momentum and displacement;
@@ -82,7 +89,7 @@ def branches(
         >>> bool(np.allclose(found.momentum[found.principal], after.momentum))
         True
     """
-    frame = _checked("branches", discrete, certify)
+    frame = _checked("branches", discrete)
     if (momentum is None) == (displacement is None):
         got = "none" if momentum is None else "both"
         raise error("branches(...)", "be given momentum or displacement", got, "Choose one.")
@@ -90,10 +97,11 @@ def branches(
     if displacement is not None:
         where = "branches(displacement=...)"
         X = array(where, displacement, group.identity.shape, f"Pass an element of {group}.") - group.identity
-        _point(where, discrete, frame, X + group.identity)
+        point_over(where, discrete, frame, X + group.identity)
     else:
         X = _before("branches(momentum=...)", discrete, frame, momentum)
-    return values_over(discrete, frame, discrete.system.restrict(legendre(discrete, X, "right")))
+    r = discrete.system.restrict(legendre(discrete, X, "right"))
+    return certified_over("branches", discrete, frame, r) if certify else values_over(discrete, frame, r)
 
 
 def inverse_discrete_legendre(discrete: Discretization, momentum: Any) -> Float[Array, "N N"]:
@@ -117,7 +125,7 @@ def inverse_discrete_legendre(discrete: Discretization, momentum: Any) -> Float[
         True
     """
     where = "inverse_discrete_legendre"
-    frame = _checked(where, discrete, False)
+    frame = _checked(where, discrete)
     return _inverse(f"{where}(momentum=...)", discrete, frame, momentum) + discrete.system.group.identity
 
 
@@ -142,18 +150,15 @@ def fold_distance(discrete: Discretization, displacement: Any) -> float:
         (1.0, 0.0)
     """
     where = "fold_distance(displacement=...)"
-    frame = _checked("fold_distance", discrete, False)
+    frame = _checked("fold_distance", discrete)
     group: AbstractMatrixGroup = discrete.system.group
     W = array(where, displacement, group.identity.shape, f"Pass an element of {group} as a matrix.")
-    x = _point(where, discrete, frame, W)
-    return frame.equations(np.zeros(len(discrete.system.constraint_subspace))).regularity(x)
+    x = point_over(where, discrete, frame, W)
+    return float(frame.equations(np.zeros(len(discrete.system.constraint_subspace))).regularity(x))
 
 
-def _checked(owner: str, discrete: Discretization, certify: bool) -> Frame:
-    frame = frame_of(f"{owner}(discrete=...)", as_discretization(f"{owner}(discrete=...)", discrete))
-    if certify:
-        raise error(f"{owner}(certify=...)", "be False", "True", "Certified enclosures are not offered yet.")
-    return frame
+def _checked(owner: str, discrete: Discretization) -> Frame:
+    return frame_of(f"{owner}(discrete=...)", as_discretization(f"{owner}(discrete=...)", discrete))
 
 
 def _restricted(where: str, discrete: Discretization, momentum: Any) -> Float[np.ndarray, "k"]:
@@ -187,15 +192,3 @@ def _inverse(where: str, discrete: Discretization, frame: Frame, momentum: Any) 
         raise error(where, "determine the displacement", got, "Use `displacements_over` and choose.")
     best = near[0] if len(near) == 1 else found.principal
     return found.displacement[best].real - system.group.identity
-
-
-def _point(where: str, discrete: Discretization, frame: Frame, W: np.ndarray) -> Float[np.ndarray, "m"]:
-    """Return the point over a real displacement, refused with its distance from the variety."""
-    system = discrete.system
-    canonical = system.group.inverse(system.frame) @ W @ system.frame
-    x = frame.point(canonical)
-    missed = float(np.linalg.norm(frame.increment(x) + np.eye(len(W)) - canonical))
-    if not missed <= _ON_VARIETY * np.linalg.norm(W):
-        remedy = "Build it as `group.exp(x)` with x admissible."
-        raise error(where, "lie on the displacement variety", f"a matrix at distance {missed:.3g}", remedy)
-    return x

@@ -18,7 +18,7 @@ from nonholo._types import Array, Float
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete._precision import in_double
-from nonholo.discrete._root import principal_root
+from nonholo.discrete._root import followed_root, principal_root
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import Orbit
 from nonholo.systems import AbstractLRSystem
@@ -123,13 +123,25 @@ def restricted(discrete: Discretization, momentum: Array, g: Array) -> Array:
 
 def principal_displacement(discrete: Discretization, r: Float[Array, "k"], g: Array) -> tuple[Array, Array]:
     """Return chart coordinates of the principal displacement with these momenta along d, and the outcome."""
+    return principal_root(_equations(discrete, g), r, discrete.variety.chart.shape[0])
+
+
+def nearest_displacement(discrete: Discretization, y: Float[Array, "m"], r: Float[Array, "k"]) -> tuple[Array, Array]:
+    """Return chart coordinates of the displacement that y reaches when its momenta along d move straight to r."""
+    g = discrete.system.group.identity
+    before = restricted(discrete, momentum_of(discrete, y, g, "left"), g)
+    return followed_root(_equations(discrete, g), (y, before), r)
+
+
+def _equations(discrete: Discretization, g: Array) -> Callable[[Array, Array], Array]:
+    """Return the function of chart coordinates and momenta along d that vanishes at a displacement."""
     variety = discrete.variety
 
     def residual(y: Array, target: Array) -> Array:
         missed = restricted(discrete, momentum_of(discrete, y, g, "left"), g) - target
         return jnp.concatenate([missed, variety.equations(variety.displaced(y))])
 
-    return principal_root(residual, r, variety.chart.shape[0])
+    return residual
 
 
 def next_charts_by_definition(discrete: Discretization, states: Orbit) -> Float[np.ndarray, "K m"]:
@@ -143,28 +155,40 @@ def _identities(states: Orbit) -> np.ndarray:
     return np.broadcast_to(states.system.group.identity, (len(states), *states.system.group.identity.shape))
 
 
-def step_from(discrete: Discretization, y: Array, g: Array) -> tuple[Array, Array, Array, Array]:
-    """Return restricted momentum, chart and pose after one step, and the outcome."""
+def step_from(discrete: Discretization, y: Array, g: Array, nearest: bool = False) -> tuple[Array, Array, Array, Array]:
+    """Return restricted momentum, chart and pose after one step to the principal or nearest value, and the outcome."""
     W = displaced(discrete, y)
     after = W @ g if isinstance(discrete.system, AbstractLRSystem) else g @ W
     r = restricted(discrete, momentum_of(discrete, y, g, "right"), after)
-    following, code = principal_displacement(discrete, r, after)
+    ahead = nearest_displacement(discrete, y, r) if nearest else principal_displacement(discrete, r, after)
+    following, code = ahead
     return r, following, after, code
 
 
 def run_by_definition(
-    discrete: Discretization, reduced: np.ndarray, pose: np.ndarray, steps: int, every: int, progress: bool
+    discrete: Discretization,
+    reduced: np.ndarray,
+    pose: np.ndarray,
+    steps: int,
+    every: int,
+    progress: bool,
+    nearest: bool = False,
+    chart: Float[np.ndarray, "m"] | None = None,
 ) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], Outcome, int]:
-    """Run the step; return the saved canonical states, the outcome and the number of good steps."""
+    """Run the step; return the saved canonical states, the outcome and the number of good steps.
+
+    The first displacement is the principal one, or the one with the given chart coordinates.
+    """
     group, C, frame = discrete.system.group, discrete.system.frame_map, discrete.system.frame
     r, g = np.linalg.solve(C, reduced), group.matrix_from_pose(pose) @ group.inverse(frame)
-    y, code = in_double(equinox.filter_jit(principal_displacement), discrete, r, g)
+    first = in_double(equinox.filter_jit(principal_displacement), discrete, r, g) if chart is None else (chart, 0)
+    y, code = first
     saved = [(r, y, g)] if code == 0 else []
     done = 0
     with progress_bar("steps", progress) as report:
         while code == 0 and done < steps:
             batch = min(every, steps - done)
-            good, code, r, y, g = in_double(_advance, discrete, np.int64(batch), r, y, g)
+            good, code, r, y, g = in_double(_advance, discrete, nearest, np.int64(batch), r, y, g)
             done += int(good)
             if code == 0 and batch == every:
                 saved.append((r, y, g))
@@ -176,12 +200,12 @@ def run_by_definition(
 
 
 @equinox.filter_jit
-def _advance(discrete: Discretization, steps: Array, r: Array, y: Array, g: Array) -> tuple[Array, ...]:
+def _advance(discrete: Discretization, nearest: bool, steps: Array, r: Array, y: Array, g: Array) -> tuple[Array, ...]:
     group = discrete.system.group
 
     def body(carry: tuple[Array, ...]) -> tuple[Array, ...]:
         done, _, *now = carry
-        *ahead, code = step_from(discrete, now[1], now[2])
+        *ahead, code = step_from(discrete, now[1], now[2], nearest)
         ahead[2] = group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(ahead[2])))
         good = code == 0
         return done + good, code, *(jnp.where(good, new, old) for new, old in zip(ahead, now, strict=True))

@@ -12,7 +12,7 @@ from nonholo.discrete._legendre import legendre, legendre_of_chart
 from nonholo.discrete._structured import next_charts
 from nonholo.discrete._variety import Constraint, Variety, checked_constraint, equations_of, variety_of
 from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.systems import AbstractLRSystem, AbstractSystem, System
+from nonholo.systems import AbstractLRSystem, AbstractSystem, System, is_wide
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem, DiscretizationT, refuse_in_coordinates
 
 Difference = str | Callable[[Array], Array]
@@ -93,6 +93,9 @@ class Discretization(AbstractMotion):
 
         For a right-invariant constraint the right-hand side is $\sum_j \lambda_j \mathrm{Ad}^*_{g_{k+1}} a^j$.
         """
+        if states.save_every > 1 and states.branch != "principal":
+            got = f"branch {states.branch!r} and save_every {states.save_every}: the steps between are not known"
+            raise error("Orbit.multipliers", "have every step, or the principal branch", got, "Run with save_every=1.")
         before = states.chosen(slice(None, -1))
         charts = states.canonical_chart[1:] if states.save_every == 1 else next_charts(self, before)
         arriving = self._momentum(before, before.canonical_chart, "right")
@@ -187,7 +190,7 @@ def discretize(
 
 
 def _difference(system: AbstractSystem, difference: Difference | None) -> Difference:
-    where, defined = "discretize(difference=...)", system.homogeneous_mass_tensor is not None
+    where, defined = "discretize(difference=...)", is_wide(system) or system.homogeneous_mass_tensor is not None
     if difference is None:
         return "matrix" if defined else "logarithmic"
     if callable(difference):

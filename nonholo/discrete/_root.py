@@ -15,6 +15,7 @@ _SMALLEST = 1e-7  # continuation step, relative to s, below which the branch is 
 _CORRECTIONS = 8  # of Newton's method
 _JUMP = 0.2  # a continuation step that moves y further than this, relative to 1 + |y|^2, is not trusted
 _NEAR_FOLD = 1e-2  # of the Jacobian determinant at zero, where a continuation that stops has met a fold
+_FAR = 1e3  # size of y where a chart of the displacements ends: an angle of 179.9 degrees
 
 Residual = Callable[[Array, Array], Array]
 
@@ -39,7 +40,22 @@ def principal_root(
     Returns:
         The root and the outcome as an integer array.
     """
-    guess, folded, jumped = jax.lax.stop_gradient(_continue(residual, jax.lax.stop_gradient(target), unknowns))
+    nothing = jnp.zeros(unknowns, target.dtype), jnp.zeros_like(target)
+    return followed_root(residual, nothing, target, certified)
+
+
+def followed_root(
+    residual: Residual,
+    start: tuple[Float[Array, "m"], Float[Array, "k"]],
+    target: Float[Array, "k"],
+    certified: Callable[[Array, Array], Array] | None = None,
+) -> tuple[Float[Array, "m"], Array]:
+    """Solve residual(y, target) = 0 for the root that a given one reaches while the momenta move straight to target.
+
+    As `principal_root`, from a start of the caller's: a root and its momenta.
+    """
+    path = jax.lax.stop_gradient((start, target))
+    guess, folded, jumped = jax.lax.stop_gradient(_continue(residual, *path))
     tolerance = float(jnp.finfo(guess.dtype).eps) ** 0.65
     solution = optimistix.root_find(
         residual, optimistix.Newton(rtol=tolerance, atol=tolerance), guess, target, max_steps=20, throw=False
@@ -49,7 +65,8 @@ def principal_root(
     converged = (solution.result == optimistix.RESULTS.successful) & finite
     certain = converged & (jnp.asarray(False) if certified is None else certified(y, target))
     code = jnp.where(jumped, int(Outcome.branch_unverified), int(Outcome.successful))
-    code = jnp.where(converged, code, int(Outcome.not_converged))
+    beyond = jumped & (jnp.sum(guess**2) > _FAR**2)
+    code = jnp.where(converged | beyond, code, int(Outcome.not_converged))
     code = jnp.where(folded, int(Outcome.no_real_branch), code)
     code = jnp.where(jnp.all(jnp.isfinite(target)), code, int(Outcome.nonfinite))
     return y, jnp.where(certain, int(Outcome.successful), code)
@@ -79,14 +96,14 @@ class _Path(NamedTuple):
     count: Array
 
 
-def _continue(residual: Residual, target: Array, unknowns: int) -> tuple[Array, Array, Array]:
+def _continue(residual: Residual, begun: tuple[Array, Array], target: Array) -> tuple[Array, Array, Array]:
     """Return the root at s = 1, or the last one that was reached, and whether it met a fold or was lost."""
-    one, zero = jnp.ones((), target.dtype), jnp.zeros(unknowns, target.dtype)
+    one, (root, before) = jnp.ones((), target.dtype), begun
     least = jnp.finfo(target.dtype).tiny * 1e3
 
     def evaluate(y: Array, s: Array) -> tuple[Array, Array, Array]:
-        missed, rate = jax.jvp(lambda s: residual(y, s * target), (s,), (one,))
-        slope = jax.jacfwd(residual)(y, s * target)
+        missed, rate = jax.jvp(lambda s: residual(y, before + s * (target - before)), (s,), (one,))
+        slope = jax.jacfwd(residual)(y, before + s * (target - before))
         solved = jnp.linalg.solve(slope, jnp.stack([missed, -rate], axis=1))
         return jnp.linalg.det(slope), solved[:, 0], solved[:, 1]
 
@@ -109,9 +126,9 @@ def _continue(residual: Residual, target: Array, unknowns: int) -> tuple[Array, 
         iterate = jnp.where(ended, guess, found)
         return _Path(s, size, root, tangent, now, guess, iterate, jnp.where(ended, 0, path.count + 1))
 
-    start, _, tangent = evaluate(zero, 0 * one)
-    guess = _FIRST * tangent
-    begin = _Path(0 * one, _FIRST * one, zero, tangent, start, guess, guess, jnp.asarray(0))
+    start, _, tangent = evaluate(root, 0 * one)
+    guess = root + _FIRST * tangent
+    begin = _Path(0 * one, _FIRST * one, root, tangent, start, guess, guess, jnp.asarray(0))
     finite = jnp.all(jnp.isfinite(target))
     end = jax.lax.while_loop(lambda path: going(path) & finite, advance, begin)
     lost = end.s < 1

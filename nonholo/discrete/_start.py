@@ -19,14 +19,14 @@ _TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in 
 def initial_momentum(
     owner: str,
     system: System,
-    g: Float[np.ndarray, "N N"],
+    g: Float[np.ndarray, "N N"] | None,
     *,
     body_velocity: Any = None,
     restricted_velocity: Any = None,
     momentum: Any = None,
 ) -> Float[np.ndarray, "k"]:
     """Return the canonical momentum along the constraint subspace that a velocity or a momentum has at a pose."""
-    k, dim = system.constraint_subspace.shape
+    k, dim = system.rank, system.group.dim
     if momentum is not None:
         where = f"{owner}(momentum=...)"
         size = k if np.shape(momentum) == (k,) else dim
@@ -34,26 +34,28 @@ def initial_momentum(
         return _of_finite_energy(owner, system, g, value if size == k else _restricted(system, value, g))
     if body_velocity is not None:
         velocity = _admissible(f"{owner}(body_velocity=...)", system, g, body_velocity)
-    else:
-        where = f"{owner}(restricted_velocity=...)"
-        rows = array(where, restricted_velocity, (k,), "Pass one number per admissible direction.")
-        velocity = _to_body(system, g) @ (rows @ system.constraint_subspace)
-    return _of_finite_energy(owner, system, g, _restricted(system, system.inertia_operator @ velocity, g))
+        return _of_finite_energy(owner, system, g, _restricted(system, system.inertia_operator @ velocity, g))
+    where = f"{owner}(restricted_velocity=...)"
+    rows = array(where, restricted_velocity, (k,), "Pass one number per admissible direction.")
+    along = (
+        rows @ system.spatial_inertia(g) if isinstance(system, AbstractLRSystem) else system.restricted_momentum(rows)
+    )
+    return _of_finite_energy(owner, system, g, along)
 
 
-def _restricted(system: System, momentum: np.ndarray, g: np.ndarray) -> np.ndarray:
+def _restricted(system: System, momentum: np.ndarray, g: np.ndarray | None) -> np.ndarray:
     if isinstance(system, AbstractLRSystem):
         return system.restrict_in_space(momentum, g)
     return system.restrict(momentum)
 
 
-def _to_body(system: System, g: np.ndarray) -> np.ndarray:
+def _to_body(system: System, g: np.ndarray | None) -> np.ndarray:
     """Return the matrix from velocities in which the constraint is constant to body velocities."""
     group = system.group
     return group.adjoint(group.inverse(g)) if isinstance(system, AbstractLRSystem) else np.eye(group.dim)
 
 
-def _of_finite_energy(owner: str, system: System, g: np.ndarray, restricted: np.ndarray) -> np.ndarray:
+def _of_finite_energy(owner: str, system: System, g: np.ndarray | None, restricted: np.ndarray) -> np.ndarray:
     with np.errstate(over="ignore", invalid="ignore"):
         if isinstance(system, AbstractLRSystem):
             energy = system.constrained_energy(restricted, g)
@@ -61,10 +63,10 @@ def _of_finite_energy(owner: str, system: System, g: np.ndarray, restricted: np.
             energy = system.constrained_energy(restricted)
     if not np.isfinite(energy):
         raise error(f"{owner}(...)", "start with a finite energy", f"{energy}", "Start slower, or use other units.")
-    return system.frame_map @ restricted
+    return system.to_canonical(restricted)
 
 
-def _admissible(where: str, system: System, g: np.ndarray, body_velocity: Any) -> np.ndarray:
+def _admissible(where: str, system: System, g: np.ndarray | None, body_velocity: Any) -> np.ndarray:
     velocity = array(where, body_velocity, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
     carried = np.linalg.solve(_to_body(system, g), velocity)
     forbidden = system.annihilator @ carried
@@ -84,7 +86,7 @@ def one_start(owner: str, **starts: Any) -> None:
 
 
 def initial_state(
-    discrete: Discretization, g: Float[np.ndarray, "N N"], *, displacement: Any = None, **starts: Any
+    discrete: Discretization, g: Float[np.ndarray, "N N"] | None, *, displacement: Any = None, **starts: Any
 ) -> tuple[Float[np.ndarray, "k"], Float[np.ndarray, "N N"] | Float[np.ndarray, "dim"] | None]:
     """Return the canonical restricted momentum of a start, and what the first state must reproduce, if anything.
 
@@ -96,7 +98,7 @@ def initial_state(
         W = on_variety("simulate(displacement=...)", discrete, g, displacement)
         found = legendre(discrete, W - system.group.identity, "left")
         return initial_momentum("simulate", system, g, momentum=_restricted(system, found, g)), W
-    momentum, k = starts.get("momentum"), len(system.constraint_subspace)
+    momentum, k = starts.get("momentum"), system.rank
     full = momentum is not None and np.shape(momentum) != (k,)
     return initial_momentum("simulate", system, g, **starts), np.asarray(momentum, dtype=np.float64) if full else None
 
@@ -120,7 +122,7 @@ def in_group(where: str, group: AbstractMatrixGroup, element: Any) -> np.ndarray
     return g
 
 
-def on_variety(where: str, discrete: Discretization, g: np.ndarray, displacement: Any) -> np.ndarray:
+def on_variety(where: str, discrete: Discretization, g: np.ndarray | None, displacement: Any) -> np.ndarray:
     """Return a displacement whose place on the variety is checked, refused with its forbidden part."""
     system, group = discrete.system, discrete.system.group
     W = in_group(where, group, displacement)

@@ -3,15 +3,20 @@
 from typing import NamedTuple
 
 import equinox
+import jax
 import jax.numpy as jnp
 import numpy as np
 
 from nonholo import kernels
-from nonholo._checks import array, choice, error
+from nonholo._checks import array, error, is_traced
 from nonholo._results import Outcome
 from nonholo._types import Array, Float
-from nonholo.discrete._definition import displaced, momentum_of, principal_displacement
+from nonholo.discrete._branch_equations import frame_of, has_frame
+from nonholo.discrete._branch_rules import BranchRule, checked_rule
+from nonholo.discrete._branch_steps import displacement_at, first_place, next_place
+from nonholo.discrete._definition import displaced, momentum_of, nearest_displacement, principal_displacement
 from nonholo.discrete._discretization import Discretization, as_discretization
+from nonholo.discrete._legendre import legendre
 from nonholo.discrete._precision import in_double
 from nonholo.discrete._root import principal_root
 from nonholo.discrete._structured import ScalarStep, scalar_step
@@ -37,7 +42,7 @@ class StepResult(NamedTuple):
 
 
 def step(
-    discrete: Discretization, momentum: Float[Array, "dim"] | Float[Array, "k"], branch: str = "principal"
+    discrete: Discretization, momentum: Float[Array, "dim"] | Float[Array, "k"], branch: BranchRule = "principal"
 ) -> StepResult:
     r"""Take one step of the discrete map: from $P_k$ to $P_{k+1}$, with the displacement $W_{k+1}$ at the new momentum.
 
@@ -52,14 +57,16 @@ def step(
     Args:
         discrete: The discretised system.
         momentum: P_k on the momentum locus, or its components along the constraint subspace.
-        branch: "principal".
+        branch: As in `simulate`. With "principal" and "nearest" a step can be traced; "nearest" then starts at the
+            principal displacement of the momentum, as it always does for components along the subspace.
 
     Returns:
         The new state and the outcome.
 
     Raises:
-        ValueError: A wrong shape, a value that is not finite, an unknown branch, a right-invariant constraint (whose
-            step depends on the configuration: use `simulate`).
+        ValueError: A wrong shape, a value that is not finite, an unknown branch or one that the system does not
+            have, a right-invariant constraint (whose step depends on the configuration: use `simulate`); with another
+            branch than "principal" a full momentum off the locus.
         TypeError: Traced 32-bit input.
 
     Example:
@@ -69,7 +76,6 @@ def step(
         (array([0., 1., 0.]), 0)
     """
     as_discretization("step(discrete=...)", discrete)
-    choice("step(branch=...)", branch, ("principal",))
     if isinstance(discrete.system, AbstractLRSystem):
         got = f"{type(discrete.system).__name__}, whose step depends on the configuration"
         raise error("step(discrete=...)", "have a left-invariant constraint", got, "Use simulate(..., steps=1).")
@@ -77,11 +83,43 @@ def step(
     size = k if np.shape(momentum) == (k,) else dim
     where = "step(momentum=...)"
     value = array(where, momentum, (size,), f"Pass {dim} body momenta or the {k} along the constraint subspace.")
-    return in_double(_step, discrete, scalar_step(discrete), value)
+    traced = any(is_traced(x) for x in jax.tree.leaves((discrete, value)))
+    if traced and branch not in ("principal", "nearest"):
+        got = f"{branch!r} under a JAX transformation"
+        raise error("step(branch=...)", "be 'principal' or 'nearest'", got, "Take this step outside of it.")
+    rule = checked_rule("step", discrete, branch)
+    if rule == "principal" or traced or not has_frame(discrete):
+        closed = jax.tree.map(_traceable, scalar_step(discrete))
+        return in_double(_step, discrete, closed, rule == "nearest", value)
+    return _step_by_rule(discrete, rule, value)
+
+
+def _traceable(number: Array) -> Array:
+    """Return a number as a scalar array: JAX would compile the step anew for each value of a Python float."""
+    return np.float64(number) if isinstance(number, float) else number
+
+
+def _step_by_rule(discrete: Discretization, rule: BranchRule, momentum: np.ndarray) -> StepResult:
+    """Take a step in NumPy, from a state that need not be on the principal branch."""
+    system = discrete.system
+    frame = frame_of("step(discrete=...)", discrete)
+    full = momentum if momentum.shape != (len(system.constraint_subspace),) else None
+    canonical = system.frame_map @ (momentum if full is None else system.restrict(full))
+    code, place = first_place("step", discrete, frame, rule, canonical, full)
+    after, W = np.full(system.group.dim, np.nan), np.full_like(system.group.identity, np.nan)
+    multipliers = np.full(len(system.annihilator), np.nan)
+    if place is not None:
+        code, following = next_place(discrete, frame, rule, place)
+        if code == 0:
+            now, W = (displacement_at(discrete, frame, x.point) for x in (place, following))
+            after = legendre(discrete, W - system.group.identity, "left")
+            arriving = legendre(discrete, now - system.group.identity, "right")
+            multipliers = (after - arriving) @ np.linalg.pinv(system.annihilator)
+    return StepResult(after, W, multipliers, np.asarray(int(code)))
 
 
 @equinox.filter_jit
-def _step(discrete: Discretization, closed: ScalarStep | None, momentum: Array) -> StepResult:
+def _step(discrete: Discretization, closed: ScalarStep | None, nearest: bool, momentum: Array) -> StepResult:
     system = discrete.system
     subspace = jnp.asarray(system.constraint_subspace)
     full = momentum.shape[0] != subspace.shape[0]
@@ -90,7 +128,10 @@ def _step(discrete: Discretization, closed: ScalarStep | None, momentum: Array) 
         code = jnp.where((code == 0) & _off_locus(discrete, y, momentum), int(Outcome.off_momentum_locus), code)
     nowhere = system.group.identity
     arriving = momentum_of(discrete, y, nowhere, "right")
-    following, later = _principal(discrete, closed, subspace @ arriving)
+    if nearest:
+        following, later = nearest_displacement(discrete, y, subspace @ arriving)
+    else:
+        following, later = _principal(discrete, closed, subspace @ arriving)
     code = jnp.where(code == 0, later, code)
     after = momentum_of(discrete, following, nowhere, "left")
     multipliers = (after - arriving) @ jnp.linalg.pinv(jnp.asarray(system.annihilator))
@@ -105,6 +146,7 @@ def _off_locus(discrete: Discretization, y: Array, momentum: Array) -> Array:
 
 
 def _principal(discrete: Discretization, closed: ScalarStep | None, restricted: Array) -> tuple[Array, Array]:
+    """Return chart coordinates of the principal displacement and the outcome."""
     if closed is None:
         return principal_displacement(discrete, restricted, discrete.system.group.identity)
     body, C = closed.body, jnp.asarray(discrete.system.frame_map)

@@ -8,6 +8,8 @@ from nonholo import kernels
 from nonholo._results import Outcome, OutcomeError
 from nonholo._types import Array, Float
 from nonholo.discrete._general import general_body
+from nonholo.discrete._secular import SecularStep, is_secular, secular_step
+from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import Orbit
 from nonholo.systems import AbstractLRSystem, AbstractSystem, ChaplyginSleigh, SuslovTop
 
@@ -29,7 +31,7 @@ class MatrixStep(NamedTuple):
     scale: Array
 
 
-Structured = ScalarStep | MatrixStep
+Structured = ScalarStep | MatrixStep | SecularStep
 
 
 def scalar_step(discrete: "Discretization") -> ScalarStep | None:
@@ -52,11 +54,60 @@ def structured(discrete: "Discretization") -> Structured | None:
     closed = scalar_step(discrete)
     if closed is not None or discrete.difference != "matrix":
         return closed
+    return secular_step(discrete) if is_secular(discrete) else matrix_step(discrete)
+
+
+def matrix_step(discrete: "Discretization") -> MatrixStep | None:
+    """Return the general step of a discretisation with difference "matrix", None if its variety needs exp."""
     variety = discrete.variety
     if variety.exponential or discrete.constraint not in ("skew", "exponential"):
         return None
     body = general_body(discrete.system, variety)
     return MatrixStep(body, discrete.time_step / body.unit**2)
+
+
+def encoded(step: Structured, momenta: np.ndarray) -> np.ndarray:
+    """Return the momenta of a kernel from canonical ones."""
+    return step.encoded(momenta) if isinstance(step, SecularStep) else step.scale * momenta
+
+
+def decoded(step: Structured, momenta: np.ndarray) -> np.ndarray:
+    """Return canonical momenta from those of a kernel."""
+    return step.decoded(momenta) if isinstance(step, SecularStep) else momenta / step.scale
+
+
+def to_kernel(step: Structured, charts: np.ndarray) -> np.ndarray:
+    """Return the chart coordinates of a kernel from canonical ones."""
+    return step.turned(charts) if isinstance(step, SecularStep) else charts
+
+
+def from_kernel(step: Structured, charts: np.ndarray) -> np.ndarray:
+    """Return canonical chart coordinates from those of a kernel."""
+    return step.turned_back(charts) if isinstance(step, SecularStep) else charts
+
+
+def encoded_poses(step: Structured, group: AbstractMatrixGroup, poses: np.ndarray) -> np.ndarray:
+    """Return the poses of a kernel, rows of matrices but for scalar kernels, from compact canonical ones."""
+    if isinstance(step, ScalarStep):
+        return poses
+    g = group.matrix_from_pose(poses)
+    g = step.posed(g) if isinstance(step, SecularStep) else g
+    return g.reshape(*poses.shape[:-1], group.size**2)
+
+
+def decoded_poses(step: Structured, group: AbstractMatrixGroup, poses: np.ndarray) -> np.ndarray:
+    """Return compact canonical poses from those of a kernel."""
+    if isinstance(step, ScalarStep):
+        return poses
+    g = poses.reshape(*poses.shape[:-1], group.size, group.size)
+    return group.pose_from_matrix(step.posed_back(g) if isinstance(step, SecularStep) else g)
+
+
+def first_root(step: Structured, system: AbstractSystem, momenta: np.ndarray) -> tuple[Outcome, np.ndarray]:
+    """Return the outcome of the principal root over canonical momenta, and its canonical chart coordinates."""
+    pose = encoded_poses(step, system.group, system.group.pose_from_matrix(system.frame))
+    code, state = kernels.start(step.body, encoded(step, momenta), pose)
+    return Outcome(code), from_kernel(step, kernels.chart_of(step.body, state))
 
 
 def next_charts(discrete: "Discretization", states: Orbit) -> Float[np.ndarray, "K m"]:
@@ -66,12 +117,12 @@ def next_charts(discrete: "Discretization", states: Orbit) -> Float[np.ndarray, 
         from nonholo.discrete._definition import next_charts_by_definition
 
         return next_charts_by_definition(discrete, states)
-    scaled = closed.scale * states.reduced_momentum
-    rows = (scaled, states.canonical_chart, matrices_of(states))
-    _, charts, codes = kernels.step_each(closed.body, rows, states.canonical_chart, True)
+    charts = to_kernel(closed, states.canonical_chart)
+    rows = (encoded(closed, states.reduced_momentum), charts, matrices_of(states))
+    _, following, codes = kernels.step_each(closed.body, rows, charts, True)
     if codes.any():
         raise OutcomeError(Outcome(int(codes.max())), "Step after a saved state")
-    return charts
+    return from_kernel(closed, following)
 
 
 def matrices_of(states: Orbit) -> Float[np.ndarray, "K size"] | None:
@@ -90,7 +141,8 @@ def reversal_defects(discrete: "Discretization", states: Orbit) -> Float[np.ndar
     closed = structured(discrete)
     if closed is None:
         raise ValueError("`reversal_defects` needs a compiled step. Got another. Pass difference='matrix'.")
-    scaled, cayley, poses = closed.scale * states.reduced_momentum, states.canonical_chart, matrices_of(states)
+    scaled, cayley = encoded(closed, states.reduced_momentum), to_kernel(closed, states.canonical_chart)
+    poses = matrices_of(states)
     momenta, charts, ahead = kernels.step_each(closed.body, (scaled, cayley, poses), cayley, True)
     if poses is None:
         after, _, _ = kernels.step_each(closed.body, (momenta, charts, None), charts, False)

@@ -59,6 +59,14 @@ class Variety:
         x = 2 * y @ y.__array_namespace__().asarray(self.chart, dtype=y.dtype)
         return self.group.exp_increment(x) if self.exponential else self.group.retract_increment(x)
 
+    def coordinates(self, W: Float[np.ndarray, "N N"]) -> Float[np.ndarray, "m"]:
+        """Return the chart coordinates of a displacement of less than half a turn."""
+        if self.exponential or not self.group.is_rigid:
+            x = self.group.log(W)
+        else:
+            x = self.group.vee(2 * (W - self.group.identity) @ np.linalg.inv(W + self.group.identity))
+        return np.linalg.lstsq(self.chart.T, x / 2)[0]
+
     def equations(self, W: Float[Array, "... N N"]) -> Float[Array, "... j"]:
         """Return what must vanish on the variety and is not built into the chart."""
         xp = W.__array_namespace__()

@@ -39,6 +39,7 @@ def attributes(orbit: Orbit) -> dict[str, Any]:
         **_identity(orbit.motion),
         "outcome": orbit.outcome.name,
         "save_every": orbit.save_every,
+        "branch": orbit.branch,
         "precision": "float64",
         "conventions": _CONVENTIONS,
         "versions": json.dumps(_versions()),

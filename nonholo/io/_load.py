@@ -43,7 +43,8 @@ def load_orbit(path: str | Path, *, discrete: Discretization | None = None) -> O
         raise error(_WHERE, "hold complete attributes", f"'{path}' without {failure}", _AGAIN) from failure
     arrays = {name: _read(root, name, tuple(shape)) for name, shape in shapes.items()}
     compact = {name: arrays.get(name) for name in ("time", "reduced_momentum", "cayley", "pose", "turned")}
-    return Orbit(motion, outcome=outcome, save_every=every, **compact)  # type: ignore[arg-type]
+    branch = stored.get("branch", "principal")  # stores of before branch rules have none
+    return Orbit(motion, outcome=outcome, save_every=every, branch=branch, **compact)  # type: ignore[arg-type]
 
 
 def read_attributes(path: str | Path) -> dict[str, Any]:

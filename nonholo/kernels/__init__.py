@@ -3,6 +3,7 @@
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
 from nonholo.kernels._general import GeneralBody
 from nonholo.kernels._interface import Body, certified, increment, move, residual
+from nonholo.kernels._secular import SecularBody, secular_sleigh, secular_top
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body
 
@@ -10,6 +11,7 @@ __all__ = [
     "AnyBody",
     "Body",
     "GeneralBody",
+    "SecularBody",
     "SleighBody",
     "SuslovBody",
     "advance",
@@ -18,6 +20,8 @@ __all__ = [
     "increment",
     "move",
     "residual",
+    "secular_sleigh",
+    "secular_top",
     "sizes",
     "start",
     "step_each",

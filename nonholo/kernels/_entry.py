@@ -2,17 +2,21 @@
 
 import numpy as np
 
-from nonholo.kernels import _driver, _general_run
+from nonholo.kernels import _driver, _general_run, _secular_run
 from nonholo.kernels._general import GeneralBody
 from nonholo.kernels._interface import Body
+from nonholo.kernels._secular import SecularBody
 
-AnyBody = Body | GeneralBody
+AnyBody = Body | GeneralBody | SecularBody
 
 
 def sizes(body: AnyBody) -> tuple[int, int, int]:
     """Return the numbers of momenta, chart coordinates and pose entries of a state."""
     if isinstance(body, GeneralBody):
         return len(body.directions), len(body.stretch), body.tensor.size
+    if isinstance(body, SecularBody):
+        k = len(body.b) + body.slides
+        return k, k, (k + 1) ** 2
     return 2, 2, 4
 
 
@@ -20,6 +24,8 @@ def start(body: AnyBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, n
     """Return the outcome of the first root and the state of a run that begins with scaled momenta and a pose."""
     if isinstance(body, GeneralBody):
         return _general_run.start(body, np.array(momentum), np.array(pose))
+    if isinstance(body, SecularBody):
+        return _secular_run.start(body, np.array(momentum), np.array(pose))
     state = np.zeros(_driver.STATE_SIZE)
     return _driver.start(body, momentum, pose, state), state
 
@@ -27,6 +33,8 @@ def start(body: AnyBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, n
 def chart_of(body: AnyBody, state: np.ndarray) -> np.ndarray:
     """Return the chart coordinates of the displacement in a state."""
     k, m, _ = sizes(body)
+    if isinstance(body, SecularBody):
+        return _secular_run.chart_in(body, state)
     chart = state[2 * k : 2 * k + m]
     return chart * body.stretch if isinstance(body, GeneralBody) else chart
 
@@ -37,6 +45,8 @@ def advance(
     """Take up to `steps` steps into rows of momenta, charts and poses; return how many were good and the outcome."""
     if isinstance(body, GeneralBody):
         return _general_run.advance(body, state, steps, every, *rows)
+    if isinstance(body, SecularBody):
+        return _secular_run.advance(body, state, steps, every, *rows)
     return _driver.advance(body, state, steps, every, *rows)
 
 
@@ -51,4 +61,6 @@ def step_each(
     if isinstance(body, GeneralBody):
         carried = np.zeros((len(momenta), 0)) if poses is None else poses
         return _general_run.step_each(body, momenta, charts, carried, guesses, principal_only)
+    if isinstance(body, SecularBody):
+        return _secular_run.step_each(body, momenta, charts, guesses, principal_only)
     return _driver.step_each(body, momenta, charts, guesses, principal_only)

@@ -67,6 +67,7 @@ class Orbit:
         outcome: How the run ended.
         save_every: Steps between saved states.
         turned: Heading without ambiguity of full turns, where the run knows it, shape (K,).
+        branch: The branch rule of a discrete run; "callable" for a function.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
@@ -83,6 +84,7 @@ class Orbit:
     outcome: Outcome = Outcome.successful
     save_every: int = 1
     turned: Float[np.ndarray, "K"] | None = None
+    branch: str = "principal"
 
     def __repr__(self) -> str:
         span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
@@ -114,7 +116,7 @@ class Orbit:
     @property
     def restricted_momentum(self) -> Float[np.ndarray, "K k"]:
         """Momenta along the rows of the constraint subspace; spatial ones for a right-invariant constraint."""
-        return np.linalg.solve(self.system.frame_map, self.reduced_momentum[..., None])[..., 0]
+        return self.system.from_canonical(self.reduced_momentum)
 
     @property
     def canonical_chart(self) -> Float[np.ndarray, "K m"]:
@@ -130,11 +132,11 @@ class Orbit:
         Where a retraction of the subspace covers the variety (Cayley on SO(n) and SE(n), else exp) they are the y of
         W = retract(2 y S); otherwise the coordinates of (W - W^-1)/2.
         """
-        y, S = self.canonical_chart, self.system.constraint_subspace
-        if y.shape[1] == len(S):
-            return y @ self.system.frame_map
+        y, system = self.canonical_chart, self.system
+        if y.shape[1] == system.rank:
+            return y if system.canonical is system else y @ system.frame_map
         D = self.motion.displaced(y)
-        return self.system.group.vee((D - self.system.group.inverse(D)) / 2) @ np.linalg.pinv(S)
+        return system.group.vee((D - system.group.inverse(D)) / 2) @ np.linalg.pinv(system.constraint_subspace)
 
     @property
     def momentum(self) -> Float[np.ndarray, "K dim"]:

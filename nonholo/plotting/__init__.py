@@ -7,6 +7,8 @@ from nonholo.plotting._animation import animate
 from nonholo.plotting._blade_track import BladeTrack, blade_track
 from nonholo.plotting._body_axis_track import BodyAxisTrack, body_axis_track
 from nonholo.plotting._branch_counts import BranchCounts, branch_counts
+from nonholo.plotting._branch_tree import BranchTreePicture, branch_tree
+from nonholo.plotting._branches import BranchesPicture, branches
 from nonholo.plotting._energy_error import EnergyError, energy_error
 from nonholo.plotting._invariant_curves import InvariantCurvesPicture, invariant_curves
 from nonholo.plotting._locus_section import LocusSection, locus_section
@@ -20,6 +22,8 @@ __all__ = [
     "BladeTrack",
     "BodyAxisTrack",
     "BranchCounts",
+    "BranchTreePicture",
+    "BranchesPicture",
     "EnergyError",
     "InvariantCurvesPicture",
     "LocusSection",
@@ -31,6 +35,8 @@ __all__ = [
     "blade_track",
     "body_axis_track",
     "branch_counts",
+    "branch_tree",
+    "branches",
     "energy_error",
     "invariant_curves",
     "locus_section",

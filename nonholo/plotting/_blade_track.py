@@ -49,7 +49,7 @@ class BladeTrack:
 
 
 @theme.styled
-def blade_track(orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = None) -> BladeTrack:
+def blade_track(orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = None, enlarge: bool = True) -> BladeTrack:
     r"""Draw the path of the contact point of a sleigh, the blade now and then, and the cusp.
 
     The cusp is where the velocity along the blade changes sign, $v_1 = 0$; between two states it is interpolated. It is
@@ -61,6 +61,7 @@ def blade_track(orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = Non
         orbit: An orbit of a `ChaplyginSleigh`, with poses.
         axes: Where to draw; a new figure by default.
         flow: The continuous motion from the same initial data, drawn over it.
+        enlarge: Whether to show the cusp enlarged.
 
     Raises:
         ValueError: An orbit of another system, or without poses.
@@ -82,7 +83,7 @@ def blade_track(orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = Non
     stars, ends = _marks(axes, position, cusps, theme.end_colours(orbit))
     axes.set(xlim=view[0], ylim=view[1], xlabel="$x$", ylabel="$y$", title="Track of the blade", aspect="equal")
     theme.legend_above(axes)
-    enlarged = _enlarged(axes, orbit, flow, cusps, (position, velocity, view)) if len(cusps) else None
+    enlarged = _enlarged(axes, orbit, flow, cusps, (position, velocity, view)) if enlarge and len(cusps) else None
     return BladeTrack(axes, track, blades, masses, stars, ends, line, enlarged)
 
 

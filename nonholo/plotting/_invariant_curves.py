@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
-from matplotlib.patches import Circle, FancyArrowPatch
 
 from nonholo._checks import array, error
 from nonholo._types import Float
@@ -17,13 +16,12 @@ from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
 from nonholo.plotting._momentum_locus import own_orbit
 from nonholo.plotting._thinning import evenly_in_box
+from nonholo.plotting._variety_plane import disc, draw_level, dress, flat
 from nonholo.systems import ChaplyginSleigh
 
 _LEVELS = 9
 _MOST_DOTS = 1500
 _POINTS = 300
-_TALLEST = 4.0  # height of the strip in translations without turning
-_PAIRS = "abcd"  # names of pairs of opposite points of the rim that are one
 
 
 @dataclasses.dataclass(frozen=True)
@@ -78,19 +76,15 @@ def invariant_curves(
     own_orbit(f"{where}(orbit=...)", orbit, checked)
     axes = theme.axes_or_new(axes, (6.2, 6.0))
     curves = [invariant_curve(checked, energy, _POINTS) for energy in _energies(checked, energies)]
-    levels = tuple(_lines(axes, curve, color=theme.LEVEL, linewidth=1.1, zorder=1) for curve in curves)
+    levels = tuple(draw_level(axes, curve, color=theme.LEVEL, linewidth=1.1, zorder=1) for curve in curves)
     own = path = None
     if orbit is not None:
         curves = [invariant_curve(checked, orbit[:1].energy[0], _POINTS)] if orbit.energy[0] > 0 else []
         for curve in curves:
-            own = _lines(axes, curve, color=theme.DISCRETE, linewidth=1.8, zorder=3, label="its energy")
+            own = draw_level(axes, curve, color=theme.DISCRETE, linewidth=1.8, zorder=3, label="its energy")
         path = _orbit(axes, checked, orbit)
     stable, unstable = _equilibria(axes, checked, curves)
-    if isinstance(checked.system, ChaplyginSleigh):
-        _dress_strip(axes, curves)
-        theme.legend_above(axes)
-    else:
-        _dress_disc(axes)
+    dress(axes, checked, curves)
     return InvariantCurvesPicture(axes, levels, own, stable, unstable, path)
 
 
@@ -109,56 +103,8 @@ def _energies(discrete: Discretization, energies: Any) -> Float[np.ndarray, "L"]
     return largest * (np.arange(1, _LEVELS + 1) / (_LEVELS + 0.5))
 
 
-def _lines(axes: Axes, curve: InvariantCurve, **look: Any) -> LineCollection:
-    is_sleigh = isinstance(curve.discrete.system, ChaplyginSleigh)
-    cut = _strips if is_sleigh else _discs
-    runs = [run for points in curve.components for run in cut(points)]
-    lines = LineCollection(runs, **look)
-    axes.add_collection(lines)
-    return lines
-
-
-def _discs(z: Float[np.ndarray, "K 3"]) -> list[Float[np.ndarray, "L 2"]]:
-    """Return the runs of a curve on the sphere, each turned to the upper half and laid on the disc."""
-    runs = []
-    for sign in (1, -1):
-        upper = sign * z[:, 0] >= 0
-        starts = np.flatnonzero(np.diff(np.concatenate([[0], upper.astype(int), [0]])))
-        for first, last in starts.reshape(-1, 2):
-            if last - first > 1:
-                runs.append(_disc(sign * z[first:last]))
-    return runs
-
-
-def _strips(points: Float[np.ndarray, "K 2"]) -> list[Float[np.ndarray, "L 2"]]:
-    """Return the runs of a curve on the band between the angles -pi and pi, turned over after each full turn."""
-    turn = np.floor((points[:, 0] + np.pi) / (2 * np.pi)).astype(int)
-    runs = []
-    for number in np.unique(turn):
-        shift, flip = 2 * np.pi * number, (-1) ** int(number)
-        inside = (points[:, 0] >= shift - np.pi) & (points[:, 0] <= shift + np.pi)
-        bounds = np.flatnonzero(np.diff(np.concatenate([[0], inside.astype(int), [0]])))
-        for first, last in bounds.reshape(-1, 2):
-            if last - first > 1:
-                runs.append((points[first:last] - [shift, 0.0]) * [1.0, flip])
-    return runs
-
-
-def _flat(discrete: Discretization, points: Float[np.ndarray, "K c"]) -> Float[np.ndarray, "K 2"]:
-    if isinstance(discrete.system, ChaplyginSleigh):
-        return points
-    return _disc(np.where(points[:, :1] >= 0, 1.0, -1.0) * points)
-
-
-def _disc(z: Float[np.ndarray, "K 3"]) -> Float[np.ndarray, "K 2"]:
-    """Return the direction of the last two components, as long as the step angle in half-turns."""
-    size = np.linalg.norm(z[:, 1:], axis=1, keepdims=True)
-    angle = 2 * np.arctan2(size, z[:, :1]) / np.pi
-    return z[:, 1:] * np.divide(angle, size, out=np.ones_like(size), where=size > 0)
-
-
 def _orbit(axes: Axes, discrete: Discretization, orbit: Orbit) -> PathCollection:
-    x, y = _flat(discrete, points_of(discrete, orbit.displacement)).T
+    x, y = flat(discrete, points_of(discrete, orbit.displacement)).T
     chosen = evenly_in_box(np.stack([x, y], axis=1), _MOST_DOTS)
     return axes.scatter(
         x[chosen],
@@ -184,7 +130,7 @@ def _equilibria(axes: Axes, discrete: Discretization, curves: list[InvariantCurv
     else:
         towards = -np.asarray(system.coupling)
         reach = towards / np.linalg.norm(towards)
-        points = [_disc(curve.over(np.arctan2(reach[1], reach[0]))) for curve in curves]
+        points = [disc(curve.over(np.arctan2(reach[1], reach[0]))) for curve in curves]
     axes.plot(*np.stack([0 * reach, reach], axis=1), color=theme.STABLE, linewidth=0.9, zorder=2)
     axes.plot(*np.stack([0 * reach, -reach], axis=1), color=theme.UNSTABLE, linewidth=0.9, dashes=(5, 3), zorder=2)
     found = np.concatenate([np.empty((0, 2)), *points])
@@ -194,46 +140,3 @@ def _equilibria(axes: Axes, discrete: Discretization, curves: list[InvariantCurv
         *-found.T, s=size, facecolors="white", edgecolors=theme.UNSTABLE, linewidths=1.5, zorder=5, label="unstable"
     )
     return stable, unstable
-
-
-def _dress_disc(axes: Axes) -> None:
-    axes.add_patch(Circle((0, 0), 1.0, facecolor="none", edgecolor=theme.MUTED, linewidth=1.2, zorder=2))
-    for index, letter in enumerate(_PAIRS):
-        angle = np.pi * (index + 0.5) / len(_PAIRS)
-        for sign in (1, -1):
-            x, y = sign * np.cos(angle), sign * np.sin(angle)
-            axes.plot(x, y, "o", color=theme.MUTED, markersize=4, zorder=4)
-            axes.text(1.07 * x, 1.07 * y, letter, color=theme.INK, ha="center", va="center", style="italic")
-    axes.set(xlim=(-1.14, 1.14), ylim=(-1.14, 1.14), xticks=[], yticks=[])
-    axes.set_aspect("equal")
-    axes.spines[:].set_visible(False)
-    if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="lower left", bbox_to_anchor=(0.9, -0.03))
-    axes.set_xlabel("radius: step angle; equal letters: the same half-turn")
-    axes.set_title("Displacements")
-
-
-def _dress_strip(axes: Axes, curves: list[InvariantCurve]) -> None:
-    axes.autoscale_view()
-    low, high = axes.get_ylim()
-    middle = max((float(np.abs(curve.over(0.0)[:, 1]).max()) for curve in curves), default=1.0)
-    reach = min(max(-low, high), _TALLEST * middle)  # levels of a balanced sleigh go to infinity
-    axes.set(xlim=(-np.pi, np.pi), ylim=(-reach, reach), xticks=np.pi * np.linspace(-1, 1, 5))
-    axes.set_xticklabels([r"$-\pi$", r"$-\pi/2$", "0", r"$\pi/2$", r"$\pi$"])
-    for side in (-1, 1):
-        arrow = FancyArrowPatch(
-            (side * np.pi, -0.1 * side * reach),
-            (side * np.pi, 0.1 * side * reach),
-            arrowstyle="-|>",
-            mutation_scale=22,
-            shrinkA=0,
-            shrinkB=0,
-            linewidth=2.0,
-            color=theme.INK,
-            clip_on=False,
-            zorder=7,
-        )
-        axes.add_patch(arrow)
-    axes.spines["right"].set_visible(True)
-    axes.set(xlabel=r"step angle $\Delta$", ylabel=r"translation along the chord  $\nu$")
-    axes.set_title("Displacements")

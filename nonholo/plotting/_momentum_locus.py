@@ -4,7 +4,6 @@ import dataclasses
 from typing import Any
 
 import numpy as np
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3D, Path3DCollection, Poly3DCollection
@@ -15,19 +14,16 @@ from nonholo._types import Float
 from nonholo.analysis import InvariantCurve, MomentumLocus
 from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
+from nonholo.plotting._locus_surface import best_view, draw_surface, spans
 from nonholo.plotting._subject import drawable
 from nonholo.plotting._thinning import evenly_in_box
 from nonholo.systems import ChaplyginSleigh
 
 _MOST_DOTS = 600
-_SHEET = "#9cc4dd"
-_OPACITY = 0.42
-_VIEWS = {True: (24.0, -52.0), False: (26.0, -58.0)}  # elevation and azimuth: sleigh, top
 _LABELS = {
     True: ("$p_1$, along the blade", "$p_2$, across", r"$p_\theta + bp_1 - ap_2$"),
     False: ("$P_1$", "$P_2$", "$P_3$"),
 }
-_FLAT = 1e-9
 _WHISKER = 0.22  # of the length of its segment
 
 
@@ -96,14 +92,14 @@ def momentum_locus(
     own_orbit(f"{where}(orbit=...)", orbit, locus.discrete)
     space: Any = _new_axes() if axes is None else axes
     drawn = _drawn(locus.discrete.system)
-    surface = _surface(space, locus.momentum @ drawn)
+    surface = draw_surface(space, locus.momentum @ drawn)
     doubles = tuple(_segment(space, ends @ drawn, linewidth=2.6) for ends in locus.double_lines)
     whiskers = tuple(_segment(space, ends @ drawn, linewidth=1.6, dashes=(3, 2)) for ends in locus.whiskers(_WHISKER))
     name(doubles, "meets itself")
     name(whiskers, "equation alone")
     pinch = _dots(space, locus.pinch_points @ drawn, s=44, facecolors="white", label="pinch points")
     triple = None if locus.triple_point is None else locus.triple_point[None] @ drawn
-    triple_dot = _dots(space, triple, s=52, facecolors=theme.UNSTABLE, marker="D", label="triple point")
+    triple_dot = _dots(space, triple, s=64, facecolors=theme.INK, marker="D", label="triple point")
     rest = space.scatter(0.0, 0.0, 0.0, s=26, color=theme.INK, depthshade=False, label="rest")
     curves = tuple(_curve(space, points @ drawn) for points in (() if curve is None else curve.momentum))
     name(curves, "one energy")
@@ -139,26 +135,6 @@ def _drawn(system: Any) -> Float[np.ndarray, "3 3"]:
     return np.array([[0.0, 0.0, 1.0], [1.0, 0.0, system.b], [0.0, 1.0, -system.a]])
 
 
-def _surface(axes: Any, momentum: Float[np.ndarray, "R C 3"]) -> Any:
-    x, y, z = np.moveaxis(momentum, -1, 0)
-    scaled = momentum / _spans(momentum)
-    normal = np.cross(np.gradient(scaled, axis=0), np.gradient(scaled, axis=1))
-    length = np.linalg.norm(normal, axis=-1, keepdims=True)
-    light = np.abs(normal / np.where(length > 0, length, 1.0) @ (np.array([0.35, -0.45, 0.82])))
-    shade = 0.55 + 0.45 * light[..., None]
-    colours = np.concatenate([shade * to_rgb(_SHEET), np.full(shade.shape, _OPACITY)], axis=-1)
-    rows, columns = x.shape
-    return axes.plot_surface(
-        x, y, z, facecolors=colours, rcount=rows, ccount=columns, linewidth=0, antialiased=False, shade=False
-    )
-
-
-def _spans(momentum: Float[np.ndarray, "R C 3"]) -> Float[np.ndarray, "3"]:
-    """Return the extent of each component; that of the largest where a surface is flat but for rounding."""
-    span = np.ptp(momentum.reshape(-1, 3), axis=0)
-    return np.where(span > _FLAT * span.max(), span, span.max())
-
-
 def _segment(axes: Any, ends: Float[np.ndarray, "2 3"], **look: Any) -> Any:
     return axes.plot(*ends.T, color=theme.UNSTABLE, **look)[0]
 
@@ -170,7 +146,7 @@ def _curve(axes: Any, momentum: Float[np.ndarray, "K 3"]) -> Any:
 def _dots(axes: Any, points: Float[np.ndarray, "L 3"] | None, **look: Any) -> Any:
     if points is None or len(points) == 0:
         return None
-    return axes.scatter(*points.T, linewidths=1.5, depthshade=False, edgecolors=theme.UNSTABLE, **look)
+    return axes.scatter(*points.T, linewidths=1.5, depthshade=False, edgecolors=theme.UNSTABLE, zorder=9, **look)
 
 
 def _orbit(axes: Any, orbit: Orbit, drawn: Float[np.ndarray, "3 3"]) -> Any:
@@ -181,7 +157,7 @@ def _orbit(axes: Any, orbit: Orbit, drawn: Float[np.ndarray, "3 3"]) -> Any:
         c=orbit.time[chosen],
         cmap=theme.TIME,
         norm=theme.time_scale(orbit),
-        s=16,
+        s=24,
         linewidths=0,
         depthshade=False,
         label="orbit",
@@ -199,11 +175,10 @@ def _dress(axes: Any, locus: MomentumLocus, view: tuple[float, float] | None) ->
     is_sleigh = isinstance(locus.discrete.system, ChaplyginSleigh)
     across, deep, up = _LABELS[is_sleigh]
     axes.set(xlabel=across, ylabel=deep, zlabel=up)
-    span = _spans(locus.momentum)[2]
+    span = spans(locus.momentum)[2]
     if not is_sleigh and np.ptp(locus.momentum[..., 2]) < span:
         axes.set_zlim(-span / 4, span / 4)
-    elevation, azimuth = _VIEWS[is_sleigh] if view is None else view
-    axes.view_init(elevation, azimuth)
+    axes.view_init(*(best_view(locus) if view is None else view))
     axes.set_box_aspect((1.0, 1.0, 0.85), zoom=1.0)
     axes.computed_zorder = False
     axes.grid(False)

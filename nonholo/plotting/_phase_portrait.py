@@ -16,15 +16,13 @@ from nonholo._checks import array, error
 from nonholo._types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
+from nonholo.plotting._momentum_plane import ellipse, half_axes, name_axes
+from nonholo.plotting._other_images import draw_images, trees_of
 from nonholo.plotting._subject import drawable, is_discrete, known_equilibria
 from nonholo.plotting._thinning import evenly_in_box
-from nonholo.systems import AbstractLLSystem, AbstractSystem, ChaplyginSleigh, SuslovTop
+from nonholo.systems import AbstractLLSystem, AbstractSystem
 
 _MOST_DOTS = 1500
-_LABELS = {
-    ChaplyginSleigh: (r"angular momentum  $\pi = p_\theta + b\,p_1$", r"momentum along the blade  $p_1$"),
-    SuslovTop: (r"$M_{13}$, along $e_1\wedge e_3$", r"$M_{23}$, along $e_2\wedge e_3$"),
-}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -39,6 +37,8 @@ class PhasePortrait:
         neutral: Equilibria of a balanced system, which neither attract nor repel.
         arrows: The direction of motion along the levels.
         orbit: The orbit, coloured by time: dots if discrete, a line if a flow.
+        images: Real images of some of its states, of all branches, that are not states of the orbit; diamonds.
+        edges: From each image to its images.
     """
 
     axes: Axes
@@ -48,11 +48,17 @@ class PhasePortrait:
     neutral: PathCollection | None
     arrows: tuple[FancyArrowPatch, ...]
     orbit: PathCollection | LineCollection | None
+    images: PathCollection | None
+    edges: LineCollection | None
 
 
 @theme.styled
 def phase_portrait(
-    system: AbstractLLSystem, orbit: Orbit | None = None, axes: Axes | None = None, energies: Any = None
+    system: AbstractLLSystem,
+    orbit: Orbit | None = None,
+    axes: Axes | None = None,
+    energies: Any = None,
+    branches: str = "principal",
 ) -> PhasePortrait:
     r"""Draw the momenta along the constraint subspace: energy levels, equilibria, direction of motion, an orbit.
 
@@ -66,6 +72,10 @@ def phase_portrait(
     are those of the canonical body frame: $(p_\theta + b p_1, p_1)$ of a sleigh, $(M_{13}, M_{23})$ of a top whose
     third body axis is the forbidden one.
 
+    With `branches="all"` three states of a discrete orbit are followed for three steps along every real branch. All
+    images stay on the ellipse. The values from one displacement coincide here, as they have the same momenta along the
+    constraint subspace; what follows them differs. Images that the orbit itself visits are left out.
+
     Reference: [fedorov-zenkov-2004], figures suslov and mom_dynamics.
 
     Args:
@@ -73,10 +83,11 @@ def phase_portrait(
         orbit: An orbit of it.
         axes: Where to draw; a new figure by default.
         energies: Energies of the ellipses; by default four, evenly spread in size, one of them through the orbit.
+        branches: "principal" or "all".
 
     Raises:
         ValueError: A right-invariant constraint, a subspace of another dimension, an orbit of another kind of system,
-            energies that are not positive.
+            energies that are not positive, all branches without a discrete orbit or as `nh.branch_tree` refuses them.
 
     Example:
         >>> top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -85,15 +96,18 @@ def phase_portrait(
         (2, 2)
     """
     _check(system, orbit)
+    trees = trees_of(orbit, branches)
     levels = _energies(system, orbit, energies)
     axes = theme.axes_or_new(axes)
-    half_axes = np.linalg.cholesky(np.asarray(system.canonical.constrained_inertia))
-    sizes = np.sqrt(2 * levels)
-    drawn = tuple(_ellipse(axes, size * half_axes) for size in sizes)
-    stable, unstable, neutral, arrows = _equilibria(axes, system, half_axes, sizes)
+    look: Any = {"color": theme.LEVEL, "linewidth": 1.1, "zorder": 1}
+    drawn = tuple(axes.plot(*ellipse(system, level).T, **look)[0] for level in levels)
+    stable, unstable, neutral, arrows = _equilibria(axes, system, half_axes(system), np.sqrt(2 * levels))
     path = None if orbit is None else _orbit(axes, orbit)
-    _dress(axes, system)
-    return PhasePortrait(axes, drawn, stable, unstable, neutral, arrows, path)
+    images, edges = draw_images(axes, orbit, trees) if orbit is not None and trees else (None, None)
+    name_axes(axes, system)
+    axes.set_title("Phase portrait")
+    theme.legend_above(axes)
+    return PhasePortrait(axes, drawn, stable, unstable, neutral, arrows, path, images, edges)
 
 
 def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
@@ -121,12 +135,6 @@ def _energies(system: AbstractLLSystem, orbit: Orbit | None, energies: Any) -> F
     # at rest, or without an orbit, the ellipse of unit velocities sets the size
     scale = own if own > 0 else float(np.trace(system.canonical.constrained_inertia)) / 4
     return scale * (np.arange(1, 5) / 3) ** 2
-
-
-def _ellipse(axes: Axes, half_axes: Float[np.ndarray, "2 2"]) -> Line2D:
-    angle = np.linspace(0.0, 2 * np.pi, 361)
-    x, y = half_axes @ np.array([np.cos(angle), np.sin(angle)])
-    return axes.plot(x, y, color=theme.LEVEL, linewidth=1.1, zorder=1)[0]
 
 
 def _equilibria(
@@ -184,13 +192,3 @@ def _orbit(axes: Axes, orbit: Orbit) -> PathCollection | LineCollection:
     path.set(array=orbit.time[chosen[1:]], label="flow")
     axes.add_collection(path)
     return path
-
-
-def _dress(axes: Axes, system: AbstractLLSystem) -> None:
-    across, up = _LABELS.get(type(system), ("$r_1$", "$r_2$"))
-    axes.set(xlabel=across, ylabel=up)
-    axes.margins(0.06)
-    if isinstance(system, SuslovTop):
-        axes.set_aspect("equal", adjustable="datalim")
-    axes.set_title("Phase portrait")
-    theme.legend_above(axes)

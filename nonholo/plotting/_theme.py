@@ -33,6 +33,7 @@ HALO = (matplotlib.patheffects.withStroke(linewidth=3, foreground="white"),)
 
 _SETTLED = 0.01  # part of the largest momentum
 _NARROW = 3.7  # inches
+_RAISED = 24.0  # of a title above a legend, in points
 _SHEET = Path(__file__).with_name("nonholo.mplstyle")
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
@@ -120,7 +121,10 @@ def is_narrow(axes: Axes) -> bool:
 
 
 def legend_above(axes: Axes) -> None:
-    """Put a one-line legend at the right above the axes, in the line of the title; inside narrow axes instead."""
+    """Put a one-line legend at the right above the axes, in the line of the title; inside narrow axes instead.
+
+    Where both do not fit into one line the title moves up.
+    """
     handles, labels = axes.get_legend_handles_labels()
     if not handles:
         return
@@ -128,4 +132,12 @@ def legend_above(axes: Axes) -> None:
         axes.legend(handles, labels, loc="best", fontsize="small", frameon=True, framealpha=0.8, edgecolor="none")
     else:
         close = {"handlelength": 0.8, "columnspacing": 0.7} if len(handles) > 3 else {}
+        title = axes.get_title(loc="left")
+        if _length(title, labels) > axes.get_window_extent().width / axes.figure.dpi:
+            axes.set_title(title, pad=_RAISED)
         axes.legend(handles, labels, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=len(handles), **close)
+
+
+def _length(title: str, labels: list[str]) -> float:
+    """Return about how long a title and a legend in one line are, in inches."""
+    return 0.085 * len(title) + sum(0.067 * len(label) + 0.3 for label in labels) if title else 0.0

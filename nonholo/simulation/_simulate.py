@@ -1,6 +1,5 @@
 """`simulate`: an orbit of the discrete map, from a checked start to a decoded result."""
 
-from collections.abc import Callable
 from typing import Any, overload
 
 import numpy as np
@@ -10,15 +9,25 @@ from nonholo._checks import choice, error, step_counts
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, finished
 from nonholo.discrete import Discretization, initial_state
+from nonholo.discrete._branch_rules import BranchRule, checked_rule
 from nonholo.discrete._discretization import as_discretization
 from nonholo.discrete._start import check_first_state, in_group
-from nonholo.discrete._structured import Structured, structured
+from nonholo.discrete._structured import (
+    Structured,
+    decoded,
+    decoded_poses,
+    encoded,
+    encoded_poses,
+    from_kernel,
+    is_secular,
+    structured,
+)
 from nonholo.orbit import Orbit
+from nonholo.simulation._rule_run import Rows, Run, rule_runner
 from nonholo.systems._coordinate_system import AbstractCoordinateDiscretization, OrbitT, refuse_in_coordinates
 
 _BLOCK = 1 << 20  # steps between two reports of progress
-
-Rows = tuple[np.ndarray, np.ndarray, np.ndarray | None]
+_LARGEST = 1 << 30  # numbers in all poses of an orbit, 8 GiB
 
 
 @overload
@@ -32,7 +41,7 @@ def simulate(
     momentum: Any = None,
     configuration: Any = None,
     save_every: int = 1,
-    branch: str = "principal",
+    branch: BranchRule = "principal",
     reconstruct: bool = True,
     backend: str = "auto",
     throw: bool = True,
@@ -61,7 +70,7 @@ def simulate(
     momentum: Any = None,
     configuration: Any = None,
     save_every: int = 1,
-    branch: str = "principal",
+    branch: BranchRule = "principal",
     reconstruct: bool = True,
     backend: str = "auto",
     throw: bool = True,
@@ -74,6 +83,14 @@ def simulate(
     The map is multivalued. The principal root is the one that momentum zero reaches along s r, 0 <= s <= 1; each root
     is verified to be it, since energy cannot tell (every root conserves it).
 
+    Branch rules. "nearest" is the root reached from the present W by continuation of the right-hand side along the
+    segment from $P(W)|_d$ to $(Ad^*_W P(W))|_d$: started with a `displacement` off the principal branch, this is how
+    one goes on there. Every system with a left-invariant constraint has it. Of tops and sleighs with difference
+    "matrix" all values are known: "smallest" and "largest" take the real one with that norm of the full momentum,
+    "inner" and "outer" the one in that part of the invariant curve (n = 3 and det B > 2|c|^2, below the saddle's
+    energy; of three outer ones the nearest). A function `rule(found, present)` gets the `Branches` and the present W,
+    and returns the index of a real one or None. A tie and a double root are `branch_unverified`.
+
     A discretised `LagrangeDAlembert` runs the map of its `CoordinateDiscretization.simulate`. It starts at a
     `configuration`, its q_0, and takes neither `restricted_velocity` nor `branch`, `reconstruct` and `backend`.
 
@@ -84,11 +101,12 @@ def simulate(
         steps: Number of steps N; unthinned orbits have N + 1 states.
         body_velocity: Start with the principal W_0 that has the same momentum along the constraint (second order).
         restricted_velocity: The same, in rows of the constraint subspace.
-        displacement: Start with this W_0, on the displacement variety and on the principal branch.
+        displacement: Start with this W_0, on the displacement variety; with branch "principal" on that branch.
         momentum: Start with this momentum, full (on the momentum locus) or along the constraint subspace.
         configuration: First pose, a matrix of the group; the identity by default.
         save_every: Keep every so many steps.
-        branch: "principal".
+        branch: Which value of the map a step takes: "principal", "nearest", "smallest", "largest", "inner", "outer" or
+            a function; see above. A velocity or restricted momentum starts at the principal W_0 with every rule.
         reconstruct: Also compute poses.
         backend: "numba" (closed forms, compiled), "jax" (the definition), or "auto" to choose.
         throw: Raise if the run cannot go on; otherwise return the good steps and the outcome.
@@ -121,21 +139,33 @@ def simulate(
         return discrete.simulate(configuration=configuration, steps=steps, **starts, **options)
     as_discretization("simulate(discrete=...)", discrete)
     steps, every = step_counts(steps, save_every)
-    choice("simulate(branch=...)", branch, ("principal",))
-    group = discrete.system.group
-    g = group.identity if configuration is None else in_group("simulate(configuration=...)", group, configuration)
+    rule = checked_rule("simulate", discrete, branch)
+    choice("simulate(backend=...)", backend, ("auto", "numba", "jax"))
+    compiled = rule == "principal" and backend != "jax"
+    g = _first_pose(discrete, configuration, 1 + steps // every if reconstruct else 0, compiled)
     reduced, demanded = initial_state(discrete, g, **starts, restricted_velocity=restricted_velocity)
-    pose = group.pose_from_matrix(g @ discrete.system.frame)
-    run = _runner(discrete, backend)
+    pose = np.empty(0) if g is None else discrete.system.group.pose_from_matrix(g @ discrete.system.frame)
+    run = _runner(discrete, backend) if rule == "principal" else rule_runner(discrete, rule, backend, demanded)
     rows, outcome, done = run(reduced, pose, steps, every, progress)
-    orbit = _orbit(discrete, rows, outcome, every, reconstruct)
+    orbit = _orbit(discrete, rows, outcome, every, reconstruct, rule)
     if demanded is not None and len(orbit):
         check_first_state(demanded, orbit[:1].displacement[0], orbit[:1].momentum[0])
     return finished(orbit, float(discrete.time_step), done, steps, throw)
 
 
-def _runner(discrete: Discretization, backend: str) -> Callable[..., tuple[Rows, Outcome, int]]:
-    choice("simulate(backend=...)", backend, ("auto", "numba", "jax"))
+def _first_pose(discrete: Discretization, configuration: Any, saved: int, compiled: bool) -> np.ndarray | None:
+    """Return the first pose; None where neither the step nor the result needs one."""
+    group = discrete.system.group
+    if saved * group.size**2 > _LARGEST:
+        got = f"{saved} of {group.size}^2 numbers each"
+        remedy = "Pass reconstruct=False or a larger save_every."
+        raise error("simulate(reconstruct=...)", f"make poses of at most {_LARGEST} numbers", got, remedy)
+    if configuration is not None:
+        return in_group("simulate(configuration=...)", group, configuration)
+    return None if saved == 0 and compiled and is_secular(discrete) else group.identity
+
+
+def _runner(discrete: Discretization, backend: str) -> Run:
     closed = structured(discrete)
     if closed is not None and backend != "jax":
         return lambda *arguments: _run_compiled(discrete, closed, *arguments)
@@ -156,12 +186,12 @@ def _run_compiled(
     every: int,
     progress: bool,
 ) -> tuple[Rows, Outcome, int]:
-    group, general = discrete.system.group, isinstance(closed.body, kernels.GeneralBody)
-    scaled, coded = closed.scale * reduced, group.matrix_from_pose(pose).ravel() if general else pose
+    group = discrete.system.group
+    scaled, coded = encoded(closed, reduced), encoded_poses(closed, group, pose) if pose.size else pose
     code, state = kernels.start(closed.body, scaled, coded)
     started = code == 0
     saved = 1 + steps // every
-    momenta, charts, poses = (np.empty((saved, size)) for size in kernels.sizes(closed.body))
+    momenta, charts, poses = (np.empty((saved, size)) for size in (*kernels.sizes(closed.body)[:2], coded.size))
     momenta[0], charts[0], poses[0] = scaled, kernels.chart_of(closed.body, state), coded
     done, block = 0, max(1, _BLOCK // every) * every
     with progress_bar("steps", progress) as report:
@@ -173,13 +203,15 @@ def _run_compiled(
             done += good
             report(done, steps)
     kept = 1 + done // every if started else 0
-    momenta, charts, poses = momenta[:kept] / closed.scale, charts[:kept], poses[:kept]
-    if general:
-        poses = group.pose_from_matrix(poses.reshape(-1, *group.identity.shape))
-    return (momenta, charts, poses), Outcome(code), done
+    poses = decoded_poses(closed, group, poses[:kept]) if pose.size else None
+    rows = decoded(closed, momenta[:kept]), from_kernel(closed, charts[:kept]), poses
+    return rows, Outcome(code), done
 
 
-def _orbit(discrete: Discretization, rows: Rows, outcome: Outcome, every: int, reconstruct: bool) -> Orbit:
+def _orbit(
+    discrete: Discretization, rows: Rows, outcome: Outcome, every: int, reconstruct: bool, rule: BranchRule
+) -> Orbit:
     momenta, charts, poses = rows
     time = discrete.time_step * (every * np.arange(len(momenta)))
-    return Orbit(discrete, time, momenta, charts, poses if reconstruct else None, outcome, every)
+    branch = rule if isinstance(rule, str) else "callable"
+    return Orbit(discrete, time, momenta, charts, poses if reconstruct else None, outcome, every, branch=branch)

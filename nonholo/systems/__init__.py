@@ -1,5 +1,6 @@
 """What a system is: a group, an inertia operator and the subspace that velocities are constrained to."""
 
+from nonholo.systems._arrowhead import ArrowheadSleigh, ArrowheadTop, is_wide
 from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, AbstractSystem, Equilibria, System
 from nonholo.systems._displacements import in_exp_d, trace_constraints
 from nonholo.systems._euler_angles import euler_angle_discrete_lagrangian
@@ -18,6 +19,8 @@ SYSTEMS = (
     ChaplyginSleigh,
     MultidimensionalSleigh,
     RigidBody,
+    ArrowheadTop,
+    ArrowheadSleigh,
     LLSystem,
     VeselovaTop,
     LRSystem,
@@ -29,6 +32,8 @@ __all__ = [
     "AbstractLLSystem",
     "AbstractLRSystem",
     "AbstractSystem",
+    "ArrowheadSleigh",
+    "ArrowheadTop",
     "ChaplyginSleigh",
     "Equilibria",
     "LLSystem",
@@ -43,6 +48,7 @@ __all__ = [
     "inertia_from_mass_tensor",
     "inertia_tensor",
     "is_symmetric_pair",
+    "is_wide",
     "mass_tensor_from_inertia",
     "reference_point_subspace",
     "symmetric_complement",

@@ -15,6 +15,7 @@ from nonholo._checks import as_floats
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._mass import inertia_form
+from nonholo.systems._wide import WideInertia
 
 
 @dataclasses.dataclass(frozen=True)
@@ -78,17 +79,41 @@ class AbstractSystem(abc.ABC):
     def frame_map(self) -> Float[Array, "k k"]:
         """C with r_canonical = C r for momenta along the constraint subspace (and y = y_canonical C for charts)."""
         if self.canonical is self:
-            return np.eye(len(self.constraint_subspace))
+            return np.eye(self.rank)
         images = self.canonical.constraint_subspace @ self.group.adjoint(self.frame).T
         return images @ np.linalg.pinv(self.constraint_subspace)
+
+    def to_canonical(self, restricted_momentum: Float[Array, "... k"]) -> Float[Array, "... k"]:
+        """Return momenta along the canonical rows from those along the rows of the constraint subspace."""
+        return restricted_momentum if self.canonical is self else restricted_momentum @ self.frame_map.T
+
+    def from_canonical(self, reduced_momentum: Float[Array, "... k"]) -> Float[Array, "... k"]:
+        """Return momenta along the rows of the constraint subspace from those along the canonical ones."""
+        if self.canonical is self:
+            return reduced_momentum
+        return np.linalg.solve(self.frame_map, reduced_momentum[..., None])[..., 0]
+
+    @property
+    @abc.abstractmethod
+    def inertia_along(self) -> Float[Array, "k k"] | WideInertia:
+        """The inertia along the rows of the constraint subspace, where it is not too large as a matrix."""
+
+    @property
+    def rank(self) -> int:
+        """The number k of rows of the constraint subspace."""
+        inertia = self.inertia_along
+        return inertia.rank if isinstance(inertia, WideInertia) else inertia.shape[-1]
 
     @property
     def constrained_inertia(self) -> Float[Array, "k k"]:
         r"""The inertia operator restricted to the constraint subspace, in its rows: $S\,\mathbb{I}\,S^T$."""
-        rows, mass_tensor = self.constraint_subspace, self.homogeneous_mass_tensor
-        if mass_tensor is None:
-            return rows @ self.inertia_operator @ rows.T
-        return inertia_form(self.group.hat(rows), mass_tensor)
+        inertia = self.inertia_along
+        return inertia.dense if isinstance(inertia, WideInertia) else inertia
+
+    def restricted_momentum(self, restricted_velocity: Float[Array, "... k"]) -> Float[Array, "... k"]:
+        """Return the momenta along the constraint subspace of velocities in its rows, of a body at the identity."""
+        velocity, inertia = as_floats(restricted_velocity), self.inertia_along
+        return inertia.momenta(velocity) if isinstance(inertia, WideInertia) else velocity @ inertia
 
     def restrict(self, momentum: Float[Array, "... dim"]) -> Float[Array, "... k"]:
         """Return the components of a momentum along the rows of the constraint subspace."""
@@ -121,12 +146,12 @@ class AbstractLLSystem(AbstractSystem):
             np.float64(1.0)
         """
         momentum = as_floats(momentum)
-        restricted = momentum if momentum.shape[-1] == len(self.constraint_subspace) else self.restrict(momentum)
+        restricted = momentum if momentum.shape[-1] == self.rank else self.restrict(momentum)
         return (restricted * self.restricted_velocity(restricted)).sum(axis=-1) / 2
 
     def restricted_velocity(self, restricted_momentum: Float[Array, "... k"]) -> Float[Array, "... k"]:
         """Return the velocity, in rows of the constraint subspace, that has these momenta along it."""
-        return _solve(self.constrained_inertia, restricted_momentum)
+        return _solve(self.inertia_along, restricted_momentum)
 
 
 class AbstractLRSystem(AbstractSystem):
@@ -138,6 +163,11 @@ class AbstractLRSystem(AbstractSystem):
     The subspace and its annihilator are fixed in space; the inertia along them turns with the body, and
     `constrained_inertia` is that of a body at the identity.
     """
+
+    @property
+    def inertia_along(self) -> Float[Array, "k k"]:
+        """The inertia along the rows of the constraint subspace of a body at the identity."""
+        return form_along(self)
 
     @property
     def canonical(self) -> "AbstractLRSystem":
@@ -202,7 +232,7 @@ class AbstractLRSystem(AbstractSystem):
             np.float64(2.0)
         """
         r = as_floats(momentum)
-        if r.shape[-1] != len(self.constraint_subspace):
+        if r.shape[-1] != self.rank:
             r = self.restrict_in_space(r, configuration)
         return (r * self.restricted_velocity(r, configuration)).sum(axis=-1) / 2
 
@@ -211,7 +241,17 @@ System = AbstractLLSystem | AbstractLRSystem
 """Any system on a group."""
 
 
-def _solve(matrix: Float[Array, "... k k"], vector: Float[Array, "... k"]) -> Float[Array, "... k"]:
+def form_along(system: AbstractSystem) -> Float[Array, "k k"]:
+    r"""Return the inertia along the constraint subspace by its definition, $S\,\mathbb{I}\,S^T$."""
+    rows, mass_tensor = system.constraint_subspace, system.homogeneous_mass_tensor
+    if mass_tensor is None:
+        return rows @ system.inertia_operator @ rows.T
+    return inertia_form(system.group.hat(rows), mass_tensor)
+
+
+def _solve(matrix: Float[Array, "... k k"] | WideInertia, vector: Float[Array, "... k"]) -> Float[Array, "... k"]:
     vector = as_floats(vector)
+    if isinstance(matrix, WideInertia):
+        return matrix.velocities(vector)
     xp = (matrix @ vector[..., None]).__array_namespace__()  # either may be traced
     return xp.linalg.solve(xp.asarray(matrix), xp.asarray(vector)[..., None])[..., 0]

@@ -8,7 +8,7 @@ import numpy as np
 from nonholo._checks import array, error, positive_definite, symmetric
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem, Equilibria
+from nonholo.systems._base import AbstractLLSystem, Equilibria, form_along
 from nonholo.systems._drift import constant_velocities
 from nonholo.systems._mass import checked_group, group_mass_tensor, inertia_from_mass_tensor
 from nonholo.systems._subspace import subspace_and_annihilator
@@ -104,6 +104,11 @@ class LLSystem(AbstractLLSystem):
         if self.mass_tensor is None:
             return self.given_inertia
         return inertia_from_mass_tensor(self.group, self.mass_tensor)
+
+    @property
+    def inertia_along(self) -> Float[Array, "k k"]:
+        """The inertia along the rows of the constraint subspace."""
+        return form_along(self)
 
     @property
     def canonical(self) -> "LLSystem":

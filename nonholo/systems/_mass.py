@@ -7,6 +7,7 @@ import numpy as np
 from nonholo._checks import array, error, symmetric
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
+from nonholo.systems._wide import narrow
 
 
 def inertia_tensor(mass_tensor: Float[Array, "3 3"]) -> Float[Array, "3 3"]:
@@ -56,6 +57,7 @@ def inertia_from_mass_tensor(group: AbstractMatrixGroup, mass_tensor: Float[Arra
         >>> inertia_from_mass_tensor(SO(3), np.diag([1.0, 2.0, 3.0])).diagonal()
         array([5., 4., 3.])
     """
+    narrow(f"The inertia operator on {group}", group.dim)
     return inertia_form(group.basis, mass_tensor)
 
 

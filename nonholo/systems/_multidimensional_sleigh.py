@@ -1,7 +1,7 @@
 """The Chaplygin sleigh in n dimensions: its contact point moves along one body axis, about which alone it turns."""
 
 import dataclasses
-from typing import ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, Equilibria
 from nonholo.systems._mass import inertia_from_mass_tensor
 from nonholo.systems._subspace import complement, plane_rows
+
+if TYPE_CHECKING:
+    from nonholo.systems._arrowhead import ArrowheadSleigh
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
@@ -64,6 +67,30 @@ class MultidimensionalSleigh(AbstractLLSystem):
             object.__setattr__(self, field.name, value)
         positive_definite(where, self.constrained_inertia, "the inertia along the constraint", remedy)
 
+    @staticmethod
+    def arrowhead(mass: Any, center_of_mass: Any, diagonal: Any, coupling: Any) -> "ArrowheadSleigh":
+        r"""Build a sleigh in many dimensions: $J_C = \mathrm{diag}(d)$ plus c in the first row and column.
+
+        No n x n array is made. Every mass tensor has this form in the axes that diagonalise its block A.
+
+        Args:
+            mass: m.
+            center_of_mass: a, n body coordinates from the reference point.
+            diagonal: d, n numbers, n >= 3.
+            coupling: c, n - 1 numbers.
+
+        Raises:
+            ValueError: A wrong shape, a value that is not finite, a mass or an inertia that is not positive.
+
+        Example:
+            >>> sleigh = MultidimensionalSleigh.arrowhead(2.0, [0.5, 0, 0], [1.0, 2.0, 3.0], [0.1, 0.2])
+            >>> sleigh.dense.constrained_inertia.diagonal()
+            array([3.5, 4.5, 2. ])
+        """
+        from nonholo.systems._arrowhead import ArrowheadSleigh
+
+        return ArrowheadSleigh(mass, center_of_mass, diagonal, coupling)
+
     def __repr__(self) -> str:
         tensor = np.array2string(np.asarray(self.mass_tensor), prefix=" " * 39)
         head = f"mass={self.mass}, center_of_mass={np.asarray(self.center_of_mass).tolist()}"
@@ -86,6 +113,16 @@ class MultidimensionalSleigh(AbstractLLSystem):
     def inertia_operator(self) -> Float[Array, "dim dim"]:
         """The inertia operator in the coordinates of so(n), then the velocity of the reference point."""
         return inertia_from_mass_tensor(self.group, self.homogeneous_mass_tensor)
+
+    @property
+    def inertia_along(self) -> Float[Array, "n n"]:
+        r"""The matrix of $w\cdot Bw + m\,a_1^2|w|^2 + m(v_1 + \alpha\cdot w)^2$ in (w, v_1), twice the energy."""
+        J, a, m = self.mass_tensor, self.center_of_mass, self.mass
+        xp = (m * a @ J).__array_namespace__()
+        J, a = xp.asarray(J), xp.asarray(a)
+        lever = xp.concatenate([a[1:], xp.ones_like(a[:1])])
+        turning = J[1:, 1:] + (J[0, 0] + m * a[0] ** 2) * xp.eye(J.shape[-1] - 1, dtype=J.dtype)
+        return xp.pad(turning, ((0, 1), (0, 1))) + m * lever[:, None] * lever
 
     @property
     def constraint_subspace(self) -> Float[np.ndarray, "n dim"]:

@@ -8,7 +8,7 @@ import numpy as np
 from nonholo._checks import positive_definite
 from nonholo._types import Array, Float
 from nonholo.groups import SO
-from nonholo.systems._base import AbstractLLSystem, Equilibria
+from nonholo.systems._base import AbstractLLSystem, Equilibria, form_along
 from nonholo.systems._drift import constant_velocities
 from nonholo.systems._mass import body_tensor, checked_group, group_mass_tensor, inertia_from_mass_tensor
 
@@ -68,6 +68,11 @@ class RigidBody(AbstractLLSystem):
     def inertia_operator(self) -> Float[Array, "dim dim"]:
         """The inertia operator of the mass tensor."""
         return inertia_from_mass_tensor(self.group, self.mass_tensor)
+
+    @property
+    def inertia_along(self) -> Float[Array, "k k"]:
+        """The inertia along the rows of the constraint subspace."""
+        return form_along(self)
 
     @property
     def constraint_subspace(self) -> Float[np.ndarray, "dim dim"]:

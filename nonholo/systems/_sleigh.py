@@ -8,7 +8,7 @@ import numpy as np
 from nonholo._checks import number, positive
 from nonholo._types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem, Equilibria
+from nonholo.systems._base import AbstractLLSystem, Equilibria, form_along
 from nonholo.systems._mass import inertia_from_mass_tensor
 
 
@@ -69,6 +69,11 @@ class ChaplyginSleigh(AbstractLLSystem):
     def inertia_operator(self) -> Float[Array, "3 3"]:
         """The inertia operator in the coordinates (omega, v1, v2)."""
         return inertia_from_mass_tensor(self.group, self.homogeneous_mass_tensor)
+
+    @property
+    def inertia_along(self) -> Float[Array, "k k"]:
+        """The inertia along the rows of the constraint subspace."""
+        return form_along(self)
 
     @property
     def constraint_subspace(self) -> Float[np.ndarray, "2 3"]:

@@ -10,6 +10,7 @@ import numpy as np
 from nonholo._checks import array, error, is_traced
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
+from nonholo.systems._wide import narrow
 
 _ROUNDING = 64 * np.finfo(np.float64).eps  # times the larger side of a matrix: singular values below it count as zero
 
@@ -88,7 +89,8 @@ def _refuse_inconsistent(where: str, rows: np.ndarray, covectors: np.ndarray) ->
 
 def plane_rows(group: AbstractMatrixGroup, planes: list) -> Float[np.ndarray, "k dim"]:
     r"""Return the coordinates of $e_i\wedge e_j = e_ie_j^T - e_je_i^T$ for pairs (i, j) counted from 0."""
-    wedge = np.zeros((len(planes), *group.identity.shape))
+    narrow(f"Full vectors of {group}", group.dim)
+    wedge = np.zeros((len(planes), group.size, group.size))
     for row, (i, j) in enumerate(planes):
         wedge[row, i, j], wedge[row, j, i] = 1.0, -1.0
     return group.vee(wedge) + 0.0

@@ -1,7 +1,7 @@
 """The Suslov top: a rigid body about a fixed point that may only turn in planes containing one of its own axes."""
 
 import dataclasses
-from typing import ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from nonholo.systems._mass import (
     rotation_to,
 )
 from nonholo.systems._subspace import complement, plane_rows
+
+if TYPE_CHECKING:
+    from nonholo.systems._arrowhead import ArrowheadTop
 
 _E3 = (0.0, 0.0, 1.0)
 
@@ -77,6 +80,27 @@ class SuslovTop(AbstractLLSystem):
         tensor = symmetric(where, array(where, inertia, (3, 3)), "Pass the inertia tensor about the fixed point.")
         return cls(mass_tensor_from_inertia(tensor), axis=axis)
 
+    @staticmethod
+    def arrowhead(diagonal: Any, coupling: Any) -> "ArrowheadTop":
+        r"""Build a top in many dimensions, n up to millions: $J = \mathrm{diag}(d)$ plus c in the last row and column.
+
+        No n x n array is made. Every mass tensor has this form in the axes that diagonalise B.
+
+        Args:
+            diagonal: d, n numbers, n >= 3.
+            coupling: c, n - 1 numbers.
+
+        Raises:
+            ValueError: A wrong shape, a value that is not finite, an inertia along the constraint that is not positive.
+
+        Example:
+            >>> SuslovTop.arrowhead([1.0, 2.0, 3.0, 4.0], [0.1, 0.2, 0.3]).dense.constrained_inertia.diagonal()
+            array([5., 6., 7.])
+        """
+        from nonholo.systems._arrowhead import ArrowheadTop
+
+        return ArrowheadTop(diagonal, coupling)
+
     def __repr__(self) -> str:
         mass = np.array2string(np.asarray(self.mass_tensor), prefix=" " * 17)
         if self.axis is None:
@@ -102,6 +126,13 @@ class SuslovTop(AbstractLLSystem):
         if self.axis is None:
             return inertia_from_mass_tensor(self.group, self.mass_tensor)
         return inertia_tensor(self.mass_tensor)
+
+    @property
+    def inertia_along(self) -> Float[Array, "k k"]:
+        r"""The matrix $B = A + d\,\mathrm{Id}$; for n = 3 in the rows of the constraint subspace."""
+        J = self.canonical.mass_tensor
+        xp = J.__array_namespace__()
+        return J[:-1, :-1] + J[-1, -1] * xp.eye(J.shape[-1] - 1, dtype=J.dtype)
 
     @property
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:

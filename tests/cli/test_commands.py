@@ -149,6 +149,7 @@ def test_a_start_off_the_locus(nonholo: Command) -> None:
         (["--steps", 0], "--steps 0: run.steps: must be greater than 0"),
         (["--time-step", "nan"], "--time-step nan: run.time_step: must be a finite number"),
         (["--set", "body.mass"], "must be KEY=VALUE"),
+        (["--set", 'run.branch="inner"'], "run.branch: must be a rule without regions"),
     ],
 )
 def test_usage_errors(arguments: list[Any], told: str, nonholo: Command) -> None:
@@ -165,6 +166,12 @@ def test_options_reach_the_run(figures: Figures) -> None:
     told = figures("sleigh", "--steps", 7, "--time-step", 0.05, "--set", "body.a=0.25", "--set", "run.save_every=2")
     orbit = nh.load_orbit(told["store"])
     assert (len(orbit), float(orbit.system.a), float(orbit.time[1])) == (4, 0.25, 0.1)
+
+
+def test_the_branch_rule_reaches_the_run(figures: Figures) -> None:
+    """The scenario's key run.branch is the rule of the run, and the store knows it."""
+    told = figures("suslov", "--steps", 3, "--set", 'run.branch="nearest"')
+    assert nh.load_orbit(told["store"]).branch == "nearest"
 
 
 def test_a_failing_picture_does_not_cost_the_run(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:

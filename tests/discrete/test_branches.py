@@ -71,11 +71,13 @@ def _reference(case: dict) -> tuple[Discretization, np.ndarray]:
     return discrete, np.linalg.solve(eye - Y, eye + Y)
 
 
+@pytest.mark.parametrize("certify", [False, True], ids=["numerical", "certified"])
 @pytest.mark.parametrize("case", _GOLDEN, ids=lambda case: f"{case['system']} {len(case['momentum'])}")
-def test_against_fifty_digits(case: dict) -> None:
+def test_against_fifty_digits(case: dict, certify: bool) -> None:
     """Every displacement is found, once, and equals its 50-digit value; none is invented."""
     discrete, reference = _reference(case)
-    found = nh.displacements_over(discrete, case["momentum"])
+    found = nh.displacements_over(discrete, case["momentum"], certify)
+    assert found.certified == certify
     assert found.multiplicity.tolist() == [1] * len(reference)
     left = list(reference)
     for W in found.displacement:
@@ -157,12 +159,23 @@ _SPECIAL = {
 }
 
 
+@pytest.mark.parametrize("certify", [False, True], ids=["numerical", "certified"])
 @pytest.mark.parametrize(("discrete", "r", "count"), _SPECIAL.values(), ids=_SPECIAL)
-def test_special_bodies_and_momenta(discrete: Discretization, r: list[float], count: int) -> None:
-    """Where the secular polynomial degenerates the isolated roots are still all found, each once."""
-    found = nh.displacements_over(discrete, r)
+def test_special_bodies_and_momenta(discrete: Discretization, r: list[float], count: int, certify: bool) -> None:
+    """Where the secular polynomial degenerates the isolated roots are still all found, each once, and certified."""
+    found = nh.displacements_over(discrete, r, certify)
+    assert found.certified == certify
     _check_definition(discrete, found, r)
     assert found.multiplicity.tolist() == [1] * count
+
+
+@pytest.mark.parametrize("certify", [False, True], ids=["numerical", "certified"])
+def test_roots_hidden_beside_a_double_root_are_found(certify: bool) -> None:
+    """Two roots that the secular polynomial hides are not taken for copies of a double half-turn."""
+    sleigh = nh.MultidimensionalSleigh(1.0, [-0.5, 0, 0], [[3, 0, 0.5], [0, 2, 0], [0.5, 0, 1]])
+    found = nh.displacements_over(nh.discretize(sleigh, 1.0), [0.0, 0.0, 1.0], certify)
+    assert found.multiplicity.tolist() == [1, 2, 1, 1]
+    assert found.is_real.tolist() == [True, True, False, False]
 
 
 def test_a_half_turn_on_the_variety_is_a_branch() -> None:
@@ -248,6 +261,25 @@ def test_sum_rule_of_the_sleigh(at: tuple[float, float], real: int) -> None:
     assert found.is_real.sum() == real
 
 
+def test_sum_rule_of_the_map_of_random_sleighs() -> None:
+    """The values of the map obey the sum rule inside the deltoid, where all are real, and outside, where one is."""
+    rng = np.random.default_rng(2)
+    counts = []
+    for _ in range(60):
+        m, J, a, b = *rng.uniform(0.3, 2.0, 2), *rng.normal(0, 0.5, 2)
+        sleigh = nh.discretize(nh.ChaplyginSleigh(m, J, a, b), 1.0)
+        W = nh.SE(2).exp(rng.normal(size=2) @ sleigh.system.constraint_subspace)
+        r = sleigh.system.restrict(nh.discrete_legendre(sleigh, W, "right"))
+        found = nh.branches(sleigh, displacement=W)
+        turns = found.displacement[:, 0, 0] + 1j * found.displacement[:, 1, 0]
+        kappa = (-(2 * (a * r[1] + 2 * m * a * a) + J) + 2j * (r[0] + b * r[1])) / J
+        size = np.abs(turns).max() ** 2  # of complex turns, which rounding and the product see
+        assert np.prod(turns) == pytest.approx(1, abs=1e-12 * size)
+        assert turns.sum() == pytest.approx(kappa, abs=1e-12 * size)
+        counts.append(int(found.is_real.sum()))
+    assert set(counts) == {1, 3}
+
+
 @pytest.mark.parametrize(("discrete", "r"), _DEFINED.values(), ids=_DEFINED)
 def test_the_principal_branch_is_that_of_a_run(discrete: Discretization, r: list[float]) -> None:
     """`principal` names the displacement at which a run with this momentum starts, and the next one."""
@@ -316,10 +348,8 @@ def test_other_systems_are_refused(discrete: Discretization) -> None:
 
 
 def test_wrong_arguments_are_named() -> None:
-    """Certificates, missing or double starts and displacements off the variety are refused with the reason."""
+    """Missing or double starts and displacements off the variety are refused with the reason."""
     sleigh = _sleigh(0.5)
-    with pytest.raises(ValueError, match="not offered yet"):
-        nh.displacements_over(sleigh, [0.1, 0.2], certify=True)
     with pytest.raises(ValueError, match=r"must be given momentum or displacement\. Got none"):
         nh.branches(sleigh)
     with pytest.raises(ValueError, match="must lie on the displacement variety"):

@@ -9,6 +9,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 PAGES = (
     "theory/groups-and-systems.md",
     "theory/right-invariant.md",
+    "how-to/choose-a-branch-rule.md",
     "how-to/choose-a-discretisation.md",
 )
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d import proj3d
 
 import nonholo as nh
 from nonholo.analysis import deltoid
@@ -126,6 +127,25 @@ def test_curves_do_not_cross_the_rim() -> None:
             for run_of_points in level.get_segments():
                 assert np.abs(run_of_points[:, 0]).max() <= edge + 1e-12
                 assert np.linalg.norm(np.diff(run_of_points, axis=0), axis=1).max() < 0.2
+
+
+@pytest.mark.parametrize("width", [4.3, 5.0, 7.0])
+def test_title_and_legend_do_not_overlap(width: float) -> None:
+    """Where title and legend do not fit into one line the title is above the legend."""
+    axes = Figure(figsize=(width, 4.0), layout="constrained").add_subplot()
+    nh.plot.invariant_curves(SLEIGH, run(SLEIGH), axes)
+    axes.figure.canvas.draw()
+    assert not axes._left_title.get_window_extent().overlaps(axes.get_legend().get_window_extent())
+
+
+def test_usual_view_sees_the_double_lines_apart() -> None:
+    """On the picture any two double segments of the top differ by 15 degrees or more."""
+    picture = nh.plot.momentum_locus(nh.momentum_locus(TOP, 8))
+    projection = picture.axes.get_proj()
+    ends = [np.stack(proj3d.proj_transform(*line.get_data_3d(), projection)[:2]) for line in picture.double_lines]
+    angles = [np.degrees(np.arctan2(*np.diff(points, axis=1)[::-1, 0])) for points in ends]
+    for i in range(3):
+        assert 15 < (angles[i] - angles[i - 1]) % 180 < 165
 
 
 def test_branch_counts_draw_the_deltoid() -> None:

@@ -152,7 +152,7 @@ GOOD = {"body_velocity": (0.4, 0.9, 0.0), "steps": 3}
         ({**GOOD, "body_velocity": (0.4, 0.9)}, r"shape \(3,\). Got shape \(2,\)"),
         ({**GOOD, "body_velocity": (0.4, np.nan, 0.0)}, "be finite. Got nan at index"),
         ({**GOOD, "body_velocity": (0.4, 1j, 0.0)}, "be real. Got complex"),
-        ({**GOOD, "branch": "nearest"}, "branch=.*must be one of 'principal'. Got 'nearest'"),
+        ({**GOOD, "branch": "closest"}, "branch=.*must be one of 'principal', 'nearest', .*Got 'closest'"),
         ({**GOOD, "backend": "cuda"}, "be one of 'auto', 'numba', 'jax'"),
         ({**GOOD, "configuration": 2 * np.eye(3)}, r"lie in SO\(3\). Got a matrix at distance"),
         ({"displacement": nh.SO(3).exp(np.array([0.1, 0.2, 0.3])), "steps": 3}, "displacement variety.*forbidden part"),

@@ -1,0 +1,206 @@
+r"""Polynomials with integer coefficients whose roots are the displacements over a momentum, with exact multiplicities.
+
+The secular polynomial, and what it misses: angle $\pi$, balanced bodies, roots hidden in a common factor. Each family
+writes its displacements as $(z_0, z)(z_0, z)^T = qq^T/\nu$ with polynomials q and $\nu$. Why the count is complete is
+proved in docs/theory/branches.md, "Certificates".
+"""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from flint import fmpq_mat, fmpq_poly, fmpz, fmpz_mat, fmpz_poly
+
+from nonholo.discrete._certificate_problem import Problem
+
+_X = fmpz_poly([0, 1])
+_ONE = fmpz_poly([1])
+
+
+class UncertainError(Exception):
+    """A case that is not decided; the message says which."""
+
+
+class Family(NamedTuple):
+    """Displacements, one for each root of a polynomial, with its multiplicity; real for a real root."""
+
+    polynomial: fmpz_poly
+    q: list[fmpz_poly]
+    norm: fmpz_poly
+
+
+class _Secular(NamedTuple):
+    r"""Polynomials in $\mu$: $\Delta = \det(B + \mu)$, adj(B + mu) c, N_1, N_2 and Y."""
+
+    determinant: fmpz_poly
+    adjugate_c: list[fmpz_poly]
+    n1: fmpz_poly
+    n2: fmpz_poly
+    y: list[fmpz_poly]
+
+
+def families(problem: Problem) -> Iterator[Family]:
+    """Yield polynomials that have every isolated displacement over the momentum as a root, each once."""
+    if len(problem.excess) == 1:
+        yield from _planar(problem)
+    elif not any(problem.coupling) and problem.half == 0:
+        yield from _balanced(problem)
+    elif not any(problem.excess) and problem.half == 0:
+        yield from _at_the_coupling(problem)
+    else:
+        yield from _generic(problem)
+
+
+def _planar(problem: Problem) -> Iterator[Family]:
+    r"""The cubic of the plane in y; its missing roots are half-turns."""
+    b, r, half = problem.stiffness[0, 0], problem.excess[0], problem.half
+    cubic = fmpz_poly([-r, half + b, -r, half])
+    yield Family(cubic, [_ONE, _X], _ONE + _X * _X)
+    if half == 0 and problem.lever is not None and problem.lever.arm != 0:
+        yield Family(_X ** (3 - cubic.degree()), [fmpz_poly(), _ONE], _ONE)
+
+
+def _balanced(problem: Problem) -> Iterator[Family]:
+    r"""The quadratic of $z_0^2$: $z_0z = w = B^{-1}r$, $z_0^4 - z_0^2 + w\cdot w = 0$; if w = 0 only the identity."""
+    d = problem.excess
+    solved = fmpq_mat(problem.stiffness).solve(fmpq_mat(fmpz_mat([[x] for x in d])))
+    numerators, unit = solved.numer_denom()
+    w = [numerators[i, 0] for i in range(len(d))]
+    if not any(w):
+        yield Family(_X, [_ONE, *(fmpz_poly() for _ in w)], _ONE)
+        return
+    square = unit * unit
+    yield Family(
+        fmpz_poly([_dot(w, w), -square, square]), [fmpz_poly([0, unit]), *(fmpz_poly([x]) for x in w)], square * _X
+    )
+    if problem.lever is not None and problem.lever.arm != 0:
+        yield _half_turn(problem, 1)
+
+
+def _at_the_coupling(problem: Problem) -> Iterator[Family]:
+    r"""The roots of $N_1$ where r = c; $y = Gc$. Half-turns have $c\cdot z = 0$: one of a top with n = 3."""
+    secular = _secular(problem)
+    if secular.n1.gcd(secular.determinant).degree() > 0:
+        raise UncertainError("the restricted momentum equals the coupling, which is special to the axes of the body")
+    q = [secular.determinant, *secular.adjugate_c]
+    norm = _dot(q, q)
+    finite = _without(secular.n1, norm)
+    yield Family(finite, q, norm)
+    if problem.lever is None and len(problem.excess) == 2:
+        if finite.degree() < 3:
+            raise UncertainError("a half-turn and a displacement at infinity coincide")
+        c1, c2 = problem.coupling
+        yield Family(_X, [fmpz_poly(), fmpz_poly([-c2]), fmpz_poly([c1])], fmpz_poly([_dot([c1, c2], [c1, c2])]))
+
+
+def _generic(problem: Problem) -> Iterator[Family]:
+    secular = _secular(problem)
+    n1, n2, y = secular.n1, secular.n2, secular.y
+    polynomial = n2 * (n1 - n2) - _dot(y, y)
+    if polynomial == 0:
+        raise UncertainError("the secular polynomial vanishes")
+    hidden = polynomial.gcd(n2)
+    regular = _without(_without(polynomial, hidden), n1)
+    if regular.degree() > 0:
+        yield Family(regular, [n2, *y], n1 * n2)
+    yield from _hidden(problem, hidden, [n1, *y])
+    lever, k = problem.lever, len(y)
+    if problem.half == 0 and (lever is None or lever.arm != 0):
+        missing = 2 * k + (lever is not None) - polynomial.degree()
+        if missing > 0:
+            yield _half_turn(problem, missing)
+
+
+def _secular(problem: Problem) -> _Secular:
+    B, c, d, half, k = *problem[:4], len(problem.excess)
+    determinant = (-B).charpoly()
+    sides = fmpz_mat([[x, y] for x, y in zip(c, d, strict=True)])
+    terms = [sides]
+    for coefficient in determinant.coeffs()[k - 1 : 0 : -1]:
+        terms.append(sides * coefficient - B * terms[-1])  # adj(B + mu), from its equation, power by power
+    terms.reverse()
+    Ac, Ad = ([fmpz_poly([term[i, side] for term in terms]) for i in range(k)] for side in (0, 1))
+    cAc, cAd = _dot(c, Ac), _dot(c, Ad)
+    y = [u * _X + v * half + (cAc * u - cAd * v) // determinant for u, v in zip(Ad, Ac, strict=True)]
+    return _Secular(determinant, Ac, determinant * _X + cAc, determinant * half - cAd, y)
+
+
+def _hidden(problem: Problem, common: fmpz_poly, numerators: list[fmpz_poly]) -> Iterator[Family]:
+    r"""The roots at a $\mu$ where the linear equations for (y, s) are singular and yet have solutions."""
+    for row in numerators:
+        common = common.gcd(row)
+    for factor, _ in common.factor()[1]:
+        if factor.degree() > 1:
+            raise UncertainError("two roots share an irrational value of mu")
+        yield from _on_line(problem, factor)
+
+
+def _on_line(problem: Problem, factor: fmpz_poly) -> Iterator[Family]:
+    """The isolated solutions on the line of (y, s) that solve the linear equations at a rational mu."""
+    k = len(problem.excess)
+    low, high = factor.coeffs()
+    B, c, d, half = problem[:4]
+    rows = [[high * B[i, j] - (low if i == j else 0) for j in range(k)] + [-high * d[i]] for i in range(k)]
+    rows.append([high * x for x in c] + [-high * half])
+    M = fmpz_mat(rows)
+    right = fmpz_mat([[high * x] for x in c] + [[low]])
+    augmented = fmpz_mat([[*row, right[i, 0]] for i, row in enumerate(rows)])
+    if M.rank() < k or augmented.rank() > k:
+        return  # no solution, or whole curves of them
+    along, left, point = _null(M), _null(M.transpose()), _particular(M, right)
+    line = [fmpq_poly([p, v]) for p, v in zip(point, along, strict=True)]
+    y, s = line[:-1], line[-1]
+    compatible = s - 1 - _dot(y, y)
+    if compatible == 0:
+        return
+    slope = _dot(left[:-1], y) + left[-1]
+    if compatible.gcd(compatible.derivative()).degree() > 0 or compatible.gcd(slope).degree() > 0:
+        raise UncertainError("the multiplicity of a root that the secular polynomial hides is not known")
+    compatible = compatible // compatible.gcd(s)
+    unit = fmpz(1)
+    for row in line:
+        unit = unit.lcm(row.denom())
+    whole = [(row * unit).numer() for row in line]
+    if compatible.degree() > 0:
+        yield Family(compatible.numer(), [fmpz_poly([unit]), *whole[:-1]], unit * whole[-1])
+
+
+def _null(M: fmpz_mat) -> list:
+    """Return a null vector of a matrix of corank one."""
+    reduced, size = fmpq_mat(M).rref()[0], M.ncols()
+    pivots = [next(j for j in range(size) if reduced[i, j] != 0) for i in range(size - 1)]
+    free = next(j for j in range(size) if j not in pivots)
+    vector = [fmpq_mat(1, 1)[0, 0] for _ in range(size)]
+    vector[free] += 1
+    for i, j in enumerate(pivots):
+        vector[j] = -reduced[i, free]
+    return vector
+
+
+def _particular(M: fmpz_mat, right: fmpz_mat) -> list:
+    """Return one solution of compatible equations of corank one."""
+    size = M.ncols()
+    augmented = fmpz_mat([[*(M[i, j] for j in range(size)), right[i, 0]] for i in range(size)])
+    reduced = fmpq_mat(augmented).rref()[0]
+    vector = [fmpq_mat(1, 1)[0, 0] for _ in range(size)]
+    for i in range(size - 1):
+        vector[next(j for j in range(size) if reduced[i, j] != 0)] = reduced[i, size]
+    return vector
+
+
+def _half_turn(problem: Problem, multiplicity: int) -> Family:
+    """The half-turn in the plane of d, which is the root mu = infinity."""
+    d = problem.excess
+    return Family(_X**multiplicity, [fmpz_poly(), *(fmpz_poly([x]) for x in d)], fmpz_poly([_dot(d, d)]))
+
+
+def _without(polynomial: fmpz_poly, other: fmpz_poly) -> fmpz_poly:
+    """Return the polynomial without the roots that it shares with another."""
+    common = polynomial.gcd(other)
+    while common.degree() > 0:
+        polynomial = polynomial // common
+        common = polynomial.gcd(common)
+    return polynomial
+
+
+def _dot(u: list, v: list) -> Any:
+    return sum((x * y for x, y in zip(u[1:], v[1:], strict=True)), u[0] * v[0])

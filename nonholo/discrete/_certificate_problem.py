@@ -1,0 +1,86 @@
+r"""The equations of `_branch_equations` with the doubles of a system taken as exact rational numbers.
+
+Everything of the dimension of an inertia is an integer here, after multiplication by one power of two. Axes are those
+of the body: nothing is diagonalised.
+
+Reference: docs/theory/branches.md, "Certificates".
+"""
+
+from fractions import Fraction
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+from flint import fmpq, fmpz, fmpz_mat
+
+from nonholo.systems import ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
+
+Body: TypeAlias = SuslovTop | ChaplyginSleigh | MultidimensionalSleigh
+
+
+class Lever(NamedTuple):
+    """What a sleigh has and a top has not, in units of length: a_1, h p_1/m, the centre of mass across axis 1."""
+
+    arm: fmpq
+    push: fmpq
+    offset: list[fmpq]
+    moment: fmpq  # m a_1 in the unit of inertia of the problem
+
+
+class Problem(NamedTuple):
+    r"""The equations $(B + \mu)y = sd + c$, $\mu = \tfrac12 s\hat p - c\cdot y$, $s = 1 + y\cdot y$ in integers."""
+
+    stiffness: fmpz_mat
+    coupling: list[fmpz]
+    excess: list[fmpz]  # d = r - c
+    half: fmpz  # half of p-hat
+    lever: Lever | None
+
+
+def problem_of(system: Body, time_step: float, momentum: np.ndarray) -> Problem:
+    """Return the exact problem of a canonical body for canonical restricted momenta."""
+    h = Fraction(float(time_step))
+    p = [h * _exact(x) for x in momentum]
+    if isinstance(system, SuslovTop):
+        J = _rows(system.mass_tensor)
+        return _problem(_stiffness(J[:-1], J[-1][-1], 0), [row[-1] for row in J[:-1]], [x / 2 for x in p])
+    if isinstance(system, ChaplyginSleigh):
+        body, turning = ([[_exact(system.inertia)]], [Fraction(0)], [_exact(system.a), Fraction(0)]), [-p[0]]
+    else:
+        J = _rows(system.mass_tensor)
+        body = _stiffness(J[1:], J[0][0], 1), [-x for x in J[0][1:]], [_exact(x) for x in system.center_of_mass]
+        turning = p[:-1]
+    B, c, (a, *offset) = body
+    m, r = _exact(system.mass), [(x - o * p[-1]) / 2 for x, o in zip(turning, offset, strict=True)]
+    return _problem(B, c, r, a * p[-1] / 2 + m * a * a, (a, p[-1] / m, offset, m * a))
+
+
+def _problem(B: list, c: list, r: list, half: Fraction = Fraction(0), lever: tuple | None = None) -> Problem:
+    d = [x - y for x, y in zip(r, c, strict=True)]
+    unit = max(x.denominator for row in (*B, c, d, [half]) for x in row)
+
+    def whole(x: Fraction) -> fmpz:
+        return fmpz(x.numerator * (unit // x.denominator))
+
+    exact = None
+    if lever is not None:
+        a, push, offset, moment = lever
+        exact = Lever(_rational(a), _rational(push), [_rational(x) for x in offset], _rational(moment * unit))
+    matrix = fmpz_mat([[whole(x) for x in row] for row in B])
+    return Problem(matrix, [whole(x) for x in c], [whole(x) for x in d], whole(half), exact)
+
+
+def _stiffness(rows: list[list[Fraction]], diagonal: Fraction, first: int) -> list[list[Fraction]]:
+    k = len(rows)
+    return [[rows[i][first + j] + (diagonal if i == j else 0) for j in range(k)] for i in range(k)]
+
+
+def _rows(matrix: np.ndarray) -> list[list[Fraction]]:
+    return [[_exact(x) for x in row] for row in np.asarray(matrix).tolist()]
+
+
+def _exact(x: float) -> Fraction:
+    return Fraction(float(x))
+
+
+def _rational(x: Fraction) -> fmpq:
+    return fmpq(x.numerator, x.denominator)

@@ -1,0 +1,189 @@
+"""How steps change volumes of momenta, the density of the flow, and why the map keeps none that is continuous."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from bodies import mass_tensor
+
+import nonholo as nh
+from nonholo.analysis._step_jacobian import area_factor, momentum_slope, step_determinants
+from nonholo.systems import AbstractLLSystem
+
+RNG = np.random.default_rng(7)
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+PLANE = {
+    "top 3": TOP,
+    "top 3, tilted": nh.SuslovTop.from_inertia(
+        [[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3)
+    ),
+    "sleigh 2": nh.ChaplyginSleigh(1.3, 0.7, 0.4, 0.3),
+}
+SYSTEMS = PLANE | {
+    "top 4": nh.SuslovTop(mass_tensor(nh.SO(4), RNG)),
+    "sleigh 3": nh.MultidimensionalSleigh(1.3, [0.3, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1),
+    "turning sleigh 3": nh.MultidimensionalSleigh(1.3, [0.0, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1),
+}
+STEP = 0.3
+
+
+def _determinant(function: object, r: np.ndarray) -> float:
+    """Return the determinant of the central difference quotient, right to about 1e-9."""
+    e = 1e-5
+    return float(np.linalg.det([(function(r + e * x) - function(r - e * x)) / (2 * e) for x in np.eye(len(r))]))
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_jacobian_is_that_of_the_map(name: str) -> None:
+    """The determinant of one step, and over four steps the sum of logarithms, are those of the momenta themselves."""
+    discrete = nh.discretize(SYSTEMS[name], STEP)
+    start = 0.4 * np.array([1.0, -0.7, 0.5])[: len(discrete.system.constraint_subspace)]
+    orbit = nh.simulate(discrete, restricted_velocity=start, steps=4, reconstruct=False)
+    found, r = nh.invariant_measure(discrete), orbit.restricted_momentum[0]
+    for steps in (1, 4):
+
+        def after(r: np.ndarray, steps: int = steps) -> np.ndarray:
+            return nh.simulate(discrete, momentum=r, steps=steps, reconstruct=False).restricted_momentum[-1]
+
+        expected = _determinant(after, r)
+        assert abs(np.exp(found.log_volume(orbit)[steps]) - abs(expected)) <= 1e-8
+    assert found.jacobian(orbit.displacement[0]) == pytest.approx(np.exp(found.log_volume(orbit)[1]), rel=1e-14)
+    assert abs(found.log_volume(orbit)[-1]) > 1e-3
+
+
+@pytest.mark.parametrize("name", PLANE)
+def test_closed_forms_are_the_definition(name: str) -> None:
+    """At 200 random displacements of up to 170 degrees the area factors give the ratio of slopes of the definition."""
+    discrete, rng = nh.discretize(PLANE[name], STEP), np.random.default_rng(1)
+    group, rows = discrete.system.group, discrete.system.constraint_subspace
+    u = rng.normal(size=(200, 2))
+    W = group.exp(u / np.linalg.norm(u, axis=1, keepdims=True) * rng.uniform(0.1, 2.9, size=(200, 1)) @ rows)
+    even, odd = area_factor(discrete, W)
+    slopes = [np.linalg.det(momentum_slope(discrete, V)) for V in (W, group.inverse(W))]
+    clear = np.abs(even + odd) > 1e-3 * np.abs(even + odd).max()  # at a fold both vanish
+    assert clear.sum() > 190
+    ratio = slopes[1][clear] / slopes[0][clear]
+    assert np.abs(step_determinants(discrete, W[clear]) / ratio - 1).max() <= 1e-9
+
+
+@pytest.mark.parametrize("group", [nh.SO(4), nh.SE(2)], ids=repr)
+def test_a_free_body_keeps_volumes(group: nh.SO) -> None:
+    """Without constraint the map of momenta is canonical: its determinant is 1, by the definition."""
+    discrete = nh.discretize(nh.RigidBody(mass_tensor(group, np.random.default_rng(2)), group), STEP)
+    W = group.exp(0.5 * np.random.default_rng(3).normal(size=(20, group.dim)))
+    assert np.abs(step_determinants(discrete, W) - 1).max() <= 1e-13
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_the_witness_is_the_jacobian_at_an_equilibrium(name: str) -> None:
+    """There one step shrinks volumes by the witness, and expands them by its inverse at the opposite equilibrium."""
+    discrete = nh.discretize(SYSTEMS[name], STEP)
+    found = nh.invariant_measure(discrete, energy=0.4)
+    assert not found.every_density
+    assert 0 < abs(found.witness) < 1 - 1e-3
+    for sign in (1, -1):
+        start = nh.simulate(discrete, body_velocity=sign * found.velocity, steps=1)
+        assert found.jacobian(start.displacement[0]) == pytest.approx(found.witness**sign, rel=1e-13)
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_the_witness_of_the_flow_is_its_divergence(name: str) -> None:
+    """It is the trace of the linearised field at the equilibrium, and the limit of log(witness)/h of the map."""
+    system = SYSTEMS[name]
+    found, field, pose = nh.invariant_measure(system, 0.4), nh.vector_field(system), system.group.identity.ravel()
+    r, e = system.restrict(system.inertia_operator @ found.velocity), 1e-5
+
+    def rate(r: np.ndarray) -> np.ndarray:
+        return field(0.0, np.concatenate([r, pose]))[: len(r)]
+
+    trace = sum((rate(r + e * x) - rate(r - e * x)) @ x for x in np.eye(len(r))) / (2 * e)
+    assert found.witness == pytest.approx(trace, abs=1e-9)
+    assert found.witness < 0
+    h = 1e-3
+    of_map = nh.invariant_measure(nh.discretize(system, h), 0.4).witness
+    assert np.log(of_map) / h == pytest.approx(found.witness, rel=1e-5)
+
+
+@pytest.mark.parametrize("name", PLANE)
+def test_density_of_the_flow(name: str) -> None:
+    """The divergence of density times field vanishes at random momenta; that of the field alone does not."""
+    system = PLANE[name]
+    found, field, pose = nh.invariant_measure(system), nh.vector_field(system), system.group.identity.ravel()
+
+    def current(r: np.ndarray, weight: float) -> np.ndarray:
+        return field(0.0, np.concatenate([r, pose]))[:2] * weight
+
+    e, plain = 1e-5, 0.0
+    for r in np.random.default_rng(4).normal(size=(20, 2)):
+        sides = [(r + e * x, r - e * x) for x in np.eye(2)]
+        terms = [
+            (current(p, found.density(p))[i] - current(q, found.density(q))[i]) / (2 * e)
+            for i, (p, q) in enumerate(sides)
+        ]
+        assert abs(sum(terms)) <= 1e-8 * max(1.0, *np.abs(terms))  # of the difference quotients
+        plain = max(
+            plain, abs(sum((current(p, 1.0)[i] - current(q, 1.0)[i]) / (2 * e) for i, (p, q) in enumerate(sides)))
+        )
+    assert plain > 0.1
+
+
+def test_density_in_velocities() -> None:
+    """For the axis e3 it is dw/|c . w_perp| times det B, the change from dr; infinite on the line of equilibria."""
+    w = np.random.default_rng(5).normal(size=(10, 2))
+    B, c = TOP.constrained_inertia, TOP.coupling
+    expected = 1 / np.abs(c[1] * w[:, 0] - c[0] * w[:, 1]) / np.linalg.det(B)
+    found = nh.invariant_measure(TOP)
+    assert found.density(w @ B) == pytest.approx(expected, rel=1e-13)
+    equilibrium = nh.invariant_measure(PLANE["sleigh 2"]).density([-0.3 * 2.0, 2.0])
+    assert equilibrium == np.inf
+
+
+def test_the_map_does_not_keep_the_density_of_the_flow() -> None:
+    """The naive candidate: f(-z) p(z) / (f(z) p(-z)) would have to be 1. At a rational point it is 0.9997, exactly."""
+    y = Fraction(1, 4), Fraction(-1, 8)
+    B, c = ((Fraction(23, 10), Fraction(1, 5)), (Fraction(1, 5), Fraction(19, 10))), (Fraction(1, 2), Fraction(-3, 10))
+    By = [b[0] * y[0] + b[1] * y[1] for b in B]
+    D, square, along = B[0][0] * B[1][1] - B[0][1] ** 2, y[0] ** 2 + y[1] ** 2, c[0] * y[0] + c[1] * y[1]
+    pull, turn = c[0] * By[0] + c[1] * By[1], c[1] * y[0] - c[0] * y[1]
+    even = (D * (1 - square) + 2 * turn**2) / (1 + square)
+    odd = 2 * along * (y[0] * By[0] + y[1] * By[1]) / (1 + square) - pull
+    parity = (even - odd) * (D - pull) / ((even + odd) * (D + pull))
+    assert parity == Fraction(234592267, 234659755)
+    discrete = nh.discretize(TOP, STEP)
+    W = TOP.group.cayley(2 * np.array([float(x) for x in y]) @ TOP.constraint_subspace)
+    orbit = nh.simulate(discrete, displacement=W, steps=1)
+    density, step = nh.invariant_measure(TOP).density(orbit.momentum), nh.invariant_measure(discrete).jacobian(W)
+    assert density[1] * step / density[0] == pytest.approx(float(parity), rel=1e-13)
+
+
+@pytest.mark.parametrize("body", [nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.2)])
+def test_balanced_bodies_keep_every_density(body: AbstractLLSystem) -> None:
+    """Their momenta stay: each step is the identity, with determinant 1, and the density 1 is offered."""
+    discrete = nh.discretize(body, STEP)
+    orbit = nh.simulate(discrete, restricted_velocity=(0.5, 0.7), steps=5)
+    for motion in (body, discrete):
+        found = nh.invariant_measure(motion)
+        assert found.every_density
+        assert found.witness is None
+        assert found.velocity is None
+        assert np.array_equal(found.density(orbit.momentum), np.ones(6))
+    assert np.abs(np.ptp(orbit.restricted_momentum, axis=0)).max() <= 1e-15
+    assert np.abs(nh.invariant_measure(discrete).log_volume(orbit)).max() <= 1e-15
+
+
+def test_what_is_not_known_is_refused() -> None:
+    """Other systems, densities that nobody knows, and flows where a step is meant are named."""
+    discrete = nh.discretize(TOP, STEP)
+    with pytest.raises(ValueError, match=r"must be a top or a sleigh\. Got VeselovaTop"):
+        nh.invariant_measure(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])))
+    with pytest.raises(ValueError, match="not unique and in no known closed form"):
+        nh.invariant_measure(discrete).density([1.0, 1.0])
+    with pytest.raises(ValueError, match="Got 3 admissible directions"):
+        nh.invariant_measure(SYSTEMS["top 4"]).density([1.0, 1.0, 1.0])
+    with pytest.raises(ValueError, match="belong to a discrete map"):
+        nh.invariant_measure(TOP).jacobian(np.eye(3))
+    with pytest.raises(ValueError, match="be an orbit of the measure's motion"):
+        nh.invariant_measure(discrete).log_volume(nh.flow(TOP, restricted_velocity=(1, 1), times=[0.0, 1.0]))
+    thinned = nh.simulate(discrete, restricted_velocity=(0.1, 0.1), steps=4, save_every=2)
+    with pytest.raises(ValueError, match=r"hold every step\. Got save_every=2"):
+        nh.invariant_measure(discrete).log_volume(thinned)

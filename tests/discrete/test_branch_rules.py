@@ -1,0 +1,228 @@
+"""Which value of the map a step takes: the principal one against continuation, the other rules, what is refused."""
+
+import jax
+import numpy as np
+import pytest
+from bodies import GENERAL
+from continuation import FAMILIES, Problems, fold_factors, followed, newton, random_problems
+
+import nonholo as nh
+from nonholo import Outcome
+from nonholo.discrete import Branches
+from nonholo.discrete._branch_equations import frame_of
+from nonholo.discrete._branch_path import followed as followed_on_sphere
+
+TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.3)
+FOUR = nh.discretize(nh.SuslovTop([[1.25, 0.0, -0.5], [0.0, 1.0, -0.75], [-0.5, -0.75, 1.25]]), 1.0)
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1.0)
+BALANCED = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
+ROD = nh.discretize(nh.SuslovTop(np.outer([1.0, 0.5, 0.4], [1.0, 0.5, 0.4]) + np.diag([0.01, 0.02, 0.0])), 1.0)
+ROUND = nh.discretize(nh.SuslovTop(np.diag([1.0, 1.0, 2.0])), 1.0)
+FOUR_REAL = 2 * FOUR.system.constrained_inertia @ np.array([-0.25, -0.375]) / (1 + 0.0625 + 0.140625)  # an equilibrium
+MOTION = nh.discretize(nh.MultidimensionalSleigh(1.3, [0.3, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1), 0.3)
+
+
+def _run(system: nh.SuslovTop, r: np.ndarray) -> nh.Orbit:
+    return nh.simulate(nh.discretize(system, 1.0), momentum=r, steps=1, throw=False)
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_the_principal_value_is_that_of_a_continuation(family: str) -> None:
+    """Steps of up to 40 degrees take the root that 100 equal steps from momentum zero reach, before and after."""
+    problems = random_problems(family, 60, np.random.default_rng(1))
+    y, sure = followed(problems)
+    ahead = problems.following(y)
+    y_ahead, sure_ahead = followed(ahead)
+    references = np.stack([problems.displacement(y), ahead.displacement(y_ahead)], axis=1)
+    exists = sure & sure_ahead
+    assert exists.mean() > 0.9
+    for system, r, W in zip(
+        np.array(problems.systems)[exists], problems.restricted[exists], references[exists], strict=True
+    ):
+        found = _run(system, r).displacement
+        assert np.abs(found - W).max() < 1e-12 * np.abs(W).max()
+
+
+@pytest.mark.parametrize("family", ["top 3", "motion 3"])
+def test_the_traced_step_takes_the_same_value(family: str) -> None:
+    """`step`, in closed form (top) and by definition (motion), agrees with the continuation too."""
+    problems = random_problems(family, 30, np.random.default_rng(2))
+    ahead = problems.following(followed(problems)[0])
+    y, sure = followed(ahead)
+    assert sure.all()
+    for system, r, W in zip(problems.systems, problems.restricted, ahead.displacement(y), strict=True):
+        after = nh.step(nh.discretize(system, 1.0), r)
+        assert np.abs(after.displacement - W).max() < 1e-12 * np.abs(W).max()
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_beyond_the_fold_steps_are_refused(family: str) -> None:
+    """Where the ray of the momentum has passed its fold, by a millionth or more, no step succeeds."""
+    rng = np.random.default_rng(3)
+    problems = random_problems(family, 60, rng)
+    factors = fold_factors(problems)
+    met = np.isfinite(factors)
+    assert met.sum() > 15
+    past = problems.only(met).times(factors[met] * (1 + 10 ** rng.uniform(-6, 0.3, met.sum())))
+    outcomes = {_run(system, r).outcome for system, r in zip(past.systems, past.restricted, strict=True)}
+    assert outcomes <= {Outcome.no_real_branch, Outcome.branch_unverified}
+
+
+def test_following_from_rest_leads_to_the_principal_value() -> None:
+    """Also beyond half a turn, where Cayley coordinates end: the path on the sphere from zero to r."""
+    frame, rng, far = frame_of("test", ROD), np.random.default_rng(4), 0
+    for _ in range(60):
+        r = 1.5 * rng.normal(size=2)
+        code, x = followed_on_sphere(frame.equations(0 * r), frame.equations(r), np.array([1.0, 0.0, 0.0]))
+        found = nh.displacements_over(ROD, r)
+        assert (found.principal is None) == (code == Outcome.no_real_branch)
+        if found.principal is not None:
+            W = frame.increment(x) + np.eye(3)
+            assert np.abs(W - found.displacement[found.principal]).max() < 1e-12
+            far += x[0] < 0
+    assert far > 0
+
+
+def test_nearest_follows_any_real_value() -> None:
+    """From each real displacement the step ends where 200 steps of another continuation end."""
+    for W in _real(nh.displacements_over(TOP, [0.2, 0.3])):
+        y = W[:2, 2] / (1 + W[2, 2])  # z_0 z / z_0^2
+        body = [np.array([x]) for x in (TOP.system.constrained_inertia, TOP.system.coupling)]
+        rows = (
+            TOP.system.restrict(nh.discrete_legendre(TOP, W)),
+            TOP.system.restrict(nh.discrete_legendre(TOP, W, "right")),
+        )
+        before, after = (0.15 * r for r in rows)
+        for t in np.linspace(0, 1, 201)[1:]:
+            problem = Problems([TOP.system], *body, (before + t * (after - before))[None])
+            y, converged, _ = newton(problem, np.reshape(y, (1, 2)))
+            assert converged.all()
+        step = nh.step(TOP, nh.discrete_legendre(TOP, W), branch="nearest")
+        assert np.abs(step.displacement - problem.displacement(y)[0]).max() < 1e-12
+
+
+def _real(found: Branches) -> np.ndarray:
+    return found.displacement[found.is_real].real
+
+
+@pytest.mark.parametrize("discrete", [TOP, SLEIGH, MOTION], ids=["top", "sleigh", "motion"])
+@pytest.mark.parametrize(("branch", "sign"), [("smallest", 1), ("largest", -1)])
+def test_smallest_and_largest_compare_full_momenta(discrete: nh.Discretization, branch: str, sign: int) -> None:
+    """The real value with the smallest or largest norm of all components follows."""
+    r = 0.3 * np.arange(1, len(discrete.system.constraint_subspace) + 1)
+    after = nh.step(discrete, r, branch=branch)
+    found = nh.branches(discrete, momentum=r)
+    norms = sign * np.linalg.norm(found.momentum[found.is_real], axis=1)
+    assert sign * np.linalg.norm(after.momentum) == pytest.approx(norms.min(), rel=1e-12)
+
+
+def test_inner_and_outer_stay_in_their_region() -> None:
+    """In the regular regime both parts of the invariant curve are invariant under their rule."""
+    found = nh.displacements_over(FOUR, [0.2, 0.1])
+    assert found.region[found.is_real].tolist() == ["inner", "outer"]
+    for rule, W in zip(("inner", "outer"), _real(found), strict=True):
+        orbit = nh.simulate(FOUR, displacement=W, steps=10, branch=rule)
+        values = [nh.branches(FOUR, displacement=present) for present in orbit.displacement[:-1]]
+        pairs = zip(values, orbit.displacement[1:], strict=True)
+        assert {str(v.region[np.abs(v.displacement - W).max((1, 2)).argmin()]) for v, W in pairs} == {rule}
+
+
+def test_of_three_outer_values_the_nearest_is_taken() -> None:
+    """The body with four real values has three outer ones; from an outer W the followed one is chosen."""
+    found = nh.displacements_over(FOUR, FOUR_REAL)
+    assert found.region.tolist() == ["inner", "outer", "outer", "outer"]
+    W = _real(found)[1]
+    outer, nearest = (nh.step(FOUR, nh.discrete_legendre(FOUR, W), branch=rule) for rule in ("outer", "nearest"))
+    np.testing.assert_allclose(outer.displacement, nearest.displacement, rtol=0, atol=1e-12)
+    inner = nh.step(FOUR, FOUR_REAL, branch="outer")  # from the inner value the path leads to none of the three
+    assert inner.outcome == Outcome.branch_unverified
+
+
+def test_a_function_gets_the_values_and_the_present() -> None:
+    """A callable sees what `branches` finds and W_k, and its index is obeyed."""
+    seen = []
+
+    def last_real(found: Branches, present: np.ndarray) -> int:
+        seen.append((found, present))
+        return int(np.flatnonzero(found.is_real)[-1])
+
+    after = nh.step(TOP, [0.2, 0.3], branch=last_real)
+    (found, present), expected = seen[0], nh.branches(TOP, momentum=[0.2, 0.3])
+    np.testing.assert_allclose(found.momentum, expected.momentum, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(after.momentum, found.momentum[1].real, rtol=1e-12)
+    assert np.abs(present - _real(nh.displacements_over(TOP, [0.2, 0.3]))[0]).max() < 1e-12
+
+
+def test_a_function_without_a_choice_ends_the_run() -> None:
+    """None means that there is no real branch by this rule; the fields are then NaN."""
+    after = nh.step(TOP, [0.2, 0.3], branch=lambda *_: None)
+    assert after.outcome == Outcome.no_real_branch
+    assert np.isnan([*after.momentum, *after.displacement.ravel(), *after.multipliers]).all()
+
+
+def test_values_that_tie_are_unverified() -> None:
+    """A round balanced top has J_11 = J_22: both values have the same momentum, and no norm tells them apart."""
+    after = nh.step(ROUND, [0.3, 0.4], branch="largest")
+    assert after.outcome == Outcome.branch_unverified
+
+
+def test_a_start_on_a_fold_is_unverified() -> None:
+    """The balanced sleigh folds at a quarter turn: its root is double there and cannot be followed."""
+    W = nh.SE(2).exp(np.array([np.pi / 2, 0.3, 0.0]))
+    orbit = nh.simulate(BALANCED, displacement=W, steps=1, branch="nearest", throw=False)
+    assert (len(orbit), orbit.outcome) == (1, Outcome.branch_unverified)
+
+
+def test_a_value_that_folds_on_the_way_is_not_replaced() -> None:
+    """The second value of this sleigh merges and vanishes on the way, though the map has another real value."""
+    W = _real(nh.displacements_over(SLEIGH, [0.473, -1.307]))[1]
+    orbit = nh.simulate(SLEIGH, displacement=W, steps=3, branch="nearest", throw=False)
+    assert (len(orbit), orbit.outcome) == (1, Outcome.no_real_branch)
+    assert nh.branches(SLEIGH, displacement=W).is_real.any()
+
+
+def test_nearest_can_be_traced() -> None:
+    """Under `jit` it starts at the principal displacement, and equals the eager step there."""
+    with jax.enable_x64(True):
+        traced = jax.jit(lambda r: nh.step(TOP, r, branch="nearest").momentum)(np.array([0.2, 0.3]))
+    np.testing.assert_allclose(traced, nh.step(TOP, [0.2, 0.3], branch="nearest").momentum, rtol=0, atol=1e-13)
+
+
+def test_another_rule_is_refused_under_a_trace() -> None:
+    """All values of the map are found outside of JAX."""
+    with pytest.raises(ValueError, match=r"step\(branch=...\)` must be 'principal' or 'nearest'. Got 'largest' under"):
+        jax.jit(lambda r: nh.step(TOP, r, branch="largest").momentum)(np.array([0.2, 0.3]))
+
+
+def _start(name: str, **options: object) -> dict:
+    system, velocity = GENERAL[name]
+    return {"discrete": nh.discretize(system, 0.1), "restricted_velocity": velocity, **options}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (
+            {"discrete": TOP, "branch": "closest"},
+            "must be one of 'principal', 'nearest', .* a function of the branches",
+        ),
+        ({"discrete": SLEIGH, "branch": "inner"}, "Got 'inner' for ChaplyginSleigh, whose .* Pass 'nearest'"),
+        ({"discrete": ROD, "branch": "inner"}, r"Got 'inner' for SuslovTop, .* Pass 'nearest'.* det B > 2\|c\|\^2"),
+        ({"discrete": TOP, "branch": "inner", "momentum": [5.0, 5.0]}, "Pass 'nearest', or start slower"),
+        ({"discrete": MOTION, "branch": "outer", "momentum": [0.1] * 3}, "no inner and outer part. Pass 'nearest'"),
+        (_start("veselova 3", branch="nearest"), "must be 'principal'. Got 'nearest' for a right-invariant"),
+        (_start("any d on SO(4)", branch="largest"), "Got 'largest' for LLSystem, of whose values not all are known"),
+        ({"discrete": TOP, "branch": "nearest", "backend": "numba"}, "Only 'principal' runs compiled"),
+        ({"discrete": TOP, "branch": "largest", "backend": "jax"}, "must be 'auto'. Got 'jax' with branch 'largest'"),
+        (
+            {"discrete": TOP, "branch": lambda *_: 2},
+            "must return the index of a real branch or None. Got 2",
+        ),
+        ({"discrete": TOP, "branch": "nearest", "momentum": [0.1, 0.2, 9.0]}, "must lie on the momentum locus"),
+    ],
+)
+def test_rules_that_do_not_apply_are_refused(arguments: dict, words: str) -> None:
+    """Each refusal names the reason, and "inner" and "outer" advise "nearest"."""
+    start = {} if "restricted_velocity" in arguments else {"momentum": [0.2, 0.3]}
+    with pytest.raises(ValueError, match=words):
+        nh.simulate(**{**start, **arguments}, steps=2)

@@ -1,0 +1,159 @@
+"""The step in O(n) against the general matrix step, in its singular cases, and with very many dimensions."""
+
+import numpy as np
+import pytest
+from bodies import mass_tensor
+
+import nonholo as nh
+from nonholo import kernels
+from nonholo.discrete._secular import secular_step
+from nonholo.discrete._structured import matrix_step
+from nonholo.kernels._secular_root import certain_radius, level_of
+
+
+def top(n: int, rng: np.random.Generator) -> nh.SuslovTop:
+    """Return a random top."""
+    return nh.SuslovTop(mass_tensor(nh.SO(n), rng))
+
+
+def sleigh(n: int, rng: np.random.Generator) -> nh.MultidimensionalSleigh:
+    """Return a random sleigh."""
+    return nh.MultidimensionalSleigh(1.3, 0.4 * rng.normal(size=n), mass_tensor(nh.SO(n), rng))
+
+
+def arrowhead(n: int, rng: np.random.Generator) -> nh.MultidimensionalSleigh:
+    """Return a random sleigh in the axes of its inertia."""
+    diagonal, coupling = rng.uniform(1, 2, n), 0.1 * rng.normal(size=n - 1)
+    return nh.MultidimensionalSleigh.arrowhead(1.3, 0.4 * rng.normal(size=n), diagonal, coupling)
+
+
+SPECIAL = {
+    "no coupling": nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])),
+    "equal eigenvalues": nh.SuslovTop(np.eye(5) + 0.1 * np.outer(*2 * [np.ones(5)])),
+    "coupling along an eigenvector": nh.SuslovTop.arrowhead([1.0, 2.0, 3.0, 1.5], [0.0, 0.4, 0.0]).dense,
+    "balanced sleigh": nh.MultidimensionalSleigh(1.0, [0.0, 0.0, 0.0], np.eye(3)),
+    "sleigh without arm": nh.MultidimensionalSleigh(1.0, [0.0, 0.3, -0.2], [[1, 0.2, 0.1], [0.2, 2, 0], [0.1, 0, 1.5]]),
+    "sleigh without coupling": nh.MultidimensionalSleigh(1.0, [-0.5, 0.0, 0.0], np.diag([1.0, 2.0, 3.0])),
+    "flat top": nh.SuslovTop(np.diag([0.0, 0.0, 1.0, 2.0]) + 0.1 * np.eye(4)[::-1]),
+}
+
+
+def equal_steps(system: nh.SuslovTop | nh.MultidimensionalSleigh, h: float, rows: np.ndarray) -> None:
+    """Compare one step of both kernels from states with these momenta."""
+    discrete = nh.discretize(system, h)
+    general, secular = matrix_step(discrete), secular_step(discrete)
+    start = np.zeros_like(rows)
+    for r in rows:
+        code, state = kernels.start(general.body, general.scale * r, np.eye(system.group.size).ravel())
+        other, same = kernels.start(secular.body, secular.encoded(r), np.empty(0))
+        assert code == other == 0
+        chart = kernels.chart_of(general.body, state)
+        assert np.allclose(secular.turned_back(kernels.chart_of(secular.body, same)), chart, rtol=0, atol=1e-13)
+        one, _, _ = kernels.step_each(general.body, (general.scale * r[None], chart[None], None), start[:1], True)
+        turned = secular.turned(chart[None])
+        two, _, _ = kernels.step_each(secular.body, (secular.encoded(r)[None], turned, None), start[:1], True)
+        scale = np.abs(r).max()
+        assert np.allclose(secular.decoded(two), one / general.scale, rtol=0, atol=1e-13 * scale)
+
+
+@pytest.mark.parametrize("n", [4, 5, 9, 20])
+@pytest.mark.parametrize("make", [top, sleigh])
+def test_the_matrix_equations(make, n: int) -> None:  # noqa: ANN001
+    """Displacements and momenta agree with those from the matrix equations, with turns up to about 60 degrees."""
+    rng = np.random.default_rng(n)
+    system = make(n, rng)
+    rows = system.restricted_momentum(rng.normal(size=(6, system.rank)) / np.sqrt(n))
+    equal_steps(system, 0.3, rows * np.linspace(0.1, 1.0, 6)[:, None])
+
+
+@pytest.mark.parametrize("name", SPECIAL)
+def test_singular_bodies(name: str) -> None:
+    """Without coupling, arm or distinct eigenvalues, and at rest, the matrix equations still give the same step."""
+    system = SPECIAL[name]
+    rows = system.restricted_momentum(np.random.default_rng(0).normal(size=(3, system.rank)))
+    equal_steps(system, 0.2, rows * np.array([[0.0], [0.5], [1.0]]))
+
+
+@pytest.mark.parametrize("make", [top, sleigh])
+def test_no_other_root_is_certain(make) -> None:  # noqa: ANN001
+    """Of all real displacements over momenta that the ball certifies, only the principal one lies in it."""
+    rng, others = np.random.default_rng(7), 0
+    for _ in range(12):
+        system = make(4 if make is top else 3, rng)
+        discrete = nh.discretize(system, 1.0)
+        step = secular_step(discrete)
+        k = len(step.body.b)
+        r = system.restricted_momentum(rng.normal(size=system.rank))
+        for share in 2.0 ** -np.arange(10):
+            m = step.encoded(share * r)
+            radius = certain_radius(step.body, level_of(step.body, m[:k], m[-1] if step.body.slides else 0.0))
+            if radius > 0:
+                break
+        assert radius > 0
+        found = nh.displacements_over(discrete, share * r)
+        for index in np.flatnonzero(found.is_real):
+            W = found.displacement[index].real
+            K = system.group.vee((W - system.group.inverse(W)) / 2) @ system.constraint_subspace.T
+            x = step.turned(K)[:k]
+            lever = step.body.mass * step.body.arm**2
+            below_right_angle = np.trace(W[: system.group.n, : system.group.n]) > system.group.n - 2
+            certain = (step.body.b + lever) @ x**2 <= radius and below_right_angle
+            assert certain == (index == found.principal)
+            others += index != found.principal
+    assert others >= 6
+
+
+@pytest.mark.parametrize("make", [top, sleigh, arrowhead])
+def test_poses_and_energy_over_many_steps(make) -> None:  # noqa: ANN001
+    """Group and energy are kept to rounding over 20,000 steps; poses follow from the displacements."""
+    rng = np.random.default_rng(3)
+    system = make(6, rng)
+    orbit = nh.simulate(
+        nh.discretize(system, 0.1), restricted_velocity=0.5 * rng.normal(size=system.rank), steps=20_000
+    )
+    assert np.ptp(orbit.energy) <= 1e-14 * orbit.energy[0]
+    states = orbit[19_900:]
+    g, W = states.configuration, states.displacement
+    scale = np.abs(g).max()
+    assert np.abs(g[1:] - g[:-1] @ W[:-1]).max() <= 1e-12 * scale  # rounding of 20,000 reflections, before projection
+    rotations = orbit.pose[-1][: system.group.n**2].reshape(system.group.n, -1)
+    assert np.abs(rotations @ rotations.T - np.eye(system.group.n)).max() <= 1e-12
+
+
+def test_arrowheads_are_dense_bodies() -> None:
+    """An arrowhead moves as the same body with its mass tensor as a matrix, multipliers included."""
+    rng = np.random.default_rng(5)
+    for system in (nh.SuslovTop.arrowhead(rng.uniform(1, 2, 5), 0.2 * rng.normal(size=4)), arrowhead(4, rng)):
+        velocity = rng.normal(size=system.rank)
+        one, two = (
+            nh.simulate(nh.discretize(body, 0.2), restricted_velocity=velocity, steps=50)
+            for body in (system, system.dense)
+        )
+        for name in ("momentum", "configuration", "multipliers", "energy", "body_velocity", "chart"):
+            assert np.allclose(getattr(one, name), getattr(two, name), rtol=0, atol=1e-12), name
+
+
+def test_a_hundred_thousand_dimensions() -> None:
+    """Momenta, charts and energy of SO(100000) need no matrix; energy is exact."""
+    n, rng = 100_000, np.random.default_rng(0)
+    system = nh.SuslovTop.arrowhead(rng.uniform(1, 2, n), rng.normal(size=n - 1) / n)
+    velocity = rng.normal(size=n - 1) / np.sqrt(n)
+    orbit = nh.simulate(nh.discretize(system, 0.1), restricted_velocity=velocity, steps=20, reconstruct=False)
+    assert orbit.chart.shape == orbit.restricted_momentum.shape == (21, n - 1)
+    assert np.ptp(orbit.energy) <= 1e-14 * orbit.energy[0]
+
+
+@pytest.mark.parametrize("name", ["momentum", "multipliers", "displacement", "configuration", "body_velocity"])
+def test_what_grows_with_the_square_is_refused(name: str) -> None:
+    """Full momenta and matrices of a wide body are refused with the remedy."""
+    system = nh.SuslovTop.arrowhead(np.ones(1000), np.zeros(999))
+    orbit = nh.simulate(nh.discretize(system, 0.1), restricted_velocity=np.full(999, 0.03), steps=1, reconstruct=False)
+    with pytest.raises(ValueError, match="reconstruct"):
+        getattr(orbit, name)
+
+
+def test_too_many_poses_are_refused() -> None:
+    """Poses that fill the memory are refused before any work."""
+    system = nh.SuslovTop.arrowhead(np.ones(10_000), np.zeros(9_999))
+    with pytest.raises(ValueError, match="save_every"):
+        nh.simulate(nh.discretize(system, 0.1), restricted_velocity=np.ones(9_999), steps=100)

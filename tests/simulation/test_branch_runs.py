@@ -1,0 +1,117 @@
+"""Runs by a branch rule: the same orbit where the rule means the same value, and orbits off the principal branch."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from bodies import GENERAL
+
+import nonholo as nh
+from nonholo import Outcome
+
+TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.3)
+FAMILIES = {
+    "top": TOP,
+    "tilted top": nh.discretize(
+        nh.SuslovTop.from_inertia([[3, 0.1, 0.2], [0.1, 2, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3)), 0.2
+    ),
+    "top 4": nh.discretize(GENERAL["suslov 4"][0], 0.1),
+    "sleigh": nh.discretize(nh.ChaplyginSleigh(2.0, 1.0, 0.5, 0.3), 0.1),
+    "motion": nh.discretize(GENERAL["sleigh 3"][0], 0.1),
+}
+
+
+@pytest.mark.parametrize("branch", ["nearest", "smallest"])
+@pytest.mark.parametrize("name", FAMILIES)
+def test_small_steps_stay_principal(name: str, branch: str) -> None:
+    """Where the step is small the nearest and the smallest value are the principal one, and all decodes alike."""
+    discrete = FAMILIES[name]
+    v = 0.3 * np.arange(1, len(discrete.system.constraint_subspace) + 1)
+    principal, other = (
+        nh.simulate(discrete, restricted_velocity=v, steps=20, branch=rule) for rule in ("principal", branch)
+    )
+    for quantity in ("time", "momentum", "displacement", "configuration", "multipliers", "energy", "body_velocity"):
+        missed = np.abs(getattr(other, quantity) - getattr(principal, quantity)).max()
+        assert missed < 1e-13 * max(1.0, np.abs(getattr(principal, quantity)).max()), quantity
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_every_real_value_goes_on(name: str) -> None:
+    """From each real displacement over a momentum "nearest" takes values of the map, on the variety, at one energy."""
+    discrete = FAMILIES[name]
+    found = nh.displacements_over(discrete, 0.2 * np.ones(len(discrete.system.constraint_subspace)))
+    for W in found.displacement[found.is_real].real:
+        orbit = nh.simulate(discrete, displacement=W, steps=20, branch="nearest")
+        arriving = nh.discrete_legendre(discrete, orbit.displacement[:-1], "right")
+        jump = discrete.system.restrict(orbit.momentum[1:] - arriving)
+        assert np.abs(jump).max() < 1e-12 * np.abs(orbit.momentum).max()
+        assert np.abs(discrete.constraint_residual(orbit)).max() < 1e-11  # logarithms of nearly half-turns
+        assert np.ptp(orbit.energy) < 1e-12 * orbit.energy[0]
+        posed = orbit.configuration[:-1] @ orbit.displacement[:-1]
+        np.testing.assert_allclose(posed, orbit.configuration[1:], rtol=1e-12, atol=1e-12)
+
+
+def _off_principal() -> np.ndarray:
+    return nh.displacements_over(TOP, [0.2, 0.3]).displacement[1].real
+
+
+def test_the_principal_rule_refuses_that_start() -> None:
+    """And says how to go on from there."""
+    with pytest.raises(nh.OutcomeError, match=r"Start of the run: branch_unverified.*branch='nearest' goes on"):
+        nh.simulate(TOP, displacement=_off_principal(), steps=3)
+
+
+def test_a_full_momentum_names_the_same_start() -> None:
+    """A full momentum on the locus off the principal branch starts at its displacement."""
+    W = _off_principal()
+    orbits = [
+        nh.simulate(TOP, **start, steps=5, branch="nearest")
+        for start in ({"displacement": W}, {"momentum": nh.discrete_legendre(TOP, W)})
+    ]
+    np.testing.assert_allclose(orbits[0].displacement, orbits[1].displacement, rtol=0, atol=1e-12)
+
+
+def test_the_definition_follows_the_same_values() -> None:
+    """backend="jax" follows the root in matrices, here next to half a turn, and finds the same orbit."""
+    start = {"displacement": _off_principal(), "steps": 5, "branch": "nearest"}
+    compact, defined = nh.simulate(TOP, **start), nh.simulate(TOP, **start, backend="jax")
+    np.testing.assert_allclose(defined.displacement, compact.displacement, rtol=0, atol=1e-12)
+
+
+def test_other_systems_follow_by_their_definition() -> None:
+    """Where not all values are known "nearest" continues a root: here from a later displacement of the same orbit."""
+    discrete = nh.discretize(GENERAL["any d on SO(4)"][0], 0.1)
+    whole = nh.simulate(discrete, restricted_velocity=GENERAL["any d on SO(4)"][1], steps=8)
+    later = nh.simulate(discrete, displacement=whole.displacement[3], steps=5, branch="nearest")
+    np.testing.assert_allclose(later.momentum, whole.momentum[3:], rtol=0, atol=1e-12)
+
+
+def test_a_run_that_ends_keeps_its_good_steps() -> None:
+    """A sleigh with a large step folds: the error names the step and holds the orbit so far."""
+    sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1.0)
+    with pytest.raises(nh.OutcomeError, match=r"Step 2 of 30.*no_real_branch") as caught:
+        nh.simulate(sleigh, momentum=[0.473, -1.307], steps=30, branch="nearest")
+    orbit = caught.value.orbit
+    assert isinstance(orbit, nh.Orbit)
+    assert (len(orbit), orbit.outcome, orbit.branch) == (2, Outcome.no_real_branch, "nearest")
+
+
+def test_thinned_runs_keep_every_so_many_states() -> None:
+    """Saved states are those of the whole run; multipliers of steps that are gone are refused with the remedy."""
+    start = {"displacement": _off_principal(), "branch": "nearest"}
+    whole, thin = nh.simulate(TOP, **start, steps=12), nh.simulate(TOP, **start, steps=13, save_every=4)
+    assert np.array_equal(thin.displacement, whole.displacement[::4])
+    assert np.array_equal(thin.configuration, whole.configuration[::4])
+    assert whole.multipliers.shape == (12, 1)
+    with pytest.raises(ValueError, match=r"`Orbit\.multipliers` must have every step.*Run with save_every=1"):
+        _ = thin.multipliers
+
+
+def test_stores_remember_the_rule(tmp_path: Path) -> None:
+    """A loaded orbit knows by which rule it was made; a function is remembered as such."""
+    for rule, name in (("largest", "largest"), (lambda found, _: int(np.flatnonzero(found.is_real)[0]), "callable")):
+        orbit = nh.simulate(TOP, momentum=[0.2, 0.3], steps=2, branch=rule)
+        nh.save_orbit(orbit, tmp_path / f"{name}.zarr")
+        loaded = nh.load_orbit(tmp_path / f"{name}.zarr")
+        assert loaded.branch == name
+        assert np.array_equal(loaded.displacement, orbit.displacement)
