@@ -132,13 +132,19 @@ def _on_displacements(axes: Axes, discrete: Discretization, found: Branches, W: 
     here = variety.flat(discrete, points_of(discrete, W[None]))
     dots = _dots(axes, found, places, here)
     is_strip = isinstance(discrete.system, ChaplyginSleigh)
-    inwards = np.where(is_strip & (np.abs(places[:, :1]) > np.pi / 2), [-1.0, 1.0], [1.0, 1.0])
-    labels = _labels(axes, discrete, found, places, places * inwards)
+    labels = _labels(axes, discrete, found, places, places * _inwards(places, is_strip))
     variety.dress(axes, discrete, curves, _title(found))
     if is_strip:  # a value may have moved farther than the curves are drawn
         reach = max(axes.get_ylim()[1], 1.1 * np.abs(places[:, 1]).max(initial=0.0))
         axes.set_ylim(-reach, reach)
     return BranchesPicture(axes, found, *dots, level, (), labels)
+
+
+def _inwards(places: np.ndarray, is_strip: bool) -> np.ndarray:
+    """Return signs that turn the direction of a label inwards where it would meet the rim or the legend."""
+    if is_strip:
+        return np.where(np.abs(places[:, :1]) > np.pi / 2, [-1.0, 1.0], [1.0, 1.0])
+    return np.where(np.linalg.norm(places, axis=1, keepdims=True) > 0.6, -1.0, 1.0)
 
 
 def _over_momenta(axes: Axes, discrete: Discretization, found: Branches, W: np.ndarray) -> BranchesPicture:
