@@ -7,6 +7,7 @@ import typer
 from nonholo import __version__
 from nonholo.cli._info import info
 from nonholo.cli._new import new
+from nonholo.cli._paper import paper
 from nonholo.cli._plot import plot
 from nonholo.cli._simulate import simulate
 from nonholo.cli._systems import systems
@@ -19,7 +20,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for _command in (simulate, new, systems, info, plot):
+for _command in (simulate, new, systems, info, plot, paper):
     app.command()(_command)
 
 
@@ -46,4 +47,5 @@ def describe(
     nonholo new sleigh > my.toml        write a commented scenario to edit
     nonholo simulate my.toml            run it; the result is kept under runs/
     nonholo info runs/my-001.zarr       what was run, and how exact it is
+    nonholo paper                       the paper behind it, recomputed
     """

@@ -63,6 +63,14 @@ def test_no_cusp_without_reversal(velocity: tuple[float, float, float]) -> None:
     assert drawn.enlarged is None
 
 
+def test_the_detail_can_be_left_out(sleigh_orbit: nh.Orbit) -> None:
+    """Without the enlarged detail the cusp is still marked."""
+    drawn = nh.plot.blade_track(sleigh_orbit, enlarge=False)
+    assert drawn.enlarged is None
+    assert len(drawn.cusps.get_offsets()) == 1
+    assert not drawn.axes.child_axes
+
+
 def test_long_runs_are_thinned_but_keep_the_turn() -> None:
     """Of 20001 states at most some thousand dots are drawn, and the whole turn is shown in the corner."""
     orbit = sleigh_run((0.1, -1.0, 0.0), steps=20000)

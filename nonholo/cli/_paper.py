@@ -1,0 +1,90 @@
+"""`nonholo paper`: recompute the paper and write its page."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from nonholo.reproduction._run import Result
+
+
+def paper(
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="DIR", help="Where to write: empty, new, or an earlier page.")
+    ] = Path("paper"),
+    only: Annotated[
+        list[str] | None,
+        typer.Option("--only", metavar="LABEL", help="A label, a row of the errata or a figure; repeatable."),
+    ] = None,
+) -> None:
+    """Recompute every statement and figure of the paper; write a page with claims and measured values.
+
+    DIR gets index.html, findings.json and figures/. Exits with code 1 if a finding fails.
+
+    nonholo paper
+    nonholo paper -o part --only sus_int --only st
+    """
+    from nonholo.cli._caches import use_cache_folders
+
+    use_cache_folders()
+    import sys
+
+    from nonholo._progress import progress_bar
+    from nonholo.cli._errors import FAILED, USAGE, leave, store_errors
+    from nonholo.reproduction._folder import check_folder, write_folder
+    from nonholo.reproduction._registry import entries, select
+    from nonholo.reproduction._run import evaluate_all
+
+    with store_errors(USAGE):
+        check_folder(output)
+        chosen = select(only) if only else entries()
+    with progress_bar("findings", sys.stderr.isatty()) as report:
+        results = evaluate_all(chosen, report)
+    with store_errors(FAILED):
+        remark = f"Only a part, chosen with --only: {', '.join(only)}." if only else ""
+        write_folder(output, results, remark)
+    _show(results, each=bool(only))
+    typer.echo(output / "index.html")
+    failed = [result.entry.finding.label for result in results if not result.holds]
+    if failed:
+        leave(f"{len(failed)} of {len(results)} findings fail: {', '.join(failed)}.", FAILED)
+
+
+def _show(results: "list[Result]", *, each: bool) -> None:
+    """Print a line for each section, or for each finding."""
+    from rich.console import Console
+    from rich.table import Table
+
+    heading = ("label", "defect", "as printed", "tolerance", "holds") if each else ("section", "findings", "hold")
+    table = Table(*heading, "seconds")
+    for row in _findings(results) if each else _sections(results):
+        table.add_row(*row)
+    Console().print(table)
+
+
+def _findings(results: "list[Result]") -> list[tuple[str, ...]]:
+    return [
+        (
+            result.entry.finding.label,
+            _short(result.measured and result.measured.corrected),
+            _short(result.measured and result.measured.printed),
+            _short(result.entry.finding.tolerance),
+            "yes" if result.holds else "no",
+            f"{result.seconds:.2f}",
+        )
+        for result in results
+    ]
+
+
+def _sections(results: "list[Result]") -> list[tuple[str, ...]]:
+    rows = []
+    for heading in dict.fromkeys(result.entry.section.heading for result in results):
+        own = [result for result in results if result.entry.section.heading == heading]
+        holding, seconds = sum(result.holds for result in own), sum(result.seconds for result in own)
+        rows.append((heading, str(len(own)), str(holding), f"{seconds:.1f}"))
+    return rows
+
+
+def _short(number: float | None) -> str:
+    return "" if number is None else f"{number:.1e}"

@@ -1,0 +1,1 @@
+"""Statements of the paper as findings: one file per topic, named by section."""

@@ -1,0 +1,166 @@
+"""Section 3, the discrete Euler-Poincare-Suslov equations: signs, the three steps of the map, inversion of time."""
+
+import itertools
+
+import numpy as np
+
+import nonholo as nh
+from nonholo.reproduction import _sequences as sequences
+from nonholo.reproduction import _twin as twin
+from nonholo.reproduction._bodies import ANY_4, SLEIGH, SMALL, TOP, TOP_4, Body, apart
+from nonholo.reproduction._finding import Measured, finding
+from nonholo.reproduction._twin import ctx
+from nonholo.reproduction.formulas import general
+
+
+@finding(
+    "S10",
+    "remark",
+    "Section 3, before equation (disc.momentum.eqn)",
+    r"$l_d'(W_k)TL_{W_k}\mathrm{Ad}_{W_k^{-1}}\omega = \langle l_d'(W_k), TL_{W_k}\mathrm{Ad}_{W_k}\omega\rangle = "
+    r"\langle\mathrm{Ad}^*_{W_k^{-1}}TL^*_{W_k}l_d'(W_k), \omega\rangle$.",
+    as_printed="misprint",
+    corrected=r"The middle term has $\mathrm{Ad}_{W_k^{-1}}$.",
+    errata=("S10",),
+    tolerance=1e-45,
+)
+def transported_slope() -> Measured:
+    """Compare both middle terms with the last one and with the momentum by its definition."""
+    right, wrong = [], []
+    for body in SMALL:
+        for W in sequences.displacements(body):
+            slope, E = sequences.slope(body, W), twin.basis(body.group)
+            pulled = [general.left_pullback(slope, W, e) for e in E]
+            last = twin.column(twin.coadjoint(body.group, W**-1, pulled))
+            middle = twin.column([general.transport(slope, W, e) for e in E])
+            right += [middle - last, last - body.momentum(W)]
+            wrong.append(twin.worst(twin.column([general.printed_transport(slope, W, e) for e in E]) - last))
+    return Measured(twin.worst(*right), min(wrong), "2 tops and a sleigh, 4 displacements each")
+
+
+@finding(
+    "disc.momentum.eqn",
+    "equation",
+    "Section 3, equation (disc.momentum.eqn)",
+    r"$P_{k+1} - \mathrm{Ad}^*_{W_k}P_k = \sum_j\lambda_{k+1}^ja_j$, with the multipliers of (discEP.eqn).",
+    as_printed="misprint",
+    corrected=r"The multipliers have the opposite sign: the left-hand side is minus that of (discEP.eqn).",
+    errata=("S11",),
+    tolerance=1e-45,
+)
+def momentum_equation() -> Measured:
+    """Compare both left-hand sides for any two displacements, and the library with the jump of momentum."""
+    right, wrong = [], []
+    for body in (TOP, SLEIGH, TOP_4):
+        for before, after in itertools.pairwise(sequences.displacements(body)):
+            carried = twin.column(twin.coadjoint(body.group, before, list(body.momentum(before))))
+            jump = general.momentum_jump(body.momentum(after), carried)
+            slopes = [sequences.slope(body, before), sequences.slope(body, after)]
+            left = twin.column([general.balance(slopes, [before, after], E) for E in twin.basis(body.group)])
+            right.append(twin.worst(jump + left))
+            wrong.append(twin.worst(jump - left))
+    library = [_multiplier_defect(body) for body in (TOP, SLEIGH, TOP_4, ANY_4)]
+    return Measured(twin.both(max(right), max(library)), min(wrong), "tops n = 3, 4 and a sleigh; 4 orbits")
+
+
+def _multiplier_defect(body: Body) -> float:
+    orbit, worst = sequences.orbit(body), 0.0
+    for k in range(sequences.STEPS):
+        before, after = (sequences.exactly(orbit.displacement[i]) for i in (k, k + 1))
+        jump = general.momentum_jump(body.momentum(after), body.arriving(before))
+        worst = max(worst, twin.worst(jump - general.reaction(orbit.multipliers[k].tolist(), body.forms)))
+    return worst
+
+
+@finding(
+    "discrete-analog",
+    "remark",
+    "Section 3, after equation (disc.momentum.eqn)",
+    r"The equations are a discrete analog of (EPS.eqn).",
+    tolerance=1e-45,
+)
+def discrete_analog() -> Measured:
+    """Compare jumps of momentum over a step of size 1e-60 with the free part of the continuous equations."""
+    defects = []
+    for body in (*SMALL, TOP_4):
+        with ctx.workdps(200):
+            h, k = ctx.mpf(10) ** -60, len(body.subspace)
+            omega, rate = (body.velocity(twin.numbers(seed, k, -2, 2)) for seed in (5, 6))
+            before, after = body.displacement(h * omega), body.displacement(h * omega + h**2 * rate)
+            jump = general.momentum_jump(body.momentum(after), body.arriving(before))
+            torque = twin.coad(body.group, omega, body.inertia * omega)
+            free = general.momentum_rate(torque, [0] * len(body.forms), body.forms)
+            defects.append(jump / h**2 - (body.inertia * rate - free))
+    return Measured(twin.worst(*defects), note="3 bodies and a top n = 4, h = 1e-60")
+
+
+@finding(
+    "three-steps",
+    "remark",
+    "Section 3, after equation (disc.momentum.eqn)",
+    r"$P_{k+1}$ follows from $P_k$ in three steps: $W_k$ by the inverse Legendre transformation; $\hat P_k = "
+    r"\mathrm{Ad}^*_{W_k}P_k$; one of the points of $\mathcal{U}$ that differ from $\hat P_k$ by $\sum_j\lambda_ja_j$. "
+    r"The smallest one is a natural choice for small momenta.",
+    tolerance=1e-45,
+)
+def three_steps() -> Measured:
+    """Take the three steps with the library, and compare the smallest momentum with its own next state."""
+    defects = []
+    tops = [nh.SuslovTop(body.mass_tensor) for body in (TOP, TOP_4)]
+    for system in (*tops, nh.ChaplyginSleigh(2.0, 1.25, 0.5, -0.25)):
+        discrete, k = nh.discretize(system, 0.25), len(system.constraint_subspace)
+        orbit = nh.simulate(discrete, restricted_velocity=[0.5, -0.25, 0.125][:k], steps=2)
+        W = nh.inverse_discrete_legendre(discrete, orbit.momentum[0])
+        arriving = system.group.coadjoint(W, orbit.momentum[0])
+        found = nh.displacements_over(discrete, system.restrict(arriving))
+        points = found.momentum[found.is_real].real
+        chosen = points[np.linalg.norm(points, axis=1).argmin()]
+        defects += [abs(chosen - orbit.momentum[1]).max(), abs(system.restrict(chosen - arriving)).max()]
+    return Measured(twin.both(0.0, max(defects)), note="tops n = 3, 4 and a sleigh")
+
+
+@finding(
+    "standard-momentum",
+    "remark",
+    "After the bibliography (not typeset), indices of momenta",
+    r"The usual momentum belongs to $W_{k-1}$; here $P_k$ is a function of $W_k$.",
+    tolerance=1e-45,
+)
+def shifted_momentum() -> Measured:
+    """Along orbits the usual momentum plus the force of constraint is the momentum of the next displacement."""
+    defects = []
+    for body in (TOP, SLEIGH, TOP_4, ANY_4):
+        discrete, orbit = nh.discretize(body.system, 1.0), sequences.orbit(body)
+        for k in range(sequences.STEPS):
+            usual = body.arriving(sequences.exactly(orbit.displacement[k]))
+            found = usual + general.reaction(orbit.multipliers[k].tolist(), body.forms)
+            defects.append(apart(orbit.momentum[k + 1], found))
+            defects.append(apart(nh.discrete_legendre(discrete, orbit.displacement[k], side="right"), usual))
+    return Measured(twin.both(0.0, max(defects)), note="4 orbits")
+
+
+@finding(
+    "time-inversion",
+    "remark",
+    "After the bibliography (not typeset), discrete time inversion",
+    r"Reversing the order of the indices gives equations of the same form, which iterate backward.",
+    tolerance=1e-45,
+)
+def time_inversion() -> Measured:
+    """Compare the jumps of momentum of a sequence and of its inverses in reverse order, which takes poses back."""
+    defects = []
+    for body in (*SMALL, TOP_4):
+        for before, after in itertools.pairwise(sequences.displacements(body)):
+            forward = general.momentum_jump(body.momentum(after), body.arriving(before))
+            backward = general.momentum_jump(body.momentum(before**-1), body.arriving(after**-1))
+            defects.append(forward - backward)
+    orbits = [_return(body) for body in (TOP, SLEIGH, TOP_4)]
+    return Measured(twin.both(twin.worst(*defects), max(orbits)), note="4 bodies; 3 orbits of the library and back")
+
+
+def _return(body: Body) -> float:
+    """Return how far an orbit that starts at the inverse of the last displacement ends from that of the first."""
+    orbit = sequences.orbit(body)
+    last = body.group.inverse(orbit.displacement[-1])
+    back = nh.simulate(nh.discretize(body.system, 1.0), displacement=last, steps=sequences.STEPS)
+    return float(abs(back.displacement[-1] @ orbit.displacement[0] - body.group.identity).max())

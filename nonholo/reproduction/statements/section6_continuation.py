@@ -1,0 +1,39 @@
+"""Section 6, how the kinetic energy is continued from skew matrices to W - I."""
+
+from collections.abc import Callable
+
+from nonholo.reproduction import _twin as twin
+from nonholo.reproduction._bodies import BALANCED_TOP, TOP, TOP_4, Body, displacements, slopes
+from nonholo.reproduction._finding import Measured, finding
+from nonholo.reproduction._twin import Matrix, Number
+from nonholo.reproduction.formulas import general
+
+
+@finding(
+    "S48",
+    "remark",
+    "Section 6, before equation (*)",
+    r"The discrete Lagrangian is (cont.so-n.lagr) with $\Omega - \mathbf{I}$ for $\omega$; it gives $M = \Omega J - "
+    r"J\Omega^T$. How $l$ continues to matrices that are not skew is left open.",
+    as_printed="misprint",
+    corrected=r"It has to be $\frac12\mathrm{tr}(XJX^T)$. On skew matrices $-\frac12\mathrm{tr}(JX^2)$ is the same, "
+    r"but gives another discrete Lagrangian and another momentum.",
+    errata=("S48",),
+    tolerance=1e-45,
+)
+def continuation() -> Measured:
+    """Differentiate both continuations; on skew matrices they agree."""
+    right, wrong = [], []
+    for body in (TOP, BALANCED_TOP, TOP_4):
+        X = twin.hat(body.group, twin.numbers(3, body.group.dim, -2, 2))
+        right.append(general.continuation(X, body.tensor) - general.printed_continuation(X, body.tensor))
+        for W in displacements(body):
+            M = twin.column(twin.vee(body.group, general.matrix_momentum(W, body.tensor)))
+            right.append(twin.worst(_momentum(body, general.continuation, W) - M))
+            wrong.append(twin.worst(_momentum(body, general.printed_continuation, W) - M))
+    return Measured(twin.worst(right), max(wrong), "tops n = 3, 4, 5 displacements each")
+
+
+def _momentum(body: Body, continued: Callable[[Matrix, Matrix], Number], W: Matrix) -> Matrix:
+    identity = twin.exp(0 * W)
+    return slopes(lambda nudge: continued(nudge * W - identity, body.tensor), body.group)

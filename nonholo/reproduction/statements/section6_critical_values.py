@@ -1,0 +1,190 @@
+"""Section 6: the quartic integral of the discrete top and its critical values."""
+
+import nonholo as nh
+from nonholo.reproduction import _suslov_twin as data
+from nonholo.reproduction import _twin as twin
+from nonholo.reproduction._finding import Measured, finding
+from nonholo.reproduction._twin import Matrix, Number, Vector, ctx
+from nonholo.reproduction.formulas import suslov_integrals as formulas
+
+GENERIC = (*data.REGULAR, "flat")
+
+
+@finding(
+    "quatern_int",
+    "equation",
+    "Section 6, equation (quatern_int)",
+    r"(sus_int) gives rise to the printed quartic $H$ in $(q_0, q_1, q_2)$.",
+    as_printed="misprint",
+    corrected=r"It equals $4H$.",
+    errata=("S33",),
+    tolerance=1e-45,
+)
+def quartic() -> Measured:
+    """Compare with the quadratic form at momenta of matrices."""
+    right, wrong = [], []
+    for J, q, W in data.samples():
+        H, value = formulas.quartic(J, q), formulas.quadratic(J, data.momentum(J, W))
+        right.append(value - formulas.quadratic_of_quartic(H))
+        wrong.append(value - formulas.printed_quadratic_of_quartic(H))
+    return Measured(twin.worst(right), twin.worst(wrong), "8 bodies, 12 displacements")
+
+
+def _point(u: Vector, rho: Number) -> Vector:
+    """Return the displacement with direction u = (z1, z2) and squared sine rho of the half-angle."""
+    sine = ctx.sqrt(rho)
+    return [ctx.sqrt(1 - rho), -sine * u[1], sine * u[0]]
+
+
+def _slopes(J: Matrix, q: Vector) -> list[Number]:
+    """Return the derivatives of the energy at a point along two tangents of the sphere."""
+    tangents = (data.unit([0, -q[2], q[1]]), data.unit([-(q[1] ** 2) - q[2] ** 2, q[0] * q[1], q[0] * q[2]]))
+    moved = []
+    for t in tangents:
+
+        def value(e: Number, t: Vector = t) -> Matrix:
+            return ctx.matrix([data.energy(J, [ctx.cos(e) * a + ctx.sin(e) * b for a, b in zip(q, t, strict=True)])])
+
+        moved.append(data.slope(value)[0])
+    return moved
+
+
+def critical_roots(J: Matrix) -> tuple[Number, Number]:
+    """Return four times the critical values off the equator."""
+    a, b, c = formulas.critical_equation(J)
+    root = ctx.sqrt(b * b - 4 * a * c)
+    return (-b - root) / (2 * a), (-b + root) / (2 * a)
+
+
+def critical_points(J: Matrix) -> list[tuple[Number, Vector]]:
+    """Return the two critical values off the equator, from low to high, with their points."""
+    found = []
+    for mu in critical_roots(J):
+        u = data.unit(formulas.critical_direction(J, mu))
+        found.append((mu / 4, _point(u, formulas.ridge(J, u))))
+    return found
+
+
+def _equatorial(J: Matrix) -> tuple[Number, Vector]:
+    """Return the highest critical half-turn: the library's, refined, and its value."""
+    known = [p for p in nh.critical_energies(data.discrete(J)).points if p.on_equator]
+    z = max(known, key=lambda p: p.energy).half_turn_vector
+    ratio = ctx.findroot(lambda t: formulas.equatorial_cubic(J, [t, 1]), z[0] / z[1], tol=1e-90, verify=False)
+    u = data.unit([ratio, 1])
+    return formulas.equatorial_value(J, u), _point(u, ctx.mpf(1))
+
+
+@finding(
+    "S36",
+    "remark",
+    "Section 6, invariant curves: critical values",
+    r"There are two critical values $h^* < h^{**}$ of the energy, with saddles and with centres.",
+    as_printed=False,
+    corrected=r"There is also a saddle $h_e$ on the equator, $h_e < h^*$ or $h^* < h_e < h^{**}$. With $h = \mu/4$ the "
+    r"others are the roots of $(1 - |c|^2/D)\mu^2 - (\mathrm{tr}B - c\cdot Bc/D)\mu + D = 0$.",
+    errata=("S36",),
+    tolerance=1e-45,
+)
+def critical_values() -> Measured:
+    """Differentiate the energy of matrices at the points; compare values with it and with the library; count them."""
+    exact, library, counts = [], [], []
+    for name in (*GENERIC, "tilted"):
+        J = data.body(name)
+        (low, saddle), (high, centre), (side, half_turn) = *critical_points(J), _equatorial(J)
+        for value, q in ((low, saddle), (high, centre), (side, half_turn)):
+            exact += [value - data.energy(J, q), *_slopes(J, q)]
+        known = nh.critical_energies(data.discrete(J))
+        expected = [known.saddle, known.centre, known.equatorial_saddle]
+        library += [2 * a - b for a, b in zip((low, high, side), expected, strict=True)]
+        counts.append(sum(x > 1e-6 for x in (side, low - side, high - low)))
+    return Measured(twin.both(twin.worst(exact), twin.worst(library)), max(counts) - 2, "four bodies")
+
+
+@finding(
+    "S36",
+    "remark",
+    "Section 6, invariant curves: condition",
+    r"The two critical values exist if the quadratic form of the constrained inertia is positive definite.",
+    as_printed=False,
+    corrected=r"Both exist if $D > 2|c|^2$, $D = \det B$; positivity is not enough: a tilted rod has no saddle off the "
+    r"equator. The condition is sufficient, not necessary: another tilted body violates it and has both.",
+    errata=("S36",),
+    tolerance=1e-45,
+)
+def regular_regime() -> Measured:
+    """Look for saddles and centres of regular bodies; printed: how far the squared sine of a rod's saddle exceeds 1."""
+    facts = []
+    for seed in range(60):
+        J = data.random_body(seed, 3)
+        if formulas.determinant(J) > 2 * formulas.coupling_square(J):
+            facts += [_squared_sine(J, mu) < 1 for mu in critical_roots(J)]
+    rod = data.body("tilted rod")
+    excess = _squared_sine(rod, critical_roots(rod)[0]) - 1
+    facts += [len(facts) > 50, formulas.determinant(rod) > 0]
+    tilted = data.body("tilted")
+    facts += [_squared_sine(tilted, mu) < 1 for mu in critical_roots(tilted)]
+    facts.append(formulas.determinant(tilted) < 2 * formulas.coupling_square(tilted))
+    facts.append(nh.critical_energies(data.discrete(rod)).saddle is None)
+    return Measured(data.lacking(*facts), float(excess), "the regular ones of 60 random bodies; a tilted rod")
+
+
+def _squared_sine(J: Matrix, mu: Number) -> Number:
+    return formulas.ridge(J, data.unit(formulas.critical_direction(J, mu)))
+
+
+@finding(
+    "tangent-cylinders",
+    "remark",
+    "Section 6, invariant curves: critical values",
+    r"At $h^*$ and $h^{**}$ the elliptic cylinder (sus_int) is tangent to the surface of the momenta.",
+    tolerance=1e-45,
+)
+def tangent_cylinders() -> Measured:
+    """Multiply the normal of the cylinder with tangents of the surface at the critical points."""
+    missed = []
+    for name in GENERIC:
+        J = data.body(name)
+        for _, q in critical_points(J):
+            M = data.momentum(J, data.rotation(q))
+            normal = [ctx.diff(lambda x, M=M, J=J: formulas.quadratic(J, [x, M[1]]), M[0])]
+            normal.append(ctx.diff(lambda y, M=M, J=J: formulas.quadratic(J, [M[0], y]), M[1]))
+            for t in ([0, -q[2], q[1]], [-(q[1] ** 2) - q[2] ** 2, q[0] * q[1], q[0] * q[2]]):
+                along = data.slope(lambda e, q=q, t=t, J=J: _momentum(J, q, t, e))
+                missed.append(normal[0] * along[0] + normal[1] * along[1])
+    return Measured(twin.worst(missed), note="three bodies, two critical points each")
+
+
+def _momentum(J: Matrix, q: Vector, tangent: Vector, e: Number) -> Matrix:
+    return ctx.matrix(data.momentum(J, data.rotation(data.unit([a + e * b for a, b in zip(q, tangent, strict=True)]))))
+
+
+@finding(
+    "S39",
+    "remark",
+    "Section 6, stationary solutions",
+    r"Neither the saddles nor the centres of the foliation are stationary, and from a centre the next point is "
+    r"complex.",
+    as_printed=False,
+    corrected=r"False if $c$ is an eigenvector of $B$, for instance $J_{12} = J_{23} = 0$: one of them lies on the "
+    r"line of equilibria, at $q_0^2 = \frac12$. It is true for other bodies.",
+    errata=("S39",),
+    tolerance=1e-45,
+)
+def stationary_centre() -> Measured:
+    """Take a critical point of an aligned body that is repeated; count such points, of generic bodies too."""
+    J, half = data.body("aligned"), ctx.sqrt(ctx.mpf(1) / 2)
+    q = [half, ctx.mpf(0), half]
+    W = data.rotation(q)
+    moved = data.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
+    right = [*moved, *_slopes(J, q)]
+    facts = []
+    for name in GENERIC:
+        J = data.body(name)
+        for _, point in critical_points(J):
+            W = data.rotation(point)
+            change = data.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
+            facts.append(twin.worst(change) > 1e-6)
+        centre = data.array(data.rotation(critical_points(J)[1][1]))
+        facts.append(not nh.branches(data.discrete(J), displacement=centre).is_real.any())
+    printed = float(twin.worst(right) < 1e-45)
+    return Measured(max(twin.worst(right), data.lacking(*facts)), printed, "printed: stationary centres of one body")

@@ -1,0 +1,149 @@
+"""Section 6: the proof of the theorem about the asymptotics of the discrete top."""
+
+from nonholo.reproduction import _suslov_twin as data
+from nonholo.reproduction import _twin as twin
+from nonholo.reproduction._finding import Measured, finding
+from nonholo.reproduction._twin import Matrix, Number, Vector, ctx
+from nonholo.reproduction.formulas import suslov_integrals as formulas
+from nonholo.reproduction.statements.section6_critical_values import critical_roots
+
+NOTE = "8 bodies, balanced, tilted, with J1 = J2 among them; 12 displacements, half-turns among them"
+
+
+@finding(
+    "M_1",
+    "equation",
+    "Section 6, equation (M_1)",
+    r"$\mathcal{M}_1 = (J_{13}q_1 + J_{23}q_2)[Q + Dq_0]$, $D = (J_{11} + J_{33})(J_{22} + J_{33}) - J_{12}^2$, for "
+    r"the momenta (full).",
+    as_printed="misprint",
+    corrected=r"It is true of the combination of $M/2$.",
+    errata=("S45",),
+    tolerance=1e-45,
+)
+def first() -> Measured:
+    """Compare with the combination of momenta of matrices."""
+    return _combination(0)
+
+
+@finding(
+    "M_2",
+    "equation",
+    "Section 6, equation (M_2)",
+    r"$\mathcal{M}_2 = Qq_0 - (J_{13}q_1 + J_{23}q_2)^2$ for the momenta (full).",
+    as_printed="misprint",
+    corrected=r"It is true of the combination of $M/2$.",
+    errata=("S45",),
+    tolerance=1e-45,
+)
+def second() -> Measured:
+    """Compare with the combination of momenta of matrices."""
+    return _combination(1)
+
+
+def _combination(which: int) -> Measured:
+    right, wrong = [], []
+    for J, q, W in data.samples():
+        M = data.momentum(J, W)
+        value = formulas.second_of_point(J, q) if which else formulas.first_of_point(J, q)
+        right.append(formulas.combinations(J, formulas.scaled(M))[which] - value)
+        wrong.append(formulas.combinations(J, M)[which] - value)
+    return Measured(twin.worst(right), twin.worst(wrong), NOTE)
+
+
+def _growth(J: Matrix, W: Matrix) -> tuple[Vector, Vector]:
+    """Return what a step adds to the combinations of half the momenta, and their new values."""
+    before = formulas.combinations(J, formulas.scaled(data.momentum(J, W)))
+    after = formulas.combinations(J, formulas.scaled(data.turned(J, W)))
+    return data.differences(after, before), after
+
+
+def _side(J: Matrix, q: Vector) -> Number:
+    return J[0, 2] * q[1] + J[1, 2] * q[2]
+
+
+@finding(
+    "S41",
+    "equation",
+    "Section 6, proof of theorem (discr_sus_dyn)",
+    r"A step adds $(J_{13}q_1 + J_{23}q_2)^2$ to $\mathcal{M}_2$.",
+    as_printed="misprint",
+    corrected=r"It adds $2(J_{13}q_1 + J_{23}q_2)^2$, for the combination of $M/2$; four times the square for that of "
+    r"$M$.",
+    errata=("S41",),
+    tolerance=1e-45,
+)
+def growth_of_second() -> Measured:
+    """Compare with the combinations of momenta before and after."""
+    right, wrong = [], []
+    for J, q, W in data.samples():
+        grown = _growth(J, W)[0][1]
+        right.append(grown - formulas.growth_of_second(_side(J, q)))
+        wrong.append(grown - formulas.printed_growth_of_second(_side(J, q)))
+    return Measured(twin.worst(right), twin.worst(wrong), NOTE)
+
+
+@finding(
+    "S42",
+    "equation",
+    "Section 6, proof of theorem (discr_sus_dyn)",
+    r"With $s = J_{13}q_1 + J_{23}q_2$ a step adds $-sQ$ to $\mathcal{M}_1$, which becomes $sDq_0$; hence its sign is "
+    r"kept.",
+    as_printed="misprint",
+    corrected=r"It adds $-2sQ$ to the combination of $M/2$, which becomes $s(Dq_0 - Q)$; for the sign $Dq_0 > |Q|$ is "
+    r"needed.",
+    errata=("S42",),
+    tolerance=1e-45,
+)
+def growth_of_first() -> Measured:
+    """Compare with the combinations of momenta before and after."""
+    right, wrong = [], []
+    for J, q, W in data.samples():
+        (grown, _), (after, _) = _growth(J, W)
+        s, Q = _side(J, q), formulas.stability_form(J, q)
+        right += [grown - formulas.growth_of_first(s, Q), after - formulas.next_first(J, q)]
+        wrong += [grown - formulas.printed_growth_of_first(s, Q), after - formulas.printed_next_first(J, q)]
+    return Measured(twin.worst(right), twin.worst(wrong), NOTE)
+
+
+@finding(
+    "S43",
+    "remark",
+    "Section 6, proof of theorem (discr_sus_dyn)",
+    r"In the domain $E \leq h^*$ the bracket $Q + Dq_0$ is positive, because $D > 0$ and $q_0 \geq 0$.",
+    as_printed=False,
+    corrected=r"It is positive inside if $\mu_1 < D^2/(c\cdot Bc)$, where $\mu_1 = 4h^*$ of the reduced energy "
+    r"$m\cdot B^{-1}m$, $m = M/2$; for this $D > 2|c|^2$ is sufficient.",
+    errata=("S43",),
+    tolerance=1e-45,
+)
+def positive_bracket() -> Measured:
+    """Evaluate it inside for regular bodies; printed: its negative share of D at a point inside of a tilted body."""
+    facts, lowest = [], []
+    for seed in range(10):
+        J = data.random_body(seed, 3)
+        if formulas.determinant(J) > 2 * formulas.coupling_square(J):
+            mu = critical_roots(J)[0]
+            facts.append(mu < formulas.determinant(J) ** 2 / formulas.coupling_form(J))
+            lowest += [formulas.bracket(J, q) for q in _inside(J, mu / 4)]
+    J = data.body("tilted")
+    mu, D = critical_roots(J)[0], formulas.determinant(J)
+    u = data.unit(formulas.critical_direction(J, mu))
+    rho = formulas.ridge(J, u) * ctx.mpf("0.97")
+    q = min((_on_ray(rho, u, sign) for sign in (1, -1)), key=lambda q: formulas.bracket(J, q))
+    facts += [len(lowest) > 10, rho < 1, D > 0, min(ctx.eigsy(J, eigvals_only=True)) > 0]
+    facts += [data.energy(J, q) < mu / 4, mu > D**2 / formulas.coupling_form(J)]
+    defect = max(data.lacking(*facts), *(float(max(-value, 0)) for value in lowest))
+    return Measured(defect, float(-formulas.bracket(J, q) / D), "the regular ones of 10 random bodies; a tilted body")
+
+
+def _on_ray(rho: Number, u: Vector, sign: int) -> Vector:
+    return [ctx.sqrt(1 - rho), -sign * ctx.sqrt(rho) * u[1], sign * ctx.sqrt(rho) * u[0]]
+
+
+def _inside(J: Matrix, level: Number) -> list[Vector]:
+    """Return displacements inside the ridge whose energy is below a level."""
+    directions = [[ctx.cos(angle), ctx.sin(angle)] for angle in ctx.linspace(0, 2 * ctx.pi, 6)]
+    rays = [(formulas.ridge(J, u) * share, u) for u in directions for share in (ctx.mpf("0.3"), ctx.mpf("0.95"))]
+    points = [_on_ray(rho, u, 1) for rho, u in rays]
+    return [q for q in points if data.energy(J, q) < level]

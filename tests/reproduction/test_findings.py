@@ -1,0 +1,12 @@
+"""Every finding of the paper holds."""
+
+import pytest
+
+from nonholo.reproduction._registry import Entry, entries
+
+
+@pytest.mark.parametrize("entry", entries(), ids=lambda entry: entry.finding.label)
+def test_finding_holds(entry: Entry) -> None:
+    """The right statement holds to its tolerance, and what is printed wrong fails."""
+    measured = entry.finding.measure()
+    assert entry.finding.holds(measured), measured
