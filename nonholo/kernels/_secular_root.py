@@ -24,7 +24,7 @@ _NEAR_FOLD = 1e-2  # of the determinant, which is 1 at momentum zero
 def level_of(p: SecularBody, m: np.ndarray, m0: float) -> float:
     """Return the energy in the units of the kernel, which every step keeps."""
     lever, total = p.mass * p.arm * p.arm, m0 * m0 / p.mass
-    for i in range(len(m)):
+    for i in range(len(p.b)):
         total += m[i] * m[i] / (p.b[i] + lever)
     return total
 

@@ -33,6 +33,12 @@ def _body(n: int) -> np.ndarray:
 MOTIONS: dict[str, Callable[[], Any]] = {
     "top of SO(4)": lambda: nh.discretize(nh.SuslovTop(_tensor(4)), 0.1),
     "sleigh of SE(3)": lambda: nh.discretize(nh.MultidimensionalSleigh(1.5, [0.3, 0.1, 0.2], _tensor(3)), 0.1),
+    "arrowhead top": lambda: nh.discretize(
+        nh.SuslovTop.arrowhead(_RNG.uniform(1, 2, 4), 0.1 * _RNG.normal(size=3)), 0.1
+    ),
+    "arrowhead sleigh": lambda: nh.discretize(
+        nh.MultidimensionalSleigh.arrowhead(1.5, [0.3, 0.1, 0.2], _RNG.uniform(1, 2, 3), 0.1 * _RNG.normal(size=2)), 0.1
+    ),
     "body of SO(5)": lambda: nh.discretize(nh.RigidBody(_tensor(5)), 0.1),
     "body of SE(3)": lambda: nh.discretize(nh.RigidBody(_body(3), nh.SE(3)), 0.1),
     "Veselova top": lambda: nh.discretize(nh.VeselovaTop(_tensor(3)), 0.1),
