@@ -62,7 +62,7 @@ def _parameters(system: System) -> str:
     if isinstance(system, SuslovTop) and system.axis is not None:
         axis = ", ".join(f"{number:.3g}" for number in np.asarray(system.axis) + 0.0)
         return rf"SO(3),  $\langle\gamma,\omega\rangle = 0$  with  $\gamma$ = ({axis})"
-    free, all_directions = system.constraint_subspace.shape
+    free, all_directions = system.rank, system.group.dim
     if free == all_directions:
         return f"{system.group},  no constraint"
     side = "the body" if isinstance(system, AbstractLLSystem) else "space"

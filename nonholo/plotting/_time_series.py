@@ -16,6 +16,7 @@ from nonholo.plotting._subject import is_steered_in_space
 from nonholo.plotting._thinning import evenly_in_box
 
 _MOST_POINTS = 2000
+_MOST_LINES = 60  # momenta in one panel
 
 
 @dataclasses.dataclass(frozen=True)
@@ -44,14 +45,20 @@ def velocity_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> 
 
 
 def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> TimeSeries:
-    """Draw the momenta along the rows of the constraint subspace, in space for a right-invariant one, against time."""
+    """Draw the momenta along the rows of the constraint subspace, in space for a right-invariant one, against time.
+
+    Of very many those are drawn that become largest.
+    """
     momentum = orbit.restricted_momentum
-    lines = _components(orbit, axes, momentum, [f"$r_{{{i + 1}}}$" for i in range(momentum.shape[1])])
+    k = momentum.shape[1]
+    shown = np.sort(np.argsort(-np.abs(momentum).max(axis=0, initial=0.0), kind="stable")[:_MOST_LINES])
+    lines = _components(orbit, axes, momentum[:, shown], [f"$r_{{{i + 1}}}$" for i in shown])
     if flow is not None:
-        for component, values in enumerate(flow.restricted_momentum.T):
-            _flow(axes, flow.time, values, named=component == momentum.shape[1] - 1)
+        for component, values in enumerate(flow.restricted_momentum[:, shown].T):
+            _flow(axes, flow.time, values, named=component == len(shown) - 1)
     kind = "Spatial momentum" if is_steered_in_space(orbit) else "Momentum"
-    _dress(axes, orbit, f"{kind} along the constraint")
+    of_many = "" if k <= _MOST_LINES else f", the {_MOST_LINES} largest of {k}"
+    _dress(axes, orbit, f"{kind} along the constraint{of_many}")
     return TimeSeries((axes,), lines)
 
 

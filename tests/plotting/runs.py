@@ -27,7 +27,7 @@ def body_tensor(n: int) -> np.ndarray:
 
 def run_of(system: nh.SuslovTop, steps: int = 40, **options: object) -> nh.Orbit:
     """Run any system from a start without symmetry."""
-    velocity = 0.6 * np.cos(np.arange(len(system.constraint_subspace)))
+    velocity = 0.6 * np.cos(np.arange(system.rank))
     return nh.simulate(nh.discretize(system, 0.1), restricted_velocity=velocity, steps=steps, **options)
 
 

@@ -40,6 +40,19 @@ CASES: dict[str, tuple[Callable[[], nh.Orbit], list[str]]] = {
     ),
     "free on SO(5)": (lambda: run_of(nh.RigidBody(body_tensor(5)[:5, :5])), [_MOMENTUM, _VELOCITY, _ENERGY]),
     "top of SO(4)": (lambda: run_of(nh.SuslovTop(body_tensor(4)[:4, :4])), [_SPHERE, _VELOCITY, _ENERGY]),
+    "arrowhead of SO(1000)": (
+        lambda: nh.simulate(
+            nh.discretize(nh.SuslovTop.arrowhead(np.linspace(40, 80, 1000), np.ones(999)), 0.1),
+            restricted_velocity=0.05 * np.cos(np.arange(999)),
+            steps=40,
+            reconstruct=False,
+        ),
+        [f"{_MOMENTUM}, the 60 largest of 999", _ENERGY],
+    ),
+    "arrowhead of SE(4)": (
+        lambda: run_of(nh.MultidimensionalSleigh.arrowhead(1.0, [0.5, 0.2, 0.1, 0.0], [1.0, 2, 3, 4], [0.1, 0.2, 0.3])),
+        [_MOMENTUM, _ENERGY],
+    ),
     "sleigh of SE(3)": (
         lambda: run_of(nh.MultidimensionalSleigh(1.0, [0.5, 0.2, 0.1], body_tensor(3)[:3, :3])),
         [_POINT, _SPHERE, _VELOCITY, _ENERGY],
