@@ -15,6 +15,9 @@ def progress_bar(title: str, wanted: bool) -> Iterator[Callable[[int, int], None
         >>> with progress_bar("steps", wanted=False) as report:
         ...     report(3, 10)
     """
-    with Progress(console=Console(stderr=True), transient=True, disable=not wanted) as bar:
+    if not wanted:
+        yield lambda *_: None
+        return
+    with Progress(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(title)
         yield lambda done, total: bar.update(task, completed=done, total=total)

@@ -1,0 +1,76 @@
+"""The library beside everything else a user could pick: prints the tables of docs/benchmarks.md as Markdown.
+
+    python benchmarks/tables.py [--tables equal precision stored] [--skip exudyn heyoka diffrax pydy scipy] [--rounds 9]
+
+Peers that are not installed are skipped with a line that says so. `pip install -e '.[bench]'` installs them.
+"""
+
+import argparse
+import datetime
+import importlib.metadata
+import os
+import platform
+import warnings
+from collections.abc import Iterable
+from pathlib import Path
+
+from peers import equal_step, stored, work_precision
+from peers.problems import PROBLEMS
+
+PACKAGES = ("nonholo", "numpy", "scipy", "numba", "jax", "diffrax", "heyoka", "exudyn", "pydy", "sympy")
+
+TABLES = {
+    "equal": (equal_step, lambda _: f"{equal_step.STEPS} equal steps to time {equal_step.END:g}"),
+    "precision": (work_precision, lambda p: f"milliseconds to time {p.end:g} for an error at most"),
+    "stored": (stored, lambda p: f"{stored.STATES} states with pose to time {p.end:g}"),
+}
+
+
+def machine() -> str:
+    """Return one line about the machine and one about versions."""
+    about = Path("/proc/cpuinfo")
+    lines = about.read_text().splitlines() if about.exists() else []
+    model = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.processor())
+    versions = []
+    for package in PACKAGES:
+        try:
+            versions.append(f"{package} {importlib.metadata.version(package)}")
+        except importlib.metadata.PackageNotFoundError:
+            versions.append(f"{package} not installed")
+    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
+    date = datetime.datetime.now(datetime.UTC).date()
+    where = f"{model}, {os.cpu_count()} cores, load {load:.1f} at the start, {platform.system()}, {date}."
+    return f"{where}\n\nPython {platform.python_version()}, {', '.join(versions)}."
+
+
+def markdown(title: str, header: Iterable[str], rows: list[tuple], left_out: list[str]) -> str:
+    """Return a table."""
+    header = tuple(header)
+    lines = [f"### {title}", "", _line(header), _line(["---"] + ["---:"] * (len(header) - 1))]
+    lines += [_line(row) for row in rows]
+    return "\n".join([*lines, "", *left_out, ""])
+
+
+def _line(cells: Iterable[str]) -> str:
+    return "| " + " | ".join(cells) + " |"
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--tables", nargs="+", choices=TABLES, default=list(TABLES))
+    parser.add_argument("--skip", nargs="+", default=(), help="peers to leave out")
+    parser.add_argument("--rounds", type=int, default=9, help="repetitions, of which medians are taken")
+    asked = parser.parse_args()
+    warnings.simplefilter("ignore")  # solvers complain at tolerances near rounding; their errors are measured
+    print(machine(), end="\n\n", flush=True)
+    skip = set(asked.skip)
+    for table in asked.tables:
+        room, title = TABLES[table]
+        for problem in PROBLEMS:
+            rows, left_out = room.rows(problem, skip, asked.rounds)
+            print(markdown(f"{problem.name}: {title(problem)}", room.HEADER, rows, left_out), flush=True)
+
+
+if __name__ == "__main__":
+    main()
