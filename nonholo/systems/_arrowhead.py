@@ -5,7 +5,7 @@ of size n x n is ever made.
 """
 
 import dataclasses
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
@@ -94,7 +94,7 @@ class ArrowheadTop(AbstractLLSystem):
         return self.dense.annihilator
 
     @property
-    def canonical(self) -> Self:
+    def canonical(self) -> "ArrowheadTop":
         """The top itself."""
         return self
 
@@ -189,7 +189,7 @@ class ArrowheadSleigh(AbstractLLSystem):
         return self.dense.annihilator
 
     @property
-    def canonical(self) -> Self:
+    def canonical(self) -> "ArrowheadSleigh":
         """The sleigh itself."""
         return self
 
