@@ -134,7 +134,7 @@ class Frame:
     lever: float | None
     offset: Float[np.ndarray, "j"]
 
-    def equations(self, momentum: Float[np.ndarray, "m"]) -> Equations:
+    def equations(self, momentum: Inexact[np.ndarray, "m"]) -> Equations:
         """Return the equations for canonical restricted momenta, multiplied by the time step."""
         if self.length is None:
             return Equations(self.stiffness, self.coupling, self.axes.T @ momentum / (2 * self.inertia))
@@ -151,7 +151,7 @@ class Frame:
         along, sign = push * self.inertia / self.length, 1.0 if len(turning) > 1 else -1.0
         return np.append(sign * (turning + self.offset * along), along)
 
-    def chart(self, x: Float[np.ndarray, "m"]) -> Float[np.ndarray, "m"]:
+    def chart(self, x: Float[np.ndarray, "m"]) -> Float[np.ndarray, "k"]:
         """Return the canonical Cayley coordinates of a displacement; huge at angle pi."""
         k, z0 = len(self.stiffness), x[0] if x[0] != 0 else _AT_PI
         y = (self.axes @ x[1 : k + 1]) / z0

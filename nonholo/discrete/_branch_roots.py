@@ -62,12 +62,12 @@ def place(root: Root) -> tuple:
     return not root.is_real, np.linalg.norm(root.point[1:]), root.point[0].imag
 
 
-def _polished(equations: Equations, starts: Inexact[Array, "B m"]) -> Inexact[Array, "B m"]:
+def _polished(equations: Equations, starts: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
     roots, reached = _newton(equations, _finite(starts))
     return _finite(roots[reached])
 
 
-def _finite(points: Inexact[Array, "B m"]) -> Inexact[Array, "B m"]:
+def _finite(points: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
     return points[np.abs(points).max(axis=1) < _FAR]
 
 
@@ -175,7 +175,7 @@ def _between(start: Equations, end: Equations, t: float) -> Equations:
     return dataclasses.replace(end, **mixed)
 
 
-def _followed(end: Equations, start: Equations, x: Inexact[Array, "B m"]) -> Inexact[Array, "B m"]:
+def _followed(end: Equations, start: Equations, x: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
     """Follow roots while t falls from 1 to almost 0 by factors, then solve the given problem; some are lost."""
     t, ratio = 1.0, 0.8
     while t > _ARRIVED and len(x) > 0:

@@ -88,7 +88,7 @@ def _extreme(found: Branches, real: np.ndarray, sign: int) -> list[int]:
     norms = sign * np.linalg.norm(found.momentum[real], axis=1)
     if len(real) == 0:
         return []
-    return list(real[norms <= norms.min() + _TIED * np.abs(norms).max()])
+    return real[norms <= norms.min() + _TIED * np.abs(norms).max()].tolist()
 
 
 def _by_user(rule: Chooser, found: Branches, present: np.ndarray) -> list[int]:

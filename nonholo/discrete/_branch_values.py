@@ -61,7 +61,7 @@ class Branches:
         return len(self.is_real)
 
 
-def values_over(discrete: Discretization, frame: Frame, r: Float[np.ndarray, "k"]) -> Branches:
+def values_over(discrete: Discretization, frame: Frame, r: Inexact[np.ndarray, "k"]) -> Branches:
     """Return all values over a restricted momentum in the user's frame."""
     canonical = discrete.system.frame_map @ r
     return branches_of(discrete, canonical, roots_over(discrete, frame, canonical))
@@ -85,7 +85,7 @@ def roots_over(discrete: Discretization, frame: Frame, canonical: Inexact[np.nda
     return Roots(equations, found, np.array(increments).reshape(-1, *system.group.identity.shape))
 
 
-def branches_of(discrete: Discretization, canonical: Float[np.ndarray, "k"], roots: Roots) -> Branches:
+def branches_of(discrete: Discretization, canonical: Inexact[np.ndarray, "k"], roots: Roots) -> Branches:
     """Return what is known of the displacements over a canonical restricted momentum."""
     system = cast(AbstractLLSystem, discrete.system)
     equations, found, X = roots

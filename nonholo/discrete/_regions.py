@@ -9,7 +9,7 @@ import dataclasses
 import numpy as np
 import scipy.linalg
 
-from nonholo._types import Float
+from nonholo._types import Float, Inexact
 from nonholo.discrete._discretization import Discretization
 from nonholo.systems import SuslovTop
 
@@ -55,7 +55,7 @@ def is_regular(discrete: Discretization) -> bool:
     return _regular_landscape(discrete) is not None
 
 
-def regions(discrete: Discretization, displacement: Float[np.ndarray, "B 3 3"]) -> np.ndarray:
+def regions(discrete: Discretization, displacement: Inexact[np.ndarray, "B N N"]) -> np.ndarray:
     r"""Return the region of each real displacement: "inner", "outer", "between", or "" where there is none.
 
     With the critical energies $h^* < h^{**}$ of `critical_energies`, in the regular regime: "inner" is

@@ -1,6 +1,6 @@
 """`step`: one step of the discrete map as a pure JAX function."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox
 import jax
@@ -41,9 +41,7 @@ class StepResult(NamedTuple):
     outcome: Array
 
 
-def step(
-    discrete: Discretization, momentum: Float[Array, "dim"] | Float[Array, "k"], branch: BranchRule = "principal"
-) -> StepResult:
+def step(discrete: Discretization, momentum: Any, branch: BranchRule = "principal") -> StepResult:
     r"""Take one step of the discrete map: from $P_k$ to $P_{k+1}$, with the displacement $W_{k+1}$ at the new momentum.
 
     $$ P_{k+1} = \mathrm{Ad}^*_{W_k} P_k + \sum_j \lambda_j a^j, \qquad P_k = P(W_k),\ P_{k+1} = P(W_{k+1}). $$

@@ -12,7 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo._checks import as_floats
-from nonholo._types import Array, Float
+from nonholo._types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._mass import inertia_form
 from nonholo.systems._wide import WideInertia
@@ -115,7 +115,7 @@ class AbstractSystem(abc.ABC):
         velocity, inertia = as_floats(restricted_velocity), self.inertia_along
         return inertia.momenta(velocity) if isinstance(inertia, WideInertia) else velocity @ inertia
 
-    def restrict(self, momentum: Float[Array, "... dim"]) -> Float[Array, "... k"]:
+    def restrict(self, momentum: Inexact[Array, "... dim"]) -> Inexact[Array, "... k"]:
         """Return the components of a momentum along the rows of the constraint subspace."""
         return as_floats(momentum) @ self.constraint_subspace.T
 
