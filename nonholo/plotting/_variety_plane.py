@@ -80,7 +80,8 @@ def dress(axes: Axes, discrete: Discretization, curves: list[InvariantCurve], ti
         _dress_disc(axes)
 
 
-def _dress_disc(axes: Axes) -> None:
+def draw_rim(axes: Axes) -> None:
+    """Draw the half-turns around a disc; points with the same letter are the same one."""
     axes.add_patch(Circle((0, 0), 1.0, facecolor="none", edgecolor=theme.MUTED, linewidth=1.2, zorder=2))
     for index, letter in enumerate(_PAIRS):
         angle = np.pi * (index + 0.5) / len(_PAIRS)
@@ -88,6 +89,10 @@ def _dress_disc(axes: Axes) -> None:
             x, y = sign * np.cos(angle), sign * np.sin(angle)
             axes.plot(x, y, "o", color=theme.MUTED, markersize=4, zorder=4)
             axes.text(1.07 * x, 1.07 * y, letter, color=theme.INK, ha="center", va="center", style="italic")
+
+
+def _dress_disc(axes: Axes) -> None:
+    draw_rim(axes)
     axes.set(xlim=(-1.14, 1.14), ylim=(-1.14, 1.14), xticks=[], yticks=[])
     axes.set_aspect("equal")
     axes.spines[:].set_visible(False)

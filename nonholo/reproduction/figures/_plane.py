@@ -5,13 +5,9 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.patches import Circle
 
 from nonholo._types import Float
 from nonholo.analysis import InvariantCurve
-from nonholo.plotting import _theme as theme
-
-_LETTERS = "abcd"
 
 
 def project(z: Float[np.ndarray, "... 3"]) -> Float[np.ndarray, "... 2"]:
@@ -29,14 +25,3 @@ def draw_curve(axes: Axes, curve: InvariantCurve, **look: Any) -> LineCollection
     lines = LineCollection(runs, **look)
     axes.add_collection(lines)
     return lines
-
-
-def draw_rim(axes: Axes) -> None:
-    """Draw the half-turns; points with the same letter are the same one."""
-    axes.add_patch(Circle((0, 0), 1.0, facecolor="none", edgecolor=theme.MUTED, linewidth=1.2, zorder=2))
-    for index, letter in enumerate(_LETTERS):
-        angle = np.pi * (index + 0.5) / len(_LETTERS)
-        for sign in (1, -1):
-            x, y = sign * np.cos(angle), sign * np.sin(angle)
-            axes.plot(x, y, "o", color=theme.MUTED, markersize=4, zorder=4)
-            axes.text(1.07 * x, 1.07 * y, letter, ha="center", va="center", style="italic")

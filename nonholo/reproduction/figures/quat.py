@@ -13,10 +13,11 @@ from matplotlib.lines import Line2D
 import nonholo as nh
 from nonholo._types import Float
 from nonholo.plotting import _theme as theme
+from nonholo.plotting._variety_plane import draw_rim
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._suslov_twin import BODIES
 from nonholo.reproduction.figures._figure import Figure
-from nonholo.reproduction.figures._plane import draw_curve, draw_rim, project
+from nonholo.reproduction.figures._plane import draw_curve, project
 from nonholo.reproduction.figures.st import TOP
 from nonholo.reproduction.formulas import suslov_integrals as formulas
 from nonholo.reproduction.formulas import suslov_momenta
