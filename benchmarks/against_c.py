@@ -25,17 +25,17 @@ STEPS, ROUNDS = 1_000_000, 11
 FLAGS = ["-O3", "-march=native", "-ffp-contract=fast", "-fno-math-errno", "-fopenmp-simd", "-shared", "-fPIC"]
 
 
-def built() -> ctypes.CDLL:
-    """Compile the reference."""
+def built(name: str = "steps.c", functions: tuple[str, ...] = ("suslov", "sleigh", "top_n")) -> ctypes.CDLL:
+    """Compile a reference."""
     compiler = shutil.which("cc") or shutil.which("gcc")
     if compiler is None:
         raise SystemExit("against_c needs a C compiler. Install gcc.")
-    library = Path(tempfile.mkdtemp()) / "steps.so"
-    source = Path(__file__).parent / "c" / "steps.c"
+    library = Path(tempfile.mkdtemp()) / "reference.so"
+    source = Path(__file__).parent / "c" / name
     subprocess.run([compiler, *FLAGS, str(source), "-o", str(library), "-lm"], check=True)  # noqa: S603
     found = ctypes.CDLL(str(library))
-    for name in ("suslov", "sleigh", "top_n"):
-        getattr(found, name).restype = ctypes.c_long
+    for function in functions:
+        getattr(found, function).restype = ctypes.c_long
     return found
 
 

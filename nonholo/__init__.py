@@ -47,7 +47,12 @@ if TYPE_CHECKING:
     from nonholo.lagrange_dalembert import LagrangeDAlembert as LagrangeDAlembert
     from nonholo.lagrange_dalembert import mass_tensor_lagrangian as mass_tensor_lagrangian
     from nonholo.orbit import Orbit as Orbit
+    from nonholo.simulation import Ensemble as Ensemble
+    from nonholo.simulation import ensemble as ensemble
+    from nonholo.simulation import extend as extend
     from nonholo.simulation import flow as flow
+    from nonholo.simulation import iterate as iterate
+    from nonholo.simulation import resume as resume
     from nonholo.simulation import simulate as simulate
     from nonholo.systems import ChaplyginSleigh as ChaplyginSleigh
     from nonholo.systems import LLSystem as LLSystem
@@ -65,6 +70,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "ChaplyginSleigh": "systems",
     "Discretization": "discrete",
+    "Ensemble": "simulation",
     "GroupLagrangeDAlembert": "lagrange_dalembert",
     "LLSystem": "systems",
     "LRSystem": "systems",
@@ -91,8 +97,10 @@ _HOMES = {
     "discrete_legendre": "discrete",
     "discretize": "discrete",
     "displacements_over": "discrete",
+    "ensemble": "simulation",
     "equilibria": "analysis",
     "euler_angle_discrete_lagrangian": "systems",
+    "extend": "simulation",
     "flow": "simulation",
     "flow_obstruction": "analysis",
     "fold_distance": "discrete",
@@ -103,6 +111,7 @@ _HOMES = {
     "invariant_measure": "analysis",
     "invariants": "analysis",
     "inverse_discrete_legendre": "discrete",
+    "iterate": "simulation",
     "is_symmetric_pair": "systems",
     "load_orbit": "io",
     "lyapunov_function": "analysis",
@@ -110,6 +119,7 @@ _HOMES = {
     "momentum_locus": "analysis",
     "moser_veselov_displacement": "discrete",
     "reference_point_subspace": "systems",
+    "resume": "simulation",
     "save_orbit": "io",
     "simulate": "simulation",
     "single_valued_region": "analysis",

@@ -136,6 +136,8 @@ def _resting(system: AbstractLLSystem, orbit: Orbit, velocity: Float[np.ndarray,
 
 
 def _known_to_persist(discrete: Discretization, energy: float) -> bool:
+    if discrete.order > 2:
+        return False
     if isinstance(discrete.system, ChaplyginSleigh):
         return energy < single_valued_region(discrete).energy
     if discrete.system.group.dim != 3:

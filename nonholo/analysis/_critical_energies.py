@@ -12,6 +12,7 @@ import numpy as np
 from nonholo._checks import error
 from nonholo._types import Float
 from nonholo.discrete import Discretization
+from nonholo.discrete._composition import refuse_composition
 from nonholo.discrete._regions import Landscape, landscape
 from nonholo.systems import ChaplyginSleigh, SuslovTop
 
@@ -112,6 +113,7 @@ def _checked(where: str, discrete: Any) -> SuslovTop:
         remedy = "Its level curves are ellipses; `single_valued_region` gives the energy where branches merge."
     if not isinstance(system, SuslovTop) or system.group.dim != 3:
         raise error(where, "be a discretised Suslov top with n = 3", f"{type(system).__name__}", remedy)
+    refuse_composition(where, discrete, "Pass the discretisation of order 2 that is composed.")
     if not discrete.conserves_energy:
         got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
         raise error(where, "conserve the energy", got, "Use the defaults of `discretize`.")

@@ -11,6 +11,7 @@ import numpy as np
 from nonholo._checks import error, positive
 from nonholo._types import Array, Float
 from nonholo.discrete import Discretization
+from nonholo.discrete._composition import weights
 from nonholo.systems import ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
 from nonholo.systems._base import AbstractLLSystem
 
@@ -77,7 +78,8 @@ def equilibria(system: AbstractLLSystem | Discretization, energy: Array = 1.0) -
     return EquilibriumSpectrum(known.subspace, known.attracting, velocity, rates, multipliers)
 
 
-def _checked(where: str, value: Any) -> tuple[AbstractLLSystem, float | None]:
+def _checked(where: str, value: Any) -> tuple[AbstractLLSystem, Float[np.ndarray, "S"] | None]:
+    """Return the body and the time steps of the substeps, one for order 2."""
     remedy = "Pass a SuslovTop, a sleigh, or a discretisation of one."
     body = value.system if isinstance(value, Discretization) else value
     if not isinstance(body, AbstractLLSystem):
@@ -87,7 +89,7 @@ def _checked(where: str, value: Any) -> tuple[AbstractLLSystem, float | None]:
     if not value.conserves_energy:
         got = f"difference={value.difference!r}, constraint={value.constraint!r}"
         raise error(where, "conserve the energy", got, "Use the defaults of `discretize`.")
-    return body, float(value.time_step)
+    return body, float(value.time_step) * weights(value.order)
 
 
 def _rates(body: AbstractLLSystem, w: Float[np.ndarray, "k"]) -> Float[np.ndarray, "j"]:
@@ -111,11 +113,12 @@ def _turning(B: Float[np.ndarray, "k k"], c: Float[np.ndarray, "k"], w: Float[np
     return -np.linalg.norm(w) * np.linalg.norm(c) * np.linalg.eigvalsh(across.T @ np.linalg.solve(B, across))
 
 
-def _multipliers(body: AbstractLLSystem, velocity: np.ndarray, rates: np.ndarray, step: float) -> np.ndarray:
-    sine = step * float(body.group.angle(velocity))
-    if sine > 1:
+def _multipliers(body: AbstractLLSystem, velocity: np.ndarray, rates: np.ndarray, steps: np.ndarray) -> np.ndarray:
+    """Return the products, over the substeps of a step, of their multipliers."""
+    sine = np.abs(steps[:, None]) * float(body.group.angle(velocity))
+    if sine.max() > 1:
         remedy = "Lower the energy or the time step."
-        got = f"time_step * angular velocity = {sine:.6g}"
+        got = f"time_step * angular velocity = {sine.max():.6g}"
         raise error("equilibria(energy=...)", "belong to a step of at most 90 degrees", got, remedy)
-    share = (1 + np.sqrt((1 - sine) * (1 + sine))) / 2
-    return (share + step * rates / 2) / (share - step * rates / 2)
+    share, change = (1 + np.sqrt((1 - sine) * (1 + sine))) / 2, steps[:, None] * rates / 2
+    return np.prod((share + change) / (share - change), axis=0)

@@ -75,7 +75,10 @@ def followed(orbit: Orbit, found: Approach, where: str = "asymptotics(subject=..
 
 
 def _discrete(orbit: Orbit, discrete: Discretization, spectrum: EquilibriumSpectrum, decay: float, where: str) -> Ends:
-    """Run the map forwards, and backwards with the inverse displacement: the map is reversible."""
+    """Run the map forwards, and backwards from the inverse displacement: the map is reversible.
+
+    A composition goes back from the opposite momentum.
+    """
     slowest = float(np.abs(np.asarray(spectrum.multipliers)).max())
     wanted = decay / -np.log(slowest) if slowest < 1 else np.inf
     if wanted > _LONGEST:
@@ -84,9 +87,10 @@ def _discrete(orbit: Orbit, discrete: Discretization, spectrum: EquilibriumSpect
         raise error(where, f"settle within {_LONGEST} steps", got, remedy)
     group, W, g = discrete.system.group, orbit.displacement[0], _pose(orbit)
     steps = int(np.ceil(wanted)) + 1
-    first = simulate(discrete, displacement=group.inverse(W), configuration=g @ W, steps=steps)
     last = simulate(discrete, momentum=orbit.restricted_momentum[0], configuration=g, steps=steps)
-    return Ends(first, last)
+    composed = discrete.order > 2
+    back = {"momentum": -last.restricted_momentum[1]} if composed else {"displacement": group.inverse(W)}
+    return Ends(simulate(discrete, **back, configuration=g @ W, steps=steps), last)
 
 
 def _pose(orbit: Orbit) -> Float[np.ndarray, "N N"]:

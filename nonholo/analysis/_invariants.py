@@ -7,8 +7,10 @@ import numpy as np
 from nonholo._checks import error
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
+from nonholo.discrete._composition import composed_reversal_defects
 from nonholo.discrete._structured import reversal_defects, structured
 from nonholo.orbit import Orbit, as_orbit
+from nonholo.systems import ArrowheadSleigh, is_wide
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
 _SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
@@ -73,6 +75,10 @@ def invariants(orbit: Orbit) -> Invariants:
 
 def _largest_angle(orbit: Orbit) -> float:
     group = orbit.system.group
+    if is_wide(orbit.system):
+        slides = int(isinstance(orbit.system, ArrowheadSleigh))
+        y = orbit.canonical_chart[:, : orbit.system.rank - slides]  # tan of half the angle, in planes through one axis
+        return float(np.degrees(2 * np.arctan(np.linalg.norm(y, axis=1)).max()))
     return float(np.degrees(group.angle(group.log(orbit.displacement)).max()))
 
 
@@ -87,5 +93,6 @@ def _reversal_defect(orbit: Orbit) -> float | None:
     if not isinstance(motion, Discretization) or structured(motion) is None:
         return None
     moving = np.abs(orbit.canonical_chart).sum(axis=1) > 0
-    defects = reversal_defects(motion, orbit.chosen(moving))
+    measured = reversal_defects if motion.order == 2 else composed_reversal_defects
+    defects = measured(motion, orbit.chosen(moving))
     return float(np.max(defects, initial=0.0, where=~np.isnan(defects)))

@@ -12,6 +12,7 @@ import numpy as np
 from nonholo._checks import error
 from nonholo._types import Float
 from nonholo.discrete import Discretization
+from nonholo.discrete._composition import refuse_composition
 from nonholo.systems import ChaplyginSleigh
 
 
@@ -75,6 +76,7 @@ def _checked(where: str, discrete: Any) -> tuple[ChaplyginSleigh, float]:
     remedy = "Pass `discretize(ChaplyginSleigh(...), time_step)`."
     if not isinstance(discrete, Discretization) or not isinstance(discrete.system, ChaplyginSleigh):
         raise error(where, "be a discretised Chaplygin sleigh", repr(discrete), remedy)
+    refuse_composition(where, discrete, "Pass the discretisation of order 2 that is composed.")
     if not discrete.conserves_energy:
         got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
         raise error(where, "be the map with three branches", got, "Use the defaults of `discretize`.")

@@ -5,10 +5,12 @@ from typing import Annotated
 import typer
 
 from nonholo import __version__
+from nonholo.cli._extend import extend
 from nonholo.cli._info import info
 from nonholo.cli._new import new
 from nonholo.cli._paper import paper
 from nonholo.cli._plot import plot
+from nonholo.cli._resume import resume
 from nonholo.cli._simulate import simulate
 from nonholo.cli._systems import systems
 
@@ -20,7 +22,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for _command in (simulate, new, systems, info, plot, paper):
+for _command in (simulate, new, systems, info, plot, resume, extend, paper):
     app.command()(_command)
 
 
@@ -47,5 +49,6 @@ def describe(
     nonholo new sleigh > my.toml        write a commented scenario to edit
     nonholo simulate my.toml            run it; the result is kept under runs/
     nonholo info runs/my-001.zarr       what was run, and how exact it is
+    nonholo resume run.zarr             go on with a long run that stopped
     nonholo paper                       the paper behind it, recomputed
     """

@@ -20,8 +20,8 @@ def info(
 
     use_cache_folders()
     from nonholo.cli._errors import FAILED, USAGE, leave, store_errors
-    from nonholo.cli._provenance import show_provenance
-    from nonholo.io import load_orbit, read_attributes
+    from nonholo.cli._provenance import show_provenance, show_standing
+    from nonholo.io import load_orbit, read_attributes, standing
 
     with store_errors(USAGE):
         stored = read_attributes(store)
@@ -29,6 +29,9 @@ def info(
         if "scenario" not in stored:
             leave("This store was not made from a scenario.", FAILED)
         typer.echo(stored["scenario"], nl=False)
+        return
+    if unfinished := standing(store):
+        show_standing(store, stored, unfinished, json=json)
         return
     try:
         orbit, failure = load_orbit(store), None

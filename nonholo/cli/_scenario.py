@@ -34,6 +34,7 @@ class Run(Section):
     save_every: Count = 1
     difference: Literal["matrix", "logarithmic"] | None = None
     constraint: Literal["skew", "exponential", "naive"] | None = None
+    order: Literal[2, 4, 6, 8] = 2
     branch: Literal["principal", "nearest", "smallest", "largest", "inner", "outer"] = "principal"
 
 
@@ -57,7 +58,8 @@ class Scenario(Section):
         """Return the discretised body."""
         from nonholo.discrete import discretize
 
-        return discretize(self.body.system(), self.run.time_step, self.run.difference, self.run.constraint)
+        run = self.run
+        return discretize(self.body.system(), run.time_step, run.difference, run.constraint, run.order)
 
     def in_force(self, discrete: "Discretization") -> Self:
         """Return the scenario with the library's choices of difference and constraint written out."""

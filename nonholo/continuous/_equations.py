@@ -79,6 +79,10 @@ class ContinuousFlow(AbstractMotion):
             velocity = (system.group.adjoint(states.configuration) @ velocity[..., None])[..., 0]
         return velocity @ system.annihilator.T
 
+    def displacements(self, states: Orbit) -> Float[np.ndarray, "K N N"]:
+        """Refuse: a continuous motion has no displacements."""
+        return self.displaced(states.canonical_chart)
+
     def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Refuse: a continuous motion has no displacements."""
         got = f"chart coordinates {cayley} of a continuous flow"

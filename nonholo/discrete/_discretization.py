@@ -8,8 +8,9 @@ import numpy as np
 
 from nonholo._checks import choice, error, positive
 from nonholo._types import Array, Float
+from nonholo.discrete._composition import checked_order, first_substep, refuse_composition, whole_displacements
 from nonholo.discrete._legendre import legendre, legendre_of_chart
-from nonholo.discrete._structured import next_charts
+from nonholo.discrete._structured import is_secular, next_charts
 from nonholo.discrete._variety import Constraint, Variety, checked_constraint, equations_of, variety_of
 from nonholo.orbit import AbstractMotion, Orbit
 from nonholo.systems import AbstractLRSystem, AbstractSystem, System, is_wide
@@ -27,7 +28,7 @@ class Discretization(AbstractMotion):
         time_step: h.
         difference: "matrix", "logarithmic" or a callable.
         constraint: "skew", "exponential", "naive" or functions.
-        order: 2.
+        order: 2, or 4, 6, 8: a symmetric composition of steps of order 2.
 
     Example:
         >>> discretize(ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
@@ -54,6 +55,8 @@ class Discretization(AbstractMotion):
             >>> discretize(ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, difference="logarithmic").conserves_energy
             False
         """
+        if is_secular(self):
+            return True
         variety = self.variety
         skew = self.constraint == "skew" or (self.constraint == "exponential" and not variety.exponential)
         return self.difference == "matrix" and skew and not isinstance(self.system, AbstractLRSystem)
@@ -77,22 +80,30 @@ class Discretization(AbstractMotion):
         frame = self.system.frame
         return frame @ self.variety.displaced(cayley) @ self.system.group.inverse(frame)
 
+    def displacements(self, states: Orbit) -> Float[np.ndarray, "K N N"]:
+        """Return the displacements of whole steps; spatial ones for a right-invariant constraint."""
+        return self.displaced(states.canonical_chart) if self.order == 2 else whole_displacements(self, states)
+
     def constraint_residual(self, states: Orbit) -> Float[np.ndarray, "K j"]:
         """Return the forbidden parts of logarithms of displacements, or the residuals of the variety's equations."""
+        if is_wide(self.system):
+            return np.zeros((len(states), 0))  # the chart has no forbidden directions
         D = self.variety.displaced(states.canonical_chart)
         if self.variety.exact:
             return self.system.group.log(D) @ self.variety.annihilator.T
         return equations_of(self.variety, D)
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
-        """Return the discrete momenta at the displacements."""
-        return self._momentum(states, states.canonical_chart, "left")
+        """Return the discrete momenta at the displacements, of a composition at those of first substeps."""
+        return first_substep(self)._momentum(states, states.canonical_chart, "left")
 
     def multipliers(self, states: Orbit) -> Float[np.ndarray, "L s"]:
         r"""Return the impulses $\lambda$ in $P_{k+1} - \mathrm{Ad}^*_{W_k} P_k = \sum_j \lambda_j a^j$.
 
         For a right-invariant constraint the right-hand side is $\sum_j \lambda_j \mathrm{Ad}^*_{g_{k+1}} a^j$.
         """
+        remedy = "Impulses of substeps at different poses do not add up to one of the step: run with order=2."
+        refuse_composition("Orbit.multipliers", self, remedy)
         if states.save_every > 1 and states.branch != "principal":
             got = f"branch {states.branch!r} and save_every {states.save_every}: the steps between are not known"
             raise error("Orbit.multipliers", "have every step, or the principal branch", got, "Run with save_every=1.")
@@ -118,10 +129,12 @@ def _in_body(discrete: Discretization, cayley: np.ndarray, g: np.ndarray, side: 
     return legendre(discrete, discrete.system.group.inverse(g) @ discrete.variety.increment(cayley) @ g, side)
 
 
-def as_discretization(where: str, value: Any) -> Discretization:
-    """Refuse what is not a discretised system on a group."""
+def as_discretization(where: str, value: Any, *, composed: bool = False) -> Discretization:
+    """Refuse what is not a discretised system on a group, and compositions unless they are welcome."""
     if not isinstance(value, Discretization):
         raise error(where, "be a discretised system on a group", repr(value), "Pass what `discretize` returned.")
+    if not composed:
+        refuse_composition(where, value, "Pass the discretisation of order 2 that is composed.")
     return value
 
 
@@ -162,14 +175,17 @@ def discretize(
         constraint: "skew", (W - W^-1)/2 in d on the component through the identity; "exponential", exp d; "naive",
             W - I projected to the algebra, in d; or functions f_j(W) of a JAX matrix, zero on the variety. By default
             "skew" where it is defined, on SO(n) and SE(n), and "exponential" elsewhere.
-        order: 2.
+        order: 2, or 4, 6, 8: a symmetric composition of 5, 9, 15 steps of order 2 with time steps of either sign. It
+            needs difference "matrix" or "logarithmic" and constraint "skew" or "exponential". See
+            docs/theory/compositions.md for what momenta and displacements of its orbits are.
 
     Returns:
         The discretisation; of a system in coordinates a `nonholo.lagrange_dalembert.CoordinateDiscretization`.
 
     Raises:
         ValueError: A time step that is not positive and real, an unknown choice, a difference or a constraint that is
-            not defined for the system, functions that do not fit d at the identity.
+            not defined for the system, functions that do not fit d at the identity,
+            an order that cannot be had.
 
     Example:
         >>> discretize(ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), time_step=0.1).difference
@@ -185,8 +201,7 @@ def discretize(
     step = positive("discretize(time_step=...)", time_step, "Pass a positive real time step.")
     chosen = _difference(system, difference)
     variety = _constraint(system, constraint)
-    choice("discretize(order=...)", order, (2,))
-    return Discretization(system, step, chosen, variety, order)
+    return Discretization(system, step, chosen, variety, checked_order(order, chosen, variety))
 
 
 def _difference(system: AbstractSystem, difference: Difference | None) -> Difference:

@@ -88,6 +88,13 @@ def _identity(motion: AbstractMotion) -> dict[str, str]:
     }
 
 
+def other_versions(stored: dict[str, Any]) -> str:
+    """Name the packages of which a store was made with another version; empty if there is none."""
+    now = _versions()
+    made = json.loads(stored["versions"]).items()
+    return ", ".join(f"{name} {old} (now {now.get(name)})" for name, old in made if old != now.get(name))
+
+
 def _versions() -> dict[str, str]:
     packages = ("nonholo", "numpy", "numba", "zarr")
     return {"python": platform.python_version()} | {name: version(name) for name in packages}

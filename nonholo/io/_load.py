@@ -15,6 +15,7 @@ from nonholo.io._attributes import FORMAT, READABLE, SCHEMA, restore_motion
 from nonholo.orbit import Orbit
 
 _WHERE = "load_orbit(path=...)"
+_NAN = "NaN"
 _AGAIN = "The store is damaged: copy it again from its source, or run it again."
 
 
@@ -34,14 +35,25 @@ def load_orbit(path: str | Path, *, discrete: Discretization | None = None) -> O
     Example:
         >>> orbit = load_orbit("orbit.zarr")  # doctest: +SKIP
     """
-    root = Path(path)
+    return _loaded(Path(path), discrete, last=False)
+
+
+def load_last_block(path: Path, discrete: Discretization) -> Orbit:
+    """Load the states in the last chunk of a store."""
+    return _loaded(path, discrete, last=True)
+
+
+def _loaded(root: Path, discrete: Discretization | None, *, last: bool) -> Orbit:
     stored = read_attributes(root)
+    if "run" in stored and "outcome" not in stored:
+        remedy = f"Go on with nonholo.resume('{root}') (nonholo resume); `nonholo info` says how far it came."
+        raise error(_WHERE, "be a finished run", f"'{root}', which is not", remedy)
     try:
         shapes = json.loads(stored["arrays"])
         motion, outcome, every = restore_motion(stored, discrete), Outcome[stored["outcome"]], stored["save_every"]
     except (KeyError, json.JSONDecodeError) as failure:
-        raise error(_WHERE, "hold complete attributes", f"'{path}' without {failure}", _AGAIN) from failure
-    arrays = {name: _read(root, name, tuple(shape)) for name, shape in shapes.items()}
+        raise error(_WHERE, "hold complete attributes", f"'{root}' without {failure}", _AGAIN) from failure
+    arrays = {name: _read(root, name, tuple(shape), last) for name, shape in shapes.items()}
     compact = {name: arrays.get(name) for name in ("time", "reduced_momentum", "cayley", "pose", "turned")}
     branch = stored.get("branch", "principal")  # stores of before branch rules have none
     return Orbit(motion, outcome=outcome, save_every=every, branch=branch, **compact)  # type: ignore[arg-type]
@@ -64,7 +76,7 @@ def read_attributes(path: str | Path) -> dict[str, Any]:
     return stored
 
 
-def _read(root: Path, name: str, shape: tuple[int, ...]) -> Float[np.ndarray, "..."]:
+def _read(root: Path, name: str, shape: tuple[int, ...], last: bool) -> Float[np.ndarray, "..."]:
     try:
         array = zarr.open_array(root / name, mode="r")
     except Exception as failure:
@@ -72,20 +84,38 @@ def _read(root: Path, name: str, shape: tuple[int, ...]) -> Float[np.ndarray, ".
     if array.shape != shape or array.dtype != np.float64:
         got = f"{array.dtype} of shape {array.shape}"
         raise error(_WHERE, f"hold the array {name} as float64 of shape {shape}", got, _AGAIN)
-    blocks = [_block(root, name, array, index) for index in np.ndindex(array.cdata_shape)]
+    indices = list(np.ndindex(array.cdata_shape))[-1 if last else 0 :]
+    blocks = [_block(root, name, array, index) for index in indices]
     return np.concatenate(blocks) if blocks else np.empty(shape)
 
 
 def _block(root: Path, name: str, array: zarr.Array, index: tuple[int, ...]) -> np.ndarray:
-    """Return one chunk; a missing one would be read as its fill value, NaN, so its file is looked for first."""
-    key = array.metadata.encode_chunk_key(index)
-    requirement = f"hold chunk {key} of the array {name}"
-    if not (root / name / key).is_file():
-        raise error(_WHERE, requirement, "no such chunk", _AGAIN)
+    found = read_chunk(root, name, array, index)
+    if isinstance(found, str):
+        requirement = f"hold {chunk_name(name, array, index)}" + (" free of NaN" if found == _NAN else "")
+        raise error(_WHERE, requirement, found, _AGAIN)
+    return found
+
+
+def chunk_name(name: str, array: zarr.Array, index: tuple[int, ...]) -> str:
+    """Return how messages call a chunk."""
+    return f"chunk {array.metadata.encode_chunk_key(index)} of the array {name}"
+
+
+def chunk_path(root: Path, name: str, array: zarr.Array, index: tuple[int, ...]) -> Path:
+    """Return the file of a chunk."""
+    return root / name / array.metadata.encode_chunk_key(index)
+
+
+def read_chunk(root: Path, name: str, array: zarr.Array, index: tuple[int, ...]) -> np.ndarray | str:
+    """Return one chunk, or what is wrong with it.
+
+    A missing one would be read as its fill value, NaN, so its file is looked for first.
+    """
+    if not chunk_path(root, name, array, index).is_file():
+        return "no such chunk"
     try:
         block = np.asarray(array.blocks[index])
     except Exception as failure:
-        raise error(_WHERE, requirement, f"a corrupt one ({failure})", _AGAIN) from failure
-    if np.isnan(block).any():
-        raise error(_WHERE, requirement + " free of NaN", "NaN", _AGAIN)
-    return block
+        return f"a corrupt one ({failure})"
+    return _NAN if np.isnan(block).any() else block

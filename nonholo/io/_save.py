@@ -43,11 +43,11 @@ def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scena
     as_orbit("save_orbit(orbit=...)", orbit, "for one in coordinates use orbit.to_dataset().to_zarr(path).")
     target = Path(path).resolve()
     check_target(target, overwrite=overwrite)
-    part = _sibling(target, "partial")
+    part = sibling(target, "partial")
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         _write(orbit_to_dataset(orbit), {} if scenario is None else attributes_of_text(scenario), part)
-        _put_in_place(part, target, overwrite)
+        put_in_place(part, target, overwrite=overwrite)
     except FileExistsError:
         raise
     except OSError as failure:
@@ -78,7 +78,8 @@ def _is_store(path: Path) -> bool:
         return False
 
 
-def _sibling(target: Path, purpose: str) -> Path:
+def sibling(target: Path, purpose: str) -> Path:
+    """Return a hidden new name beside a path."""
     return target.with_name(f".{target.name}.{uuid.uuid4().hex[:12]}.{purpose}")
 
 
@@ -87,6 +88,11 @@ def _write(dataset: xarray.Dataset, extra: dict[str, Any], path: Path) -> None:
     group = zarr.create_group(path, zarr_format=3, attributes={**dataset.attrs, **extra, "arrays": json.dumps(shapes)})
     for name, variable in dataset.variables.items():
         _write_array(group, str(name), variable, is_coordinate=name in dataset.coords)
+    consolidate(path)
+
+
+def consolidate(path: Path) -> None:
+    """Gather the metadata of a complete store in one file."""
     with _FILTERS, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # zarr: consolidated metadata are not in the specification yet
         zarr.consolidate_metadata(path)
@@ -94,21 +100,30 @@ def _write(dataset: xarray.Dataset, extra: dict[str, Any], path: Path) -> None:
 
 def _write_array(group: zarr.Group, name: str, variable: xarray.Variable, *, is_coordinate: bool) -> None:
     """Write an array one chunk after the other, so that a failure leaves no writer behind."""
-    array = group.create_array(
+    rows = len(variable)
+    array = create_array(group, name, variable, rows, max(1, min(_ROWS, rows)), is_coordinate=is_coordinate)
+    for first in range(0, rows, _ROWS):
+        array[first : first + _ROWS] = np.ascontiguousarray(variable.values[first : first + _ROWS])
+
+
+def create_array(
+    group: zarr.Group, name: str, variable: xarray.Variable, rows: int, chunk: int, *, is_coordinate: bool
+) -> zarr.Array:
+    """Make the array of a variable for so many rows, so many in a chunk; rows that are not written are NaN."""
+    return group.create_array(
         name,
-        shape=variable.shape,
+        shape=(rows, *variable.shape[1:]),
         dtype="float64",
-        chunks=(max(1, min(_ROWS, len(variable))), *variable.shape[1:]),
+        chunks=(chunk, *variable.shape[1:]),
         compressors=(BloscCodec(cname="zstd", clevel=3, shuffle="shuffle"), Crc32cCodec()),
         fill_value=float("nan"),
         dimension_names=[str(dimension) for dimension in variable.dims],
         attributes=variable.attrs | ({} if is_coordinate else {"coordinates": "time"}),
     )
-    for first in range(0, len(variable), _ROWS):
-        array[first : first + _ROWS] = np.ascontiguousarray(variable.values[first : first + _ROWS])
 
 
-def _put_in_place(part: Path, target: Path, overwrite: bool) -> None:
+def put_in_place(part: Path, target: Path, *, overwrite: bool) -> None:
+    """Rename a complete store to its path; an older one there is replaced only if asked."""
     if not (overwrite and target.exists()):
         try:
             part.rename(target)
@@ -116,7 +131,7 @@ def _put_in_place(part: Path, target: Path, overwrite: bool) -> None:
             check_target(target)
             raise
         return
-    old = _sibling(target, "old")
+    old = sibling(target, "old")
     target.rename(old)
     try:
         part.rename(target)

@@ -8,10 +8,11 @@ import numba
 import numpy as np
 
 from nonholo.kernels._interface import Body, certified, correction, increment, move, principal
-from nonholo.kernels._scalar import COMPILED
+from nonholo.kernels._scalar import COMPILED, scalar
 
 STATE_SIZE = 14
 _SETTLED = 1e-150  # of one momentum to the other; squares below it underflow
+CORRECTIONS = 8  # of a guess, before the root is followed from momentum zero
 
 
 @numba.njit(cache=True, nogil=True, **COMPILED)
@@ -86,13 +87,19 @@ def _solve(p: Body, m1: float, m2: float, y1: float, y2: float) -> tuple[int, fl
 @numba.njit(cache=True, **COMPILED)
 def _newton(p: Body, m1: float, m2: float, y1: float, y2: float) -> tuple[bool, float, float]:
     """Correct a guess until the next correction would be below rounding."""
-    for _ in range(8):
+    for _ in range(CORRECTIONS):
         d1, d2 = correction(p, m1, m2, y1, y2)
         y1 += d1
         y2 += d2
-        if d1 * d1 + d2 * d2 <= 1e-18 * (1 + y1 * y1 + y2 * y2):
+        if converged(d1, d2, y1, y2):
             return True, y1, y2
     return False, y1, y2
+
+
+@scalar
+def converged(d1: float, d2: float, y1: float, y2: float) -> bool:
+    """Tell whether a correction that led to y was so small that the next one would be below rounding."""
+    return d1 * d1 + d2 * d2 <= 1e-18 * (1 + y1 * y1 + y2 * y2)
 
 
 @numba.njit(cache=True, nogil=True, **COMPILED)

@@ -2,16 +2,20 @@
 
 import numpy as np
 
-from nonholo.kernels import _driver, _general_run, _secular_run
+from nonholo.kernels import _composition, _driver, _general_run, _secular_run
+from nonholo.kernels._composition import ComposedBody
 from nonholo.kernels._general import GeneralBody
 from nonholo.kernels._interface import Body
 from nonholo.kernels._secular import SecularBody
 
-AnyBody = Body | GeneralBody | SecularBody
+PlainBody = Body | GeneralBody | SecularBody
+AnyBody = PlainBody | ComposedBody
 
 
 def sizes(body: AnyBody) -> tuple[int, int, int]:
     """Return the numbers of momenta, chart coordinates and pose entries of a state."""
+    if isinstance(body, ComposedBody):
+        return sizes(body.body)
     if isinstance(body, GeneralBody):
         return len(body.directions), len(body.stretch), body.tensor.size
     if isinstance(body, SecularBody):
@@ -22,6 +26,8 @@ def sizes(body: AnyBody) -> tuple[int, int, int]:
 
 def start(body: AnyBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
     """Return the outcome of the first root and the state of a run that begins with scaled momenta and a pose."""
+    if isinstance(body, ComposedBody):
+        return _composition.start(body, momentum, pose)
     if isinstance(body, GeneralBody):
         return _general_run.start(body, np.array(momentum), np.array(pose))
     if isinstance(body, SecularBody):
@@ -33,6 +39,8 @@ def start(body: AnyBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, n
 def chart_of(body: AnyBody, state: np.ndarray) -> np.ndarray:
     """Return the chart coordinates of the displacement in a state."""
     k, m, _ = sizes(body)
+    if isinstance(body, ComposedBody):
+        return _composition.first_chart(body, state, k, m)
     if isinstance(body, SecularBody):
         return _secular_run.chart_in(body, state)
     chart = state[2 * k : 2 * k + m]
@@ -43,6 +51,8 @@ def advance(
     body: AnyBody, state: np.ndarray, steps: int, every: int, rows: tuple[np.ndarray, np.ndarray, np.ndarray]
 ) -> tuple[int, int]:
     """Take up to `steps` steps into rows of momenta, charts and poses; return how many were good and the outcome."""
+    if isinstance(body, ComposedBody):
+        return _composition.advance(body, state, steps, every, rows)
     if isinstance(body, GeneralBody):
         return _general_run.advance(body, state, steps, every, *rows)
     if isinstance(body, SecularBody):
@@ -51,7 +61,7 @@ def advance(
 
 
 def step_each(
-    body: AnyBody,
+    body: PlainBody,
     states: tuple[np.ndarray, np.ndarray, np.ndarray | None],
     guesses: np.ndarray,
     principal_only: bool,

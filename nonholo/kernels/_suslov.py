@@ -29,20 +29,34 @@ class SuslovBody(NamedTuple):
 
 def suslov_body(constrained_inertia: Any, coupling: Any) -> SuslovBody:
     """Pack the parameters of a top; concrete ones get the radius of the certificate, traced ones a radius of zero."""
+    if isinstance(constrained_inertia, np.ndarray) and isinstance(coupling, np.ndarray):
+        return SuslovBody(*(float(x) for x in suslov_table(constrained_inertia, coupling)))
     (b11, b12), (_, b22) = constrained_inertia
     c1, c2 = coupling
-    concrete = isinstance(constrained_inertia, np.ndarray) and isinstance(coupling, np.ndarray)
-    radius = _certain_radius(constrained_inertia, coupling) if concrete else 0.0
-    body = (b11, b12, b22, c1, c2, radius * radius)
-    return SuslovBody(*(float(x) for x in body)) if concrete else SuslovBody(*body)
+    return SuslovBody(b11, b12, b22, c1, c2, 0.0)
 
 
-def _certain_radius(B: np.ndarray, c: np.ndarray) -> float:
-    low, high = np.linalg.eigvalsh(B)
-    length, pull = np.linalg.norm(c), np.linalg.norm(B @ c)
-    bound = np.roots([-pull - 2 * length * high, -low * high, -pull, low * high])
-    smallest = min(root.real for root in bound if abs(root.imag) <= 1e-9 * abs(root) and root.real > 0)
-    return 0.999 * min(smallest, 0.7 * low / length if length > 0 else np.inf)
+def suslov_table(B: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Return the parameters of one top or of many (leading axes of B and c), one row for each field of a body."""
+    return np.stack([B[..., 0, 0], B[..., 0, 1], B[..., 1, 1], c[..., 0], c[..., 1], _certain_radius(B, c) ** 2])
+
+
+def _certain_radius(B: np.ndarray, c: np.ndarray) -> np.ndarray:
+    low, high = np.moveaxis(np.linalg.eigvalsh(B), -1, 0)
+    length, pull = np.linalg.norm(c, axis=-1), np.linalg.norm((B @ c[..., None])[..., 0], axis=-1)
+    with np.errstate(divide="ignore"):
+        return 0.999 * np.minimum(_positive_root(pull + 2 * length * high, low * high, pull), 0.7 * low / length)
+
+
+def _positive_root(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Return the positive root of a x^3 + b x^2 + c x = b, at most 1; Newton's method from 1 only comes down to it."""
+    x = np.ones_like(b)
+    for _ in range(200):
+        change = (((a * x + b) * x + c) * x - b) / ((3 * a * x + 2 * b) * x + c)
+        x = x - change
+        if np.all(change <= 1e-9 * x):
+            break
+    return x
 
 
 @scalar

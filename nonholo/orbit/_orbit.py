@@ -45,6 +45,10 @@ class AbstractMotion(abc.ABC):
         """Return what the constraint wants to be zero."""
 
     @abc.abstractmethod
+    def displacements(self, states: "Orbit") -> Float[np.ndarray, "K N N"]:
+        """Return the displacements of whole steps from the states, in the user's frame; spatial ones of LR systems."""
+
+    @abc.abstractmethod
     def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Return the elements of the displacement variety, in the user's frame, with canonical chart coordinates."""
 
@@ -55,7 +59,8 @@ class Orbit:
 
     Arrays are in the user's body frame, momenta in physical units. In a discrete orbit $W_k = g_k^{-1} g_{k+1}$ is the
     displacement and $P_k$ the momentum at $W_k$; with `save_every` > 1 displacements and multipliers are those of the
-    single steps at the saved k.
+    single steps at the saved k. Of a composition (order > 2) the momentum is that at the first substep, the
+    displacement that of the whole step.
 
     Attributes:
         motion: The discretisation or flow that made it.
@@ -120,7 +125,10 @@ class Orbit:
 
     @property
     def canonical_chart(self) -> Float[np.ndarray, "K m"]:
-        """Coordinates of the displacements in the canonical frame, those that steps work with."""
+        """Coordinates of the displacements in the canonical frame, those that steps work with.
+
+        Of a composition (order > 2) they are those of the first substep, here and in `chart`.
+        """
         if self.cayley is None:
             raise ValueError("`Orbit.displacement` needs a discrete orbit. Got a continuous flow. Use `simulate`.")
         return self.cayley
@@ -151,7 +159,7 @@ class Orbit:
     @property
     def displacement(self) -> Float[np.ndarray, "K N N"]:
         """Displacements W_k = g_k^-1 g_(k+1) of single steps at the saved states."""
-        D = self.motion.displaced(self.canonical_chart)
+        D = self.motion.displacements(self)
         if not isinstance(self.system, AbstractLRSystem):
             return D
         g = self.configuration
@@ -160,7 +168,7 @@ class Orbit:
     @property
     def spatial_displacement(self) -> Float[np.ndarray, "K N N"]:
         """Displacements U_k = g_(k+1) g_k^-1 seen from space; on the variety for a right-invariant constraint."""
-        D = self.motion.displaced(self.canonical_chart)
+        D = self.motion.displacements(self)
         if isinstance(self.system, AbstractLRSystem):
             return D
         g = self.configuration

@@ -1,17 +1,18 @@
 """`simulate`: an orbit of the discrete map, from a checked start to a decoded result."""
 
+from pathlib import Path
 from typing import Any, overload
 
 import numpy as np
 
 from nonholo import kernels
-from nonholo._checks import choice, error, step_counts
+from nonholo._checks import error
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, finished
-from nonholo.discrete import Discretization, initial_state
-from nonholo.discrete._branch_rules import BranchRule, checked_rule
-from nonholo.discrete._discretization import as_discretization
-from nonholo.discrete._start import check_first_state, in_group
+from nonholo.discrete import Discretization
+from nonholo.discrete._branch_rules import BranchRule
+from nonholo.discrete._composition import compiled_step
+from nonholo.discrete._start import check_first_state
 from nonholo.discrete._structured import (
     Structured,
     decoded,
@@ -19,15 +20,16 @@ from nonholo.discrete._structured import (
     encoded,
     encoded_poses,
     from_kernel,
-    is_secular,
-    structured,
 )
 from nonholo.orbit import Orbit
+from nonholo.simulation._composed_run import composed_runner
+from nonholo.simulation._prepared import checked_counts, first_state
 from nonholo.simulation._rule_run import Rows, Run, rule_runner
+from nonholo.simulation._stored_run import refuse_checkpoints, run_into_store
+from nonholo.simulation._stretch import compiled_run
 from nonholo.systems._coordinate_system import AbstractCoordinateDiscretization, OrbitT, refuse_in_coordinates
 
 _BLOCK = 1 << 20  # steps between two reports of progress
-_LARGEST = 1 << 30  # numbers in all poses of an orbit, 8 GiB
 
 
 @overload
@@ -46,6 +48,8 @@ def simulate(
     backend: str = "auto",
     throw: bool = True,
     progress: bool = False,
+    store: str | Path | None = None,
+    checkpoint_every: int | None = None,
 ) -> Orbit: ...
 @overload
 def simulate(
@@ -75,6 +79,8 @@ def simulate(
     backend: str = "auto",
     throw: bool = True,
     progress: bool = False,
+    store: str | Path | None = None,
+    checkpoint_every: int | None = None,
 ) -> Any:
     r"""Run the discrete Euler-Poincare-Suslov map.
 
@@ -101,7 +107,8 @@ def simulate(
         steps: Number of steps N; unthinned orbits have N + 1 states.
         body_velocity: Start with the principal W_0 that has the same momentum along the constraint (second order).
         restricted_velocity: The same, in rows of the constraint subspace.
-        displacement: Start with this W_0, on the displacement variety; with branch "principal" on that branch.
+        displacement: Start with this W_0, on the displacement variety; with branch "principal" on that branch. Not
+            for compositions (order > 2), whose state is the restricted momentum.
         momentum: Start with this momentum, full (on the momentum locus) or along the constraint subspace.
         configuration: First pose, a matrix of the group; the identity by default.
         save_every: Keep every so many steps.
@@ -111,12 +118,18 @@ def simulate(
         backend: "numba" (closed forms, compiled), "jax" (the definition), or "auto" to choose.
         throw: Raise if the run cannot go on; otherwise return the good steps and the outcome.
         progress: Show a progress bar on standard error.
+        store: A new path. The saved states of a compiled run go there block by block, in bounded memory; `resume` and
+            `extend` go on with it. An orbit that would fill 1 GiB is not returned whole but as its last block.
+        checkpoint_every: Steps between two checkpoints of the store, a multiple of `save_every`; by default blocks of a
+            few megabytes. A run that is stopped loses at most so many steps.
 
     Returns:
         The orbit; of a system in coordinates a `nonholo.lagrange_dalembert.CoordinateOrbit`.
 
     Raises:
         ValueError: A bad argument, before any work.
+        FileExistsError: There is something at the path `store`.
+        OSError: The disk is full; the store stays valid, and `resume` goes on.
         OutcomeError: The start is not on the principal branch, or, with `throw`, the run could not go on; then the
             error's `orbit` holds every good step.
 
@@ -134,17 +147,21 @@ def simulate(
             branch=(branch, "principal"),
             reconstruct=(reconstruct, True),
             backend=(backend, "auto"),
+            store=(store, None),
+            checkpoint_every=(checkpoint_every, None),
         )
         options = {"save_every": save_every, "throw": throw, "progress": progress}
         return discrete.simulate(configuration=configuration, steps=steps, **starts, **options)
-    as_discretization("simulate(discrete=...)", discrete)
-    steps, every = step_counts(steps, save_every)
-    rule = checked_rule("simulate", discrete, branch)
-    choice("simulate(backend=...)", backend, ("auto", "numba", "jax"))
+    steps, every, rule = checked_counts(discrete, steps, save_every, branch, backend, displacement)
+    starts["restricted_velocity"] = restricted_velocity
+    if store is not None:
+        stored = compiled_run("simulate(store=...)", discrete, rule, backend, every, reconstruct)
+        start = first_state(discrete, configuration, int(reconstruct), True, starts)
+        return run_into_store(stored, start, steps, store, checkpoint_every, throw=throw, progress=progress)
+    refuse_checkpoints(checkpoint_every)
     compiled = rule == "principal" and backend != "jax"
-    g = _first_pose(discrete, configuration, 1 + steps // every if reconstruct else 0, compiled)
-    reduced, demanded = initial_state(discrete, g, **starts, restricted_velocity=restricted_velocity)
-    pose = np.empty(0) if g is None else discrete.system.group.pose_from_matrix(g @ discrete.system.frame)
+    held = 1 + steps // every if reconstruct else 0
+    reduced, pose, demanded = first_state(discrete, configuration, held, compiled, starts)
     run = _runner(discrete, backend) if rule == "principal" else rule_runner(discrete, rule, backend, demanded)
     rows, outcome, done = run(reduced, pose, steps, every, progress)
     orbit = _orbit(discrete, rows, outcome, every, reconstruct, rule)
@@ -153,20 +170,8 @@ def simulate(
     return finished(orbit, float(discrete.time_step), done, steps, throw)
 
 
-def _first_pose(discrete: Discretization, configuration: Any, saved: int, compiled: bool) -> np.ndarray | None:
-    """Return the first pose; None where neither the step nor the result needs one."""
-    group = discrete.system.group
-    if saved * group.size**2 > _LARGEST:
-        got = f"{saved} of {group.size}^2 numbers each"
-        remedy = "Pass reconstruct=False or a larger save_every."
-        raise error("simulate(reconstruct=...)", f"make poses of at most {_LARGEST} numbers", got, remedy)
-    if configuration is not None:
-        return in_group("simulate(configuration=...)", group, configuration)
-    return None if saved == 0 and compiled and is_secular(discrete) else group.identity
-
-
 def _runner(discrete: Discretization, backend: str) -> Run:
-    closed = structured(discrete)
+    closed = compiled_step(discrete)
     if closed is not None and backend != "jax":
         return lambda *arguments: _run_compiled(discrete, closed, *arguments)
     if backend == "numba":
@@ -174,6 +179,8 @@ def _runner(discrete: Discretization, backend: str) -> Run:
         raise error("simulate(backend=...)", "have a closed form of the step", repr(discrete.difference), remedy)
     from nonholo.discrete._definition import run_by_definition
 
+    if discrete.order > 2:
+        return composed_runner(discrete)
     return lambda *arguments: run_by_definition(discrete, *arguments)
 
 

@@ -4,6 +4,7 @@ from typing import Any
 
 from nonholo._checks import count, error
 from nonholo.discrete import Discretization
+from nonholo.discrete._composition import refuse_composition
 from nonholo.testing import _discrete_motion as measure
 from nonholo.testing._measures import seeded
 from nonholo.testing._orbit_samples import COUNTS, STEP, OrbitSamples
@@ -88,7 +89,7 @@ def check_discretization(
         What was measured.
 
     Raises:
-        ValueError: `discrete` is not a discretisation of a system on a group.
+        ValueError: `discrete` is not a discretisation of order 2 of a system on a group.
         AssertionError: With `throw`: names every check that failed, what is required and what was measured.
 
     Example:
@@ -101,6 +102,7 @@ def check_discretization(
         remedy = "Pass `discretize(system, time_step)` of an LLSystem or a relative; coordinates are not covered."
         requirement = "be a discretisation of a system on a group"
         raise error("check_discretization(discrete=...)", requirement, type(discrete).__name__, remedy)
+    refuse_composition("check_discretization(discrete=...)", discrete, "Check the discretisation of order 2.")
     number = count("check_discretization(steps=...)", steps, "Pass the length of the orbit.")
     samples = OrbitSamples(discrete, seeded(rng), max(number, 4))
     checks = (*_CHECKS, *_conserved(discrete), *((_DEFINITION,) if definition else ()))

@@ -174,7 +174,7 @@ def test_bad_arguments_are_refused(arguments: dict, words: str) -> None:
         ({"time_step": np.nan}, "must be finite"),
         ({"difference": "central"}, "be one of 'matrix', 'logarithmic'. Got 'central'"),
         ({"constraint": "holonomic"}, "be one of 'skew', 'exponential', 'naive'"),
-        ({"order": 4}, "be one of 2. Got 4"),
+        ({"order": 3}, "be one of 2, 4, 6, 8. Got 3"),
     ],
 )
 def test_bad_discretisations_are_refused(arguments: dict, words: str) -> None:

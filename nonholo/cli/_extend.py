@@ -1,0 +1,25 @@
+"""`nonholo extend`: run past the end of a run."""
+
+from typing import Annotated
+
+import typer
+
+from nonholo.cli._resume import Json, Store
+
+
+def extend(
+    store: Store,
+    steps: Annotated[int, typer.Option("--steps", metavar="N", help="How many steps more.")],
+    json: Json = False,
+) -> None:
+    """Add steps to a run, with the bits of one that had been that long from the start.
+
+    nonholo extend run.zarr --steps 1000000
+    """
+    from nonholo.cli._caches import use_cache_folders
+
+    use_cache_folders()
+    from nonholo.cli._going_on import go_on_and_report
+    from nonholo.simulation import extend as going_on
+
+    go_on_and_report(store, lambda progress: going_on(store, steps, progress=progress), json=json)

@@ -1,0 +1,265 @@
+"""Stores written block by block: one block is one chunk of each array, then its checkpoint, which marks it finished.
+
+Row b of `run/checkpoints` is the state of the run where block b begins: the step, the outcome, the vector of the run.
+Row b + 1 is written after the chunks of block b. All writes are atomic, so a run can be killed at any moment. While a
+store is unfinished it has no outcome among its attributes and no consolidated metadata.
+"""
+
+import dataclasses
+import functools
+import json
+import os
+import shutil
+import uuid
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import zarr
+
+from nonholo._checks import error
+from nonholo._results import Outcome
+from nonholo.io._attributes import attributes
+from nonholo.io._dataset import orbit_to_dataset
+from nonholo.io._load import chunk_name, chunk_path, read_attributes, read_chunk
+from nonholo.io._lock import owner_of
+from nonholo.io._save import check_target, consolidate, create_array, put_in_place, sibling
+from nonholo.orbit import Orbit
+
+_CHECKPOINTS = "run/checkpoints"
+
+
+class Plan(NamedTuple):
+    """How a run is cut into blocks: block b holds the saved states b * rows to (b + 1) * rows - 1.
+
+    Example:
+        >>> plan = Plan(steps=100, every=10, rows=4)
+        >>> plan.blocks, [(plan.begin(b), plan.stop(b)) for b in range(3)]
+        (3, [(0, 30), (30, 70), (70, 100)])
+    """
+
+    steps: int
+    every: int
+    rows: int
+
+    @property
+    def blocks(self) -> int:
+        """Number of blocks."""
+        return -(-(1 + self.steps // self.every) // self.rows)
+
+    def begin(self, block: int) -> int:
+        """Return the step at which the computation of a block begins."""
+        return max(0, (block * self.rows - 1) * self.every)
+
+    def stop(self, block: int) -> int:
+        """Return the step at which it ends; the last block also takes the steps after the last saved state."""
+        return self.steps if block == self.blocks - 1 else self.begin(block + 1)
+
+
+class Checkpoint(NamedTuple):
+    """Where a run stands: the last good step, the outcome so far, and the vector to go on from."""
+
+    done: int
+    outcome: Outcome
+    vector: np.ndarray
+
+
+@dataclasses.dataclass(frozen=True)
+class Stream:
+    """A store that a run is written to.
+
+    Attributes:
+        path: Where it is.
+        plan: How the run is cut.
+        reconstruct: Whether poses are kept.
+    """
+
+    path: Path
+    plan: Plan
+    reconstruct: bool
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether the run came to its end, or can go no further."""
+        return "outcome" in read_attributes(self.path)
+
+    def write(self, block: int, orbit: Orbit, reached: Checkpoint) -> None:
+        """Write the chunks of a block, then the checkpoint at its end."""
+        self._remove(block)
+        first = block * self.plan.rows
+        for name, variable in orbit_to_dataset(orbit).variables.items():
+            if len(orbit):
+                self._arrays[str(name)][first : first + len(orbit)] = np.ascontiguousarray(variable.values)
+        self._arrays[_CHECKPOINTS][block + 1] = _packed(reached)
+
+    def checkpoint(self, block: int) -> Checkpoint | str:
+        """Return the state at the begin of a block, or what is wrong with its chunk."""
+        packed = self._chunk(_CHECKPOINTS, block)
+        if isinstance(packed, str):
+            return packed
+        return Checkpoint(int(packed[0, 0]), Outcome(int(packed[0, 1])), packed[0, 2:])
+
+    def is_marked(self, block: int) -> bool:
+        """Tell whether there is a checkpoint at the end of a block, sound or not."""
+        return self._file(_CHECKPOINTS, block + 1).is_file()
+
+    def flaw(self, block: int) -> str | None:
+        """Say which chunk of a block that is marked as finished is damaged, and how; None if all are sound."""
+        reached = self.checkpoint(block + 1)
+        if isinstance(reached, str):
+            return reached
+        if self.plan.begin(block) // self.plan.every + (block > 0) > reached.done // self.plan.every:
+            return None  # the run failed before the first row of this block
+        for name in self._names():
+            found = self._chunk(name, block)
+            if isinstance(found, str):
+                return found
+        return None
+
+    def reached(self) -> int:
+        """Return the step up to which blocks are marked as finished."""
+        marked = 0
+        while marked < self.plan.blocks and self.is_marked(marked):
+            marked += 1
+        found = self.checkpoint(marked)
+        return self.plan.begin(marked) if isinstance(found, str) else found.done
+
+    def finish(self, done: int, outcome: Outcome) -> None:
+        """Cut the arrays to the good states, add the outcome and consolidate the metadata."""
+        shapes = self._fit(1 + done // self.plan.every)
+        _edit(self.path, {"outcome": outcome.name, "arrays": json.dumps(shapes)})
+        consolidate(self.path)
+
+    def lengthened(self, steps: int) -> "Stream":
+        """Return the stream with so many more steps to go; a last block that was not full is computed again."""
+        plan = self.plan._replace(steps=self.plan.steps + steps)
+        longer = dataclasses.replace(self, plan=plan)
+        run = json.loads(read_attributes(self.path)["run"]) | {"steps": plan.steps}
+        _edit(self.path, {"run": json.dumps(run), "outcome": None})
+        return longer
+
+    def prepare(self) -> None:
+        """Remove what a killed writer left and give the arrays their length; nothing here loses data."""
+        for left in self.path.rglob("*.partial"):
+            left.unlink(missing_ok=True)
+        if not self.is_finished:
+            self._fit(1 + self.plan.steps // self.plan.every)
+            checkpoints = self._arrays[_CHECKPOINTS]
+            if checkpoints.shape[0] != self.plan.blocks + 1:
+                checkpoints.resize((self.plan.blocks + 1, checkpoints.shape[1]))
+
+    def _fit(self, rows: int) -> dict[str, tuple[int, ...]]:
+        shapes = {}
+        for name in self._names():
+            array = self._arrays[name]
+            shapes[name] = (rows, *array.shape[1:])
+            if array.shape != shapes[name]:
+                array.resize(shapes[name])
+        return shapes
+
+    def _remove(self, block: int) -> None:
+        """Remove a block, its checkpoint first: zarr would read a damaged chunk before it writes a part of it."""
+        self._file(_CHECKPOINTS, block + 1).unlink(missing_ok=True)
+        for name in self._names():
+            self._file(name, block).unlink(missing_ok=True)
+
+    def _chunk(self, name: str, number: int) -> np.ndarray | str:
+        array = self._arrays[name]
+        index = (number,) + (0,) * (array.ndim - 1)
+        found = read_chunk(self.path, name, array, index)
+        return f"{found}, {chunk_name(name, array, index)}" if isinstance(found, str) else found
+
+    def _file(self, name: str, number: int) -> Path:
+        array = self._arrays[name]
+        return chunk_path(self.path, name, array, (number,) + (0,) * (array.ndim - 1))
+
+    def _names(self) -> list[str]:
+        return [name for name in self._arrays if name != _CHECKPOINTS]
+
+    @functools.cached_property
+    def _arrays(self) -> dict[str, zarr.Array]:
+        names = [*json.loads(read_attributes(self.path)["arrays"]), _CHECKPOINTS]
+        return {name: _opened(self.path, name) for name in names}
+
+
+def create_stream(path: Path, first: Orbit, plan: Plan, vector: np.ndarray) -> Stream:
+    """Make a store with the first checkpoint and no rows yet; it appears at the path only when it is complete."""
+    target = path.resolve()
+    check_target(target)
+    part = sibling(target, "partial")
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        _create(part, first, plan, vector)
+        put_in_place(part, target, overwrite=False)
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+    return Stream(target, plan, first.pose is not None)
+
+
+def open_stream(path: str | Path) -> Stream:
+    """Return the stream of a store that a run was written to."""
+    stored = read_attributes(path)
+    if "run" not in stored:
+        remedy = "Run it again with simulate(..., store=...) to be able to go on."
+        raise error("resume(store=...)", "have checkpoints", f"'{path}', which was saved whole", remedy)
+    run = json.loads(stored["run"])
+    return Stream(Path(path).resolve(), Plan(run["steps"], stored["save_every"], run["rows"]), run["reconstruct"])
+
+
+def _opened(path: Path, name: str) -> zarr.Array:
+    try:
+        return zarr.open_array(path / name, mode="r+", zarr_format=3)
+    except Exception as failure:
+        got = f"'{path}', where its metadata cannot be read: {failure}"
+        raise error("resume(store=...)", f"hold the array {name}", got, "Run it again.") from failure
+
+
+class Standing(NamedTuple):
+    """How far an unfinished run came: good steps that are kept, steps in all, and who is writing it, if anybody."""
+
+    done: int
+    steps: int
+    owner: str | None
+
+
+def standing(path: str | Path) -> Standing | None:
+    """Say how far the run of a store came; None if it is finished."""
+    stored = read_attributes(path)
+    if "run" not in stored or "outcome" in stored:
+        return None
+    stream = open_stream(path)
+    return Standing(stream.reached(), stream.plan.steps, owner_of(stream.path))
+
+
+def _create(part: Path, first: Orbit, plan: Plan, vector: np.ndarray) -> None:
+    dataset, rows = orbit_to_dataset(first), 1 + plan.steps // plan.every
+    told = {name: value for name, value in attributes(first).items() if name != "outcome"}
+    run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.pose is not None}
+    shapes = {str(name): (rows, *variable.shape[1:]) for name, variable in dataset.variables.items()}
+    told |= {"run": json.dumps(run), "arrays": json.dumps(shapes)}
+    group = zarr.create_group(part, zarr_format=3, attributes=told)
+    for name, variable in dataset.variables.items():
+        create_array(group, str(name), variable, rows, plan.rows, is_coordinate=name in dataset.coords)
+    packed = _packed(Checkpoint(0, Outcome.successful, vector))
+    group.create_group("run")
+    labelled = dataset["time"].variable.__class__(("block", "entry"), packed[None])
+    checkpoints = create_array(group, _CHECKPOINTS, labelled, plan.blocks + 1, 1, is_coordinate=True)
+    checkpoints[0] = packed
+
+
+def _packed(reached: Checkpoint) -> np.ndarray:
+    return np.concatenate(([reached.done, int(reached.outcome)], reached.vector))
+
+
+def _edit(path: Path, changes: dict[str, Any]) -> None:
+    """Change attributes (None removes one) and drop the consolidated metadata, in one atomic write."""
+    document = json.loads((path / "zarr.json").read_text())
+    merged = document["attributes"] | changes
+    document["attributes"] = {name: value for name, value in merged.items() if value is not None}
+    document.pop("consolidated_metadata", None)
+    part = path / f"zarr.{uuid.uuid4().hex}.partial"
+    try:
+        part.write_text(json.dumps(document))
+        os.replace(part, path / "zarr.json")
+    finally:
+        part.unlink(missing_ok=True)

@@ -1,0 +1,253 @@
+"""The compiled loop over members: blocks of 32, in loops over the block that the compiler turns into vectors.
+
+A block is one array of rows of 32 numbers, one number for each member: offsets between rows are then constants, so that
+the compiler sees that rows do not overlap. Every member takes the steps that it would take alone, whatever the others
+do: its corrections end when it has converged, and a root that is not certain goes to the scalar `principal`.
+"""
+
+from typing import Any, NamedTuple
+
+import numba
+import numpy as np
+from numba.extending import overload
+
+from nonholo.kernels import _driver
+from nonholo.kernels._interface import Body, certified, correction, increment, move, principal
+from nonholo.kernels._scalar import COMPILED
+from nonholo.kernels._sleigh import SleighBody
+from nonholo.kernels._suslov import SuslovBody
+
+LANES = 32
+_M, _K, _Y, _U, _V, _Q = 0, 64, 128, 192, 256, 320  # momenta, compensations, three charts (2 rows each), pose (4)
+_N, _L, _W, _OPEN = 448, 512, 576, 640  # next momenta, compensations and chart; whether a member needs more work
+_SIZE = 672
+
+
+class MemberRows(NamedTuple):
+    """What a run writes for each member; a member that fails leaves its later states as they are.
+
+    Attributes:
+        momenta: Scaled momenta, (members, states, 2).
+        charts: Chart coordinates, (members, states, 2).
+        poses: Poses, (members, states, 4); without states if they are not wanted.
+        codes: Outcomes, zero before the run, (members,).
+        done: Numbers of good steps, (members,).
+    """
+
+    momenta: np.ndarray
+    charts: np.ndarray
+    poses: np.ndarray
+    codes: np.ndarray
+    done: np.ndarray
+
+
+def member(p: Body, table: np.ndarray | None, j: int) -> Body:
+    """Return the body of a member of a block, a column of the table of parameters; without a table that of all."""
+    return p if table is None else type(p)(*table[j::LANES])
+
+
+def _shared(p: Any, table: Any, j: Any) -> Any:
+    return p
+
+
+def _own_top(p: Any, table: Any, j: Any) -> Any:
+    return SuslovBody(table[j], table[32 + j], table[64 + j], table[96 + j], table[128 + j], table[160 + j])
+
+
+def _own_sleigh(p: Any, table: Any, j: Any) -> Any:
+    return SleighBody(table[j], table[32 + j], table[64 + j])
+
+
+@overload(member, jit_options=COMPILED, strict=False)
+def _compiled_member(p: Any, table: Any, j: Any) -> Any:
+    if isinstance(table, numba.types.NoneType):
+        return _shared
+    return _own_top if p.instance_class is SuslovBody else _own_sleigh
+
+
+def table_of(tables: np.ndarray | None, block: int) -> np.ndarray | None:
+    """Return the table of a block."""
+    return None if tables is None else tables[block]
+
+
+@overload(table_of, jit_options=COMPILED, strict=False)
+def _compiled_table_of(tables: Any, block: Any) -> Any:
+    def none(tables: Any, block: Any) -> Any:
+        return None
+
+    def row(tables: Any, block: Any) -> Any:
+        return tables[block]
+
+    return none if isinstance(tables, numba.types.NoneType) else row
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def _correct(p: Body, table: np.ndarray | None, s: np.ndarray) -> None:
+    """Correct the guesses of the members that have not converged, until there are none or it takes too long."""
+    s[_OPEN:] = 1.0
+    for _ in range(_driver.CORRECTIONS):
+        left = 0
+        for j in range(LANES):
+            y1, y2 = s[_W + j], s[_W + 32 + j]
+            d1, d2 = correction(member(p, table, j), s[_N + j], s[_N + 32 + j], y1, y2)
+            going = s[_OPEN + j] != 0.0
+            y1 += d1 if going else 0.0
+            y2 += d2 if going else 0.0
+            s[_W + j], s[_W + 32 + j] = y1, y2
+            further = going & ~_driver.converged(d1, d2, y1, y2)
+            s[_OPEN + j] = 1.0 if further else 0.0
+            left += further
+        if left == 0:
+            break
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def _verify(p: Body, table: np.ndarray | None, s: np.ndarray) -> int:
+    """Mark the members whose root is not certain, and return their number."""
+    left = 0
+    for j in range(LANES):
+        sure = certified(member(p, table, j), s[_N + j], s[_N + 32 + j], s[_W + j], s[_W + 32 + j])
+        further = (s[_OPEN + j] != 0.0) | ~sure
+        s[_OPEN + j] = 1.0 if further else 0.0
+        left += further
+    return left
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def _rescue(
+    p: Body, table: np.ndarray | None, s: np.ndarray, first: int, good: int, every: int, rows: MemberRows
+) -> None:
+    """Find the marked roots from momentum zero; a member without one ends after its good steps."""
+    for j in range(LANES):
+        if s[_OPEN + j] == 0.0:
+            continue
+        code, s[_W + j], s[_W + 32 + j] = principal(member(p, table, j), s[_N + j], s[_N + 32 + j])
+        if code != 0:
+            if every == 0 and good >= 0:
+                _save(s, j, rows, first + j, 0)
+            rows.codes[first + j], rows.done[first + j] = code, max(good, 0)
+            s[j::LANES] = 0.0  # at rest, so that what is left of the member costs no corrections
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def _predict(p: Body, table: np.ndarray | None, s: np.ndarray) -> None:
+    """Write the next momenta and guess the next charts."""
+    for j in range(LANES):
+        m1, m2, y1, y2 = s[_M + j], s[_M + 32 + j], s[_Y + j], s[_Y + 32 + j]
+        d1, d2 = increment(member(p, table, j), m1, m2, y1, y2)
+        s[_N + j], s[_L + j] = _driver._compensated(m1, s[_K + j], d1, _driver._SETTLED * abs(m2))
+        s[_N + 32 + j], s[_L + 32 + j] = _driver._compensated(m2, s[_K + 32 + j], d2, _driver._SETTLED * abs(m1))
+    for j in range(2 * LANES):
+        s[_W + j] = 3 * (s[_Y + j] - s[_U + j]) + s[_V + j]
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def _accept(p: Body, table: np.ndarray | None, s: np.ndarray, posed: bool) -> None:
+    """Move on to the next momenta and charts, and with them the poses."""
+    if posed:
+        for j in range(LANES):
+            s[_Q + j], s[_Q + 32 + j], s[_Q + 64 + j], s[_Q + 96 + j] = move(
+                member(p, table, j),
+                s[_Y + j],
+                s[_Y + 32 + j],
+                s[_Q + j],
+                s[_Q + 32 + j],
+                s[_Q + 64 + j],
+                s[_Q + 96 + j],
+            )
+    for j in range(2 * LANES):
+        s[_M + j], s[_K + j] = s[_N + j], s[_L + j]
+        s[_V + j], s[_U + j], s[_Y + j] = s[_U + j], s[_Y + j], s[_W + j]
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def _save(s: np.ndarray, j: int, rows: MemberRows, i: int, state: int) -> None:
+    """Write the state of a member of the block to a member of the rows."""
+    rows.momenta[i, state, 0], rows.momenta[i, state, 1] = s[_M + j], s[_M + 32 + j]
+    rows.charts[i, state, 0], rows.charts[i, state, 1] = s[_Y + j], s[_Y + 32 + j]
+    if rows.poses.shape[1]:
+        for q in range(4):
+            rows.poses[i, state, q] = s[_Q + 32 * q + j]
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def _save_good(s: np.ndarray, rows: MemberRows, first: int, state: int) -> None:
+    """Write the states of the members of the block that have not failed."""
+    for j in range(min(LANES, len(rows.codes) - first)):
+        if rows.codes[first + j] == 0:
+            _save(s, j, rows, first + j, state)
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def _begin(p: Body, table: np.ndarray | None, momenta: np.ndarray, poses: np.ndarray, s: np.ndarray) -> int:
+    """Fill a block, at rest where there are no members, and correct the first roots; return how many are uncertain."""
+    s[:] = 0.0
+    for j in range(len(momenta)):
+        s[_N + j], s[_N + 32 + j] = momenta[j, 0], momenta[j, 1]
+        for q in range(4):
+            s[_Q + 32 * q + j] = poses[j, q]
+    _correct(p, table, s)
+    return _verify(p, table, s)
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def _run_block(
+    p: Body, table: np.ndarray | None, s: np.ndarray, first: int, steps: int, every: int, rows: MemberRows
+) -> None:
+    """Take all steps of a block whose first roots are found."""
+    for k in range(2 * LANES):
+        s[_M + k] = s[_N + k]
+        s[_Y + k], s[_U + k], s[_V + k] = s[_W + k], s[_W + k], s[_W + k]
+    if every > 0:
+        _save_good(s, rows, first, 0)
+    for done in range(1, steps + 1):
+        _predict(p, table, s)
+        _correct(p, table, s)
+        if _verify(p, table, s) > 0:
+            _rescue(p, table, s, first, done - 1, every, rows)
+        _accept(p, table, s, rows.poses.shape[1] > 0)
+        if every > 0 and done % every == 0:
+            _save_good(s, rows, first, done // every)
+    if every == 0:
+        _save_good(s, rows, first, 0)
+    for i in range(first, min(first + LANES, len(rows.codes))):
+        if rows.codes[i] == 0:
+            rows.done[i] = steps
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def advance_members(
+    p: Body,
+    tables: np.ndarray | None,
+    momenta: np.ndarray,
+    poses: np.ndarray,
+    steps: int,
+    every: int,
+    rows: MemberRows,
+) -> None:
+    """Take steps from scaled momenta (members, 2) and poses (members, 4) into rows, in one thread.
+
+    Args:
+        p: The body of all members; with tables only its kind counts.
+        tables: Parameters by block, (blocks, 32 fields), see `tables_of`; None if all members are one body.
+        momenta: First momenta.
+        poses: First poses.
+        steps: Number of steps.
+        every: Save the first state and each `every`-th one after it; with 0 only the last one of each member.
+        rows: Where to.
+    """
+    s = np.empty(_SIZE)
+    for block in range((len(momenta) + LANES - 1) // LANES):
+        first = block * LANES
+        table = table_of(tables, block)
+        chosen = slice(first, min(first + LANES, len(momenta)))
+        if _begin(p, table, momenta[chosen], poses[chosen], s) > 0:
+            _rescue(p, table, s, first, -1, every, rows)
+        _run_block(p, table, s, first, steps, every, rows)
+
+
+def tables_of(fields: np.ndarray) -> np.ndarray:
+    """Return the parameters of bodies (fields, members) block by block; the last member fills up the last block."""
+    count, members = fields.shape
+    padded = np.pad(fields, ((0, 0), (0, -members % LANES)), mode="edge")
+    return np.ascontiguousarray(padded.reshape(count, -1, LANES).swapaxes(0, 1)).reshape(-1, count * LANES)

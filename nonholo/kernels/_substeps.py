@@ -1,0 +1,144 @@
+"""What one substep of a composition needs of each body: a root over given momenta, the push and the move at that root.
+
+The same pieces for every body, chosen by its type; numba chooses when it compiles. Tops in space and sleighs in the
+plane have a loop of their own, in `_composition`.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numba
+import numpy as np
+from numba.extending import overload
+
+from nonholo.kernels import _general_root, _general_run, _secular_run
+from nonholo.kernels._general import GeneralBody, Workspace, increments, workspace
+from nonholo.kernels._interface import Body
+from nonholo.kernels._scalar import COMPILED
+from nonholo.kernels._secular import SecularBody, term
+from nonholo.kernels._secular_root import certain_radius, level_of
+from nonholo.kernels._sleigh import SleighBody
+from nonholo.kernels._suslov import SuslovBody
+
+
+@numba.njit(cache=True, **COMPILED)
+def _two_prepared(p: Body, m: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    return np.empty(0)
+
+
+@numba.njit(cache=True, **COMPILED)
+def _two_charted(p: Body, m: np.ndarray, root: np.ndarray, chart: np.ndarray) -> None:
+    chart[:] = root
+
+
+@numba.njit(cache=True, **COMPILED)
+def _secular_prepared(p: SecularBody, m: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the certain radius of each stage, and room for y."""
+    certain, k = np.empty(len(weights)), len(p.b)
+    for i in range(len(weights)):
+        scaled = weights[i] * m
+        certain[i] = certain_radius(p, level_of(p, scaled[:k], scaled[-1] if p.slides else 0.0))
+    return certain, np.empty(k)
+
+
+@numba.njit(cache=True, **COMPILED)
+def _secular_solved(
+    p: SecularBody,
+    w: tuple[np.ndarray, np.ndarray],
+    stage: int,
+    m: np.ndarray,
+    guess: np.ndarray,
+    pose: np.ndarray,
+    root: np.ndarray,
+) -> int:
+    code, root[0], root[1] = _secular_run.solve(p, m, w[0][stage], guess[0], guess[1])
+    return code
+
+
+@numba.njit(cache=True, **COMPILED)
+def _secular_pushed(
+    p: SecularBody,
+    w: tuple[np.ndarray, np.ndarray],
+    m: np.ndarray,
+    root: np.ndarray,
+    change: np.ndarray,
+    pose: np.ndarray,
+) -> None:
+    y, nu, tau, k, lever = w[1], root[0], root[1], len(p.b), p.mass * p.arm * p.arm
+    _secular_run.coordinates(p, m, nu, tau, y)
+    for i in range(k):
+        change[i] = term(p.c[i], y[i], nu, tau, lever)
+    if p.slides:
+        change[k] = 2 * p.mass * p.arm * tau / (1 + tau)
+    if len(pose):
+        _secular_run.move(p, m[-1], tau, y, pose.reshape(-1, len(m) + 1))
+
+
+@numba.njit(cache=True, **COMPILED)
+def _secular_charted(p: SecularBody, m: np.ndarray, root: np.ndarray, chart: np.ndarray) -> None:
+    _secular_run.chart_of(p, m, root[0], root[1], chart)
+
+
+@numba.njit(cache=True)
+def _general_prepared(p: GeneralBody, m: np.ndarray, weights: np.ndarray) -> Workspace:
+    return workspace(p)
+
+
+@numba.njit(cache=True)
+def _general_solved(
+    p: GeneralBody, w: Workspace, stage: int, m: np.ndarray, guess: np.ndarray, pose: np.ndarray, root: np.ndarray
+) -> int:
+    _general_run.see_pose(p, w, pose.reshape(w.X.shape))
+    code, found = _general_root.solve(p, w, m, guess)
+    root[:] = found
+    return code
+
+
+@numba.njit(cache=True)
+def _general_pushed(
+    p: GeneralBody, w: Workspace, m: np.ndarray, root: np.ndarray, change: np.ndarray, pose: np.ndarray
+) -> None:
+    """Push and move at the root whose displacement is in the workspace."""
+    change[:] = 0.0
+    if not p.spatial:
+        increments(w, change)
+    _general_run.move(p, w, pose.reshape(w.X.shape))
+
+
+@numba.njit(cache=True)
+def _general_charted(p: GeneralBody, m: np.ndarray, root: np.ndarray, chart: np.ndarray) -> None:
+    chart[:] = root * p.stretch
+
+
+def chosen(
+    secular: Callable[..., Any], general: Callable[..., Any], two: Callable[..., Any] | None = None
+) -> Callable[..., Any]:
+    """Return the function that calls the piece for the type of its first argument, for numba and for plain Python."""
+    table = {SuslovBody: two, SleighBody: two, SecularBody: secular, GeneralBody: general}
+
+    def piece(p: Any, *rest: Any) -> Any:
+        return table[type(p)](p, *rest)
+
+    def choose(p: Any, *_: Any) -> Any:
+        compiled = table[p.instance_class]
+        return lambda p, *rest: compiled(p, *rest)
+
+    overload(piece, jit_options=COMPILED, strict=False)(choose)
+    return piece
+
+
+prepared = chosen(_secular_prepared, _general_prepared, _two_prepared)
+"""(p, m, weights): what the other pieces need beside the body."""
+solved = chosen(_secular_solved, _general_solved)
+"""(p, w, stage, m, guess, pose, root): write the principal root over m; return the outcome."""
+pushed = chosen(_secular_pushed, _general_pushed)
+"""(p, w, m, root, change, pose): write the change of m, right after `solved`; move the pose."""
+charted = chosen(_secular_charted, _general_charted, _two_charted)
+"""(p, m, root, chart): write the chart coordinates of a root."""
+
+
+def at_rest(body: Body | SecularBody | GeneralBody) -> np.ndarray:
+    """Return the unknowns at the identity."""
+    if isinstance(body, SecularBody):
+        return np.array((body.mass * body.arm * body.arm, 0.0))
+    return np.zeros(len(body.stretch) if isinstance(body, GeneralBody) else 2)

@@ -1,0 +1,93 @@
+"""`iterate`: the run of `simulate`, block by block."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from nonholo._progress import progress_bar
+from nonholo._results import Outcome, OutcomeError
+from nonholo.discrete import Discretization
+from nonholo.discrete._branch_rules import BranchRule
+from nonholo.io import Plan
+from nonholo.orbit import Orbit
+from nonholo.simulation._prepared import checked_counts, first_state
+from nonholo.simulation._stored_run import rows_of_block
+from nonholo.simulation._stretch import CompiledRun, compiled_run, opened
+
+
+def iterate(
+    discrete: Discretization,
+    *,
+    steps: int,
+    block_steps: int | None = None,
+    body_velocity: Any = None,
+    restricted_velocity: Any = None,
+    displacement: Any = None,
+    momentum: Any = None,
+    configuration: Any = None,
+    save_every: int = 1,
+    branch: BranchRule = "principal",
+    reconstruct: bool = True,
+    backend: str = "auto",
+    throw: bool = True,
+    progress: bool = False,
+) -> Iterator[Orbit]:
+    """Run the discrete map as `simulate` does, and give its orbit block by block, in bounded memory.
+
+    The blocks together are the orbit of `simulate`, bit for bit: no state is given twice, the first state of a block
+    follows the last one of the block before. (Where `simulate` decodes momenta and poses by products of matrices, for
+    n > 3, the last bits of these products can depend on how many rows are decoded at once; the motion does not.)
+
+    Args:
+        discrete: The discretised system, with a compiled step.
+        steps: Number of steps N.
+        block_steps: Steps of a block, a multiple of `save_every`; by default blocks of a few megabytes.
+        body_velocity: As in `simulate`, and so are the others.
+        restricted_velocity: See `simulate`.
+        displacement: See `simulate`.
+        momentum: See `simulate`.
+        configuration: See `simulate`.
+        save_every: Keep every so many steps.
+        branch: "principal".
+        reconstruct: Also compute poses.
+        backend: "auto" or "numba".
+        throw: Raise if the run cannot go on, after its last good block; otherwise that block's outcome says so.
+        progress: Show a progress bar on standard error.
+
+    Returns:
+        An iterator over orbits of `block_steps // save_every` states, the last one of those that are left.
+
+    Raises:
+        ValueError: A bad argument or a run without compiled step, before any work.
+        OutcomeError: As in `simulate`; with `throw` its `orbit` is the last block.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        >>> [len(block) for block in nh.iterate(sleigh, body_velocity=(1, 0, 0), steps=1000, block_steps=400)]
+        [400, 400, 201]
+    """
+    starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
+    starts["restricted_velocity"] = restricted_velocity
+    steps, every, rule = checked_counts(discrete, steps, save_every, branch, backend, displacement)
+    run = compiled_run("iterate(discrete=...)", discrete, rule, backend, every, reconstruct)
+    plan = Plan(steps, every, rows_of_block("iterate(block_steps=...)", run, steps, block_steps))
+    start = first_state(discrete, configuration, int(reconstruct), True, starts)
+    vector, first = opened(run, start, steps, throw)
+    if not len(first):
+        return iter((first,))
+    return _blocks(run, vector, plan, throw=throw, progress=progress)
+
+
+def _blocks(run: CompiledRun, vector: np.ndarray, plan: Plan, *, throw: bool, progress: bool) -> Iterator[Orbit]:
+    with progress_bar("steps", progress) as report:
+        for number in range(plan.blocks):
+            begin, stop = plan.begin(number), plan.stop(number)
+            block, done = run.stretch(vector, begin, stop, lambda now: report(now, plan.steps), opening=number == 0)
+            if len(block) or not throw:
+                yield block
+            if block.outcome != Outcome.successful:
+                if throw:
+                    where = f"Step {done + 1} of {plan.steps} (time_step {run.discrete.time_step:g})"
+                    raise OutcomeError(block.outcome, where, block)
+                return

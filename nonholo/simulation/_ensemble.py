@@ -1,0 +1,161 @@
+"""`ensemble`: many motions at once, from checked starts and parameters to decoded results or a user's reduction."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from nonholo._checks import choice, count, error
+from nonholo._progress import progress_bar
+from nonholo._results import Outcome
+from nonholo.discrete import Discretization
+from nonholo.discrete._composition import compiled_step
+from nonholo.discrete._discretization import as_discretization
+from nonholo.discrete._start import one_start
+from nonholo.simulation._ensemble_members import Members, check_systems, checked_parameters
+from nonholo.simulation._ensemble_reduce import Reduced, joined
+from nonholo.simulation._ensemble_result import Ensemble
+from nonholo.simulation._ensemble_run import Plan, Report, run_members, states_of
+from nonholo.simulation._ensemble_start import checked_start, first_momenta
+
+_TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
+_LARGEST = 1 << 30  # numbers in all poses of a member, 8 GiB
+_BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
+
+
+def ensemble(
+    discrete: Discretization,
+    *,
+    steps: int,
+    body_velocity: Any = None,
+    restricted_velocity: Any = None,
+    momentum: Any = None,
+    save_every: int | None = None,
+    parameters: Mapping[str, Any] | None = None,
+    reduce: Callable[[Ensemble], Reduced] | None = None,
+    reconstruct: bool = True,
+    backend: str = "auto",
+    progress: bool = False,
+) -> Any:
+    r"""Run many members of one system, that differ in where they start, in parameters, or in both.
+
+    Each member takes the steps that `simulate` would take from its start, on the principal branch and verified; what
+    becomes of it does not depend on the others. Tops with n = 3 and plane sleighs run in compiled blocks of 32 members,
+    other systems one after another. All cores are used (`NUMBA_NUM_THREADS` sets how many), with the same result.
+
+    A member that cannot go on keeps its good states: see `Ensemble` for what is where, and `outcome` for why.
+
+    Args:
+        discrete: The discretised system.
+        steps: Number of steps N.
+        body_velocity: One row for each member, (M, dim); with `parameters` one row for all, (dim,), will do. Members
+            start at the identity with the principal W_0 that has the same momentum along the constraint.
+        restricted_velocity: The same, in rows of the constraint subspace, (M, k).
+        momentum: Start with these momenta, full ones (M, dim) on the momentum locus or those along the constraint
+            subspace, (M, k). A member whose full momentum is not on it has outcome `off_momentum_locus`.
+        save_every: Keep the first state and every so many steps; by default only the last state.
+        parameters: Arrays with a leading member axis by name: fields of the system that are numbers or tensors (mass,
+            inertia, a, b, mass_tensor, ...), and "time_step".
+        reduce: A function of an `Ensemble`, a block of the members in order, that returns an array or a dictionary of
+            arrays with a leading member axis. It is called block by block, so that states are never all in memory.
+        reconstruct: Also compute poses.
+        backend: "numba" (closed forms, compiled), "jax", or "auto" to choose. By JAX tops with n = 3 and plane sleighs
+            run in chunks on processors and all at once on accelerators, other systems by the definition.
+        progress: Show a progress bar on standard error.
+
+    Returns:
+        The `Ensemble`; with `reduce` what it returned, blocks joined along the member axis.
+
+    Raises:
+        ValueError: A bad argument, before any work.
+
+    Example:
+        Sleighs with the centre of mass ahead of the blade by different lengths, all pushed backwards, turn round:
+
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), time_step=0.05)
+        >>> batch = nh.ensemble(
+        ...     sleigh, body_velocity=(0.01, -1.0, 0.0), parameters={"a": [0.2, 0.5, 1.0]}, steps=4000
+        ... )
+        >>> batch.restricted_momentum[:, 0, 1].round(3)
+        array([1., 1., 1.])
+    """
+    discrete = as_discretization("ensemble(discrete=...)", discrete, composed=True)
+    steps = count("ensemble(steps=...)", steps, "Pass the number of steps.")
+    if save_every is not None:
+        save_every = count("ensemble(save_every=...)", save_every, "Pass the steps between saved states, or None.")
+    _check_backend(discrete, backend)
+    _check_poses(discrete, states_of(steps, save_every) if reconstruct else 0)
+    starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
+    one_start("ensemble", **starts)
+    checked = checked_parameters(discrete, parameters)
+    name, rows = checked_start(discrete.system, checked, **starts)
+    members = Members(discrete, checked, len(rows))
+    check_systems(members)
+    momenta = first_momenta(members, name, rows)
+    full = rows if name == "momentum" and rows.shape[1] != discrete.system.rank else None
+    plan = Plan(steps, save_every, bool(reconstruct), backend)
+    with progress_bar("members", progress) as show:
+        if reduce is None:
+            return _block(members, momenta, full, plan, _counting(show, len(members)))
+        return _reduced(members, momenta, full, plan, reduce, _counting(show, len(members)))
+
+
+def _check_backend(discrete: Discretization, backend: str) -> None:
+    choice("ensemble(backend=...)", backend, ("auto", "numba", "jax"))
+    if backend == "numba" and compiled_step(discrete) is None:
+        remedy = "Pass backend='jax', or difference='matrix'."
+        raise error("ensemble(backend=...)", "have a closed form of the step", repr(discrete.difference), remedy)
+
+
+def _check_poses(discrete: Discretization, states: int) -> None:
+    """Refuse poses of one member that would fill the memory."""
+    size = discrete.system.group.size
+    if states * size * size > _LARGEST:
+        got = f"{states} of {size}^2 numbers for each member"
+        remedy = "Pass reconstruct=False or a larger save_every."
+        raise error("ensemble(reconstruct=...)", f"make poses of at most {_LARGEST} numbers", got, remedy)
+
+
+def _counting(show: Callable[[int, int], None], total: int) -> Report:
+    done = 0
+
+    def report(more: int) -> None:
+        nonlocal done
+        done += more
+        show(done, total)
+
+    return report
+
+
+def _block(members: Members, momenta: np.ndarray, full: np.ndarray | None, plan: Plan, report: Report) -> Ensemble:
+    """Run a block of members; those whose full momentum is not that of the principal root do not start."""
+    if full is None:
+        return run_members(members, momenta, plan, report=report)
+    first = run_members(members, momenta, plan._replace(steps=1, every=1, posed=True))
+    found = first.momentum[:, 0]
+    missed = np.linalg.norm(full - found, axis=1) > _TOLERANCE * np.linalg.norm(found, axis=1)
+    done = run_members(members, momenta, plan, report=report)
+    done.outcome[missed], done.steps_done[missed] = Outcome.off_momentum_locus, 0
+    for states in (done.reduced_momentum, done.cayley, done.pose):
+        if states is not None:
+            states[missed] = np.nan
+    return done
+
+
+def _reduced(
+    members: Members,
+    momenta: np.ndarray,
+    full: np.ndarray | None,
+    plan: Plan,
+    reduce: Callable[[Ensemble], Reduced],
+    report: Report,
+) -> Reduced:
+    """Run block by block, keeping only what the function of the user makes of each."""
+    state = 2 * momenta.shape[1] + members.discrete.system.group.pose_size * plan.posed
+    size = max(1, _BLOCK // (state * states_of(plan.steps, plan.every)))
+    blocks = [slice(begin, begin + size) for begin in range(0, len(members), size)]
+    kept = []
+    for part in blocks:
+        block = _block(members.part(part), momenta[part], None if full is None else full[part], plan, report)
+        kept.append((len(block), reduce(block)))
+    return joined(kept)

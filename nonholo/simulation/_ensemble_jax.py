@@ -1,0 +1,97 @@
+"""The loop over members by JAX: the same scalar functions as the compiled one, mapped over whole arrays and scanned.
+
+It takes certain steps alone. A member with a root that is not certain to be the principal one is left to the compiled
+loop, from its start. Processors take the members in chunks that stay in their caches, accelerators all at once.
+"""
+
+import functools
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo import kernels
+from nonholo.discrete._precision import in_double
+from nonholo.kernels import _driver
+from nonholo.kernels._interface import correction
+
+State = tuple[jax.Array, ...]  # momenta, compensations, three charts (2, n) each, pose (4, n), who is certain (n,)
+
+
+def chunk() -> int | None:
+    """Return how many members to run at once; None for all."""
+    return 4096 if jax.default_backend() == "cpu" else None
+
+
+def advance_by_jax(
+    body: kernels.Body, momenta: np.ndarray, poses: np.ndarray, steps: int, every: int, rows: kernels.MemberRows
+) -> np.ndarray:
+    """Take steps as `kernels.advance_members` does, with fields of the body that are arrays; tell who was uncertain."""
+    saved = steps // every if every else 1
+    each = every or steps
+    posed = rows.poses.shape[1] > 0
+    first, history, certain = in_double(
+        functools.partial(_run, saved=saved, posed=posed), body, momenta.T, poses.T, each, steps - saved * each
+    )
+    for target, start, later in zip(rows[:3], first, history, strict=True):
+        if every and target.shape[1]:
+            target[:, 0] = start.T
+        if target.shape[1]:
+            target[:, 1 if every else 0 :] = np.moveaxis(later, (0, 2), (1, 0))
+    rows.done[:] = steps
+    return ~certain
+
+
+@functools.partial(jax.jit, static_argnames=("saved", "posed"))
+def _run(
+    body: kernels.Body, m: jax.Array, q: jax.Array, each: jax.Array, rest: jax.Array, *, saved: int, posed: bool
+) -> tuple[State, State, jax.Array]:
+    """Return the first states, the saved ones, and which members were certain all the time."""
+    y, certain = _root(body, m, jnp.zeros_like(m))
+    state = (m, jnp.zeros_like(m), y, y, y, q, certain)
+    step = functools.partial(_step, body, posed)
+
+    def stretch(state: State, _: None) -> tuple[State, State]:
+        state = jax.lax.fori_loop(0, each, step, state)
+        return state, (state[0], state[2], state[5])
+
+    state, history = jax.lax.scan(stretch, state, None, length=saved)
+    state = jax.lax.fori_loop(0, rest, step, state)
+    return (m, y, q), history, state[-1]
+
+
+def _step(body: kernels.Body, posed: bool, _: jax.Array, state: State) -> State:
+    m, k, y, u, v, q, certain = state
+    n, lost = _compensated(m, k, jnp.stack(kernels.increment(body, *m, *y)))
+    w, sure = _root(body, n, 3 * (y - u) + v)
+    if posed:
+        q = jnp.stack(kernels.move(body, *y, *q))
+    certain = certain & sure
+    rest = (jnp.where(certain, x, 0.0) for x in (n, lost, w, y, u))  # a lost member costs no further corrections
+    return *rest, q, certain
+
+
+def _compensated(total: jax.Array, lost: jax.Array, term: jax.Array) -> tuple[jax.Array, jax.Array]:
+    """Add as the compiled loop does, each momentum measured by the other one."""
+    term = term - lost
+    result = total + term
+    small = jnp.abs(result) < _driver._SETTLED * jnp.abs(total[::-1])
+    settled = small & ((jnp.abs(result) < jnp.abs(total)) | (total == 0))
+    return jnp.where(settled, 0.0, result), jnp.where(settled, 0.0, (result - total) - term)
+
+
+def _root(body: kernels.Body, m: jax.Array, guess: jax.Array) -> tuple[jax.Array, jax.Array]:
+    """Correct guesses until all have converged or it takes too long; tell which are certain."""
+
+    def going(carry: tuple[jax.Array, jax.Array, jax.Array]) -> jax.Array:
+        count, _, further = carry
+        return (count < _driver.CORRECTIONS) & further.any()
+
+    def correct(carry: tuple[jax.Array, jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array, jax.Array]:
+        count, y, further = carry
+        d = jnp.stack(correction(body, *m, *y))
+        y = jnp.where(further, y + d, y)
+        return count + 1, y, further & ~_driver.converged(*d, *y)
+
+    _, y, further = jax.lax.while_loop(going, correct, (jnp.asarray(0), guess, jnp.ones(m.shape[1], dtype=bool)))
+    return y, ~further & kernels.certified(body, *m, *y)

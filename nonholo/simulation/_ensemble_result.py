@@ -1,0 +1,162 @@
+"""What `ensemble` returns: compact states of all members, decoded on access as those of an orbit are."""
+
+import dataclasses
+import importlib
+from typing import Any
+
+import numpy as np
+
+from nonholo._checks import error
+from nonholo._results import Outcome
+from nonholo._types import Float, Int
+from nonholo.groups import SE
+from nonholo.orbit import Orbit
+from nonholo.simulation._ensemble_members import Members
+from nonholo.simulation._ensemble_start import applied, energies, have_kernel, scalar_members
+from nonholo.systems import ChaplyginSleigh, SuslovTop
+
+_OF_FRAME = ("configuration", "position", "displacement")
+_KEEPS_FRAME = {SuslovTop: {"mass_tensor"}, ChaplyginSleigh: {"mass", "inertia", "a"}}
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Ensemble:
+    r"""Motions of M members at K saved states, from `ensemble`: arrays as in an `Orbit`, with a leading member axis.
+
+    With `save_every=None` K = 1, and the state is the last good one of each member, after `steps_done` steps. Otherwise
+    row j is the state after j `save_every` steps; a member that ends early has NaN in its later rows. A member whose
+    start has no principal root has nothing but NaN. `outcome` tells them apart.
+
+    Attributes:
+        members: The discretised system and the parameters.
+        steps: Number of steps N that were asked for.
+        save_every: Steps between saved states; None if only the last one is kept.
+        reduced_momentum: Compact momenta, canonical frame, shape (M, K, k).
+        cayley: Chart coordinates of the displacements, canonical frame, shape (M, K, m).
+        pose: Compact poses, canonical frame, shape (M, K, size); None if not reconstructed.
+        outcome: How each member ended, values of `Outcome`, shape (M,).
+        steps_done: Good steps of each member, shape (M,).
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        >>> batch = nh.ensemble(sleigh, restricted_velocity=[[1, 0], [0, 1], [9, -9]], steps=100)
+        >>> batch.momentum.shape, batch.steps_done, str(batch.orbit(2).outcome)
+        ((3, 1, 3), array([100, 100,   0]), 'no_real_branch')
+    """
+
+    members: Members
+    steps: int
+    save_every: int | None
+    reduced_momentum: Float[np.ndarray, "M K k"]
+    cayley: Float[np.ndarray, "M K m"]
+    pose: Float[np.ndarray, "M K size"] | None
+    outcome: Int[np.ndarray, "M"]
+    steps_done: Int[np.ndarray, "M"]
+
+    def __len__(self) -> int:
+        return len(self.members)
+
+    def __repr__(self) -> str:
+        counts = zip(*np.unique(self.outcome, return_counts=True), strict=True)
+        ended = ", ".join(f"{count} {Outcome(int(code))}" for code, count in counts)
+        kind = type(self.members.discrete.system).__name__
+        return f"<Ensemble of {kind}: {len(self)} members, {self.cayley.shape[1]} states each, {ended}>"
+
+    def orbit(self, member: int) -> Orbit:
+        """Return the good states of one member as an orbit."""
+        kept = slice(0, int(np.isfinite(self.reduced_momentum[member, :, 0]).sum()))
+        return self._orbit(member, kept)
+
+    def _orbit(self, member: int, kept: slice) -> Orbit:
+        pose = None if self.pose is None else self.pose[member, kept]
+        return Orbit(
+            self.members.of(member),
+            self.time[member, kept],
+            self.reduced_momentum[member, kept],
+            self.cayley[member, kept],
+            pose,
+            Outcome(int(self.outcome[member])),
+            self.save_every or self.steps or 1,
+        )
+
+    @property
+    def time(self) -> Float[np.ndarray, "M K"]:
+        """Times of the states; with `save_every=None` that of each member's last good one."""
+        if self.save_every is None:
+            return (self.members.time_step * self.steps_done)[:, None]
+        done = self.save_every * np.arange(self.cayley.shape[1])
+        return np.broadcast_to(self.members.time_step[:, None] * done, self.cayley.shape[:2])
+
+    @property
+    def restricted_momentum(self) -> Float[np.ndarray, "M K k"]:
+        """Momenta along the rows of the constraint subspace; spatial ones for a right-invariant constraint."""
+        if not have_kernel(self.members):
+            return self._decoded("restricted_momentum")
+        return applied(np.linalg.inv(scalar_members(self.members).frame_map), self.reduced_momentum)
+
+    @property
+    def energy(self) -> Float[np.ndarray, "M K"]:
+        """Reduced constrained energies."""
+        if not have_kernel(self.members):
+            return self._decoded("energy")
+        return energies(scalar_members(self.members), self.reduced_momentum)
+
+    @property
+    def momentum(self) -> Float[np.ndarray, "M K dim"]:
+        """Body momenta; decoded member by member where parameters differ, some 50 us each."""
+        return self._decoded("momentum")
+
+    @property
+    def body_velocity(self) -> Float[np.ndarray, "M K dim"]:
+        """Admissible body velocities whose momenta along the constraint are those of the states."""
+        return self._decoded("body_velocity")
+
+    @property
+    def displacement(self) -> Float[np.ndarray, "M K N N"]:
+        """Displacements W_k of single steps at the saved states."""
+        return self._decoded("displacement")
+
+    @property
+    def configuration(self) -> Float[np.ndarray, "M K N N"]:
+        """Poses as matrices; every member starts at the identity."""
+        return self._decoded("configuration")
+
+    @property
+    def position(self) -> Float[np.ndarray, "M K n"]:
+        """Translation parts of the poses; for groups of motions."""
+        return self._decoded("position")
+
+    @property
+    def heading(self) -> Float[np.ndarray, "M K"]:
+        """Angles of the body on SE(2): between saved states the shorter turn is assumed, from 0 at the start.
+
+        With `save_every=None` nothing is known of full turns, and the angle is between -pi and pi.
+        """
+        group = self.members.discrete.system.group
+        if group != SE(2) or self.pose is None:
+            got = f"{group}" if group != SE(2) else "reconstruct=False"
+            raise error("Ensemble.heading", "have poses in the plane", got, "Use configuration, or reconstruct=True.")
+        return np.unwrap(np.arctan2(self.pose[..., 1], self.pose[..., 0]), axis=1)
+
+    def to_dataset(self) -> Any:
+        """Return the states as a labelled `xarray.Dataset` with dimensions `member` and `step`."""
+        return importlib.import_module("nonholo.simulation._ensemble_dataset").ensemble_to_dataset(self)
+
+    def _decoded(self, name: str) -> np.ndarray:
+        """Return a quantity of orbits: in one go where it is the same function of the state for all members."""
+        count, states = self.cayley.shape[:2]
+        if self._is_shared(name):
+            momenta, charts = (a.reshape(count * states, -1) for a in (self.reduced_momentum, self.cayley))
+            pose = None if self.pose is None else self.pose.reshape(count * states, -1)
+            found = getattr(Orbit(self.members.discrete, np.zeros(count * states), momenta, charts, pose), name)
+            return found.reshape(count, states, *found.shape[1:])
+        return np.stack([getattr(self._orbit(member, slice(None)), name) for member in range(count)])
+
+    def _is_shared(self, name: str) -> bool:
+        """Tell whether a quantity is the same function of the state for all members."""
+        discrete = self.members.discrete
+        composed = discrete.order > 2 and name == "displacement"
+        same = set() if name == "momentum" or composed else {"time_step"}
+        if name in _OF_FRAME and not composed:
+            same |= _KEEPS_FRAME.get(type(discrete.system), set())
+        return self.members.parameters.keys() <= same

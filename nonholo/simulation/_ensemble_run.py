@@ -1,0 +1,200 @@
+"""Runs of a block of members: tops and plane sleighs 32 at a time, other systems one by one, both in threads."""
+
+import functools
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from typing import NamedTuple, TypeAlias
+
+import numba
+import numpy as np
+
+from nonholo import kernels
+from nonholo._results import Outcome
+from nonholo.discrete import Discretization
+from nonholo.discrete._composition import compiled_step
+from nonholo.orbit import Orbit
+from nonholo.simulation._ensemble_members import Members
+from nonholo.simulation._ensemble_result import Ensemble
+from nonholo.simulation._ensemble_start import have_kernel, scalar_members
+from nonholo.simulation._simulate import simulate
+
+_PART = 8192  # members in a piece of work of one thread, a multiple of what a compiled block holds
+
+Report: TypeAlias = Callable[[int], None]
+
+
+class Plan(NamedTuple):
+    """What to do with every member.
+
+    Attributes:
+        steps: Number of steps.
+        every: Steps between saved states; None for the last one alone.
+        posed: Whether to compute poses.
+        backend: "auto", "numba" or "jax".
+    """
+
+    steps: int
+    every: int | None
+    posed: bool
+    backend: str
+
+
+def run_members(
+    members: Members,
+    momenta: np.ndarray,
+    plan: Plan,
+    threads: int | None = None,
+    report: Report = lambda _: None,
+) -> Ensemble:
+    """Run a block of members from canonical momenta.
+
+    Args:
+        members: Who runs.
+        momenta: First momenta along the constraint subspace, (M, k).
+        plan: What to do.
+        threads: How many; all that numba may use by default.
+        report: Called with the number of members that are done.
+    """
+    threads = threads or int(numba.config.NUMBA_NUM_THREADS)  # pyright: ignore
+    if have_kernel(members):
+        return _run_scalar(members, momenta, plan, threads, report)
+    return _run_each(members, momenta, plan, threads, report)
+
+
+def _run_scalar(members: Members, momenta: np.ndarray, plan: Plan, threads: int, report: Report) -> Ensemble:
+    scalar = scalar_members(members)
+    steps, every, posed, backend = plan
+    count, states = len(members), states_of(steps, every)
+    scaled = np.ascontiguousarray(momenta * scalar.scale[:, None])
+    poses = np.ascontiguousarray(np.broadcast_to(scalar.pose, (count, 4)))
+    rows = _rows(count, states, posed)
+    one = members.parameters.keys() <= {"time_step"}
+    advance = _advance_by_jax if backend == "jax" else _advance
+
+    def work(part: slice) -> None:
+        pieces = kernels.MemberRows(*(array[part] for array in rows))
+        advance(scalar.fields if one else scalar.fields[:, part], one, scaled[part], poses[part], plan, pieces)
+
+    if backend == "jax":
+        threads = 1  # XLA has its own
+    _in_threads(work, _parts(count, threads, backend), threads, report)
+    reduced = rows.momenta / scalar.scale[:, None, None]
+    return Ensemble(members, steps, every, reduced, rows.charts, rows.poses if posed else None, rows.codes, rows.done)
+
+
+def _rows(count: int, states: int, posed: bool) -> kernels.MemberRows:
+    """Return rows for the states of members, NaN before they run."""
+    momenta, charts = (np.full((count, states, 2), np.nan) for _ in range(2))
+    poses = np.full((count, states * posed, 4), np.nan)
+    codes, done = np.zeros((2, count), dtype=np.int64)
+    return kernels.MemberRows(momenta, charts, poses, codes, done)
+
+
+def _kind(fields: np.ndarray) -> type[kernels.Body]:
+    return kernels.SuslovBody if len(fields) == len(kernels.SuslovBody._fields) else kernels.SleighBody
+
+
+def _advance(
+    fields: np.ndarray, one: bool, momenta: np.ndarray, poses: np.ndarray, plan: Plan, rows: kernels.MemberRows
+) -> None:
+    """Run members by the compiled loop."""
+    body = _kind(fields)(*(float(x) for x in fields[:, 0]))
+    tables = None if one else kernels.tables_of(fields)
+    kernels.advance_members(body, tables, momenta, poses, plan.steps, plan.every or 0, rows)
+
+
+def _advance_by_jax(
+    fields: np.ndarray, one: bool, momenta: np.ndarray, poses: np.ndarray, plan: Plan, rows: kernels.MemberRows
+) -> None:
+    """Run members by JAX, and those whose roots are not certain by the compiled loop."""
+    from nonholo.simulation._ensemble_jax import advance_by_jax
+
+    uncertain = advance_by_jax(_kind(fields)(*fields), momenta, poses, plan.steps, plan.every or 0, rows)
+    again = np.flatnonzero(uncertain)
+    if again.size:
+        found = _rows(len(again), rows.momenta.shape[1], plan.posed)
+        _advance(fields if one else fields[:, again], one, momenta[again], poses[again], plan, found)
+        for array, values in zip(rows, found, strict=True):
+            array[again] = values
+
+
+def _run_each(members: Members, momenta: np.ndarray, plan: Plan, threads: int, report: Report) -> Ensemble:
+    count, states = len(members), states_of(plan.steps, plan.every)
+    codes, done = np.zeros((2, count), dtype=np.int64)
+    found: dict[int, Orbit] = {}
+
+    def work(part: slice) -> None:
+        for member in range(part.start, part.stop):
+            found[member], done[member] = _run_one(members.of(member), momenta[member], plan)
+            codes[member] = found[member].outcome
+
+    compiled = plan.backend != "jax" and compiled_step(members.discrete) is not None
+    _in_threads(work, [slice(i, i + 1) for i in range(count)], threads if compiled else 1, report)
+    orbits = [found[member] for member in range(count)]
+    reduced = _filled([orbit.reduced_momentum for orbit in orbits], states)
+    charts = _filled([orbit.canonical_chart for orbit in orbits], states)
+    poses = [orbit.pose for orbit in orbits if orbit.pose is not None]
+    return Ensemble(
+        members, plan.steps, plan.every, reduced, charts, _filled(poses, states) if poses else None, codes, done
+    )
+
+
+def _run_one(discrete: Discretization, momentum: np.ndarray, plan: Plan) -> tuple[Orbit, int]:
+    """Return the states that one member keeps as an orbit, and its number of good steps."""
+    start = discrete.system.from_canonical(momentum)
+    run = functools.partial(
+        simulate, discrete, momentum=start, reconstruct=plan.posed, backend=plan.backend, throw=False
+    )
+    orbit, done = run(steps=plan.steps, save_every=plan.every or plan.steps), plan.steps
+    if orbit.outcome != Outcome.successful:
+        every_step = run(steps=plan.steps)
+        done = max(0, len(every_step) - 1)
+        orbit = every_step if plan.every is None else orbit
+    return (orbit[-1:] if plan.every is None else orbit), done
+
+
+def _filled(kept: list[np.ndarray], states: int) -> np.ndarray:
+    """Return the rows of all members in one array, NaN where a member has none."""
+    filled = np.full((len(kept), states, kept[0].shape[1]), np.nan)
+    for member, rows in enumerate(kept):
+        filled[member, : len(rows)] = rows
+    return filled
+
+
+def states_of(steps: int, every: int | None) -> int:
+    """Return how many states of each member are kept."""
+    return 1 if every is None else 1 + steps // every
+
+
+def _parts(count: int, threads: int, backend: str) -> list[slice]:
+    """Cut members into pieces of work: whole blocks of the kernel, some for each thread, or what JAX takes at once."""
+    if backend == "jax":
+        from nonholo.simulation._ensemble_jax import chunk
+
+        size = chunk() or count
+    else:
+        blocks = -(-count // kernels.LANES)
+        size = kernels.LANES * max(1, min(_PART // kernels.LANES, blocks // (4 * threads)))
+    return [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]
+
+
+def _in_threads(work: Callable[[slice], None], parts: list[slice], threads: int, report: Report) -> None:
+    """Do all pieces of work, which release the interpreter's lock, and report each."""
+    for part in _finished(work, parts, threads):
+        report(part.stop - part.start)
+
+
+def _finished(work: Callable[[slice], None], parts: list[slice], threads: int) -> Iterator[slice]:
+    if threads == 1 or len(parts) == 1:
+        for part in parts:
+            work(part)
+            yield part
+        return
+    pool = ThreadPoolExecutor(threads)
+    try:
+        waiting = {pool.submit(work, part): part for part in parts}
+        for future in as_completed(waiting):
+            future.result()
+            yield waiting[future]
+    finally:
+        pool.shutdown(cancel_futures=True)

@@ -1,0 +1,140 @@
+"""Where the members of an ensemble start, and the numbers of tops and plane sleighs for all members in one go."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from nonholo import kernels
+from nonholo._checks import array, error
+from nonholo._types import Float
+from nonholo.discrete._start import initial_momentum
+from nonholo.discrete._structured import scalar_step
+from nonholo.simulation._ensemble_members import Members, refused
+from nonholo.systems import ChaplyginSleigh, System
+
+_CHUNK = 1 << 16  # members whose starts are made at once: what it takes between is not kept
+_TOLERANCE = 1e-9  # relative, for velocities that a user computed in floating point
+
+
+class ScalarMembers(NamedTuple):
+    """What the kernels of tops (n = 3) and plane sleighs see; an axis of length 1 where all members agree.
+
+    Attributes:
+        fields: Fields of their bodies, one row each, (fields, m).
+        scale: Factors from canonical momenta to those of the kernel, (m,).
+        inertia: Inertias along the constraint in the canonical frame, (m, 2, 2).
+        frame_map: C with r_canonical = C r, (m, 2, 2).
+        pose: First poses, (m, 4).
+    """
+
+    fields: Float[np.ndarray, "f m"]
+    scale: Float[np.ndarray, "m"]
+    inertia: Float[np.ndarray, "m 2 2"]
+    frame_map: Float[np.ndarray, "m 2 2"]
+    pose: Float[np.ndarray, "m 4"]
+
+
+def have_kernel(members: Members) -> bool:
+    """Tell whether members are tops (n = 3) or plane sleighs with a step in closed form."""
+    return members.discrete.order == 2 and scalar_step(members.discrete) is not None
+
+
+def scalar_members(members: Members) -> ScalarMembers:
+    """Return the numbers of tops and plane sleighs."""
+    return _sleighs(members) if isinstance(members.discrete.system, ChaplyginSleigh) else _tops(members)
+
+
+def _sleighs(members: Members) -> ScalarMembers:
+    m, J, a, b = np.broadcast_arrays(*map(members.values, ("mass", "inertia", "a", "b")))
+    zero, one = np.zeros_like(m), np.ones_like(m)
+    inertia = np.moveaxis(np.array([[J + m * a * a, zero], [zero, m]]), -1, 0)
+    frame_map = np.moveaxis(np.array([[one, b], [zero, one]]), -1, 0)
+    pose = np.stack([one, zero, zero, b], axis=-1)
+    return ScalarMembers(np.stack([m, J, a]), members.time_step, inertia, frame_map, pose)
+
+
+def _tops(members: Members) -> ScalarMembers:
+    system = members.discrete.system
+    F, J = system.frame, members.values("mass_tensor")
+    turned = F.T @ J @ F
+    J = (turned + turned.swapaxes(1, 2)) / 2
+    B = J[:, :2, :2] + J[:, 2:, 2:] * np.eye(2)
+    pose = system.group.pose_from_matrix(F)[None]
+    return ScalarMembers(
+        kernels.suslov_table(B, J[:, :2, 2]), members.time_step / 2, B, np.asarray(system.frame_map)[None], pose
+    )
+
+
+def checked_start(system: System, parameters: dict[str, np.ndarray], **starts: Any) -> tuple[str, np.ndarray]:
+    """Return the name of the start that was given and its rows, one for each member."""
+    ((name, value),) = ((name, value) for name, value in starts.items() if value is not None)
+    where, k, dim = f"ensemble({name}=...)", system.rank, system.group.dim
+    lengths = {"body_velocity": (dim,), "restricted_velocity": (k,), "momentum": (k, dim)}[name]
+    size = np.shape(value)[-1] if np.ndim(value) and np.shape(value)[-1] in lengths else lengths[-1]
+    if np.ndim(value) == 1 and parameters:
+        count = len(next(iter(parameters.values())))
+        return name, np.broadcast_to(array(where, value, (size,)), (count, size))
+    rows = array(where, value, (None, size), "Pass one row for each member; `simulate` runs a single one.")
+    if not len(rows):
+        raise error(where, "have at least one row", "none", "Pass one row for each member.")
+    for other, values in parameters.items():
+        if len(values) != len(rows):
+            got = f"{len(values)} values for {len(rows)} rows of {name}"
+            raise error(
+                f"ensemble(parameters={{{other!r}: ...}})", "have one value for each member", got, "Match them."
+            )
+    return name, rows
+
+
+def first_momenta(members: Members, name: str, rows: np.ndarray) -> Float[np.ndarray, "M k"]:
+    """Return the canonical momenta along the constraint subspace of starts whose shapes are checked."""
+    if not have_kernel(members):
+        return np.array([_of_one(members, member, name, rows[member]) for member in range(len(members))])
+    momenta = np.empty((len(members), 2))
+    for begin in range(0, len(members), _CHUNK):
+        part = slice(begin, begin + _CHUNK)
+        momenta[part], bad = _momenta_of_part(members.part(part), name, rows[part])
+        if bad.any():
+            member = begin + int(np.argmax(bad))
+            _of_one(members, member, name, rows[member])
+    return momenta
+
+
+def _momenta_of_part(members: Members, name: str, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return canonical momenta, and which members may not start: the constraint is broken, the energy not finite."""
+    system, scalar = members.discrete.system, scalar_members(members)
+    S, bad = system.constraint_subspace, np.zeros(len(members), dtype=bool)
+    with np.errstate(over="ignore", invalid="ignore"):
+        if name == "momentum":
+            momenta = applied(scalar.frame_map, rows if rows.shape[1] == system.rank else applied(S[None], rows))
+        else:
+            if name == "body_velocity":
+                bad = np.abs(rows @ system.annihilator.T).max(axis=1) > _TOLERANCE * np.abs(rows).max(axis=1)
+                rows = applied(np.linalg.pinv(S).T[None], rows)
+            momenta = applied(scalar.inertia @ np.linalg.inv(scalar.frame_map.swapaxes(1, 2)), rows)
+        return momenta, bad | ~np.isfinite(energies(scalar, momenta))
+
+
+def energies(scalar: ScalarMembers, momenta: Float[np.ndarray, "M ... 2"]) -> Float[np.ndarray, "M ..."]:
+    """Return the reduced constrained energies of canonical momenta."""
+    return (momenta * applied(np.linalg.inv(scalar.inertia), momenta)).sum(axis=-1) / 2
+
+
+def applied(
+    matrices: Float[np.ndarray, "m i j"], vectors: Float[np.ndarray, "M ... j"]
+) -> Float[np.ndarray, "M ... i"]:
+    """Return products of matrices, by member or one for all, with vectors; their bits are the same in any company.
+
+    BLAS is not used: it may add in another order when there are more members.
+    """
+    A = matrices.reshape(len(matrices), *(1,) * (vectors.ndim - 2), *matrices.shape[1:])
+    return sum((A[..., j] * vectors[..., j, None] for j in range(1, A.shape[-1])), A[..., 0] * vectors[..., 0, None])
+
+
+def _of_one(members: Members, member: int, name: str, row: np.ndarray) -> np.ndarray:
+    """Return the canonical momentum at which one member starts, refused with its number."""
+    system = members.of(member).system
+    try:
+        return initial_momentum("ensemble", system, system.group.identity, **{name: row})
+    except ValueError as failure:
+        raise refused(member, failure) from None

@@ -1,0 +1,57 @@
+"""What every run checks and computes before its first step."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from nonholo._checks import choice, error, step_counts
+from nonholo.discrete import Discretization, initial_state
+from nonholo.discrete._branch_rules import BranchRule, checked_rule
+from nonholo.discrete._composition import check_composed_run
+from nonholo.discrete._discretization import as_discretization
+from nonholo.discrete._start import in_group
+from nonholo.discrete._structured import is_secular
+
+_LARGEST = 1 << 30  # numbers in all poses of an orbit, 8 GiB
+
+
+class Start(NamedTuple):
+    """The first state of a run: canonical momenta, compact pose, and what the start demanded of the first step."""
+
+    reduced: np.ndarray
+    pose: np.ndarray
+    demanded: np.ndarray | None
+
+
+def checked_counts(
+    discrete: Discretization, steps: Any, save_every: Any, branch: Any, backend: str, displacement: Any
+) -> tuple[int, int, BranchRule]:
+    """Return the numbers of steps of a run and its branch rule, after checking that they can be had together."""
+    as_discretization("simulate(discrete=...)", discrete, composed=True)
+    steps, every = step_counts(steps, save_every)
+    rule = checked_rule("simulate", discrete, branch)
+    check_composed_run(discrete, rule, displacement)
+    choice("simulate(backend=...)", backend, ("auto", "numba", "jax"))
+    return steps, every, rule
+
+
+def first_state(
+    discrete: Discretization, configuration: Any, saved: int, compiled: bool, starts: dict[str, Any]
+) -> Start:
+    """Return the checked start of a run that holds so many poses in memory."""
+    g = first_pose(discrete, configuration, saved, compiled)
+    reduced, demanded = initial_state(discrete, g, **starts)
+    pose = np.empty(0) if g is None else discrete.system.group.pose_from_matrix(g @ discrete.system.frame)
+    return Start(reduced, pose, demanded)
+
+
+def first_pose(discrete: Discretization, configuration: Any, saved: int, compiled: bool) -> np.ndarray | None:
+    """Return the first pose; None where neither the step nor the result needs one."""
+    group = discrete.system.group
+    if is_secular(discrete) and saved * group.size**2 > _LARGEST:
+        got = f"{saved} of {group.size}^2 numbers each"
+        remedy = "Pass reconstruct=False or a larger save_every."
+        raise error("simulate(reconstruct=...)", f"make poses of at most {_LARGEST} numbers", got, remedy)
+    if configuration is not None:
+        return in_group("simulate(configuration=...)", group, configuration)
+    return None if saved == 0 and compiled and is_secular(discrete) else group.identity

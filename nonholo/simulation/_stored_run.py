@@ -1,0 +1,151 @@
+"""Runs that are written to a store block by block, in bounded memory, and can stop at any moment."""
+
+import errno
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+from nonholo import io
+from nonholo._checks import count, error
+from nonholo._progress import progress_bar
+from nonholo._results import Outcome, finished
+from nonholo.io import Checkpoint, Plan, Stream
+from nonholo.orbit import Orbit
+from nonholo.simulation._prepared import Start
+from nonholo.simulation._stretch import CompiledRun, opened
+
+_ROWS, _NUMBERS, _STEPS = 1 << 16, 1 << 22, 1 << 23  # at most in a block: states, numbers in an array, steps
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+_LOADED = 1 << 27  # numbers of an orbit that is returned whole, 1 GiB
+
+
+def run_into_store(
+    run: CompiledRun,
+    start: Start,
+    steps: int,
+    store: str | Path,
+    checkpoint_every: int | None,
+    *,
+    throw: bool,
+    progress: bool,
+) -> Orbit:
+    """Run from a start into a new store; return the orbit."""
+    io.check_target(store)
+    plan = Plan(steps, run.every, rows_of_block("simulate(checkpoint_every=...)", run, steps, checkpoint_every))
+    vector, first = opened(run, start, steps, throw)
+    if not len(first):
+        return first
+    stream = io.create_stream(Path(store), first, plan, vector)
+    with io.locked(stream.path):
+        return go_on(run, stream, throw=throw, progress=progress)
+
+
+def rows_of_block(where: str, run: CompiledRun, steps: int, block_steps: int | None) -> int:
+    """Return the number of saved states in a block of so many steps; by default blocks of a few megabytes."""
+    if block_steps is None:
+        widest = max(1, *run.sizes)
+        return max(1, min(1 + steps // run.every, _ROWS, _NUMBERS // widest, _STEPS // run.every))
+    asked = count(where, block_steps, "Pass the number of steps.")
+    if asked % run.every:
+        remedy = f"Pass {-(-asked // run.every) * run.every}."
+        raise error(where, f"be a multiple of save_every = {run.every}", str(asked), remedy)
+    return asked // run.every
+
+
+def refuse_checkpoints(checkpoint_every: int | None) -> None:
+    """Refuse a distance of checkpoints in a run without a store."""
+    if checkpoint_every is not None:
+        where, got = "simulate(checkpoint_every=...)", f"{checkpoint_every!r} without a store"
+        raise error(where, "come with a store", got, "Pass store='run.zarr' too, or leave it out.")
+
+
+def go_on(run: CompiledRun, stream: Stream, *, throw: bool, progress: bool) -> Orbit:
+    """Compute what a locked store lacks, block after block, and return the orbit."""
+    stream.prepare()
+    _warn_of_other_versions(stream)
+    again = f"nonholo.resume({str(stream.path)!r})"
+    try:
+        reached = _completed(run, stream, progress)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(f"Stopped at step {_standing(stream)}. Go on with {again} (nonholo resume).") from None
+    except OSError as failure:
+        remedy = "Free space" if failure.errno in _FULL else "Remedy that"
+        reason = f"{failure.strerror}. The run stands at step {_standing(stream)}. {remedy}, then call {again}"
+        raise OSError(failure.errno, reason, str(stream.path)) from failure
+    orbit = _loaded(run, stream, reached)
+    return finished(orbit, float(run.discrete.time_step), reached.done, stream.plan.steps, throw)
+
+
+def _warn_of_other_versions(stream: Stream) -> None:
+    """Say so if what is still to compute may differ in its last bits from a run with the versions of the store."""
+    others = io.other_versions(io.read_attributes(stream.path))
+    if others and not stream.is_finished:
+        told = f"The store '{stream.path}' was begun with {others}: what follows may differ from it in the last bits."
+        warnings.warn(told, RuntimeWarning, stacklevel=4)
+
+
+def _standing(stream: Stream) -> str:
+    return f"{stream.reached()} of {stream.plan.steps}"
+
+
+def _completed(run: CompiledRun, stream: Stream, progress: bool) -> Checkpoint:
+    """Compute every block that is missing or damaged; return the end of the run."""
+    plan, computed = stream.plan, not stream.is_finished
+    marked = max((block for block in range(plan.blocks) if stream.is_marked(block)), default=-1)
+    reached = stream.checkpoint(0)
+    with progress_bar("steps", progress) as report:
+        for block in range(plan.blocks):
+            sound = _sound(stream, block) if block <= marked else None
+            computed = computed or sound is None
+            reached = sound or _computed(run, stream, block, reached, lambda done: report(done, plan.steps))
+            report(reached.done, plan.steps)
+            if reached.outcome != Outcome.successful:
+                break
+    end = _known(reached)
+    if computed:
+        stream.finish(end.done, end.outcome)
+    return end
+
+
+def _sound(stream: Stream, block: int) -> Checkpoint | None:
+    """Return the end of a block that is marked as finished; None, with a warning, if it is damaged."""
+    reached = stream.checkpoint(block + 1)
+    if isinstance(reached, Checkpoint) and not _is_final(stream, block, reached):
+        return None
+    flaw = stream.flaw(block)
+    if flaw is None and isinstance(reached, Checkpoint):
+        return reached
+    told = f"The store '{stream.path}' is damaged: {flaw}. Block {block} is computed again from its checkpoint."
+    warnings.warn(told, RuntimeWarning, stacklevel=5)
+    return None
+
+
+def _is_final(stream: Stream, block: int, reached: Checkpoint) -> bool:
+    """Tell whether a block needs no more rows: not so if the run was extended, or failed and was not yet cut."""
+    return reached.done == stream.plan.stop(block) or (reached.outcome != Outcome.successful and stream.is_finished)
+
+
+def _computed(
+    run: CompiledRun, stream: Stream, block: int, begin: Checkpoint | str, report: Callable[[int], object]
+) -> Checkpoint:
+    """Compute a block and write it."""
+    plan = stream.plan
+    vector = _known(begin).vector.copy()
+    orbit, done = run.stretch(vector, plan.begin(block), plan.stop(block), report, opening=block == 0)
+    reached = Checkpoint(done, orbit.outcome, vector)
+    stream.write(block, orbit, reached)
+    return reached
+
+
+def _known(state: Checkpoint | str) -> Checkpoint:
+    if isinstance(state, str):
+        raise error("resume(store=...)", "hold the start of the run", state, "It is lost: run it again.")
+    return state
+
+
+def _loaded(run: CompiledRun, stream: Stream, reached: Checkpoint) -> Orbit:
+    """Return the orbit, of one that would fill the memory the last block."""
+    states = 1 + reached.done // run.every
+    if states * (2 + sum(run.sizes)) <= _LOADED:
+        return io.load_orbit(stream.path, discrete=run.discrete)
+    return io.load_last_block(stream.path, run.discrete)

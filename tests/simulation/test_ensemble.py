@@ -1,0 +1,352 @@
+"""Ensembles: every member moves as it would alone, whatever the others do, however the work is cut."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from bodies import GENERAL, mass_tensor
+
+import nonholo as nh
+from nonholo.kernels import suslov_body
+from nonholo.simulation import _ensemble
+from nonholo.simulation._ensemble_members import Members
+from nonholo.simulation._ensemble_run import Plan, run_members
+from nonholo.simulation._ensemble_start import first_momenta, scalar_members
+
+J = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+TOP = nh.SuslovTop(J, axis=(0.6, 0.0, 0.8))
+SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
+BOTH = pytest.mark.parametrize("system", [TOP, SLEIGH], ids=["top", "sleigh"])
+DECODED = ("momentum", "restricted_momentum", "energy", "body_velocity", "displacement", "configuration")
+
+
+def _velocities(count: int, size: float = 1.0) -> np.ndarray:
+    return size * np.random.default_rng(5).normal(size=(count, 2))
+
+
+def _parameters(system: Any, count: int) -> dict[str, np.ndarray]:
+    """Draw bodies and time steps."""
+    rng = np.random.default_rng(6)
+    step = rng.uniform(0.02, 0.1, count)
+    if system is TOP:
+        return {"mass_tensor": np.array([mass_tensor(nh.SO(3), rng) for _ in range(count)]), "time_step": step}
+    drawn = {"mass": rng.uniform(1, 2, count), "inertia": rng.uniform(1, 2, count)}
+    return {**drawn, "a": rng.normal(size=count), "b": rng.normal(size=count), "time_step": step}
+
+
+def _assert_same_bits(found: nh.Ensemble, wanted: nh.Ensemble, part: slice = slice(None)) -> None:
+    for name in ("reduced_momentum", "cayley", "pose", "outcome", "steps_done"):
+        assert np.array_equal(getattr(found, name), getattr(wanted, name)[part], equal_nan=True), name
+
+
+def _assert_close(found: np.ndarray, wanted: np.ndarray, tolerance: float) -> None:
+    assert found.shape == wanted.shape
+    assert np.abs(found - wanted).max() <= tolerance * np.abs(wanted).max()
+
+
+@BOTH
+def test_members_move_as_simulate_moves_them(system: Any) -> None:
+    """Over 1000 steps states agree to rounding, and what is decoded from them; poses gather that of 1000 products."""
+    discrete, velocities = nh.discretize(system, 0.1), _velocities(35)
+    batch = nh.ensemble(discrete, restricted_velocity=velocities, steps=1000, save_every=250)
+    assert batch.outcome.tolist() == [0] * 35
+    for member in (0, 33):
+        orbit = nh.simulate(discrete, restricted_velocity=velocities[member], steps=1000, save_every=250)
+        assert np.array_equal(batch.time[member], orbit.time)
+        for name in DECODED:
+            _assert_close(getattr(batch, name)[member], getattr(orbit, name), 1e-14)
+
+
+@BOTH
+def test_last_state_is_that_of_the_history(system: Any) -> None:
+    """By default the one state kept is the last one, at time N h."""
+    discrete, velocities = nh.discretize(system, 0.1), _velocities(3)
+    whole = nh.ensemble(discrete, restricted_velocity=velocities, steps=30, save_every=1)
+    last = nh.ensemble(discrete, restricted_velocity=velocities, steps=30)
+    assert np.array_equal(last.reduced_momentum[:, 0], whole.reduced_momentum[:, -1])
+    assert np.array_equal(last.pose[:, 0], whole.pose[:, -1])
+    assert np.array_equal(last.time[:, 0], whole.time[:, -1])
+
+
+@BOTH
+def test_starts_agree(system: Any) -> None:
+    """Velocities, restricted velocities and both kinds of momenta name the same starts."""
+    discrete, w = nh.discretize(system, 0.1), _velocities(4)
+    first = nh.ensemble(discrete, restricted_velocity=w, steps=1, save_every=1)
+    wanted = first.restricted_momentum[:, 1]
+    for start in (
+        {"body_velocity": w @ system.constraint_subspace},
+        {"momentum": first.momentum[:, 0]},
+        {"momentum": first.restricted_momentum[:, 0]},
+    ):
+        found = nh.ensemble(discrete, **start, steps=1)
+        assert found.outcome.tolist() == [0] * 4
+        _assert_close(found.restricted_momentum[:, 0], wanted, 1e-15)
+
+
+@BOTH
+@pytest.mark.parametrize("varied", [False, True], ids=["one body", "many bodies"])
+def test_bits_do_not_depend_on_the_company(system: Any, varied: bool) -> None:
+    """A member alone, a chunk and the whole ensemble have the same bits, some members failing."""
+    discrete, velocities = nh.discretize(system, 0.6), _velocities(70, 1.5)
+    parameters = _parameters(system, 70) if varied else {}
+    parameters.pop("time_step", None)
+
+    def run(part: slice) -> nh.Ensemble:
+        own = {name: values[part] for name, values in parameters.items()}
+        return nh.ensemble(discrete, restricted_velocity=velocities[part], parameters=own, steps=40, save_every=20)
+
+    whole = run(slice(None))
+    assert set(whole.outcome) > {0}
+    for part in (slice(41, 42), slice(17, 60)):
+        _assert_same_bits(run(part), whole, part)
+
+
+@BOTH
+def test_bits_do_not_depend_on_threads(system: Any) -> None:
+    """One thread and three give the same bits."""
+    members = Members(nh.discretize(system, 0.3), {}, 500)
+    momenta = first_momenta(members, "restricted_velocity", _velocities(500))
+    plan = Plan(steps=20, every=10, posed=True, backend="auto")
+    _assert_same_bits(run_members(members, momenta, plan, threads=3), run_members(members, momenta, plan, threads=1))
+
+
+@BOTH
+@pytest.mark.parametrize("every", [None, 1], ids=["last", "history"])
+def test_a_failed_member_ends_as_in_simulate(system: Any, every: int | None) -> None:
+    """Outcome, number of good steps and last good state of each member are those of its own run."""
+    discrete, velocities = nh.discretize(system, 0.7), _velocities(40, 2.0)
+    batch = nh.ensemble(discrete, restricted_velocity=velocities, steps=30, save_every=every)
+    assert set(batch.outcome) > {0}
+    for member in range(40):
+        orbit = nh.simulate(discrete, restricted_velocity=velocities[member], steps=30, throw=False)
+        own = batch.orbit(member)
+        assert (batch.outcome[member], own.outcome) == (orbit.outcome, orbit.outcome)
+        assert batch.steps_done[member] == max(0, len(orbit) - 1)
+        if every:
+            assert len(own) == len(orbit)
+        if len(orbit):
+            assert own.time[-1] == pytest.approx(orbit.time[-1], rel=1e-15)
+            _assert_close(own.momentum[-1], orbit.momentum[-1], 1e-14)
+
+
+@BOTH
+def test_later_rows_of_a_failed_member_are_nan(system: Any) -> None:
+    """After its end, and from the start if there is no first root, a member has NaN; others have numbers."""
+    discrete = nh.discretize(system, 0.7)
+    batch = nh.ensemble(discrete, restricted_velocity=_velocities(40, 2.0), steps=30, save_every=3)
+    good = np.isfinite(batch.energy).sum(axis=1)
+    failed = batch.outcome != 0
+    assert (good[~failed] == 11).all()
+    begun = good[failed] > 0
+    assert (good[failed][begun] == 1 + batch.steps_done[failed][begun] // 3).all()
+    assert (batch.steps_done[failed][~begun] == 0).all()
+
+
+@BOTH
+def test_parameters_vary_by_member(system: Any) -> None:
+    """Each member moves as the system with its own parameters and time step does."""
+    discrete, velocities, parameters = nh.discretize(system, 0.1), _velocities(33), _parameters(system, 33)
+    batch = nh.ensemble(discrete, restricted_velocity=velocities, parameters=parameters, steps=100, save_every=50)
+    for member in (0, 32):
+        own = {name: values[member] for name, values in parameters.items() if name != "time_step"}
+        body = nh.SuslovTop(**own, axis=TOP.axis) if system is TOP else nh.ChaplyginSleigh(**own)
+        alone = nh.discretize(body, parameters["time_step"][member])
+        orbit = nh.simulate(alone, restricted_velocity=velocities[member], steps=100, save_every=50)
+        assert np.array_equal(batch.time[member], orbit.time)
+        for name in DECODED:
+            _assert_close(getattr(batch, name)[member], getattr(orbit, name), 1e-14)
+
+
+@BOTH
+def test_numbers_of_all_members_are_those_of_each(system: Any) -> None:
+    """Inertia, map to the canonical frame, first pose and fields, made in one go, are those of the systems."""
+    members = Members(nh.discretize(system, 0.1), _parameters(system, 5), 5)
+    scalar = scalar_members(members)
+    for member in range(5):
+        own = members.of(member).system
+        _assert_close(scalar.inertia[member], own.canonical.constrained_inertia, 1e-15)
+        frame_map = np.broadcast_to(scalar.frame_map, (5, 2, 2))
+        assert np.array_equal(frame_map[member], own.frame_map)
+        pose = np.broadcast_to(scalar.pose, (5, 4))
+        assert np.array_equal(pose[member], own.group.pose_from_matrix(own.frame))
+        if system is TOP:
+            body = suslov_body(own.canonical.constrained_inertia, own.canonical.coupling)
+            assert np.allclose(scalar.fields[:, member], body, rtol=1e-14, atol=0)
+        else:
+            assert scalar.fields[:, member].tolist() == [own.mass, own.inertia, own.a]
+
+
+@pytest.mark.parametrize("name", ["suslov 4", "any d on SE(3)", "veselova 3"])
+def test_other_systems_run_member_by_member(name: str) -> None:
+    """States of systems without a scalar kernel have the bits of `simulate`, with parameters that vary too.
+
+    What is decoded agrees to rounding: BLAS may add in another order where there are more rows.
+    """
+    system, w = GENERAL[name]
+    velocities = w * np.array([[1.0], [0.5], [0.2]])
+    tensors = np.asarray(system.mass_tensor) * np.array([1.0, 1.2, 0.9])[:, None, None]
+    discrete = nh.discretize(system, 0.1)
+    for parameters in ({}, {"mass_tensor": tensors}):
+        batch = nh.ensemble(discrete, restricted_velocity=velocities, parameters=parameters, steps=20)
+        orbit = nh.simulate(batch.members.of(1), restricted_velocity=velocities[1], steps=20)
+        for state in ("reduced_momentum", "cayley", "pose"):
+            assert np.array_equal(getattr(batch, state)[1, 0], getattr(orbit, state)[-1])
+        for quantity in DECODED:
+            _assert_close(getattr(batch, quantity)[1, 0], getattr(orbit, quantity)[-1], 1e-14)
+
+
+def test_a_member_of_another_system_keeps_its_last_good_state() -> None:
+    """Where members run one by one a failed one still has the state before its end."""
+    system, w = GENERAL["suslov 4"]
+    discrete = nh.discretize(system, 1.0)
+    velocities = w * np.array([[0.1], [2.3], [40.0]])
+    batch = nh.ensemble(discrete, restricted_velocity=velocities, steps=50)
+    assert batch.outcome[0] == 0
+    assert batch.outcome[2] != 0
+    for member in range(3):
+        orbit = nh.simulate(discrete, restricted_velocity=velocities[member], steps=50, throw=False)
+        assert (batch.outcome[member], len(batch.orbit(member))) == (orbit.outcome, min(1, len(orbit)))
+        assert batch.steps_done[member] == max(0, len(orbit) - 1)
+        if len(orbit):
+            assert np.array_equal(batch.reduced_momentum[member, 0], orbit.reduced_momentum[-1])
+
+
+@BOTH
+def test_a_momentum_off_the_locus_spoils_its_member_alone(system: Any) -> None:
+    """A full momentum that no displacement has gives the outcome off_momentum_locus and NaN."""
+    discrete = nh.discretize(system, 0.1)
+    momenta = nh.ensemble(discrete, restricted_velocity=_velocities(3), steps=1, save_every=1).momentum[:, 0].copy()
+    momenta[1] += 0.1 * system.annihilator[0]
+    batch = nh.ensemble(discrete, momentum=momenta, steps=5)
+    assert batch.outcome.tolist() == [0, nh.Outcome.off_momentum_locus, 0]
+    assert np.isnan(batch.energy[:, 0]).tolist() == [False, True, False]
+
+
+@BOTH
+def test_jax_agrees_with_the_compiled_loop(system: Any) -> None:
+    """States agree to 1e-12 and outcomes exactly, with bodies that differ and members that fail."""
+    parameters = _parameters(system, 40)
+    arguments: dict[str, Any] = {"restricted_velocity": _velocities(40, 2.0), "steps": 50, "save_every": 20}
+    arguments["parameters"] = parameters | {"time_step": np.linspace(0.05, 0.9, 40)}
+    discrete = nh.discretize(system, 0.1)
+    wanted = nh.ensemble(discrete, **arguments)
+    found = nh.ensemble(discrete, **arguments, backend="jax")
+    assert set(wanted.outcome) > {0}
+    assert np.array_equal(found.outcome, wanted.outcome)
+    assert np.array_equal(found.steps_done, wanted.steps_done)
+    for name in ("reduced_momentum", "cayley", "pose"):
+        good = ~np.isnan(getattr(wanted, name))
+        assert np.array_equal(good, ~np.isnan(getattr(found, name)))
+        _assert_close(getattr(found, name)[good], getattr(wanted, name)[good], 1e-12)
+
+
+def test_a_reduction_sees_the_members_in_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A function of blocks gives what the same function of all members gives, to the bit."""
+    discrete, velocities = nh.discretize(SLEIGH, 0.1), _velocities(50)
+    parameters = {"a": np.linspace(-1, 1, 50)}
+    sizes = []
+
+    def reduction(block: nh.Ensemble) -> dict[str, np.ndarray]:
+        sizes.append(len(block))
+        return {"energy": block.energy[:, -1], "end": block.position[:, -1], "turn": np.ptp(block.heading, axis=1)}
+
+    arguments = {"restricted_velocity": velocities, "parameters": parameters, "steps": 60, "save_every": 20}
+    wanted = reduction(nh.ensemble(discrete, **arguments))
+    monkeypatch.setattr(_ensemble, "_BLOCK", 700)
+    found = nh.ensemble(discrete, **arguments, reduce=reduction)
+    assert sizes[1:] == [21, 21, 8]
+    for name, values in wanted.items():
+        assert np.array_equal(found[name], values)
+
+
+def test_headings_are_unwrapped_along_each_member() -> None:
+    """The heading of a thinned history counts full turns, member by member."""
+    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
+    batch = nh.ensemble(discrete, restricted_velocity=[[2.0, 0.0], [-1.0, 0.0]], steps=100, save_every=2)
+    for member, velocity in enumerate((2.0, -1.0)):
+        orbit = nh.simulate(discrete, restricted_velocity=(velocity, 0.0), steps=100, save_every=2)
+        assert np.abs(batch.heading[member] - orbit.heading).max() < 1e-13
+        assert abs(batch.heading[member, -1]) > 9
+
+
+def test_a_dataset_has_members_steps_and_parameters() -> None:
+    """The labelled dataset has the dimensions member and step, outcomes and the parameters that vary."""
+    discrete = nh.discretize(TOP, 0.1)
+    found = nh.ensemble(
+        discrete,
+        restricted_velocity=(0.4, 0.9),
+        parameters={"mass_tensor": J * np.array([1.0, 1.1])[:, None, None]},
+        steps=6,
+        save_every=3,
+    ).to_dataset()
+    assert dict(found.sizes) == {
+        "member": 2, "step": 3, "component": 2, "chart": 2, "pose_component": 4, "row": 3, "column": 3,
+    }  # fmt: skip
+    assert found.mass_tensor.dims == ("member", "row", "column")
+    assert found.outcome.values.tolist() == [0, 0]
+    assert found.attrs["format"] == "nonholo.ensemble"
+
+
+def test_without_poses_what_needs_them_is_refused() -> None:
+    """With reconstruct=False momenta and energies exist, poses are refused with the remedy."""
+    batch = nh.ensemble(nh.discretize(SLEIGH, 0.1), restricted_velocity=_velocities(2), steps=3, reconstruct=False)
+    assert np.isfinite(batch.energy).all()
+    for name in ("configuration", "position", "heading"):
+        with pytest.raises(ValueError, match="reconstruct=True"):
+            getattr(batch, name)
+
+
+ONE = {"restricted_velocity": (0.3, 1.0)}
+REFUSED: dict[str, tuple[dict[str, Any], str]] = {
+    "no start": ({}, "exactly one of"),
+    "two starts": ({**ONE, "momentum": [[1, 0]]}, "restricted_velocity and momentum"),
+    "one row without parameters": (ONE, "`simulate` runs a single one"),
+    "no rows": ({"restricted_velocity": np.empty((0, 2))}, "at least one row"),
+    "wrong width": ({"body_velocity": np.ones((2, 4))}, r"must have shape \(any, 3\)"),
+    "nan": ({"restricted_velocity": [[0.1, np.nan]]}, "must be finite"),
+    "forbidden velocity": ({"body_velocity": [[1, 1, 0], [1, 0, 1]]}, "satisfy the constraint.*This is member 1"),
+    "infinite energy": ({"restricted_velocity": [[1, 1], [1e200, 0]]}, "finite energy.*This is member 1"),
+    "lengths of parameters": ({**ONE, "parameters": {"a": [1, 2], "b": [1]}}, "one length. Got 2 of a, 1 of b"),
+    "lengths of starts": ({"momentum": [[1, 0]], "parameters": {"a": [1, 2]}}, "Got 2 values for 1 rows of momentum"),
+    "unknown parameter": ({**ONE, "parameters": {"c": [1, 2]}}, "has mass, inertia, a, b, time_step"),
+    "no mapping": ({**ONE, "parameters": [1.0]}, "be a mapping"),
+    "nan parameter": ({**ONE, "parameters": {"a": [1, np.nan]}}, "must be finite"),
+    "shape of a parameter": ({**ONE, "parameters": {"a": 1.0}}, r"must have shape \(any,\)"),
+    "no system": ({**ONE, "parameters": {"mass": [1, 1, -1]}}, r"`ChaplyginSleigh\(mass=.*This is member 2"),
+    "time step": ({**ONE, "parameters": {"time_step": [0.1, 0]}}, "be positive. Got 0.0.*This is member 1"),
+    "save_every": ({"restricted_velocity": [[1, 0]], "save_every": 0}, r"`ensemble\(save_every=...\)` must be"),
+    "steps": ({"restricted_velocity": [[1, 0]], "steps": 0}, r"`ensemble\(steps=...\)` must be"),
+    "backend": ({"restricted_velocity": [[1, 0]], "backend": "c"}, "must be one of 'auto'"),
+    "reduction": ({"restricted_velocity": [[1, 0]], "reduce": lambda _: 1.0}, "leading member axis"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_bad_arguments_are_refused(case: str) -> None:
+    """Each bad argument is named, with what was got and what to do."""
+    arguments, words = REFUSED[case]
+    with pytest.raises(ValueError, match=words):
+        nh.ensemble(nh.discretize(SLEIGH, 0.1), **{"steps": 5, **arguments})
+
+
+def test_mass_tensors_of_no_top_are_refused() -> None:
+    """A tensor that is not symmetric, and one without positive inertia along the constraint, are named by member."""
+    discrete = nh.discretize(TOP, 0.1)
+    for bad, words in ((J + np.triu(np.ones((3, 3)), 1), "be symmetric"), (-J, "positive definite")):
+        with pytest.raises(ValueError, match=f"{words}.*This is member 1"):
+            nh.ensemble(discrete, **ONE, parameters={"mass_tensor": [J, bad]}, steps=5)
+
+
+def test_numba_without_closed_form_is_refused() -> None:
+    """A discretisation that only its definition can run refuses the compiled backend."""
+    discrete = nh.discretize(SLEIGH, 0.1, difference="logarithmic")
+    with pytest.raises(ValueError, match="closed form of the step"):
+        nh.ensemble(discrete, restricted_velocity=[[0.1, 1.0]], steps=3, backend="numba")
+
+
+def test_poses_that_fill_the_memory_are_refused() -> None:
+    """Poses of a top in very many dimensions are refused before anything runs, with the remedy."""
+    top = nh.SuslovTop.arrowhead(np.ones(40_000), np.zeros(39_999))
+    with pytest.raises(ValueError, match=r"`ensemble\(reconstruct=.*reconstruct=False"):
+        nh.ensemble(nh.discretize(top, 0.1), restricted_velocity=np.ones((2, 39_999)), steps=3)

@@ -1,0 +1,382 @@
+"""Runs in blocks and in stores: the bits of one undisturbed run, whatever happens on the way."""
+
+import errno
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from bodies import GENERAL
+from problems import PROBLEMS
+
+import nonholo as nh
+from nonholo.io import Stream, standing
+from nonholo.systems import AbstractSystem
+
+TOP = nh.discretize(PROBLEMS[0].system, 0.1)
+SLEIGH = nh.discretize(PROBLEMS[7].system, 0.1)
+WIDE = nh.discretize(GENERAL["sleigh 3"][0], 0.05)
+NAMES = ("time", "reduced_momentum", "cayley", "pose")
+KILLS = 20
+START = {"restricted_velocity": (0.7, -0.3)}
+FOLDING = nh.discretize(PROBLEMS[0].system, 1.0)
+FOLDS = {"momentum": np.array([1.93257157, -0.68979744])}
+
+
+def _same(one: nh.Orbit, other: nh.Orbit) -> bool:
+    return one.outcome == other.outcome and all(
+        getattr(one, name).shape == getattr(other, name).shape
+        and getattr(one, name).tobytes() == getattr(other, name).tobytes()
+        for name in NAMES
+    )
+
+
+def _begun(path: Path, steps: int = 500, **options: Any) -> nh.Orbit:
+    given = {"save_every": 2, "checkpoint_every": 40, **START, **options}
+    return nh.simulate(SLEIGH, steps=steps, store=path, **given)
+
+
+def _whole(steps: int = 500) -> nh.Orbit:
+    return nh.simulate(SLEIGH, steps=steps, save_every=2, **START)
+
+
+def _stop_at(monkeypatch: pytest.MonkeyPatch, block: int, failure: BaseException) -> None:
+    """Let the writing of a block end in a failure."""
+    write = Stream.write
+
+    def failing(self: Stream, number: int, *rest: Any) -> None:
+        if number == block:
+            raise failure
+        write(self, number, *rest)
+
+    monkeypatch.setattr(Stream, "write", failing)
+
+
+@pytest.mark.parametrize(
+    ("discrete", "start"),
+    [
+        (TOP, START),
+        (SLEIGH, START),
+        (nh.discretize(PROBLEMS[7].system, 0.1, order=4), START),
+        (WIDE, {"restricted_velocity": GENERAL["sleigh 3"][1]}),
+        (nh.discretize(GENERAL["veselova 3"][0], 0.05), {"restricted_velocity": GENERAL["veselova 3"][1]}),
+    ],
+    ids=["top", "sleigh", "composition", "step in O(n)", "right-invariant"],
+)
+@pytest.mark.parametrize("block_steps", [6, 48, None])
+def test_blocks_are_the_orbit(discrete: nh.Discretization, start: dict[str, Any], block_steps: int | None) -> None:
+    """The blocks of `iterate` are the orbit of `simulate`, each state once, bit for bit."""
+    whole = nh.simulate(discrete, steps=200, save_every=3, **start)
+    blocks = list(nh.iterate(discrete, steps=200, save_every=3, block_steps=block_steps, **start))
+    assert len(blocks) == (1 if block_steps is None else -(-len(whole) // (block_steps // 3)))
+    for name in NAMES:
+        assert np.concatenate([getattr(block, name) for block in blocks]).tobytes() == getattr(whole, name).tobytes()
+
+
+@pytest.mark.parametrize("throw", [True, False])
+@pytest.mark.parametrize("block_steps", [1, 2, 3, 4, 5])
+def test_blocks_end_where_the_run_ends(throw: bool, block_steps: int) -> None:
+    """If a run cannot go on, its good states come first; then comes the error, or the outcome of the last block."""
+    whole = nh.simulate(FOLDING, steps=500, throw=False, **FOLDS)
+    assert 1 < len(whole) < 400, "this run has to end early"
+    blocks, failures = [], []
+    try:
+        for block in nh.iterate(FOLDING, steps=500, block_steps=block_steps, throw=throw, **FOLDS):
+            blocks.append(block)
+    except nh.OutcomeError as failure:
+        failures.append(failure.outcome)
+    assert failures == ([whole.outcome] if throw else [])
+    assert throw or blocks[-1].outcome == whole.outcome
+    assert sum(map(len, blocks)) == len(whole)
+
+
+def test_stored_run_is_the_orbit(tmp_path: Path) -> None:
+    """A stored run returns and keeps the orbit of a run in memory; xarray opens the store without a warning."""
+    orbit = _begun(tmp_path / "run.zarr", 501)
+    assert _same(orbit, _whole(501))
+    assert _same(nh.load_orbit(tmp_path / "run.zarr"), orbit)
+    xarray = pytest.importorskip("xarray")
+    with xarray.open_zarr(tmp_path / "run.zarr", chunks=None) as dataset:
+        xarray.testing.assert_equal(dataset.load(), orbit.to_dataset())
+
+
+@pytest.mark.parametrize("lengths", [(1, 500), (39, 1, 461), (78, 423), (250, 251)])
+def test_extended_run_is_the_long_run(lengths: tuple[int, ...], tmp_path: Path) -> None:
+    """A run extended once or several times, from within a block or between saved states, is the long run."""
+    path = tmp_path / "run.zarr"
+    _begun(path, lengths[0])
+    for steps in lengths[1:]:
+        nh.extend(path, steps)
+    assert _same(nh.load_orbit(path), _whole(sum(lengths)))
+
+
+@pytest.mark.parametrize("block_steps", [1, 2, 3, 4, 5])
+def test_run_that_ends_early_is_kept(block_steps: int, tmp_path: Path) -> None:
+    """A stored run that cannot go on keeps its good steps and its outcome; extending it is refused with the reason."""
+    whole = nh.simulate(FOLDING, steps=500, throw=False, **FOLDS)
+    path = tmp_path / "run.zarr"
+    with pytest.raises(nh.OutcomeError, match=f"Step {len(whole)} of 500"):
+        nh.simulate(FOLDING, steps=500, store=path, checkpoint_every=block_steps, **FOLDS)
+    assert _same(nh.load_orbit(path), whole)
+    assert _same(nh.resume(path, throw=False), whole)
+    with pytest.raises(ValueError, match="be a run that can go on"):
+        nh.extend(path, 10)
+
+
+def test_failed_run_that_was_not_cut_is_resumed_in_silence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that failed and was killed before its arrays were cut is no damaged one."""
+    path = tmp_path / "run.zarr"
+    with monkeypatch.context() as patch:
+        patch.setattr(Stream, "finish", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+        with pytest.raises(KeyboardInterrupt):
+            nh.simulate(FOLDING, steps=500, store=path, checkpoint_every=5, throw=False, **FOLDS)
+    assert _same(nh.resume(path, throw=False), nh.simulate(FOLDING, steps=500, throw=False, **FOLDS))
+
+
+def test_interrupted_run_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C says how far the run came and how to go on; resumed, it is the undisturbed run."""
+    path = tmp_path / "run.zarr"
+    with monkeypatch.context() as patch:
+        _stop_at(patch, 5, KeyboardInterrupt())
+        with pytest.raises(KeyboardInterrupt, match=r"Stopped at step 198 of 500\. Go on with nonholo\.resume"):
+            _begun(path)
+    with pytest.raises(ValueError, match="must be a finished run"):
+        nh.load_orbit(path)
+    assert _same(nh.resume(path), _whole())
+
+
+def test_full_disk_leaves_a_valid_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A full disk is an error that names the store and the remedy; with room again the run goes on."""
+    path = tmp_path / "run.zarr"
+    with monkeypatch.context() as patch:
+        _stop_at(patch, 3, OSError(errno.ENOSPC, "No space left on device"))
+        with pytest.raises(OSError, match=r"No space left.*step 118 of 500\. Free space.*run\.zarr") as caught:
+            _begun(path)
+    assert caught.value.errno == errno.ENOSPC
+    assert _same(nh.resume(path), _whole())
+
+
+@pytest.mark.parametrize("array", [*NAMES, "energy", "run/checkpoints"])
+@pytest.mark.parametrize("damage", ["missing", "flipped", "cut", "empty"])
+def test_damaged_chunk_is_named_and_computed_again(array: str, damage: str, tmp_path: Path) -> None:
+    """A missing, changed or cut chunk of a finished block is reported by name, and the orbit is whole again."""
+    path = tmp_path / "run.zarr"
+    orbit = _begun(path)
+    key = "c/4" if array in ("time", "energy") else "c/4/0"
+    _damage(path / array / key, damage)
+    with pytest.warns(RuntimeWarning, match=f"chunk {key} of the array {array}"):
+        again = nh.resume(path)
+    assert _same(again, orbit)
+    assert _same(nh.resume(path), orbit)
+
+
+def _damage(chunk: Path, how: str) -> None:
+    content = bytearray(chunk.read_bytes())
+    if how == "missing":
+        chunk.unlink()
+        return
+    content[len(content) // 2] ^= 1
+    chunk.write_bytes({"flipped": content, "cut": content[:-3], "empty": b""}[how])
+
+
+def test_lost_start_is_refused(tmp_path: Path) -> None:
+    """Where the first block and the state before it are both gone, nothing is invented."""
+    path = tmp_path / "run.zarr"
+    _begun(path)
+    for chunk in ("time/c/0", "run/checkpoints/c/0/0"):
+        (path / chunk).unlink()
+    with pytest.warns(RuntimeWarning, match="c/0"), pytest.raises(ValueError, match=r"hold the start.*run it again"):
+        nh.resume(path)
+
+
+_KILLER = """
+import os, random, signal, sys, time
+import nonholo as nh
+path, kills, chance = sys.argv[1], int(sys.argv[2]), random.Random(7)
+sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1e-3)
+run = {"body_velocity": (1.0, 0.3, 0.0), "steps": 300_000, "save_every": 2}
+nh.simulate(sleigh, **run)  # compiled before the first fork
+killed = 0
+for _ in range(kills):
+    child = os.fork()
+    if child == 0:
+        if os.path.exists(path):
+            nh.resume(path)
+        else:
+            nh.simulate(sleigh, **run, store=path, checkpoint_every=1_000)
+        os._exit(0)
+    time.sleep(chance.uniform(0.05, 0.5))
+    os.kill(child, signal.SIGKILL)
+    killed += os.WIFSIGNALED(os.waitpid(child, 0)[1])
+print(killed)
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="kills forked processes")
+def test_killed_runs_go_on(tmp_path: Path) -> None:
+    """Killed at 20 random moments and resumed each time, a run is the undisturbed one, and leaves no rubbish."""
+    path = tmp_path / "run.zarr"
+    arguments = [sys.executable, "-c", _KILLER, str(path), str(KILLS)]
+    done = subprocess.run(arguments, capture_output=True, text=True, check=True)  # noqa: S603
+    assert int(done.stdout) == KILLS, "the run was over before the last kill: it has to be longer"
+    now = standing(path)
+    assert now is not None
+    assert 0 < now.done < now.steps
+    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1e-3)
+    whole = nh.simulate(discrete, body_velocity=(1.0, 0.3, 0.0), steps=300_000, save_every=2)
+    assert _same(nh.resume(path), whole)
+    assert not list(path.rglob("*.partial"))
+
+
+def test_limit_of_the_system_on_file_sizes(tmp_path: Path) -> None:
+    """A limit met while zarr writes ends in the same clean error as a full disk, and the run goes on without it."""
+    path = tmp_path / "run.zarr"
+    script = f"""
+import resource, signal, sys
+import nonholo as nh
+sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1e-3)
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+nh.simulate(sleigh, body_velocity=(1.0, 0.3, 0.0), steps=2)
+resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+try:
+    nh.simulate(sleigh, body_velocity=(1.0, 0.3, 0.0), steps=9_000, store={str(path)!r}, checkpoint_every=3_000)
+except OSError as failure:
+    print(failure)
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)  # noqa: S603
+    assert "File too large. The run stands at step 0 of 9000. Free space, then call nonholo.resume" in done.stdout
+    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1e-3)
+    assert _same(nh.resume(path), nh.simulate(discrete, body_velocity=(1.0, 0.3, 0.0), steps=9_000))
+
+
+def test_other_versions_are_told(tmp_path: Path) -> None:
+    """A run that goes on with another version of a package says that its last bits may change."""
+    path = tmp_path / "run.zarr"
+    _begun(path)
+    document = json.loads((path / "zarr.json").read_text())
+    versions = json.loads(document["attributes"]["versions"])
+    document["attributes"]["versions"] = json.dumps(versions | {"numba": "0.1"})
+    (path / "zarr.json").write_text(json.dumps(document))
+    assert _same(nh.resume(path), _whole()), "a finished store is loaded in silence"
+    with pytest.warns(RuntimeWarning, match=r"begun with numba 0\.1 \(now .*last bits"):
+        nh.extend(path, 10)
+
+
+def test_lost_metadata_are_refused(tmp_path: Path) -> None:
+    """Where the metadata of an array are gone, the array is named."""
+    path = tmp_path / "run.zarr"
+    _begun(path)
+    (path / "pose" / "zarr.json").unlink()
+    with pytest.raises(ValueError, match="hold the array pose"):
+        nh.resume(path)
+
+
+@pytest.mark.parametrize(
+    "system", [nh.SuslovTop.arrowhead([1.0, 1.4, 0.7, 1.2, 0.9], [0.1, -0.2, 0.3, 0.1]), WIDE.system]
+)
+def test_runs_without_poses(system: AbstractSystem, tmp_path: Path) -> None:
+    """Runs that keep no poses are stored, resumed and extended too."""
+    discrete, start = nh.discretize(system, 0.05), {"restricted_velocity": np.linspace(0.3, -0.5, system.rank)}
+    path = tmp_path / "run.zarr"
+    nh.simulate(discrete, steps=100, reconstruct=False, store=path, checkpoint_every=30, **start)
+    orbit = nh.extend(path, 55)
+    assert orbit.pose is None
+    whole = nh.simulate(discrete, steps=155, reconstruct=False, **start)
+    assert np.abs(orbit.reduced_momentum - whole.reduced_momentum).max() < 1e-15  # products of matrices: see `iterate`
+    assert np.array_equal(orbit.time, whole.time)
+
+
+def test_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The Python blocks of the page on long runs hold what its text says."""
+    page = Path(__file__).parents[2] / "docs" / "how-to" / "run-for-days.md"
+    blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    exec(compile("\n".join(blocks), page, "exec"), {})  # noqa: S102
+    assert (tmp_path / "run.zarr").is_dir()
+
+
+def test_second_process_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """While one process writes a store, another one is refused, and told who writes it."""
+    path, told = tmp_path / "run.zarr", []
+    write = Stream.write
+
+    def meanwhile(self: Stream, number: int, *rest: Any) -> None:
+        if number == 2:
+            script = f"import nonholo as nh; nh.resume({str(path)!r})"
+            other = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)  # noqa: S603
+            told.append(other.stderr.splitlines()[-1])
+        write(self, number, *rest)
+
+    monkeypatch.setattr(Stream, "write", meanwhile)
+    orbit = _begun(path)
+    assert told[0].startswith("BlockingIOError")
+    assert f"is being written by process {os.getpid()} on " in told[0]
+    assert _same(orbit, _whole())
+
+
+def _existing(path: Path) -> None:
+    _begun(path)
+    _begun(path)
+
+
+def _saved_whole(path: Path) -> None:
+    nh.save_orbit(_whole(), path)
+    nh.resume(path)
+
+
+def _another_body(path: Path) -> None:
+    _begun(path)
+    nh.resume(path, discrete=nh.discretize(PROBLEMS[7].system, 0.2))
+
+
+def _another_schema(path: Path) -> None:
+    _begun(path)
+    document = json.loads((path / "zarr.json").read_text())
+    document["attributes"]["schema"] = 99
+    (path / "zarr.json").write_text(json.dumps(document))
+    nh.resume(path)
+
+
+@pytest.mark.parametrize(
+    ("attempt", "kind", "words"),
+    [
+        (_existing, FileExistsError, "must be new"),
+        (_saved_whole, ValueError, "have checkpoints.*saved whole"),
+        (_another_body, ValueError, "motion .*0.2.* instead of .*0.1"),
+        (_another_schema, ValueError, "schema 99"),
+        (nh.resume, FileNotFoundError, "must exist"),
+        (lambda path: _begun(path, checkpoint_every=41), ValueError, r"multiple of save_every = 2\. Got 41\. Pass 42"),
+        (lambda path: _begun(path, branch="nearest"), ValueError, "have a compiled run"),
+        (lambda path: _begun(path, backend="jax"), ValueError, "have a compiled run"),
+        (lambda _: nh.simulate(SLEIGH, steps=9, checkpoint_every=4, **START), ValueError, "come with a store"),
+        (lambda path: nh.extend(path, 0), ValueError, "positive integer"),
+        (lambda _: nh.iterate(SLEIGH, steps=9, block_steps=0, **START), ValueError, "positive integer"),
+    ],
+)
+def test_refused(attempt: Callable[[Path], object], kind: type[Exception], words: str, tmp_path: Path) -> None:
+    """Bad arguments, foreign stores and stores of other runs are refused with the reason."""
+    with pytest.raises(kind, match=words):
+        attempt(tmp_path / "run.zarr")
+
+
+def test_refused_run_leaves_nothing(tmp_path: Path) -> None:
+    """A run whose arguments are refused makes no store."""
+    with pytest.raises(ValueError, match="steps"):
+        _begun(tmp_path / "run.zarr", steps=0)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_large_orbit_is_returned_as_its_last_block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An orbit that would fill the memory is in the store whole; what is returned are its last states."""
+    monkeypatch.setattr("nonholo.simulation._stored_run._LOADED", 100)
+    tail = _begun(tmp_path / "run.zarr")
+    whole = _whole()
+    assert len(tail) == len(whole) % 20
+    assert np.array_equal(tail.cayley, whole.cayley[-len(tail) :])
+    assert _same(nh.load_orbit(tmp_path / "run.zarr"), whole)
