@@ -21,7 +21,7 @@ _ROUNDING = 1e-12  # relative imaginary part that counts as zero
 _SAME = 1e-10  # relative distance of two images that rounding may have parted
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class BranchTree:
     """All images of a displacement under the multivalued map, generation by generation.
 
@@ -46,6 +46,9 @@ class BranchTree:
 
     def __len__(self) -> int:
         return len(self.level)
+
+    def __repr__(self) -> str:
+        return f"<BranchTree: {', '.join(map(str, self.counts))} images, {np.count_nonzero(self.is_real)} of all real>"
 
 
 def branch_tree(discrete: Discretization, displacement: Any, depth: int) -> BranchTree:

@@ -23,7 +23,7 @@ SAME = 1e-6  # relative distance of a computed displacement or momentum from the
 _ON_VARIETY = 1e-9  # relative distance from the displacement variety
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Branches:
     """Displacements whose momenta have the same components along the constraint subspace.
 
@@ -59,6 +59,12 @@ class Branches:
 
     def __len__(self) -> int:
         return len(self.is_real)
+
+    def __repr__(self) -> str:
+        real = np.count_nonzero(self.is_real)
+        principal = "none is principal" if self.principal is None else f"number {self.principal} is principal"
+        certified = ", certified" if self.certified else ""
+        return f"<Branches: {len(self)} values, {real} real, {principal}{certified}, energy {self.energy:.6g}>"
 
 
 def values_over(discrete: Discretization, frame: Frame, r: Inexact[np.ndarray, "k"]) -> Branches:
