@@ -25,7 +25,7 @@ STEPS, ROUNDS = 1_000_000, 11
 FLAGS = ["-O3", "-march=native", "-ffp-contract=fast", "-fno-math-errno", "-fopenmp-simd", "-shared", "-fPIC"]
 
 
-def built(name: str = "steps.c", functions: tuple[str, ...] = ("suslov", "sleigh", "top_n")) -> ctypes.CDLL:
+def built(name: str = "steps.c", functions: tuple[str, ...] = ("suslov", "sleigh", "wide")) -> ctypes.CDLL:
     """Compile a reference."""
     compiler = shutil.which("cc") or shutil.which("gcc")
     if compiler is None:
@@ -92,23 +92,26 @@ def one_orbit(found: ctypes.CDLL, name: str, system: nh.SuslovTop | nh.Chaplygin
         print(f"{name:8} {case:18} {ours:8.1f} ns {theirs:8.1f} ns {ratio:6.2f}")
 
 
-def many_dimensions(found: ctypes.CDLL, n: int) -> None:
-    """Compare tops on SO(n), nothing stored."""
+def many_dimensions(found: ctypes.CDLL, n: int, slides: bool) -> None:
+    """Compare tops on SO(n) or sleighs on SE(n), nothing stored."""
     rng, k = np.random.default_rng(n), n - 1
-    top = nh.SuslovTop.arrowhead(rng.uniform(1, 2, n), 0.3 * rng.normal(size=k) / np.sqrt(n))
+    diagonal, coupling = rng.uniform(1, 2, n), 0.3 * rng.normal(size=k) / np.sqrt(n)
+    top = nh.SuslovTop.arrowhead(diagonal, coupling)
+    body = nh.MultidimensionalSleigh.arrowhead(1.0, 0.3 * np.eye(1, n)[0], diagonal, coupling) if slides else top
     velocity = rng.normal(size=k)
-    velocity /= np.linalg.norm(velocity)
-    discrete = nh.discretize(top, 0.1)
+    velocity = np.append(velocity / np.linalg.norm(velocity), [-1.0] * slides)
+    discrete = nh.discretize(body, 0.1)
     step = structured(discrete)
-    first = encoded(step, top.restricted_momentum(velocity))
+    first = encoded(step, body.restricted_momentum(velocity))
     steps = max(10, 2_000_000 // n)
     b, c = step.body.b, step.body.c
-    empty = np.empty((0, k)), np.empty((0, k)), np.empty((0, 0))
+    empty = np.empty((0, k + slides)), np.empty((0, k + slides)), np.empty((0, 0))
     ends = {}
 
     def reference() -> None:
-        m, lost = first.copy(), np.zeros(k)
-        done = found.top_n(ctypes.c_long(k), *map(pointer, (b, c, m, lost)), ctypes.c_long(steps))
+        m, lost, blade = first[:k].copy(), np.zeros(k), np.array([first[k] if slides else 0.0, 0.0])
+        numbers = ctypes.c_double(step.body.mass), ctypes.c_double(step.body.arm), pointer(blade)
+        done = found.wide(ctypes.c_long(k), *map(pointer, (b, c, m, lost)), *numbers, ctypes.c_long(steps))
         assert done == steps
         ends["c"] = m
 
@@ -122,7 +125,7 @@ def many_dimensions(found: ctypes.CDLL, n: int) -> None:
     library()
     assert np.allclose(ends["c"], ends["library"], rtol=0, atol=1e-12 * np.abs(first).max())
     ours, theirs, ratio = paired(library, reference, steps * 1e3)
-    print(f"SO(n)    n = {n:<13} {ours:8.2f} us {theirs:8.2f} us {ratio:6.2f}")
+    print(f"{'SE(n)' if slides else 'SO(n)'}    n = {n:<13} {ours:8.2f} us {theirs:8.2f} us {ratio:6.2f}")
 
 
 def main() -> None:
@@ -131,8 +134,9 @@ def main() -> None:
     print("case                         library           C  ratio")
     one_orbit(found, "suslov", nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), (0.9, -0.4))
     one_orbit(found, "sleigh", nh.ChaplyginSleigh(1.0, 1.0, 0.5), (1.0, -0.3))
-    for n in (10, 100, 1_000, 10_000, 100_000, 1_000_000):
-        many_dimensions(found, n)
+    for slides in (False, True):
+        for n in (10, 100, 1_000, 10_000, 100_000, 1_000_000):
+            many_dimensions(found, n, slides)
 
 
 if __name__ == "__main__":

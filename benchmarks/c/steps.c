@@ -111,25 +111,29 @@ long sleigh(const double *body, double *m, double *q, long steps, double *moment
     return done;
 }
 
-/* Top on SO(n), k = n - 1 momenta, diagonal B and minus the coupling; nothing stored. */
-long top_n(long k, const double *restrict b, const double *restrict c, double *restrict m, double *restrict lost,
-           long steps) {
-    double nu = 0, tau = 0, nu1 = 0, tau1 = 0, nu2 = 0, tau2 = 0;
+/* Top on SO(n) or sleigh on SE(n), k = n - 1 momenta, diagonal B; nothing stored. A top has arm 0, mass 1 and minus its
+   coupling for c; blade is the momentum along the blade of a sleigh and its compensation. */
+long wide(long k, const double *restrict b, const double *restrict c, double *restrict m, double *restrict lost,
+          double mass, double arm, double *restrict blade, long steps) {
+    const double lever = mass * arm * arm;
+    double nu = lever, tau = 0, nu1 = 0, tau1 = 0, nu2 = 0, tau2 = 0;
     long done;
     for (done = -1; done < steps; done++) {
-        double x = 0, t = 0;
+        double x = lever, t = 0;
         if (done >= 0) {
             double push = 2 / (1 + tau);
 #pragma GCC ivdep
             for (long i = 0; i < k; i++) {
                 double y = (m[i] + tau * (m[i] + c[i])) / (b[i] + nu);
-                double change = push * (tau * c[i] - nu * y) - lost[i], result = m[i] + change;
+                double change = push * (tau * c[i] - (nu - lever) * y) - lost[i], result = m[i] + change;
                 lost[i] = (result - m[i]) - change;
                 m[i] = result;
             }
+            kahan(&blade[0], &blade[1], 2 * mass * arm * tau / (1 + tau));
             x = 3 * (nu - nu1) + nu2;
             t = fmax(3 * (tau - tau1) + tau2, 0);
         }
+        const double q = arm * blade[0] + lever;
         int good = 0;
         for (int j = 0; j < 12; j++) {
             double cy = 0, yy = 0, cyr = 0, ce = 0, yyr = 0, ye = 0;
@@ -143,7 +147,7 @@ long top_n(long k, const double *restrict b, const double *restrict c, double *r
                 yyr += y * y * r;
                 ye += y * e;
             }
-            double f1 = x - cy, f2 = t - yy, j11 = 1 + cyr, j12 = -ce, j21 = 2 * yyr, j22 = 1 - 2 * ye;
+            double f1 = x - cy - (1 + t) * q, f2 = t - yy, j11 = 1 + cyr, j12 = -ce - q, j21 = 2 * yyr, j22 = 1 - 2 * ye;
             double det = j11 * j22 - j12 * j21, d1 = (j12 * f2 - j22 * f1) / det, d2 = (j21 * f1 - j11 * f2) / det;
             x += d1;
             t += d2;
