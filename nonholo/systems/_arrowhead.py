@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo._checks import array, error, positive
-from nonholo._types import Float
+from nonholo._types import Array, Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, AbstractSystem, Equilibria
 from nonholo.systems._mass import inertia_from_mass_tensor
@@ -41,8 +41,8 @@ class ArrowheadTop(AbstractLLSystem):
         ((11, 999), True)
     """
 
-    diagonal: Float[np.ndarray, "n"]
-    coupling: Float[np.ndarray, "k"]
+    diagonal: Array
+    coupling: Array
     leaves: ClassVar[tuple[str, ...]] = ("diagonal", "coupling")
     structure: ClassVar[tuple[str, ...]] = ()
 
@@ -129,10 +129,10 @@ class ArrowheadSleigh(AbstractLLSystem):
         1000
     """
 
-    mass: Float[np.ndarray, ""]
-    center_of_mass: Float[np.ndarray, "n"]
-    diagonal: Float[np.ndarray, "n"]
-    coupling: Float[np.ndarray, "k"]
+    mass: Array
+    center_of_mass: Array
+    diagonal: Array
+    coupling: Array
     leaves: ClassVar[tuple[str, ...]] = ("mass", "center_of_mass", "diagonal", "coupling")
     structure: ClassVar[tuple[str, ...]] = ()
 
