@@ -58,12 +58,12 @@ class Members:
         return Members(self.discrete, kept, len(range(*chosen.indices(self.count))))
 
 
-def _rebuilt(system: Any, own: dict[str, np.ndarray]) -> Any:
+def _rebuilt(system: Any, own: dict[str, Any]) -> Any:
     kept = {_ARGUMENTS.get(field.name, field.name): getattr(system, field.name) for field in dataclasses.fields(system)}
     return type(system)(**{**kept, **own})
 
 
-def checked_parameters(discrete: Discretization, parameters: Any) -> dict[str, np.ndarray]:
+def checked_parameters(discrete: Discretization, parameters: Any) -> dict[str, Any]:
     """Return the parameters of an ensemble as arrays, refused with names that the system does not have."""
     if parameters is None:
         return {}
