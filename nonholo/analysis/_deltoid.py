@@ -64,7 +64,7 @@ class Deltoid:
         m, a, angle = float(system.mass), float(system.a), np.linspace(0.0, 2 * np.pi, rows)
         whole = float(system.inertia) + m * a * a
         reduced = np.stack([whole * np.sin(angle), -a * m * (1 - np.cos(angle))], axis=-1)
-        return np.linalg.solve(system.frame_map, reduced.T).T / float(self.discrete.time_step)
+        return system.from_canonical(reduced) / float(self.discrete.time_step)
 
     def _plane(self, method: str, value: Array) -> Float[np.ndarray, "... 2"]:
         leading = (None,) * (np.ndim(value) - 1)
@@ -111,7 +111,7 @@ def deltoid(discrete: Discretization) -> Deltoid:
 def _trace(discrete: Discretization, restricted: Float[np.ndarray, "... 2"]) -> np.ndarray:
     """Return kappa of restricted momenta."""
     system = cast(ChaplyginSleigh, discrete.system)
-    pi, p1 = np.moveaxis(restricted @ np.asarray(system.frame_map).T * float(discrete.time_step), -1, 0)
+    pi, p1 = np.moveaxis(system.to_canonical(restricted) * float(discrete.time_step), -1, 0)
     phat = system.a * p1 + 2 * system.mass * system.a**2
     return (-(2 * phat + system.inertia) + 2j * pi) / system.inertia
 
@@ -122,4 +122,4 @@ def _restricted(discrete: Discretization, trace: np.ndarray) -> Float[np.ndarray
     phat = -(np.real(trace) + 1) * system.inertia / 2
     p1 = (phat - 2 * system.mass * system.a**2) / system.a
     reduced = np.stack([np.imag(trace) * system.inertia / 2, p1], axis=-1)
-    return np.linalg.solve(system.frame_map, reduced[..., None])[..., 0] / float(discrete.time_step)
+    return system.from_canonical(reduced) / float(discrete.time_step)

@@ -93,7 +93,7 @@ def sides_of_displacements(
 
 def sides_of_momenta(system: AbstractSystem, r: Float[np.ndarray, "... 2"]) -> HalfPlanes:
     """Return the half-planes of momenta along the constraint subspace of a top or a sleigh."""
-    body, canonical = _body(system), r @ np.asarray(system.frame_map).T
+    body, canonical = _body(system), system.to_canonical(r)
     if isinstance(body, ChaplyginSleigh):
         return HalfPlanes(canonical[..., 0], float(body.a) * canonical[..., 1])
     B, c = np.asarray(body.constrained_inertia), np.asarray(body.coupling)

@@ -132,7 +132,7 @@ def _images(discrete: Discretization, frame: Frame, X: Array, is_real: Array) ->
     r = discrete.system.restrict(legendre(discrete, X, "right"))
     if is_real or np.abs(r.imag).max() <= _ROUNDING * np.abs(r).max():
         r = r.real
-    roots = roots_over(discrete, frame, discrete.system.frame_map @ r)
+    roots = roots_over(discrete, frame, discrete.system.to_canonical(r))
     return roots.increments, np.array([root.is_real for root in roots.found], dtype=bool)
 
 

@@ -69,7 +69,7 @@ class Branches:
 
 def values_over(discrete: Discretization, frame: Frame, r: Inexact[np.ndarray, "k"]) -> Branches:
     """Return all values over a restricted momentum in the user's frame."""
-    canonical = discrete.system.frame_map @ r
+    canonical = discrete.system.to_canonical(r)
     return branches_of(discrete, canonical, roots_over(discrete, frame, canonical))
 
 

@@ -19,7 +19,7 @@ from nonholo.discrete._discretization import Discretization
 
 def certified_over(owner: str, discrete: Discretization, frame: Frame, r: Float[np.ndarray, "k"]) -> Branches:
     """Return all values over a restricted momentum, certified where that can be decided."""
-    canonical = discrete.system.frame_map @ r
+    canonical = discrete.system.to_canonical(r)
     enclosed = _enclosures(owner)(discrete, canonical)
     if isinstance(enclosed, str):
         return dataclasses.replace(values_over(discrete, frame, r), uncertified=enclosed)

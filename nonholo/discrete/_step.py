@@ -102,7 +102,7 @@ def _step_by_rule(discrete: Discretization, rule: BranchRule, momentum: np.ndarr
     system = discrete.system
     frame = frame_of("step(discrete=...)", discrete)
     full = momentum if momentum.shape != (len(system.constraint_subspace),) else None
-    canonical = system.frame_map @ (momentum if full is None else system.restrict(full))
+    canonical = system.to_canonical(momentum if full is None else system.restrict(full))
     code, place = first_place("step", discrete, frame, rule, canonical, full)
     after, W = np.full(system.group.dim, np.nan), np.full_like(system.group.identity, np.nan)
     multipliers = np.full(len(system.annihilator), np.nan)

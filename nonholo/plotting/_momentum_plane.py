@@ -19,7 +19,7 @@ _LABELS = {
 
 def reduced(system: Any, restricted: Float[np.ndarray, "... k"]) -> Float[np.ndarray, "... k"]:
     """Return restricted momenta in the canonical frame."""
-    return restricted @ np.asarray(system.frame_map).T
+    return system.to_canonical(restricted)
 
 
 def half_axes(system: Any) -> Float[np.ndarray, "2 2"]:

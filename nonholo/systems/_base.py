@@ -83,7 +83,7 @@ class AbstractSystem(abc.ABC):
         images = self.canonical.constraint_subspace @ self.group.adjoint(self.frame).T
         return images @ np.linalg.pinv(self.constraint_subspace)
 
-    def to_canonical(self, restricted_momentum: Float[Array, "... k"]) -> Float[Array, "... k"]:
+    def to_canonical(self, restricted_momentum: Inexact[Array, "... k"]) -> Inexact[Array, "... k"]:
         """Return momenta along the canonical rows from those along the rows of the constraint subspace."""
         return restricted_momentum if self.canonical is self else restricted_momentum @ self.frame_map.T
 
