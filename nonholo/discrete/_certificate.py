@@ -1,20 +1,21 @@
 r"""Enclosures of all displacements over a momentum, in ball arithmetic, from the exact polynomials.
 
-This file and the two that it builds on need python-flint, the extra `certify`. Reference: docs/theory/branches.md,
+This file and the three that it builds on need python-flint, the extra `certify`. Reference: docs/theory/branches.md,
 "Certificates".
 """
 
-from collections.abc import Iterable, Iterator
-from typing import Any, NamedTuple, cast
+import functools
+from collections.abc import Iterable
+from typing import NamedTuple, cast
 
 import numpy as np
-from flint import acb, ctx
+from flint import acb, acb_poly, ctx, fmpz_poly
 
 from nonholo.discrete._certificate_families import Family, UncertainError, families
 from nonholo.discrete._certificate_problem import Body, Lever, Problem, problem_of
+from nonholo.discrete._certificate_roots import PRECISIONS, isolated, sharpened
 from nonholo.discrete._discretization import Discretization
 
-_PRECISIONS = (64, 128, 256, 1024, 4096)  # bits
 _SHARP = 2.0**-48  # relative radius that ends the search for more digits
 _ROUNDING = 2.0**-51  # of a sum rounded to doubles and of the radii themselves, relative and generous
 
@@ -28,63 +29,86 @@ class Enclosures(NamedTuple):
     is_real: np.ndarray
 
 
+class Located(NamedTuple):
+    """The displacements over the roots of one square-free factor: a ball for each real root and one of each pair."""
+
+    family: Family
+    factor: fmpz_poly
+    multiplicity: int
+    balls: list[acb]
+
+
 def enclosures(discrete: Discretization, canonical: np.ndarray) -> Enclosures | str:
     """Enclose all isolated displacements over canonical restricted momenta, or say what is not decided."""
-    body = cast(Body, discrete.system.canonical)
-    problem = problem_of(body, float(discrete.time_step), canonical)
+    problem = problem_of(cast(Body, discrete.system.canonical), float(discrete.time_step), canonical)
     try:
-        exact = [family for family in families(problem) if family.polynomial.degree() > 0]
-        if not exact:
-            return "no displacement is isolated"
-        for bits in _PRECISIONS:
-            found = _at(bits, problem, exact, discrete)
-            if found is not None:
-                return found
+        found = located(problem)
     except UncertainError as reason:
         return str(reason)
-    return f"{_PRECISIONS[-1]} bits do not separate the values from infinity"
+    if not found:
+        return "no displacement is isolated"
+    for bits, more in zip(PRECISIONS, (*PRECISIONS[1:], None), strict=True):
+        values = _values(problem, found, bits)
+        if values is not None:
+            return _as_matrices(discrete, problem, *values)
+        if more is not None:
+            found = [x._replace(balls=sharpened(x.factor, x.balls, more) or x.balls) for x in found]
+    return f"{PRECISIONS[-1]} bits do not separate the values from infinity"
 
 
-def _at(bits: int, problem: Problem, exact: list[Family], discrete: Discretization) -> Enclosures | None:
-    """Return enclosures from a number of bits, None if it is too small."""
+def located(problem: Problem) -> list[Located]:
+    """Locate all isolated displacements: how many there are, which are real, with which multiplicities."""
+    found = []
+    for family in families(problem):
+        for factor, multiplicity in family.polynomial.factor_squarefree()[1]:
+            balls = isolated(factor)
+            if balls is None:
+                raise UncertainError("the roots are not isolated from the real axis")
+            found.append(Located(family, factor, multiplicity, balls))
+    return found
+
+
+def _values(problem: Problem, found: list[Located], bits: int) -> tuple[np.ndarray, ...] | None:
+    """Return the products of all roots, how far off, multiplicity, reality; None if the number of bits is too small."""
     rows = []
-    for family in exact:
-        for mu, multiplicity, is_real in _roots(family, bits):
-            with ctx.workprec(2 * bits):
-                products, off = _rounded(_products(problem, family, mu))
-            if not off <= _SHARP * max(1.0, float(np.abs(products).max())):
-                return None
-            rows.append((products, off, multiplicity, is_real))
-            if not is_real:
-                rows.append((products.conj(), off, multiplicity, False))
-    middles, radii, multiplicities, real = (np.array(column) for column in zip(*rows, strict=True))
-    X = _increments(middles, len(problem.excess), problem.lever is not None)
-    system = discrete.system
-    if not np.array_equal(system.frame, system.group.identity):
-        X, radii = _turned(X, radii, np.asarray(system.frame), np.asarray(system.group.inverse(system.frame)))
-    return Enclosures(X, radii + _ROUNDING * (1 + _largest(X)), multiplicities, real)
+    with ctx.workprec(bits):
+        for family, _, multiplicity, balls in found:
+            q, norm = [acb_poly(row) for row in family.q], acb_poly(family.norm)
+            for mu in balls:
+                exact = _products(problem, [row(mu) for row in q], 2 / norm(mu))
+                middles, width = [complex(x) for x in exact], float(_sum(exact).rad())  # the sum is wider than any
+                rows.append((middles, width, multiplicity, mu.imag == 0))
+                if mu.imag != 0:
+                    rows.append(([x.conjugate() for x in middles], width, multiplicity, False))
+    products, widths, multiplicities, real = (np.array(column) for column in zip(*rows, strict=True))
+    largest = np.abs(products).max(axis=1)
+    radii = widths + _ROUNDING * largest
+    sharp = (radii <= _SHARP * np.maximum(1.0, largest)) & np.isfinite(largest)
+    return (products, radii, multiplicities, real) if sharp.all() else None
 
 
-def _roots(family: Family, bits: int) -> Iterator[tuple[acb, int, bool]]:
-    """Yield the real roots and one of each conjugate pair, with multiplicities."""
-    for factor, multiplicity in family.polynomial.factor_squarefree()[1]:
-        with ctx.workprec(bits):
-            roots: Any = factor.complex_roots()
-        found = [acb(mu) for mu, _ in roots]
-        real, upper = [mu for mu in found if mu.imag == 0], [mu for mu in found if mu.imag > 0]
-        if len(real) + 2 * len(upper) != factor.degree():
-            raise UncertainError("the roots are not isolated from the real axis")
-        yield from ((mu, multiplicity, True) for mu in real)
-        yield from ((mu, multiplicity, False) for mu in upper)
+def _as_matrices(
+    discrete: Discretization,
+    problem: Problem,
+    products: np.ndarray,
+    radii: np.ndarray,
+    multiplicity: np.ndarray,
+    is_real: np.ndarray,
+) -> Enclosures:
+    """Return the displacements in the user's frame."""
+    X = _increments(products, len(problem.excess), problem.lever is not None)
+    group, frame = discrete.system.group, np.asarray(discrete.system.frame)
+    if not np.array_equal(frame, group.identity):
+        X, radii = _turned(X, radii, frame, np.asarray(group.inverse(frame)))
+    return Enclosures(X, radii + _ROUNDING * (1 + _largest(X)), multiplicity, is_real)
 
 
-def _products(problem: Problem, family: Family, mu: acb) -> list[acb]:
+def _products(problem: Problem, q: list[acb], scale: acb) -> list[acb]:
     """Return the upper triangle of twice (z_0, z)(z_0, z)^T, its corner 2z.z, and of a sleigh 2(u - a.z)(z_0, z)."""
-    q, norm = [row(mu) for row in family.q], family.norm(mu)
     k, lever = len(q) - 1, problem.lever
     S: list[list[acb]] = [[acb(0)] * (k + 1) for _ in q]
     for i, x in enumerate(q):
-        scaled = 2 * x / norm
+        scaled = scale * x
         for j in range(i, k + 1):
             S[i][j] = S[j][i] = scaled * q[j]
     square = _sum(S[i][i] for i in range(1, k + 1))
@@ -113,27 +137,27 @@ def _sum(terms: Iterable[acb]) -> acb:
     return sum(terms, acb(0))
 
 
-def _rounded(balls: list[acb]) -> tuple[np.ndarray, float]:
-    """Return the middles in doubles and a bound of how far any of them may be off."""
-    middles = [complex(x) for x in balls]
-    off = max(float((x - acb(y)).abs_upper()) for x, y in zip(balls, middles, strict=True))
-    return np.array(middles), off * (1 + _ROUNDING)
-
-
 def _increments(products: np.ndarray, k: int, sleigh: bool) -> np.ndarray:
     """Return the canonical displacements minus the identity; only signs are changed."""
-    upper = np.triu_indices(k + 1)
-    S = np.zeros((len(products), k + 1, k + 1), dtype=complex)
-    S[:, upper[0], upper[1]] = S[:, upper[1], upper[0]] = products[:, : len(upper[0])]
-    X = np.zeros((len(products), k + 1 + sleigh, k + 1 + sleigh), dtype=complex)
-    n = k + 1
-    if sleigh:
-        length = products[:, len(upper[0]) :]
-        X[:, 0, 1:n], X[:, 1:n, 0], X[:, 1:n, 1:n], X[:, 0, 0] = S[:, 0, 1:], -S[:, 1:, 0], -S[:, 1:, 1:], -S[:, 0, 0]
-        X[:, 0, n], X[:, 1:n, n] = length[:, 0], -length[:, 1:]
-    else:
-        X[:, :k, :k], X[:, :k, k], X[:, k, :k], X[:, k, k] = -S[:, 1:, 1:], S[:, 1:, 0], -S[:, 0, 1:], -S[:, 0, 0]
-    return X
+    index, sign = _places(k + 1, sleigh)
+    return sign * products[:, index]
+
+
+@functools.cache
+def _places(n: int, sleigh: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Return which product stands at each place of a displacement minus the identity, and its sign, 0 for none."""
+    upper, count = np.triu_indices(n), n * (n + 1) // 2
+    square = np.zeros((n, n), dtype=int)
+    square[upper] = square.T[upper] = np.arange(count)
+    if not sleigh:
+        sign = -np.ones((n, n))
+        sign[:-1, -1] = 1.0
+        return np.roll(square, -1, axis=(0, 1)), sign
+    index, sign = np.zeros((n + 1, n + 1), dtype=int), np.zeros((n + 1, n + 1))
+    index[:n, :n], index[:n, n] = square, count + np.arange(n)
+    sign[:n] = -1.0
+    sign[0, 1:] = 1.0
+    return index, sign
 
 
 def _turned(X: np.ndarray, radii: np.ndarray, frame: np.ndarray, back: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -118,10 +118,10 @@ def _secular(problem: Problem) -> _Secular:
     for coefficient in determinant.coeffs()[k - 1 : 0 : -1]:
         terms.append(sides * coefficient - B * terms[-1])  # adj(B + mu), from its equation, power by power
     terms.reverse()
-    Ac, Ad = ([fmpz_poly([term[i, side] for term in terms]) for i in range(k)] for side in (0, 1))
-    cAc, cAd = _dot(c, Ac), _dot(c, Ad)
-    y = [u * _X + v * half + (cAc * u - cAd * v) // determinant for u, v in zip(Ad, Ac, strict=True)]
-    return _Secular(determinant, Ac, determinant * _X + cAc, determinant * half - cAd, y)
+    solved = [fmpz_poly(list(row)) for row in zip(*(term.entries() for term in terms), strict=True)]
+    Ac, Ad = solved[0::2], solved[1::2]
+    n1, n2 = determinant * _X + _dot(c, Ac), determinant * half - _dot(c, Ad)
+    return _Secular(determinant, Ac, n1, n2, [(n1 * u + n2 * v) // determinant for u, v in zip(Ad, Ac, strict=True)])
 
 
 def _hidden(problem: Problem, common: fmpz_poly, numerators: list[fmpz_poly]) -> Iterator[Family]:

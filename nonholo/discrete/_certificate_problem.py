@@ -6,13 +6,14 @@ of the body: nothing is diagonalised.
 Reference: docs/theory/branches.md, "Certificates".
 """
 
-from fractions import Fraction
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from flint import fmpq, fmpz, fmpz_mat
 
 from nonholo.systems import ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
+
+_ZERO = fmpq(0)
 
 Body: TypeAlias = SuslovTop | ChaplyginSleigh | MultidimensionalSleigh
 
@@ -38,13 +39,13 @@ class Problem(NamedTuple):
 
 def problem_of(system: Body, time_step: float, momentum: np.ndarray) -> Problem:
     """Return the exact problem of a canonical body for canonical restricted momenta."""
-    h = Fraction(float(time_step))
-    p = [h * _exact(x) for x in momentum]
+    h = _exact(time_step)
+    p = [h * _exact(x) for x in momentum.tolist()]
     if isinstance(system, SuslovTop):
         J = _rows(system.mass_tensor)
         return _problem(_stiffness(J[:-1], J[-1][-1], 0), [row[-1] for row in J[:-1]], [x / 2 for x in p])
     if isinstance(system, ChaplyginSleigh):
-        body, turning = ([[_exact(system.inertia)]], [Fraction(0)], [_exact(system.a), Fraction(0)]), [-p[0]]
+        body, turning = ([[_exact(system.inertia)]], [fmpq(0)], [_exact(system.a), fmpq(0)]), [-p[0]]
     else:
         J = _rows(system.mass_tensor)
         body = _stiffness(J[1:], J[0][0], 1), [-x for x in J[0][1:]], [_exact(x) for x in system.center_of_mass]
@@ -54,33 +55,29 @@ def problem_of(system: Body, time_step: float, momentum: np.ndarray) -> Problem:
     return _problem(B, c, r, a * p[-1] / 2 + m * a * a, (a, p[-1] / m, offset, m * a))
 
 
-def _problem(B: list, c: list, r: list, half: Fraction = Fraction(0), lever: tuple | None = None) -> Problem:
+def _problem(B: list, c: list, r: list, half: fmpq = _ZERO, lever: tuple | None = None) -> Problem:
     d = [x - y for x, y in zip(r, c, strict=True)]
-    unit = max(x.denominator for row in (*B, c, d, [half]) for x in row)
+    unit = max(x.q for row in (*B, c, d, [half]) for x in row)
 
-    def whole(x: Fraction) -> fmpz:
-        return fmpz(x.numerator * (unit // x.denominator))
+    def whole(x: fmpq) -> fmpz:
+        return (x * unit).p
 
     exact = None
     if lever is not None:
-        a, push, offset, moment = lever
-        exact = Lever(_rational(a), _rational(push), [_rational(x) for x in offset], _rational(moment * unit))
+        arm, push, offset, moment = lever
+        exact = Lever(arm, push, offset, moment * unit)
     matrix = fmpz_mat([[whole(x) for x in row] for row in B])
     return Problem(matrix, [whole(x) for x in c], [whole(x) for x in d], whole(half), exact)
 
 
-def _stiffness(rows: list[list[Fraction]], diagonal: Fraction, first: int) -> list[list[Fraction]]:
+def _stiffness(rows: list[list[fmpq]], diagonal: fmpq, first: int) -> list[list[fmpq]]:
     k = len(rows)
     return [[rows[i][first + j] + (diagonal if i == j else 0) for j in range(k)] for i in range(k)]
 
 
-def _rows(matrix: np.ndarray) -> list[list[Fraction]]:
+def _rows(matrix: np.ndarray) -> list[list[fmpq]]:
     return [[_exact(x) for x in row] for row in np.asarray(matrix).tolist()]
 
 
-def _exact(x: float) -> Fraction:
-    return Fraction(float(x))
-
-
-def _rational(x: Fraction) -> fmpq:
-    return fmpq(x.numerator, x.denominator)
+def _exact(x: float) -> fmpq:
+    return fmpq(*float(x).as_integer_ratio())

@@ -8,9 +8,12 @@ from types import ModuleType
 import mpmath
 import numpy as np
 import pytest
+from sturm import real_roots
 
 import nonholo as nh
 from nonholo.discrete import Discretization
+from nonholo.discrete._certificate import located
+from nonholo.discrete._certificate_problem import problem_of
 
 _TENSOR = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 _TURNED = nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]) + 0.2, (0.6, 0, 0.8))
@@ -85,6 +88,18 @@ def test_random_problems_are_certified_and_agree(kind: str) -> None:
         assert certified.certified
         if off > 1e-11:
             assert script.disagreement(certified, nh.displacements_over(discrete, r)) == ""
+
+
+@pytest.mark.parametrize("kind", ["top 3", "sleigh", "top 4", "top 6", "sleigh SE(3)"])
+def test_random_counts_are_exact(kind: str) -> None:
+    """For 40 random problems, some of them nearly on a fold, the real values are as many as Sturm's theorem says."""
+    script, rng = _benchmark(), np.random.default_rng(8)
+    for _ in range(40):
+        discrete = script.random_body(rng, kind)
+        r = script.random_momentum(rng, discrete)[0]
+        found = located(problem_of(discrete.system.canonical, discrete.time_step, discrete.system.to_canonical(r)))
+        counted = [sum(mu.imag == 0 for mu in x.balls) for x in found]
+        assert counted == [real_roots(x.factor) for x in found]
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,101 @@
+r"""All roots of a square-free polynomial with integer coefficients, each in a ball of its own, and which are real.
+
+Numbers only guess. The proof is $p'/p = \sum_j 1/(z - \zeta_j)$: a disc around z of radius $d\,|p(z)/p'(z)|$ holds a
+root, so d disjoint discs hold one each, and a disc around a real z holds a real one, being its own mirror image.
+"""
+
+import math
+from itertools import combinations, pairwise
+from typing import Any
+
+import numpy as np
+from flint import acb, acb_poly, arb, ctx, fmpz, fmpz_poly
+
+PRECISIONS = (192, 384, 1024, 4096)  # bits
+_CLOSE = 1e-4  # relative distance up to which rounding may have merged or split two eigenvalues
+_STEPS = 8  # of Newton's method; two suffice from a good guess
+
+
+def isolated(polynomial: fmpz_poly) -> list[acb] | None:
+    """Return a ball for each real root and one of each conjugate pair, None if no precision separates them."""
+    balls = sharpened(polynomial, _guessed(polynomial), PRECISIONS[0])
+    if balls is None:
+        found = (sharpened(polynomial, _searched(polynomial, bits), bits) for bits in PRECISIONS)
+        balls = next((good for good in found if good is not None), None)
+    return balls
+
+
+def sharpened(polynomial: fmpz_poly, centres: list[acb], bits: int) -> list[acb] | None:
+    """Return the balls near centres, which are real or above the real axis, or None if they do not prove anything."""
+    with ctx.workprec(bits):
+        value = acb_poly(polynomial)
+        slope = value.derivative()
+        squares = [_around(value, slope, z.mid(), bits) for z in centres]
+    real = [z.imag == 0 for z in centres]
+    if 2 * len(real) - sum(real) != polynomial.degree() or any(x.overlaps(y) for x, y in combinations(squares, 2)):
+        return None
+    placed = (x.imag.mid() == 0 if flat else x.imag > 0 for x, flat in zip(squares, real, strict=True))
+    return [acb(x.real) if flat else x for x, flat in zip(squares, real, strict=True)] if all(placed) else None
+
+
+def _around(value: acb_poly, slope: acb_poly, centre: acb, bits: int) -> acb:
+    """Return a square around a disc that holds a root, near a centre, which stays real if it is."""
+    fine, step = arb(2.0 ** (-bits // 2)), value(centre) / slope(centre)
+    for _ in range(_STEPS):
+        if value.degree() * step.abs_upper() <= fine * centre.abs_lower():
+            break
+        centre = (centre - step).mid()
+        step = value(centre) / slope(centre)
+    radius = value.degree() * step.abs_upper()
+    return centre + acb(arb(0, radius), arb(0, radius))
+
+
+def _guessed(polynomial: fmpz_poly) -> list[acb]:
+    """Return eigenvalues of the companion matrix; two that are close come from the parabola at their middle."""
+    exponent, values = _eigenvalues(polynomial)
+    real = sorted(z.real for z in values if z.imag == 0)
+    middles = [(x + y) / 2 for x, y in pairwise(real) if y - x <= _CLOSE * abs(y)]
+    alone = [x for x in real if all(abs(x - y) > _CLOSE * abs(x) for y in middles)]
+    upper = [z for z in values if z.imag > 0]
+    alone += [z for z in upper if z.imag > _CLOSE * abs(z)]
+    middles += [z.real for z in upper if z.imag <= _CLOSE * abs(z)]
+    with ctx.workprec(PRECISIONS[0]):
+        unit = arb(fmpz(1) << exponent) if exponent >= 0 else 1 / arb(fmpz(1) << -exponent)
+        return [acb(z) * unit for z in alone] + [z for x in middles for z in _parabola(polynomial, x * unit)]
+
+
+def _eigenvalues(polynomial: fmpz_poly) -> tuple[int, list[complex]]:
+    """Return an exponent of two, and approximate roots in this unit; none where doubles do not suffice."""
+    a = polynomial.coeffs()
+    d, first = len(a) - 1, next(i for i, x in enumerate(a) if x != 0)
+    sizes = [x.bit_length() for x in a]
+    exponent = (sizes[first] - sizes[d]) // max(1, d - first)
+    largest = max(size + exponent * i for i, size in enumerate(sizes))
+    cut = [max(0, size - 64) for size in sizes]
+    b = [math.ldexp(int(x >> c), c + exponent * i - largest) for i, (x, c) in enumerate(zip(a, cut, strict=True))]
+    if abs(b[d]) < 1e-290:
+        return exponent, []
+    companion = np.eye(d, k=-1)
+    companion[0] = [-x / b[d] for x in b[d - 1 :: -1]]
+    try:
+        return exponent, np.linalg.eigvals(companion).tolist()
+    except np.linalg.LinAlgError:
+        return exponent, []
+
+
+def _parabola(polynomial: fmpz_poly, middle: arb) -> list[acb]:
+    """Return the real roots, or the upper one of a pair, of the Taylor polynomial of degree two at a point."""
+    slope = polynomial.derivative()
+    c, b, a = polynomial(middle).mid(), slope(middle).mid(), slope.derivative()(middle).mid() / 2
+    square = (b * b - 4 * a * c).mid()
+    half = (abs(square).sqrt() / (2 * a)).mid()
+    centre = (middle - b / (2 * a)).mid()
+    return [acb(centre - half), acb(centre + half)] if square >= 0 else [acb(centre, abs(half))]
+
+
+def _searched(polynomial: fmpz_poly, bits: int) -> list[acb]:
+    """Return the centres that FLINT finds, however long it takes."""
+    with ctx.workprec(bits):
+        found: Any = polynomial.complex_roots()
+        centres = [acb(z).mid() for z, _ in found]
+    return [z for z in centres if z.imag >= 0]

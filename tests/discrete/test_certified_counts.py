@@ -1,0 +1,146 @@
+"""Certified counts: discs that prove which roots are real against Sturm's theorem, on close, huge, hidden roots."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from flint import acb, ctx, fmpz, fmpz_poly
+from sturm import real_roots
+
+import nonholo as nh
+from nonholo.discrete import Discretization, _certificate_roots
+from nonholo.discrete._certificate import located
+from nonholo.discrete._certificate_problem import Problem, problem_of
+from nonholo.discrete._certificate_roots import isolated, sharpened
+
+_X = fmpz_poly([0, 1])
+_HUGE = fmpz(10) ** 40
+
+
+def _with_roots(*roots: str) -> fmpz_poly:
+    """Return the polynomial with given rational roots."""
+    found = fmpz_poly([1])
+    for root in map(Fraction, roots):
+        found *= fmpz_poly([-root.numerator, root.denominator])
+    return found
+
+
+_POLYNOMIALS = {
+    "one root": _with_roots("3/7"),
+    "a root zero": _X * (_X * _X + 1),
+    "far apart": _with_roots("1/100000000000000000000", "-3", "500000000000000000000") * (_X * _X + _HUGE),
+    "Wilkinson's": _with_roots(*map(str, range(1, 21))),
+    "close real roots": _with_roots("1", "1000000001/1000000000", "3"),
+    "real, 20 digits alike": _HUGE * (_X - 1) ** 2 * (_X - 3) + 1,
+    "a pair, real to 20 digits": _HUGE * (_X - 1) ** 2 * (_X - 3) - 1,
+    "Mignotte's, real": _X**7 - 2 * (1000 * _X - 1) ** 2,
+    "Mignotte's, complex": _X**8 + 2 * (1000 * _X - 1) ** 2,
+    "close complex pairs": _HUGE * (_X * _X + 1) ** 2 + _X,
+    "three close roots": _HUGE * (_X - 1) ** 3 - _X,
+    "leading coefficient below doubles": _X**3 - _HUGE**30 * _X**2 + _HUGE**31 * _X - 1,
+}
+_NEED_NO_SEARCH = ["one root", "far apart", "close real roots", "real, 20 digits alike", "a pair, real to 20 digits"]
+
+
+@pytest.mark.parametrize("polynomial", _POLYNOMIALS.values(), ids=_POLYNOMIALS)
+def test_discs_count_what_sturm_counts(polynomial: fmpz_poly) -> None:
+    """As many balls are real as Sturm's theorem says, and all roots are there, counting the mirror images."""
+    balls = isolated(polynomial)
+    real = [x for x in balls if x.imag == 0]
+    assert len(real) == real_roots(polynomial)
+    assert 2 * len(balls) - len(real) == polynomial.degree()
+
+
+@pytest.mark.parametrize("polynomial", _POLYNOMIALS.values(), ids=_POLYNOMIALS)
+def test_every_ball_holds_one_root(polynomial: fmpz_poly) -> None:
+    """Each root that FLINT isolates to 600 bits lies in one ball, each in another."""
+    balls = isolated(polynomial)
+    with ctx.workprec(600):
+        roots = [acb(z) for z, _ in polynomial.complex_roots()]
+        holders = [[i for i, x in enumerate(balls) if x.overlaps(z)] for z in roots if z.imag >= 0]
+    assert sorted(holders) == [[i] for i in range(len(balls))]
+
+
+@pytest.mark.parametrize("name", _NEED_NO_SEARCH)
+def test_close_pairs_need_no_search(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The parabola at the middle of two close eigenvalues says whether they are real, and the discs prove it."""
+    monkeypatch.setattr(_certificate_roots, "_searched", lambda *_: [])
+    assert isolated(_POLYNOMIALS[name]) is not None
+
+
+@pytest.mark.parametrize("name", ["one root", "close real roots", "Mignotte's, complex", "three close roots"])
+def test_bad_guesses_cost_time_only(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without guesses the roots are searched, and counted the same."""
+    polynomial = _POLYNOMIALS[name]
+    monkeypatch.setattr(_certificate_roots, "_guessed", lambda _: [acb(1)] * polynomial.degree())
+    balls = isolated(polynomial)
+    assert sum(x.imag == 0 for x in balls) == real_roots(polynomial)
+
+
+_CUBIC = (_X - 2) * (_X * _X + 1)
+_BAD_CENTRES = {
+    "a root missing": (_CUBIC, [acb(2)]),
+    "a root three times": (_CUBIC, [acb(2), acb(2), acb(2)]),
+    "a pair taken for real roots": (_CUBIC, [acb(2), acb(0.5), acb(-0.5)]),
+    "both of a pair": (_CUBIC, [acb(2), acb(0, 1), acb(0, -1)]),
+    "the lower one of a pair": (_CUBIC, [acb(2), acb(0, -1)]),
+    "a real root as a pair": (_X * _X - 2, [acb(1.5, 0.1)]),
+    "not a number": (3 * _X - 1, [acb("nan")]),
+}
+
+
+@pytest.mark.parametrize(("polynomial", "centres"), _BAD_CENTRES.values(), ids=_BAD_CENTRES)
+def test_a_wrong_guess_is_refused(polynomial: fmpz_poly, centres: list[acb]) -> None:
+    """Discs prove nothing unless they are disjoint, complete, finite, and those of pairs off the real axis."""
+    assert sharpened(polynomial, centres, 128) is None
+
+
+def test_rough_guesses_are_improved() -> None:
+    """From guesses with one digit Newton's method finds balls that are small, and proves the same as from good ones."""
+    balls = sharpened(_CUBIC, [acb(2.1), acb(0.1, 0.9)], 128)
+    assert [x.imag == 0 for x in balls] == [True, False]
+    assert all(x.rad() < 2.0**-60 for x in balls)
+
+
+def test_a_double_root_is_refused() -> None:
+    """Two discs at a double root are never disjoint: what is not square-free has no proof."""
+    assert isolated((_X - 1) ** 2 * (_X + 3)) is None
+
+
+def _top(B: object, c: object) -> Discretization:
+    """Build the top with given constrained inertia and coupling."""
+    B, k = np.asarray(B, dtype=float), len(np.asarray(c))
+    J = np.zeros((k + 1, k + 1))
+    J[:k, :k], J[k, k], J[k, :k], J[:k, k] = B - 0.25 * np.eye(k), 0.25, c, c
+    return nh.discretize(nh.SuslovTop(J), 1.0)
+
+
+_SE3 = nh.MultidimensionalSleigh(1.0, [-0.5, 0, 0], [[3, 0, 0.5], [0, 2, 0], [0.5, 0, 1]])
+_SPECIAL = {
+    "repeated eigenvalues": (_top(1.5 * np.eye(3), [0.5, 0.25, 0.125]), [0.4, 0.3, -0.3], [1] * 4),
+    "all equal and aligned": (_top(1.5 * np.eye(3), [0.5, 0.0, 0.0]), [0.4, 0.0, 0.0], [1] * 2),
+    "hidden roots": (_top(np.diag([1.0, 1.5, 2.25]), [0.5, 0, 0.25]), [0.4, 0, -0.3], [1] * 6),
+    "hidden beside a double half-turn": (nh.discretize(_SE3, 1.0), [0.0, 0.0, 1.0], [1, 1, 1, 2]),
+    "balanced": (_top(np.diag([1.0, 1.5, 2.25]), [0, 0, 0]), [0.4, 0.3, -0.3], [1] * 2),
+    "balanced, on the fold": (_top(np.eye(2), [0, 0]), [1.0, 0.0], [2]),
+    "momentum of the coupling": (_top(np.diag([1.0, 1.5]), [0.5, 0.25]), [1.0, 0.5], [1] * 4),
+    "half-turn of a top": (_top(np.diag([1.0, 1.5]), [0.5, 0.0]), [0.5, 0.5], [1] * 4),
+    "plane": (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1.0), [0.8, -0.3], [1] * 3),
+    "plane, half-turn": (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1.0), [0.8, -1.0], [1] * 3),
+    "plane, cusp": (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1.0), [0.0, -5.0], [3]),
+    "plane, balanced": (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 1.0), [0.3, 0.2], [1] * 2),
+}
+
+
+def _problem(discrete: Discretization, r: list[float]) -> Problem:
+    return problem_of(discrete.system.canonical, float(discrete.time_step), discrete.system.to_canonical(np.array(r)))
+
+
+@pytest.mark.parametrize(("discrete", "r", "multiplicity"), _SPECIAL.values(), ids=_SPECIAL)
+def test_special_counts(discrete: Discretization, r: list[float], multiplicity: list[int]) -> None:
+    """Values, multiplicities and real ones of special bodies are counted as theory and Sturm's theorem say."""
+    found = located(_problem(discrete, r))
+    counted = [x.multiplicity for x in found for _ in range(x.factor.degree())]
+    assert sorted(counted) == multiplicity
+    for x in found:
+        assert sum(mu.imag == 0 for mu in x.balls) == real_roots(x.factor)
