@@ -36,6 +36,19 @@ if TYPE_CHECKING:
     from nonholo.discrete import moser_veselov_displacement as moser_veselov_displacement
     from nonholo.discrete._precision import allow_float32 as allow_float32
     from nonholo.discrete._step import step as step
+    from nonholo.ensembles import Choice as Choice
+    from nonholo.ensembles import Direction as Direction
+    from nonholo.ensembles import EnsembleTask as EnsembleTask
+    from nonholo.ensembles import Grid as Grid
+    from nonholo.ensembles import LogUniform as LogUniform
+    from nonholo.ensembles import MassTensor as MassTensor
+    from nonholo.ensembles import MemberBlock as MemberBlock
+    from nonholo.ensembles import Normal as Normal
+    from nonholo.ensembles import RandomDesign as RandomDesign
+    from nonholo.ensembles import Uniform as Uniform
+    from nonholo.ensembles import load_sweep as load_sweep
+    from nonholo.ensembles import resume as resume
+    from nonholo.ensembles import sweep as sweep
     from nonholo.groups import SE as SE
     from nonholo.groups import SO as SO
     from nonholo.groups import MatrixGroup as MatrixGroup
@@ -47,12 +60,16 @@ if TYPE_CHECKING:
     from nonholo.lagrange_dalembert import LagrangeDAlembert as LagrangeDAlembert
     from nonholo.lagrange_dalembert import mass_tensor_lagrangian as mass_tensor_lagrangian
     from nonholo.orbit import Orbit as Orbit
+    from nonholo.simulation import Crossings as Crossings
     from nonholo.simulation import Ensemble as Ensemble
+    from nonholo.simulation import Event as Event
+    from nonholo.simulation import EventLog as EventLog
+    from nonholo.simulation import crossings as crossings
+    from nonholo.simulation import cusp as cusp
     from nonholo.simulation import ensemble as ensemble
     from nonholo.simulation import extend as extend
     from nonholo.simulation import flow as flow
     from nonholo.simulation import iterate as iterate
-    from nonholo.simulation import resume as resume
     from nonholo.simulation import simulate as simulate
     from nonholo.systems import ChaplyginSleigh as ChaplyginSleigh
     from nonholo.systems import LLSystem as LLSystem
@@ -69,23 +86,36 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "ChaplyginSleigh": "systems",
+    "Choice": "ensembles",
+    "Crossings": "simulation",
+    "Direction": "ensembles",
     "Discretization": "discrete",
     "Ensemble": "simulation",
+    "EnsembleTask": "ensembles",
+    "Event": "simulation",
+    "EventLog": "simulation",
+    "Grid": "ensembles",
     "GroupLagrangeDAlembert": "lagrange_dalembert",
     "LLSystem": "systems",
     "LRSystem": "systems",
     "LagrangeDAlembert": "lagrange_dalembert",
+    "LogUniform": "ensembles",
+    "MassTensor": "ensembles",
     "MatrixGroup": "groups",
+    "MemberBlock": "ensembles",
     "MultidimensionalSleigh": "systems",
+    "Normal": "ensembles",
     "Orbit": "orbit",
     "Outcome": "_results",
     "OutcomeError": "_results",
     "ProductGroup": "groups",
+    "RandomDesign": "ensembles",
     "RigidBody": "systems",
     "SE": "groups",
     "SO": "groups",
     "SuslovTop": "systems",
     "Translations": "groups",
+    "Uniform": "ensembles",
     "VeselovaTop": "systems",
     "allow_float32": "discrete._precision",
     "asymptotics": "analysis",
@@ -94,6 +124,8 @@ _HOMES = {
     "conserved_momenta": "analysis",
     "consistency_defect": "discrete",
     "critical_energies": "analysis",
+    "crossings": "simulation",
+    "cusp": "simulation",
     "discrete_legendre": "discrete",
     "discretize": "discrete",
     "displacements_over": "discrete",
@@ -111,19 +143,21 @@ _HOMES = {
     "invariant_measure": "analysis",
     "invariants": "analysis",
     "inverse_discrete_legendre": "discrete",
-    "iterate": "simulation",
     "is_symmetric_pair": "systems",
+    "iterate": "simulation",
     "load_orbit": "io",
+    "load_sweep": "ensembles",
     "lyapunov_function": "analysis",
     "mass_tensor_lagrangian": "lagrange_dalembert",
     "momentum_locus": "analysis",
     "moser_veselov_displacement": "discrete",
     "reference_point_subspace": "systems",
-    "resume": "simulation",
+    "resume": "ensembles",
     "save_orbit": "io",
     "simulate": "simulation",
     "single_valued_region": "analysis",
     "step": "discrete._step",
+    "sweep": "ensembles",
     "trace_constraints": "systems",
     "vector_field": "continuous",
 }

@@ -14,6 +14,7 @@ from nonholo.analysis._invariants import Invariants, invariants
 from nonholo.analysis._lyapunov import LyapunovFunction, lyapunov_function
 from nonholo.analysis._momentum_locus import MomentumLocus, momentum_locus
 from nonholo.analysis._single_valued_region import SingleValuedRegion, single_valued_region
+from nonholo.analysis._step_jacobian import step_jacobians
 
 __all__ = [
     "Asymptotics",
@@ -45,4 +46,5 @@ __all__ = [
     "lyapunov_function",
     "momentum_locus",
     "single_valued_region",
+    "step_jacobians",
 ]

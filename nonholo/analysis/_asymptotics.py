@@ -4,6 +4,7 @@ Theory: docs/theory/critical-energies-and-limits.md. Orbits are followed to thei
 """
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 
@@ -85,12 +86,17 @@ def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
     return _of_orbit(system, subject)
 
 
+def turn_of_flow(mass: Any, inertia: Any, a: Any) -> Any:
+    r"""Return how far sleighs turn in all along the flow, $\pi\sqrt{1 + J/(ma^2)}$; of numbers or arrays."""
+    return np.pi * np.sqrt(1 + inertia / mass / a / a)
+
+
 def _of_system(system: AbstractLLSystem) -> Asymptotics:
     attracting, turn = system.equilibria().attracting, None
     if attracting is None:
         return Asymptotics()
     if isinstance(system, ChaplyginSleigh):
-        turn = float(np.pi * np.sqrt(1 + system.inertia / system.mass / system.a / system.a))
+        turn = float(turn_of_flow(system.mass, system.inertia, system.a))
         return Asymptotics(heading_turn=turn, motion_turn=turn - np.pi)
     return Asymptotics(axis_before=_axis(system, -attracting), axis_after=_axis(system, attracting))
 

@@ -25,6 +25,12 @@ def step_determinants(discrete: Discretization, W: Float[np.ndarray, "... N N"])
         return after / before
 
 
+def step_jacobians(discrete: Discretization, W: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "... k k"]:
+    """Return the derivatives of restricted momenta after a step by those before it, at each displacement."""
+    after, before = (momentum_slope(discrete, V) for V in (discrete.system.group.inverse(W), W))
+    return after @ np.linalg.inv(before)
+
+
 def area_factor(
     discrete: Discretization, W: Float[np.ndarray, "... 3 3"]
 ) -> tuple[Float[Array, "..."], Float[Array, "..."]]:

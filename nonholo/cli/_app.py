@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from nonholo import __version__
+from nonholo.cli._export import export
 from nonholo.cli._extend import extend
 from nonholo.cli._info import info
 from nonholo.cli._new import new
@@ -12,6 +13,7 @@ from nonholo.cli._paper import paper
 from nonholo.cli._plot import plot
 from nonholo.cli._resume import resume
 from nonholo.cli._simulate import simulate
+from nonholo.cli._sweep import sweep
 from nonholo.cli._systems import systems
 
 app = typer.Typer(
@@ -22,7 +24,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for _command in (simulate, new, systems, info, plot, resume, extend, paper):
+for _command in (simulate, sweep, new, systems, info, plot, export, resume, extend, paper):
     app.command()(_command)
 
 
@@ -48,7 +50,9 @@ def describe(
     nonholo simulate suslov             run a built-in scenario
     nonholo new sleigh > my.toml        write a commented scenario to edit
     nonholo simulate my.toml            run it; the result is kept under runs/
+    nonholo sweep sweep.toml            many motions: a grid or random draws
     nonholo info runs/my-001.zarr       what was run, and how exact it is
-    nonholo resume run.zarr             go on with a long run that stopped
+    nonholo export run.zarr -o run.csv  its poses, for other programs
+    nonholo resume run.zarr             go on with what stopped, run or sweep
     nonholo paper                       the paper behind it, recomputed
     """

@@ -19,7 +19,12 @@ def extend(
     from nonholo.cli._caches import use_cache_folders
 
     use_cache_folders()
+    from nonholo import io
+    from nonholo.cli._errors import USAGE, leave
     from nonholo.cli._going_on import go_on_and_report
     from nonholo.simulation import extend as going_on
 
+    if io.format_of(store) == io.SWEEP_FORMAT:
+        again = f"nonholo info {store} --scenario > more.toml; nonholo sweep more.toml --set run.steps=..."
+        leave(f"'{store}' holds a sweep, whose members are not extended. Run it again, longer: {again}", USAGE)
     go_on_and_report(store, lambda progress: going_on(store, steps, progress=progress), json=json)

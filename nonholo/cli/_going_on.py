@@ -1,16 +1,22 @@
-"""What `nonholo resume` and `nonholo extend` do around the run."""
+"""What `nonholo resume` and `nonholo extend` do around the run, or around the sweep."""
 
+import contextlib
 import sys
+import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import cast
 
 from nonholo._results import OutcomeError
 from nonholo.cli._errors import FAILED, USAGE, leave, store_errors, warn
 from nonholo.cli._provenance import show_provenance
+from nonholo.cli._sweep_report import show_sweep, sweep_figures
+from nonholo.ensembles import resume, standing_of
 from nonholo.io import read_attributes
 from nonholo.orbit import Orbit
+
+_TOLD = 5  # warnings of a sweep that are told
 
 
 def go_on_and_report(store: Path, going_on: Callable[[bool], Orbit], *, json: bool) -> None:
@@ -29,3 +35,38 @@ def go_on_and_report(store: Path, going_on: Callable[[bool], Orbit], *, json: bo
     show_provenance(store, read_attributes(store), orbit, json=json)
     if stopped:
         leave(f"Stopped early; the good steps are kept. {stopped}", FAILED)
+
+
+def go_on_with_sweep(store: Path, scheduler: str | None, workers: int | None, *, json: bool) -> None:
+    """Do what a sweep lacks, report what the store holds now."""
+    with store_errors(USAGE):
+        done = standing_of(store).done
+    begun = time.perf_counter()
+    with store_errors(USAGE), going(store):
+        result = resume(store, scheduler=scheduler, workers=workers, progress=sys.stderr.isatty())
+    figures = sweep_figures(store, result, time.perf_counter() - begun, done)
+    show_sweep(store, figures, {"title": str(store)}, {}, json=json)
+
+
+@contextlib.contextmanager
+def going(store: Path) -> Iterator[None]:
+    """Tell what stopped a sweep and how to go on, and at its end what it warned of."""
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", RuntimeWarning)
+        try:
+            yield
+        except KeyboardInterrupt:
+            leave(f"Stopped {_where(store)}", FAILED)
+        except OSError as failure:
+            if not store.exists() or isinstance(failure, FileExistsError | BlockingIOError):
+                raise
+            leave(f"{failure.strerror or failure} (nonholo resume {store})", FAILED)
+    for warning in told[:_TOLD]:
+        warn(str(warning.message))
+    if len(told) > _TOLD:
+        warn(f"and {len(told) - _TOLD} more of this kind.")
+
+
+def _where(store: Path) -> str:
+    """Say how far a sweep came; before its store is there it has not begun."""
+    return f"at {standing_of(store)}. Go on with: nonholo resume {store}" if store.exists() else "before it began."

@@ -32,11 +32,11 @@ def draw(orbit: "Orbit", picture: Path | None, animation: Path | None) -> dict[s
         from nonholo import plotting
 
         if picture is not None:
-            with _complete(picture) as part:
+            with complete(picture) as part:
                 plotting.overview(orbit, part, flow=_flow(orbit))
             drawn["picture"] = str(picture)
         if animation is not None:
-            with _complete(animation) as part, progress_bar("frames", sys.stderr.isatty()) as progress:
+            with complete(animation) as part, progress_bar("frames", sys.stderr.isatty()) as progress:
                 plotting.animate(orbit, part, progress=progress)
             drawn["animation"] = str(animation)
     except Exception as failure:
@@ -52,7 +52,7 @@ def warn_of_older(store: Path, drawn: dict[str, str | None]) -> None:
 
 
 @contextlib.contextmanager
-def _complete(path: Path) -> Iterator[str]:
+def complete(path: Path) -> Iterator[str]:
     """Give a path to draw to, which takes the name of the picture only when it is complete."""
     part = path.with_name(f".{uuid.uuid4().hex[:12]}.{path.name}")
     try:

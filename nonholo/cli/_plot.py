@@ -1,4 +1,4 @@
-"""`nonholo plot`: draw a run that was kept."""
+"""`nonholo plot`: draw a run or a sweep that was kept."""
 
 from pathlib import Path
 from typing import Annotated
@@ -7,31 +7,44 @@ import typer
 
 
 def plot(
-    store: Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate or save_orbit.")],
+    store: Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate, sweep or save_orbit.")],
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="PICTURE", help="A .png, .svg or .pdf; by default beside STORE."),
     ] = None,
-    gif: Annotated[bool, typer.Option("--gif", help="Draw an animation instead.")] = False,
+    gif: Annotated[bool, typer.Option("--gif", help="Of a run: draw an animation instead.")] = False,
+    color: Annotated[str | None, typer.Option(metavar="NAME", help="Of a sweep: the quantity that is shown.")] = None,
+    x: Annotated[str | None, typer.Option("--x", metavar="NAME", help="Of a sweep: what runs across.")] = None,
+    y: Annotated[str | None, typer.Option("--y", metavar="NAME", help="Of a sweep: what runs up.")] = None,
 ) -> None:
-    """Draw the overview of a run, or an animation of it.
+    """Draw the overview of a run, an animation of it, or the map of a sweep.
 
     nonholo plot runs/sleigh-001.zarr -o sleigh.pdf
     nonholo plot runs/sleigh-001.zarr --gif
+    nonholo plot sweep.zarr --color outcome --x body.a --y run.time_step
     """
     from nonholo.cli._caches import use_cache_folders
 
     use_cache_folders()
-    from nonholo.cli._errors import FAILED, USAGE, store_errors
+    from nonholo import io
+    from nonholo.cli._errors import FAILED, USAGE, leave, store_errors
     from nonholo.cli._pictures import beside, draw
-    from nonholo.io import load_orbit, read_attributes
 
-    with store_errors(USAGE):
-        read_attributes(store)
-    with store_errors(FAILED):
-        orbit = load_orbit(store)
     path = output or beside(store, "gif" if gif else "png")
-    drawn = draw(orbit, None if gif else path, path if gif else None)
-    if str(path) not in drawn.values():
+    if io.format_of(store) == io.SWEEP_FORMAT:
+        from nonholo.cli._sweep_picture import draw_stored_sweep
+
+        if gif:
+            leave("A sweep has no animation. Leave --gif out.", USAGE)
+        drawn = draw_stored_sweep(store, path, color, x, y)
+    else:
+        if color or x or y:
+            leave("--color, --x and --y are for the store of a sweep.", USAGE)
+        with store_errors(USAGE):
+            io.read_attributes(store)
+        with store_errors(FAILED):
+            orbit = io.load_orbit(store)
+        drawn = draw(orbit, None if gif else path, path if gif else None).values()
+    if str(path) not in drawn:
         raise typer.Exit(FAILED)
     typer.echo(path)

@@ -9,15 +9,16 @@ from pydantic import ValidationError
 
 from nonholo.cli._bodies import BODIES
 from nonholo.cli._groups import NAME, TABLE, GroupTable
-from nonholo.cli._scenario import Output, Run, Scenario, Start
+from nonholo.cli._sections import Section
+from nonholo.cli._sweep_scenario import DESIGNS
 
-_SECTIONS = {"start": Start, "run": Run, "output": Output}
+_TAGGED: dict[str, dict[str, type[Section]]] = {"body": dict(BODIES), "design": DESIGNS}
+"""Tables that are one of several: pydantic puts the one that was meant into the key path."""
 _CORE = re.compile(r"`[\w.]+\((\w+)=\.\.\.\)` (.*)", re.DOTALL)
-_KINDS = " or ".join(f'"{kind}"' for kind in BODIES)
 _TEXTS = {
     "missing": "is missing",
-    "union_tag_not_found": "needs kind = " + _KINDS,
-    "union_tag_invalid": "must have kind " + _KINDS,
+    "union_tag_not_found": "needs kind = {kinds}",
+    "union_tag_invalid": "must have kind {kinds}",
     "model_type": "must be a table",
     "model_attributes_type": "must be a table",
 }
@@ -42,16 +43,23 @@ class ScenarioError(Exception):
         self.problems = problems
 
 
-def problems_of(failure: ValidationError, source: str, options: dict[str, str]) -> list[Problem]:
-    """Return the problems a validation found; `options` says which key paths came from the command line."""
-    found = [_problem(dict(entry)) for entry in failure.errors(include_url=False)]
-    return [Problem(_source(key, source, options), key, text) for key, text in found]
+def problems_of(failure: ValidationError, model: type[Section], source: str, options: dict[str, str]) -> list[Problem]:
+    """Return the problems that the validation of a model found; `options`: key paths of the command line."""
+    found = [_problem(dict(entry), model) for entry in failure.errors(include_url=False)]
+    return [problem(key, text, source, options) for key, text in found]
 
 
 def problem_of_value(failure: ValueError, section: str, source: str, options: dict[str, str]) -> Problem:
     """Return the problem behind an error of the library about an argument that a section gave."""
-    key, text = _split_core(section, str(failure))
-    return Problem(_source(key, source, options), key, text)
+    return problem(*_split_core(section, str(failure)), source, options)
+
+
+def problem(key: str, text: str, source: str, options: dict[str, str]) -> Problem:
+    """Return what is wrong at a key path, with the option that gave it, or the file."""
+    for path, option in options.items():
+        if key == path or key.startswith((f"{path}.", f"{path}[")) or path.startswith(f"{key}."):
+            return Problem(option, key, text)
+    return Problem(source, key, text)
 
 
 def suggestion(name: str, known: list[str]) -> str:
@@ -60,37 +68,33 @@ def suggestion(name: str, known: list[str]) -> str:
     return f"Did you mean {close[0]}?" if close else f"Known: {', '.join(known)}."
 
 
-def _problem(entry: dict[str, Any]) -> tuple[str, str]:
-    location = [part for i, part in enumerate(entry["loc"]) if not (i == 1 and part in BODIES)]
+def _problem(entry: dict[str, Any], model: type[Section]) -> tuple[str, str]:
+    kinds = _TAGGED.get(str(entry["loc"][0]), {}) if entry["loc"] else {}
+    location = [part for i, part in enumerate(entry["loc"]) if not (i == 1 and part in kinds)]
     location = [part for part in location if part not in (NAME, TABLE)]
     key = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in location).lstrip(".")
     if entry["type"] == "value_error":
         return _split_core(key, str(entry["ctx"]["error"]))
     if entry["type"] == "extra_forbidden":
-        return key, f"is not a known key. {suggestion(str(location[-1]), _known(entry['loc']))}"
+        return key, f"is not a known key. {suggestion(str(location[-1]), _known(entry['loc'], model))}"
     text = _TEXTS.get(entry["type"]) or entry["msg"].replace("Input should", "must", 1)
+    text = text.format(kinds=" or ".join(f'"{kind}"' for kind in kinds)) if "{kinds}" in text else text
     if entry["type"] in ("missing", "union_tag_not_found"):
         return key, text
     got = entry["ctx"]["tag"] if entry["type"] == "union_tag_invalid" else entry["input"]
     return key, f"{text}. Got {reprlib.repr(got)}"
 
 
-def _known(location: tuple[int | str, ...]) -> list[str]:
-    if len(location) == 1:
-        return list(Scenario.model_fields)
+def _known(location: tuple[int | str, ...], model: type[Section]) -> list[str]:
+    """Return the keys of the table in which one is not known."""
     if TABLE in location:
         return list(GroupTable.model_fields)
-    section = BODIES[str(location[1])] if location[0] == "body" else _SECTIONS[str(location[0])]
-    return list(section.model_fields)
+    table: Any = model
+    for name in location[:-1]:
+        table = _TAGGED.get(str(location[0]), {}).get(str(name)) or table.model_fields[str(name)].annotation
+    return list(table.model_fields)
 
 
 def _split_core(section: str, message: str) -> tuple[str, str]:
     named = _CORE.fullmatch(message)
     return (f"{section}.{named[1]}", named[2]) if named else (section, message)
-
-
-def _source(key: str, source: str, options: dict[str, str]) -> str:
-    for path, option in options.items():
-        if key == path or key.startswith((f"{path}.", f"{path}[")) or path.startswith(f"{key}."):
-            return option
-    return source

@@ -6,10 +6,15 @@ from typing import Any
 
 import typer
 
+from nonholo.cli._errors import FAILED, USAGE, leave, store_errors
 from nonholo.cli._report import as_json, figures, show
+from nonholo.cli._sweep_report import show_sweep, sweep_figures
+from nonholo.ensembles import load_sweep
+from nonholo.ensembles._store import open_store
 from nonholo.io import Standing
 from nonholo.orbit import Orbit
 
+_MOST_BLOCKS = 1000  # of a sweep that are read, some milliseconds each
 _NESTED = ("parameters", "motion", "versions", "arrays", "run")
 
 
@@ -36,6 +41,27 @@ def show_standing(store: Path, stored: dict[str, Any], standing: Standing, *, js
     show({}, {"title": str(store), "steps": came, "run": next_one} | _made(told))
 
 
+def show_sweep_standing(store: Path, stored: dict[str, Any], *, json: bool) -> None:
+    """Print how far a sweep came and, if it is finished, sound and not too large, the ranges of its quantities."""
+    told = {name: jsonlib.loads(value) if name in (*_NESTED, "sweep") else value for name, value in stored.items()}
+    result = failure = None
+    with store_errors(USAGE):
+        opened = open_store(store)
+        if opened.is_finished and opened.layout.blocks <= _MOST_BLOCKS:
+            try:
+                result = load_sweep(store)
+            except ValueError as caught:
+                failure = caught
+        measured = sweep_figures(store, result)
+    task, design = told["sweep"]["task"], told["sweep"]["design"]
+    made = {"task": task["name"]} if "name" in task else {"system": task["system"], "steps": f"{task['steps']:,}"}
+    made |= {"design": f"{design['kind']}, seed {design['seed']}", **_scenario(told)}
+    provenance = {name: value for name, value in told.items() if name != "sweep"} | told["sweep"]
+    show_sweep(store, measured, {"title": str(store)} | made, {"provenance": provenance} if json else {}, json=json)
+    if failure:
+        leave(str(failure), FAILED)
+
+
 def _told(stored: dict[str, Any]) -> dict[str, Any]:
     return {name: jsonlib.loads(value) if name in _NESTED else value for name, value in stored.items()}
 
@@ -43,6 +69,12 @@ def _told(stored: dict[str, Any]) -> dict[str, Any]:
 def _made(told: dict[str, Any]) -> dict[str, str]:
     return {
         "motion": _listed(told["motion"]),
+        **_scenario(told),
+    }
+
+
+def _scenario(told: dict[str, Any]) -> dict[str, str]:
+    return {
         "made with": _listed(told["versions"]),
         "scenario": f"sha256 {told['scenario_sha256'][:16]}" if "scenario" in told else "none",
     }

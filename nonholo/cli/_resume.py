@@ -1,25 +1,34 @@
-"""`nonholo resume`: go on with a run that stopped."""
+"""`nonholo resume`: go on with a run or a sweep that stopped."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate(..., store=...).")]
+from nonholo.cli._sweep import Scheduler, Workers
+
+Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by sweep, or by simulate(..., store=...).")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of the table.")]
 
 
-def resume(store: Store, json: Json = False) -> None:
-    """Go on from the last checkpoint of a run; damaged blocks are named and computed again.
+def resume(store: Store, scheduler: Scheduler = None, workers: Workers = None, json: Json = False) -> None:
+    """Go on from the last checkpoint of a run, or with the missing blocks of a sweep.
 
-    The result has the bits of a run that was never stopped.
+    Damaged blocks are named and computed again. The result has the bits of one
+    that was never stopped. --scheduler and --workers are for sweeps.
 
     nonholo resume run.zarr
+    nonholo resume sweep.zarr --workers 4
     """
     from nonholo.cli._caches import use_cache_folders
 
     use_cache_folders()
-    from nonholo.cli._going_on import go_on_and_report
-    from nonholo.simulation import resume as going_on
+    from nonholo import io
+    from nonholo.cli._going_on import go_on_and_report, go_on_with_sweep
+    from nonholo.ensembles import resume as going_on
 
-    go_on_and_report(store, lambda progress: going_on(store, progress=progress), json=json)
+    if io.format_of(store) == io.SWEEP_FORMAT:
+        go_on_with_sweep(store, scheduler, workers, json=json)
+    else:
+        options = {"scheduler": scheduler, "workers": workers}
+        go_on_and_report(store, lambda progress: going_on(store, progress=progress, **options), json=json)

@@ -75,7 +75,7 @@ def keep(orbit: Orbit, loaded: Loaded, store: Path | None, *, overwrite: bool) -
     if store is not None:
         save_orbit(orbit, store, overwrite=overwrite, scenario=text)
         return store
-    for path in _next_names(loaded.name):
+    for path in next_names(loaded.name):
         try:
             save_orbit(orbit, path, scenario=text)
         except FileExistsError:  # another run was faster
@@ -84,7 +84,8 @@ def keep(orbit: Orbit, loaded: Loaded, store: Path | None, *, overwrite: bool) -
     raise AssertionError("the numbers do not end")
 
 
-def _next_names(name: str) -> Iterable[Path]:
+def next_names(name: str) -> Iterable[Path]:
+    """Return the numbered paths that are free for a scenario, in order."""
     pattern = re.compile(re.escape(name) + r"-(\d+)\.\w+")
     taken = [int(match[1]) for path in RUNS.iterdir() if (match := pattern.fullmatch(path.name))]
     return (RUNS / f"{name}-{number:03d}.zarr" for number in itertools.count(max(taken, default=0) + 1))

@@ -9,6 +9,7 @@ from nonholo.cli._sections import Count, Matrix, Positive, Section, Vector, exac
 
 if TYPE_CHECKING:
     from nonholo.discrete import Discretization
+    from nonholo.systems import System
 
 
 class Start(Section):
@@ -37,6 +38,16 @@ class Run(Section):
     order: Literal[2, 4, 6, 8] = 2
     branch: Literal["principal", "nearest", "smallest", "largest", "inner", "outer"] = "principal"
 
+    def discretized(self, system: "System") -> "Discretization":
+        """Return a discretised system."""
+        from nonholo.discrete import discretize
+
+        return discretize(system, self.time_step, self.difference, self.constraint, self.order)
+
+    def in_force(self, discrete: "Discretization") -> Self:
+        """Return the run with the library's choices of difference and constraint written out."""
+        return self.model_copy(update={"difference": discrete.difference, "constraint": discrete.constraint})
+
 
 class Output(Section):
     """What is drawn beside the store."""
@@ -56,15 +67,11 @@ class Scenario(Section):
 
     def discretization(self) -> "Discretization":
         """Return the discretised body."""
-        from nonholo.discrete import discretize
-
-        run = self.run
-        return discretize(self.body.system(), run.time_step, run.difference, run.constraint, run.order)
+        return self.run.discretized(self.body.system())
 
     def in_force(self, discrete: "Discretization") -> Self:
-        """Return the scenario with the library's choices of difference and constraint written out."""
-        chosen = {"difference": discrete.difference, "constraint": discrete.constraint}
-        return self.model_copy(update={"run": self.run.model_copy(update=chosen)})
+        """Return the scenario with the library's choices written out."""
+        return self.model_copy(update={"run": self.run.in_force(discrete)})
 
     def options(self) -> dict[str, Any]:
         """Return the arguments of `simulate`."""

@@ -1,15 +1,19 @@
 """Reading a scenario: a file or a built-in name, changed by options, checked as a whole."""
 
 import json
+import re
 import tomllib
 from importlib import resources
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from pydantic import ValidationError
 
 from nonholo.cli._problems import Problem, ScenarioError, problems_of, suggestion
 from nonholo.cli._scenario import Scenario
+from nonholo.cli._sections import Section
+
+Model = TypeVar("Model", bound=Section)
 
 
 class Setting(NamedTuple):
@@ -20,26 +24,43 @@ class Setting(NamedTuple):
     value: Any
 
 
-class Loaded(NamedTuple):
+class Loaded(NamedTuple, Generic[Model]):
     """A checked scenario, its short name, where it came from, and which key paths the command line set."""
 
-    scenario: Scenario
+    scenario: Model
     name: str
     source: str
     options: dict[str, str]
 
 
-def load_scenario(name: str, settings: list[Setting]) -> Loaded:
+def load_scenario(name: str, settings: list[Setting]) -> Loaded[Scenario]:
     """Return the scenario of a file or a built-in name with settings applied, or raise with all its problems."""
-    source, text = _text_of(name)
-    document = _parsed(source, text)
+    source, document = read_document(name, built_in())
+    if "design" in document:
+        raise ScenarioError([Problem(source, "design", f"is for sweeps: nonholo sweep {name}")])
     for setting in settings:
-        _assign(document, setting)
+        assign(document, setting)
+    return checked(document, Scenario, Path(name).stem, source, settings)
+
+
+def read_document(name: str, own: dict[str, str]) -> tuple[str, dict[str, Any]]:
+    """Return how the scenario of a file or a built-in name is called in messages, and what it says."""
+    source, text = _text_of(name, own)
+    try:
+        return source, tomllib.loads(text)
+    except tomllib.TOMLDecodeError as failure:
+        raise ScenarioError([Problem(source, "", f"is not valid TOML: {failure}")]) from None
+
+
+def checked(
+    document: dict[str, Any], model: type[Model], name: str, source: str, settings: list[Setting]
+) -> Loaded[Model]:
+    """Return a scenario of that model, or raise with all its problems."""
     options = {setting.key: setting.option for setting in settings}
     try:
-        return Loaded(Scenario.model_validate(document), Path(name).stem, source, options)
+        return Loaded(model.model_validate(document), name, source, options)
     except ValidationError as failure:
-        raise ScenarioError(problems_of(failure, source, options)) from None
+        raise ScenarioError(problems_of(failure, model, source, options)) from None
 
 
 def parse_setting(text: str) -> Setting:
@@ -64,9 +85,9 @@ def parse_setting(text: str) -> Setting:
     return Setting(option, key, parsed["value"])
 
 
-def built_in() -> dict[str, str]:
-    """Return the texts of the scenarios that come with the package, by name."""
-    folder = resources.files("nonholo.cli") / "scenarios"
+def built_in(kind: str = "") -> dict[str, str]:
+    """Return the texts of the scenarios that come with the package, by name; of one motion, or in "sweeps"."""
+    folder = resources.files("nonholo.cli") / "scenarios" / kind
     files = sorted((f for f in folder.iterdir() if f.name.endswith(".toml")), key=lambda f: f.name)
     return {file.name.removesuffix(".toml"): file.read_text("utf-8") for file in files}
 
@@ -75,20 +96,28 @@ def effective_text(scenario: Scenario) -> str:
     """Return a scenario as TOML with every value that was in force; running it again repeats the run."""
     document = scenario.model_dump(exclude_none=True)
     tables = {name: value for name, value in document.items() if isinstance(value, dict)}
-    lines = [f"title = {json.dumps(document['title'], ensure_ascii=False)}"]
+    return toml_text(document["title"], tables)
+
+
+def toml_text(title: str, tables: dict[str, dict[str, Any]]) -> str:
+    """Return a title and tables as TOML."""
+    lines = [f"title = {json.dumps(title, ensure_ascii=False)}"]
     for name, table in tables.items():
-        lines += ["", f"[{name}]", *(f"{key} = {_as_toml(value)}" for key, value in table.items())]
+        lines += ["", f"[{name}]", *(f"{_key(key)} = {_as_toml(value)}" for key, value in table.items())]
     return "\n".join(lines) + "\n"
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[\w-]+", name, re.ASCII) else json.dumps(name)
 
 
 def _as_toml(value: Any) -> str:
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{key} = {_as_toml(entry)}" for key, entry in value.items()) + "}"
+        return "{" + ", ".join(f"{_key(key)} = {_as_toml(entry)}" for key, entry in value.items()) + "}"
     return json.dumps(value)
 
 
-def _text_of(name: str) -> tuple[str, str]:
-    own = built_in()
+def _text_of(name: str, own: dict[str, str]) -> tuple[str, str]:
     if name in own:
         return f"{name} (built in)", own[name]
     try:
@@ -100,14 +129,8 @@ def _text_of(name: str) -> tuple[str, str]:
     raise ScenarioError([Problem(name, "", text)])
 
 
-def _parsed(source: str, text: str) -> dict[str, Any]:
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as failure:
-        raise ScenarioError([Problem(source, "", f"is not valid TOML: {failure}")]) from None
-
-
-def _assign(document: dict[str, Any], setting: Setting) -> None:
+def assign(document: dict[str, Any], setting: Setting) -> None:
+    """Put a value of the command line into a document."""
     *tables, last = setting.key.split(".")
     for table in tables:
         document = document.setdefault(table, {})

@@ -1,31 +1,74 @@
 """Orbits as labelled data and as stores on disk: complete or absent, checked when read, with full provenance."""
 
-from nonholo.io._attributes import attributes_of_text, other_versions, restore_motion
+from nonholo.io._attributes import (
+    SWEEP_FORMAT,
+    attributes_of_text,
+    identity_of,
+    other_versions,
+    restore_motion,
+    versions_text,
+)
+from nonholo.io._csv import check_file, orbit_to_csv, store_to_csv
 from nonholo.io._dataset import orbit_to_dataset
 from nonholo.io._descriptions import fields_of
-from nonholo.io._load import load_last_block, load_orbit, read_attributes
+from nonholo.io._load import (
+    chunk_name,
+    chunk_path,
+    format_of,
+    load_last_block,
+    load_orbit,
+    read_attributes,
+    read_chunk,
+)
 from nonholo.io._lock import locked, owner_of
-from nonholo.io._save import check_target, save_orbit
+from nonholo.io._save import (
+    check_target,
+    codecs,
+    consolidate,
+    create_array,
+    edit_attributes,
+    put_in_place,
+    save_orbit,
+    sibling,
+    write_whole,
+)
 from nonholo.io._stream import Checkpoint, Plan, Standing, Stream, create_stream, open_stream, standing
 
 __all__ = [
+    "SWEEP_FORMAT",
     "Checkpoint",
     "Plan",
     "Standing",
     "Stream",
     "attributes_of_text",
+    "check_file",
     "check_target",
+    "chunk_name",
+    "chunk_path",
+    "codecs",
+    "consolidate",
+    "create_array",
     "create_stream",
+    "edit_attributes",
     "fields_of",
+    "format_of",
+    "identity_of",
     "load_last_block",
     "load_orbit",
     "locked",
     "open_stream",
+    "orbit_to_csv",
     "orbit_to_dataset",
     "other_versions",
     "owner_of",
+    "put_in_place",
     "read_attributes",
+    "read_chunk",
     "restore_motion",
     "save_orbit",
+    "sibling",
     "standing",
+    "store_to_csv",
+    "versions_text",
+    "write_whole",
 ]

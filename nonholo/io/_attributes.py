@@ -14,6 +14,7 @@ from nonholo.io._descriptions import fields_of, restore_system, unstored
 from nonholo.orbit import AbstractMotion, Orbit
 
 FORMAT = "nonholo.orbit"
+SWEEP_FORMAT = "nonholo.sweep"
 SCHEMA = 2
 """Written by this version. Schema 1 had no groups among the parameters, and one dimension for momenta and charts."""
 READABLE = (1, 2)
@@ -36,13 +37,13 @@ def attributes(orbit: Orbit) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "schema": SCHEMA,
-        **_identity(orbit.motion),
+        **identity_of(orbit.motion),
         "outcome": orbit.outcome.name,
         "save_every": orbit.save_every,
         "branch": orbit.branch,
         "precision": "float64",
         "conventions": _CONVENTIONS,
-        "versions": json.dumps(_versions()),
+        "versions": versions_text(),
     }
 
 
@@ -71,14 +72,14 @@ def restore_motion(stored: dict[str, Any], motion: AbstractMotion | None) -> Abs
 
 
 def _same(stored: dict[str, Any], motion: AbstractMotion) -> AbstractMotion:
-    for key, value in _identity(motion).items():
+    for key, value in identity_of(motion).items():
         if value != stored[key]:  # JSON text: floating-point numbers are compared exactly
             got = f"{key} {value} instead of {stored[key]}"
             raise error("load_orbit(discrete=...)", "be the discretisation of the store", got, "Pass that one.")
     return motion
 
 
-def _identity(motion: AbstractMotion) -> dict[str, str]:
+def identity_of(motion: AbstractMotion) -> dict[str, str]:
     """Return what a motion is."""
     described = {"kind": type(motion).__name__, **fields_of(motion)}
     return {
@@ -93,6 +94,11 @@ def other_versions(stored: dict[str, Any]) -> str:
     now = _versions()
     made = json.loads(stored["versions"]).items()
     return ", ".join(f"{name} {old} (now {now.get(name)})" for name, old in made if old != now.get(name))
+
+
+def versions_text() -> str:
+    """Return the versions of what computes, as JSON."""
+    return json.dumps(_versions())
 
 
 def _versions() -> dict[str, str]:

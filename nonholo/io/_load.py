@@ -11,11 +11,12 @@ from nonholo._checks import error
 from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.discrete import Discretization
-from nonholo.io._attributes import FORMAT, READABLE, SCHEMA, restore_motion
+from nonholo.io._attributes import FORMAT, READABLE, SWEEP_FORMAT, restore_motion
 from nonholo.orbit import Orbit
 
 _WHERE = "load_orbit(path=...)"
 _NAN = "NaN"
+_KINDS = {FORMAT: "an orbit", SWEEP_FORMAT: "a sweep", "nonholo.ensemble": "an ensemble"}
 _AGAIN = "The store is damaged: copy it again from its source, or run it again."
 
 
@@ -59,37 +60,58 @@ def _loaded(root: Path, discrete: Discretization | None, *, last: bool) -> Orbit
     return Orbit(motion, outcome=outcome, save_every=every, branch=branch, **compact)  # type: ignore[arg-type]
 
 
-def read_attributes(path: str | Path) -> dict[str, Any]:
-    """Return the attributes of a store, after checking that it is one and that its schema is known."""
+def read_attributes(path: str | Path, expected: str = FORMAT, readable: tuple[int, ...] = READABLE) -> dict[str, Any]:
+    """Return the attributes of a store, after checking that it is one of that format and that its schema is known."""
+    where = _WHERE if expected == FORMAT else "load_sweep(store=...)"
+    kind = f"be a store of {_KINDS[expected]}"
     if not Path(path).exists():
-        raise FileNotFoundError(f"`{_WHERE}` must exist. Got '{path}'. Check the path; runs are kept under 'runs/'.")
+        raise FileNotFoundError(f"`{where}` must exist. Got '{path}'. Check the path; runs are kept under 'runs/'.")
     try:
         stored = dict(zarr.open_group(Path(path), mode="r", use_consolidated=False).attrs)
     except Exception as failure:
         remedy = f"Its metadata cannot be read: {failure}"
-        raise error(_WHERE, "be a store of an orbit", f"'{path}'", remedy) from failure
-    if stored.get("format") != FORMAT:
-        raise error(_WHERE, "be a store of an orbit", f"'{path}', made by another program", "Pass a store of nonholo.")
-    if stored.get("schema") not in READABLE:
-        remedy = f"This version reads schemas up to {SCHEMA}: upgrade nonholo ({stored.get('versions')} wrote it)."
-        raise error(_WHERE, f"have a schema of {READABLE}", f"schema {stored.get('schema')}", remedy)
+        raise error(where, kind, f"'{path}'", remedy) from failure
+    if stored.get("format") != expected:
+        made = _KINDS.get(str(stored.get("format")))
+        got = f"'{path}', " + (f"a store of {made}" if made else "made by another program")
+        raise error(where, kind, got, "Pass a store of nonholo that is one.")
+    if stored.get("schema") not in readable:
+        remedy = (
+            f"This version reads schemas up to {readable[-1]}: upgrade nonholo ({stored.get('versions')} wrote it)."
+        )
+        raise error(where, f"have a schema of {readable}", f"schema {stored.get('schema')}", remedy)
     return stored
 
 
+def format_of(path: str | Path) -> str | None:
+    """Return the format that a store says it has; None if it says nothing that can be read."""
+    try:
+        return json.loads((Path(path) / "zarr.json").read_text())["attributes"]["format"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
 def _read(root: Path, name: str, shape: tuple[int, ...], last: bool) -> Float[np.ndarray, "..."]:
+    array = opened_array(root, name, shape)
+    indices = list(np.ndindex(array.cdata_shape))[-1 if last else 0 :]
+    blocks = [checked_block(root, name, array, index) for index in indices]
+    return np.concatenate(blocks) if blocks else np.empty(shape)
+
+
+def opened_array(root: Path, name: str, shape: tuple[int, ...] | None) -> zarr.Array:
+    """Open an array of a store, of a known shape unless the run is not finished."""
     try:
         array = zarr.open_array(root / name, mode="r")
     except Exception as failure:
         raise error(_WHERE, f"hold the array {name}", f"{type(failure).__name__}: {failure}", _AGAIN) from failure
-    if array.shape != shape or array.dtype != np.float64:
+    if array.shape != (shape or array.shape) or array.dtype != np.float64:
         got = f"{array.dtype} of shape {array.shape}"
         raise error(_WHERE, f"hold the array {name} as float64 of shape {shape}", got, _AGAIN)
-    indices = list(np.ndindex(array.cdata_shape))[-1 if last else 0 :]
-    blocks = [_block(root, name, array, index) for index in indices]
-    return np.concatenate(blocks) if blocks else np.empty(shape)
+    return array
 
 
-def _block(root: Path, name: str, array: zarr.Array, index: tuple[int, ...]) -> np.ndarray:
+def checked_block(root: Path, name: str, array: zarr.Array, index: tuple[int, ...]) -> np.ndarray:
+    """Return one chunk; refuse one that is missing or damaged, with its name."""
     found = read_chunk(root, name, array, index)
     if isinstance(found, str):
         requirement = f"hold {chunk_name(name, array, index)}" + (" free of NaN" if found == _NAN else "")
@@ -107,8 +129,10 @@ def chunk_path(root: Path, name: str, array: zarr.Array, index: tuple[int, ...])
     return root / name / array.metadata.encode_chunk_key(index)
 
 
-def read_chunk(root: Path, name: str, array: zarr.Array, index: tuple[int, ...]) -> np.ndarray | str:
-    """Return one chunk, or what is wrong with it.
+def read_chunk(
+    root: Path, name: str, array: zarr.Array, index: tuple[int, ...], *, with_nan: bool = False
+) -> np.ndarray | str:
+    """Return one chunk, or what is wrong with it; NaN is wrong too, unless it may be a result.
 
     A missing one would be read as its fill value, NaN, so its file is looked for first.
     """
@@ -118,4 +142,4 @@ def read_chunk(root: Path, name: str, array: zarr.Array, index: tuple[int, ...])
         block = np.asarray(array.blocks[index])
     except Exception as failure:
         return f"a corrupt one ({failure})"
-    return _NAN if np.isnan(block).any() else block
+    return _NAN if not with_nan and np.isnan(block).any() else block

@@ -1,6 +1,7 @@
 """Writing a store: all of it or nothing, beside the old one until the new one is complete."""
 
 import json
+import os
 import shutil
 import threading
 import uuid
@@ -115,11 +116,35 @@ def create_array(
         shape=(rows, *variable.shape[1:]),
         dtype="float64",
         chunks=(chunk, *variable.shape[1:]),
-        compressors=(BloscCodec(cname="zstd", clevel=3, shuffle="shuffle"), Crc32cCodec()),
+        compressors=codecs(),
         fill_value=float("nan"),
         dimension_names=[str(dimension) for dimension in variable.dims],
         attributes=variable.attrs | ({} if is_coordinate else {"coordinates": "time"}),
     )
+
+
+def codecs() -> tuple[BloscCodec, Crc32cCodec]:
+    """Return how chunks are written: compressed, then with a checksum of what is on disk."""
+    return BloscCodec(cname="zstd", clevel=3, shuffle="shuffle"), Crc32cCodec()
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a small file at once: a reader sees the old one or the new one, and a killed writer leaves a `.partial`."""
+    part = path.with_name(f"{path.name}.{uuid.uuid4().hex}.partial")
+    try:
+        part.write_text(text)
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def edit_attributes(path: Path, changes: dict[str, Any]) -> None:
+    """Change attributes (None removes one) and drop the consolidated metadata, in one atomic write."""
+    document = json.loads((path / "zarr.json").read_text())
+    merged = document["attributes"] | changes
+    document["attributes"] = {name: value for name, value in merged.items() if value is not None}
+    document.pop("consolidated_metadata", None)
+    write_whole(path / "zarr.json", json.dumps(document))
 
 
 def put_in_place(part: Path, target: Path, *, overwrite: bool) -> None:

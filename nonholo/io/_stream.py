@@ -8,11 +8,9 @@ store is unfinished it has no outcome among its attributes and no consolidated m
 import dataclasses
 import functools
 import json
-import os
 import shutil
-import uuid
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import zarr
@@ -23,7 +21,7 @@ from nonholo.io._attributes import attributes
 from nonholo.io._dataset import orbit_to_dataset
 from nonholo.io._load import chunk_name, chunk_path, read_attributes, read_chunk
 from nonholo.io._lock import owner_of
-from nonholo.io._save import check_target, consolidate, create_array, put_in_place, sibling
+from nonholo.io._save import check_target, consolidate, create_array, edit_attributes, put_in_place, sibling
 from nonholo.orbit import Orbit
 
 _CHECKPOINTS = "run/checkpoints"
@@ -118,16 +116,29 @@ class Stream:
 
     def reached(self) -> int:
         """Return the step up to which blocks are marked as finished."""
+        marked = self._marked()
+        found = self.checkpoint(marked)
+        return self.plan.begin(marked) if isinstance(found, str) else found.done
+
+    def saved(self) -> int:
+        """Return the number of saved states in the full blocks, from the first one on."""
+        full = self._marked()
+        found = self.checkpoint(full)
+        if full and (isinstance(found, str) or found.done != self.plan.stop(full - 1)):
+            full -= 1  # the run failed in this block, or it was the last one before the run was extended
+        return min(full * self.plan.rows, 1 + self.plan.steps // self.plan.every)
+
+    def _marked(self) -> int:
+        """Return the number of blocks, from the first one on, that are marked as finished."""
         marked = 0
         while marked < self.plan.blocks and self.is_marked(marked):
             marked += 1
-        found = self.checkpoint(marked)
-        return self.plan.begin(marked) if isinstance(found, str) else found.done
+        return marked
 
     def finish(self, done: int, outcome: Outcome) -> None:
         """Cut the arrays to the good states, add the outcome and consolidate the metadata."""
         shapes = self._fit(1 + done // self.plan.every)
-        _edit(self.path, {"outcome": outcome.name, "arrays": json.dumps(shapes)})
+        edit_attributes(self.path, {"outcome": outcome.name, "arrays": json.dumps(shapes)})
         consolidate(self.path)
 
     def lengthened(self, steps: int) -> "Stream":
@@ -135,7 +146,7 @@ class Stream:
         plan = self.plan._replace(steps=self.plan.steps + steps)
         longer = dataclasses.replace(self, plan=plan)
         run = json.loads(read_attributes(self.path)["run"]) | {"steps": plan.steps}
-        _edit(self.path, {"run": json.dumps(run), "outcome": None})
+        edit_attributes(self.path, {"run": json.dumps(run), "outcome": None})
         return longer
 
     def prepare(self) -> None:
@@ -249,17 +260,3 @@ def _create(part: Path, first: Orbit, plan: Plan, vector: np.ndarray) -> None:
 
 def _packed(reached: Checkpoint) -> np.ndarray:
     return np.concatenate(([reached.done, int(reached.outcome)], reached.vector))
-
-
-def _edit(path: Path, changes: dict[str, Any]) -> None:
-    """Change attributes (None removes one) and drop the consolidated metadata, in one atomic write."""
-    document = json.loads((path / "zarr.json").read_text())
-    merged = document["attributes"] | changes
-    document["attributes"] = {name: value for name, value in merged.items() if value is not None}
-    document.pop("consolidated_metadata", None)
-    part = path / f"zarr.{uuid.uuid4().hex}.partial"
-    try:
-        part.write_text(json.dumps(document))
-        os.replace(part, path / "zarr.json")
-    finally:
-        part.unlink(missing_ok=True)

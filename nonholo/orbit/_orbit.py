@@ -16,6 +16,7 @@ from nonholo._checks import error
 from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.groups import SE
+from nonholo.orbit._poses import configurations, unwrapped
 from nonholo.systems import AbstractLRSystem, System
 
 
@@ -73,6 +74,8 @@ class Orbit:
         save_every: Steps between saved states.
         turned: Heading without ambiguity of full turns, where the run knows it, shape (K,).
         branch: The branch rule of a discrete run; "callable" for a function.
+        events: What `events=` of the run found, an `EventLog`: by name or position `Crossings` with their times and
+            states. None without `events=`. It stays whole in slices of the orbit, and is not stored with it.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
@@ -90,6 +93,7 @@ class Orbit:
     save_every: int = 1
     turned: Float[np.ndarray, "K"] | None = None
     branch: str = "principal"
+    events: Any = None
 
     def __repr__(self) -> str:
         span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
@@ -177,8 +181,7 @@ class Orbit:
     @property
     def configuration(self) -> Float[np.ndarray, "K N N"]:
         """Poses as matrices."""
-        group = self.system.group
-        return group.matrix_from_pose(self._posed()) @ group.inverse(self.system.frame)
+        return configurations(self.system, self._posed())
 
     @property
     def body_velocity(self) -> Float[np.ndarray, "K dim"]:
@@ -213,7 +216,7 @@ class Orbit:
         pose = self._posed()
         if self.system.group != SE(2):
             raise ValueError(f"`Orbit.heading` needs motions of the plane. Got {self.system.group}.")
-        return np.unwrap(np.arctan2(pose[:, 1], pose[:, 0]))
+        return unwrapped(pose)
 
     @property
     def energy(self) -> Float[np.ndarray, "K"]:
@@ -225,6 +228,10 @@ class Orbit:
     def to_dataset(self) -> Any:
         """Return the orbit as a labelled `xarray.Dataset` that `load_orbit` and Zarr understand."""
         return importlib.import_module("nonholo.io").orbit_to_dataset(self)
+
+    def to_csv(self, path: Any, *, overwrite: bool = False) -> None:
+        """Write the times and poses to a new CSV file; `nonholo.io.orbit_to_csv` names its columns."""
+        importlib.import_module("nonholo.io").orbit_to_csv(self, path, overwrite=overwrite)
 
     def plot(self, path: str | None = None) -> Any:
         """Draw the overview picture of the orbit; return the matplotlib figure, saved to `path` if given."""

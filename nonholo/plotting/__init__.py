@@ -17,6 +17,8 @@ from nonholo.plotting._momentum_sphere import MomentumSphere, momentum_sphere
 from nonholo.plotting._overview import overview
 from nonholo.plotting._phase_portrait import PhasePortrait, phase_portrait
 from nonholo.plotting._point_track import PointTrack, point_track
+from nonholo.plotting._section import Section, section
+from nonholo.plotting._sweep_map import SweepMap, sweep_map
 
 __all__ = [
     "BladeTrack",
@@ -31,6 +33,8 @@ __all__ = [
     "MomentumSphere",
     "PhasePortrait",
     "PointTrack",
+    "Section",
+    "SweepMap",
     "animate",
     "blade_track",
     "body_axis_track",
@@ -45,4 +49,6 @@ __all__ = [
     "overview",
     "phase_portrait",
     "point_track",
+    "section",
+    "sweep_map",
 ]

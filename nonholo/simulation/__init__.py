@@ -3,8 +3,26 @@
 from nonholo.simulation._blocks import iterate
 from nonholo.simulation._ensemble import ensemble
 from nonholo.simulation._ensemble_result import Ensemble
+from nonholo.simulation._ensemble_run import in_one_thread
+from nonholo.simulation._events import Event
+from nonholo.simulation._events_log import Crossings, EventLog
+from nonholo.simulation._events_of import crossings, cusp
 from nonholo.simulation._flow import flow
 from nonholo.simulation._resume import extend, resume
 from nonholo.simulation._simulate import simulate
 
-__all__ = ["Ensemble", "ensemble", "extend", "flow", "iterate", "resume", "simulate"]
+__all__ = [
+    "Crossings",
+    "Ensemble",
+    "Event",
+    "EventLog",
+    "crossings",
+    "cusp",
+    "ensemble",
+    "extend",
+    "flow",
+    "in_one_thread",
+    "iterate",
+    "resume",
+    "simulate",
+]

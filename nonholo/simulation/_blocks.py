@@ -1,5 +1,6 @@
 """`iterate`: the run of `simulate`, block by block."""
 
+import dataclasses
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,6 +12,8 @@ from nonholo.discrete import Discretization
 from nonholo.discrete._branch_rules import BranchRule
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
+from nonholo.simulation._events_run import watched, watched_pieces
+from nonholo.simulation._events_scan import Watch, search
 from nonholo.simulation._prepared import checked_counts, first_state
 from nonholo.simulation._stored_run import rows_of_block
 from nonholo.simulation._stretch import CompiledRun, compiled_run, opened
@@ -30,6 +33,7 @@ def iterate(
     branch: BranchRule = "principal",
     reconstruct: bool = True,
     backend: str = "auto",
+    events: Any = None,
     throw: bool = True,
     progress: bool = False,
 ) -> Iterator[Orbit]:
@@ -52,6 +56,8 @@ def iterate(
         branch: "principal".
         reconstruct: Also compute poses.
         backend: "auto" or "numba".
+        events: As in `simulate`; the `events` of a block are those after the last step of the block before. The block
+            in which an event stops the run is the last one.
         throw: Raise if the run cannot go on, after its last good block; otherwise that block's outcome says so.
         progress: Show a progress bar on standard error.
 
@@ -72,10 +78,13 @@ def iterate(
     steps, every, rule = checked_counts(discrete, steps, save_every, branch, backend, displacement)
     run = compiled_run("iterate(discrete=...)", discrete, rule, backend, every, reconstruct)
     plan = Plan(steps, every, rows_of_block("iterate(block_steps=...)", run, steps, block_steps))
+    watch = None if events is None else watched("iterate", discrete, events, rule, reconstruct)
     start = first_state(discrete, configuration, int(reconstruct), True, starts)
     vector, first = opened(run, start, steps, throw)
     if not len(first):
-        return iter((first,))
+        return iter((first if watch is None else dataclasses.replace(first, events=search(watch, first, 0)[0].log()),))
+    if watch is not None:
+        return _watched_blocks(run, vector, watch, plan, throw=throw, progress=progress)
     return _blocks(run, vector, plan, throw=throw, progress=progress)
 
 
@@ -84,10 +93,24 @@ def _blocks(run: CompiledRun, vector: np.ndarray, plan: Plan, *, throw: bool, pr
         for number in range(plan.blocks):
             begin, stop = plan.begin(number), plan.stop(number)
             block, done = run.stretch(vector, begin, stop, lambda now: report(now, plan.steps), opening=number == 0)
-            if len(block) or not throw:
-                yield block
+            yield from _given(run, block, done, plan.steps, throw)
             if block.outcome != Outcome.successful:
-                if throw:
-                    where = f"Step {done + 1} of {plan.steps} (time_step {run.discrete.time_step:g})"
-                    raise OutcomeError(block.outcome, where, block)
                 return
+
+
+def _watched_blocks(
+    run: CompiledRun, vector: np.ndarray, watch: Watch, plan: Plan, *, throw: bool, progress: bool
+) -> Iterator[Orbit]:
+    with progress_bar("steps", progress) as report:
+        for piece in watched_pieces(run, vector, watch, plan, lambda now: report(now, plan.steps)):
+            block = run.orbit(piece.rows, piece.begun, piece.begun == 0, piece.outcome)
+            yield from _given(run, dataclasses.replace(block, events=piece.log), piece.done, plan.steps, throw)
+
+
+def _given(run: CompiledRun, block: Orbit, done: int, steps: int, throw: bool) -> Iterator[Orbit]:
+    """Give a block, and raise if the run cannot go on after it."""
+    if len(block) or not throw:
+        yield block
+    if throw and block.outcome != Outcome.successful:
+        where = f"Step {done + 1} of {steps} (time_step {run.discrete.time_step:g})"
+        raise OutcomeError(block.outcome, where, block)

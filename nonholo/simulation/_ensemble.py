@@ -17,6 +17,9 @@ from nonholo.simulation._ensemble_reduce import Reduced, joined
 from nonholo.simulation._ensemble_result import Ensemble
 from nonholo.simulation._ensemble_run import Plan, Report, run_members, states_of
 from nonholo.simulation._ensemble_start import checked_start, first_momenta
+from nonholo.simulation._events import Event
+from nonholo.simulation._events_ensemble import joined_blocks, watched_block
+from nonholo.simulation._events_run import watched_events
 
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
 _LARGEST = 1 << 30  # numbers in all poses of a member, 8 GiB
@@ -35,6 +38,7 @@ def ensemble(
     reduce: Callable[[Ensemble], Reduced] | None = None,
     reconstruct: bool = True,
     backend: str = "auto",
+    events: Any = None,
     progress: bool = False,
 ) -> Any:
     r"""Run many members of one system, that differ in where they start, in parameters, or in both.
@@ -61,6 +65,9 @@ def ensemble(
         reconstruct: Also compute poses.
         backend: "numba" (closed forms, compiled), "jax", or "auto" to choose. By JAX tops with n = 3 and plane sleighs
             run in chunks on processors and all at once on accelerators, other systems by the definition.
+        events: `Event`s, or functions, whose changes of sign are found at every single step of each member; see
+            `Ensemble.events`. A function sees an `Orbit`: the states of many members one after another, or those of
+            one member where parameters differ. A member that an event stops has no states after that.
         progress: Show a progress bar on standard error.
 
     Returns:
@@ -94,10 +101,15 @@ def ensemble(
     momenta = first_momenta(members, name, rows)
     full = rows if name == "momentum" and rows.shape[1] != discrete.system.rank else None
     plan = Plan(steps, save_every, bool(reconstruct), backend)
+    watched = None if events is None else watched_events("ensemble", discrete, events, "principal", plan.posed)
     with progress_bar("members", progress) as show:
-        if reduce is None:
-            return _block(members, momenta, full, plan, _counting(show, len(members)))
-        return _reduced(members, momenta, full, plan, reduce, _counting(show, len(members)))
+        report = _counting(show, len(members))
+        if reduce is not None:
+            return joined(_blocks(members, momenta, full, plan, watched, reduce, report))
+        if watched is None:
+            return _block(members, momenta, full, plan, watched, report)
+        blocks = _blocks(members, momenta, full, plan, watched, lambda block: block, report)
+        return joined_blocks(members, [block for _, block in blocks])
 
 
 def _check_backend(discrete: Discretization, backend: str) -> None:
@@ -127,35 +139,46 @@ def _counting(show: Callable[[int, int], None], total: int) -> Report:
     return report
 
 
-def _block(members: Members, momenta: np.ndarray, full: np.ndarray | None, plan: Plan, report: Report) -> Ensemble:
-    """Run a block of members; those whose full momentum is not that of the principal root do not start."""
-    if full is None:
-        return run_members(members, momenta, plan, report=report)
-    first = run_members(members, momenta, plan._replace(steps=1, every=1, posed=True))
-    found = first.momentum[:, 0]
-    missed = np.linalg.norm(full - found, axis=1) > _TOLERANCE * np.linalg.norm(found, axis=1)
-    done = run_members(members, momenta, plan, report=report)
-    done.outcome[missed], done.steps_done[missed] = Outcome.off_momentum_locus, 0
-    for states in (done.reduced_momentum, done.cayley, done.pose):
-        if states is not None:
-            states[missed] = np.nan
-    return done
-
-
-def _reduced(
+def _block(
     members: Members,
     momenta: np.ndarray,
     full: np.ndarray | None,
     plan: Plan,
-    reduce: Callable[[Ensemble], Reduced],
+    events: dict[str, Event] | None,
     report: Report,
-) -> Reduced:
-    """Run block by block, keeping only what the function of the user makes of each."""
+) -> Ensemble:
+    """Run a block of members; those whose full momentum is not that of the principal root do not start."""
+    done = run_members(members, momenta, plan if events is None else plan._replace(every=1), report=report)
+    if full is not None:
+        _unstart(done, full, run_members(members, momenta, plan._replace(steps=1, every=1, posed=True)).momentum[:, 0])
+    return done if events is None else watched_block(events, done, plan.every)
+
+
+def _unstart(done: Ensemble, full: np.ndarray, found: np.ndarray) -> None:
+    """Take the states from members that have another full momentum than the one they should start with."""
+    missed = np.linalg.norm(full - found, axis=1) > _TOLERANCE * np.linalg.norm(found, axis=1)
+    done.outcome[missed], done.steps_done[missed] = Outcome.off_momentum_locus, 0
+    for states in (done.reduced_momentum, done.cayley, done.pose):
+        if states is not None:
+            states[missed] = np.nan
+
+
+def _blocks(
+    members: Members,
+    momenta: np.ndarray,
+    full: np.ndarray | None,
+    plan: Plan,
+    events: dict[str, Event] | None,
+    reduce: Callable[[Ensemble], Any],
+    report: Report,
+) -> list[tuple[int, Any]]:
+    """Run block by block, keeping only what a function makes of each."""
     state = 2 * momenta.shape[1] + members.discrete.system.group.pose_size * plan.posed
-    size = max(1, _BLOCK // (state * states_of(plan.steps, plan.every)))
+    size = max(1, _BLOCK // (state * states_of(plan.steps, plan.every if events is None else 1)))
     blocks = [slice(begin, begin + size) for begin in range(0, len(members), size)]
     kept = []
     for part in blocks:
-        block = _block(members.part(part), momenta[part], None if full is None else full[part], plan, report)
+        rows = momenta[part], None if full is None else full[part]
+        block = _block(members.part(part), *rows, plan, events, report)
         kept.append((len(block), reduce(block)))
-    return joined(kept)
+    return kept

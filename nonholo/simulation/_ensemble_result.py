@@ -13,7 +13,8 @@ from nonholo.groups import SE
 from nonholo.orbit import Orbit
 from nonholo.simulation._ensemble_members import Members
 from nonholo.simulation._ensemble_start import applied, energies, have_kernel, scalar_members
-from nonholo.systems import ChaplyginSleigh, SuslovTop
+from nonholo.simulation._events_members import MemberEvents
+from nonholo.systems import AbstractLRSystem, ChaplyginSleigh, SuslovTop, System
 
 _OF_FRAME = ("configuration", "position", "displacement")
 _KEEPS_FRAME = {SuslovTop: {"mass_tensor"}, ChaplyginSleigh: {"mass", "inertia", "a"}}
@@ -36,6 +37,9 @@ class Ensemble:
         pose: Compact poses, canonical frame, shape (M, K, size); None if not reconstructed.
         outcome: How each member ended, values of `Outcome`, shape (M,).
         steps_done: Good steps of each member, shape (M,).
+        first_momentum: Compact momenta of the starts, canonical frame, shape (M, k).
+        events: What `events=` of the run found, a `MemberEvents`: by name or position how many crossings each member
+            has, and the states at the first and the last. None without `events=`.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
@@ -52,6 +56,8 @@ class Ensemble:
     pose: Float[np.ndarray, "M K size"] | None
     outcome: Int[np.ndarray, "M"]
     steps_done: Int[np.ndarray, "M"]
+    first_momentum: Float[np.ndarray, "M k"]
+    events: MemberEvents | None = None
 
     def __len__(self) -> int:
         return len(self.members)
@@ -100,6 +106,14 @@ class Ensemble:
         if not have_kernel(self.members):
             return self._decoded("energy")
         return energies(scalar_members(self.members), self.reduced_momentum)
+
+    @property
+    def first_energy(self) -> Float[np.ndarray, "M"]:
+        """Reduced constrained energies of the starts."""
+        if have_kernel(self.members):
+            return energies(scalar_members(self.members), self.first_momentum)
+        systems = [self.members.of(member).system for member in range(len(self))]
+        return np.array([_first_energy(s, r) for s, r in zip(systems, self.first_momentum, strict=True)])
 
     @property
     def momentum(self) -> Float[np.ndarray, "M K dim"]:
@@ -160,3 +174,10 @@ class Ensemble:
         if name in _OF_FRAME and not composed:
             same |= _KEEPS_FRAME.get(type(discrete.system), set())
         return self.members.parameters.keys() <= same
+
+
+def _first_energy(system: System, reduced: np.ndarray) -> float:
+    """Return the energy of a canonical momentum at the identity."""
+    if isinstance(system, AbstractLRSystem):
+        return float(system.constrained_energy(reduced, system.group.identity))
+    return float(system.canonical.constrained_energy(reduced))

@@ -1,5 +1,7 @@
 """Runs of a block of members: tops and plane sleighs 32 at a time, other systems one by one, both in threads."""
 
+import contextlib
+import contextvars
 import functools
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -20,7 +22,19 @@ from nonholo.simulation._simulate import simulate
 
 _PART = 8192  # members in a piece of work of one thread, a multiple of what a compiled block holds
 
+_THREADS: contextvars.ContextVar[int | None] = contextvars.ContextVar("threads", default=None)
+
 Report: TypeAlias = Callable[[int], None]
+
+
+@contextlib.contextmanager
+def in_one_thread() -> Iterator[None]:
+    """Run ensembles inside in one thread, for callers that run several of them at a time."""
+    token = _THREADS.set(1)
+    try:
+        yield
+    finally:
+        _THREADS.reset(token)
 
 
 class Plan(NamedTuple):
@@ -52,10 +66,10 @@ def run_members(
         members: Who runs.
         momenta: First momenta along the constraint subspace, (M, k).
         plan: What to do.
-        threads: How many; all that numba may use by default.
+        threads: How many; by default one `in_one_thread`, else all that numba may use.
         report: Called with the number of members that are done.
     """
-    threads = threads or int(numba.config.NUMBA_NUM_THREADS)  # pyright: ignore
+    threads = threads or _THREADS.get() or int(numba.config.NUMBA_NUM_THREADS)  # pyright: ignore
     if have_kernel(members):
         return _run_scalar(members, momenta, plan, threads, report)
     return _run_each(members, momenta, plan, threads, report)
@@ -68,18 +82,19 @@ def _run_scalar(members: Members, momenta: np.ndarray, plan: Plan, threads: int,
     scaled = np.ascontiguousarray(momenta * scalar.scale[:, None])
     poses = np.ascontiguousarray(np.broadcast_to(scalar.pose, (count, 4)))
     rows = _rows(count, states, posed)
-    one = members.parameters.keys() <= {"time_step"}
+    fields, one = scalar.fields, members.parameters.keys() <= {"time_step"}
     advance = _advance_by_jax if backend == "jax" else _advance
 
     def work(part: slice) -> None:
         pieces = kernels.MemberRows(*(array[part] for array in rows))
-        advance(scalar.fields if one else scalar.fields[:, part], one, scaled[part], poses[part], plan, pieces)
+        advance(fields if one else fields[:, part], one, scaled[part], poses[part], plan, pieces)
 
     if backend == "jax":
         threads = 1  # XLA has its own
     _in_threads(work, _parts(count, threads, backend), threads, report)
     reduced = rows.momenta / scalar.scale[:, None, None]
-    return Ensemble(members, steps, every, reduced, rows.charts, rows.poses if posed else None, rows.codes, rows.done)
+    found = rows.poses if posed else None
+    return Ensemble(members, steps, every, reduced, rows.charts, found, rows.codes, rows.done, momenta)
 
 
 def _rows(count: int, states: int, posed: bool) -> kernels.MemberRows:
@@ -134,9 +149,8 @@ def _run_each(members: Members, momenta: np.ndarray, plan: Plan, threads: int, r
     reduced = _filled([orbit.reduced_momentum for orbit in orbits], states)
     charts = _filled([orbit.canonical_chart for orbit in orbits], states)
     poses = [orbit.pose for orbit in orbits if orbit.pose is not None]
-    return Ensemble(
-        members, plan.steps, plan.every, reduced, charts, _filled(poses, states) if poses else None, codes, done
-    )
+    posed = _filled(poses, states) if poses else None
+    return Ensemble(members, plan.steps, plan.every, reduced, charts, posed, codes, done, momenta)
 
 
 def _run_one(discrete: Discretization, momentum: np.ndarray, plan: Plan) -> tuple[Orbit, int]:

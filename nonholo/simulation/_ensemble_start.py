@@ -1,6 +1,9 @@
 """Where the members of an ensemble start, and the numbers of tops and plane sleighs for all members in one go."""
 
-from typing import Any, NamedTuple
+import dataclasses
+import functools
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -16,22 +19,28 @@ _CHUNK = 1 << 16  # members whose starts are made at once: what it takes between
 _TOLERANCE = 1e-9  # relative, for velocities that a user computed in floating point
 
 
-class ScalarMembers(NamedTuple):
+@dataclasses.dataclass(frozen=True, eq=False)
+class ScalarMembers:
     """What the kernels of tops (n = 3) and plane sleighs see; an axis of length 1 where all members agree.
 
     Attributes:
-        fields: Fields of their bodies, one row each, (fields, m).
+        table: Makes the fields of their bodies, which only a run needs: for tops they take longer than all else.
         scale: Factors from canonical momenta to those of the kernel, (m,).
         inertia: Inertias along the constraint in the canonical frame, (m, 2, 2).
         frame_map: C with r_canonical = C r, (m, 2, 2).
         pose: First poses, (m, 4).
     """
 
-    fields: Float[np.ndarray, "f m"]
+    table: Callable[[], Float[np.ndarray, "f m"]]
     scale: Float[np.ndarray, "m"]
     inertia: Float[np.ndarray, "m 2 2"]
     frame_map: Float[np.ndarray, "m 2 2"]
     pose: Float[np.ndarray, "m 4"]
+
+    @functools.cached_property
+    def fields(self) -> Float[np.ndarray, "f m"]:
+        """Fields of their bodies, one row each."""
+        return self.table()
 
 
 def have_kernel(members: Members) -> bool:
@@ -50,7 +59,7 @@ def _sleighs(members: Members) -> ScalarMembers:
     inertia = np.moveaxis(np.array([[J + m * a * a, zero], [zero, m]]), -1, 0)
     frame_map = np.moveaxis(np.array([[one, b], [zero, one]]), -1, 0)
     pose = np.stack([one, zero, zero, b], axis=-1)
-    return ScalarMembers(np.stack([m, J, a]), members.time_step, inertia, frame_map, pose)
+    return ScalarMembers(lambda: np.stack([m, J, a]), members.time_step, inertia, frame_map, pose)
 
 
 def _tops(members: Members) -> ScalarMembers:
@@ -60,9 +69,8 @@ def _tops(members: Members) -> ScalarMembers:
     J = (turned + turned.swapaxes(1, 2)) / 2
     B = J[:, :2, :2] + J[:, 2:, 2:] * np.eye(2)
     pose = system.group.pose_from_matrix(F)[None]
-    return ScalarMembers(
-        kernels.suslov_table(B, J[:, :2, 2]), members.time_step / 2, B, np.asarray(system.frame_map)[None], pose
-    )
+    table = functools.partial(kernels.suslov_table, B, J[:, :2, 2])
+    return ScalarMembers(table, members.time_step / 2, B, np.asarray(system.frame_map)[None], pose)
 
 
 def checked_start(system: System, parameters: dict[str, np.ndarray], **starts: Any) -> tuple[str, np.ndarray]:
@@ -116,8 +124,10 @@ def _momenta_of_part(members: Members, name: str, rows: np.ndarray) -> tuple[np.
 
 
 def energies(scalar: ScalarMembers, momenta: Float[np.ndarray, "M ... 2"]) -> Float[np.ndarray, "M ..."]:
-    """Return the reduced constrained energies of canonical momenta."""
-    return (momenta * applied(np.linalg.inv(scalar.inertia), momenta)).sum(axis=-1) / 2
+    """Return the reduced constrained energies of canonical momenta, by the cofactors of the inertias."""
+    A, B, C = (scalar.inertia[:, i, j].reshape(-1, *(1,) * (momenta.ndim - 2)) for i, j in ((0, 0), (0, 1), (1, 1)))
+    x, y = momenta[..., 0], momenta[..., 1]
+    return (C * x * x - 2 * B * x * y + A * y * y) / (2 * (A * C - B * B))
 
 
 def applied(

@@ -1,5 +1,6 @@
 """`flow`: an orbit of the continuous equations, from a checked start to a decoded result."""
 
+import functools
 from typing import Any, overload
 
 import numpy as np
@@ -9,6 +10,8 @@ from nonholo._results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, closed_form
 from nonholo.discrete._start import in_group, initial_momentum, one_start
 from nonholo.orbit import Orbit
+from nonholo.simulation._events import checked_events
+from nonholo.simulation._events_flow import check_functions, flow_with_events
 from nonholo.systems import AbstractSystem, System
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem, OrbitT, refuse_in_coordinates
 
@@ -27,6 +30,7 @@ def flow(
     rtol: float = 1e-10,
     atol: float = 1e-12,
     method: str | None = None,
+    events: Any = None,
 ) -> Orbit: ...
 @overload
 def flow(
@@ -50,6 +54,7 @@ def flow(
     rtol: float = 1e-10,
     atol: float = 1e-12,
     method: str | None = None,
+    events: Any = None,
 ) -> Any:
     r"""Solve the Euler-Poincare-Suslov equations.
 
@@ -76,6 +81,9 @@ def flow(
         atol: Absolute error of a step. Smaller components are not resolved: a numerical solution that starts so near a
             repelling equilibrium leaves it at the wrong time.
         method: None (numerical) or "closed_form".
+        events: `Event`s, or functions of an orbit, whose changes of sign from one requested time to the next are found,
+            and located on the solution; see `Orbit.events`. Two of them between two times are not seen: ask for more
+            times. A stopping event ends the orbit with the last requested time before it.
 
     Returns:
         The orbit. It has no displacements, and its multipliers are the forces at its times. Of a system in coordinates
@@ -94,7 +102,9 @@ def flow(
         [-2.  2.] 2.0
     """
     if isinstance(system, AbstractCoordinateSystem):
-        refuse_in_coordinates("flow", restricted_velocity=(restricted_velocity, None), method=(method, None))
+        refuse_in_coordinates(
+            "flow", restricted_velocity=(restricted_velocity, None), method=(method, None), events=(events, None)
+        )
         return system.flow(
             configuration=configuration,
             times=times,
@@ -115,10 +125,16 @@ def flow(
     reduced = initial_momentum("flow", system, g, **starts)
     if momentum is not None:
         _check_momentum(momentum, Orbit(motion, time[:1], reduced[None], None, pose[None]).momentum[0])
-    momenta, poses, turned, outcome = _solver(method)(system.canonical, reduced, pose, time - time[0], tolerances)
+    solve = functools.partial(_solver(method), system.canonical, tolerances=tolerances)
+    watched = None if events is None else checked_events("flow", events)
+    if watched is not None:
+        check_functions(watched, Orbit(motion, time[:1], reduced[None], None, pose[None]))
+    momenta, poses, turned, outcome = solve(reduced, pose, time - time[0])
     reached = len(momenta)
     orbit = Orbit(motion, time[:reached], momenta, None, poses, outcome, turned=turned)
-    if outcome != Outcome.successful:
+    if watched is not None:
+        orbit = flow_with_events(watched, orbit, solve)
+    if orbit.outcome != Outcome.successful:
         where = f"Flow from time {time[reached - 1]:g} to {time[reached]:g} (rtol {rtol:g}, atol {atol:g})"
         raise OutcomeError(outcome, where, orbit)
     return orbit

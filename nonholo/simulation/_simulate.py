@@ -1,5 +1,6 @@
 """`simulate`: an orbit of the discrete map, from a checked start to a decoded result."""
 
+import functools
 from pathlib import Path
 from typing import Any, overload
 
@@ -23,10 +24,11 @@ from nonholo.discrete._structured import (
 )
 from nonholo.orbit import Orbit
 from nonholo.simulation._composed_run import composed_runner
+from nonholo.simulation._events_run import compiled_with_events, run_with_events, watched
 from nonholo.simulation._prepared import checked_counts, first_state
 from nonholo.simulation._rule_run import Rows, Run, rule_runner
 from nonholo.simulation._stored_run import refuse_checkpoints, run_into_store
-from nonholo.simulation._stretch import compiled_run
+from nonholo.simulation._stretch import CompiledRun, compiled_run
 from nonholo.systems._coordinate_system import AbstractCoordinateDiscretization, OrbitT, refuse_in_coordinates
 
 _BLOCK = 1 << 20  # steps between two reports of progress
@@ -46,6 +48,7 @@ def simulate(
     branch: BranchRule = "principal",
     reconstruct: bool = True,
     backend: str = "auto",
+    events: Any = None,
     throw: bool = True,
     progress: bool = False,
     store: str | Path | None = None,
@@ -77,6 +80,7 @@ def simulate(
     branch: BranchRule = "principal",
     reconstruct: bool = True,
     backend: str = "auto",
+    events: Any = None,
     throw: bool = True,
     progress: bool = False,
     store: str | Path | None = None,
@@ -116,6 +120,8 @@ def simulate(
             a function; see above. A velocity or restricted momentum starts at the principal W_0 with every rule.
         reconstruct: Also compute poses.
         backend: "numba" (closed forms, compiled), "jax" (the definition), or "auto" to choose.
+        events: `Event`s, or functions of an orbit, whose changes of sign are found at every single step and located
+            to rounding; see `Orbit.events`. A stopping event ends the run with the last saved state before it.
         throw: Raise if the run cannot go on; otherwise return the good steps and the outcome.
         progress: Show a progress bar on standard error.
         store: A new path. The saved states of a compiled run go there block by block, in bounded memory; `resume` and
@@ -147,6 +153,7 @@ def simulate(
             branch=(branch, "principal"),
             reconstruct=(reconstruct, True),
             backend=(backend, "auto"),
+            events=(events, None),
             store=(store, None),
             checkpoint_every=(checkpoint_every, None),
         )
@@ -154,17 +161,29 @@ def simulate(
         return discrete.simulate(configuration=configuration, steps=steps, **starts, **options)
     steps, every, rule = checked_counts(discrete, steps, save_every, branch, backend, displacement)
     starts["restricted_velocity"] = restricted_velocity
+    watch = None if events is None else watched("simulate", discrete, events, rule, reconstruct)
     if store is not None:
+        if watch is not None:
+            remedy = "Leave the store out, or look for `crossings` of its orbit, with save_every=1."
+            raise error("simulate(events=...)", "come without a store", repr(str(store)), remedy)
         stored = compiled_run("simulate(store=...)", discrete, rule, backend, every, reconstruct)
         start = first_state(discrete, configuration, int(reconstruct), True, starts)
         return run_into_store(stored, start, steps, store, checkpoint_every, throw=throw, progress=progress)
     refuse_checkpoints(checkpoint_every)
     compiled = rule == "principal" and backend != "jax"
     held = 1 + steps // every if reconstruct else 0
-    reduced, pose, demanded = first_state(discrete, configuration, held, compiled, starts)
+    start = first_state(discrete, configuration, held, compiled, starts)
+    if watch is not None and compiled and (closed := compiled_step(discrete)) is not None:
+        going = CompiledRun(discrete, closed, every, reconstruct)
+        return compiled_with_events(going, start, watch, steps, throw=throw, progress=progress)
+    reduced, pose, demanded = start
     run = _runner(discrete, backend) if rule == "principal" else rule_runner(discrete, rule, backend, demanded)
-    rows, outcome, done = run(reduced, pose, steps, every, progress)
-    orbit = _orbit(discrete, rows, outcome, every, reconstruct, rule)
+    orbit_of = functools.partial(_orbit, discrete, reconstruct=reconstruct, rule=rule)
+    if watch is not None:
+        orbit, done = run_with_events(functools.partial(run, reduced, pose), orbit_of, watch, steps, every, progress)
+    else:
+        rows, outcome, done = run(reduced, pose, steps, every, progress)
+        orbit = orbit_of(rows, outcome, every)
     if demanded is not None and len(orbit):
         check_first_state(demanded, orbit[:1].displacement[0], orbit[:1].momentum[0])
     return finished(orbit, float(discrete.time_step), done, steps, throw)

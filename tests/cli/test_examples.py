@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from typer.testing import Result
 
 import nonholo as nh
 
 _FOLDER = Path(__file__).parents[2] / "examples"
-_FILES = sorted(_FOLDER.glob("*.toml"))
+_FILES = sorted(path for path in _FOLDER.glob("*.toml") if not path.stem.endswith("_sweep"))
 
 
 @pytest.mark.parametrize("path", _FILES, ids=lambda path: path.stem)
@@ -28,3 +29,38 @@ def test_balanced_sleigh_moves_on_a_circle(figures: Callable[..., dict[str, Any]
     x, y = position.T
     centre = np.linalg.lstsq(np.column_stack([2 * x, 2 * y, np.ones_like(x)]), x**2 + y**2, rcond=None)[0][:2]
     assert np.ptp(np.linalg.norm(position - centre, axis=1)) < 1e-12
+
+
+def _swept(nonholo: Callable[..., Result], name: str, members: int) -> Any:
+    result = nonholo("sweep", _FOLDER / f"{name}.toml", "--members", members, "-o", "s.zarr", "-q")
+    assert result.exit_code == 0, result.output
+    assert Path("s.png").exists()
+    return nh.load_sweep("s.zarr").load()
+
+
+def test_turning_sweep_shows_the_closed_form(nonholo: Callable[..., Result]) -> None:
+    """The lowest row deviates by h^2 J / (24 (1 + J)^2); below the bound no member is lost, most are above."""
+    found = _swept(nonholo, "sleigh_turning_sweep", 400)
+    J, h = found["inertia"].values, found["time_step"].values
+    row = found["turning_deviation"].values[:, 0] / (h[0] ** 2 * J / (24 * (1 + J) ** 2))
+    assert np.abs(row - 1).max() < 0.01  # 0.3 h^2, with h = 0.1
+    at_cusp = 2 * np.sqrt((J / 8 - 1) ** 2 + 27 * J**2 / (64 * (1 + J)))
+    bound = np.where(J < 2, at_cusp, (1 + J) / np.sqrt(J))
+    lost = found["outcome"].values != 0
+    below = h < bound[:, None]
+    assert not lost[below].any()
+    assert lost[~below].mean() > 0.5
+
+
+def test_random_tops_keep_their_branch_below_the_saddle(nonholo: Callable[..., Result]) -> None:
+    """No top whose energy is below its saddle loses its branch; of those above twice that, none keeps it."""
+    found = _swept(nonholo, "random_tops_sweep", 100)
+    tops = [nh.discretize(nh.SuslovTop(J), 1.0) for J in found["mass_tensor"].values]
+    momenta = np.stack([found["momentum[0]"], found["momentum[1]"]], axis=1)
+    saddles = [nh.critical_energies(top).saddle for top in tops]
+    energies = [float(top.system.constrained_energy(p)) for top, p in zip(tops, momenta, strict=True)]
+    part, kept = np.array(energies) / np.array(saddles, dtype=float), found["outcome"].values == 0
+    assert kept[part < 1].all()
+    assert not kept[part > 2].any()
+    assert 10 < (part < 1).sum() < 90
+    assert np.nanmax(found["energy_drift"]) < 2e-15

@@ -1,0 +1,210 @@
+"""What sweeps cost beside the bare `ensemble` call, how they scale, what they store, and the memory they take.
+
+Random tops (tensor and velocity of each member) and random sleighs (offset, inertia, velocity). The bare call gets the
+same members, already drawn, and a function that keeps the same numbers; it draws and stores nothing. Both run in turns
+in one process, after a round that is not counted. "CPU" is the time of all cores that the process used, which says
+more than the clock where others use the machine.
+
+    python benchmarks/sweeps.py                                          # all, a few minutes
+    python benchmarks/sweeps.py --parts overhead --members 10000000      # one part
+"""
+
+import argparse
+import contextlib
+import json
+import os
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import nonholo as nh
+from nonholo.ensembles import REDUCTIONS
+
+STEPS, KEPT, PARTS = 1000, ["final_state", "energy_drift"], ("overhead", "scaling", "store", "tiny", "memory")
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.05)
+TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.1)
+VELOCITY = {"restricted_velocity": nh.Direction(2)}
+CASES: dict[str, tuple[Any, dict[str, Any]]] = {
+    "top": (TOP, {"mass_tensor": nh.MassTensor(3, 0.5, 2.0), **VELOCITY}),
+    "sleigh": (SLEIGH, {"a": nh.Uniform(0.1, 1.0), "inertia": nh.LogUniform(0.1, 10.0), **VELOCITY}),
+}
+ONE_THREAD = {**os.environ, "OMP_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
+
+
+def design_of(name: str, members: int) -> nh.RandomDesign:
+    """Return random members."""
+    return nh.RandomDesign(members, CASES[name][1], seed=1)
+
+
+def swept(name: str, members: int, steps: int = STEPS, reductions: Any = KEPT, **options: Any) -> float:
+    """Sweep into a store that is removed afterwards; return its bytes for each member."""
+    task = nh.EnsembleTask(CASES[name][0], steps=steps, reductions=reductions)
+    with tempfile.TemporaryDirectory() as folder:
+        nh.sweep(task, design_of(name, members), f"{folder}/a.zarr", **options)
+        return sum(file.stat().st_size for file in Path(folder).rglob("*") if file.is_file()) / members
+
+
+def reduced(batch: nh.Ensemble) -> dict[str, Any]:
+    """Return what the sweep keeps of members."""
+    found = {name: entry[1] for kept in KEPT for name, entry in REDUCTIONS[kept].function(batch).items()}
+    return {**found, "outcome": batch.outcome}
+
+
+def timed(call: Callable[[], Any]) -> tuple[float, float]:
+    """Return how long a call takes: by the clock, and on all cores together."""
+    clock, cores = time.perf_counter(), time.process_time()
+    call()
+    return time.perf_counter() - clock, time.process_time() - cores
+
+
+def overhead(members: int, rounds: int) -> None:
+    """Print times of a sweep in threads and of the bare call for the same members."""
+    print(f"\n{members:,} members x {STEPS} steps in threads, load {os.getloadavg()[0]:.1f}")
+    for name, (discrete, _) in CASES.items():
+        rows = design_of(name, members).values(0, members)
+        start = rows.pop("restricted_velocity")
+        run: dict[str, Any] = {"restricted_velocity": start, "parameters": rows, "steps": STEPS}
+
+        def bare(discrete: Any = discrete, run: Any = run) -> None:
+            nh.ensemble(discrete, reduce=reduced, **run)
+
+        first = timed(lambda name=name: swept(name, 1000))[0]
+        pairs = [(timed(lambda name=name: swept(name, members)), timed(bare)) for _ in range(rounds)]
+        for unit, at in (("clock", 0), ("CPU", 1)):
+            ours, theirs = ([pair[side][at] for pair in pairs] for side in (0, 1))
+            ratios = [sweep / call for sweep, call in zip(ours, theirs, strict=True)]
+            spread = f"{min(ratios):.2f} to {max(ratios):.2f}"
+            print(
+                f"{name:7} {unit:6} sweep {statistics.median(ours):7.2f} s   bare {statistics.median(theirs):7.2f} s   "
+                f"ratio {statistics.median(ratios):.2f} ({spread}, {rounds} pairs)"
+            )
+        print(f"{name:7} not counted: the first sweep, of 1000 members, with imports and compilation {first:.2f} s")
+
+
+def scaling(members: int, rounds: int) -> None:
+    """Print members per second by scheduler and workers, in turns."""
+    block = max(1, members // 32)
+    with cluster(2) as address:
+        ways: dict[str, dict[str, Any]] = {
+            "1 thread": {"workers": 1},
+            "2 threads": {"workers": 2},
+            "1 process": {"scheduler": "processes", "workers": 1},
+            "2 processes": {"scheduler": "processes", "workers": 2},
+            "2 workers over TCP": {"scheduler": address},
+        }
+        found: dict[str, list[float]] = {way: [] for way in ways}
+        for turn in range(rounds + 1):
+            for way, options in ways.items():
+                took = timed(lambda options=options: swept("top", members, block=block, **options))[0]
+                if turn:
+                    found[way].append(took)
+    print(f"\ntops, {members:,} members x {STEPS} steps in 32 blocks, load {os.getloadavg()[0]:.1f}, {rounds} rounds")
+    base = found["1 thread"]
+    for way, times in found.items():
+        gain = statistics.median(one / took for one, took in zip(base, times, strict=True))
+        rate = members / statistics.median(times)
+        print(f"{way:20} {statistics.median(times):7.2f} s {rate:10,.0f} members/s  {gain:.2f} times one thread")
+
+
+def store(members: int) -> None:
+    """Print bytes of a member by what is kept of it, the values of the design included."""
+    print(f"\nbytes of a member in the store, {members:,} members")
+    for name in CASES:
+        for kept in ("final_state", "energy_drift", "limit_angle"):
+            print(f"{name:7} {kept:14} {swept(name, members, 100, [kept]):6.0f}")
+
+
+def nothing(block: nh.MemberBlock) -> Any:
+    """Return what the design drew."""
+    return block["x"]
+
+
+def tiny(blocks: int) -> None:
+    """Print what a block costs beside its work: drawing, writing two chunks and a mark, scheduling."""
+    design = nh.RandomDesign(blocks, {"x": nh.Uniform(0.0, 1.0)})
+    print(f"\n{blocks:,} blocks of one member, three chunks and a mark each, load {os.getloadavg()[0]:.1f}")
+    with cluster(2) as address:
+        ways = {"threads": {}, "processes": {"scheduler": "processes"}, "2 workers over TCP": {"scheduler": address}}
+        for way, options in ways.items():
+            with tempfile.TemporaryDirectory() as folder:
+                took = timed(
+                    lambda options=options, at=folder: nh.sweep(nothing, design, f"{at}/a", block=1, **options)
+                )
+            print(f"{way:20} {took[0] / blocks * 1e3:.2f} ms a block")
+
+
+def memory(members: int, steps: int) -> None:
+    """Print the largest memory of processes that sweep, or call `ensemble` with a reduction, and nothing else."""
+    print(f"\nlargest memory, {members:,} members x {steps} steps")
+    for name in CASES:
+        for what in ("import", "sweep", "rows", "bare"):
+            command = [sys.executable, __file__, "--child", name, what, str(members), str(steps)]
+            print(subprocess.run(command, check=True, capture_output=True, text=True).stdout, end="", flush=True)  # noqa: S603
+
+
+def child(name: str, what: str, members: int, steps: int) -> None:
+    """Do one thing, and print the largest memory of this process."""
+    swept(name, 1000, steps)
+    if what == "sweep":
+        swept(name, members, steps)
+    elif what != "import":
+        rows = design_of(name, members).values(0, members)
+        start = rows.pop("restricted_velocity")
+        if what == "bare":
+            nh.ensemble(CASES[name][0], restricted_velocity=start, parameters=rows, steps=steps, reduce=reduced)
+    print(f"{name:7} {what:7} {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:6.0f} MiB")
+
+
+@contextlib.contextmanager
+def cluster(workers: int) -> Iterator[str]:
+    """Run a Dask scheduler and workers of one thread on loopback; give its address."""
+    with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
+        file = Path(folder) / "scheduler.json"
+        quiet = ["--host", "127.0.0.1", "--no-dashboard", "--dashboard-address", "127.0.0.1:0"]
+
+        def start(*command: str) -> None:
+            log = stack.enter_context((Path(folder) / "log").open("ab"))
+            whole = [sys.executable, "-m", "dask", *command, *quiet]
+            process = subprocess.Popen(whole, cwd=folder, env=ONE_THREAD, stdout=log, stderr=log)  # noqa: S603
+            stack.callback(process.wait)
+            stack.callback(process.terminate)
+
+        start("scheduler", "--port", "0", "--scheduler-file", str(file))
+        while not file.exists():
+            time.sleep(0.1)
+        address = json.loads(file.read_text())["address"]
+        for _ in range(workers):
+            start("worker", address, "--nthreads", "1", "--no-nanny", "--local-directory", folder)
+        yield address
+
+
+def main() -> None:
+    """Print the parts that are asked for."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--parts", nargs="+", choices=PARTS, default=PARTS)
+    parser.add_argument("--members", type=int, default=1_000_000, help="of overhead; half as many of scaling")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--child", nargs=4)
+    given = parser.parse_args()
+    if given.child:
+        child(given.child[0], given.child[1], int(given.child[2]), int(given.child[3]))
+        return
+    calls: dict[str, Callable[[], None]] = {
+        "overhead": lambda: overhead(given.members, given.rounds),
+        "scaling": lambda: scaling(given.members // 2, given.rounds),
+        "store": lambda: store(1 << 16),
+        "tiny": lambda: tiny(10_000),
+        "memory": lambda: memory(10_000_000, 10),
+    }
+    for part in given.parts:
+        calls[part]()
+
+
+if __name__ == "__main__":
+    main()

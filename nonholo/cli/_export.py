@@ -1,0 +1,56 @@
+"""`nonholo export`: the poses of a run as CSV, for other programs."""
+
+import os
+import sys
+import warnings
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def export(
+    store: Annotated[Path, typer.Argument(metavar="STORE", help="A store of a run, finished or not.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="CSV", help="A new file; by default standard output.")
+    ] = None,
+    every: Annotated[int, typer.Option(metavar="N", min=1, help="Write one in N of the saved states.")] = 1,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an older file at CSV.")] = False,
+) -> None:
+    """Write the poses of a run as CSV, read back exactly, in the body frame of the scenario.
+
+    Columns: t,x,y,theta in the plane; t,qw,qx,qy,qz for rotations of space;
+    t,x,y,z,qw,qx,qy,qz for motions of space; else the entries of the matrix.
+    Of a run that is not finished, what is there.
+
+    nonholo export runs/sleigh-001.zarr -o sleigh.csv
+    nonholo export run.zarr --every 100 | head
+    """
+    from nonholo.cli._caches import use_cache_folders
+
+    use_cache_folders()
+    from nonholo.cli._errors import FAILED, USAGE, store_errors
+    from nonholo.io import check_file, read_attributes, store_to_csv
+
+    with store_errors(USAGE):
+        read_attributes(store)
+        if output:
+            check_file(output, overwrite=overwrite)
+    with store_errors(FAILED), warnings.catch_warnings():
+        warnings.showwarning = _told
+        warnings.simplefilter("always", RuntimeWarning)
+        try:
+            shown = output is not None and sys.stderr.isatty()
+            store_to_csv(store, output or sys.stdout, every=every, overwrite=overwrite, progress=shown)
+            sys.stdout.flush()
+        except BrokenPipeError:  # the reader has seen enough, as `head` does
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    if output:
+        typer.echo(output)
+
+
+def _told(message: Warning | str, *_: object) -> None:
+    """Print a warning of the library when it comes, before the rows."""
+    from nonholo.cli._errors import warn
+
+    warn(str(message))

@@ -1,0 +1,71 @@
+"""`nonholo sweep`: run every member of a design and keep what is asked of each."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+Scenario = Annotated[
+    str, typer.Argument(metavar="SCENARIO", help="A TOML file; `nonholo new sweep` writes one, with comments.")
+]
+Store = Annotated[
+    Path | None, typer.Option("-o", "--output", metavar="STORE", help="Where to keep the result; a new path.")
+]
+Members = Annotated[
+    float | None,
+    typer.Option(metavar="N", help="About so many members, such as 1e6: scales every range of a grid alike."),
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(metavar="HOW", help="threads (default), processes, or tcp://HOST:PORT of a Dask scheduler."),
+]
+Workers = Annotated[int | None, typer.Option(metavar="N", min=1, help="Threads or processes; by default one a core.")]
+Settings = Annotated[
+    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any value, in TOML; repeatable.")
+]
+Plot = Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a map beside the store.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of the table.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print only the path of the store.")]
+
+
+def sweep(
+    scenario: Scenario,
+    output: Store = None,
+    members: Members = None,
+    scheduler: Scheduler = None,
+    workers: Workers = None,
+    settings: Settings = None,
+    plot: Plot = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    r"""Run every member of a design, keep the result and a map, print how members ended.
+
+    A scenario has \[body], \[start], \[run] as for `simulate`, and
+
+    \[design] kind = "grid" or "random"; members; seed
+    \[design.values] what is varied, by key path of the same file:
+      "body.a" = [0.1, 0.2, 0.5]
+      "run.time_step" = {from = 0.1, to = 1.0, count = 9}
+      "body.a" = {uniform = [0.1, 1.0]}       in a random design; also
+      log_uniform, normal, direction, mass_tensor, choice
+    \[keep] reductions = ["final_state"]       or energy_drift, ...
+    \[output] color, x, y                      what the map shows
+
+    Ctrl-C stops it and says how to go on; members that fail do not stop it.
+
+    nonholo sweep my.toml
+    nonholo sweep my.toml --members 1e6 -o large.zarr
+    nonholo sweep my.toml --set design.values.body.a=[0.1,0.2] --no-plot
+    nonholo sweep my.toml --scheduler tcp://127.0.0.1:8786
+    nonholo resume large.zarr               go on with one that stopped
+    """
+    from nonholo.cli._caches import use_cache_folders
+
+    use_cache_folders()
+    from nonholo.cli._sweep_command import sweep_and_keep
+
+    chosen = {"design.members": ("--members", members), "output.plot": ("--plot", plot)}
+    sweep_and_keep(
+        scenario, chosen, settings or [], output, scheduler=scheduler, workers=workers, json=json, quiet=quiet
+    )

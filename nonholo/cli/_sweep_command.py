@@ -1,0 +1,87 @@
+"""What `nonholo sweep` does, once the compilers know where to keep their code."""
+
+import functools
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import typer
+import xarray
+
+from nonholo.cli._errors import USAGE, leave, scenario_errors, store_errors
+from nonholo.cli._going_on import going
+from nonholo.cli._pictures import beside
+from nonholo.cli._problems import ScenarioError, problem_of_value
+from nonholo.cli._run import check_output, next_names
+from nonholo.cli._scenario_file import Loaded, Setting, parse_setting
+from nonholo.cli._sweep_file import load_sweep_scenario, sweep_text
+from nonholo.cli._sweep_picture import draw_sweep
+from nonholo.cli._sweep_report import show_sweep, sweep_figures
+from nonholo.cli._sweep_scenario import SweepScenario
+from nonholo.ensembles import EnsembleTask, sweep
+
+
+def sweep_and_keep(
+    name: str,
+    chosen: dict[str, tuple[str, Any]],
+    settings: list[str],
+    output: Path | None,
+    *,
+    scheduler: str | None,
+    workers: int | None,
+    json: bool,
+    quiet: bool,
+) -> None:
+    """Load, run, draw, report; options of the command line come before the settings of `--set`."""
+    with scenario_errors():
+        given = [_setting(option, key, value) for key, (option, value) in chosen.items() if value is not None]
+        loaded = load_sweep_scenario(name, given + [parse_setting(text) for text in settings])
+        task = _task(loaded)
+    if output is not None and output.exists():
+        leave(f"'{output}' exists. Choose another path, or go on with what it holds: nonholo resume {output}", USAGE)
+    with store_errors(USAGE):
+        check_output(output, overwrite=False)
+    text, begun = sweep_text(loaded.scenario.in_force(task)), time.perf_counter()
+    design, shown = loaded.scenario.design.design(), sys.stderr.isatty() and not quiet
+    run = functools.partial(sweep, task, design, scheduler=scheduler, workers=workers, progress=shown, scenario=text)
+    with store_errors(USAGE):
+        store, result = _kept(run, loaded.name, output)
+    seconds = time.perf_counter() - begun
+    wanted = loaded.scenario.output
+    picture = draw_sweep(result, beside(store, "png"), wanted.color, wanted.x, wanted.y) if wanted.plot else None
+    if quiet and not json:
+        typer.echo(store)
+        return
+    heading = {"title": loaded.scenario.title or loaded.name}
+    show_sweep(store, sweep_figures(store, result, seconds), heading, {"picture": picture}, json=json)
+
+
+def _setting(option: str, key: str, value: Any) -> Setting:
+    """Return an option as a setting; 1e6 members are a whole number."""
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)
+    return Setting(f"{option} {value}", key, value)
+
+
+def _task(loaded: Loaded[SweepScenario]) -> EnsembleTask:
+    try:
+        return loaded.scenario.task()
+    except ValueError as failure:
+        section = "start" if "velocity" in str(failure) or "momentum" in str(failure) else "run"
+        raise ScenarioError([problem_of_value(failure, section, loaded.source, loaded.options)]) from None
+
+
+def _kept(run: Callable[..., xarray.Dataset], name: str, store: Path | None) -> tuple[Path, xarray.Dataset]:
+    """Run at the path given or under the next free number; return where, and the result."""
+    for path in next_names(name) if store is None else (store,):
+        try:
+            with going(path):
+                result = run(store=path)
+        except FileExistsError:
+            if store is not None:
+                raise
+            continue  # another run was faster
+        return path, result
+    raise AssertionError("the numbers do not end")

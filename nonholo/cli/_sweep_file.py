@@ -1,0 +1,117 @@
+"""Reading the scenario of a sweep: names of a design as key paths, and values of a body that the design varies."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+from nonholo.cli._bodies import AbstractBody
+from nonholo.cli._problems import ScenarioError, problem, suggestion
+from nonholo.cli._scenario_file import Loaded, Setting, assign, built_in, checked, read_document, toml_text
+from nonholo.cli._sweep_scenario import SweepScenario
+from nonholo.cli._sweep_values import along, drawn, needs_size
+
+_TABLES = ("body", "start", "run")
+_STARTS = ("body_velocity", "restricted_velocity", "momentum")
+_COMPONENT = re.compile(r"(\w+)\[\d+\]")
+
+
+def load_sweep_scenario(name: str, settings: list[Setting]) -> Loaded[SweepScenario]:
+    """Return the scenario of a sweep with settings applied, or raise with all its problems."""
+    source, document = read_document(name, built_in("sweeps"))
+    _by_table(document)
+    for setting in settings:
+        assign(document, setting)
+    _by_table(document)
+    _complete(document)
+    loaded = checked(document, SweepScenario, Path(name).stem, source, settings)
+    refused = [problem(*found, source, loaded.options) for found in _refusals(loaded.scenario)]
+    if refused:
+        raise ScenarioError(refused)
+    try:
+        design = loaded.scenario.design.scaled()
+    except ValueError as failure:
+        raise ScenarioError([problem("design.members", str(failure), source, loaded.options)]) from None
+    return loaded._replace(scenario=loaded.scenario.model_copy(update={"design": design}))
+
+
+def sweep_text(scenario: SweepScenario) -> str:
+    """Return the scenario of a sweep as TOML with every value that was in force; running it again repeats it."""
+    document = scenario.model_dump(exclude_none=True)
+    title, design = document.pop("title"), document.pop("design")
+    values = {f"{table}.{name}": given for table, held in design.pop("values").items() for name, given in held.items()}
+    return toml_text(title, {**document, "design": design, "design.values": values})
+
+
+def _by_table(document: dict[str, Any]) -> None:
+    """Put values under quoted key paths, "body.a" = ..., where unquoted ones stand: in tables."""
+    design = document.get("design")
+    values = design.get("values") if isinstance(design, dict) else None
+    if not isinstance(values, dict):
+        return
+    for path in [path for path in values if "." in path]:
+        table, _, name = path.partition(".")
+        held = values.setdefault(table, {})
+        if isinstance(held, dict):
+            held.setdefault(name, values.pop(path))
+
+
+def _complete(document: dict[str, Any]) -> None:
+    """Take the size of a distribution from the value it varies; give a value that is varied and not given."""
+    design = document.get("design")
+    values = design.get("values") if isinstance(design, dict) else None
+    for table in _TABLES:
+        held = values.get(table) if isinstance(values, dict) else None
+        for name, given in held.items() if isinstance(held, dict) else ():
+            own = document.setdefault(table, {})
+            if isinstance(own, dict):
+                _complete_one(own, name, given)
+
+
+def _complete_one(own: dict[str, Any], name: str, given: Any) -> None:
+    if needs_size(given) and isinstance(own.get(name), list):
+        given["size"] = len(own[name])
+    if name in own or _COMPONENT.fullmatch(name):
+        return
+    try:
+        own[name] = _typical(given)
+    except ValueError:  # told as a problem of the design
+        return
+
+
+def _typical(given: Any) -> Any:
+    import numpy as np
+
+    if isinstance(given, list) or "count" in given:
+        return along(given)[0].tolist()
+    distribution = drawn(given)
+    return distribution.draw(np.random.default_rng(0).random((1, distribution.width)))[0].tolist()
+
+
+def _refusals(scenario: SweepScenario) -> list[tuple[str, str]]:
+    """Return key paths and texts of what a scenario of one motion may say, but no sweep."""
+    found, values = [], scenario.design.values
+    if not any((values.body, values.start, values.run)):
+        found.append(("design.values", 'must name what is varied, for example "body.a" = [0.1, 0.2]'))
+    known = {"body": _parameters(scenario.body), "start": _STARTS, "run": ("time_step",)}
+    for table, names in known.items():
+        for name in getattr(values, table):
+            whole = _COMPONENT.sub(r"\1", name) if table == "start" else name
+            if whole not in names:
+                told = f"cannot be varied. {suggestion(name, list(names))}"
+                found.append((f"design.values.{table}.{name}", told))
+            elif whole != name and getattr(scenario.start, whole) is None:
+                found.append((f"start.{whole}", f"is missing: {name} is varied, the other components are given here"))
+    for key in ("displacement", "configuration"):
+        if getattr(scenario.start, key) is not None:
+            found.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(_STARTS)}"))
+    if scenario.run.branch != "principal":
+        found.append(("run.branch", f"must be principal in sweeps. Got {scenario.run.branch!r}"))
+    if scenario.run.save_every != 1:
+        found.append(("run.save_every", "is not for sweeps: [keep] says what is kept"))
+    return found
+
+
+def _parameters(body: AbstractBody) -> tuple[str, ...]:
+    """Return the keys of a body that are parameters of its system."""
+    leaves = (*body.system().leaves, "inertia_operator")
+    return tuple(name for name in type(body).model_fields if name in leaves)

@@ -1,0 +1,42 @@
+"""The map of a sweep, drawn beside its store; a picture that fails never costs the result."""
+
+import os
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from nonholo.cli._errors import FAILED, store_errors, warn
+from nonholo.cli._pictures import complete
+from nonholo.cli._sweep_scenario import library_name
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def draw_sweep(result: "xarray.Dataset", picture: Path, color: str | None, x: str | None, y: str | None) -> str | None:
+    """Draw a quantity over the design; return the path of the picture, None if there is none."""
+    os.environ.setdefault("MPLBACKEND", "agg")
+    quantity, across, up = (None if name is None else library_name(name) for name in (color, x, y))
+    try:
+        from nonholo import plotting
+
+        figure: Any = plotting.sweep_map(result, quantity, across, up).axes.figure
+        with complete(picture) as part:
+            figure.savefig(part, dpi=150)
+    except Exception as failure:
+        warn(f"no picture: {type(failure).__name__}: {failure}")
+        return None
+    return str(picture)
+
+
+def draw_stored_sweep(store: Path, picture: Path, color: str | None, x: str | None, y: str | None) -> tuple[str | None]:
+    """Draw the sweep of a store: what is asked for, or what its scenario shows."""
+    from nonholo.ensembles import load_sweep
+    from nonholo.ensembles._store import attributes_of
+
+    with store_errors(FAILED):
+        result = load_sweep(store)
+    if not (color or x or y):
+        shown = tomllib.loads(attributes_of(store).get("scenario", "")).get("output", {})
+        color, x, y = (shown.get(name) for name in ("color", "x", "y"))
+    return (draw_sweep(result, picture, color, x, y),)

@@ -1,0 +1,153 @@
+"""What the scenario of a sweep may say: a body, a start and a run as for one motion, a design, what to keep."""
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+
+from pydantic import AfterValidator, Field
+
+from nonholo.cli._bodies import AnyBody
+from nonholo.cli._scenario import Run, Start
+from nonholo.cli._sections import Count, Section
+from nonholo.cli._sweep_values import Along, Drawn, along, drawn, is_range
+
+if TYPE_CHECKING:
+    from nonholo.ensembles import EnsembleTask, Grid, RandomDesign
+
+Seed = Annotated[int, Field(ge=0, lt=2**63)]
+
+
+class GridValues(Section):
+    """Values along the axes of a grid, by table and key."""
+
+    body: dict[str, Along] = Field(default_factory=dict)
+    start: dict[str, Along] = Field(default_factory=dict)
+    run: dict[str, Along] = Field(default_factory=dict)
+
+
+class GridDesign(Section):
+    """Every combination of values along axes; with `members`, about so many of them."""
+
+    kind: Literal["grid"]
+    members: Count | None = None
+    seed: Seed = 0
+    values: GridValues
+
+    def scaled(self) -> Self:
+        """Return the design with the counts of its ranges multiplied by one factor, for the members asked for."""
+        if self.members is None:
+            return self
+        values = self.values.model_dump()
+        ranges = [table[name] for table in values.values() for name in table if is_range(table[name])]
+        if not ranges:
+            raise ValueError("needs a range with a count to scale")
+        whole = math.prod(len(along(given)) for table in values.values() for given in table.values())
+        factor = (self.members / whole) ** (1 / len(ranges))
+        for given in ranges:
+            given["count"] = max(1, round(given["count"] * factor))
+        return self.model_copy(update={"members": None, "values": GridValues.model_validate(values)})
+
+    def design(self) -> "Grid":
+        """Return the design under the names of the library."""
+        from nonholo.ensembles import Grid
+
+        return Grid({name: along(given) for name, given in named(self.values)}, seed=self.seed)
+
+
+class RandomValues(Section):
+    """Distributions, by table and key."""
+
+    body: dict[str, Drawn] = Field(default_factory=dict)
+    start: dict[str, Drawn] = Field(default_factory=dict)
+    run: dict[str, Drawn] = Field(default_factory=dict)
+
+
+class RandomMembers(Section):
+    """Members drawn from distributions."""
+
+    kind: Literal["random"]
+    members: Count
+    seed: Seed = 0
+    values: RandomValues
+
+    def scaled(self) -> Self:
+        """Return the design itself: it has the members asked for."""
+        return self
+
+    def design(self) -> "RandomDesign":
+        """Return the design under the names of the library."""
+        from nonholo.ensembles import RandomDesign
+
+        drawings = {name: drawn(given) for name, given in named(self.values)}
+        return RandomDesign(self.members, drawings, seed=self.seed)
+
+
+DESIGNS: dict[str, type[Section]] = {"grid": GridDesign, "random": RandomMembers}
+
+
+def _reduction(name: str) -> str:
+    from nonholo.ensembles import REDUCTIONS
+
+    if name not in REDUCTIONS:
+        raise ValueError(f"must be one of {', '.join(REDUCTIONS)}. Got {name!r}")
+    return name
+
+
+Reduction = Annotated[str, AfterValidator(_reduction)]
+
+
+class Keep(Section):
+    """What is kept of each member."""
+
+    reductions: list[Reduction] = Field(default_factory=lambda: ["final_state"])
+    poses: bool = True
+
+
+class SweepOutput(Section):
+    """What is drawn beside the store: a quantity by colour, over one or two values of the design."""
+
+    plot: bool = True
+    color: str | None = None
+    x: str | None = None
+    y: str | None = None
+
+
+class SweepScenario(Section):
+    """The scenario of a sweep."""
+
+    title: str = ""
+    body: Annotated[AnyBody, Field(discriminator="kind")]
+    start: Start
+    run: Run
+    design: Annotated[GridDesign | RandomMembers, Field(discriminator="kind")]
+    keep: Keep = Keep()
+    output: SweepOutput = SweepOutput()
+
+    def task(self) -> "EnsembleTask":
+        """Return what is done with every member."""
+        from nonholo.ensembles import EnsembleTask
+
+        start: Any = self.start.model_dump(exclude_none=True)
+        options: Any = {"reductions": self.keep.reductions, "reconstruct": self.keep.poses}
+        return EnsembleTask(self.run.discretized(self.body.system()), steps=self.run.steps, **start, **options)
+
+    def in_force(self, task: "EnsembleTask") -> Self:
+        """Return the scenario with the library's choices written out."""
+        return self.model_copy(update={"run": self.run.in_force(task.discrete)})
+
+
+def named(values: GridValues | RandomValues) -> Iterator[tuple[str, Any]]:
+    """Yield the entries of a design under the names of the library, which are those of the keys."""
+    for table in (values.body, values.start, values.run):
+        yield from table.items()
+
+
+def library_name(path: str) -> str:
+    """Return the name of a key path in the result of a sweep; names of results stay.
+
+    Example:
+        >>> library_name("body.inertia"), library_name("heading_turn")
+        ('inertia', 'heading_turn')
+    """
+    table, _, name = path.partition(".")
+    return name if table in ("body", "start", "run") and name else path

@@ -1,0 +1,139 @@
+"""Values of a design as a scenario writes them: lists and ranges of a grid, distributions of a random design."""
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+
+from pydantic import AfterValidator
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from nonholo.ensembles import AbstractDistribution
+
+_RANGE = "{from = 0.1, to = 10.0, count = 50}"
+_SPACINGS = ("linear", "logarithmic")
+_PAIRS = {
+    "uniform": "uniform = [low, high]",
+    "log_uniform": "log_uniform = [low, high]",
+    "normal": "normal = [mean, deviation]",
+    "mass_tensor": "mass_tensor = [least, largest eigenvalue]",
+}
+_SIZED = ("normal", "direction", "mass_tensor")
+_NEED_SIZE = {"direction": "vectors", "mass_tensor": "matrices"}
+
+
+def _checked_along(given: Any) -> Any:
+    along(given)
+    return given
+
+
+def _checked_drawn(given: Any) -> Any:
+    drawn(given)
+    return given
+
+
+Along: TypeAlias = Annotated[Any, AfterValidator(_checked_along)]
+"""Values along one axis of a grid."""
+Drawn: TypeAlias = Annotated[Any, AfterValidator(_checked_drawn)]
+"""What the members of a random design draw from."""
+
+
+def is_range(given: Any) -> bool:
+    """Tell whether values of a grid are a range, whose count can be scaled."""
+    return isinstance(given, dict)
+
+
+def along(given: Any) -> "np.ndarray":
+    """Return the values along one axis of a grid.
+
+    Example:
+        >>> along({"from": 1.0, "to": 100.0, "count": 3, "spacing": "logarithmic"})
+        array([  1.,  10., 100.])
+    """
+    return _range(given) if is_range(given) else _list(given)
+
+
+def _range(given: dict[str, Any]) -> "np.ndarray":
+    import numpy as np
+
+    _known(given, ["from", "to", "count", "spacing"], ["from", "to", "count"], _RANGE)
+    begin, end, count, spacing = given["from"], given["to"], given["count"], given.get("spacing", "linear")
+    if isinstance(begin, list) or isinstance(end, list) or not _are_numbers([begin, end]):
+        raise ValueError(f"must have numbers at from and to. Got {begin!r} and {end!r}")
+    if not isinstance(count, int) or isinstance(count, bool) or count < 1:
+        raise ValueError(f"must have a positive integer as count. Got {count!r}")
+    if spacing not in _SPACINGS:
+        raise ValueError(f'must have spacing "linear" or "logarithmic". Got {spacing!r}')
+    if spacing == "logarithmic" and not (begin > 0 and end > 0):
+        raise ValueError(f"must have positive bounds for logarithmic spacing. Got {begin} and {end}")
+    return (np.geomspace if spacing == "logarithmic" else np.linspace)(begin, end, count)
+
+
+def _list(given: Any) -> "np.ndarray":
+    import numpy as np
+
+    told = f"must be a list of numbers, vectors or matrices of one shape, or a range such as {_RANGE}"
+    if not isinstance(given, list) or not given or not _are_numbers(given):
+        raise ValueError(f"{told}. Got {given!r}")
+    try:
+        return np.array(given, dtype=float)
+    except ValueError:
+        raise ValueError(f"{told}. Got {given!r}") from None
+
+
+def _are_numbers(given: Any) -> bool:
+    if isinstance(given, list):
+        return all(_are_numbers(entry) for entry in given)
+    return isinstance(given, int | float) and not isinstance(given, bool) and math.isfinite(given)
+
+
+def drawn(given: Any) -> "AbstractDistribution":
+    """Return the distribution that a table describes.
+
+    Example:
+        >>> drawn({"uniform": [0.1, 1.0]})
+        Uniform(low=0.1, high=1.0)
+        >>> drawn({"direction": 0.3, "size": 2})
+        Direction(size=2, length=0.3)
+    """
+    kinds = _distributions()
+    names = [name for name in given if name in kinds] if isinstance(given, dict) else []
+    if len(names) != 1:
+        raise ValueError(f"must hold one of {', '.join(kinds)}, as in {{uniform = [0.1, 1.0]}}. Got {given!r}")
+    kind, argument = names[0], given[names[0]]
+    sized = kind in _SIZED
+    _known(given, [kind, "size"] if sized else [kind], [kind], f"{{{kind} = ...}}")
+    if kind in _PAIRS and not (isinstance(argument, list) and len(argument) == 2):
+        raise ValueError(f"must be {_PAIRS[kind]}. Got {argument!r}")
+    if kind in _NEED_SIZE and "size" not in given:
+        raise ValueError(f"needs size = ..., the length of the {_NEED_SIZE[kind]}, or a value in its own table")
+    try:
+        return kinds[kind](argument, given.get("size"))
+    except ValueError as failure:
+        raise ValueError(f"{kind}: {str(failure).partition('` ')[2] or failure}") from None
+
+
+def needs_size(given: Any) -> bool:
+    """Tell whether a distribution lacks the size that its own table can give it."""
+    return isinstance(given, dict) and "size" not in given and bool(set(_NEED_SIZE) & set(given))
+
+
+def _distributions() -> "dict[str, Callable[[Any, Any], AbstractDistribution]]":
+    from nonholo import ensembles as kinds
+
+    return {
+        "uniform": lambda bounds, _: kinds.Uniform(*bounds),
+        "log_uniform": lambda bounds, _: kinds.LogUniform(*bounds),
+        "normal": lambda moments, size: kinds.Normal(*moments, size=size),
+        "direction": lambda length, size: kinds.Direction(size, length),
+        "mass_tensor": lambda bounds, size: kinds.MassTensor(size, *bounds),
+        "choice": lambda values, _: kinds.Choice(values),
+    }
+
+
+def _known(given: dict[str, Any], keys: list[str], needed: list[str], example: str) -> None:
+    unknown, missing = [key for key in given if key not in keys], [key for key in needed if key not in given]
+    if unknown or missing:
+        told = f"without {', '.join(missing)}" if missing else f"with {', '.join(unknown)}"
+        raise ValueError(f"must have the keys of {example}. Got a table {told}")

@@ -1,0 +1,87 @@
+"""What a sweep checks and makes before any work: the task, the design, one member tried, an empty store."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from nonholo import io
+from nonholo._checks import count, error
+from nonholo.ensembles._block import block_of
+from nonholo.ensembles._describe import design_text, differences, function_from, function_name
+from nonholo.ensembles._design import Design, Grid, RandomDesign, axis_dimensions
+from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
+from nonholo.ensembles._layout import layout_of
+from nonholo.ensembles._names import Axes, check_dimensions
+from nonholo.ensembles._results import Output, Task, probed
+from nonholo.ensembles._store import SweepStore, create_store
+from nonholo.simulation import in_one_thread
+
+_BLOCK = 4096  # members of a block of a task that does not say how many
+
+
+def check_task(task: Any, design: Any) -> None:
+    """Refuse what is no task and no design, or a design that the task does not know."""
+    if not callable(task):
+        remedy = "Pass an EnsembleTask, or a function of a MemberBlock."
+        raise error("sweep(task=...)", "be callable", repr(task), remedy)
+    if not isinstance(design, Grid | RandomDesign):
+        remedy = "Pass nh.Grid({...}) or nh.RandomDesign(members, {...})."
+        raise error("sweep(design=...)", "be a design", repr(design), remedy)
+    if isinstance(task, EnsembleTask):
+        task.check_design([*design.axes, *design.drawn])
+
+
+def begun(task: Task, design: Design, path: Path, block: Any, scenario: str | None) -> SweepStore:
+    """Make the store of a sweep, after its task has been tried."""
+    asked = getattr(task, "block", _BLOCK) if block is None else block
+    size = count("sweep(block=...)", asked, "Pass how many members.")
+    with in_one_thread():
+        returned = probed(task, lambda member: block_of(design, member, 1), design.members)
+    drawn = {name: _drawn(name, shape) for name, shape in design.drawn.items()}
+    _check_names(design, drawn, returned)
+    layout = layout_of(tuple(design.sizes.values()), size)
+    extra = {} if scenario is None else io.attributes_of_text(scenario)
+    return create_store(path, _described(task, design), design, layout, drawn | returned, extra)
+
+
+def _check_names(design: Design, drawn: dict[str, Output], returned: dict[str, Output]) -> None:
+    """Refuse names that stand for two things, before anything is computed that nobody could open."""
+    for name in returned:
+        if name in drawn:
+            raise error("sweep(task=...)", "return names that the design does not have", repr(name), "Rename it.")
+    members, lengths = tuple(design.sizes), tuple(design.sizes.values())
+    coordinates = {name: Axes(axis_dimensions(name, x), x.shape) for name, x in design.axes.items()}
+    outputs = (drawn | returned).items()
+    check_dimensions({n: Axes(members + o.dimensions, lengths + o.shape) for n, o in outputs}, coordinates)
+
+
+def check_same(store: SweepStore, task: Any, design: Design) -> None:
+    """Refuse another task or design than that of a store, with the differences."""
+    found = list(differences(json.loads(json.dumps(_described(task, design))), store.description))
+    if found:
+        remedy = "Pass that task and design, or choose another path."
+        raise error("sweep(store=...)", "hold this sweep", f"'{store.path}', where {'; '.join(found[:5])}", remedy)
+
+
+def restored_task(store: SweepStore, task: Any) -> Task:
+    """Return the task of a store, the one that is given or one that can be made from its description."""
+    if task is not None:
+        check_task(task, store.design)
+        check_same(store, task, store.design)
+        return task
+    told = store.description["task"]
+    try:
+        return ensemble_task_from(told) if told["kind"] == "EnsembleTask" else function_from(told["name"])
+    except (ImportError, ValueError) as failure:
+        remedy = f"Pass it: nonholo.resume('{store.path}', task=...)."
+        raise error("resume(store=...)", "be a sweep whose task can be made again", f"{failure}", remedy) from failure
+
+
+def _described(task: Any, design: Design) -> dict[str, Any]:
+    told = task.describe() if isinstance(task, EnsembleTask) else {"kind": "function", "name": function_name(task)}
+    return {"task": told, "design": design_text(design)}
+
+
+def _drawn(name: str, shape: tuple[int, ...]) -> Output:
+    dimensions = tuple(f"{name}_{axis}" for axis in range(1, len(shape) + 1))
+    return Output(dimensions, shape, "float64", {"long_name": "value of the design"})

@@ -1,0 +1,66 @@
+"""What a task sees of a sweep: some members in order, their values by name, random numbers of their own."""
+
+import dataclasses
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from nonholo._types import Float
+from nonholo.ensembles._design import AbstractDesign
+from nonholo.ensembles._uniform import uniform_numbers
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class MemberBlock(Mapping[str, Any]):
+    """Some members of a sweep in order: a mapping of names to arrays whose first axis is that of the members.
+
+    Attributes:
+        first: Number of the first member.
+        count: How many.
+        seed: Seed of the design.
+        arrays: Values by name.
+
+    Example:
+        >>> block = block_of(nh.Grid({"a": [1.0, 2.0, 3.0]}), first=1, count=2)
+        >>> block["a"], block.index, block.random(3).shape
+        (array([2., 3.]), array([1, 2]), (2, 3))
+    """
+
+    first: int
+    count: int
+    seed: int
+    arrays: dict[str, np.ndarray]
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self.arrays:
+            raise KeyError(f"{name!r}: the design has {', '.join(self.arrays)}")
+        return self.arrays[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.arrays)
+
+    def __len__(self) -> int:
+        return len(self.arrays)
+
+    def __repr__(self) -> str:
+        return f"<MemberBlock: members {self.first} to {self.first + self.count - 1}, {', '.join(self)}>"
+
+    @property
+    def index(self) -> np.ndarray:
+        """Numbers of the members."""
+        return np.arange(self.first, self.first + self.count)
+
+    def random(self, width: int, stream: str = "") -> Float[np.ndarray, "count width"]:
+        """Return uniform numbers in [0, 1), so many of each member, the same in any block; streams are independent."""
+        return uniform_numbers(self.seed, f"task {stream}", self.first, self.count, width)
+
+    def part(self, begin: int, end: int) -> "MemberBlock":
+        """Return some of the members, counted from the first one here."""
+        arrays = {name: values[begin:end] for name, values in self.arrays.items()}
+        return MemberBlock(self.first + begin, end - begin, self.seed, arrays)
+
+
+def block_of(design: AbstractDesign, first: int, count: int) -> MemberBlock:
+    """Return some members of a design."""
+    return MemberBlock(first, count, design.seed, design.values(first, count))

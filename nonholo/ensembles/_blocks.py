@@ -1,0 +1,66 @@
+"""One piece of work: compute a block of a sweep and write it, unless it is there and sound."""
+
+import collections
+import os
+import socket
+import time
+from typing import NamedTuple
+
+import numpy as np
+
+from nonholo import io
+from nonholo._results import Outcome
+from nonholo.ensembles._block import block_of
+from nonholo.ensembles._results import OUTCOME, RAISED, Results, Task, attempted
+from nonholo.ensembles._store import Mark, SweepStore, store_of
+from nonholo.simulation import in_one_thread
+
+
+class Work(NamedTuple):
+    """What is sent to a worker: everything but the task is read from the store."""
+
+    store: SweepStore
+    task: Task
+
+
+class Done(NamedTuple):
+    """What a worker tells of a block: its mark, what was wrong with an older one, the versions that it works with."""
+
+    block: int
+    mark: Mark
+    damaged: str | None
+    versions: str
+
+
+def do_block(work: Work, block: int) -> Done:
+    """Make sure that a block is in the store."""
+    store = store_of(work.store)
+    mark = store.mark(block)
+    damaged = mark if isinstance(mark, str) else None if mark is None else store.flaw(block)
+    if isinstance(mark, Mark) and damaged is None:
+        return Done(block, mark, None, io.versions_text())
+    piece, begun = store.layout.piece(block), time.perf_counter()
+    members, drawn = block_of(store.design, piece.first, piece.count), store.design.drawn
+    returned = {name: output for name, output in store.outputs.items() if name not in drawn}
+    with in_one_thread():
+        found = attempted(work.task, members, returned)
+    results = Results({name: members[name] for name in drawn} | found.arrays, found.messages)
+    mark = _mark(results, piece.count, time.perf_counter() - begun)
+    store.write(piece, results, mark)
+    return Done(block, mark, damaged, io.versions_text())
+
+
+def outcome_name(code: int) -> str:
+    """Return the name of an outcome of a member, also of one of the task's own."""
+    if code == RAISED:
+        return "raised"
+    return Outcome(code).name if code in list(Outcome) else str(code)
+
+
+def _mark(results: Results, members: int, seconds: float) -> Mark:
+    codes, counts = np.unique(results.arrays[OUTCOME], return_counts=True)
+    outcomes = collections.Counter(
+        {outcome_name(int(code)): int(count) for code, count in zip(codes, counts, strict=True)}
+    )
+    writer = f"{socket.gethostname()}:{os.getpid()}"
+    return Mark(members, dict(outcomes), seconds, time.time(), writer, [list(told) for told in results.messages])

@@ -1,0 +1,122 @@
+"""All blocks of a sweep by the workers of a Dask cluster; the only file that loads `distributed`."""
+
+import errno
+import functools
+import itertools
+import os
+import pickle
+import socket
+import time
+import warnings
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
+from typing import Any
+
+from nonholo._checks import error
+from nonholo.ensembles._blocks import Done, Work, do_block
+from nonholo.ensembles._store import attributes_of
+
+_AHEAD = 1024  # blocks of which the scheduler knows at once
+_CONNECT = 10  # seconds
+_PAUSE = 0.02  # seconds between looks for finished blocks
+_PATIENCE = 5.0  # seconds without any, until workers are counted
+_WHERE = "sweep(scheduler=...)"
+
+
+def check_cluster(address: str) -> None:
+    """Refuse an address at which no scheduler answers, before any work."""
+    with _client(address):
+        pass
+
+
+def do_on_cluster(work: Work, blocks: Iterator[int], address: str, take: Callable[[Done], None]) -> None:
+    """Do every block; a loss of the scheduler, or of workers again and again, is told as such."""
+    from distributed.comm.core import CommClosedError
+    from distributed.scheduler import KilledWorker
+
+    with _client(address) as client:
+        try:
+            _do_blocks(work, blocks, client, take)
+        except KilledWorker as failure:
+            told = "Workers were killed, or ran out of memory, again and again at the same block"
+            raise ChildProcessError(told) from failure
+        except Exception as failure:
+            if client.status == "running" and not isinstance(failure, CommClosedError | CancelledError):
+                raise
+            raise ConnectionError(f"The connection to the scheduler at {address} was lost") from None
+
+
+def _do_blocks(work: Work, blocks: Iterator[int], client: Any, take: Callable[[Done], None]) -> None:
+    """Send a new block for each that is done, so that the scheduler never knows of all."""
+    import cloudpickle
+
+    # as bytes: a worker of Dask that cannot make a function of what it receives ends itself
+    function = functools.partial(do_sent, cloudpickle.dumps(work))
+
+    def sent(count: int) -> list[Any]:
+        return client.map(function, list(itertools.islice(blocks, count)), pure=False, key="block")
+
+    running = _distributed().as_completed(sent(_AHEAD), loop=client.loop)
+    for finished in _batches(running, client):
+        for future in finished:
+            take(future.result())
+        running.update(sent(len(finished)))
+
+
+def do_sent(sent: bytes, block: int) -> Done:
+    """Make sure that a block is in the store: what a worker is asked for."""
+    return do_block(_restored(sent), block)
+
+
+@functools.lru_cache(maxsize=4)
+def _restored(sent: bytes) -> Work:
+    """Return what was sent, once it is known that this worker can import the task and sees the store."""
+    worker = f"{socket.gethostname()}:{os.getpid()}"
+    try:
+        work: Work = pickle.loads(sent)  # noqa: S301
+    except (ImportError, AttributeError) as failure:
+        remedy = "Install its module there, or define the function in the script that calls sweep."
+        raise error("sweep(task=...)", "be importable by the workers", f"{failure} ({worker})", remedy) from None
+    try:
+        is_seen = attributes_of(work.store.path)["made"] == work.store.made
+    except (OSError, ValueError):
+        is_seen = False
+    if not is_seen:
+        told = f"The worker {worker} does not see this store: choose a path on a file system that all workers share"
+        raise FileNotFoundError(errno.ENOENT, told, str(work.store.path))
+    return work
+
+
+def _batches(running: Any, client: Any) -> Iterator[list[Any]]:
+    """Yield what is finished, as soon as it is; warn when there is nobody to do the rest."""
+    seen, told = time.monotonic(), False
+    while running.count():
+        if running.has_ready():
+            yield running.next_batch(block=False)
+            seen, told = time.monotonic(), False
+        elif not told and time.monotonic() - seen > _PATIENCE:
+            seen, told = time.monotonic(), not client.ncores()
+            if told:
+                address = client.scheduler.address
+                text = f"The scheduler at {address} has no workers. The sweep waits for some: dask worker {address}"
+                warnings.warn(text, RuntimeWarning, stacklevel=2)
+        else:
+            time.sleep(_PAUSE)
+
+
+def _client(address: str) -> Any:
+    distributed = _distributed()
+    try:
+        return distributed.Client(address, timeout=_CONNECT, set_as_default=False)
+    except Exception as failure:  # whatever else listens there may answer anything
+        remedy = "Start `dask scheduler`, and workers by `dask worker ADDRESS`."
+        raise error(_WHERE, "be the address of a Dask scheduler", f"{address}: {failure}", remedy) from None
+
+
+def _distributed() -> Any:
+    try:
+        import distributed
+    except ModuleNotFoundError:
+        remedy = "Install the extra `cluster`: pip install 'nonholo[cluster]'."
+        raise error(_WHERE, "be local without distributed", "the address of a cluster", remedy) from None
+    return distributed

@@ -1,0 +1,87 @@
+"""Designs and functions as plain data and back, and where two descriptions differ."""
+
+import hashlib
+import importlib
+import json
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from nonholo.ensembles._design import Design, Grid, RandomDesign
+from nonholo.ensembles._distributions import DISTRIBUTIONS
+from nonholo.io import fields_of
+
+_NO_NAME = "a function without an importable name"
+
+
+def design_text(design: Design) -> dict[str, Any]:
+    """Return a design as plain data; values along axes are told by their hash, they have arrays of their own."""
+    if isinstance(design, Grid):
+        hashes = {name: _hash(values) for name, values in design.axes.items()}
+        return {"kind": "Grid", "seed": design.seed, "axes": hashes}
+    drawn = {name: {"kind": type(d).__name__, **fields_of(d)} for name, d in design.distributions.items()}
+    return {"kind": "RandomDesign", "seed": design.seed, "members": design.members, "distributions": drawn}
+
+
+def design_from(text: dict[str, Any], axis: Callable[[str], np.ndarray]) -> Design:
+    """Return the design of a description."""
+    if text["kind"] == "Grid":
+        return Grid({name: axis(name) for name in text["axes"]}, seed=text["seed"])
+    drawn = {name: _distribution(dict(told)) for name, told in text["distributions"].items()}
+    return RandomDesign(text["members"], drawn, seed=text["seed"])
+
+
+def function_name(function: Callable[..., Any]) -> str:
+    """Return the name under which any process can import a function, or that there is none."""
+    module, name = getattr(function, "__module__", None), getattr(function, "__qualname__", None)
+    if module in (None, "__main__") or name is None or "<" in name:
+        return _NO_NAME
+    return f"{module}:{name}"
+
+
+def function_from(name: str) -> Callable[..., Any]:
+    """Import a function."""
+    if name == _NO_NAME:
+        raise ImportError(name)
+    module, _, path = name.partition(":")
+    found: Any = importlib.import_module(module)
+    try:
+        for part in path.split("."):
+            found = getattr(found, part)
+    except AttributeError as failure:
+        raise ImportError(str(failure)) from failure
+    return found
+
+
+def differences(ours: Any, theirs: Any, where: str = "") -> Iterator[str]:
+    """Name, one after the other, the entries in which two descriptions differ.
+
+    Example:
+        >>> list(differences({"task": {"steps": 5}, "seed": 0}, {"task": {"steps": 6}, "seed": 0}))
+        ['task.steps is 5 instead of 6']
+    """
+    if isinstance(ours, dict) and isinstance(theirs, dict):
+        for name in dict.fromkeys([*ours, *theirs]):
+            inner = f"{where}.{name}" if where else str(name)
+            if name not in theirs:
+                yield f"{inner} is not in the store"
+            elif name not in ours:
+                yield f"{inner} is only in the store"
+            else:
+                yield from differences(ours[name], theirs[name], inner)
+    elif ours != theirs:
+        yield f"{where} is {_short(ours)} instead of {_short(theirs)}"
+
+
+def _short(value: Any) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= 200 else f"{text[:200]}..."
+
+
+def _hash(values: np.ndarray) -> str:
+    return hashlib.sha256(np.ascontiguousarray(values).tobytes() + repr(values.shape).encode()).hexdigest()
+
+
+def _distribution(told: dict[str, Any]) -> Any:
+    return DISTRIBUTIONS[told.pop("kind")](**told)

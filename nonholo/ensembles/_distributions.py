@@ -1,0 +1,247 @@
+"""What a random design draws from: functions of uniform numbers, so that members can be drawn in any order."""
+
+import abc
+import dataclasses
+from typing import Any
+
+import numpy as np
+from scipy.special import ndtri
+
+from nonholo._checks import array, count, error, number, positive
+from nonholo._types import Float
+
+_LEAST = 2.0**-54  # instead of a uniform number zero, where its logarithm is needed
+
+
+class AbstractDistribution(abc.ABC):
+    """A distribution of numbers, vectors or matrices."""
+
+    @property
+    @abc.abstractmethod
+    def width(self) -> int:
+        """Uniform numbers that one draw takes."""
+
+    @property
+    @abc.abstractmethod
+    def shape(self) -> tuple[int, ...]:
+        """Shape of one draw."""
+
+    @abc.abstractmethod
+    def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
+        """Return draws, one for each row of uniform numbers."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Uniform(AbstractDistribution):
+    """Numbers between two bounds, or vectors of them if the bounds are vectors.
+
+    Example:
+        >>> Uniform(1.0, 3.0).draw(np.array([[0.0], [0.5]]))
+        array([1., 2.])
+    """
+
+    low: Any
+    high: Any
+
+    def __post_init__(self) -> None:
+        _bounds(self, "Uniform")
+
+    @property
+    def width(self) -> int:
+        return int(np.size(self.low))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return np.shape(self.low)
+
+    def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
+        """Return draws, one for each row of uniform numbers."""
+        u = uniform.reshape(-1, *self.shape)
+        return self.low + (np.asarray(self.high) - self.low) * u
+
+
+@dataclasses.dataclass(frozen=True)
+class LogUniform(AbstractDistribution):
+    """Positive numbers whose logarithms lie evenly between those of two bounds.
+
+    Example:
+        >>> LogUniform(0.01, 100.0).draw(np.array([[0.5]]))
+        array([1.])
+    """
+
+    low: Any
+    high: Any
+
+    def __post_init__(self) -> None:
+        _bounds(self, "LogUniform")
+        if not np.min(self.low) > 0:
+            raise error("LogUniform(low=...)", "be positive", f"{self.low}", "Pass positive bounds, or use Uniform.")
+
+    @property
+    def width(self) -> int:
+        return int(np.size(self.low))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return np.shape(self.low)
+
+    def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
+        """Return draws, one for each row of uniform numbers."""
+        draws = np.exp(Uniform(np.log(self.low), np.log(self.high)).draw(uniform))
+        return np.clip(draws, self.low, self.high)  # logarithms of the bounds are rounded
+
+
+@dataclasses.dataclass(frozen=True)
+class Normal(AbstractDistribution):
+    """Normal numbers, or with `size` vectors of independent ones.
+
+    Example:
+        >>> Normal(1.0, 2.0).draw(np.array([[0.5]]))
+        array([1.])
+    """
+
+    mean: Any = 0.0
+    deviation: Any = 1.0
+    size: int | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "mean", float(number("Normal(mean=...)", self.mean)))
+        spread = positive("Normal(deviation=...)", self.deviation, "Pass a positive standard deviation.")
+        object.__setattr__(self, "deviation", float(spread))
+        if self.size is not None:
+            count("Normal(size=...)", self.size, "Pass the length of the vectors.")
+
+    @property
+    def width(self) -> int:
+        return 1 if self.size is None else self.size
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return () if self.size is None else (self.size,)
+
+    def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
+        """Return draws, one for each row of uniform numbers."""
+        return self.mean + self.deviation * ndtri(np.maximum(uniform, _LEAST)).reshape(-1, *self.shape)
+
+
+@dataclasses.dataclass(frozen=True)
+class Direction(AbstractDistribution):
+    """Vectors of one length that point anywhere with the same probability.
+
+    Example:
+        >>> Direction(3, length=2.0).draw(np.array([[0.5, 0.9, 0.5]])).round(12)
+        array([[0., 2., 0.]])
+    """
+
+    size: int
+    length: Any = 1.0
+
+    def __post_init__(self) -> None:
+        count("Direction(size=...)", self.size, "Pass the length of the vectors.")
+        object.__setattr__(self, "length", float(positive("Direction(length=...)", self.length, "Pass their norm.")))
+
+    @property
+    def width(self) -> int:
+        return self.size
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return (self.size,)
+
+    def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
+        """Return draws, one for each row of uniform numbers."""
+        x = Normal(size=self.size).draw(uniform)
+        return self.length * x / np.sqrt((x * x).sum(axis=1, keepdims=True))
+
+
+@dataclasses.dataclass(frozen=True)
+class MassTensor(AbstractDistribution):
+    r"""Mass tensors $J = Q\,\mathrm{diag}(\lambda)\,Q^T$: eigenvalues between two bounds, axes that point anywhere.
+
+    Example:
+        >>> J = MassTensor(3, 0.5, 2.0).draw(np.random.default_rng(0).random((5, 12)))
+        >>> bool((J == J.swapaxes(1, 2)).all()), bool((np.linalg.eigvalsh(J) > 0.49).all())
+        (True, True)
+    """
+
+    n: int
+    low: Any
+    high: Any
+
+    def __post_init__(self) -> None:
+        count("MassTensor(n=...)", self.n, "Pass the dimension of the body.")
+        _bounds(self, "MassTensor")
+        if np.ndim(self.low) or not self.low > 0:
+            raise error("MassTensor(low=...)", "be one positive number", f"{self.low}", "Pass the least eigenvalue.")
+
+    @property
+    def width(self) -> int:
+        return self.n * (self.n + 1)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return (self.n, self.n)
+
+    def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
+        """Return draws, one for each row of uniform numbers."""
+        eigenvalues = self.low + (self.high - self.low) * np.ascontiguousarray(uniform[:, : self.n].T)
+        normal = np.ascontiguousarray(Normal(size=self.n**2).draw(uniform[:, self.n :]).T)
+        J = np.zeros((self.n, self.n, len(uniform)))  # members last: NumPy is slow along short axes
+        for eigenvalue, x in zip(eigenvalues, _orthonormal(normal.reshape(self.n, self.n, -1)), strict=True):
+            J += eigenvalue * x[:, None] * x[None]
+        return np.ascontiguousarray(np.moveaxis((J + J.swapaxes(0, 1)) / 2, -1, 0))
+
+
+@dataclasses.dataclass(frozen=True)
+class Choice(AbstractDistribution):
+    """One of some values, all with the same probability.
+
+    Example:
+        >>> Choice([1.0, 5.0]).draw(np.array([[0.2], [0.7]]))
+        array([1., 5.])
+    """
+
+    values: Any
+
+    def __post_init__(self) -> None:
+        values = np.asarray(self.values)
+        checked = array("Choice(values=...)", values, (None,) * max(1, values.ndim), "Pass a list of values.")
+        if not len(checked):
+            raise error("Choice(values=...)", "hold at least one value", "none", "Pass a list of values.")
+        object.__setattr__(self, "values", checked.tolist())
+
+    @property
+    def width(self) -> int:
+        return 1
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return np.shape(self.values)[1:]
+
+    def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
+        """Return draws, one for each row of uniform numbers."""
+        return np.asarray(self.values)[(uniform[:, 0] * len(self.values)).astype(int)]
+
+
+DISTRIBUTIONS = {kind.__name__: kind for kind in (Uniform, LogUniform, Normal, Direction, MassTensor, Choice)}
+
+
+def _bounds(owner: Any, name: str) -> None:
+    """Check and keep two bounds of one shape as plain numbers, which are written to stores exactly."""
+    low, high = np.broadcast_arrays(np.asarray(owner.low), np.asarray(owner.high))
+    remedy = "Pass numbers, or vectors of one length."
+    low, high = (array(f"{name}({side}=...)", x, low.shape, remedy) for side, x in (("low", low), ("high", high)))
+    if not np.all(low <= high):
+        raise error(f"{name}(high=...)", "not be below `low`", f"{high} for low {low}", "Exchange the two.")
+    object.__setattr__(owner, "low", low.tolist())
+    object.__setattr__(owner, "high", high.tolist())
+
+
+def _orthonormal(rows: Float[np.ndarray, "n n count"]) -> list[Float[np.ndarray, "n count"]]:
+    """Return orthonormal rows of the same flags by Gram-Schmidt, which has the same bits in any company."""
+    done: list[np.ndarray] = []
+    for x in rows:
+        for y in 2 * done:  # twice is enough
+            x = x - (x * y).sum(axis=0) * y
+        done.append(x / np.sqrt((x * x).sum(axis=0)))
+    return done

@@ -1,0 +1,208 @@
+"""The task of most sweeps: run the members of a block as an ensemble, keep what reductions make of it."""
+
+import dataclasses
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from nonholo import io
+from nonholo._checks import array, count, error
+from nonholo.discrete import Discretization
+from nonholo.discrete._discretization import as_discretization
+from nonholo.discrete._start import one_start
+from nonholo.ensembles._block import MemberBlock
+from nonholo.ensembles._describe import function_from, function_name
+from nonholo.ensembles._names import OUTCOME
+from nonholo.ensembles._reductions import REDUCTIONS
+from nonholo.simulation import Ensemble, ensemble
+
+_STARTS = ("body_velocity", "restricted_velocity", "momentum")
+_COMPONENT = re.compile(r"(\w+)\[(\d+)\]")
+_MEMBER = re.compile(r"This is member (\d+)\.")
+_BLOCK, _NUMBERS = 1 << 16, 1 << 22  # members of a block, and numbers of all their states
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class EnsembleTask:
+    r"""Run the members of a design and keep some numbers of each.
+
+    What the design does not name is as given here. Names of a design are parameters of the system, "time_step", a start
+    or one of its components, such as "restricted_velocity[0]".
+
+    Reductions: "final_state" (restricted momentum, energy and compact pose of the last good state that is saved, and
+    the number of good steps), "energy_drift" (of that state, relative), "limit_angle" (total turn of a plane sleigh;
+    angle between the first and the last spatial axis of a top with n = 3), "turning_deviation" (of a plane sleigh,
+    relative to the total turn of its flow: the part that is missing), "branch_counts" (real values of the map over
+    the first momentum), "lyapunov" (largest finite-time exponent of the momenta: growth of the most stretched
+    direction, 1/time). A function of your own gets the `Ensemble` of a block and returns a dictionary of arrays with a
+    leading member axis; of a tuple (dimensions, array) the names label the other axes.
+
+    Attributes:
+        discrete: The discretised system.
+        steps: Number of steps.
+        start: Name of the start and its value for all members.
+        reductions: What to keep.
+        save_every: Steps between the states that reductions see; None for the last one alone. With "limit_angle" or
+            "lyapunov", which need all states, it is 1.
+        reconstruct: Whether there are poses.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        >>> task = nh.EnsembleTask(sleigh, steps=100, restricted_velocity=(1.0, 0.2), reductions=["energy_drift"])
+        >>> from tempfile import TemporaryDirectory
+        >>> with TemporaryDirectory() as folder:
+        ...     found = nh.sweep(task, nh.Grid({"a": [0.1, 0.5], "inertia": [1.0, 2.0, 3.0]}), f"{folder}/sleighs.zarr")
+        ...     dict(found.sizes), float(found["energy_drift"].max()) < 1e-13
+        ({'a': 2, 'inertia': 3}, True)
+    """
+
+    discrete: Discretization
+    steps: int
+    start: tuple[str, Any] | None
+    reductions: tuple[str | Callable[[Ensemble], Any], ...]
+    save_every: int | None
+    reconstruct: bool
+
+    def __init__(
+        self,
+        discrete: Discretization,
+        *,
+        steps: int,
+        body_velocity: Any = None,
+        restricted_velocity: Any = None,
+        momentum: Any = None,
+        reductions: Any = ("final_state",),
+        save_every: int | None = None,
+        reconstruct: bool = True,
+    ) -> None:
+        starts = dict(zip(_STARTS, (body_velocity, restricted_velocity, momentum), strict=True))
+        given = [(name, _start(name, value)) for name, value in starts.items() if value is not None]
+        if given:
+            one_start("EnsembleTask", **starts)
+        if save_every is not None:
+            save_every = count("EnsembleTask(save_every=...)", save_every, "Pass the steps between states, or None.")
+        kept = {
+            "discrete": as_discretization("EnsembleTask(discrete=...)", discrete, composed=True),
+            "steps": count("EnsembleTask(steps=...)", steps, "Pass the number of steps."),
+            "start": given[0] if given else None,
+            "reductions": _checked_reductions(reductions),
+            "save_every": save_every,
+            "reconstruct": bool(reconstruct),
+        }
+        for name, value in kept.items():
+            object.__setattr__(self, name, value)
+
+    def __call__(self, block: MemberBlock) -> dict[str, Any]:
+        """Run a block of members and reduce it."""
+        starts, parameters = self._split(block)
+        run = {"steps": self.steps, "save_every": self._every, "reconstruct": self.reconstruct}
+        try:
+            batch = ensemble(self.discrete, parameters=parameters or None, **run, **starts)
+        except ValueError as failure:  # its members are counted from the first one of the block
+            told = _MEMBER.sub(lambda number: f"This is member {block.first + int(number[1])}.", str(failure))
+            raise ValueError(told) from failure
+        found: dict[str, Any] = {OUTCOME: batch.outcome}
+        for reduction in self.reductions:
+            more = REDUCTIONS[reduction].function(batch) if isinstance(reduction, str) else reduction(batch)
+            _add(found, more)
+        return found
+
+    @property
+    def block(self) -> int:
+        """Members of a block that make a good piece of work."""
+        states = 1 if self._every is None else 1 + self.steps // self._every
+        state = 2 * self.discrete.system.rank + self.discrete.system.group.pose_size
+        return max(32, min(_BLOCK, _NUMBERS // (states * state)) // 32 * 32)
+
+    @property
+    def _every(self) -> int | None:
+        """Steps between states: every one, if a built-in reduction needs all of them."""
+        needs = any(isinstance(r, str) and REDUCTIONS[r].needs_all for r in self.reductions)
+        return 1 if needs else self.save_every
+
+    def check_design(self, names: list[str]) -> None:
+        """Refuse a design that names what the task does not know, no start, or several."""
+        whole = [name for name in names if name in _STARTS]
+        if len(whole) > 1:
+            raise error("sweep(design=...)", "vary one start", " and ".join(whole), "Choose one.")
+        if not whole and self.start is None:
+            raise error("sweep(task=...)", "have a start", "none", "Pass body_velocity=..., or vary it in the design.")
+        for name in names:
+            if part := _COMPONENT.fullmatch(name):
+                self._check_component(name, part[1], int(part[2]), whole)
+            elif name not in self._fields and name not in _STARTS:
+                kind, known = type(self.discrete.system).__name__, ", ".join(self._fields)
+                remedy = f"{kind} has {known}; starts are {', '.join(_STARTS)}."
+                raise error("sweep(design=...)", "name parameters of the system or starts", repr(name), remedy)
+
+    def _check_component(self, name: str, start: str, component: int, whole: list[str]) -> None:
+        """Refuse a component of a start that the task does not have, or that the design varies as a whole."""
+        if whole or self.start is None or self.start[0] != start:
+            remedy = f"Pass EnsembleTask(..., {start}=...) with what the other components are."
+            raise error("sweep(design=...)", "vary components of the start of the task", repr(name), remedy)
+        if component >= len(self.start[1]):
+            got = f"{name!r} of a start with {len(self.start[1])}"
+            raise error("sweep(design=...)", "vary components that there are", got, "They are counted from 0.")
+
+    @property
+    def _fields(self) -> list[str]:
+        return [*self.discrete.system.leaves, "inertia_operator", "time_step"]
+
+    def _split(self, block: MemberBlock) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Return the start of each member and the parameters in which members differ."""
+        whole = [name for name in block if name in _STARTS]
+        name, value = (whole[0], block[whole[0]]) if whole else self.start or ("", np.zeros(0))
+        rows = np.broadcast_to(value, (block.count, np.shape(value)[-1])).copy()
+        for other in block:
+            if part := _COMPONENT.fullmatch(other):
+                rows[:, int(part[2])] = block[other]
+        parameters = {other: block[other] for other in block if other in self._fields}
+        return {name: rows}, parameters
+
+    def describe(self) -> dict[str, Any]:
+        """Return the task as plain data."""
+        named = [r if isinstance(r, str) else function_name(r) for r in self.reductions]
+        start = None if self.start is None else [self.start[0], self.start[1].tolist()]
+        return {
+            "kind": "EnsembleTask",
+            **io.identity_of(self.discrete),
+            "steps": self.steps,
+            "start": start,
+            "reductions": named,
+            "save_every": self.save_every,
+            "reconstruct": self.reconstruct,
+        }
+
+
+def ensemble_task_from(told: dict[str, Any]) -> EnsembleTask:
+    """Return the task of a description."""
+    reductions = [name if name in REDUCTIONS else function_from(name) for name in told["reductions"]]
+    start = dict([told["start"]]) if told["start"] else {}
+    options = {name: told[name] for name in ("steps", "save_every", "reconstruct")}
+    motion: Any = io.restore_motion(told, None)
+    return EnsembleTask(motion, reductions=reductions, **options, **start)
+
+
+def _start(name: str, value: Any) -> np.ndarray:
+    remedy = "Pass the start of all members; what differs belongs to the design."
+    return array(f"EnsembleTask({name}=...)", value, (None,), remedy)
+
+
+def _checked_reductions(reductions: Any) -> tuple[Any, ...]:
+    several = tuple(reductions) if isinstance(reductions, list | tuple) else (reductions,)
+    for reduction in several:
+        if not (callable(reduction) or (isinstance(reduction, str) and reduction in REDUCTIONS)):
+            remedy = f"Choose among {', '.join(REDUCTIONS)}, or pass a function of an Ensemble."
+            raise error("EnsembleTask(reductions=...)", "be names or functions", repr(reduction), remedy)
+    return several
+
+
+def _add(found: dict[str, Any], more: Any) -> None:
+    """Add what a reduction returned, refused if it would replace what another one did."""
+    named = more if isinstance(more, Mapping) else {"result": more}
+    for name in named:
+        if name in found:
+            raise error("EnsembleTask(reductions=...)", "return each name once", repr(name), "Rename one.")
+    found |= named

@@ -1,0 +1,42 @@
+"""Names of arrays and of dimensions in the store of a sweep: what file systems and xarray take."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from nonholo._checks import error
+
+OUTCOME = "outcome"
+_TAKEN = ("run", "zarr.json")
+
+
+class Axes(NamedTuple):
+    """The dimensions of an array and their lengths."""
+
+    dimensions: tuple[str, ...]
+    shape: tuple[int, ...]
+
+
+def array_name(where: str, name: Any) -> str:
+    """Return the name of an array, refused if no file or no attribute can be called so."""
+    if not isinstance(name, str) or not name or set("/\\") & set(name) or name.startswith((".", "_")):
+        raise error(where, "have names without slashes that begin with a letter", repr(name), "Rename it.")
+    if name in _TAKEN:
+        raise error(where, f"leave the names {', '.join(_TAKEN)} to the store", repr(name), "Rename it.")
+    return name
+
+
+def check_dimensions(arrays: Mapping[str, Axes], coordinates: Mapping[str, Axes]) -> None:
+    """Refuse a name that would mean two things, as xarray does when it opens the result."""
+    lengths: dict[str, int] = {}
+    for name, (dimensions, shape) in [*coordinates.items(), *arrays.items()]:
+        where = f"task(...)[{name!r}]"
+        if len(set(dimensions)) < len(dimensions):
+            raise error(where, "name each axis otherwise", repr(dimensions), "Name them apart.")
+        for dimension, length in zip(dimensions, shape, strict=True):
+            if lengths.setdefault(dimension, length) != length:
+                got = f"{length} where it was {lengths[dimension]}"
+                raise error(where, f"have one length along {dimension!r}", got, "Name the two axes apart.")
+    for name in arrays:
+        if name in lengths or name in coordinates:
+            where = f"task(...)[{name!r}]"
+            raise error(where, "have a name that the design and dimensions do not have", repr(name), "Rename it.")

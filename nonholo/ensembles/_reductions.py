@@ -1,0 +1,142 @@
+"""Built-in reductions: what a sweep keeps of each member of an ensemble."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from nonholo._checks import error
+from nonholo._results import Outcome
+from nonholo._types import Float
+from nonholo.analysis import step_jacobians
+from nonholo.analysis._asymptotics import turn_of_flow
+from nonholo.discrete import displacements_over
+from nonholo.discrete._branch_equations import has_frame
+from nonholo.simulation import Ensemble
+from nonholo.simulation._ensemble_start import applied, have_kernel, scalar_members
+from nonholo.systems import ChaplyginSleigh
+
+Reduced = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]
+
+
+class Reduction(NamedTuple):
+    """A reduction and whether it needs every state."""
+
+    function: Callable[[Ensemble], Reduced]
+    needs_all: bool = False
+
+
+def _final_state(batch: Ensemble) -> Reduced:
+    last = _last(batch)
+    rows = np.arange(len(batch))
+    found: Reduced = {
+        "final_momentum": (("component",), batch.restricted_momentum[rows, last], _told("restricted momentum")),
+        "final_energy": ((), batch.energy[rows, last], _told("reduced constrained energy")),
+        "steps_done": ((), batch.steps_done, _told("good steps", "1")),
+    }
+    if batch.pose is not None:
+        found["final_pose"] = ("pose_component",), batch.pose[rows, last], _told("compact pose, canonical frame")
+    return found
+
+
+def _energy_drift(batch: Ensemble) -> Reduced:
+    begun, ended = batch.first_energy, batch.energy[np.arange(len(batch)), _last(batch)]
+    with np.errstate(invalid="ignore"):  # 0/0 at rest, where energy cannot drift
+        drift = np.where(ended == begun, 0.0, np.abs(ended - begun) / begun)
+    return {"energy_drift": ((), np.where(np.isfinite(ended), drift, np.nan), _told("relative error of energy", "1"))}
+
+
+def _limit_angle(batch: Ensemble) -> Reduced:
+    if not have_kernel(batch.members):
+        got, remedy = repr(batch.members.discrete), "Write a reduction of your own."
+        raise error("reduction 'limit_angle'", "have a plane sleigh or a top with n = 3", got, remedy)
+    if isinstance(batch.members.discrete.system, ChaplyginSleigh):
+        return {"heading_turn": ((), _heading_turn(batch), _told("total turn of the heading", "rad"))}
+    return {"axis_angle": ((), _axis_angle(batch), _told("angle between the axes in space", "rad"))}
+
+
+def _heading_turn(batch: Ensemble) -> Float[np.ndarray, "M"]:
+    """Sum the angles of the steps, which know of full turns: the first chart coordinate is the tangent of the half."""
+    angles = 2 * np.arctan(batch.cayley[:, :-1, 0])
+    taken = np.arange(angles.shape[1]) < batch.steps_done[:, None]
+    return np.where(taken, angles, 0.0).sum(axis=1)
+
+
+def _turning_deviation(batch: Ensemble) -> Reduced:
+    """Compare the turn of sleighs with that of the flow, to which it tends from below as the time step tends to 0."""
+    if not isinstance(batch.members.discrete.system, ChaplyginSleigh) or not have_kernel(batch.members):
+        got, remedy = repr(batch.members.discrete), "Keep another reduction."
+        raise error("reduction 'turning_deviation'", "have a plane sleigh", got, remedy)
+    mass, inertia, a = (batch.members.values(name) for name in ("mass", "inertia", "a"))
+    with np.errstate(divide="ignore", invalid="ignore"):  # a balanced sleigh turns for ever
+        part = np.abs(_heading_turn(batch)) / np.where(a == 0, np.nan, turn_of_flow(mass, inertia, a))
+    missing = np.where(batch.outcome == Outcome.successful, 1 - part, np.nan)
+    return {"turning_deviation": ((), missing, _told("part of the flow's total turn that is missing", "1"))}
+
+
+def _axis_angle(batch: Ensemble) -> Float[np.ndarray, "M"]:
+    if batch.pose is None:
+        raise error("reduction 'limit_angle'", "have poses", "reconstruct=False", "Leave that out.")
+    ends = np.stack([np.zeros_like(batch.steps_done), _last(batch)], axis=1)
+    rows = np.arange(len(batch))[:, None]
+    r, pose = batch.reduced_momentum[rows, ends], batch.pose[rows, ends]
+    velocity = applied(np.linalg.inv(scalar_members(batch.members).inertia), r)
+    body = np.stack([-velocity[..., 1], velocity[..., 0], np.zeros_like(velocity[..., 0])], axis=-1)
+    axes = (batch.members.discrete.system.group.matrix_from_pose(pose) @ body[..., None])[..., 0]
+    first, last = axes[:, 0], axes[:, 1]
+    return np.arctan2(np.linalg.norm(np.cross(first, last), axis=1), (first * last).sum(axis=1))
+
+
+def _branch_counts(batch: Ensemble) -> Reduced:
+    each = [(batch.members.of(member), r) for member, r in enumerate(batch.first_momentum)]
+    found = [displacements_over(discrete, discrete.system.from_canonical(r)) for discrete, r in each]
+    counts = np.array([int(values.multiplicity[values.is_real].sum()) for values in found])
+    return {"real_branches": ((), counts, _told("real values of the map over the first momentum", "1"))}
+
+
+def _lyapunov(batch: Ensemble) -> Reduced:
+    discrete = batch.members.discrete
+    if discrete.order != 2 or not has_frame(discrete):
+        requirement = "have a top or a sleigh with difference 'matrix' and order 2"
+        raise error("reduction 'lyapunov'", requirement, repr(discrete), "Write a reduction of your own.")
+    slopes = np.stack([_jacobians(batch, member) for member in range(len(batch))])
+    product, growth = np.broadcast_to(np.eye(slopes.shape[-1]), slopes[:, 0].shape), np.zeros(len(batch))
+    for step in range(slopes.shape[1]):
+        product = slopes[:, step] @ product
+        norms = np.linalg.norm(product, axis=(1, 2))
+        product, growth = product / norms[:, None, None], growth + np.log(norms)
+    growth += np.log(np.linalg.norm(product, ord=2, axis=(1, 2)))
+    elapsed = batch.steps_done * batch.members.time_step
+    with np.errstate(invalid="ignore", divide="ignore"):
+        exponent = np.where(elapsed > 0, growth / elapsed, np.nan)
+    return {"lyapunov": ((), exponent, _told("largest finite-time Lyapunov exponent of momenta", "1 / time unit"))}
+
+
+def _jacobians(batch: Ensemble, member: int) -> Float[np.ndarray, "steps k k"]:
+    """Return the derivatives of the steps of a member, the identity after its end."""
+    done, k = int(batch.steps_done[member]), batch.reduced_momentum.shape[-1]
+    slopes = np.broadcast_to(np.eye(k), (batch.steps, k, k)).copy()
+    orbit = batch.orbit(member)[:done]
+    slopes[:done] = step_jacobians(batch.members.of(member), orbit.displacement)
+    return slopes
+
+
+def _last(batch: Ensemble) -> np.ndarray:
+    """Return the row of the last good state of each member; of one that did not start any row, which is NaN."""
+    if batch.save_every is None:
+        return np.zeros(len(batch), dtype=int)
+    return batch.steps_done // batch.save_every
+
+
+def _told(meaning: str, units: str = "") -> dict[str, str]:
+    return {"long_name": meaning} | ({"units": units} if units else {})
+
+
+REDUCTIONS = {
+    "final_state": Reduction(_final_state),
+    "energy_drift": Reduction(_energy_drift),
+    "limit_angle": Reduction(_limit_angle, needs_all=True),
+    "turning_deviation": Reduction(_turning_deviation, needs_all=True),
+    "branch_counts": Reduction(_branch_counts),
+    "lyapunov": Reduction(_lyapunov, needs_all=True),
+}

@@ -1,0 +1,129 @@
+"""`resume`: going on with what a store holds, an orbit or a sweep."""
+
+import errno
+import warnings
+from pathlib import Path
+from typing import Any
+
+import xarray
+
+from nonholo import io, simulation
+from nonholo._checks import error
+from nonholo._progress import progress_bar
+from nonholo.discrete import Discretization
+from nonholo.ensembles._begin import restored_task
+from nonholo.ensembles._blocks import Done, Work
+from nonholo.ensembles._scheduling import checked_scheduler, do_all
+from nonholo.ensembles._standing import opened_result, standing_of
+from nonholo.ensembles._store import SweepStore, attributes_of, open_store
+
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+def resume(
+    store: str | Path,
+    *,
+    discrete: Discretization | None = None,
+    task: Any = None,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    throw: bool = True,
+    progress: bool = False,
+) -> Any:
+    """Go on with the run or the sweep of a store, with the bits of one that was never stopped.
+
+    Every finished block is read first. A missing, cut or changed chunk is reported by name in a `RuntimeWarning`, and
+    its block is computed again, an orbit's from its last checkpoint. What is finished and sound is only opened.
+
+    Args:
+        store: A store that `simulate(..., store=...)` or `sweep` began.
+        discrete: The discretisation of an orbit; needed only if its system or group is of your own making, which a
+            store cannot hold. Another one than that of the store is refused.
+        task: The task of a sweep; needed only if it is, or holds, a function that cannot be imported by its name.
+        scheduler: As in `sweep`.
+        workers: As in `sweep`.
+        throw: Raise if an orbit cannot go on; otherwise return the good steps and the outcome.
+        progress: Show a progress bar on standard error.
+
+    Returns:
+        The orbit, as from `simulate(..., store=...)`, or the result of the sweep.
+
+    Raises:
+        FileNotFoundError: There is nothing at the path.
+        ValueError: The path is no store of a run with checkpoints or of a sweep, or of another schema, discretisation
+            or task.
+        BlockingIOError: Another process is writing the store; the message names it.
+        OSError: The disk is full; the store stays valid.
+        OutcomeError: With `throw`, the orbit could not go on.
+
+    Example:
+        >>> orbit = nh.resume("run.zarr")  # doctest: +SKIP
+    """
+    stored = io.format_of(store)
+    if stored is None and Path(store).exists():
+        got, remedy = f"'{store}', of which zarr.json does not say that", "Check the path, or run it again."
+        raise error("resume(store=...)", "be a store of a run or a sweep", got, remedy)
+    if stored != io.SWEEP_FORMAT:
+        given = {"task": task, "scheduler": scheduler, "workers": workers}
+        for name, value in given.items():
+            if value is not None:
+                got, remedy = f"{value!r} for '{store}'", "Leave it out for an orbit."
+                raise error(f"resume({name}=...)", "come with the store of a sweep", got, remedy)
+        return simulation.resume(store, discrete=discrete, throw=throw, progress=progress)
+    if discrete is not None:
+        remedy = "Pass task=..., or nothing."
+        raise error("resume(discrete=...)", "come with the store of an orbit", f"one for '{store}'", remedy)
+    name, workers = checked_scheduler(scheduler, workers)
+    opened = open_store(store)
+    return go_on(Work(opened, restored_task(opened, task)), name, workers, progress)
+
+
+def go_on(work: Work, scheduler: str, workers: int | None, progress: bool) -> xarray.Dataset:
+    """Do every block that a store lacks, and open the result."""
+    store = work.store
+    again = f"nonholo.resume({str(store.path)!r})"
+    with io.locked(store.path):
+        store.prepare()
+        try:
+            _complete(work, scheduler, workers, progress)
+        except KeyboardInterrupt:
+            told = f"Stopped at {standing_of(store.path)}. Go on with {again} (nonholo resume)."
+            raise KeyboardInterrupt(told) from None
+        except OSError as failure:
+            remedy = "Free space" if failure.errno in _FULL else "Remedy that"
+            reason = f"{failure.strerror or failure}. The sweep stands at {standing_of(store.path)}. {remedy}"
+            raise OSError(failure.errno or errno.EIO, f"{reason}, then call {again}", str(store.path)) from failure
+    return opened_result(store)
+
+
+def _complete(work: Work, scheduler: str, workers: int | None, progress: bool) -> None:
+    """Do every block, tell what was damaged and who works with other versions."""
+    store = work.store
+    total, done, versions = store.design.members, 0, {attributes_of(store.path)["versions"]}
+    with progress_bar("members", progress) as report:
+
+        def take(finished: Done) -> None:
+            nonlocal done
+            done += finished.mark.members
+            report(done, total)
+            if finished.damaged:
+                which = f"Block {finished.block} is computed again."
+                _warn(f"The store '{store.path}' is damaged: {finished.damaged}. {which}")
+            if finished.versions not in versions:
+                versions.add(finished.versions)
+                _warn(_other_versions(store, finished))
+
+        do_all(work, scheduler, workers, take)
+    if not store.is_finished:
+        store.finish()
+
+
+def _other_versions(store: SweepStore, finished: Done) -> str:
+    return (
+        f"The store '{store.path}' was begun with {attributes_of(store.path)['versions']}, but {finished.mark.writer} "
+        f"has {finished.versions}: what it computes may differ in the last bits."
+    )
+
+
+def _warn(told: str) -> None:
+    warnings.warn(told, RuntimeWarning, stacklevel=2)

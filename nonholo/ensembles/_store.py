@@ -1,0 +1,252 @@
+"""The store of a sweep: one block is one chunk of each array, then its mark, a small file written after the data.
+
+Writes are atomic, so whoever writes can be killed at any moment. What a block holds depends on nothing but the task and
+the design, so two writers of one block write the same.
+"""
+
+import dataclasses
+import functools
+import json
+import shutil
+import uuid
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray
+import zarr
+from zarr.codecs import BloscCodec, Crc32cCodec
+
+from nonholo import io
+from nonholo._checks import error
+from nonholo.ensembles._describe import design_from
+from nonholo.ensembles._design import Design, axis_dimensions
+from nonholo.ensembles._layout import Layout, Piece
+from nonholo.ensembles._results import Output, Results
+
+FORMAT = "nonholo.sweep"
+SCHEMA = 1
+_AGAIN = "Run the sweep again."
+_CODECS = BloscCodec(cname="lz4", clevel=5, shuffle="bitshuffle"), Crc32cCodec()
+"""As fast as a sweep: the numbers of its members are too different from each other for a slower one to gain by it."""
+
+
+class Mark(NamedTuple):
+    """What is known of a finished block."""
+
+    members: int
+    outcomes: dict[str, int]
+    seconds: float
+    finished: float
+    writer: str
+    messages: list[list[Any]]
+
+
+@dataclasses.dataclass(frozen=True)
+class SweepStore:
+    """A store that a sweep is written to.
+
+    Attributes:
+        path: Where it is, the same for all who write.
+        made: Which one it is: another store at the same path has another number.
+    """
+
+    path: Path
+    made: str
+
+    def __reduce__(self) -> Any:
+        return SweepStore, (self.path, self.made)
+
+    @functools.cached_property
+    def layout(self) -> Layout:
+        """How members are cut in blocks."""
+        return Layout(*(tuple(sizes) for sizes in self._told["layout"]))
+
+    @functools.cached_property
+    def outputs(self) -> dict[str, Output]:
+        """What each array holds."""
+        return {name: Output(tuple(d), tuple(s), t, a) for name, (d, s, t, a) in self._told["outputs"].items()}
+
+    @functools.cached_property
+    def design(self) -> Design:
+        """The design; values along axes are read from their arrays."""
+        return design_from(self._told["design"], self._axis)
+
+    @property
+    def description(self) -> dict[str, Any]:
+        """The task and the design as plain data."""
+        return {"task": self._told["task"], "design": self._told["design"]}
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether the sweep came to its end; its metadata are consolidated then, which is done last."""
+        document = json.loads((self.path / "zarr.json").read_text())
+        return document["attributes"]["finished"] and "consolidated_metadata" in document
+
+    def write(self, piece: Piece, results: Results, mark: Mark) -> None:
+        """Write the chunks of a block, then its mark."""
+        self._mark_file(piece.number).unlink(missing_ok=True)
+        for name, rows in results.arrays.items():
+            self._chunk_file(name, piece.number).unlink(missing_ok=True)  # zarr would read a damaged one first
+            array, lengths = self._arrays[name], tuple(s.stop - s.start for s in piece.place)
+            array[piece.place] = rows.reshape(*lengths, *rows.shape[1:])
+        text = json.dumps(mark._asdict())
+        io.write_whole(self._mark_file(piece.number), f"{zlib.crc32(text.encode()):08x} {text}")
+
+    def mark(self, block: int) -> Mark | str | None:
+        """Return the mark of a block, what is wrong with it, or None if the block is not finished."""
+        try:
+            written = self._mark_file(block).read_text()
+        except FileNotFoundError:
+            return None
+        except UnicodeDecodeError:
+            return f"the mark {self._mark_file(block).name} cannot be read"
+        check, _, text = written.partition(" ")
+        if check != f"{zlib.crc32(text.encode()):08x}":
+            return f"the mark {self._mark_file(block).name} is damaged"
+        return Mark(**json.loads(text))
+
+    def marks(self) -> Iterator[Mark]:
+        """Return the marks that can be read, of finished blocks in any order."""
+        for file in (self.path / "run" / "blocks").glob("*.json"):
+            mark = self.mark(int(file.stem))
+            if isinstance(mark, Mark):
+                yield mark
+
+    def flaw(self, block: int) -> str | None:
+        """Say which chunk of a block is damaged, and how; None if all are sound."""
+        for name, array in self._arrays.items():
+            found = io.read_chunk(self.path, name, array, self._index(name, block), with_nan=True)
+            if isinstance(found, str):
+                return f"{found}, {io.chunk_name(name, array, self._index(name, block))}"
+        return None
+
+    def prepare(self) -> None:
+        """Remove what killed writers left and show that every array can be opened."""
+        for left in self.path.rglob("*.partial"):
+            left.unlink(missing_ok=True)
+        _ = self._arrays, self.design
+
+    def finish(self) -> None:
+        """Say that the sweep came to its end, and consolidate the metadata."""
+        io.edit_attributes(self.path, {"finished": True})
+        io.consolidate(self.path)
+
+    def _index(self, name: str, block: int) -> tuple[int, ...]:
+        return (*self.layout.index(block), *(0,) * len(self.outputs[name].shape))
+
+    def _chunk_file(self, name: str, block: int) -> Path:
+        return io.chunk_path(self.path, name, self._arrays[name], self._index(name, block))
+
+    def _mark_file(self, block: int) -> Path:
+        return self.path / "run" / "blocks" / f"{block}.json"
+
+    def _axis(self, name: str) -> np.ndarray:
+        array = _opened(self.path, name)
+        found = io.read_chunk(self.path, name, array, (0,) * array.ndim)
+        if isinstance(found, str):
+            got = f"{found}, in '{self.path}'"
+            raise error("resume(store=...)", f"hold the axis {name}", got, _AGAIN)
+        return found
+
+    @functools.cached_property
+    def _told(self) -> dict[str, Any]:
+        return json.loads(attributes_of(self.path)["sweep"])
+
+    @functools.cached_property
+    def _arrays(self) -> dict[str, zarr.Array]:
+        return {name: _opened(self.path, name) for name in self.outputs}
+
+
+@functools.lru_cache(maxsize=16)
+def store_of(store: SweepStore) -> SweepStore:
+    """Return the store of this process that stands for one that was sent: its arrays are opened once."""
+    return store
+
+
+def create_store(
+    path: Path,
+    description: dict[str, Any],
+    design: Design,
+    layout: Layout,
+    outputs: dict[str, Output],
+    extra: dict[str, Any],
+) -> SweepStore:
+    """Make a store without rows; it appears at the path only when it is complete."""
+    target = path.resolve()
+    if target.exists():
+        raise _exists(path)
+    part, made = io.sibling(target, "partial"), uuid.uuid4().hex
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        _create(part, made, description, design, layout, outputs, extra)
+        io.put_in_place(part, target, overwrite=False)
+    except OSError as failure:
+        if target.exists():
+            raise _exists(path) from None
+        reason = f"{failure.strerror}. Nothing was computed yet. Free space, or choose another path"
+        raise OSError(failure.errno, reason, str(path)) from failure
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+    return SweepStore(target, made)
+
+
+def _exists(path: Path) -> FileExistsError:
+    remedy = "Choose another path, or go on with it: nonholo.resume(store), sweep(..., resume=True)."
+    return FileExistsError(f"`sweep(store=...)` must be new. Got '{path}', which exists. {remedy}")
+
+
+def open_store(path: str | Path) -> SweepStore:
+    """Return the store of a sweep."""
+    stored = attributes_of(path)
+    return SweepStore(Path(path).resolve(), stored["made"])
+
+
+def attributes_of(path: str | Path) -> dict[str, Any]:
+    """Return the attributes of the store of a sweep, after checking that it is one of a known schema."""
+    return io.read_attributes(path, FORMAT, (SCHEMA,))
+
+
+def _create(
+    part: Path,
+    made: str,
+    description: dict[str, Any],
+    design: Design,
+    layout: Layout,
+    outputs: dict[str, Output],
+    extra: dict[str, Any],
+) -> None:
+    told = {
+        **description,
+        "layout": layout,
+        "outputs": {name: dataclasses.astuple(out) for name, out in outputs.items()},
+    }
+    about = {"format": FORMAT, "schema": SCHEMA, "made": made, "finished": False, "sweep": json.dumps(told)}
+    group = zarr.create_group(part, zarr_format=3, attributes=about | {"versions": io.versions_text()} | extra)
+    for name, values in design.axes.items():
+        variable = xarray.Variable(axis_dimensions(name, values), values, {"long_name": "value of the design"})
+        io.create_array(group, name, variable, len(values), len(values), is_coordinate=True)[:] = values
+    for name, output in outputs.items():
+        group.create_array(
+            name,
+            shape=(*layout.sizes, *output.shape),
+            dtype=output.dtype,
+            chunks=(*layout.chunk, *(max(1, size) for size in output.shape)),
+            compressors=_CODECS,
+            fill_value=output.fill,
+            dimension_names=[*design.sizes, *output.dimensions],
+            attributes=output.attributes,
+        )
+    group.create_group("run")  # or xarray would wonder what that folder is
+    (part / "run" / "blocks").mkdir()
+
+
+def _opened(path: Path, name: str) -> zarr.Array:
+    try:
+        array = zarr.open_array(path / name, mode="r+", zarr_format=3).with_config({"write_empty_chunks": True})
+    except Exception as failure:
+        got = f"'{path}', where its metadata cannot be read: {failure}"
+        raise error("resume(store=...)", f"hold the array {name}", got, _AGAIN) from failure
+    return array

@@ -1,0 +1,149 @@
+"""Poses as CSV, of an orbit or of a store of any length: all rows or no file, in bounded memory."""
+
+import contextlib
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import TextIO, cast
+
+from nonholo._checks import count, error
+from nonholo._progress import progress_bar
+from nonholo.io._pose_columns import Stretch, column_names, rows_of
+from nonholo.io._save import sibling
+from nonholo.io._stored_poses import open_poses
+from nonholo.orbit import Orbit, as_orbit
+from nonholo.systems import System
+
+_NUMBERS = 1 << 16  # formatted at once
+
+
+def orbit_to_csv(orbit: Orbit, path: str | Path, *, overwrite: bool = False) -> None:
+    r"""Write the times and poses of an orbit to a CSV file, in the user's body frame.
+
+    A header names the columns. The pose $g$ takes body coordinates to space.
+
+    | group | columns |
+    |---|---|
+    | SE(2) | `t,x,y,theta`, the heading unwrapped |
+    | SO(3) | `t,qw,qx,qy,qz`: unit quaternions, scalar first, Hamilton's product, signs continuous from row to row |
+    | SE(3) | `t,x,y,z,qw,qx,qy,qz` |
+    | SO(n) | `t,r11,r12,...`, the entries of the rotation row by row; from n = 10 on `r1_1` |
+    | SE(n) | `t,x1,...,xn,r11,r12,...` |
+    | translations | `t,x1,...,xn` |
+    | other groups | `t,r11,r12,...`, the entries of the matrix |
+
+    Numbers have as many digits as they need to be read back exactly. The file appears only when it is complete.
+
+    Args:
+        orbit: What to write.
+        path: A new file.
+        overwrite: Replace an older file.
+
+    Raises:
+        FileExistsError: The path exists, and is not to be replaced.
+        OSError: The file cannot be written, for example because the disk is full; nothing is left behind.
+        ValueError: The orbit has no poses.
+
+    Example:
+        >>> orbit_to_csv(orbit, "poses.csv")  # doctest: +SKIP
+    """
+    as_orbit("orbit_to_csv(orbit=...)", orbit, "one in coordinates is in orbit.to_dataset().to_dataframe().")
+    if orbit.pose is None:
+        remedy = "Run with reconstruct=True."
+        raise error("Orbit.to_csv(...)", "be asked of an orbit with poses", "reconstruct=False", remedy)
+    whole = Stretch(orbit.time, orbit.pose, orbit.turned)
+    with _new_file(Path(path), overwrite=overwrite) as file:
+        file.writelines(_lines(orbit.system, [whole], 1))
+
+
+def store_to_csv(
+    store: str | Path,
+    target: str | Path | TextIO,
+    *,
+    every: int = 1,
+    overwrite: bool = False,
+    progress: bool = False,
+) -> None:
+    """Write the poses of a store as `orbit_to_csv` does, chunk by chunk: an orbit of any length needs little memory.
+
+    Of a run that is not finished the finished blocks are written, and a `RuntimeWarning` says how far they go. The
+    store is read twice: damage is found before the first row is written.
+
+    Args:
+        store: A store of an orbit.
+        target: A new file, or a stream of text such as `sys.stdout`.
+        every: Write one in so many of the saved states, the first one always.
+        overwrite: Replace an older file.
+        progress: Show a progress bar.
+
+    Raises:
+        FileExistsError: The target exists, and is not to be replaced.
+        OSError: The store is not there, or the file cannot be written; nothing is left behind.
+        ValueError: The store holds no poses, or is damaged; the message names the array and the chunk.
+
+    Example:
+        >>> store_to_csv("run.zarr", "poses.csv", every=100)  # doctest: +SKIP
+    """
+    every = count("store_to_csv(every=...)", every, "Pass 1 for every saved state.")
+    path = Path(target) if isinstance(target, str | Path) else None
+    if path:
+        check_file(path, overwrite=overwrite)
+    poses = open_poses(Path(store))
+    poses.check()
+    opened = _new_file(path, overwrite=overwrite) if path else contextlib.nullcontext(cast(TextIO, target))
+    with opened as file, progress_bar("states", progress) as report:
+        stretches = _reported(poses.stretches(), lambda done: report(done, poses.rows))
+        file.writelines(_lines(poses.system, stretches, every))
+
+
+def _lines(system: System, stretches: Iterable[Stretch], every: int) -> Iterator[str]:
+    """Return the header, then many lines at a time: one template for all of them is faster than a writer of rows."""
+    names = column_names(system.group)
+    yield ",".join(names) + "\n"
+    line, most = ",".join(["%r"] * len(names)) + "\n", max(1, _NUMBERS // len(names))
+    for rows in rows_of(system, _cut(stretches, most), every):
+        yield line * len(rows) % tuple(rows.ravel().tolist())
+
+
+def _cut(stretches: Iterable[Stretch], most: int) -> Iterator[Stretch]:
+    """Cut stretches to so many states at most: decoded, and as text, they are many times larger."""
+    for time, pose, headings in stretches:
+        for first in range(0, len(time), most):
+            part = slice(first, first + most)
+            yield Stretch(time[part], pose[part], None if headings is None else headings[part])
+
+
+def _reported(stretches: Iterable[Stretch], report: Callable[[int], object]) -> Iterator[Stretch]:
+    done = 0
+    for stretch in stretches:
+        yield stretch
+        done += len(stretch.time)
+        report(done)
+
+
+@contextlib.contextmanager
+def _new_file(path: Path, *, overwrite: bool) -> Iterator[TextIO]:
+    """Give a file to write to, which takes its name only when it is complete."""
+    check_file(path, overwrite=overwrite)
+    target = path.resolve()
+    part = sibling(target, "partial")
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with part.open("w", encoding="ascii", newline="\n") as file:
+            yield file
+        check_file(path, overwrite=overwrite)
+        part.replace(target)
+    except FileExistsError:
+        raise
+    except OSError as failure:
+        reason = f"{failure.strerror}. Nothing at this path was changed. Free space, or choose another path"
+        raise OSError(failure.errno, reason, str(path)) from failure
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def check_file(path: Path, *, overwrite: bool) -> None:
+    """Refuse a path that exists, unless it is a file that may be replaced."""
+    if path.exists() and not (overwrite and path.is_file()):
+        how = "Choose another path"
+        remedy = f"It is not a file. {how}." if overwrite else f"{how}, or pass overwrite=True (--overwrite)."
+        raise FileExistsError(f"`to_csv(path=...)` must be new. Got '{path}', which exists. {remedy}")

@@ -1,0 +1,94 @@
+"""Poses as columns of numbers in the user's body frame: what they are called, and how one row continues another."""
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from nonholo._types import Float
+from nonholo.groups import AbstractMatrixGroup
+from nonholo.groups._quaternion import quaternion_from_matrix
+from nonholo.io._descriptions import describe_group
+from nonholo.orbit import configurations, unwrapped
+from nonholo.systems import System
+
+_HEADING = ["theta"]
+_QUATERNION = ["qw", "qx", "qy", "qz"]
+
+
+class Stretch(NamedTuple):
+    """Saved states that follow one another: times, compact poses, and headings where the run knows them."""
+
+    time: Float[np.ndarray, "K"]
+    pose: Float[np.ndarray, "K size"]
+    headings: Float[np.ndarray, "K"] | None
+
+
+def column_names(group: AbstractMatrixGroup) -> list[str]:
+    """Return the names of the columns: time, position, and how the body is turned.
+
+    Example:
+        >>> column_names(nh.SE(2)), column_names(nh.SO(3))
+        (['t', 'x', 'y', 'theta'], ['t', 'qw', 'qx', 'qy', 'qz'])
+    """
+    position, turn = _layout(group)
+    return ["t", *position, *turn]
+
+
+def rows_of(system: System, stretches: Iterable[Stretch], every: int) -> Iterator[Float[np.ndarray, "R c"]]:
+    """Return one in `every` of the states as rows of the columns; rows do not depend on how the motion is cut."""
+    position, turn = _layout(system.group)
+    n, first, before = len(position), 0, None
+    for time, pose, headings in _headed(stretches) if turn == _HEADING else stretches:
+        kept = slice(-first % every, None, every)
+        g = configurations(system, pose[kept])
+        turned = headings[kept, None] if headings is not None else _turned(g, turn, before)
+        rows = np.concatenate([time[kept, None], g[:, :n, n], turned], axis=1)
+        first, before = first + len(time), rows[-1:] if len(rows) else before
+        yield rows
+
+
+def _layout(group: AbstractMatrixGroup) -> tuple[list[str], list[str]]:
+    """Return the names of the position and of the turn; groups that are none of ours have all entries as turn."""
+    described = describe_group(group)
+    kind, n = described["group"], described.get("n", 0)
+    if kind == "Translations":
+        return _numbered(n), []
+    position = [] if kind != "SE" else list("xyz"[:n]) if n <= 3 else _numbered(n)
+    if (kind, n) == ("SE", 2):
+        return position, _HEADING
+    return position, _QUATERNION if n == 3 else _entries(n or group.size)
+
+
+def _numbered(n: int) -> list[str]:
+    return [f"x{i}" for i in range(1, n + 1)]
+
+
+def _entries(size: int) -> list[str]:
+    between = "" if size < 10 else "_"
+    return [f"r{i}{between}{j}" for i in range(1, size + 1) for j in range(1, size + 1)]
+
+
+def _headed(stretches: Iterable[Stretch]) -> Iterator[Stretch]:
+    """Give stretches on SE(2) headings, each going on from the one before."""
+    before = None
+    for stretch in stretches:
+        headings = unwrapped(stretch.pose, before) if stretch.headings is None else stretch.headings
+        before = headings[-1] if len(headings) else before
+        yield stretch._replace(headings=headings)
+
+
+def _turned(g: np.ndarray, names: list[str], before: np.ndarray | None) -> Float[np.ndarray, "R c"]:
+    """Return the rotations as quaternions or, row by row, as matrices."""
+    if names == _QUATERNION:
+        return _continued(quaternion_from_matrix(g[:, :3, :3]), None if before is None else before[:, -4:])
+    size = math.isqrt(len(names))
+    return g[:, :size, :size].reshape(len(g), len(names))
+
+
+def _continued(q: Float[np.ndarray, "R 4"], before: Float[np.ndarray, "1 4"] | None) -> Float[np.ndarray, "R 4"]:
+    """Return the quaternions, each with the sign that is nearer to the one before it."""
+    chain = np.concatenate([q[:1] if before is None else before, q])
+    signs = np.where(np.sum(chain[1:] * chain[:-1], axis=1) < 0, -1.0, 1.0)
+    return q * np.cumprod(signs)[: len(q), None]

@@ -1,0 +1,84 @@
+"""The poses of a store, chunk by chunk: of an unfinished run those of its finished blocks."""
+
+import json
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import zarr
+
+from nonholo._checks import error
+from nonholo.io._descriptions import restore_system, unstored
+from nonholo.io._load import checked_block, opened_array, read_attributes
+from nonholo.io._lock import owner_of
+from nonholo.io._pose_columns import Stretch
+from nonholo.io._stream import open_stream
+from nonholo.systems import System
+
+_WHERE = "store_to_csv(store=...)"
+_WANTED = ("time", "pose", "turned")
+
+
+class StoredPoses(NamedTuple):
+    """What of a store tells where the body is: its system, the number of saved states, their arrays."""
+
+    path: Path
+    system: System
+    rows: int
+    arrays: dict[str, zarr.Array]
+
+    def check(self) -> None:
+        """Read everything once, so that damage is found before the first row is used."""
+        for _ in self.stretches():
+            pass
+
+    def stretches(self) -> Iterator[Stretch]:
+        """Return the states chunk after chunk; only one chunk is in memory."""
+        chunk = self.arrays["pose"].chunks[0]
+        for number in range(-(-self.rows // chunk)):
+            kept = slice(self.rows - number * chunk)
+            found = {name: self._read(name, number)[kept] for name in self.arrays}
+            yield Stretch(found["time"], found["pose"], found.get("turned"))
+
+    def _read(self, name: str, number: int) -> np.ndarray:
+        array = self.arrays[name]
+        return checked_block(self.path, name, array, (number,) + (0,) * (array.ndim - 1))
+
+
+def open_poses(path: Path) -> StoredPoses:
+    """Open a store, finished or not; a warning says how far an unfinished one goes."""
+    stored = read_attributes(path)
+    try:
+        shapes = {name: tuple(shape) for name, shape in json.loads(stored["arrays"]).items() if name in _WANTED}
+        system = _system(path, stored)
+    except KeyError as failure:
+        raise error(_WHERE, "hold complete attributes", f"'{path}' without {failure}", "Run it again.") from failure
+    if "pose" not in shapes:
+        remedy = "Run it again with reconstruct=True: poses cannot be added later."
+        raise error(_WHERE, "hold poses", f"'{path}', which was run with reconstruct=False", remedy)
+    if "outcome" in stored:
+        arrays = {name: opened_array(path, name, shape) for name, shape in shapes.items()}
+        return StoredPoses(path, system, shapes["pose"][0], arrays)
+    stream = open_stream(path)
+    rows = stream.saved()
+    _warn(path, max(0, rows - 1) * stream.plan.every, stream.plan.steps)
+    return StoredPoses(path, system, rows, {name: opened_array(path, name, None) for name in shapes})
+
+
+def _system(path: Path, stored: dict[str, Any]) -> System:
+    """Return the system; the poses of a store need no more of its motion."""
+    parameters = json.loads(stored["parameters"])
+    missing = unstored(parameters)
+    if missing:
+        remedy = "Load it with nonholo.load_orbit(path, discrete=...), and write that orbit with its to_csv."
+        raise error(_WHERE, "hold its system as data", f"'{path}', whose {missing}", remedy)
+    return restore_system(stored["system"], parameters)  # type: ignore[return-value]
+
+
+def _warn(path: Path, done: int, steps: int) -> None:
+    owner = owner_of(path)
+    now = f"It is being written by {owner}." if owner else f"Go on with nonholo.resume({str(path)!r}) (nonholo resume)."
+    told = f"The run in '{path}' is not finished: its poses go up to step {done} of {steps}. {now}"
+    warnings.warn(told, RuntimeWarning, stacklevel=4)

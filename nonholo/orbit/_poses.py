@@ -1,0 +1,28 @@
+r"""Compact poses as matrices, and angles as continuous headings; also for parts of a motion."""
+
+import numpy as np
+
+from nonholo._types import Float
+from nonholo.systems import System
+
+_TURN = 2 * np.pi
+
+
+def configurations(system: System, pose: Float[np.ndarray, "K size"]) -> Float[np.ndarray, "K N N"]:
+    """Return the matrices, in the user's body frame, of compact poses in the canonical one."""
+    return system.group.matrix_from_pose(pose) @ system.group.inverse(system.frame)
+
+
+def unwrapped(pose: Float[np.ndarray, "K 4"], before: float | None = None) -> Float[np.ndarray, "K"]:
+    """Return the angles of compact poses on SE(2); the shorter turn leads to each, to the first one from `before`.
+
+    Full turns are counted in whole numbers, so no rounding gathers, and parts of a motion give the bits of the whole.
+
+    Example:
+        >>> pose = np.array([[-1.0, 0.1, 0.0, 0.0], [-1.0, -0.1, 0.0, 0.0]])
+        >>> unwrapped(pose).round(2), unwrapped(pose[1:], before=3.0).round(2)
+        (array([3.04, 3.24]), array([3.24]))
+    """
+    angle = np.arctan2(pose[:, 1], pose[:, 0])
+    passed = np.rint(np.diff(angle, prepend=angle[:1] if before is None else before) / _TURN)
+    return angle - _TURN * np.cumsum(passed)

@@ -1,0 +1,84 @@
+"""Poincare sections: two quantities of the states at the crossings of an event."""
+
+import dataclasses
+from collections.abc import Callable
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
+
+from nonholo._checks import error
+from nonholo._types import Float
+from nonholo.orbit import Orbit
+from nonholo.plotting import _theme as theme
+from nonholo.simulation import Crossings
+
+_FEW, _LARGE, _SMALL = 500, 14.0, 4.0  # up to so many dots are large; areas of dots
+
+Quantity = Callable[[Orbit], Float[np.ndarray, "C"]]
+
+
+@dataclasses.dataclass(frozen=True)
+class Section:
+    """What `section` drew.
+
+    Attributes:
+        axes: The axes.
+        points: The drawn points.
+        dots: One dot for each crossing, coloured by its time.
+    """
+
+    axes: Axes
+    points: Float[np.ndarray, "C 2"]
+    dots: PathCollection
+
+
+@theme.styled
+def section(
+    crossings: Crossings,
+    across: Quantity,
+    up: Quantity,
+    axes: Axes | None = None,
+    labels: tuple[str, str] = ("", ""),
+) -> Section:
+    """Draw a Poincare section: one dot for each crossing of an event, coloured from early to late.
+
+    Args:
+        crossings: What an event found: `orbit.events["name"]` or `nh.crossings(orbit, event)`.
+        across: The abscissa, a function of an orbit that returns one number for each of its states.
+        up: The ordinate.
+        axes: Where to draw; a new figure by default.
+        labels: Names of the axes.
+
+    Raises:
+        ValueError: No crossings at all, or quantities of the wrong shape.
+
+    Example:
+        >>> top = nh.discretize(nh.VeselovaTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.1)
+        >>> level = nh.Event(lambda states: states.configuration[:, 2, 2], direction=1, stop=20)
+        >>> orbit = nh.simulate(top, restricted_velocity=(1.0, -0.6), steps=10_000, events=[level])
+        >>> drawn = nh.plot.section(
+        ...     orbit.events[0], lambda states: states.body_velocity[:, 0], lambda states: states.body_velocity[:, 1]
+        ... )
+        >>> drawn.points.shape
+        (20, 2)
+    """
+    if not isinstance(crossings, Crossings) or not len(crossings):
+        remedy = "Pass `orbit.events[...]` of a run that crosses."
+        raise error("section(crossings=...)", "hold crossings of an event", repr(crossings), remedy)
+    points = np.stack([_values("across", across, crossings), _values("up", up, crossings)], axis=1)
+    axes = theme.axes_or_new(axes, (6.0, 5.0))
+    area = _LARGE if len(points) <= _FEW else _SMALL
+    dots = axes.scatter(*points.T, c=crossings.time, cmap=theme.TIME, s=area, linewidths=0)
+    axes.set(xlabel=labels[0], ylabel=labels[1])
+    axes.margins(0.06)
+    axes.set_title(f"{len(points)} crossings")
+    return Section(axes, points, dots)
+
+
+def _values(name: str, quantity: Quantity, crossings: Crossings) -> Float[np.ndarray, "C"]:
+    values = np.asarray(quantity(crossings.states), dtype=np.float64)
+    if values.shape != (len(crossings),):
+        remedy = "It gets an `Orbit`: return an array with one number for each of its states."
+        raise error(f"section({name}=...)", "return one number for each crossing", f"shape {values.shape}", remedy)
+    return values

@@ -1,0 +1,99 @@
+"""Events: functions of the states of a run whose changes of sign are of interest, with checks of what they return."""
+
+import dataclasses
+import math
+import numbers
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from nonholo._checks import choice, error
+from nonholo._types import Float
+from nonholo.orbit import Orbit
+
+
+@dataclasses.dataclass(frozen=True)
+class Event:
+    r"""A function of the state whose changes of sign along a motion are of interest.
+
+    With $f_k$ its value at state k, the motion crosses in the step from k to k + 1 if $f_k \ne 0$ and $f_{k+1}$ has
+    another sign. So a zero exactly at a state counts once, when it is reached; a motion that stays at zero or starts
+    there does not cross, and one that only touches zero at a state does. Two crossings in one step cannot be seen. A
+    jump counts too: write sin(angle), not the angle modulo 2 pi.
+
+    Attributes:
+        function: Takes an `Orbit` with any number of states, with all its quantities, and returns one real number for
+            each, which may depend on that state alone.
+        direction: 1 for crossings from below, -1 for those from above, 0 for both.
+        stop: Whether the motion ends at the first crossing, or at which one: stop=10 ends it at the tenth.
+        name: What to call it; the name of the function by default, or "event 2" for a lambda at position 2.
+
+    Raises:
+        ValueError: A function that is none, another direction, or a stop that is no count.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
+        >>> east = nh.Event(lambda orbit: np.sin(orbit.heading), direction=1, stop=3, name="east")
+        >>> orbit = nh.simulate(sleigh, body_velocity=(4.0, 1.0, 0.0), steps=1000, events=[east])
+        >>> orbit.events["east"].time.round(6), orbit.events.stopped_by, orbit.time[-1].round(6)
+        (array([1.527552, 3.054768, 4.581318]), 'east', np.float64(4.5))
+    """
+
+    function: Callable[[Orbit], Any]
+    direction: int = 0
+    stop: bool | int = False
+    name: str | None = None
+
+    def __post_init__(self) -> None:
+        if not callable(self.function):
+            raise error("Event(function=...)", "be a function of an orbit", repr(self.function), "Pass a function.")
+        choice("Event(direction=...)", self.direction, (-1, 0, 1), "1 is from below, -1 from above, 0 both.")
+        if not isinstance(self.stop, numbers.Integral) or self.stop < 0:
+            remedy = "Pass True for the first one, or which one."
+            raise error("Event(stop=...)", "be True, False or a number of crossings", repr(self.stop), remedy)
+
+    @property
+    def last(self) -> float:
+        """The number of the crossing that ends the motion; infinite if none does."""
+        return int(self.stop) if self.stop else math.inf
+
+
+def checked_events(owner: str, events: Any) -> dict[str, Event]:
+    """Return events by name; a function is an event with the defaults."""
+    where = f"{owner}(events=...)"
+    if not isinstance(events, Sequence) or isinstance(events, str):
+        raise error(where, "be a list of events or functions", repr(events), "Pass a list, also of a single one.")
+    named: dict[str, Event] = {}
+    for position, given in enumerate(events):
+        event = given if isinstance(given, Event) else Event(given)
+        name = event.name or _name_of(event.function, position)
+        if name in named:
+            raise error(where, "have different names", f"{name!r} twice", "Pass Event(function, name=...).")
+        named[name] = event
+    return named
+
+
+def _name_of(function: Callable[[Orbit], Any], position: int) -> str:
+    name = getattr(function, "__name__", "<lambda>")
+    return f"event {position}" if name == "<lambda>" else name
+
+
+def values_at(name: str, event: Event, states: Orbit) -> Float[np.ndarray, "K"]:
+    """Return the values of an event at states, refused with the reason if they are not one real number for each."""
+    where, count = f"Event(function=...) of {name!r}", len(states)
+    remedy = "It gets an `Orbit`: return an array with one number for each of its states."
+    try:
+        found = event.function(states)
+    except Exception as failure:
+        got = f"{type(failure).__name__}: {failure}"
+        raise error(where, f"take an orbit of {count} states", got, remedy) from failure
+    values = np.asarray(found)
+    if values.dtype.kind not in "iuf" or values.shape != (count,):
+        got = f"{values.dtype} of shape {values.shape}"
+        raise error(where, f"return one real number for each of {count} states", got, remedy)
+    if not np.isfinite(values).all():
+        at = int(np.argmin(np.isfinite(values)))
+        got = f"{values[at]} at time {states.time[at]:.17g}"
+        raise error(where, "be finite", got, "Choose a function that is defined at every state.")
+    return values.astype(np.float64)

@@ -1,0 +1,122 @@
+r"""States within a step of the discrete map: after a fraction s of it.
+
+With momentum r and pose g at its beginning, W(s) is the principal root of $P(W)|_d = s\,r$. The pose is $g\,W(s)$,
+the momentum $(\mathrm{Ad}^*_{W(s)}P(W(s)))|_d/s$. For a discrete Lagrangian $h\,l(\cdot)$, "matrix" or "logarithmic",
+that is the step of length $s\,h$ from the same state. The roots W(s) are the very path that defines the principal
+branch: W(0) is the identity, and W(1) the displacement of the whole step.
+"""
+
+import dataclasses
+import functools
+from collections.abc import Callable
+
+import numpy as np
+
+from nonholo import kernels
+from nonholo._types import Float
+from nonholo.discrete import Discretization
+from nonholo.discrete._composition import compiled_step, weights
+from nonholo.discrete._structured import (
+    Structured,
+    decoded,
+    decoded_poses,
+    encoded,
+    encoded_poses,
+    from_kernel,
+    is_secular,
+    structured,
+)
+from nonholo.groups import SE
+from nonholo.orbit import Orbit
+
+Between = Callable[[Orbit, Float[np.ndarray, "K"]], Orbit]
+
+
+def between_states(discrete: Discretization) -> Between:
+    """Return the function of states and fractions that gives what is reached after these parts of the steps.
+
+    Where no whole step starts its displacement is NaN.
+    """
+    one, whole = structured(discrete), compiled_step(discrete)
+    if one is None or whole is None:
+        moved = functools.partial(_by_definition, discrete)
+    else:
+        moved = functools.partial(_by_kernel, discrete, one, whole)
+
+    def between(states: Orbit, fractions: Float[np.ndarray, "K"]) -> Orbit:
+        if not len(states):
+            return states
+        momenta, charts, poses = moved(states, fractions)
+        time = states.time + fractions * discrete.time_step
+        kept = dataclasses.replace(states, time=time, reduced_momentum=momenta, cayley=charts)
+        poses = None if states.pose is None else poses
+        return dataclasses.replace(kept, pose=poses, turned=_turned(states, poses))
+
+    return between
+
+
+def _turned(states: Orbit, poses: np.ndarray | None) -> np.ndarray | None:
+    """Return the headings at poses less than half a turn from those of states."""
+    if states.turned is None or poses is None:
+        return None
+    angles = np.arctan2(poses[:, 1], poses[:, 0])
+    return angles + 2 * np.pi * np.rint((states.turned - angles) / (2 * np.pi))
+
+
+def with_headings(states: Orbit, first: float | None) -> Orbit:
+    """Return states of the plane with headings that go on from the given one; others as they are."""
+    if states.system.group != SE(2) or states.pose is None or states.turned is not None or not len(states):
+        return states
+    angles = np.unwrap(np.arctan2(states.pose[:, 1], states.pose[:, 0]))
+    whole = 0.0 if first is None else np.rint((first - angles[0]) / (2 * np.pi))
+    return dataclasses.replace(states, turned=angles + 2 * np.pi * whole)
+
+
+def _by_kernel(
+    discrete: Discretization, one: Structured, whole: Structured, states: Orbit, fractions: np.ndarray
+) -> tuple[np.ndarray, ...]:
+    group = discrete.system.group
+    poses = _poses(discrete, states)
+    poses = encoded_poses(one, group, poses) if poses.size else poses
+    found = [
+        _advanced(one, whole, discrete.order, *row)
+        for row in zip(encoded(one, states.reduced_momentum), poses, fractions, strict=True)
+    ]
+    momenta, charts, moved = (np.array(column) for column in zip(*found, strict=True))
+    moved = decoded_poses(one, group, moved) if moved.size else moved
+    return decoded(one, momenta), from_kernel(one, charts), moved
+
+
+def _poses(discrete: Discretization, states: Orbit) -> np.ndarray:
+    """Return the poses of states; where they are not kept, any that the step can carry along."""
+    group = discrete.system.group
+    if states.pose is not None:
+        return states.pose
+    if is_secular(discrete):
+        return np.empty((len(states), 0))
+    return np.broadcast_to(group.pose_from_matrix(discrete.system.frame), (len(states), group.pose_size))
+
+
+def _advanced(
+    one: Structured, whole: Structured, order: int, momenta: np.ndarray, pose: np.ndarray, fraction: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return momenta, chart and pose of a kernel after a fraction of a step."""
+    part = kernels.ComposedBody(one.body, fraction * weights(order))
+    (after,), (moved,), (code,) = kernels.whole_steps(part, momenta[None], pose[None])
+    if code != 0:
+        after, moved = np.full(len(after), np.nan), np.full(len(moved), np.nan)
+        return after, np.full(kernels.sizes(one.body)[1], np.nan), moved
+    code, state = kernels.start(whole.body, after, moved)
+    chart = kernels.chart_of(whole.body, state)
+    return after, chart if code == 0 else np.full(len(chart), np.nan), moved
+
+
+def _by_definition(discrete: Discretization, states: Orbit, fractions: np.ndarray) -> tuple[np.ndarray, ...]:
+    from nonholo.simulation._events_definition import partial_step
+
+    group, frame, C = discrete.system.group, discrete.system.frame, discrete.system.frame_map
+    g = group.matrix_from_pose(_poses(discrete, states)) @ group.inverse(frame)
+    r = np.linalg.solve(C, states.reduced_momentum.T).T
+    found = [partial_step(discrete, *row) for row in zip(fractions, r, g, strict=True)]
+    momenta, charts, moved = (np.array(column) for column in zip(*found, strict=True))
+    return momenta @ C.T, charts, group.pose_from_matrix(moved @ frame)

@@ -1,0 +1,107 @@
+"""What events found: the crossings of each, and which one ended the motion."""
+
+import dataclasses
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from nonholo._types import Float, Int
+from nonholo.orbit import Orbit
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Crossings:
+    """The crossings of one event, in order of time.
+
+    Attributes:
+        step: Numbers k of the states before the crossings; of a flow, of the requested times before them. Shape (C,).
+        fraction: Which part of the way to state k + 1 is gone, from 0 to 1. Shape (C,).
+        direction: 1 for crossings from below, -1 from above. Shape (C,).
+        states: The states at the crossings, an orbit of C states.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        >>> orbit = nh.simulate(sleigh, body_velocity=(0.1, -1.0, 0.0), steps=100, events=[nh.cusp])
+        >>> found = orbit.events["cusp"]
+        >>> found.step, found.time.round(3), bool(np.all(abs(found.states.body_velocity[:, 1]) < 1e-15))
+        (array([71]), array([7.169]), True)
+    """
+
+    step: Int[np.ndarray, "C"]
+    fraction: Float[np.ndarray, "C"]
+    direction: Int[np.ndarray, "C"]
+    states: Orbit
+
+    def __len__(self) -> int:
+        return len(self.step)
+
+    def __repr__(self) -> str:
+        return f"<Crossings: {len(self)} at times {np.array2string(self.time, precision=6, threshold=6)}>"
+
+    @property
+    def time(self) -> Float[np.ndarray, "C"]:
+        """Times of the crossings."""
+        return self.states.time
+
+    def chosen(self, which: np.ndarray) -> "Crossings":
+        """Return some of the crossings."""
+        return Crossings(self.step[which], self.fraction[which], self.direction[which], self.states.chosen(which))
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class EventLog:
+    """The crossings of all events of a run, by name or position.
+
+    Attributes:
+        names: The names of the events.
+        found: Their crossings.
+        stopped_by: The name of the event that ended the motion; None if it ran its full length.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        >>> nh.simulate(sleigh, body_velocity=(0.1, -1.0, 0.0), steps=100, events=[nh.cusp]).events
+        <EventLog of crossings: cusp: 1>
+    """
+
+    names: tuple[str, ...]
+    found: tuple[Crossings, ...]
+    stopped_by: str | None = None
+
+    def __getitem__(self, event: str | int) -> Crossings:
+        if isinstance(event, str) and event not in self.names:
+            got = ", ".join(self.names)
+            raise KeyError(f"`orbit.events` has no event {event!r}. It has {got}.")
+        return self.found[self.names.index(event) if isinstance(event, str) else event]
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{name}: {len(found)}" for name, found in zip(self.names, self.found, strict=True))
+        ended = f", stopped by {self.stopped_by}" if self.stopped_by else ""
+        return f"<EventLog of crossings: {told}{ended}>"
+
+
+def joined_states(parts: Sequence[Orbit]) -> Orbit:
+    """Return states of one motion one after another."""
+    names = ("time", "reduced_momentum", "cayley", "pose", "turned")
+    columns = {name: [getattr(part, name) for part in parts] for name in names}
+    kept = {name: None if rows[0] is None else np.concatenate(rows) for name, rows in columns.items()}
+    return dataclasses.replace(parts[0], **kept)
+
+
+def joined_crossings(parts: Sequence[Crossings]) -> Crossings:
+    """Return the crossings of stretches of a run one after another."""
+    step, fraction, direction = (
+        np.concatenate([getattr(part, name) for part in parts]) for name in ("step", "fraction", "direction")
+    )
+    return Crossings(step, fraction, direction, joined_states([part.states for part in parts]))
+
+
+def joined_logs(logs: Sequence[EventLog]) -> EventLog:
+    """Return what was found in blocks of a run one after another."""
+    found = tuple(joined_crossings(column) for column in zip(*(log.found for log in logs), strict=True))
+    return EventLog(logs[-1].names, found, logs[-1].stopped_by)

@@ -1,0 +1,64 @@
+"""What events found in the members of an ensemble: how often, and the first and the last time."""
+
+import dataclasses
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nonholo._types import Int
+
+if TYPE_CHECKING:
+    from nonholo.simulation._ensemble_result import Ensemble
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class MemberCrossings:
+    """The crossings of one event in the members of an ensemble.
+
+    Attributes:
+        count: How many each member has, (M,).
+        first: The states at the first one, an `Ensemble` of one state each; NaN, also its time, if there is none. Its
+            `steps_done` are the steps with their fractions.
+        last: The states at the last one.
+    """
+
+    count: Int[np.ndarray, "M"]
+    first: "Ensemble"
+    last: "Ensemble"
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class MemberEvents:
+    """The crossings of all events in the members of an ensemble, by name or position.
+
+    Attributes:
+        names: The names of the events.
+        found: Their crossings.
+        stopped_by: The position of the event that ended each member, -1 if it ran its full length, (M,).
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        >>> batch = nh.ensemble(sleigh, restricted_velocity=[[0.1, -1], [0.1, 1]], steps=200, events=[nh.cusp])
+        >>> batch.events["cusp"].count, batch.events["cusp"].first.time[:, 0].round(3)
+        (array([1, 0]), array([7.169,   nan]))
+    """
+
+    names: tuple[str, ...]
+    found: tuple[MemberCrossings, ...]
+    stopped_by: Int[np.ndarray, "M"]
+
+    def __getitem__(self, event: str | int) -> MemberCrossings:
+        if isinstance(event, str) and event not in self.names:
+            raise KeyError(f"`batch.events` has no event {event!r}. It has {', '.join(self.names)}.")
+        return self.found[self.names.index(event) if isinstance(event, str) else event]
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{name}: {found.count.sum()}" for name, found in zip(self.names, self.found, strict=True))
+        return f"<MemberEvents of crossings: {told}, {np.sum(self.stopped_by >= 0)} members stopped>"

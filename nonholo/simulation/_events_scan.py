@@ -1,0 +1,154 @@
+"""The search of a stretch of states for crossings: changes of sign first, then where between two states they are."""
+
+import dataclasses
+import math
+import operator
+
+import numpy as np
+from scipy.optimize import elementwise
+
+from nonholo._types import Bool, Float, Int
+from nonholo.orbit import Orbit
+from nonholo.simulation._events import Event, values_at
+from nonholo.simulation._events_between import Between, with_headings
+from nonholo.simulation._events_log import Crossings, EventLog, joined_crossings, joined_states
+
+_ROUNDING = 2.0**-54  # of a step, beside its end
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Watch:
+    """What is known of a motion that is searched stretch by stretch.
+
+    Attributes:
+        events: What is looked for, by name.
+        between: Gives states between two of the motion.
+        parts: Crossings of every event in each stretch so far that has some, and in the first one.
+        counts: How many there are of every event.
+        values: Values of the events at the last state, (E, 1); None before the first stretch.
+        heading: The heading at the last state, in the plane.
+        stopped_by: The name of the event that ended the motion.
+    """
+
+    events: dict[str, Event]
+    between: Between
+    parts: tuple[tuple[Crossings, ...], ...] = ()
+    counts: tuple[int, ...] = ()
+    values: Float[np.ndarray, "E 1"] | None = None
+    heading: float | None = None
+    stopped_by: str | None = None
+
+    @property
+    def left(self) -> list[float]:
+        """How many more crossings of every event end the motion; infinite if none do."""
+        done = self.counts or (0,) * len(self.events)
+        return [event.last - count for event, count in zip(self.events.values(), done, strict=True)]
+
+    def gone_on(
+        self, found: tuple[Crossings, ...], values: np.ndarray, heading: float | None, stopped_by: str | None
+    ) -> "Watch":
+        """Return what is known after another stretch."""
+        counts = tuple(map(operator.add, self.counts or (0,) * len(found), map(len, found)))
+        parts = (*self.parts, found) if not self.parts or any(map(len, found)) else self.parts
+        return Watch(self.events, self.between, parts, counts, values, heading, stopped_by)
+
+    def log(self) -> EventLog:
+        """Return what has been found."""
+        found = tuple(joined_crossings(column) for column in zip(*self.parts, strict=True))
+        return EventLog(tuple(self.events), found, self.stopped_by)
+
+
+def search(watch: Watch, stretch: Orbit, begun: int) -> tuple[Watch, int]:
+    """Search a stretch of consecutive states, which begins with the last one that was seen, at step `begun`.
+
+    Returns:
+        What is known now, and how many states of the stretch belong to the motion: all, unless an event ended it.
+    """
+    stretch = with_headings(stretch, watch.heading)
+    values = _values(watch, stretch)
+    places = [np.flatnonzero(changes(event, row)) for event, row in zip(watch.events.values(), values, strict=True)]
+    ends = [
+        int(at[int(left) - 1]) if left <= len(at) else math.inf for left, at in zip(watch.left, places, strict=True)
+    ]
+    last = min(ends, default=math.inf)
+    found = tuple(
+        located(name, event, stretch, row, at[at <= last], watch.between)
+        for (name, event), row, at in zip(watch.events.items(), values, places, strict=True)
+    )
+    stopped, kept = None, len(stretch)
+    if last < math.inf:
+        stopped, found, kept = _cut(watch, found, [event for event, end in enumerate(ends) if end == last])
+    found = tuple(dataclasses.replace(part, step=part.step + begun) for part in found)
+    heading = float(stretch.turned[-1]) if stretch.turned is not None else None
+    return watch.gone_on(found, values[:, -1:], heading, stopped), kept
+
+
+def _values(watch: Watch, stretch: Orbit) -> Float[np.ndarray, "E K"]:
+    """Return the values of all events; those of a state that was seen before stay what they were."""
+    if not len(stretch):
+        return np.empty((len(watch.events), 0))
+    values = np.array([values_at(name, event, stretch) for name, event in watch.events.items()])
+    values = values.reshape(len(watch.events), len(stretch))
+    if watch.values is not None:
+        values[:, :1] = watch.values
+    return values
+
+
+def _cut(watch: Watch, found: tuple[Crossings, ...], ending: list[int]) -> tuple[str, tuple[Crossings, ...], int]:
+    """End a motion at the first of the crossings of events that may end it; return what is left of a stretch.
+
+    That is the name of the event, the crossings up to then, and the number of states.
+    """
+    lasts = [(found[event], int(watch.left[event]) - 1, event) for event in ending]
+    step, fraction, event = min((int(part.step[at]), float(part.fraction[at]), event) for part, at, event in lasts)
+    kept = tuple(
+        part.chosen((part.step < step) | ((part.step == step) & (part.fraction <= fraction))) for part in found
+    )
+    return tuple(watch.events)[event], kept, 1 + step
+
+
+def changes(event: Event, values: Float[np.ndarray, "... K"]) -> Bool[np.ndarray, "... L"]:
+    """Tell for each state but the last whether the motion crosses in the step from there."""
+    sign = np.sign(values)
+    before, after = sign[..., :-1], sign[..., 1:]
+    crosses = (before != 0) & (after != before)
+    return crosses & (event.direction * (after - before) >= 0)
+
+
+def located(
+    name: str, event: Event, stretch: Orbit, values: Float[np.ndarray, "K"], at: Int[np.ndarray, "C"], between: Between
+) -> Crossings:
+    """Return the crossings in the steps from given states of a stretch; a zero at a state is that state."""
+    exact = values[at + 1] == 0
+    inside = at[~exact]
+    fraction, step = np.zeros(len(at)), at + exact
+    base = stretch.chosen(inside)
+    fraction[~exact] = _roots(name, event, base, (values[inside], values[inside + 1]), between)
+    states = joined_states([stretch.chosen(at[exact] + 1), between(base, fraction[~exact])])
+    order = np.argsort(np.concatenate([at[exact], inside]))
+    direction = np.sign(values[at + 1] - values[at]).astype(np.int64)
+    return Crossings(step, fraction, direction, states.chosen(order))
+
+
+def _roots(
+    name: str, event: Event, base: Orbit, ends: tuple[np.ndarray, np.ndarray], between: Between
+) -> Float[np.ndarray, "C"]:
+    """Return the fractions of steps at which an event is zero, between ends where its signs differ.
+
+    Chandrupatla's bracketing method, for all of them at once, to the last bits.
+    """
+    begin, end = ends
+
+    def value(fraction: np.ndarray, which: np.ndarray) -> np.ndarray:
+        at = which.astype(int)
+        known = np.where(fraction == 0, begin[at], end[at])
+        inner = (fraction > 0) & (fraction < 1)
+        known[inner] = values_at(name, event, between(base.chosen(at[inner]), fraction[inner])) if inner.any() else 0.0
+        return known
+
+    if not len(base):
+        return np.empty(0)
+    count = np.arange(len(base), dtype=np.float64)
+    whole = np.zeros(len(base)), np.ones(len(base))
+    found = elementwise.find_root(value, whole, args=(count,), tolerances={"xatol": _ROUNDING})
+    return np.maximum(found.x, _ROUNDING)

@@ -1,0 +1,117 @@
+"""`export`: poses as CSV on standard output or in a file."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import Result
+
+import nonholo as nh
+from nonholo.io import Stream
+
+Command = Callable[..., Result]
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+START = {"body_velocity": (1.0, 0.3, 0.0)}
+
+
+@pytest.fixture
+def store() -> Path:
+    """A finished run of 51 states."""
+    nh.simulate(SLEIGH, steps=50, store="run.zarr", checkpoint_every=20, **START)
+    return Path("run.zarr")
+
+
+def test_standard_output_is_the_file(store: Path, nonholo: Command) -> None:
+    """Without -o the rows go to standard output and nothing else does; with it the path does."""
+    shown = nonholo("export", store)
+    assert shown.exit_code == 0
+    assert shown.stderr == ""
+    kept = nonholo("export", store, "-o", "poses.csv")
+    assert kept.stdout == "poses.csv\n"
+    nh.load_orbit(store).to_csv("orbit.csv")
+    assert shown.stdout == Path("poses.csv").read_text() == Path("orbit.csv").read_text()
+
+
+def test_a_simulated_scenario_is_exported(nonholo: Command) -> None:
+    """The store of `simulate` gives quaternions of a top, thinned by --every."""
+    kept = nonholo("simulate", "suslov", "--steps", 20, "--no-plot", "-q").stdout.strip()
+    lines = nonholo("export", kept, "--every", 10).stdout.splitlines()
+    assert lines[0] == "t,qw,qx,qy,qz"
+    orbit = nh.load_orbit(kept)
+    assert [float(line.split(",")[0]) for line in lines[1:]] == orbit.time[::10].tolist()
+
+
+def test_unfinished_run_is_told_on_standard_error(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The finished blocks of a stopped run are exported, and standard error says how far they go."""
+    write = Stream.write
+
+    def interrupted(self: Stream, number: int, *rest: Any) -> None:
+        if number == 2:
+            raise KeyboardInterrupt
+        write(self, number, *rest)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Stream, "write", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            nh.simulate(SLEIGH, steps=50, store="run.zarr", checkpoint_every=20, **START)
+    result = nonholo("export", "run.zarr")
+    assert result.exit_code == 0
+    assert "Warning: The run in 'run.zarr' is not finished: its poses go up to step 39 of 50" in result.stderr
+    assert len(result.stdout.splitlines()) == 41
+
+
+def test_existing_file_is_refused(store: Path, nonholo: Command) -> None:
+    """An older file stays, with exit code 2, until --overwrite is given."""
+    Path("poses.csv").write_text("older")
+    refused = nonholo("export", store, "-o", "poses.csv")
+    assert refused.exit_code == 2
+    assert "--overwrite" in refused.stderr
+    assert Path("poses.csv").read_text() == "older"
+    assert nonholo("export", store, "-o", "poses.csv", "--overwrite").exit_code == 0
+    assert Path("poses.csv").read_text().startswith("t,x,y,theta\n0.0,")
+
+
+@pytest.mark.parametrize("arguments", [("nothing.zarr",), ("run.zarr", "--every", 0)], ids=["no store", "every 0"])
+@pytest.mark.usefixtures("store")
+def test_wrong_usage_is_refused(arguments: tuple[object, ...], nonholo: Command) -> None:
+    """What can be seen to be wrong before any work has exit code 2."""
+    result = nonholo("export", *arguments)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+
+
+def test_damaged_store_is_refused(store: Path, nonholo: Command) -> None:
+    """A lost chunk is named, with exit code 1, and no row is printed."""
+    (store / "pose" / "c" / "1" / "0").unlink()
+    result = nonholo("export", store)
+    assert result.exit_code == 1
+    assert "chunk c/1/0 of the array pose" in result.stderr
+    assert result.stdout == ""
+
+
+def test_reader_that_stops_is_no_error() -> None:
+    """A pipe that is closed after the first rows, as `head` does, ends the command without a word."""
+    nh.simulate(SLEIGH, steps=20_000, store="run.zarr", **START)  # a megabyte of text, more than a pipe holds
+    read, write = os.pipe()
+    command = [sys.executable, "-c", "from nonholo.cli._app import main; main()", "export", "run.zarr"]
+    with subprocess.Popen(command, stdout=write, stderr=subprocess.PIPE, text=True) as process:  # noqa: S603
+        os.close(write)
+        with os.fdopen(read) as rows:
+            assert rows.readline() == "t,x,y,theta\n"
+        assert process.communicate()[1] == ""
+    assert process.returncode == 0
+
+
+def test_numbers_are_read_back_by_numpy(store: Path, nonholo: Command) -> None:
+    """`numpy.genfromtxt` takes the header for names and gives the bits of the orbit."""
+    nonholo("export", store, "-o", "poses.csv")
+    table = np.genfromtxt("poses.csv", delimiter=",", names=True)
+    orbit = nh.load_orbit(store)
+    assert table.dtype.names == ("t", "x", "y", "theta")
+    assert np.array_equal(table["theta"], orbit.heading)
+    assert np.array_equal(table["x"], orbit.position[:, 0])

@@ -1,0 +1,412 @@
+"""`nonholo sweep`, and `info`, `plot`, `resume` and `extend` of what it leaves."""
+
+import json
+import re
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import Result
+
+import nonholo as nh
+from nonholo.cli._problems import ScenarioError
+from nonholo.cli._scenario_file import Setting, parse_setting
+from nonholo.cli._sweep_file import load_sweep_scenario, sweep_text
+from nonholo.ensembles import standing_of
+
+Command = Callable[..., Result]
+BODY = """
+[body]
+kind = "sleigh"
+mass = 1.0
+inertia = 1.0
+a = 0.5
+[start]
+restricted_velocity = [0.3, -1.0]
+[run]
+time_step = 0.1
+steps = 20
+"""
+GRID = (
+    BODY
+    + """
+[design]
+kind = "grid"
+[design.values]
+"body.a" = [0.3, 0.5]
+"start.restricted_velocity[0]" = {from = 0.1, to = 0.4, count = 4}
+[keep]
+reductions = ["limit_angle", "energy_drift"]
+[output]
+color = "heading_turn"
+x = "start.restricted_velocity[0]"
+"""
+)
+RANDOM = (
+    BODY
+    + """
+[design]
+kind = "random"
+members = 12
+seed = 3
+[design.values]
+"body.a" = {uniform = [0.2, 1.0]}
+"start.restricted_velocity" = {direction = 1.0}
+"""
+)
+
+
+def _written(text: str) -> str:
+    Path("my.toml").write_text(text)
+    return "my.toml"
+
+
+def _problems(text: str, *settings: str) -> list[str]:
+    with pytest.raises(ScenarioError) as caught:
+        load_sweep_scenario(_written(text), [parse_setting(setting) for setting in settings])
+    return [str(problem) for problem in caught.value.problems]
+
+
+def _design(text: str, *settings: str, members: int | None = None) -> nh.Grid | nh.RandomDesign:
+    given = [] if members is None else [Setting(f"--members {members}", "design.members", members)]
+    loaded = load_sweep_scenario(_written(text), given + [parse_setting(setting) for setting in settings])
+    return loaded.scenario.design.design()
+
+
+def _told(result: Result) -> dict[str, Any]:
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)
+
+
+def test_a_sweep_holds_the_orbits_of_simulate(nonholo: Command) -> None:
+    """Each cell of a swept grid has the turn of the orbit that `simulate` runs for its values, to rounding."""
+    told = _told(nonholo("sweep", _written(GRID), "--json", "--no-plot"))
+    assert told["store"] == "runs/my-001.zarr"
+    assert told["outcomes"] == {"successful": 8}
+    found = nh.load_sweep(told["store"])
+    cell = found.isel({"a": 1, "restricted_velocity[0]": 2})
+    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+    orbit = nh.simulate(discrete, restricted_velocity=(float(cell["restricted_velocity[0]"]), -1.0), steps=20)
+    assert abs(float(cell["heading_turn"]) - orbit.heading[-1]) < 1e-14  # sums of 20 angles of some 0.03
+
+
+def test_the_table_and_the_picture(nonholo: Command) -> None:
+    """The table names members, outcomes, ranges and speed; a picture stands beside the store."""
+    result = nonholo("sweep", _written(GRID), "-o", "study/first.zarr")
+    assert result.exit_code == 0, result.output
+    for text in ("members", "8", "successful", "(100 %)", "heading_turn", "members/s", "size on disk"):
+        assert text in result.stdout
+    assert Path("study/first.png").stat().st_size > 5000
+
+
+def test_each_sweep_has_a_new_number(nonholo: Command) -> None:
+    """Without -o nothing is overwritten; with -q only the path is printed."""
+    text = _written(RANDOM)
+    assert [nonholo("sweep", text, "-q", "--no-plot").stdout.strip() for _ in range(2)] == [
+        "runs/my-001.zarr",
+        "runs/my-002.zarr",
+    ]
+
+
+def test_existing_store_is_refused(nonholo: Command) -> None:
+    """An explicit path that exists is refused before anything runs, with how to go on."""
+    Path("there.zarr").mkdir()
+    result = nonholo("sweep", _written(GRID), "-o", "there.zarr")
+    assert result.exit_code == 2
+    assert "nonholo resume there.zarr" in result.stderr
+    assert not list(Path("there.zarr").iterdir())
+
+
+@pytest.mark.parametrize("form", ['"body.a" = [0.1, 0.2]', "body.a = [0.1, 0.2]", "body = {a = [0.1, 0.2]}"])
+def test_key_paths_with_and_without_quotes(form: str) -> None:
+    """A key path of a design may be quoted, dotted or a table."""
+    design = _design(f'{BODY}\n[design]\nkind = "grid"\n[design.values]\n{form}')
+    assert {name: values.tolist() for name, values in design.axes.items()} == {"a": [0.1, 0.2]}
+
+
+def test_settings_change_a_design() -> None:
+    """`--set` reaches values of the design by the same key paths."""
+    design = _design(GRID, "design.values.body.a={from=0.1, to=10, count=3, spacing='logarithmic'}")
+    assert np.allclose(design.axes["a"], [0.1, 1.0, 10.0], rtol=1e-15)
+    assert _design(GRID, "design.values.start.restricted_velocity[0].count=7").members == 14
+
+
+def test_members_scale_the_ranges_of_a_grid() -> None:
+    """`--members` multiplies the counts of ranges by one factor; lists stay as they are."""
+    ranges = GRID.replace("[0.3, 0.5]", "{from = 0.1, to = 1.0, count = 2}")
+    assert list(_design(ranges, members=800).sizes.values()) == [20, 40]
+    assert list(_design(GRID, members=2000).sizes.values()) == [2, 1000]
+
+
+def test_members_of_a_random_design(nonholo: Command) -> None:
+    """`--members 1e2` draws so many, of which the first are those of a smaller design."""
+    few, many = (_told(nonholo("sweep", _written(RANDOM), "--members", n, "--json", "--no-plot")) for n in (5, "1e2"))
+    assert (few["members"], many["members"]) == (5, 100)
+    first, second = (nh.load_sweep(told["store"]) for told in (few, many))
+    assert first.equals(second.isel(member=slice(5)))
+
+
+def test_members_of_lists_are_refused() -> None:
+    """A grid of lists has no count to scale."""
+    text = GRID.replace("{from = 0.1, to = 0.4, count = 4}", "[0.1, 0.2]")
+    told = _problems(text, "design.members=100")
+    assert told == ["--set design.members=100: design.members: needs a range with a count to scale"]
+
+
+def test_refusals_name_the_option() -> None:
+    """What the command line gave is told as an option, not as the file."""
+    option = "design.values.body.kind=[1]"
+    assert _problems(GRID, option)[0].startswith(f"--set {option}: design.values.body.kind: cannot be varied")
+
+
+@pytest.mark.parametrize(
+    ("given", "kind"),
+    [
+        ("{uniform = [0.1, 0.2]}", nh.Uniform(0.1, 0.2)),
+        ("{log_uniform = [0.1, 10]}", nh.LogUniform(0.1, 10)),
+        ("{normal = [1.0, 0.1]}", nh.Normal(1.0, 0.1)),
+        ("{choice = [0.5, 1.0]}", nh.Choice([0.5, 1.0])),
+    ],
+)
+def test_distributions(given: str, kind: Any) -> None:
+    """Each spelling is the distribution of that name."""
+    design = _design(RANDOM.replace("{uniform = [0.2, 1.0]}", given))
+    assert isinstance(design, nh.RandomDesign)
+    assert design.distributions["a"] == kind
+
+
+def test_sizes_come_from_the_value_that_varies() -> None:
+    """A direction has the length of the start it replaces, a mass tensor the size of the one it replaces."""
+    design = _design(RANDOM)
+    assert isinstance(design, nh.RandomDesign)
+    assert design.distributions["restricted_velocity"] == nh.Direction(2, 1.0)
+
+
+def test_what_varies_may_be_left_out(nonholo: Command) -> None:
+    """A key that the design varies need not stand in its own table."""
+    text = GRID.replace("a = 0.5\n", "", 1)
+    found = nh.load_sweep(_told(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"])
+    assert found["a"].values.tolist() == [0.3, 0.5]
+
+
+def test_all_problems_at_once_are_refused() -> None:
+    """Mistakes in five tables are told together, each with its key path."""
+    text = (
+        GRID.replace("mass = 1.0", "mass = -1")
+        .replace("[0.3, 0.5]", "[0.3, true]")
+        .replace("count = 4", "count = 0")
+        .replace('"energy_drift"', '"energy_drfit"')
+        .replace("color =", "colour =")
+    )
+    found = _problems(text)
+    assert len(found) == 5
+    assert "my.toml: body.mass: must be greater than 0. Got -1" in found
+    assert any(f.startswith("my.toml: design.values.body.a: must be a list of numbers") for f in found)
+    where = "my.toml: design.values.start.restricted_velocity[0]"
+    assert f"{where}: must have a positive integer as count. Got 0" in found
+    assert any(f.startswith("my.toml: keep.reductions[1]: must be one of final_state, ") for f in found)
+    assert "my.toml: output.colour: is not a known key. Did you mean color?" in found
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ('"body.a"', '"body.kind"', "design.values.body.kind: cannot be varied. Known: mass, inertia, a, b."),
+        ('"body.a"', '"run.steps"', "design.values.run.steps: cannot be varied. Known: time_step."),
+        ('"body.a"', '"bdy.a"', "design.values.bdy: is not a known key. Did you mean body?"),
+        ('"body.a"', '"start.momentum[0]"', "start.momentum: is missing: momentum[0] is varied"),
+        ('kind = "grid"', 'kind = "gird"', 'design: must have kind "grid" or "random". Got \'gird\''),
+        ('kind = "grid"', 'kind = "random"', "design.members: is missing"),
+        ("[0.3, 0.5]", "{from = 0.1, to = 1}", "Got a table without count"),
+        ("[0.3, 0.5]", "{from = -1, to = 1, count = 3, spacing = 'logarithmic'}", "must have positive bounds"),
+        ("[0.3, 0.5]", "{from = 0, to = 1, count = 3, spacing = 'log'}", 'must have spacing "linear"'),
+        ("steps = 20", 'steps = 20\nbranch = "nearest"', "run.branch: must be principal in sweeps. Got 'nearest'"),
+        ("steps = 20", "steps = 20\nsave_every = 2", "run.save_every: is not for sweeps"),
+        ("[keep]", "[kep]", "kep: is not a known key. Did you mean keep?"),
+    ],
+)
+def test_what_is_refused(old: str, new: str, told: str) -> None:
+    """What a sweep cannot do is told with its key path and what there is instead."""
+    assert any(told in problem for problem in _problems(GRID.replace(old, new)))
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ("{unifrom = [0, 1]}", "must hold one of uniform, log_uniform, normal, direction, mass_tensor, choice"),
+        ("{uniform = 1}", "must be uniform = [low, high]. Got 1"),
+        ("{uniform = [2, 1]}", "uniform: must not be below `low`. Got 1"),
+        ("{uniform = [0, 1], size = 2}", "Got a table with size"),
+        ("{log_uniform = [0, 1]}", "log_uniform: must be positive"),
+        ("{mass_tensor = [0.5, 2.0]}", "needs size = ..., the length of the matrices"),
+    ],
+)
+def test_distributions_that_are_refused(given: str, told: str) -> None:
+    """A distribution that cannot be drawn is told with its key path."""
+    (problem,) = _problems(RANDOM.replace("{uniform = [0.2, 1.0]}", given))
+    assert problem.startswith("my.toml: design.values.body.a: ")
+    assert told in problem
+
+
+def test_the_stored_scenario_repeats_the_sweep(nonholo: Command) -> None:
+    """`info --scenario` is a scenario with all values in force, counts too, and gives the same bits."""
+    first = _told(nonholo("sweep", _written(GRID), "--members", 30, "--json", "--no-plot"))
+    text = nonholo("info", first["store"], "--scenario").stdout
+    assert tomllib.loads(text)["design"]["values"]["start.restricted_velocity[0]"]["count"] == 15
+    again = _told(nonholo("sweep", _written(text), "--json", "--no-plot"))
+    assert nh.load_sweep(first["store"]).equals(nh.load_sweep(again["store"]))
+
+
+def test_effective_text_is_stable() -> None:
+    """The text of a scenario is read as that scenario."""
+    scenario = load_sweep_scenario(_written(RANDOM), []).scenario
+    assert load_sweep_scenario(_written(sweep_text(scenario)), []).scenario == scenario
+
+
+def test_info_of_a_sweep(nonholo: Command) -> None:
+    """`info` tells members, outcomes, ranges, the design and the versions, as a table and as JSON."""
+    store = _told(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"]
+    shown = nonholo("info", store).stdout
+    for text in ("ChaplyginSleigh", "Grid, seed 0", "successful", "heading_turn", "members/s", "sha256", "numba"):
+        assert text in shown
+    told = _told(nonholo("info", store, "--json"))
+    assert told["done"] == told["members"] == 8
+    assert told["state"] == "finished"
+    assert told["provenance"]["task"]["steps"] == 20
+
+
+def test_failed_members_are_told(nonholo: Command) -> None:
+    """Members for which the task raises do not stop the rest; `info` repeats their first messages."""
+    text = GRID.replace('"body.a" = [0.3, 0.5]', '"body.mass" = [1.0, -1.0]')
+    store = _told(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"]
+    told = _told(nonholo("info", store, "--json"))
+    assert told["outcomes"] == {"successful": 4, "raised": 4}
+    shown = nonholo("info", store).stdout
+    assert "member 4 raised ValueError" in shown
+    assert "must be positive" in shown
+
+
+@pytest.fixture
+def stopped(monkeypatch: pytest.MonkeyPatch, nonholo: Command) -> Path:
+    """A sweep of 12 members, one a block, that Ctrl-C stopped after some blocks."""
+    from nonholo.ensembles import EnsembleTask, _blocks
+
+    done, do = [], _blocks.attempted
+
+    def interrupted(*arguments: Any) -> Any:
+        done.append(arguments)
+        if len(done) == 5:
+            raise KeyboardInterrupt
+        return do(*arguments)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(EnsembleTask, "block", property(lambda _: 1))
+        patch.setattr(_blocks, "attempted", interrupted)
+        result = nonholo("sweep", _written(RANDOM), "-o", "s.zarr", "--scheduler", "synchronous")
+    assert result.exit_code == 1
+    assert "Stopped at 4 of 12 members" in result.stderr
+    assert "Go on with: nonholo resume s.zarr" in result.stderr
+    return Path("s.zarr")
+
+
+def test_info_of_a_stopped_sweep(stopped: Path, nonholo: Command) -> None:
+    """`info` says how far it came and how to go on."""
+    shown = nonholo("info", stopped).stdout
+    assert "4 of 12, 33.3 %" in shown
+    assert "go on with: nonholo resume s.zarr" in shown.replace("\n", "")
+
+
+def test_resume_of_a_stopped_sweep(stopped: Path, nonholo: Command) -> None:
+    """`resume` does the rest: the result is the one of a sweep that was not stopped, bit by bit."""
+    told = _told(nonholo("resume", stopped, "--workers", 1, "--json"))
+    assert told["done"] == 12
+    whole = _told(nonholo("sweep", _written(RANDOM), "--json", "--no-plot"))
+    assert nh.load_sweep(stopped).equals(nh.load_sweep(whole["store"]))
+
+
+def test_resume_of_a_damaged_sweep(nonholo: Command) -> None:
+    """A lost chunk is named, and computed again; until then `info` says that the result is not sound."""
+    store = Path(_told(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"])
+    before = nh.load_sweep(store).load()
+    next((store / "heading_turn" / "c").rglob("[0-9]*/[0-9]*")).unlink()
+    shown = nonholo("info", store)
+    assert shown.exit_code == 1
+    assert "heading_turn" in shown.stderr
+    result = nonholo("resume", store)
+    assert result.exit_code == 0
+    assert "of the array heading_turn" in result.stderr
+    assert nh.load_sweep(store).equals(before)
+
+
+def test_ctrl_c() -> None:
+    """SIGINT to the command leaves a store that can be gone on with, and exit code 1."""
+    text = RANDOM.replace("members = 12", "members = 2000000").replace("steps = 20", "steps = 500")
+    command = [sys.executable, "-c", "from nonholo.cli import main; main()", "sweep", _written(text), "-o", "s.zarr"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)  # noqa: S603
+    until = time.monotonic() + 60
+    while not list(Path().glob("s.zarr/run/blocks/*.json")) and time.monotonic() < until:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    told = process.communicate(timeout=60)[1]
+    assert process.returncode == 1
+    assert "Go on with: nonholo resume s.zarr" in told
+    standing = standing_of("s.zarr")
+    assert 0 < standing.done < standing.members
+
+
+def test_extend_of_a_sweep_is_refused(nonholo: Command) -> None:
+    """A sweep has no end to go past; the refusal says what to do."""
+    store = _told(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"]
+    result = nonholo("extend", store, "--steps", 10)
+    assert result.exit_code == 2
+    assert "--set run.steps" in result.stderr
+
+
+def test_plot_of_a_sweep(nonholo: Command) -> None:
+    """`plot` draws what the scenario shows, or what is asked for, by key path or by name."""
+    store = _told(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"]
+    assert nonholo("plot", store, "-o", "own.png").exit_code == 0
+    assert nonholo("plot", store, "-o", "other.svg", "--color", "energy_drift", "--x", "body.a").exit_code == 0
+    assert Path("own.png").exists()
+    assert "energy drift" in Path("other.svg").read_text()
+    missing = nonholo("plot", store, "-o", "none.png", "--color", "nothing")
+    assert missing.exit_code == 1
+    assert "must be one of energy_drift, heading_turn, outcome" in missing.stderr
+
+
+def test_simulate_of_a_sweep_is_refused(nonholo: Command) -> None:
+    """`simulate` sends a scenario with a design to `sweep`."""
+    result = nonholo("simulate", _written(GRID))
+    assert result.exit_code == 2
+    assert "nonholo sweep my.toml" in result.stderr
+
+
+def test_template_runs(nonholo: Command) -> None:
+    """`nonholo new sweep` prints a scenario that runs as it is."""
+    text = nonholo("new", "sweep").stdout
+    told = _told(nonholo("sweep", _written(text), "--members", 12, "--set", "run.steps=50", "--json"))
+    assert told["outcomes"] == {"successful": 12}
+    assert Path(told["picture"]).exists()
+
+
+def test_the_page_runs() -> None:
+    """The Python blocks of the page on sweeps hold what its text says."""
+    page = Path(__file__).parents[2] / "docs" / "how-to" / "run-a-sweep.md"
+    blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
+    exec(compile("\n".join(blocks), page, "exec"), {})  # noqa: S102
+    assert Path("turns.png").exists()
+
+
+def test_the_scenario_of_the_page(nonholo: Command) -> None:
+    """Its scenario, with a body and a start, runs."""
+    page = Path(__file__).parents[2] / "docs" / "how-to" / "run-a-sweep.md"
+    (block,) = re.findall(r"```toml\n(.*?)```", page.read_text(), re.DOTALL)
+    told = _told(nonholo("sweep", _written(BODY + block), "--members", 12, "--json", "--no-plot"))
+    assert told["members"] == 12

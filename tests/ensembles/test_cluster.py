@@ -1,0 +1,230 @@
+"""Sweeps on a real Dask cluster, over TCP on loopback: the bits of threads, whoever is killed."""
+
+import random
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from os import kill
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray
+from ensembles.cluster import BLOCK, DESIGN, Cluster, begin, cluster, done, environment, slow, wait_for
+
+import nonholo as nh
+from nonholo.ensembles import _cluster
+from nonholo.ensembles._store import SweepStore
+
+BLOCKS = DESIGN.members // BLOCK
+MODULE = "def task(block):\n    return block['x'] ** 2\n"
+WITHOUT = """
+import sys
+sys.modules["distributed"] = None
+import nonholo as nh
+design = nh.Grid({"x": [1.0, 2.0]})
+print(nh.sweep(lambda block: block["x"], design, "a.zarr").result.values)
+try:
+    nh.sweep(lambda block: block["x"], design, "b.zarr", "tcp://127.0.0.1:1")
+except ValueError as failure:
+    print(failure)
+"""
+
+
+@pytest.fixture(scope="module")
+def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    """A cluster of two workers that nobody kills."""
+    with cluster(tmp_path_factory.mktemp("running")) as made:
+        yield made
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> xarray.Dataset:
+    """The sweep of `slow` in threads, without any trouble."""
+    return nh.sweep(slow, DESIGN, tmp_path_factory.mktemp("threads") / "a.zarr", block=BLOCK).load()
+
+
+def _same(one: xarray.Dataset, other: xarray.Dataset) -> bool:
+    return one.variables.keys() == other.variables.keys() and all(
+        one[name].values.tobytes() == other[name].values.tobytes() for name in one.variables
+    )
+
+
+def _in_background(address: str, store: Path) -> Future[xarray.Dataset]:
+    """Start the sweep of `slow` on a cluster, by a client in a thread."""
+    pool = ThreadPoolExecutor(1)
+    swept = pool.submit(nh.sweep, slow, DESIGN, store, address, block=BLOCK)
+    pool.shutdown(wait=False)
+    return swept
+
+
+def _some_blocks(store: Path, chance: random.Random) -> None:
+    """Wait until a random part of the sweep is done."""
+    many = chance.randrange(1, BLOCKS // 2)
+    wait_for(lambda: len(done(store)) >= many)
+
+
+def _worker_of(store: Path) -> int:
+    """Return the process that wrote some block."""
+    return int(done(store)[0].rpartition(":")[2])
+
+
+def test_workers_compute_the_bits_of_threads(running: Cluster, tmp_path: Path) -> None:
+    """Two worker processes share the blocks of an ensemble, and write what threads write."""
+    top = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.1)
+    task = nh.EnsembleTask(top, steps=100, reductions=["final_state", "energy_drift", "limit_angle"])
+    design = nh.RandomDesign(200, {"mass_tensor": nh.MassTensor(3, 0.5, 2.0), "restricted_velocity": nh.Direction(2)})
+    wait_for(lambda: len(nh.ensembles._cluster._client(running.address).ncores()) == 2)
+    found = nh.sweep(task, design, tmp_path / "a.zarr", running.address, block=8)
+    assert _same(found, nh.sweep(task, design, tmp_path / "b.zarr", block=32))
+    assert len(set(done(tmp_path / "a.zarr"))) == 2
+
+
+def test_functions_without_a_module(running: Cluster, tmp_path: Path) -> None:
+    """A lambda goes to the workers with what it closes over."""
+    factor = 3.0
+    found = nh.sweep(lambda block: factor * block["x"], DESIGN, tmp_path / "a.zarr", running.address)
+    assert (found["result"].values == 3.0 * found["x"].values).all()
+
+
+def test_functions_that_workers_lack_are_refused(
+    running: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A function of a module that only the client has is named, and no worker is harmed."""
+    (tmp_path / "only_here.py").write_text(MODULE)
+    monkeypatch.syspath_prepend(tmp_path)
+    from only_here import task  # pyright: ignore[reportMissingImports]
+
+    with pytest.raises(ValueError, match=r"must be importable by the workers. Got No module named 'only_here' \(.*:\d"):
+        nh.sweep(task, DESIGN, tmp_path / "a.zarr", running.address)
+    assert nh.resume(tmp_path / "a.zarr").sizes == {"member": DESIGN.members}
+    assert all(process.poll() is None for process in running.workers)
+
+
+def test_workers_without_the_store_are_refused(
+    running: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Workers for which another folder is at that path say so."""
+    elsewhere = (SweepStore, (tmp_path / "elsewhere.zarr", "0"))
+    monkeypatch.setattr(SweepStore, "__reduce__", lambda _: elsewhere)
+    with pytest.raises(
+        OSError, match=r"worker .*:\d+ does not see this store: choose a path on a file system that all"
+    ):
+        nh.sweep(slow, DESIGN, tmp_path / "a.zarr", running.address)
+
+
+@pytest.mark.parametrize("answers", [False, True], ids=["nobody", "another"])
+def test_addresses_without_a_scheduler_are_refused(
+    answers: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where nobody listens, or another server does, a sweep ends at once and leaves nothing."""
+    monkeypatch.setattr(_cluster, "_CONNECT", 1)
+    server, begun = socket.create_server(("127.0.0.1", 0)), time.monotonic()
+    address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+    if answers:
+        threading.Thread(target=_answer, args=(server,), daemon=True).start()
+    else:
+        server.close()
+    with pytest.raises(ValueError, match=f"must be the address of a Dask scheduler. Got {address}"):
+        nh.sweep(slow, DESIGN, tmp_path / "a.zarr", address)
+    assert time.monotonic() - begun < 20
+    assert not (tmp_path / "a.zarr").exists()
+
+
+def test_a_number_of_workers_is_refused(tmp_path: Path) -> None:
+    """How many work is not for the client of a cluster to say."""
+    with pytest.raises(ValueError, match=r"must come with threads or processes. Got 2 for tcp://127.0.0.1:1"):
+        nh.sweep(slow, DESIGN, tmp_path / "a.zarr", "tcp://127.0.0.1:1", workers=2)
+
+
+def _answer(server: socket.socket) -> None:
+    """Answer one connection as a web server would."""
+    with server, server.accept()[0] as connection:
+        connection.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
+
+
+@pytest.mark.parametrize("nanny", [False, True], ids=["alone", "nanny"])
+def test_a_killed_worker_is_replaced(nanny: bool, tmp_path: Path, undisturbed: xarray.Dataset) -> None:
+    """The sweep waits while there is no worker, and ends with the same bits on the one that comes next."""
+    with cluster(tmp_path / "cluster", workers=1, nanny=nanny) as made:
+        swept = _in_background(made.address, tmp_path / "a.zarr")
+        _some_blocks(tmp_path / "a.zarr", random.Random(nanny))  # noqa: S311
+        kill(_worker_of(tmp_path / "a.zarr"), signal.SIGKILL)
+        if not nanny:
+            made.add_worker()
+        assert _same(swept.result(timeout=40), undisturbed)
+    assert len(set(done(tmp_path / "a.zarr"))) == 2
+
+
+def test_killed_clients_go_on(
+    running: Cluster, tmp_path: Path, undisturbed: xarray.Dataset, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """After a client is killed at a random moment threads end its sweep with the same bits, and workers are free."""
+    chance, trials = random.Random(1), 3  # noqa: S311
+    for trial in range(trials):
+        store = tmp_path / f"{trial}.zarr"
+        client = begin(running.address, store)
+        _some_blocks(store, chance)
+        client.kill()
+        client.wait()
+        assert len(done(store)) < BLOCKS
+        assert _same(nh.resume(store), undisturbed)
+    with capsys.disabled():
+        sys.stdout.write(f"\n{trials} clients of a cluster killed and resumed, same bits\n")
+
+
+def _kill_scheduler(made: Cluster) -> None:
+    made.scheduler.kill()
+
+
+@pytest.mark.parametrize("strike", [_kill_scheduler, Cluster.kill], ids=["scheduler", "all"])
+def test_a_killed_cluster_is_told(
+    strike: Callable[[Cluster], Any], tmp_path: Path, undisturbed: xarray.Dataset, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """When the scheduler is gone the client says where the sweep stands, and threads end it with the same bits."""
+    monkeypatch.setattr(_cluster, "_CONNECT", 1)
+    with cluster(tmp_path / "cluster", workers=1) as made:
+        swept = _in_background(made.address, tmp_path / "a.zarr")
+        _some_blocks(tmp_path / "a.zarr", random.Random(2))  # noqa: S311
+        strike(made)
+        with pytest.raises(
+            OSError, match=r"to the scheduler at tcp.* was lost. The sweep stands at \d+ of 240 members"
+        ):
+            swept.result(timeout=40)
+    assert _same(nh.resume(tmp_path / "a.zarr"), undisturbed)
+
+
+def test_a_cluster_without_workers_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A sweep for which there are no workers says what it waits for."""
+    monkeypatch.setattr(_cluster, "_PATIENCE", 0.1)
+    with (
+        cluster(tmp_path / "cluster", workers=0) as made,
+        pytest.raises(RuntimeWarning, match=f"has no workers. The sweep waits for some: dask worker {made.address}"),
+    ):
+        nh.sweep(slow, DESIGN, tmp_path / "a.zarr", made.address)
+
+
+def _printed(code: str, folder: Path) -> str:
+    command = [sys.executable, "-c", code]
+    return subprocess.run(  # noqa: S603
+        command, cwd=folder, env=environment(folder), capture_output=True, text=True, check=True
+    ).stdout
+
+
+def test_a_missing_extra_is_named(tmp_path: Path) -> None:
+    """Without distributed threads work, and the address of a cluster is refused with the name of the extra."""
+    first, second = _printed(WITHOUT, tmp_path).splitlines()
+    assert first == "[1. 2.]"
+    assert "Install the extra `cluster`: pip install 'nonholo[cluster]'." in second
+    assert not (tmp_path / "b.zarr").exists()
+
+
+def test_import_loads_no_dask(tmp_path: Path) -> None:
+    """Neither the package nor the names of sweeps load Dask."""
+    code = "import sys, nonholo; nonholo.sweep; print({'dask', 'distributed', 'cloudpickle'} & set(sys.modules))"
+    assert _printed(code, tmp_path) == "set()\n"

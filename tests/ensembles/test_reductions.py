@@ -1,0 +1,199 @@
+"""What sweeps keep of each member, against its definition by orbits of single members."""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import pytest
+from bodies import GENERAL
+
+import nonholo as nh
+from nonholo.ensembles import REDUCTIONS
+
+J = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+TOP = nh.discretize(nh.SuslovTop(J, axis=(0.6, 0.0, 0.8)), 0.1)
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.2, 0.8, 0.5, 0.3), 0.1)
+FOLDING = nh.discretize(nh.SuslovTop(J), 1.0)
+FOLDS = np.array([1.93257157, -0.68979744])  # ends after more than one step, and less than 400
+STARTS = np.array([[0.7, -0.3], [0.1, 0.9], [-0.4, 0.2]])
+BOTH = pytest.mark.parametrize("discrete", [TOP, SLEIGH], ids=["top", "sleigh"])
+
+
+def _reduced(name: str, batch: nh.Ensemble) -> dict[str, np.ndarray]:
+    return {key: entry[1] for key, entry in REDUCTIONS[name].function(batch).items()}
+
+
+def _batch(discrete: nh.Discretization, steps: int = 60, every: int | None = 1, **options: Any) -> nh.Ensemble:
+    return nh.ensemble(discrete, steps=steps, save_every=every, **{"restricted_velocity": STARTS, **options})
+
+
+def _orbit(discrete: nh.Discretization, member: int = 0, steps: int = 60) -> nh.Orbit:
+    return nh.simulate(discrete, restricted_velocity=STARTS[member], steps=steps)
+
+
+def _early(every: int | None) -> nh.Ensemble:
+    """Return members of which one rests, one ends early and one does not start."""
+    momenta = np.array([[0.0, 0.0], FOLDS, [50.0, -50.0]])
+    return nh.ensemble(FOLDING, momentum=momenta, steps=400, save_every=every)
+
+
+@BOTH
+@pytest.mark.parametrize("every", [None, 1, 20])
+def test_final_state_is_the_last_one(discrete: nh.Discretization, every: int | None) -> None:
+    """The final state is that of `simulate`, to the rounding of 60 products; every step is counted."""
+    found = _reduced("final_state", _batch(discrete, every=every))
+    for member in range(3):
+        orbit = _orbit(discrete, member)
+        for name, wanted in (
+            ("momentum", orbit.restricted_momentum),
+            ("energy", orbit.energy),
+            ("pose", orbit.pose),
+        ):
+            assert wanted is not None
+            assert np.abs(found[f"final_{name}"][member] - wanted[-1]).max() < 1e-13, name
+    assert found["steps_done"].tolist() == [60] * 3
+
+
+def test_final_state_without_poses() -> None:
+    """Without poses there is no final one."""
+    assert "final_pose" not in _reduced("final_state", _batch(TOP, reconstruct=False))
+
+
+@pytest.mark.parametrize("every", [None, 1])
+def test_final_state_of_members_that_end_early(every: int | None) -> None:
+    """The final state of a member that ends early is its last good one; of one that does not start it is NaN."""
+    found = _reduced("final_state", _early(every))
+    whole = nh.simulate(FOLDING, momentum=FOLDS, steps=400, throw=False)
+    done = len(whole) - 1
+    assert 1 < done < 399
+    assert found["steps_done"].tolist() == [400, done, 0]
+    assert np.abs(found["final_momentum"][1] - whole.restricted_momentum[-1]).max() < 1e-13
+    assert np.isnan(found["final_momentum"][2]).all()
+    assert np.isnan(found["final_energy"][2])
+
+
+@pytest.mark.parametrize("every", [None, 1])
+def test_energy_drift_is_the_relative_error(every: int | None) -> None:
+    """The drift is the change of energy by its first value: none at rest, some ulps at a fold, NaN without a start."""
+    drift = _reduced("energy_drift", _early(every))["energy_drift"]
+    orbit = nh.simulate(FOLDING, momentum=FOLDS, steps=400, throw=False)
+    wanted = abs(orbit.energy[-1] / orbit.energy[0] - 1)
+    assert drift[0] == 0
+    assert abs(drift[1] - wanted) < 4e-16
+    assert np.isnan(drift[2])
+
+
+def test_energy_drift_sees_a_drift() -> None:
+    """Had all members begun with half the momentum, their energy would be four times what it was."""
+    batch = _batch(TOP)
+    drift = _reduced("energy_drift", dataclasses.replace(batch, first_momentum=batch.first_momentum / 2))
+    assert np.abs(drift["energy_drift"] - 3).max() < 1e-14
+
+
+def test_heading_turn_is_that_of_the_orbit() -> None:
+    """The total turn of a sleigh counts full turns: it is the unwrapped heading of the orbit."""
+    sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.2), 0.1)
+    starts = np.array([[1.0, 0.2], [-1.0, -0.3], [0.5, 0.0]])
+    batch = nh.ensemble(sleigh, restricted_velocity=starts, steps=2000, save_every=1)
+    turn = _reduced("limit_angle", batch)["heading_turn"]
+    for member in range(3):
+        heading = nh.simulate(sleigh, restricted_velocity=starts[member], steps=2000).heading
+        assert abs(turn[member] - (heading[-1] - heading[0])) < 1e-12  # sums of 2000 angles
+    assert abs(turn[0]) > 2 * np.pi
+
+
+def test_heading_turn_of_members_that_end_early() -> None:
+    """The steps of a member that ends early are its good ones; a member that does not start has not turned."""
+    sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1.0)
+    starts = np.array([[0.4, -0.9], [9.0, -9.0], [0.1, 0.1]])
+    batch = nh.ensemble(sleigh, restricted_velocity=starts, steps=50, save_every=1)
+    assert batch.steps_done[1] == 0
+    turn = _reduced("limit_angle", batch)["heading_turn"]
+    for member in (0, 2):
+        heading = nh.simulate(sleigh, restricted_velocity=starts[member], steps=50, throw=False).heading
+        assert abs(turn[member] - (heading[-1] - heading[0])) < 1e-13
+    assert turn[1] == 0
+
+
+def test_axis_angle_is_that_of_rotated_velocities() -> None:
+    """The angle of a top is that between its first and its last angular velocity in space."""
+    angle = _reduced("limit_angle", _batch(TOP))["axis_angle"]
+    for member in range(3):
+        orbit = _orbit(TOP, member)
+        first, last = (orbit.configuration[at] @ orbit.body_velocity[at] for at in (0, -1))
+        cosine = first @ last / np.linalg.norm(first) / np.linalg.norm(last)
+        assert abs(np.cos(angle[member]) - cosine) < 1e-13
+        assert angle[member] > 0.03
+
+
+def test_branch_counts_are_those_over_the_first_momentum() -> None:
+    """Real values of the map are counted over the first momentum of each member's own body: here one or three."""
+    rng = np.random.default_rng(2)
+    starts, offsets = rng.normal(size=(60, 2)), rng.uniform(-1, 1, 60)
+    sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1.0)
+    batch = nh.ensemble(sleigh, restricted_velocity=starts, steps=1, parameters={"b": offsets})
+    counts = _reduced("branch_counts", batch)["real_branches"]
+    for count, b, start in zip(counts, offsets, starts, strict=True):
+        system = nh.ChaplyginSleigh(1.0, 1.0, 0.5, b)
+        values = nh.displacements_over(nh.discretize(system, 1.0), system.constrained_inertia @ start)
+        assert count == values.multiplicity[values.is_real].sum()
+    assert set(counts) == {1, 3}
+
+
+@pytest.mark.parametrize(
+    ("discrete", "starts"),
+    [(TOP, STARTS[:2]), (SLEIGH, STARTS[:2])]
+    + [(nh.discretize(GENERAL[name][0], 0.05), GENERAL[name][1][None]) for name in ("suslov 4", "sleigh 3")],
+    ids=["top", "sleigh", "suslov 4", "sleigh 3"],
+)
+def test_lyapunov_is_the_growth_of_differences(discrete: nh.Discretization, starts: np.ndarray) -> None:
+    """The exponent is the largest growth of small differences of first momenta over all steps."""
+    steps, h = 12, 1e-6
+    batch = nh.ensemble(discrete, restricted_velocity=starts, steps=steps, save_every=1)
+    found = _reduced("lyapunov", batch)["lyapunov"]
+
+    def last(momentum: np.ndarray) -> np.ndarray:
+        return nh.simulate(discrete, momentum=momentum, steps=steps, reconstruct=False).restricted_momentum[-1]
+
+    for member, exponent in enumerate(found):
+        first = batch.restricted_momentum[member, 0]
+        slopes = [(last(first + h * e) - last(first - h * e)) / (2 * h) for e in np.eye(len(first))]
+        wanted = np.log(np.linalg.norm(slopes, 2)) / (steps * discrete.time_step)
+        assert abs(exponent - wanted) < 1e-8  # differences: 1e-10 of the slopes, divided by a time of about one
+
+
+def test_lyapunov_of_members_that_end_early() -> None:
+    """The exponent of a member that ends early is that of its good steps; where there is none it is NaN."""
+    exponent = _reduced("lyapunov", _early(1))["lyapunov"]
+    done = len(nh.simulate(FOLDING, momentum=FOLDS, steps=400, throw=False)) - 1
+    whole = nh.ensemble(FOLDING, momentum=FOLDS[None], steps=done, save_every=1)
+    assert exponent[1] == _reduced("lyapunov", whole)["lyapunov"][0]
+    assert np.isnan(exponent[2])
+
+
+@pytest.mark.parametrize(
+    ("name", "discrete", "start"),
+    [
+        ("limit_angle", nh.discretize(SLEIGH.system, 0.1, order=4), STARTS[0]),
+        ("limit_angle", nh.discretize(GENERAL["sleigh 3"][0], 0.05), GENERAL["sleigh 3"][1]),
+        ("lyapunov", nh.discretize(SLEIGH.system, 0.1, order=4), STARTS[0]),
+        ("lyapunov", nh.discretize(SLEIGH.system, 0.1, difference="logarithmic"), STARTS[0]),
+        ("lyapunov", nh.discretize(GENERAL["any d on SO(4)"][0], 0.05), GENERAL["any d on SO(4)"][1]),
+        ("lyapunov", nh.discretize(GENERAL["veselova 3"][0], 0.05), GENERAL["veselova 3"][1]),
+        ("branch_counts", nh.discretize(SLEIGH.system, 0.1, order=4), STARTS[0]),
+    ],
+    ids=["angle, order 4", "angle, n = 3", "order 4", "logarithmic", "no pair", "right-invariant", "counts, order 4"],
+)
+def test_reductions_without_a_meaning_are_refused(name: str, discrete: nh.Discretization, start: np.ndarray) -> None:
+    """A reduction that has no meaning for a system, or no formula, is refused."""
+    batch = nh.ensemble(discrete, restricted_velocity=[start], steps=2, save_every=1)
+    with pytest.raises(ValueError, match=r"must (have|be)"):
+        REDUCTIONS[name].function(batch)
+
+
+def test_limit_angle_without_poses_is_refused() -> None:
+    """The angle of a top needs poses, that of a sleigh does not."""
+    with pytest.raises(ValueError, match="must have poses"):
+        _reduced("limit_angle", _batch(TOP, reconstruct=False))
+    with_poses, without = (_batch(SLEIGH, reconstruct=posed) for posed in (True, False))
+    assert np.array_equal(*(_reduced("limit_angle", batch)["heading_turn"] for batch in (with_poses, without)))

@@ -1,0 +1,363 @@
+"""`sweep` with functions: what they may return, who is recorded as failed, and that blocks change nothing."""
+
+import subprocess
+import sys
+import threading
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+from ensembles import faults
+
+import nonholo as nh
+from nonholo._results import Outcome
+from nonholo.ensembles import standing_of
+from nonholo.ensembles._results import ABSENT, RAISED
+
+GRID = nh.Grid({"x": [1.0, 2.0, 3.0], "y": [10.0, 20.0, 30.0, 40.0]}, seed=7)
+FEW = nh.RandomDesign(50, faults.TOP_DESIGN, seed=6)
+
+
+def _swept(task: Any, path: Path, design: Any = GRID, **options: Any) -> xarray.Dataset:
+    return nh.sweep(task, design, path / "run.zarr", **{"scheduler": "synchronous", **options}).load()
+
+
+def _same(one: xarray.Dataset, other: xarray.Dataset) -> bool:
+    return one.variables.keys() == other.variables.keys() and all(
+        one[name].dims == other[name].dims and one[name].values.tobytes() == other[name].values.tobytes()
+        for name in one.variables
+    )
+
+
+def test_result_is_labelled(tmp_path: Path) -> None:
+    """Members lie along the axes of the grid, other axes have the names of the task or names of their own."""
+
+    def task(block: nh.MemberBlock) -> dict[str, Any]:
+        products = block["x"][:, None] * np.arange(5.0)
+        told = {"long_name": "products", "units": "m"}
+        return {"sum": block["x"] + block["y"], "products": (("factor",), products, told), "plain": products}
+
+    found = _swept(task, tmp_path)
+    assert found["sum"].dims == ("x", "y")
+    assert np.array_equal(found["sum"], np.add.outer([1.0, 2.0, 3.0], [10.0, 20.0, 30.0, 40.0]))
+    assert found["products"].dims == ("x", "y", "factor")
+    assert float(found["products"].sel(x=2.0, y=30.0).isel(factor=4)) == 8.0
+    assert (found["products"].attrs["long_name"], found["products"].attrs["units"]) == ("products", "m")
+    assert found["plain"].dims == ("x", "y", "plain_1")
+    assert (found["outcome"] == 0).all()
+
+
+def test_draws_are_kept_beside_the_result(tmp_path: Path) -> None:
+    """What a random design drew is in the store, bit by bit, with dimensions of its own."""
+    found = _swept(lambda block: {"trace": np.trace(block["mass_tensor"], axis1=1, axis2=2)}, tmp_path, FEW, block=7)
+    drawn = FEW.values(0, 50)
+    assert found["mass_tensor"].dims == ("member", "mass_tensor_1", "mass_tensor_2")
+    for name in ("mass_tensor", "restricted_velocity"):
+        assert found[name].values.tobytes() == drawn[name].tobytes()
+    assert np.array_equal(found["trace"], np.trace(drawn["mass_tensor"], axis1=1, axis2=2))
+
+
+def test_axes_of_vectors_are_data(tmp_path: Path) -> None:
+    """Vectors along an axis have a number as their place, and stand in the result."""
+    found = _swept(lambda block: block["start"][:, 1], tmp_path, nh.Grid({"start": [[1.0, 2.0], [3.0, 4.0]]}))
+    assert found["result"].dims == ("start_number",)
+    assert found["start"].dims == ("start_number", "start_1")
+    assert found["result"].values.tolist() == found["start"].values[:, 1].tolist()
+
+
+@pytest.mark.parametrize(
+    ("kind", "on_disk", "absent"),
+    [
+        (bool, np.int8, -128),
+        (np.int16, np.int64, np.iinfo(np.int64).min),
+        (np.uint8, np.uint64, np.iinfo(np.uint64).max),
+        (np.float32, np.float64, np.nan),
+        (np.float64, np.float64, np.nan),
+        (np.complex64, np.complex128, np.nan),
+    ],
+)
+def test_types_of_numbers(kind: Any, on_disk: Any, absent: Any, tmp_path: Path) -> None:
+    """Numbers of any kind are kept with their values, in the widest type; a member that fails has none."""
+
+    def task(block: nh.MemberBlock) -> Any:
+        if (block["y"] == 20.0).any():
+            raise RuntimeError("twenty")
+        return (block["x"] - 1).astype(kind)
+
+    found = _swept(task, tmp_path)["result"]
+    assert found.dtype == on_disk
+    wanted = np.array([0, 1, 2]).astype(kind)
+    assert np.array_equal(found.values[:, [0, 2, 3]], np.repeat(wanted[:, None], 3, axis=1))
+    assert np.array_equal(found.values[:, 1].real, np.full(3, absent), equal_nan=kind not in (bool, np.int16, np.uint8))
+
+
+def _raising(block: nh.MemberBlock) -> dict[str, Any]:
+    bad = block.index[block.index % 5 == 3]
+    if len(bad):
+        raise ZeroDivisionError(f"at {bad[0]}")
+    return _calm(block)
+
+
+def _calm(block: nh.MemberBlock) -> dict[str, Any]:
+    return {"value": np.sin(block["x"]) * block["y"], "noise": block.random(2, "noise"), "count": block.index}
+
+
+@pytest.mark.parametrize("block", [1, 3, 5, 12])
+def test_members_that_raise_are_recorded(block: int, tmp_path: Path) -> None:
+    """Members for which the task raises have no numbers, outcome 100 and a message; the others have the same bits."""
+    found = _swept(_raising, tmp_path, block=block)
+    calm = nh.sweep(_calm, GRID, tmp_path / "calm.zarr").load()
+    bad = np.arange(12).reshape(3, 4) % 5 == 3
+    assert np.array_equal(found["outcome"], np.where(bad, RAISED, 0))
+    for name in ("value", "noise", "count"):
+        assert found[name].values[~bad].tobytes() == calm[name].values[~bad].tobytes()
+    assert np.isnan(found["value"].values[bad]).all()
+    assert np.isnan(found["noise"].values[bad]).all()
+    now = standing_of(tmp_path / "run.zarr")
+    assert sorted(now.messages) == [[3, "ZeroDivisionError: at 3"], [8, "ZeroDivisionError: at 8"]]
+    assert (now.done, now.failed, now.outcomes) == (12, 2, {"successful": 10, "raised": 2})
+
+
+def test_tasks_that_always_raise_are_refused(tmp_path: Path) -> None:
+    """A task that fails for all members tried is refused with its own error, before there is a store."""
+
+    def broken(block: nh.MemberBlock) -> Any:
+        return block["z"]
+
+    with pytest.raises(ValueError, match=r"run for one of the members tried. Got KeyError.*the design has x, y"):
+        _swept(broken, tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def test_one_good_member_is_enough_to_begin(tmp_path: Path) -> None:
+    """If the first members fail, others tell what a task returns."""
+
+    def late(block: nh.MemberBlock) -> Any:
+        if (block.index < 9).any():
+            raise ValueError("too early")
+        return block["x"]
+
+    found = _swept(late, tmp_path)
+    assert np.array_equal(found["outcome"].values.ravel() == RAISED, np.arange(12) < 9)
+    assert (found["result"].values.ravel()[9:] == 3.0).all()
+
+
+def test_own_outcomes_are_kept(tmp_path: Path) -> None:
+    """A task may say how its members ended; the codes are counted by name where they have one."""
+    codes = np.array([0, 1, 5, 7, -1, 0, 0, 0, 0, 0, 0, 0])
+    found = _swept(lambda block: {"outcome": codes[block.index]}, tmp_path)
+    assert np.array_equal(found["outcome"].values.ravel(), codes)
+    outcomes = standing_of(tmp_path / "run.zarr").outcomes
+    assert outcomes == {"successful": 8, "no_real_branch": 1, "nonfinite": 1, "7": 1, "-1": 1}
+
+
+def test_outcomes_are_explained(tmp_path: Path) -> None:
+    """The codes of outcomes and their meanings are attributes of the array, as CF conventions write flags."""
+    told = _swept(_calm, tmp_path)["outcome"].attrs
+    meanings = dict(zip(told["flag_values"], told["flag_meanings"].split(), strict=True))
+    assert meanings == {ABSENT: "absent", **{int(code): code.name for code in Outcome}, RAISED: "raised"}
+
+
+def test_members_to_come_are_absent(tmp_path: Path) -> None:
+    """In an unfinished store members that are not done are NaN, with the outcome that says so."""
+
+    def task(block: nh.MemberBlock) -> Any:
+        if threading.current_thread() is not threading.main_thread() and block.first == 8:
+            raise KeyboardInterrupt
+        return block["x"]
+
+    with pytest.raises(KeyboardInterrupt):
+        _swept(task, tmp_path, block=4, scheduler="threads", workers=1)
+    with xarray.open_zarr(tmp_path / "run.zarr", chunks=None, consolidated=False) as found:
+        assert (found["outcome"].values[2] == ABSENT).all()
+        assert np.isnan(found["result"].values[2]).all()
+
+
+def _failing(later: Callable[[nh.MemberBlock], Any]) -> Callable[[nh.MemberBlock], Any]:
+    """Return a task whose first member is right, and which returns something else for the sixth."""
+
+    def task(block: nh.MemberBlock) -> Any:
+        return later(block) if 5 in block.index else {"a": block["x"], "b": block.index}
+
+    return task
+
+
+@pytest.mark.parametrize(
+    ("later", "match"),
+    [
+        (lambda block: {"a": block["x"]}, r"return the same names for all members. Got \['a', 'outcome'\]"),
+        (lambda block: {"a": block["x"], "b": block.random(2)}, r"have one shape for all members. Got \(2,\)"),
+        (lambda block: {"a": block["x"] * 1j, "b": block.index}, "have one type for all members. Got complex128"),
+        (lambda block: {"a": block["x"], "b": block["x"]}, "have one type for all members. Got float64 after int64"),
+        (lambda block: {"a": block["x"][:0], "b": block.index}, r"leading member axis. Got shape \(0,\) for 1"),
+        (lambda block: {"a": ["one"] * block.count, "b": block.index}, "be an array of numbers"),
+        (lambda block: {"a": block["x"], "b": block.index, "outcome": 300 + block.index}, "from -127 to 127"),
+    ],
+    ids=["names", "shape", "complex", "float", "no members", "text", "outcome"],
+)
+def test_changing_results_are_refused(later: Callable[[nh.MemberBlock], Any], match: str, tmp_path: Path) -> None:
+    """A member for which a task returns something else is recorded with the difference, the others are done."""
+    found = _swept(_failing(later), tmp_path, block=4)
+    assert np.flatnonzero(found["outcome"].values.ravel() == RAISED).tolist() == [5]
+    ((member, told),) = standing_of(tmp_path / "run.zarr").messages
+    assert member == 5
+    with pytest.raises(ValueError, match=match):
+        raise ValueError(told)
+
+
+@pytest.mark.parametrize(
+    ("returned", "match"),
+    [
+        (lambda _: "text", "be an array of numbers"),
+        (lambda _: 1.0, "leading member axis"),
+        (lambda block: np.ones((block.count, 0)), "hold numbers"),
+        (lambda block: (("one", "two"), block.random(2)), "name each axis but the first"),
+        (lambda block: {"run": block["x"]}, "leave the names run"),
+        (lambda block: {"a/b": block["x"]}, "names without slashes"),
+        (lambda block: {1: block["x"]}, "names without slashes"),
+        (lambda block: {"outcome": block["x"]}, "a number from -127 to 127"),
+        (lambda block: {"x": block["x"]}, "a name that the design and dimensions do not have"),
+        (lambda block: {"k": (("k",), block.random(2))}, "a name that the design and dimensions do not have"),
+        (lambda block: {"k": (("x",), block.random(2))}, "name each axis otherwise"),
+        (lambda block: {"k": (("c",), block.random(2)), "l": (("c",), block.random(3))}, "one length along 'c'"),
+    ],
+)
+def test_results_that_nobody_could_open_are_refused(
+    returned: Callable[[nh.MemberBlock], Any], match: str, tmp_path: Path
+) -> None:
+    """What cannot be written, or not be opened by xarray, is refused before anything is computed."""
+    with pytest.raises(ValueError, match=match):
+        _swept(returned, tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def test_names_of_the_design_and_the_result_are_kept_apart(tmp_path: Path) -> None:
+    """A result may not have the name of something drawn."""
+    with pytest.raises(ValueError, match=r"return names that the design does not have. Got 'mass_tensor'"):
+        _swept(lambda block: {"mass_tensor": block.index}, tmp_path, FEW)
+
+
+@pytest.mark.parametrize(
+    ("options", "match"),
+    [
+        ({"task": 5}, r"sweep\(task=...\)` must be callable"),
+        ({"design": {"x": [1.0]}}, r"sweep\(design=...\)` must be a design"),
+        ({"scheduler": "fast"}, "must be one of threads, processes, synchronous or an address"),
+        ({"scheduler": 5}, "must be one of threads"),
+        ({"workers": 0}, r"sweep\(workers=...\)` must be a positive integer"),
+        ({"block": 0}, r"sweep\(block=...\)` must be a positive integer"),
+    ],
+)
+def test_bad_arguments_are_refused(options: dict[str, Any], match: str, tmp_path: Path) -> None:
+    """Bad arguments are refused before there is a store."""
+    with pytest.raises(ValueError, match=match):
+        nh.sweep(**{"task": _calm, "design": GRID, "store": tmp_path / "run.zarr", **options})
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("design", [GRID, nh.RandomDesign(12, {"x": nh.Normal(), "y": nh.Uniform(0, 1)}, seed=7)])
+@pytest.mark.parametrize("block", [1, 7, 64])
+@pytest.mark.parametrize("scheduler", ["threads", "synchronous"])
+def test_bits_do_not_depend_on_blocks(scheduler: str, block: int, design: Any, tmp_path: Path) -> None:
+    """A task of one's own has the same result in blocks of any size, by any scheduler."""
+    found = _swept(_calm, tmp_path, design, block=block, scheduler=scheduler)
+    assert _same(found, nh.sweep(_calm, design, tmp_path / "whole.zarr", "synchronous").load())
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> xarray.Dataset:
+    """The tops in one block."""
+    return nh.sweep(faults.TOPS, FEW, tmp_path_factory.mktemp("whole") / "run.zarr", "synchronous").load()
+
+
+@pytest.mark.parametrize(
+    ("scheduler", "block"), [("threads", 1), ("threads", 7), ("threads", 64), ("synchronous", 7), ("processes", 7)]
+)
+def test_bits_of_ensembles_do_not_depend_on_blocks(
+    scheduler: str, block: int, whole: xarray.Dataset, tmp_path: Path
+) -> None:
+    """Tops have the same bits in blocks of any size, by any scheduler, alone or beside others in a vector register."""
+    assert _same(_swept(faults.TOPS, tmp_path, FEW, block=block, scheduler=scheduler, workers=2), whole)
+
+
+def test_loaded_sweep_is_the_sweep(tmp_path: Path) -> None:
+    """What `sweep` returned, `load_sweep` and plain xarray open; nothing warns, and the scenario is kept."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = _swept(_calm, tmp_path, scenario="[design]")
+        path = tmp_path / "run.zarr"
+        with xarray.open_zarr(path, chunks=None) as opened:
+            assert _same(opened.load(), found)
+        assert _same(nh.load_sweep(path).load(), found)
+    assert found.attrs["scenario"] == "[design]"
+
+
+def test_resumed_sweep_keeps_its_blocks(tmp_path: Path) -> None:
+    """With `resume` a new path is begun; a finished store is opened, whatever `block` says now."""
+    first = _swept(_calm, tmp_path, block=3, resume=True)
+    times = [mark.stat().st_mtime_ns for mark in (tmp_path / "run.zarr" / "run" / "blocks").iterdir()]
+    assert len(times) == 6
+    assert _same(_swept(_calm, tmp_path, block=1, resume=True), first)
+    assert times == [mark.stat().st_mtime_ns for mark in (tmp_path / "run.zarr" / "run" / "blocks").iterdir()]
+
+
+def test_a_large_design_costs_nothing(tmp_path: Path) -> None:
+    """Of 10^9 members nothing is made before the first block, and nothing after it has failed."""
+
+    def task(block: nh.MemberBlock) -> Any:
+        if block.count > 1:
+            raise KeyboardInterrupt
+        return block["x"]
+
+    design = nh.Grid({name: np.arange(1000.0) for name in "xyz"})
+    with pytest.raises(KeyboardInterrupt, match="Stopped at 0 of 1000000000 members"):
+        _swept(task, tmp_path, design)
+    assert sum(file.stat().st_size for file in tmp_path.rglob("*")) < 100_000
+
+
+def test_two_sweeps_at_a_time(tmp_path: Path) -> None:
+    """Sweeps in two threads of one process do not hear of each other's blocks."""
+    found: dict[int, xarray.Dataset] = {}
+
+    def run(number: int) -> None:
+        (tmp_path / str(number)).mkdir()
+        found[number] = _swept(_calm, tmp_path / str(number), block=1, scheduler="threads", workers=2)
+
+    threads = [threading.Thread(target=run, args=(number,)) for number in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    wanted = _swept(_calm, tmp_path)
+    assert all(_same(found[number], wanted) for number in range(2))
+
+
+def test_progress_counts_members(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every member is counted once, those of blocks that were there too."""
+    from nonholo.ensembles import _resume
+
+    counted: list[tuple[int, int]] = []
+
+    class Bar:
+        def __enter__(self) -> Callable[[int, int], None]:
+            return lambda done, total: counted.append((done, total))
+
+        def __exit__(self, *_: object) -> None:
+            pass
+
+    monkeypatch.setattr(_resume, "progress_bar", lambda *_: Bar())
+    for _ in range(2):
+        counted.clear()
+        _swept(_calm, tmp_path, block=4, progress=True, resume=True)
+        assert counted == [(4, 12), (8, 12), (12, 12)]
+
+
+def test_dask_is_loaded_when_it_is_needed() -> None:
+    """Neither the package nor designs and tasks load Dask; `sweep` does."""
+    program = "import sys, nonholo as nh; nh.Grid({'a': [1.0]}); nh.sweep; print(sorted({'dask'} & {*sys.modules}))"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
+    assert done.stdout.strip() == "[]"

@@ -1,0 +1,187 @@
+"""`EnsembleTask`: the members of a design run as those of `ensemble`, and of `simulate`."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.ensembles import standing_of
+from nonholo.ensembles._block import block_of
+from nonholo.ensembles._ensemble_task import ensemble_task_from
+
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+TOP = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1)
+STARTS = [[1.0, 0.2], [-0.3, 0.9]]
+
+
+def _task(discrete: nh.Discretization = SLEIGH, **options: Any) -> nh.EnsembleTask:
+    return nh.EnsembleTask(discrete, **{"steps": 50, **options})
+
+
+def _called(task: nh.EnsembleTask, design: Any) -> dict[str, Any]:
+    found = task(block_of(design, 0, design.members))
+    return {name: entry[1] if isinstance(entry, tuple) else entry for name, entry in found.items()}
+
+
+def _assert_is_ensemble(found: dict[str, Any], batch: nh.Ensemble) -> None:
+    assert found["final_momentum"].tobytes() == batch.restricted_momentum[:, -1].tobytes()
+    assert batch.pose is not None
+    assert found["final_pose"].tobytes() == batch.pose[:, -1].tobytes()
+    assert found["outcome"].tolist() == batch.outcome.tolist()
+
+
+@pytest.mark.parametrize("start", ["restricted_velocity", "momentum"])
+def test_members_are_those_of_ensemble(start: str) -> None:
+    """Parameters, time steps and components of a start by name are the members of `ensemble`, bit by bit."""
+    design = nh.Grid({"a": [0.1, 0.5], "time_step": [0.05, 0.1, 0.2], f"{start}[1]": [-1.0, 0.4]})
+    found = _called(_task(**{start: (1.0, 7.0)}), design)
+    values = design.values(0, 12)
+    rows = np.stack([np.ones(12), values[f"{start}[1]"]], axis=1)
+    parameters = {name: values[name] for name in ("a", "time_step")}
+    _assert_is_ensemble(found, nh.ensemble(SLEIGH, steps=50, parameters=parameters, **{start: rows}))
+
+
+def test_members_are_those_of_simulate() -> None:
+    """Each member ends where `simulate` takes it, to the rounding of 50 steps."""
+    design = nh.RandomDesign(5, {"mass_tensor": nh.MassTensor(3, 0.5, 2.0), "restricted_velocity": nh.Direction(2)})
+    found, values = _called(_task(TOP), design), design.values(0, 5)
+    for member in range(5):
+        top = nh.discretize(nh.SuslovTop(values["mass_tensor"][member]), 0.1)
+        orbit = nh.simulate(top, restricted_velocity=values["restricted_velocity"][member], steps=50)
+        assert orbit.pose is not None
+        assert np.abs(found["final_momentum"][member] - orbit.restricted_momentum[-1]).max() < 1e-14
+        assert np.abs(found["final_pose"][member] - orbit.pose[-1]).max() < 1e-14
+
+
+@pytest.mark.parametrize("start", ["body_velocity", "restricted_velocity", "momentum"])
+def test_whole_starts_of_a_design_replace_that_of_the_task(start: str) -> None:
+    """A start of the design is used instead of that of the task, whatever that was."""
+    rows = [[*row, 0.0] for row in STARTS] if start == "body_velocity" else STARTS
+    found = _called(_task(restricted_velocity=(9.0, 9.0)), nh.Grid({start: rows}))
+    _assert_is_ensemble(found, nh.ensemble(SLEIGH, steps=50, **{start: rows}))
+
+
+def test_start_of_the_task_serves_all_members() -> None:
+    """What the design does not name is as in the task."""
+    found = _called(_task(body_velocity=(1.0, 0.2, 0.0)), nh.Grid({"mass": [1.0, 2.0]}))
+    batch = nh.ensemble(SLEIGH, steps=50, body_velocity=(1.0, 0.2, 0.0), parameters={"mass": [1.0, 2.0]})
+    _assert_is_ensemble(found, batch)
+
+
+def _path_length(batch: nh.Ensemble) -> dict[str, Any]:
+    return {"length": np.linalg.norm(np.diff(batch.position, axis=1), axis=2).sum(axis=1)}
+
+
+def test_functions_of_an_ensemble() -> None:
+    """A reduction of one's own sees the states that are saved, beside built-in ones."""
+    task = _task(restricted_velocity=(1.0, 0.2), save_every=10, reductions=[_path_length, "final_state"])
+    found = _called(task, nh.Grid({"a": [0.1, 0.5]}))
+    batch = nh.ensemble(SLEIGH, steps=50, restricted_velocity=(1.0, 0.2), save_every=10, parameters={"a": [0.1, 0.5]})
+    assert np.array_equal(found["length"], _path_length(batch)["length"])
+    assert found["final_momentum"].tobytes() == batch.restricted_momentum[:, -1].tobytes()
+
+
+def test_functions_of_an_ensemble_may_return_one_array() -> None:
+    """An array that is no dictionary is the result."""
+    found = _called(_task(momentum=(1.0, 0.2), reductions=lambda batch: batch.time[:, -1]), nh.Grid({"a": [0.1, 0.5]}))
+    assert found["result"].tolist() == [5.0, 5.0]
+
+
+def test_description_makes_the_task_again() -> None:
+    """A task comes back from its description as plain data, and describes itself in the same way."""
+    task = _task(TOP, body_velocity=(0.1, 1 / 3, 0.0), reductions=["energy_drift", "lyapunov"], reconstruct=False)
+    again = ensemble_task_from(task.describe())
+    assert again.describe() == task.describe()
+    design = nh.RandomDesign(3, {"mass_tensor": nh.MassTensor(3, 0.5, 2.0)})
+    assert {n: x.tolist() for n, x in _called(again, design).items()} == {
+        n: x.tolist() for n, x in _called(task, design).items()
+    }
+
+
+@pytest.mark.parametrize(("steps", "every"), [(10, None), (10_000, None), (10_000, 1), (10**7, 1)])
+def test_blocks_fit_in_memory(steps: int, every: int | None) -> None:
+    """Blocks are whole ones of the kernel, and their states stay below some 32 MiB, or are as few as they may be."""
+    task = _task(restricted_velocity=(1.0, 0.2), steps=steps, save_every=every)
+    states = 1 if every is None else steps + 1
+    assert task.block % 32 == 0
+    assert task.block == 32 or task.block * states * 8 <= 2**22
+    assert every is not None or task.block >= 2**15
+
+
+def test_refused_members_are_isolated_and_named(tmp_path: Path) -> None:
+    """Members without a body are recorded with their number in the sweep and the reason; the others are done."""
+    masses = np.ones(200)
+    masses[[130, 131, 177]] = -1.0, 0.0, -2.5
+    path, task = tmp_path / "run.zarr", _task(restricted_velocity=(1.0, 0.2))
+    found = nh.sweep(task, nh.Grid({"mass": masses}), path, block=100).load()
+    bad = np.flatnonzero(~(masses > 0))
+    assert np.flatnonzero(found["outcome"] == 100).tolist() == bad.tolist()
+    told = dict(standing_of(path).messages)
+    assert sorted(told) == bad.tolist()
+    assert told[177] == (
+        "ValueError: `ChaplyginSleigh(mass=...)` must be positive. Got -2.5. Pass the mass of the body. "
+        "This is member 177."
+    )
+    good = np.flatnonzero(masses > 0)
+    batch = nh.ensemble(SLEIGH, steps=50, restricted_velocity=(1.0, 0.2), parameters={"mass": masses[good]})
+    assert found["final_momentum"].values[good].tobytes() == batch.restricted_momentum[:, -1].tobytes()
+    assert np.isnan(found["final_momentum"].values[bad]).all()
+
+
+START = {"restricted_velocity": (1.0, 0.2)}
+
+
+@pytest.mark.parametrize(
+    ("options", "axes", "match"),
+    [
+        ({}, {"a": [1.0]}, "have a start. Got none"),
+        (START, {"Mass": [1.0]}, "name parameters of the system or starts. Got 'Mass'. ChaplyginSleigh has mass,"),
+        (START, {"velocity": [[1.0, 2.0]]}, "name parameters"),
+        (START, {"momentum[0]": [1.0]}, r"components of the start of the task. Got 'momentum\[0\]'"),
+        (START, {"momentum": STARTS, "restricted_velocity[0]": [1.0]}, "components of the start of the task"),
+        ({}, {"restricted_velocity[0]": [1.0]}, "have a start"),
+        (START, {"restricted_velocity[2]": [1.0]}, "that there are. Got .* of a start with 2"),
+        ({}, {"momentum": STARTS, "body_velocity": [[1.0, 0.0, 0.0]]}, "vary one start"),
+        (START, {"mass": [-1.0, 0.0]}, "run for one of the members tried. Got ValueError.*must be positive"),
+        (START, {"mass": [[1.0, 2.0]]}, "run for one of the members tried.*must have shape"),
+        ({}, {"momentum": [1.0, 2.0]}, "run for one of the members tried.*must have shape"),
+    ],
+)
+def test_designs_without_a_meaning_are_refused(
+    options: dict[str, Any], axes: dict[str, Any], match: str, tmp_path: Path
+) -> None:
+    """A design that the task cannot run is refused before there is a store."""
+    with pytest.raises(ValueError, match=match):
+        nh.sweep(_task(**options), nh.Grid(axes), tmp_path / "run.zarr")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("make", "match"),
+    [
+        (lambda: nh.EnsembleTask(SLEIGH, steps=0), "must be a positive integer"),
+        (lambda: nh.EnsembleTask(SLEIGH, steps=5, save_every=0), "must be a positive integer"),
+        (lambda: nh.EnsembleTask(SLEIGH.system, steps=5), r"EnsembleTask\(discrete=...\)"),  # type: ignore[arg-type]
+        (lambda: _task(reductions=["final", "energy_drift"]), "Got 'final'. Choose among final_state,"),
+        (lambda: _task(reductions=[["final_state"]]), "names or functions"),
+        (lambda: _task(reductions=None), "names or functions. Got None"),
+        (lambda: _task(momentum=STARTS), r"EnsembleTask\(momentum=...\)` must have shape"),
+        (lambda: _task(momentum="left"), "array of real numbers"),
+        (lambda: _task(momentum=(1.0, 0.0), body_velocity=(1.0, 0.0, 0.0)), "exactly one of"),
+    ],
+)
+def test_bad_tasks_are_refused(make: Callable[[], Any], match: str) -> None:
+    """A task that makes no sense is refused when it is made."""
+    with pytest.raises(ValueError, match=match):
+        make()
+
+
+def test_names_that_two_reductions_return_are_refused() -> None:
+    """No reduction silently replaces what another one returned."""
+    for name in ("final_energy", "outcome"):
+        task = _task(reductions=["final_state", lambda batch, name=name: {name: batch.outcome}], **START)
+        with pytest.raises(ValueError, match=f"return each name once. Got '{name}'"):
+            _called(task, nh.Grid({"a": [1.0]}))

@@ -1,0 +1,364 @@
+"""Poses as CSV: every number is read back exactly, rows go on from one another, and a file is whole or not there."""
+
+import io
+import json
+import os
+import re
+import subprocess
+import sys
+import tracemalloc
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from problems import PROBLEMS
+from scipy.spatial.transform import Rotation
+
+import nonholo as nh
+from nonholo.io import Stream, locked, store_to_csv
+
+EPS = np.finfo(float).eps
+SPINNING = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.3), 0.1)  # turns for ever
+TILTED = nh.discretize(PROBLEMS[1].system, 0.1)
+FORWARDS = nh.discretize(nh.MultidimensionalSleigh(1.5, [0.3, 0.1, 0.2], np.diag([0.5, 0.7, 0.9])), 0.1)
+SPIN = {"restricted_velocity": (3.0, 0.5)}
+HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
+
+
+def _read(text: str) -> tuple[list[str], np.ndarray]:
+    """Return the names and the rows, each number as Python reads it."""
+    header, *lines = text.splitlines()
+    return header.split(","), np.array([[float(cell) for cell in line.split(",")] for line in lines])
+
+
+def _written(orbit: nh.Orbit, tmp_path: Path) -> str:
+    orbit.to_csv(tmp_path / "poses.csv", overwrite=True)
+    return (tmp_path / "poses.csv").read_text()
+
+
+def _of_store(store: Path, **options: Any) -> str:
+    target = io.StringIO()
+    store_to_csv(store, target, **options)
+    return target.getvalue()
+
+
+def _stop_at(monkeypatch: pytest.MonkeyPatch, block: int, run: Callable[[], object]) -> None:
+    """Let Ctrl-C come when a run writes a block."""
+    write = Stream.write
+
+    def interrupted(self: Stream, number: int, *rest: Any) -> None:
+        if number == block:
+            raise KeyboardInterrupt
+        write(self, number, *rest)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Stream, "write", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            run()
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Path:
+    """A spinning sleigh of 101 states in chunks of 8, which turns through five circles."""
+    nh.simulate(SPINNING, steps=100, store=tmp_path / "run.zarr", checkpoint_every=8, **SPIN)
+    return tmp_path / "run.zarr"
+
+
+def test_plane_is_read_back_exactly(tmp_path: Path) -> None:
+    """Time, position and unwrapped heading on SE(2) have the bits of the orbit."""
+    orbit = nh.simulate(SPINNING, steps=100, **SPIN)
+    names, rows = _read(_written(orbit, tmp_path))
+    assert names == ["t", "x", "y", "theta"]
+    assert rows.tobytes() == np.column_stack([orbit.time, orbit.position, orbit.heading]).tobytes()
+    assert abs(rows[-1, 3]) > 4 * np.pi
+
+
+def test_quaternions_are_those_of_the_user_frame(tmp_path: Path) -> None:
+    """On SO(3) quaternions, scalar first, give the poses of a body with a tilted axis, up to rounding.
+
+    A rotation matrix is quadratic in its quaternion: a few roundings in each.
+    """
+    orbit = nh.simulate(TILTED, restricted_velocity=(0.5, 0.6), steps=300)
+    names, rows = _read(_written(orbit, tmp_path))
+    assert names == ["t", "qw", "qx", "qy", "qz"]
+    found = Rotation.from_quat(rows[:, 1:], scalar_first=True).as_matrix()
+    assert np.abs(found - orbit.configuration).max() < 20 * EPS
+    assert np.abs(rows[0, 1:] - [1, 0, 0, 0]).max() < 4 * EPS  # starts where the user's frame is that of space
+    assert np.abs(np.linalg.norm(rows[:, 1:], axis=1) - 1).max() < 4 * EPS
+
+
+def test_signs_of_quaternions_are_continuous(tmp_path: Path) -> None:
+    """A body that turns beyond half a circle gets a negative scalar part, not a jump."""
+    top = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1)
+    q = _read(_written(nh.simulate(top, restricted_velocity=(0.9, 0.4), steps=200), tmp_path))[1][:, 1:]
+    assert q[0, 0] == 1
+    assert q[:, 0].min() < -0.9
+    assert np.linalg.norm(np.diff(q, axis=0), axis=1).max() < 0.1
+
+
+def test_space_has_position_and_quaternion(tmp_path: Path) -> None:
+    """On SE(3) the position has its bits, the quaternion its rotation."""
+    orbit = nh.simulate(FORWARDS, restricted_velocity=(0.3, 0.8, 0.4), steps=50)
+    names, rows = _read(_written(orbit, tmp_path))
+    assert names == ["t", "x", "y", "z", "qw", "qx", "qy", "qz"]
+    assert np.array_equal(rows[:, 1:4], orbit.position)
+    found = Rotation.from_quat(rows[:, 4:], scalar_first=True).as_matrix()
+    assert np.abs(found - orbit.configuration[:, :3, :3]).max() < 20 * EPS
+
+
+def _free(group: Any) -> nh.Discretization:
+    return nh.discretize(nh.LLSystem(group, None, np.eye(group.dim), inertia_operator=np.eye(group.dim)), 0.1)
+
+
+@pytest.mark.parametrize(
+    ("group", "position", "size"),
+    [
+        (nh.SO(2), 0, 2),
+        (nh.SO(4), 0, 4),
+        (nh.SE(4), 4, 4),
+        (nh.Translations(3), 3, 0),
+        (HEISENBERG, 0, 3),
+        (nh.ProductGroup(nh.SE(2), nh.Translations(1)), 0, 5),
+    ],
+    ids=repr,
+)
+def test_other_groups_have_the_entries_of_the_matrix(group: Any, position: int, size: int, tmp_path: Path) -> None:
+    """Numbered positions, then the matrix row by row, with the bits of the orbit."""
+    motion = _free(group)
+    g = np.stack([group.exp(t * np.cos(np.arange(group.dim))) for t in (0.0, 0.3, 0.7)])
+    nothing = np.zeros((3, group.dim))
+    orbit = nh.Orbit(motion, np.arange(3.0), nothing, nothing, group.pose_from_matrix(g))
+    names, rows = _read(_written(orbit, tmp_path))
+    entries = [f"r{i}{j}" for i in range(1, size + 1) for j in range(1, size + 1)]
+    assert names == ["t", *(f"x{i}" for i in range(1, position + 1)), *entries]
+    found = orbit.configuration
+    assert np.array_equal(rows[:, 1 : 1 + position], found[:, :position, -1])
+    assert np.array_equal(rows[:, 1 + position :], found[:, :size, :size].reshape(3, -1))
+
+
+def test_entries_from_ten_rows_on_are_told_apart(tmp_path: Path) -> None:
+    """Column names are unique where an index has two digits."""
+    group = nh.SO(11)
+    none = np.zeros((1, 10))
+    top = nh.discretize(nh.SuslovTop(np.diag(np.arange(1.0, 12.0))), 0.1)
+    orbit = nh.Orbit(top, np.zeros(1), none, none, group.pose_from_matrix(group.identity[None]))
+    names, rows = _read(_written(orbit, tmp_path))
+    assert names[1] == "r1_1"
+    assert len(set(names)) == rows.shape[1] == 122
+
+
+def test_store_in_chunks_gives_the_text_of_the_orbit(store: Path, tmp_path: Path) -> None:
+    """Headings go on over the borders of chunks: the same bytes, however the motion is cut."""
+    assert _of_store(store) == _written(nh.simulate(SPINNING, steps=100, **SPIN), tmp_path)
+
+
+def test_quaternions_go_on_over_chunks(tmp_path: Path) -> None:
+    """Signs go on over the borders of chunks too, here of one state each."""
+    top = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.5)
+    start = {"restricted_velocity": (0.9, 0.4), "steps": 40}
+    nh.simulate(top, store=tmp_path / "run.zarr", checkpoint_every=1, **start)
+    assert _of_store(tmp_path / "run.zarr") == _written(nh.simulate(top, **start), tmp_path)
+
+
+def test_headings_near_half_a_turn_go_on_over_chunks(tmp_path: Path) -> None:
+    """Where saved states are nearly half a turn apart the shorter turn is taken inside and between chunks alike."""
+    start = {"restricted_velocity": (3.0, 0.5), "steps": 100, "save_every": 10}
+    nh.simulate(SPINNING, store=tmp_path / "run.zarr", checkpoint_every=10, **start)
+    orbit = nh.simulate(SPINNING, **start)
+    assert 2.9 < abs(orbit.heading[1] - orbit.heading[0]) < np.pi
+    assert _of_store(tmp_path / "run.zarr") == _written(orbit, tmp_path)
+
+
+@pytest.mark.parametrize("every", [3, 8, 13, 200])
+def test_thinned_rows_are_rows_of_the_whole(every: int, store: Path) -> None:
+    """`every` keeps states 0, N, 2 N, ...; headings still count every turn between them."""
+    header, *lines = _of_store(store).splitlines()
+    assert _of_store(store, every=every).splitlines() == [header, *lines[::every]]
+
+
+def test_flow_keeps_the_heading_it_knows(tmp_path: Path) -> None:
+    """Of a flow saved at few times headings are those of the solver, which counts full turns between them."""
+    system = nh.ChaplyginSleigh(1.0, 1.0, 0.0)
+    orbit = nh.flow(system, body_velocity=(2.0, 0.3, 0.0), times=[0.0, 5.0, 10.0])
+    nh.save_orbit(orbit, tmp_path / "run.zarr")
+    rows = _read(_of_store(tmp_path / "run.zarr"))[1]
+    assert np.array_equal(rows[:, 3], orbit.heading)
+    assert rows[:, 3] == pytest.approx([0.0, 10.0, 20.0], abs=1e-8)  # tolerance of the solver
+
+
+def test_callable_difference_is_no_obstacle(tmp_path: Path) -> None:
+    """The poses of a store need its body, not a function that the store could not keep."""
+    system, h = nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1
+    orbit = nh.simulate(nh.discretize(system, h), body_velocity=(1.0, 0.3, 0.0), steps=5)
+    nh.save_orbit(orbit, tmp_path / "run.zarr")
+    path = tmp_path / "run.zarr" / "zarr.json"
+    document = json.loads(path.read_text())
+    motion = json.loads(document["attributes"]["motion"]) | {"difference": "callable"}
+    document["attributes"]["motion"] = json.dumps(motion)
+    path.write_text(json.dumps(document))
+    with pytest.raises(ValueError, match="difference is a callable"):
+        nh.load_orbit(tmp_path / "run.zarr")
+    assert _of_store(tmp_path / "run.zarr") == _written(orbit, tmp_path)
+
+
+@pytest.mark.parametrize("block", [0, 1, 5])
+def test_unfinished_store_gives_its_finished_blocks(
+    block: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What a stopped run finished is exported, and a warning says how far it goes and how to go on."""
+    path, given = tmp_path / "run.zarr", {"save_every": 2, **SPIN}
+    _stop_at(monkeypatch, block, lambda: nh.simulate(SPINNING, steps=99, store=path, checkpoint_every=16, **given))
+    last = max(0, 16 * block - 2)
+    with pytest.warns(RuntimeWarning, match=rf"up to step {last} of 99\. Go on with nonholo\.resume\('.*run\.zarr'\)"):
+        text = _of_store(path)
+    whole = _written(nh.simulate(SPINNING, steps=99, **given), tmp_path)
+    assert text == "".join(whole.splitlines(keepends=True)[: 1 + 8 * block])
+
+
+def test_run_that_is_being_written_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """While a process writes a store its finished blocks are there for others, and the warning names the writer."""
+    path = tmp_path / "run.zarr"
+    _stop_at(monkeypatch, 2, lambda: nh.simulate(SPINNING, steps=99, store=path, checkpoint_every=16, **SPIN))
+    with (
+        locked(path),
+        pytest.warns(RuntimeWarning, match=rf"step 31 of 99\. It is being written by process {os.getpid()}"),
+    ):
+        assert len(_of_store(path).splitlines()) == 33
+
+
+def test_extended_store_gives_its_full_blocks(store: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A last block that was not full is written anew when a run is extended, and left out until then."""
+    _stop_at(monkeypatch, 12, lambda: nh.extend(store, 50))
+    with pytest.warns(RuntimeWarning, match="up to step 95 of 150"):
+        text = _of_store(store)
+    whole = _written(nh.simulate(SPINNING, steps=95, **SPIN), tmp_path)
+    assert text == whole
+
+
+def test_empty_orbit_has_a_header(tmp_path: Path) -> None:
+    """An orbit without states gives the names alone, from memory and from a store."""
+    orbit = nh.simulate(SPINNING, steps=3, **SPIN)[:0]
+    nh.save_orbit(orbit, tmp_path / "run.zarr")
+    assert _written(orbit, tmp_path) == _of_store(tmp_path / "run.zarr") == "t,x,y,theta\n"
+
+
+def test_memory_does_not_grow_with_the_length(tmp_path: Path) -> None:
+    """Ten times as many states need no more memory than one chunk and its text.
+
+    The longer orbit has 1.1e5 states, 4 MB in its arrays and 9 MB as text; one chunk and a piece of 16384 states need
+    3.7 MB, and a reading thread that is slow to let go sometimes 0.6 MB more.
+    """
+    peaks = []
+    for steps in (20_000, 110_000):
+        path = tmp_path / f"{steps}.zarr"
+        nh.simulate(SPINNING, steps=steps, store=path, checkpoint_every=10_000, **SPIN)
+        store_to_csv(path, tmp_path / "warm.csv", overwrite=True, every=1000)
+        tracemalloc.start()
+        store_to_csv(path, tmp_path / f"{steps}.csv")
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] < 1.4 * peaks[0]
+
+
+@pytest.mark.parametrize("name", ["time", "pose"])
+def test_damaged_chunk_is_refused_by_name(name: str, store: Path, tmp_path: Path) -> None:
+    """A changed byte late in the store is named before anything is written, to a file or to a stream."""
+    chunk = next(path for path in (store / name / "c").rglob("*") if path.is_file() and "11" in path.parts)
+    content = bytearray(chunk.read_bytes())
+    content[len(content) // 2] ^= 1
+    chunk.write_bytes(content)
+    stream = io.StringIO()
+    for target in (tmp_path / "poses.csv", stream):
+        with pytest.raises(ValueError, match=f"chunk c/11.* of the array {name}"):
+            store_to_csv(store, target)
+    assert stream.getvalue() == ""
+    assert list(tmp_path.iterdir()) == [store]
+
+
+def test_missing_chunk_is_refused_by_name(store: Path) -> None:
+    """A chunk that is not there is not read as NaN."""
+    (store / "pose" / "c" / "3" / "0").unlink()
+    with pytest.raises(ValueError, match="chunk c/3/0 of the array pose"):
+        _of_store(store)
+
+
+def test_no_poses_are_refused(tmp_path: Path) -> None:
+    """An orbit without poses, in memory or in a store, is refused with the remedy, and nothing is written."""
+    orbit = nh.simulate(SPINNING, steps=5, reconstruct=False, **SPIN)
+    with pytest.raises(ValueError, match=r"with poses\. Got reconstruct=False\. Run with reconstruct=True"):
+        orbit.to_csv(tmp_path / "poses.csv")
+    nh.save_orbit(orbit, tmp_path / "run.zarr")
+    with pytest.raises(ValueError, match=r"hold poses.*Run it again with reconstruct=True"):
+        _of_store(tmp_path / "run.zarr")
+    assert [path.name for path in tmp_path.iterdir()] == ["run.zarr"]
+
+
+def test_existing_file_is_refused_unless_asked(store: Path, tmp_path: Path) -> None:
+    """An older file stays as it is; `overwrite` replaces it."""
+    target = tmp_path / "poses.csv"
+    target.write_text("older")
+    for write in (nh.load_orbit(store).to_csv, lambda path: store_to_csv(store, path)):
+        with pytest.raises(
+            FileExistsError, match=r"poses\.csv', which exists\. Choose another path, or pass overwrite"
+        ):
+            write(target)
+    assert target.read_text() == "older"
+    store_to_csv(store, target, overwrite=True)
+    assert target.read_text() == _of_store(store)
+    assert sorted(tmp_path.iterdir()) == [target, store]
+
+
+def test_folder_is_refused_even_when_asked(store: Path) -> None:
+    """Only files are replaced."""
+    with pytest.raises(FileExistsError, match="not a file"):
+        store_to_csv(store, store, overwrite=True)
+    assert len(nh.load_orbit(store)) == 101
+
+
+def test_other_stores_are_refused(tmp_path: Path) -> None:
+    """A saved ensemble is no store of an orbit, and is called what it is."""
+    batch = nh.ensemble(SPINNING, restricted_velocity=[[1.0, 0.5], [2.0, 0.5]], steps=3, save_every=1)
+    batch.to_dataset().to_zarr(tmp_path / "members.zarr", consolidated=False)
+    with pytest.raises(ValueError, match=r"members\.zarr', a store of an ensemble"):
+        _of_store(tmp_path / "members.zarr")
+    assert _written(batch.orbit(1), tmp_path).startswith("t,x,y,theta\n")
+
+
+def test_wrong_arguments_are_refused(store: Path, tmp_path: Path) -> None:
+    """What is not an orbit, and a number of states that counts nothing, end before any work."""
+    with pytest.raises(ValueError, match="be an orbit of a system on a group"):
+        nh.Orbit.to_csv(np.zeros(3), tmp_path / "poses.csv")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"`store_to_csv\(every=\.\.\.\)`"):
+        store_to_csv(store, tmp_path / "poses.csv", every=0)
+    assert list(tmp_path.iterdir()) == [store]
+
+
+def test_refused_write_leaves_the_older_file(store: Path, tmp_path: Path) -> None:
+    """A limit of the operating system on file sizes ends in a clean error; the older file stays, nothing else does."""
+    target = tmp_path / "poses.csv"
+    target.write_text("older")
+    script = f"""
+import resource, signal
+from nonholo.io import store_to_csv
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (3_000, 3_000))
+try:
+    store_to_csv({str(store)!r}, {str(target)!r}, overwrite=True)
+except OSError as failure:
+    print(failure)
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)  # noqa: S603
+    assert "File too large. Nothing at this path was changed" in done.stdout
+    assert target.read_text() == "older"
+    assert sorted(tmp_path.iterdir()) == [target, store]
+
+
+def test_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The Python blocks of the page, one after another, raise nothing."""
+    monkeypatch.chdir(tmp_path)
+    page = Path(__file__).parents[2] / "docs" / "how-to" / "export-poses.md"
+    blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
+    assert len(blocks) == 2
+    exec(compile("".join(blocks), str(page), "exec"), {})  # noqa: S102

@@ -1,0 +1,379 @@
+"""Events of discrete runs: what counts as a crossing, where it is, and how a run ends there."""
+
+import pathlib
+import re
+
+import mpmath
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.simulation._events_between import between_states
+
+# A sleigh with a = 0 keeps its momenta: P_theta = J sin(theta)/h, so a step of length tau turns it by arcsin(tau w).
+ROUND = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.1)
+FOUR = nh.discretize(nh.SuslovTop(np.diag([1.0, 1.3, 0.8, 1.1]) + 0.1), 0.1)
+MOTIONS = {
+    "top": TOP,
+    "top in 4 dimensions": FOUR,
+    "sleigh in space": nh.discretize(nh.MultidimensionalSleigh(1.0, (0.3, 0.1, -0.2), np.eye(3)), 0.1),
+    "another body frame": nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3), 0.1),
+    "general": nh.discretize(nh.LLSystem(nh.SO(3), TOP.system.mass_tensor, annihilator=[[0.1, 0.3, 1]]), 0.1),
+    "right-invariant": nh.discretize(nh.VeselovaTop(TOP.system.mass_tensor), 0.1),
+    "order 4": nh.discretize(nh.SuslovTop(TOP.system.mass_tensor), 0.1, order=4),
+    "order 6, sleigh": nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3), 0.1, order=6),
+}  # fmt: skip
+STATE = ("time", "reduced_momentum", "cayley", "pose")
+
+
+def start(discrete: nh.Discretization) -> np.ndarray:
+    """A velocity along the constraint that suits every system here."""
+    return np.linspace(1.0, -0.6, discrete.system.rank)
+
+
+def east(orbit: nh.Orbit) -> np.ndarray:
+    """Zero where the sleigh looks along the first axis, or back."""
+    return np.sin(orbit.heading)
+
+
+def test_crossing_of_the_uniform_circle_is_the_known_one() -> None:
+    """The sleigh with a = 0 looks east again where arcsin(tau w) fills up the whole turns, to 1e-15 of a time of 4."""
+    orbit = nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=600, events=[nh.Event(east, direction=1)])
+    with mpmath.workdps(40):
+        h = mpmath.mpf(float(ROUND.time_step))
+        turn = mpmath.asin(4 * h)
+        whole = [mpmath.floor(2 * mpmath.pi * n / turn) for n in (1, 2, 3)]
+        known = [
+            float(k * h + mpmath.sin(2 * mpmath.pi * n - k * turn) / 4) for n, k in zip((1, 2, 3), whole, strict=True)
+        ]
+    found = orbit.events["east"]
+    assert np.array_equal(found.step[:3], np.array(whole, dtype=int))
+    assert np.abs(found.time[:3] - known).max() < 4e-15  # ulps of 4.6, and of a heading of 19 over w
+    assert np.abs(found.states.heading[:3] - 2 * np.pi * np.arange(1, 4)).max() < 4e-15
+    assert np.abs(found.states.heading - 2 * np.pi * np.arange(1, 40)).max() < 2e-13  # ulps of 250, all stretches
+    assert np.array_equal(found.step, np.floor(found.time / ROUND.time_step))
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_parts_of_steps_join_the_states(name: str) -> None:
+    """A part of a step is the next state at s = 1, to rounding, and tends to the state itself, and is continuous."""
+    orbit = nh.simulate(MOTIONS[name], restricted_velocity=start(MOTIONS[name]), steps=8)
+    between = between_states(MOTIONS[name])
+    for fraction, limit, error in ((1.0, orbit[1:], 2e-14), (1e-10, orbit[:-1], 1e-9)):
+        reached = between(orbit[:-1], np.full(8, fraction))
+        for quantity in ("momentum", "configuration", "displacement", "body_velocity"):
+            assert np.abs(getattr(reached, quantity) - getattr(limit, quantity)).max() < error
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_events_leave_the_orbit_alone(name: str) -> None:
+    """With and without events, thinned or not, the states are the same to the last bit; crossings do not depend."""
+    discrete, found = MOTIONS[name], []
+    middle = nh.simulate(discrete, restricted_velocity=start(discrete), steps=15).configuration[15, 0, 1]
+    event = nh.Event(lambda orbit: orbit.configuration[:, 0, 1] - middle / 2, name="middle")
+    for every in (1, 7):
+        run = {"restricted_velocity": start(discrete), "steps": 300, "save_every": every}
+        orbit, plain = nh.simulate(discrete, **run, events=[event]), nh.simulate(discrete, **run)
+        for field in STATE:
+            assert np.array_equal(getattr(orbit, field), getattr(plain, field))
+        found.append(orbit.events["middle"])
+        assert len(found[-1]) > 0
+        assert np.abs(event.function(found[-1].states)).max() < 4e-16
+    assert np.array_equal(found[0].time, found[1].time)
+
+
+def test_a_part_of_a_step_is_a_shorter_step() -> None:
+    """Half a step of a top is the step of half the length from the same momentum along the constraint."""
+    orbit = nh.simulate(TOP, restricted_velocity=(0.7, -0.3), steps=5)
+    half = between_states(TOP)(orbit[4:5], np.array([0.5]))
+    shorter = nh.discretize(TOP.system, TOP.time_step / 2)
+    step = nh.simulate(shorter, momentum=orbit.restricted_momentum[4], configuration=orbit.configuration[4], steps=1)
+    assert np.abs(half.restricted_momentum[0] - step.restricted_momentum[1]).max() < 1e-15
+    assert np.abs(half.configuration[0] - step.configuration[1]).max() < 1e-15
+
+
+@pytest.mark.parametrize("options", [{"difference": "logarithmic"}, {"backend": "jax"}], ids=["logarithmic", "jax"])
+def test_runs_by_the_definition_find_the_same(options: dict[str, str]) -> None:
+    """The crossing lies where the function is zero to rounding, and the run ends there."""
+    run = {"restricted_velocity": (0.7, -0.3), "steps": 40, "save_every": 3}
+    discrete = nh.discretize(TOP.system, 0.1, difference=options.pop("difference", "matrix"))
+    event = nh.Event(lambda orbit: orbit.configuration[:, 0, 0] - 0.8, stop=True, name="e")
+    orbit = nh.simulate(discrete, **run, **options, events=[event])
+    plain = nh.simulate(discrete, **run, **options)[: len(orbit)]
+    assert orbit.events.stopped_by == "e"
+    assert np.abs(event.function(orbit.events[0].states)).max() < 2e-16
+    assert orbit.time[-1] <= orbit.events[0].time[0] <= orbit.time[-1] + 0.3
+    assert np.array_equal(orbit.pose, plain.pose)
+
+
+def test_a_callable_lagrangian_has_parts_of_steps() -> None:
+    """The path s r to the principal root is defined without a time step; it gives those of the closed form."""
+    J = TOP.system.mass_tensor
+    discrete = nh.discretize(
+        TOP.system, 0.1, difference=lambda W: ((W - np.eye(3)) @ J @ (W - np.eye(3)).T).trace() / 0.2
+    )
+    run = {
+        "restricted_velocity": (0.7, -0.3),
+        "steps": 8,
+        "events": [lambda orbit: orbit.configuration[:, 0, 0] - 0.95],
+    }
+    slow, fast = nh.simulate(discrete, **run).events[0], nh.simulate(TOP, **run).events[0]
+    assert len(slow) == len(fast) == 1
+    assert np.abs(slow.time - fast.time).max() < 1e-14
+
+
+def test_direction() -> None:
+    """Crossings from below and from above together are those in both directions, each marked with its own."""
+    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 60}
+    both, up, down = (
+        nh.simulate(ROUND, **run, events=[nh.Event(east, direction=d)]).events["east"] for d in (0, 1, -1)
+    )
+    assert np.array_equal(both.time, np.sort(np.concatenate([up.time, down.time])))
+    assert both.direction.tolist() == [-1, 1, -1, 1, -1, 1, -1]
+    assert set(up.direction) == {1}
+    assert set(down.direction) == {-1}
+
+
+@pytest.mark.parametrize("every", [1, 4])
+def test_stop_keeps_what_is_before(every: int) -> None:
+    """A run that stops at the second crossing ends with the saved state before it, and is successful."""
+    run = {"body_velocity": (4.0, 1.0, 0.0), "save_every": every}
+    orbit = nh.simulate(ROUND, **run, steps=10**9, events=[nh.Event(east, stop=2)])
+    whole = nh.simulate(ROUND, **run, steps=15)
+    assert orbit.outcome == nh.Outcome.successful
+    assert orbit.events.stopped_by == "east"
+    assert orbit.events["east"].step[-1] == 15
+    assert np.array_equal(orbit.pose, whole.pose)
+
+
+def test_the_first_of_two_stops_in_one_step_counts() -> None:
+    """Of crossings in one step those up to the one that ends the run are kept, in order of time."""
+    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 100}
+    turn = float(np.arcsin(0.4))
+    events = [
+        nh.Event(lambda orbit, at=at: orbit.heading - (20 + at) * turn, stop=stop, name=f"{at}")
+        for at, stop in ((0.9, True), (0.2, False), (0.7, True), (0.5, False))
+    ]
+    found = nh.simulate(ROUND, **run, events=events).events
+    assert [len(found[name]) for name in ("0.2", "0.5", "0.7", "0.9")] == [1, 1, 1, 0]
+    assert found.stopped_by == "0.7"
+    assert found["0.2"].time < found["0.5"].time < found["0.7"].time
+
+
+def test_zero_at_a_state_counts_once() -> None:
+    """A function that is exactly zero at a saved state has one crossing, that state, also if it only touches zero."""
+    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 20}
+    plain = nh.simulate(ROUND, **run)
+    through, touch = (nh.Event(lambda orbit, n=n: (orbit.time - plain.time[9]) ** n, name=f"{n}") for n in (1, 2))
+    found = nh.simulate(ROUND, **run, events=[through, touch]).events
+    for crossings in found.found:
+        assert (crossings.step.tolist(), crossings.fraction.tolist()) == ([9], [0.0])
+        assert np.array_equal(crossings.states.pose, plain.pose[9:10])
+
+
+def test_states_between_stretches_keep_their_value() -> None:
+    """A state that is the last of a stretch and the first of the next one has one value, whatever the function says."""
+
+    def wavering(orbit: nh.Orbit) -> np.ndarray:
+        values = orbit.time - 25.6
+        at = np.flatnonzero(np.abs(values) < 0.05)
+        values[at] = np.where(at == 0, -1e-16, 1e-16)  # products of matrices can have other last bits in other company
+        return values
+
+    assert len(nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=600, events=[wavering]).events[0]) == 1
+
+
+def test_a_stop_at_a_state_keeps_it() -> None:
+    """A run that stops exactly at a state keeps that state."""
+    orbit = nh.simulate(
+        ROUND, body_velocity=(4.0, 1.0, 0.0), steps=20, events=[nh.Event(lambda o: 0.5 - o.time, 0, True)]
+    )
+    assert orbit.time[-1] == 0.5
+
+
+def test_staying_at_zero_is_no_crossing() -> None:
+    """An equilibrium, where v_1 and omega are constant, and a run that starts at zero, have no crossings."""
+    run = {"body_velocity": (0.0, 1.0, 0.0), "steps": 50}
+    events = [lambda orbit: orbit.body_velocity[:, 0], lambda orbit: orbit.time]
+    assert [len(found) for found in nh.simulate(SLEIGH, **run, events=events).events.found] == [0, 0]
+
+
+def test_headings_of_events_know_full_turns() -> None:
+    """Blocks of a long run, and states in a step, go on with the heading: it crosses 3000 turns once."""
+    far = nh.Event(lambda orbit: orbit.heading - 6000 * np.pi, name="far")
+    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 50_000, "save_every": 10_000}
+    found = nh.simulate(ROUND, **run, events=[far]).events["far"]
+    assert len(found) == 1
+    assert abs(found.time[0] - 0.1 * 6000 * np.pi / np.arcsin(0.4)) < 0.1
+
+
+def test_blocks_of_a_run_hold_its_crossings() -> None:
+    """`iterate` finds in its blocks what `simulate` finds, and ends with the block in which an event stops it."""
+    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 200, "events": [nh.Event(east, stop=9)], "save_every": 5}
+    whole = nh.simulate(ROUND, **run)
+    blocks = list(nh.iterate(ROUND, **run, block_steps=20))
+    assert np.array_equal(np.concatenate([block.events["east"].time for block in blocks]), whole.events["east"].time)
+    assert np.array_equal(np.concatenate([block.pose for block in blocks]), whole.pose)
+    assert [block.events.stopped_by for block in blocks] == [None] * (len(blocks) - 1) + ["east"]
+
+
+def test_blocks_of_one_state() -> None:
+    """A block that holds the first state alone has no crossings."""
+    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 20, "events": [east]}
+    blocks = list(nh.iterate(ROUND, **run, block_steps=1))
+    assert sum(len(block.events[0]) for block in blocks) == len(nh.simulate(ROUND, **run).events[0]) == 2
+
+
+def test_crossings_of_an_orbit_are_those_of_the_run() -> None:
+    """An orbit that is already there has the same crossings as the run that looks for them."""
+    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 200}
+    found = nh.crossings(nh.simulate(ROUND, **run), east)
+    assert np.array_equal(found.time, nh.simulate(ROUND, **run, events=[east]).events[0].time)
+
+
+def test_a_run_that_cannot_go_on_keeps_its_crossings() -> None:
+    """Crossings before a fold are kept with the good states."""
+    fold = nh.discretize(nh.SuslovTop([[0.6, 0.1, 1.0], [0.1, 2.0, 0.1], [1.0, 0.1, 2.0]]), 1.0)
+    run = {"restricted_velocity": (0.7, 0.7), "steps": 500, "throw": False}
+    orbit = nh.simulate(fold, **run, events=[lambda orbit: orbit.time - 0.5])
+    plain = nh.simulate(fold, **run)
+    assert orbit.outcome == plain.outcome != nh.Outcome.successful
+    assert np.array_equal(orbit.pose, plain.pose)
+    assert orbit.events[0].time.tolist() == [0.5]
+
+
+def test_cusp_of_the_discrete_sleigh_tends_to_the_continuous_one() -> None:
+    """A backward sleigh turns round once; the time of its cusp has an error of second order in h."""
+    sleigh, velocity = nh.ChaplyginSleigh(1.0, 0.75, 0.5), (0.3, -1.0, 0.0)
+    omega, v1 = velocity[:2]
+    rate = 0.5 / np.sqrt(1.0)  # |a| |x| / (rho^2 sqrt(m)) with rho^2 = 1; v_1 = |x| tanh(s_0 + rate |x| t)
+    level = np.hypot(omega, v1)
+    known = -np.arcsinh(v1 / omega) / (rate * level)
+    errors = []
+    for h in (0.1, 0.05, 0.025):
+        run = nh.simulate(nh.discretize(sleigh, h), body_velocity=velocity, steps=int(20 / h), events=[nh.cusp])
+        assert len(run.events["cusp"]) == 1
+        errors.append(abs(run.events["cusp"].time[0] - known))
+    assert np.abs(np.log2(np.divide(errors[:-1], errors[1:])) - 2).max() < 0.05
+
+
+@pytest.mark.parametrize(
+    ("function", "told"),
+    [
+        (lambda orbit: orbit.body_velocity, "one real number for each of 1 states. Got float64 of shape (1, 3)"),
+        (lambda _: 1.0, "of shape ()"),
+        (lambda orbit: orbit.time > 1, "bool of shape"),
+        (lambda orbit: np.where(orbit.time > 1.05, np.nan, 1.0), "nan at time 1.1"),
+        (lambda orbit: orbit.altitude, "AttributeError"),
+    ],
+    ids=["shape", "one number", "truth", "nan", "raises"],
+)
+def test_functions_that_give_no_number_are_refused(function: object, told: str) -> None:
+    """A function must give one finite real number for each state; the error names it and what it gave."""
+    with pytest.raises(ValueError, match="event 0") as refusal:
+        nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=20, events=[function])
+    assert told in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"events": east}, "be a list"),
+        ({"events": [3]}, "be a function"),
+        ({"events": [east, east]}, "different names"),
+        ({"events": [east], "branch": "smallest"}, "principal branch"),
+        ({"events": [east], "store": "never.zarr"}, "without a store"),
+    ],
+    ids=["no list", "number", "one name", "rule", "store"],
+)
+def test_runs_without_events_are_refused(options: dict[str, object], told: str) -> None:
+    """What cannot be watched is refused before any work."""
+    with pytest.raises(ValueError, match=told):
+        nh.simulate(SLEIGH, body_velocity=(1.0, 1.0, 0.0), steps=20, **options)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("options", [{"direction": 2}, {"stop": -1}, {"stop": 0.5}], ids=str)
+def test_bad_events_are_refused(options: dict[str, float]) -> None:
+    """A direction is -1, 0 or 1, a stop a number of crossings."""
+    with pytest.raises(ValueError, match="Event"):
+        nh.Event(east, **options)  # type: ignore[arg-type]
+
+
+def test_crossings_of_thinned_orbits_are_refused() -> None:
+    """Between thinned states crossings could be missed."""
+    with pytest.raises(ValueError, match="save_every 2"):
+        nh.crossings(nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=20, save_every=2), east)
+
+
+def test_wide_tops_need_no_poses() -> None:
+    """A top in many dimensions without poses has events of its momenta, located as those of others."""
+    top = nh.SuslovTop.arrowhead(np.linspace(1, 2, 300), np.full(299, 1e-2))
+    run = {"restricted_velocity": np.random.default_rng(0).normal(size=299) * 0.05, "steps": 50}
+    middle = nh.simulate(nh.discretize(top, 0.1), **run, reconstruct=False).restricted_momentum[[0, -1], 0].mean()
+    event = nh.Event(lambda orbit: orbit.restricted_momentum[:, 0] - middle)
+    found = nh.simulate(nh.discretize(top, 0.1), **run, reconstruct=False, events=[event]).events[0]
+    assert len(found) == 1
+    assert abs(event.function(found.states)[0]) < 1e-16
+
+
+def test_right_invariant_constraints_without_poses_are_refused() -> None:
+    """The step of an LR system depends on the pose."""
+    run = {"restricted_velocity": (0.7, -0.3), "steps": 5, "reconstruct": False}
+    with pytest.raises(ValueError, match=r"reconstruct=True"):
+        nh.simulate(MOTIONS["right-invariant"], **run, events=[lambda orbit: orbit.time - 0.1])
+
+
+def test_systems_in_coordinates_are_refused() -> None:
+    """A Lagrange-d'Alembert system has no parts of steps."""
+    ready = nh.examples.particle()
+    with pytest.raises(ValueError, match="keep its default"):
+        nh.simulate(
+            nh.discretize(ready.system, 0.1),
+            configuration=ready.configuration,
+            steps=5,
+            events=[lambda orbit: orbit.time],
+        )
+
+
+def test_cusps_of_tops_are_refused() -> None:
+    """A top has no blade."""
+    with pytest.raises(ValueError, match="watch a sleigh"):
+        nh.simulate(TOP, restricted_velocity=(0.7, -0.3), steps=5, events=[nh.cusp])
+
+
+def test_poses_of_runs_without_them_are_refused() -> None:
+    """A function of the pose needs reconstruct=True, and says so."""
+    with pytest.raises(ValueError, match="reconstruct=True"):
+        nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=5, reconstruct=False, events=[east])
+
+
+def test_states_at_crossings_have_the_energy_of_the_run() -> None:
+    """A part of a step is a shorter step, so it conserves energy to rounding, at large steps too."""
+    top = nh.discretize(TOP.system, 0.3)
+    run = {"restricted_velocity": (0.7, -0.3), "steps": 200}
+    orbit = nh.simulate(top, **run, events=[lambda orbit: orbit.configuration[:, 2, 2]])
+    assert len(orbit.events[0]) > 10
+    assert np.abs(orbit.events[0].states.energy / orbit.energy[0] - 1).max() < 2e-15
+
+
+def test_seen_from_its_end_a_step_has_other_parts_to_third_order() -> None:
+    """Half a step on and half a step back from the next state differ by terms of third order in h."""
+    gaps = []
+    for h in (0.2, 0.1, 0.05):
+        top = nh.discretize(TOP.system, h)
+        there = nh.simulate(top, restricted_velocity=(0.7, -0.3), steps=1)
+        end = {"momentum": -there.restricted_momentum[1], "configuration": there.configuration[1]}
+        half = between_states(top)(there[:1], np.array([0.5]))
+        back = between_states(top)(nh.simulate(top, **end, steps=1)[:1], np.array([0.5]))
+        gaps.append(np.abs(half.configuration - back.configuration).max())
+    assert np.abs(np.log2(np.divide(gaps[:-1], gaps[1:])) - 3).max() < 0.15
+
+
+def test_page() -> None:
+    """The examples of the page about events run, and say what is so."""
+    page = pathlib.Path(__file__).parents[2] / "docs" / "how-to" / "events-and-sections.md"
+    names: dict[str, object] = {}
+    for block in re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL):
+        exec(block, names)  # noqa: S102
