@@ -39,12 +39,12 @@ def swept(side: int) -> xarray.Dataset:
 
 
 def bound(J: np.ndarray) -> np.ndarray:
-    """Return the step h u/a below which the energy ellipse is clear of the two sides that end the principal branch.
+    """Return the step h u/a below which all momenta of the energy u^2/2 have a principal value.
 
-    The sides of the deltoid are first met in its upper cusps if J < 2, else within.
+    From there on a part of it has no principal value.
     """
-    at_cusp = 2 * np.sqrt((J / 8 - 1) ** 2 + 27 * J**2 / (64 * (1 + J)))
-    return np.where(J < 2, at_cusp, (1 + J) / np.sqrt(J))
+    sleighs = [nh.discretize(nh.ChaplyginSleigh(1.0, inertia, 1.0), 1.0) for inertia in J]
+    return np.sqrt([2 * nh.single_valued_region(sleigh).principal_energy for sleigh in sleighs])
 
 
 def leading(J: np.ndarray) -> np.ndarray:

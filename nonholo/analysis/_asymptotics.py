@@ -33,9 +33,9 @@ class Asymptotics:
         heading_turn: How far a sleigh turns in all; its size alone for a system, with its sign for an orbit.
         motion_turn: The same for its direction of motion, modulo full turns: the sleigh starts out backwards.
         persists: Whether the branch is known never to end, so that the limits are reached. It is for a flow, for a
-            discrete sleigh in its single-valued region, and for a discrete top (n = 3) in the regular regime below the
-            saddle (this rests on the uniqueness of the inner root, which is observed, not proved). Elsewhere the limits
-            are those of an orbit that never loses its branch.
+            discrete sleigh below its `principal_energy` of `single_valued_region`, and for a discrete top (n = 3) in
+            the regular regime below the saddle (this rests on the uniqueness of the inner root, which is observed, not
+            proved). Elsewhere the limits are those of an orbit that never loses its branch.
     """
 
     velocity_before: Float[np.ndarray, "dim"] | None = None
@@ -145,7 +145,7 @@ def _known_to_persist(discrete: Discretization, energy: float) -> bool:
     if discrete.order > 2:
         return False
     if isinstance(discrete.system, ChaplyginSleigh):
-        return energy < single_valued_region(discrete).energy
+        return energy < single_valued_region(discrete).principal_energy
     if discrete.system.group.dim != 3:
         return False
     found = critical_energies(discrete)

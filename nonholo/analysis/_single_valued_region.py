@@ -1,4 +1,4 @@
-r"""Up to which energy the discrete Chaplygin sleigh has exactly one real branch.
+r"""Up to which energies the discrete Chaplygin sleigh has exactly one real branch, and a principal one everywhere.
 
 The branches at scaled momenta $(\pi, \hat p)$ are the tangents of a deltoid; energy levels are ellipses. Theory:
 docs/theory/critical-energies-and-limits.md and docs/theory/chaplygin-sleigh.md.
@@ -22,12 +22,15 @@ class SingleValuedRegion:
 
     Attributes:
         energy: The sharp bound: below it every momentum has exactly one real branch, and at it one has more.
+        principal_energy: The larger bound below which every momentum has a principal value, though others may be real:
+            no orbit on the principal branch ends. Above it a part of the energy level has none.
         bound_of_the_paper: The bound printed in the paper, between 3.79 and 4 times smaller.
         contact: Momenta (p_theta, p_1) at the sharp bound where real branches merge, shape (j, 2).
         cusps: Momenta (p_theta, p_1) of the three cusps of the deltoid, where all three branches merge, shape (3, 2).
     """
 
     energy: float
+    principal_energy: float
     bound_of_the_paper: float
     contact: Float[np.ndarray, "j 2"]
     cusps: Float[np.ndarray, "3 2"]
@@ -40,6 +43,11 @@ def single_valued_region(sleigh: Discretization) -> SingleValuedRegion:
 
     $$ E^* = \frac{1}{2Mh^2}\,\min\Bigl\{4M^2,\ \bigl(\tfrac J4 - 2M\bigr)^2 + \frac{27MJ^2}{16\,I}\Bigr\}, \qquad
        E_\mathrm{paper} = \frac{M}{2h^2} . $$
+
+    The principal branch ends only on two of the three sides of the deltoid. The least energy on them is
+
+    $$ E^\dagger = \frac{1}{2Mh^2}\Bigl[\bigl(\tfrac J4 - 2M\bigr)^2 + \frac{27MJ^2}{16\,I}\Bigr] \ (J \le 2M), \qquad
+       E^\dagger = \frac{I^2}{2Jh^2} \ (J \ge 2M). $$
 
     On $E < E^*$ the momentum $\pi = p_\theta + bp_1$ keeps its sign and $ap_1$ grows: the orbit runs from one straight
     motion to the opposite one.
@@ -54,8 +62,8 @@ def single_valued_region(sleigh: Discretization) -> SingleValuedRegion:
 
     Example:
         >>> found = single_valued_region(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1))
-        >>> print(f"{found.energy:.10f} {found.bound_of_the_paper:.10f}")
-        50.0000000000 12.5000000000
+        >>> print(f"{found.energy:.10f} {found.principal_energy:.10f} {found.bound_of_the_paper:.10f}")
+        50.0000000000 78.1250000000 12.5000000000
     """
     system, h = _checked("single_valued_region(sleigh=...)", sleigh)
     J, M, a = float(system.inertia), float(system.mass * system.a**2), float(system.a)
@@ -66,6 +74,7 @@ def single_valued_region(sleigh: Discretization) -> SingleValuedRegion:
     touching = [[0.0, 0.0]] if at_cusp > 1 else cusps[1:] if at_cusp < 1 else [[0.0, 0.0], *cusps[1:]]
     return SingleValuedRegion(
         energy=float(2 * M / h**2 * min(1.0, at_cusp)),
+        principal_energy=float(2 * M / h**2 * at_cusp if ratio <= 2 else (J + M) ** 2 / (2 * J * h**2)),
         bound_of_the_paper=float(M / (2 * h**2)),
         contact=_momenta(np.array(touching), M, a, h, float(system.b)),
         cusps=_momenta(cusps, M, a, h, float(system.b)),

@@ -10,7 +10,7 @@ import typer
 
 
 def export(
-    store: Annotated[Path, typer.Argument(metavar="STORE", help="A store of a run, finished or not.")],
+    store: Annotated[Path, typer.Argument(metavar="STORE", help="A store of a run or a sweep, finished or not.")],
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="CSV", help="A new file; by default standard output.")
     ] = None,
@@ -21,7 +21,8 @@ def export(
 
     Columns: t,x,y,theta in the plane; t,qw,qx,qy,qz for rotations of space;
     t,x,y,z,qw,qx,qy,qz for motions of space; else the entries of the matrix.
-    Of a run that is not finished, what is there.
+    Of a run that is not finished, what is there. Of a sweep the last pose of
+    each member, with its number, values, outcome and time.
 
     nonholo export runs/sleigh-001.zarr -o sleigh.csv
     nonholo export run.zarr --every 100 | head
@@ -30,10 +31,14 @@ def export(
 
     use_cache_folders()
     from nonholo.cli._errors import FAILED, USAGE, store_errors
-    from nonholo.io import check_file, read_attributes, store_to_csv
+    from nonholo.io import SWEEP_FORMAT, check_file, format_of, read_attributes, store_to_csv
 
+    is_sweep = format_of(store) == SWEEP_FORMAT
     with store_errors(USAGE):
-        read_attributes(store)
+        if is_sweep and every != 1:
+            raise ValueError("`--every` thins the states of a run. Got it for a sweep. Leave it out.")
+        if not is_sweep:
+            read_attributes(store)
         if output:
             check_file(output, overwrite=overwrite)
     with store_errors(FAILED), warnings.catch_warnings():
@@ -41,7 +46,12 @@ def export(
         warnings.simplefilter("always", RuntimeWarning)
         try:
             shown = output is not None and sys.stderr.isatty()
-            store_to_csv(store, output or sys.stdout, every=every, overwrite=overwrite, progress=shown)
+            if is_sweep:
+                from nonholo.ensembles import sweep_to_csv
+
+                sweep_to_csv(store, output or sys.stdout, overwrite=overwrite)
+            else:
+                store_to_csv(store, output or sys.stdout, every=every, overwrite=overwrite, progress=shown)
             sys.stdout.flush()
         except BrokenPipeError:  # the reader has seen enough, as `head` does
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -76,8 +76,8 @@ def _rows(store: Path, figures: dict[str, Any]) -> dict[str, str]:
     state = figures["state"] + (f"; go on with: nonholo resume {store}" if figures["state"] == "stopped" else "")
     speeds = {"members_per_second_of_one_worker": "members/s", "steps_per_second_of_one_worker": "steps/s"}
     told = [f"{figures[key]:,.3g} {unit}" for key, unit in speeds.items() if figures[key]]
-    seconds = figures["seconds"]
-    time = {} if seconds is None else {"time": f"{duration(seconds)}, {figures['members_per_second']:,.3g} members/s"}
+    speed = figures["members_per_second"]
+    time = {"time": f"{duration(figures['seconds'])}, {speed:,.3g} members/s"} if speed else {}
     rows = {"members": came} | ({} if state == "finished" else {"sweep": state})
     for name, count in figures["outcomes"].items():
         rows[f"  {name}"] = f"{count:,}  ({100 * count / done:.3g} %)"

@@ -12,6 +12,7 @@ from nonholo.ensembles._distributions import (
     Uniform,
 )
 from nonholo.ensembles._ensemble_task import EnsembleTask
+from nonholo.ensembles._poses_csv import sweep_to_csv
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles._resume import resume
 from nonholo.ensembles._standing import SweepStanding, standing_of
@@ -36,4 +37,5 @@ __all__ = [
     "resume",
     "standing_of",
     "sweep",
+    "sweep_to_csv",
 ]

@@ -16,7 +16,9 @@ from nonholo.ensembles._results import Output, Task, probed
 from nonholo.ensembles._store import SweepStore, create_store
 from nonholo.simulation import in_one_thread
 
-_BLOCK = 4096  # members of a block of a task that does not say how many
+_BLOCK = 4096  # most members of a block of a task that does not say how many
+_PIECES = 32  # blocks of a small sweep, so that all cores have work to the end
+_LANES = 32  # members that a compiled loop takes at once
 
 
 def check_task(task: Any, design: Any) -> None:
@@ -33,8 +35,7 @@ def check_task(task: Any, design: Any) -> None:
 
 def begun(task: Task, design: Design, path: Path, block: Any, scenario: str | None) -> SweepStore:
     """Make the store of a sweep, after its task has been tried."""
-    asked = getattr(task, "block", _BLOCK) if block is None else block
-    size = count("sweep(block=...)", asked, "Pass how many members.")
+    size = _block(task, design.members) if block is None else count("sweep(block=...)", block, "Pass how many members.")
     with in_one_thread():
         returned = probed(task, lambda member: block_of(design, member, 1), design.members)
     drawn = {name: _drawn(name, shape) for name, shape in design.drawn.items()}
@@ -42,6 +43,11 @@ def begun(task: Task, design: Design, path: Path, block: Any, scenario: str | No
     layout = layout_of(tuple(design.sizes.values()), size)
     extra = {} if scenario is None else io.attributes_of_text(scenario)
     return create_store(path, _described(task, design), design, layout, drawn | returned, extra)
+
+
+def _block(task: Task, members: int) -> int:
+    most, least = (task.block, _LANES) if isinstance(task, EnsembleTask) else (_BLOCK, 1)
+    return min(most, max(least, -(-members // _PIECES)))
 
 
 def _check_names(design: Design, drawn: dict[str, Output], returned: dict[str, Output]) -> None:

@@ -1,6 +1,7 @@
 """One piece of work: compute a block of a sweep and write it, unless it is there and sound."""
 
 import collections
+import functools
 import os
 import socket
 import time
@@ -38,7 +39,7 @@ def do_block(work: Work, block: int) -> Done:
     mark = store.mark(block)
     damaged = mark if isinstance(mark, str) else None if mark is None else store.flaw(block)
     if isinstance(mark, Mark) and damaged is None:
-        return Done(block, mark, None, io.versions_text())
+        return Done(block, mark, None, _versions())
     piece, begun = store.layout.piece(block), time.perf_counter()
     members, drawn = block_of(store.design, piece.first, piece.count), store.design.drawn
     returned = {name: output for name, output in store.outputs.items() if name not in drawn}
@@ -47,7 +48,13 @@ def do_block(work: Work, block: int) -> Done:
     results = Results({name: members[name] for name in drawn} | found.arrays, found.messages)
     mark = _mark(results, piece.count, time.perf_counter() - begun)
     store.write(piece, results, mark)
-    return Done(block, mark, damaged, io.versions_text())
+    return Done(block, mark, damaged, _versions())
+
+
+@functools.cache
+def _versions() -> str:
+    """Return the versions of what computes here, which do not change; looking them up takes longer than a mark."""
+    return io.versions_text()
 
 
 def outcome_name(code: int) -> str:

@@ -1,6 +1,7 @@
 """The task of most sweeps: run the members of a block as an ensemble, keep what reductions make of it."""
 
 import dataclasses
+import json
 import re
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -12,16 +13,21 @@ from nonholo._checks import array, count, error
 from nonholo.discrete import Discretization
 from nonholo.discrete._discretization import as_discretization
 from nonholo.discrete._start import one_start
+from nonholo.discrete._structured import scalar_step
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._names import OUTCOME
 from nonholo.ensembles._reductions import REDUCTIONS
+from nonholo.io._descriptions import unstored
 from nonholo.simulation import Ensemble, ensemble
+from nonholo.simulation._ensemble_members import Members
 
 _STARTS = ("body_velocity", "restricted_velocity", "momentum")
 _COMPONENT = re.compile(r"(\w+)\[(\d+)\]")
 _MEMBER = re.compile(r"This is member (\d+)\.")
-_BLOCK, _NUMBERS = 1 << 16, 1 << 22  # members of a block, and numbers of all their states
+_BLOCK, _NUMBERS = 1 << 16, 1 << 22  # most members of a block, and numbers of all their states
+_LANES, _STEPS = 32, 1 << 28  # members that the compiled loop takes at once, and most steps of a block: some seconds
+_STEPS_EACH = 1 << 20  # the same for systems that run one by one
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -31,11 +37,11 @@ class EnsembleTask:
     What the design does not name is as given here. Names of a design are parameters of the system, "time_step", a start
     or one of its components, such as "restricted_velocity[0]".
 
-    Reductions: "final_state" (restricted momentum, energy and compact pose of the last good state that is saved, and
-    the number of good steps), "energy_drift" (of that state, relative), "limit_angle" (total turn of a plane sleigh;
-    angle between the first and the last spatial axis of a top with n = 3), "turning_deviation" (of a plane sleigh,
-    relative to the total turn of its flow: the part that is missing), "branch_counts" (real values of the map over
-    the first momentum), "lyapunov" (largest finite-time exponent of the momenta: growth of the most stretched
+    Reductions: "final_state" (restricted momentum, time, energy and compact pose of the last good state that is saved,
+    and the number of good steps), "energy_drift" (of that state, relative), "limit_angle" (total turn of a plane
+    sleigh; angle between the first and the last spatial axis of a top with n = 3), "turning_deviation" (of a plane
+    sleigh, relative to the total turn of its flow: the part that is missing), "branch_counts" (real values of the map
+    over the first momentum), "lyapunov" (largest finite-time exponent of the momenta: growth of the most stretched
     direction, 1/time). A function of your own gets the `Ensemble` of a block and returns a dictionary of arrays with a
     leading member axis; of a tuple (dimensions, array) the names label the other axes.
 
@@ -44,8 +50,8 @@ class EnsembleTask:
         steps: Number of steps.
         start: Name of the start and its value for all members.
         reductions: What to keep.
-        save_every: Steps between the states that reductions see; None for the last one alone. With "limit_angle" or
-            "lyapunov", which need all states, it is 1.
+        save_every: Steps between the states that reductions see; None for the last one alone. It is 1 with
+            "lyapunov" and with the turn of a sleigh, which take all states.
         reconstruct: Whether there are poses.
 
     Example:
@@ -111,16 +117,19 @@ class EnsembleTask:
 
     @property
     def block(self) -> int:
-        """Members of a block that make a good piece of work."""
+        """Members of a block that make a good piece of work: their states fit in memory, and it takes some seconds."""
+        compiled = self.discrete.order == 2 and scalar_step(self.discrete) is not None
+        lanes, steps = (_LANES, _STEPS) if compiled else (1, _STEPS_EACH)
         states = 1 if self._every is None else 1 + self.steps // self._every
         state = 2 * self.discrete.system.rank + self.discrete.system.group.pose_size
-        return max(32, min(_BLOCK, _NUMBERS // (states * state)) // 32 * 32)
+        members = min(_BLOCK, _NUMBERS // (states * state), steps // self.steps)
+        return max(1, members // lanes) * lanes
 
     @property
     def _every(self) -> int | None:
         """Steps between states: every one, if a built-in reduction needs all of them."""
-        needs = any(isinstance(r, str) and REDUCTIONS[r].needs_all for r in self.reductions)
-        return 1 if needs else self.save_every
+        named = [REDUCTIONS[r] for r in self.reductions if isinstance(r, str)]
+        return 1 if any(isinstance(self.discrete.system, r.needs_all) for r in named) else self.save_every
 
     def check_design(self, names: list[str]) -> None:
         """Refuse a design that names what the task does not know, no start, or several."""
@@ -161,6 +170,10 @@ class EnsembleTask:
         parameters = {other: block[other] for other in block if other in self._fields}
         return {name: rows}, parameters
 
+    def members(self, block: MemberBlock) -> Members:
+        """Return the discretised systems of a block."""
+        return Members(self.discrete, self._split(block)[1], block.count)
+
     def describe(self) -> dict[str, Any]:
         """Return the task as plain data."""
         named = [r if isinstance(r, str) else function_name(r) for r in self.reductions]
@@ -177,7 +190,10 @@ class EnsembleTask:
 
 
 def ensemble_task_from(told: dict[str, Any]) -> EnsembleTask:
-    """Return the task of a description."""
+    """Return the task of a description; refuse one of which data are not enough."""
+    missing = unstored(json.loads(told["motion"])) or unstored(json.loads(told["parameters"]))
+    if missing:
+        raise ValueError(f"one whose {missing}")
     reductions = [name if name in REDUCTIONS else function_from(name) for name in told["reductions"]]
     start = dict([told["start"]]) if told["start"] else {}
     options = {name: told[name] for name in ("steps", "save_every", "reconstruct")}

@@ -1,5 +1,6 @@
 """Built-in reductions: what a sweep keeps of each member of an ensemble."""
 
+import dataclasses
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -14,28 +15,28 @@ from nonholo.discrete import displacements_over
 from nonholo.discrete._branch_equations import has_frame
 from nonholo.simulation import Ensemble
 from nonholo.simulation._ensemble_start import applied, have_kernel, scalar_members
-from nonholo.systems import ChaplyginSleigh
+from nonholo.systems import AbstractSystem, ChaplyginSleigh
 
 Reduced = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]
 
 
 class Reduction(NamedTuple):
-    """A reduction and whether it needs every state."""
+    """A reduction and the systems of which it needs every state."""
 
     function: Callable[[Ensemble], Reduced]
-    needs_all: bool = False
+    needs_all: tuple[type, ...] = ()
 
 
 def _final_state(batch: Ensemble) -> Reduced:
-    last = _last(batch)
-    rows = np.arange(len(batch))
+    ended = _ended(batch)
     found: Reduced = {
-        "final_momentum": (("component",), batch.restricted_momentum[rows, last], _told("restricted momentum")),
-        "final_energy": ((), batch.energy[rows, last], _told("reduced constrained energy")),
+        "final_time": ((), ended.time[:, 0], _told("time of the last good state", "time unit")),
+        "final_momentum": (("component",), ended.restricted_momentum[:, 0], _told("restricted momentum")),
+        "final_energy": ((), ended.energy[:, 0], _told("reduced constrained energy")),
         "steps_done": ((), batch.steps_done, _told("good steps", "1")),
     }
-    if batch.pose is not None:
-        found["final_pose"] = ("pose_component",), batch.pose[rows, last], _told("compact pose, canonical frame")
+    if ended.pose is not None:
+        found["final_pose"] = ("pose_component",), ended.pose[:, 0], _told("compact pose, canonical frame")
     return found
 
 
@@ -59,7 +60,8 @@ def _heading_turn(batch: Ensemble) -> Float[np.ndarray, "M"]:
     """Sum the angles of the steps, which know of full turns: the first chart coordinate is the tangent of the half."""
     angles = 2 * np.arctan(batch.cayley[:, :-1, 0])
     taken = np.arange(angles.shape[1]) < batch.steps_done[:, None]
-    return np.where(taken, angles, 0.0).sum(axis=1)
+    turn = np.where(taken, angles, 0.0).sum(axis=1)
+    return np.where(np.isfinite(batch.reduced_momentum[:, 0, 0]), turn, np.nan)
 
 
 def _turning_deviation(batch: Ensemble) -> Reduced:
@@ -77,14 +79,14 @@ def _turning_deviation(batch: Ensemble) -> Reduced:
 def _axis_angle(batch: Ensemble) -> Float[np.ndarray, "M"]:
     if batch.pose is None:
         raise error("reduction 'limit_angle'", "have poses", "reconstruct=False", "Leave that out.")
-    ends = np.stack([np.zeros_like(batch.steps_done), _last(batch)], axis=1)
-    rows = np.arange(len(batch))[:, None]
-    r, pose = batch.reduced_momentum[rows, ends], batch.pose[rows, ends]
-    velocity = applied(np.linalg.inv(scalar_members(batch.members).inertia), r)
+    scalar, rows, last = scalar_members(batch.members), np.arange(len(batch)), _last(batch)
+    pose = np.stack([np.broadcast_to(scalar.pose, (len(batch), 4)), batch.pose[rows, last]], axis=1)
+    r = np.stack([batch.first_momentum, batch.reduced_momentum[rows, last]], axis=1)
+    velocity = applied(np.linalg.inv(scalar.inertia), r)
     body = np.stack([-velocity[..., 1], velocity[..., 0], np.zeros_like(velocity[..., 0])], axis=-1)
     axes = (batch.members.discrete.system.group.matrix_from_pose(pose) @ body[..., None])[..., 0]
-    first, last = axes[:, 0], axes[:, 1]
-    return np.arctan2(np.linalg.norm(np.cross(first, last), axis=1), (first * last).sum(axis=1))
+    before, after = axes[:, 0], axes[:, 1]
+    return np.arctan2(np.linalg.norm(np.cross(before, after), axis=1), (before * after).sum(axis=1))
 
 
 def _branch_counts(batch: Ensemble) -> Reduced:
@@ -121,6 +123,15 @@ def _jacobians(batch: Ensemble, member: int) -> Float[np.ndarray, "steps k k"]:
     return slopes
 
 
+def _ended(batch: Ensemble) -> Ensemble:
+    """Return the last good state of each member alone."""
+    rows, last = np.arange(len(batch)), _last(batch)
+    kept = {name: getattr(batch, name) for name in ("reduced_momentum", "cayley", "pose")}
+    states = {name: None if array is None else array[rows, last][:, None] for name, array in kept.items()}
+    done = batch.steps_done if batch.save_every is None else last * batch.save_every
+    return dataclasses.replace(batch, save_every=None, steps_done=done, **states)
+
+
 def _last(batch: Ensemble) -> np.ndarray:
     """Return the row of the last good state of each member; of one that did not start any row, which is NaN."""
     if batch.save_every is None:
@@ -135,8 +146,8 @@ def _told(meaning: str, units: str = "") -> dict[str, str]:
 REDUCTIONS = {
     "final_state": Reduction(_final_state),
     "energy_drift": Reduction(_energy_drift),
-    "limit_angle": Reduction(_limit_angle, needs_all=True),
-    "turning_deviation": Reduction(_turning_deviation, needs_all=True),
+    "limit_angle": Reduction(_limit_angle, needs_all=(ChaplyginSleigh,)),
+    "turning_deviation": Reduction(_turning_deviation, needs_all=(ChaplyginSleigh,)),
     "branch_counts": Reduction(_branch_counts),
-    "lyapunov": Reduction(_lyapunov, needs_all=True),
+    "lyapunov": Reduction(_lyapunov, needs_all=(AbstractSystem,)),
 }

@@ -65,7 +65,7 @@ def attempted(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> Res
 def probed(task: Task, block_at: Callable[[int], MemberBlock], members: int) -> dict[str, Output]:
     """Return what a task returns, from a few members spread over the design: the first for which it does not raise."""
     first_failure = None
-    for member in dict.fromkeys(np.linspace(0, members - 1, _PROBES).astype(int).tolist()):
+    for member in dict.fromkeys((members - 1) * probe // (_PROBES - 1) for probe in range(_PROBES)):
         try:
             return _outputs(_named(task(block_at(member)), 1))
         except Exception as failure:

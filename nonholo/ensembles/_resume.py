@@ -24,6 +24,7 @@ def resume(
     store: str | Path,
     *,
     discrete: Discretization | None = None,
+    events: Any = None,
     task: Any = None,
     scheduler: str | None = None,
     workers: int | None = None,
@@ -39,6 +40,8 @@ def resume(
         store: A store that `simulate(..., store=...)` or `sweep` began.
         discrete: The discretisation of an orbit; needed only if its system or group is of your own making, which a
             store cannot hold. Another one than that of the store is refused.
+        events: The events of an orbit that looks for some: a store holds their names, directions and stops, but no
+            functions. Others than those of the store are refused. To read a finished orbit `load_orbit` needs none.
         task: The task of a sweep; needed only if it is, or holds, a function that cannot be imported by its name.
         scheduler: As in `sweep`.
         workers: As in `sweep`.
@@ -50,8 +53,8 @@ def resume(
 
     Raises:
         FileNotFoundError: There is nothing at the path.
-        ValueError: The path is no store of a run with checkpoints or of a sweep, or of another schema, discretisation
-            or task.
+        ValueError: The path is no store of a run with checkpoints or of a sweep, or of another schema, discretisation,
+            events or task.
         BlockingIOError: Another process is writing the store; the message names it.
         OSError: The disk is full; the store stays valid.
         OutcomeError: With `throw`, the orbit could not go on.
@@ -69,10 +72,11 @@ def resume(
             if value is not None:
                 got, remedy = f"{value!r} for '{store}'", "Leave it out for an orbit."
                 raise error(f"resume({name}=...)", "come with the store of a sweep", got, remedy)
-        return simulation.resume(store, discrete=discrete, throw=throw, progress=progress)
-    if discrete is not None:
-        remedy = "Pass task=..., or nothing."
-        raise error("resume(discrete=...)", "come with the store of an orbit", f"one for '{store}'", remedy)
+        return simulation.resume(store, discrete=discrete, events=events, throw=throw, progress=progress)
+    for name, value in {"discrete": discrete, "events": events}.items():
+        if value is not None:
+            remedy = "Pass task=..., or nothing."
+            raise error(f"resume({name}=...)", "come with the store of an orbit", f"{value!r} for '{store}'", remedy)
     name, workers = checked_scheduler(scheduler, workers)
     opened = open_store(store)
     return go_on(Work(opened, restored_task(opened, task)), name, workers, progress)

@@ -4,6 +4,7 @@ Writes are atomic, so whoever writes can be killed at any moment. What a block h
 the design, so two writers of one block write the same.
 """
 
+import asyncio
 import dataclasses
 import functools
 import json
@@ -18,6 +19,7 @@ import numpy as np
 import xarray
 import zarr
 from zarr.codecs import BloscCodec, Crc32cCodec
+from zarr.core.sync import sync
 
 from nonholo import io
 from nonholo._checks import error
@@ -88,12 +90,22 @@ class SweepStore:
     def write(self, piece: Piece, results: Results, mark: Mark) -> None:
         """Write the chunks of a block, then its mark."""
         self._mark_file(piece.number).unlink(missing_ok=True)
-        for name, rows in results.arrays.items():
+        for name in results.arrays:
             self._chunk_file(name, piece.number).unlink(missing_ok=True)  # zarr would read a damaged one first
-            array, lengths = self._arrays[name], tuple(s.stop - s.start for s in piece.place)
-            array[piece.place] = rows.reshape(*lengths, *rows.shape[1:])
+        sync(self._write_chunks(piece, results))
         text = json.dumps(mark._asdict())
         io.write_whole(self._mark_file(piece.number), f"{zlib.crc32(text.encode()):08x} {text}")
+
+    async def _write_chunks(self, piece: Piece, results: Results) -> None:
+        """Write the chunks of a block side by side, which takes half of the time; a failure leaves no writer behind."""
+        lengths = tuple(s.stop - s.start for s in piece.place)
+        writes = [
+            self._arrays[name].async_array.setitem(piece.place, rows.reshape(*lengths, *rows.shape[1:]))
+            for name, rows in results.arrays.items()
+        ]
+        for failure in await asyncio.gather(*writes, return_exceptions=True):
+            if isinstance(failure, BaseException):
+                raise failure
 
     def mark(self, block: int) -> Mark | str | None:
         """Return the mark of a block, what is wrong with it, or None if the block is not finished."""
@@ -122,6 +134,11 @@ class SweepStore:
             if isinstance(found, str):
                 return f"{found}, {io.chunk_name(name, array, self._index(name, block))}"
         return None
+
+    def rows(self, name: str, piece: Piece) -> np.ndarray:
+        """Return an array of a block, one row for each member."""
+        found = np.asarray(self._arrays[name][piece.place])
+        return found.reshape(piece.count, *found.shape[len(piece.place) :])
 
     def prepare(self) -> None:
         """Remove what killed writers left and show that every array can be opened."""

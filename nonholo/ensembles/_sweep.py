@@ -31,7 +31,7 @@ def sweep(
 
     The result does not depend on how members are cut in blocks, on workers or on what was interrupted: members take
     their random numbers by their index. `outcome` says how each member ended; a member for which the task raises has
-    NaN and the outcome 100, and the others are done.
+    no numbers (NaN, the least integer) and the outcome 100, and the others are done.
 
     Args:
         task: An `EnsembleTask`, or a function of a `MemberBlock` that returns a dictionary of arrays with a leading

@@ -8,7 +8,7 @@ from nonholo.io._attributes import (
     restore_motion,
     versions_text,
 )
-from nonholo.io._csv import check_file, orbit_to_csv, store_to_csv
+from nonholo.io._csv import check_file, new_file, orbit_to_csv, store_to_csv, table_lines
 from nonholo.io._dataset import orbit_to_dataset
 from nonholo.io._descriptions import fields_of
 from nonholo.io._load import (
@@ -21,6 +21,8 @@ from nonholo.io._load import (
     read_chunk,
 )
 from nonholo.io._lock import locked, owner_of
+from nonholo.io._plan import Checkpoint, Plan
+from nonholo.io._pose_columns import column_names, separate_rows
 from nonholo.io._save import (
     check_target,
     codecs,
@@ -32,12 +34,14 @@ from nonholo.io._save import (
     sibling,
     write_whole,
 )
-from nonholo.io._stream import Checkpoint, Plan, Standing, Stream, create_stream, open_stream, standing
+from nonholo.io._stored_events import Seen, described
+from nonholo.io._stream import Standing, Stream, create_stream, open_stream, standing
 
 __all__ = [
     "SWEEP_FORMAT",
     "Checkpoint",
     "Plan",
+    "Seen",
     "Standing",
     "Stream",
     "attributes_of_text",
@@ -46,9 +50,11 @@ __all__ = [
     "chunk_name",
     "chunk_path",
     "codecs",
+    "column_names",
     "consolidate",
     "create_array",
     "create_stream",
+    "described",
     "edit_attributes",
     "fields_of",
     "format_of",
@@ -56,6 +62,7 @@ __all__ = [
     "load_last_block",
     "load_orbit",
     "locked",
+    "new_file",
     "open_stream",
     "orbit_to_csv",
     "orbit_to_dataset",
@@ -66,9 +73,11 @@ __all__ = [
     "read_chunk",
     "restore_motion",
     "save_orbit",
+    "separate_rows",
     "sibling",
     "standing",
     "store_to_csv",
+    "table_lines",
     "versions_text",
     "write_whole",
 ]

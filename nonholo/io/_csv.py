@@ -5,8 +5,11 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TextIO, cast
 
+import numpy as np
+
 from nonholo._checks import count, error
 from nonholo._progress import progress_bar
+from nonholo._types import Float
 from nonholo.io._pose_columns import Stretch, column_names, rows_of
 from nonholo.io._save import sibling
 from nonholo.io._stored_poses import open_poses
@@ -51,7 +54,7 @@ def orbit_to_csv(orbit: Orbit, path: str | Path, *, overwrite: bool = False) -> 
         remedy = "Run with reconstruct=True."
         raise error("Orbit.to_csv(...)", "be asked of an orbit with poses", "reconstruct=False", remedy)
     whole = Stretch(orbit.time, orbit.pose, orbit.turned)
-    with _new_file(Path(path), overwrite=overwrite) as file:
+    with new_file(Path(path), overwrite=overwrite) as file:
         file.writelines(_lines(orbit.system, [whole], 1))
 
 
@@ -89,18 +92,23 @@ def store_to_csv(
         check_file(path, overwrite=overwrite)
     poses = open_poses(Path(store))
     poses.check()
-    opened = _new_file(path, overwrite=overwrite) if path else contextlib.nullcontext(cast(TextIO, target))
+    opened = new_file(path, overwrite=overwrite) if path else contextlib.nullcontext(cast(TextIO, target))
     with opened as file, progress_bar("states", progress) as report:
         stretches = _reported(poses.stretches(), lambda done: report(done, poses.rows))
         file.writelines(_lines(poses.system, stretches, every))
 
 
 def _lines(system: System, stretches: Iterable[Stretch], every: int) -> Iterator[str]:
-    """Return the header, then many lines at a time: one template for all of them is faster than a writer of rows."""
+    """Return the header, then many lines at a time."""
     names = column_names(system.group)
+    return table_lines(names, rows_of(system, _cut(stretches, max(1, _NUMBERS // len(names))), every))
+
+
+def table_lines(names: list[str], pieces: Iterable[Float[np.ndarray, "R c"]]) -> Iterator[str]:
+    """Return a header, then many lines at a time: one template for all of them is faster than a writer of rows."""
     yield ",".join(names) + "\n"
-    line, most = ",".join(["%r"] * len(names)) + "\n", max(1, _NUMBERS // len(names))
-    for rows in rows_of(system, _cut(stretches, most), every):
+    line = ",".join(["%r"] * len(names)) + "\n"
+    for rows in pieces:
         yield line * len(rows) % tuple(rows.ravel().tolist())
 
 
@@ -121,7 +129,7 @@ def _reported(stretches: Iterable[Stretch], report: Callable[[int], object]) -> 
 
 
 @contextlib.contextmanager
-def _new_file(path: Path, *, overwrite: bool) -> Iterator[TextIO]:
+def new_file(path: Path, *, overwrite: bool) -> Iterator[TextIO]:
     """Give a file to write to, which takes its name only when it is complete."""
     check_file(path, overwrite=overwrite)
     target = path.resolve()

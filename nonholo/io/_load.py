@@ -1,5 +1,6 @@
 """Reading a store: every chunk must be there and intact; nothing missing is ever read as data."""
 
+import dataclasses
 import json
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,8 @@ from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.io._attributes import FORMAT, READABLE, SWEEP_FORMAT, restore_motion
-from nonholo.orbit import Orbit
+from nonholo.io._stored_events import EVENTS, known, log_of
+from nonholo.orbit import EventLog, Orbit
 
 _WHERE = "load_orbit(path=...)"
 _NAN = "NaN"
@@ -57,7 +59,31 @@ def _loaded(root: Path, discrete: Discretization | None, *, last: bool) -> Orbit
     arrays = {name: _read(root, name, tuple(shape), last) for name, shape in shapes.items()}
     compact = {name: arrays.get(name) for name in ("time", "reduced_momentum", "cayley", "pose", "turned")}
     branch = stored.get("branch", "principal")  # stores of before branch rules have none
-    return Orbit(motion, outcome=outcome, save_every=every, branch=branch, **compact)  # type: ignore[arg-type]
+    orbit = Orbit(motion, outcome=outcome, save_every=every, branch=branch, **compact)  # type: ignore[arg-type]
+    if "events" not in stored:
+        return orbit
+    begin = _begin_of_last(stored, shapes["time"][0]) if last else 0
+    return dataclasses.replace(orbit, events=_events(root, stored, orbit, begin))
+
+
+def _events(root: Path, stored: dict[str, Any], orbit: Orbit, begin: int) -> EventLog:
+    """Return the crossings of a stored run after the state of a step."""
+    array = opened_array(root, EVENTS, None)
+    names, counts = [event["name"] for event in json.loads(stored["events"])], json.loads(stored["crossings"])
+    parts = [np.empty((0, array.shape[1]))]
+    for chunk in range(array.cdata_shape[0]):
+        parts.append(known(checked_block(root, EVENTS, array, (chunk, 0), with_nan=True), begin))
+    log = log_of(np.concatenate(parts), tuple(names), orbit, stored.get("stopped_by"))
+    found = [len(crossings) for crossings in log.found]
+    if begin == 0 and found != counts:
+        raise error(_WHERE, f"hold {counts} crossings in {EVENTS}", str(found), _AGAIN)
+    return log
+
+
+def _begin_of_last(stored: dict[str, Any], states: int) -> int:
+    """Return the step at which the last block of states begins."""
+    rows = json.loads(stored["run"])["rows"]
+    return max(0, ((states - 1) // rows * rows - 1) * stored["save_every"])
 
 
 def read_attributes(path: str | Path, expected: str = FORMAT, readable: tuple[int, ...] = READABLE) -> dict[str, Any]:
@@ -110,9 +136,11 @@ def opened_array(root: Path, name: str, shape: tuple[int, ...] | None) -> zarr.A
     return array
 
 
-def checked_block(root: Path, name: str, array: zarr.Array, index: tuple[int, ...]) -> np.ndarray:
+def checked_block(
+    root: Path, name: str, array: zarr.Array, index: tuple[int, ...], *, with_nan: bool = False
+) -> np.ndarray:
     """Return one chunk; refuse one that is missing or damaged, with its name."""
-    found = read_chunk(root, name, array, index)
+    found = read_chunk(root, name, array, index, with_nan=with_nan)
     if isinstance(found, str):
         requirement = f"hold {chunk_name(name, array, index)}" + (" free of NaN" if found == _NAN else "")
         raise error(_WHERE, requirement, found, _AGAIN)

@@ -36,6 +36,16 @@ def column_names(group: AbstractMatrixGroup) -> list[str]:
     return ["t", *position, *turn]
 
 
+def separate_rows(group: AbstractMatrixGroup, g: Float[np.ndarray, "R N N"]) -> Float[np.ndarray, "R c"]:
+    """Return poses that do not follow one another as rows of the columns but for the time.
+
+    Angles are between -pi and pi, quaternions have a scalar that is not negative.
+    """
+    position, turn = _layout(group)
+    turned = np.arctan2(g[:, 1, 0], g[:, 0, 0])[:, None] if turn == _HEADING else _turned(g, turn)
+    return np.concatenate([g[:, : len(position), len(position)], turned], axis=1)
+
+
 def rows_of(system: System, stretches: Iterable[Stretch], every: int) -> Iterator[Float[np.ndarray, "R c"]]:
     """Return one in `every` of the states as rows of the columns; rows do not depend on how the motion is cut."""
     position, turn = _layout(system.group)
@@ -43,7 +53,9 @@ def rows_of(system: System, stretches: Iterable[Stretch], every: int) -> Iterato
     for time, pose, headings in _headed(stretches) if turn == _HEADING else stretches:
         kept = slice(-first % every, None, every)
         g = configurations(system, pose[kept])
-        turned = headings[kept, None] if headings is not None else _turned(g, turn, before)
+        turned = headings[kept, None] if headings is not None else _turned(g, turn)
+        if turn == _QUATERNION:
+            turned = _continued(turned, None if before is None else before[:, -4:])
         rows = np.concatenate([time[kept, None], g[:, :n, n], turned], axis=1)
         first, before = first + len(time), rows[-1:] if len(rows) else before
         yield rows
@@ -79,10 +91,10 @@ def _headed(stretches: Iterable[Stretch]) -> Iterator[Stretch]:
         yield stretch._replace(headings=headings)
 
 
-def _turned(g: np.ndarray, names: list[str], before: np.ndarray | None) -> Float[np.ndarray, "R c"]:
+def _turned(g: np.ndarray, names: list[str]) -> Float[np.ndarray, "R c"]:
     """Return the rotations as quaternions or, row by row, as matrices."""
     if names == _QUATERNION:
-        return _continued(quaternion_from_matrix(g[:, :3, :3]), None if before is None else before[:, -4:])
+        return quaternion_from_matrix(g[:, :3, :3])
     size = math.isqrt(len(names))
     return g[:, :size, :size].reshape(len(g), len(names))
 

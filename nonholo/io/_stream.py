@@ -1,7 +1,8 @@
 """Stores written block by block: one block is one chunk of each array, then its checkpoint, which marks it finished.
 
 Row b of `run/checkpoints` is the state of the run where block b begins: the step, the outcome, the vector of the run.
-Row b + 1 is written after the chunks of block b. All writes are atomic, so a run can be killed at any moment. While a
+Row b + 1 is written after the chunks of block b, also those of the crossings that events found in it (`run/events`),
+and ends with what is needed to look for more. All writes are atomic, so a run can be killed at any moment. While a
 store is unfinished it has no outcome among its attributes and no consolidated metadata.
 """
 
@@ -10,56 +11,24 @@ import functools
 import json
 import shutil
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import xarray
 import zarr
 
 from nonholo._checks import error
-from nonholo._results import Outcome
 from nonholo.io._attributes import attributes
 from nonholo.io._dataset import orbit_to_dataset
 from nonholo.io._load import chunk_name, chunk_path, read_attributes, read_chunk
 from nonholo.io._lock import owner_of
+from nonholo.io._plan import Checkpoint, Plan, packed_checkpoint, unpacked_checkpoint
 from nonholo.io._save import check_target, consolidate, create_array, edit_attributes, put_in_place, sibling
-from nonholo.orbit import Orbit
+from nonholo.io._stored_crossings import chunks_of, create_crossings, cut_crossings, flaw_of_rows, write_crossings
+from nonholo.io._stored_events import EVENTS, Seen, seen_nothing
+from nonholo.orbit import EventLog, Orbit
 
 _CHECKPOINTS = "run/checkpoints"
-
-
-class Plan(NamedTuple):
-    """How a run is cut into blocks: block b holds the saved states b * rows to (b + 1) * rows - 1.
-
-    Example:
-        >>> plan = Plan(steps=100, every=10, rows=4)
-        >>> plan.blocks, [(plan.begin(b), plan.stop(b)) for b in range(3)]
-        (3, [(0, 30), (30, 70), (70, 100)])
-    """
-
-    steps: int
-    every: int
-    rows: int
-
-    @property
-    def blocks(self) -> int:
-        """Number of blocks."""
-        return -(-(1 + self.steps // self.every) // self.rows)
-
-    def begin(self, block: int) -> int:
-        """Return the step at which the computation of a block begins."""
-        return max(0, (block * self.rows - 1) * self.every)
-
-    def stop(self, block: int) -> int:
-        """Return the step at which it ends; the last block also takes the steps after the last saved state."""
-        return self.steps if block == self.blocks - 1 else self.begin(block + 1)
-
-
-class Checkpoint(NamedTuple):
-    """Where a run stands: the last good step, the outcome so far, and the vector to go on from."""
-
-    done: int
-    outcome: Outcome
-    vector: np.ndarray
 
 
 @dataclasses.dataclass(frozen=True)
@@ -84,18 +53,20 @@ class Stream:
     def write(self, block: int, orbit: Orbit, reached: Checkpoint) -> None:
         """Write the chunks of a block, then the checkpoint at its end."""
         self._remove(block)
+        if orbit.events is not None and reached.seen is not None:
+            write_crossings(self._arrays[EVENTS], orbit.events, reached.seen.chunks)
         first = block * self.plan.rows
         for name, variable in orbit_to_dataset(orbit).variables.items():
             if len(orbit):
                 self._arrays[str(name)][first : first + len(orbit)] = np.ascontiguousarray(variable.values)
-        self._arrays[_CHECKPOINTS][block + 1] = _packed(reached)
+        self._arrays[_CHECKPOINTS][block + 1] = packed_checkpoint(reached)
 
     def checkpoint(self, block: int) -> Checkpoint | str:
         """Return the state at the begin of a block, or what is wrong with its chunk."""
-        packed = self._chunk(_CHECKPOINTS, block)
-        if isinstance(packed, str):
-            return packed
-        return Checkpoint(int(packed[0, 0]), Outcome(int(packed[0, 1])), packed[0, 2:])
+        row = self._chunk(_CHECKPOINTS, block)
+        if isinstance(row, str):
+            return row
+        return unpacked_checkpoint(row[0], None if self.events is None else len(self.events))
 
     def is_marked(self, block: int) -> bool:
         """Tell whether there is a checkpoint at the end of a block, sound or not."""
@@ -106,6 +77,8 @@ class Stream:
         reached = self.checkpoint(block + 1)
         if isinstance(reached, str):
             return reached
+        if reached.seen is not None and (wrong := self._flaw_of_crossings(block, reached.seen)):
+            return wrong
         if self.plan.begin(block) // self.plan.every + (block > 0) > reached.done // self.plan.every:
             return None  # the run failed before the first row of this block
         for name in self._names():
@@ -135,18 +108,44 @@ class Stream:
             marked += 1
         return marked
 
-    def finish(self, done: int, outcome: Outcome) -> None:
+    def finish(self, end: Checkpoint) -> None:
         """Cut the arrays to the good states, add the outcome and consolidate the metadata."""
-        shapes = self._fit(1 + done // self.plan.every)
-        edit_attributes(self.path, {"outcome": outcome.name, "arrays": json.dumps(shapes)})
+        shapes = self._fit(1 + end.done // self.plan.every)
+        told: dict[str, Any] = {"outcome": end.outcome.name, "arrays": json.dumps(shapes)}
+        if self.events is not None and end.seen is not None:
+            cut_crossings(self._arrays[EVENTS], end.seen.chunks)
+            told["crossings"] = json.dumps(end.seen.counts.tolist())
+            told["stopped_by"] = self.events[end.seen.stopped] if end.is_stopped else None
+        edit_attributes(self.path, told)
         consolidate(self.path)
+
+    @functools.cached_property
+    def events(self) -> tuple[str, ...] | None:
+        """The names of the events that the run looks for; None if it looks for none."""
+        stored = read_attributes(self.path).get("events")
+        return None if stored is None else tuple(event["name"] for event in json.loads(stored))
+
+    def chunks_after(self, chunks: int, log: EventLog) -> int:
+        """Return the number of chunks of crossings with those of another block."""
+        return chunks + chunks_of(self._arrays[EVENTS], log)
+
+    def _flaw_of_crossings(self, block: int, seen: Seen) -> str | None:
+        """Say what is wrong with the crossings of a block."""
+        before = self.checkpoint(block) if block > 0 else None
+        if isinstance(before, str):
+            return before
+        begin = seen_nothing(len(seen.counts)) if before is None or before.seen is None else before.seen
+        chunks = [self._chunk(EVENTS, chunk, with_nan=True) for chunk in range(begin.chunks, seen.chunks)]
+        wrong = [chunk for chunk in chunks if isinstance(chunk, str)]
+        rows = [chunk for chunk in chunks if not isinstance(chunk, str)]
+        return wrong[0] if wrong else flaw_of_rows(rows, begin, seen, self.plan.begin(block))
 
     def lengthened(self, steps: int) -> "Stream":
         """Return the stream with so many more steps to go; a last block that was not full is computed again."""
         plan = self.plan._replace(steps=self.plan.steps + steps)
         longer = dataclasses.replace(self, plan=plan)
         run = json.loads(read_attributes(self.path)["run"]) | {"steps": plan.steps}
-        edit_attributes(self.path, {"run": json.dumps(run), "outcome": None})
+        edit_attributes(self.path, {"run": json.dumps(run), "outcome": None, "crossings": None})
         return longer
 
     def prepare(self) -> None:
@@ -174,10 +173,10 @@ class Stream:
         for name in self._names():
             self._file(name, block).unlink(missing_ok=True)
 
-    def _chunk(self, name: str, number: int) -> np.ndarray | str:
+    def _chunk(self, name: str, number: int, *, with_nan: bool = False) -> np.ndarray | str:
         array = self._arrays[name]
         index = (number,) + (0,) * (array.ndim - 1)
-        found = read_chunk(self.path, name, array, index)
+        found = read_chunk(self.path, name, array, index, with_nan=with_nan)
         return f"{found}, {chunk_name(name, array, index)}" if isinstance(found, str) else found
 
     def _file(self, name: str, number: int) -> Path:
@@ -185,22 +184,25 @@ class Stream:
         return chunk_path(self.path, name, array, (number,) + (0,) * (array.ndim - 1))
 
     def _names(self) -> list[str]:
-        return [name for name in self._arrays if name != _CHECKPOINTS]
+        return [name for name in self._arrays if name not in (_CHECKPOINTS, EVENTS)]
 
     @functools.cached_property
     def _arrays(self) -> dict[str, zarr.Array]:
         names = [*json.loads(read_attributes(self.path)["arrays"]), _CHECKPOINTS]
+        names += [EVENTS] if self.events is not None else []
         return {name: _opened(self.path, name) for name in names}
 
 
-def create_stream(path: Path, first: Orbit, plan: Plan, vector: np.ndarray) -> Stream:
+def create_stream(
+    path: Path, first: Orbit, plan: Plan, opening: Checkpoint, events: list[dict[str, Any]] | None = None
+) -> Stream:
     """Make a store with the first checkpoint and no rows yet; it appears at the path only when it is complete."""
     target = path.resolve()
     check_target(target)
     part = sibling(target, "partial")
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        _create(part, first, plan, vector)
+        _create(part, first, plan, opening, {} if events is None else {"events": json.dumps(events)})
         put_in_place(part, target, overwrite=False)
     finally:
         shutil.rmtree(part, ignore_errors=True)
@@ -242,21 +244,19 @@ def standing(path: str | Path) -> Standing | None:
     return Standing(stream.reached(), stream.plan.steps, owner_of(stream.path))
 
 
-def _create(part: Path, first: Orbit, plan: Plan, vector: np.ndarray) -> None:
+def _create(part: Path, first: Orbit, plan: Plan, opening: Checkpoint, events: dict[str, str]) -> None:
     dataset, rows = orbit_to_dataset(first), 1 + plan.steps // plan.every
     told = {name: value for name, value in attributes(first).items() if name != "outcome"}
     run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.pose is not None}
     shapes = {str(name): (rows, *variable.shape[1:]) for name, variable in dataset.variables.items()}
-    told |= {"run": json.dumps(run), "arrays": json.dumps(shapes)}
+    told |= {"run": json.dumps(run), "arrays": json.dumps(shapes), **events}
     group = zarr.create_group(part, zarr_format=3, attributes=told)
     for name, variable in dataset.variables.items():
         create_array(group, str(name), variable, rows, plan.rows, is_coordinate=name in dataset.coords)
-    packed = _packed(Checkpoint(0, Outcome.successful, vector))
+    row = packed_checkpoint(opening)
     group.create_group("run")
-    labelled = dataset["time"].variable.__class__(("block", "entry"), packed[None])
+    labelled = xarray.Variable(("block", "entry"), row[None])
     checkpoints = create_array(group, _CHECKPOINTS, labelled, plan.blocks + 1, 1, is_coordinate=True)
-    checkpoints[0] = packed
-
-
-def _packed(reached: Checkpoint) -> np.ndarray:
-    return np.concatenate(([reached.done, int(reached.outcome)], reached.vector))
+    checkpoints[0] = row
+    if events:
+        create_crossings(group, first.events)

@@ -1,6 +1,18 @@
 """The orbit: compact states of a motion and their decoding by the group. Nothing is simulated here."""
 
+from nonholo.orbit._crossings import Crossings, EventLog, joined_crossings, joined_logs, joined_states
 from nonholo.orbit._orbit import AbstractMotion, Orbit, as_orbit
 from nonholo.orbit._poses import configurations, unwrapped
 
-__all__ = ["AbstractMotion", "Orbit", "as_orbit", "configurations", "unwrapped"]
+__all__ = [
+    "AbstractMotion",
+    "Crossings",
+    "EventLog",
+    "Orbit",
+    "as_orbit",
+    "configurations",
+    "joined_crossings",
+    "joined_logs",
+    "joined_states",
+    "unwrapped",
+]

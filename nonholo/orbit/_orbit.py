@@ -75,7 +75,8 @@ class Orbit:
         turned: Heading without ambiguity of full turns, where the run knows it, shape (K,).
         branch: The branch rule of a discrete run; "callable" for a function.
         events: What `events=` of the run found, an `EventLog`: by name or position `Crossings` with their times and
-            states. None without `events=`. It stays whole in slices of the orbit, and is not stored with it.
+            states. None without `events=`. It stays whole in slices of the orbit. `save_orbit` does not
+            keep it; the store of a run does.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)

@@ -94,6 +94,9 @@ def _along(values: xarray.DataArray, x: str | None, y: str | None) -> list[str]:
         if name is not None and name not in known:
             got = repr(name)
             raise error(f"plot.sweep_map({argument}=...)", f"be one of {', '.join(known)}", got, "Choose one of them.")
+    if not known or (x is not None and x == y):
+        got, remedy = ("one member" if not known else f"{x!r} twice"), "Pass more of the result, or name two axes."
+        raise error("plot.sweep_map(result=...)", "have an axis for x, and another one for y", got, remedy)
     free = [name for name in known if values.sizes[name] > 1 and name not in (x, y)]
     across = x or (free.pop(0) if free else None)
     up = y or (free.pop(0) if free and across else None)

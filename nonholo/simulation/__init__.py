@@ -1,11 +1,11 @@
 """Entry points that run a motion: loops, thinning, outcomes."""
 
+from nonholo.orbit import Crossings, EventLog
 from nonholo.simulation._blocks import iterate
 from nonholo.simulation._ensemble import ensemble
 from nonholo.simulation._ensemble_result import Ensemble
 from nonholo.simulation._ensemble_run import in_one_thread
 from nonholo.simulation._events import Event
-from nonholo.simulation._events_log import Crossings, EventLog
 from nonholo.simulation._events_of import crossings, cusp
 from nonholo.simulation._flow import flow
 from nonholo.simulation._resume import extend, resume

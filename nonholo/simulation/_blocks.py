@@ -12,7 +12,8 @@ from nonholo.discrete import Discretization
 from nonholo.discrete._branch_rules import BranchRule
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
-from nonholo.simulation._events_run import watched, watched_pieces
+from nonholo.simulation._events_pieces import watched_pieces
+from nonholo.simulation._events_run import watched
 from nonholo.simulation._events_scan import Watch, search
 from nonholo.simulation._prepared import checked_counts, first_state
 from nonholo.simulation._stored_run import rows_of_block

@@ -27,7 +27,7 @@ from nonholo.discrete._structured import (
     structured,
 )
 from nonholo.groups import SE
-from nonholo.orbit import Orbit
+from nonholo.orbit import Orbit, unwrapped
 
 Between = Callable[[Orbit, Float[np.ndarray, "K"]], Orbit]
 
@@ -67,9 +67,7 @@ def with_headings(states: Orbit, first: float | None) -> Orbit:
     """Return states of the plane with headings that go on from the given one; others as they are."""
     if states.system.group != SE(2) or states.pose is None or states.turned is not None or not len(states):
         return states
-    angles = np.unwrap(np.arctan2(states.pose[:, 1], states.pose[:, 0]))
-    whole = 0.0 if first is None else np.rint((first - angles[0]) / (2 * np.pi))
-    return dataclasses.replace(states, turned=angles + 2 * np.pi * whole)
+    return dataclasses.replace(states, turned=unwrapped(states.pose, before=first))
 
 
 def _by_kernel(

@@ -9,12 +9,11 @@ import numpy as np
 from nonholo._results import Outcome
 from nonholo._types import Float, Int
 from nonholo.groups import SE
-from nonholo.orbit import Orbit
+from nonholo.orbit import Crossings, Orbit
 from nonholo.simulation._ensemble_members import Members
 from nonholo.simulation._ensemble_result import Ensemble
 from nonholo.simulation._events import Event, values_at
 from nonholo.simulation._events_between import Between, between_states
-from nonholo.simulation._events_log import Crossings
 from nonholo.simulation._events_members import MemberCrossings, MemberEvents
 from nonholo.simulation._events_scan import changes, located
 

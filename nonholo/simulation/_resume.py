@@ -1,7 +1,7 @@
 """`resume` and `extend`: going on with a run that was written to a store."""
 
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 from nonholo import io
 from nonholo._checks import count, error
@@ -9,12 +9,19 @@ from nonholo._results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.io import Stream
 from nonholo.orbit import Orbit
+from nonholo.simulation._events_scan import Watch
+from nonholo.simulation._given_events import watch_of_store
 from nonholo.simulation._stored_run import go_on
 from nonholo.simulation._stretch import CompiledRun, compiled_run
 
 
 def resume(
-    store: str | Path, *, discrete: Discretization | None = None, throw: bool = True, progress: bool = False
+    store: str | Path,
+    *,
+    discrete: Discretization | None = None,
+    events: Any = None,
+    throw: bool = True,
+    progress: bool = False,
 ) -> Orbit:
     """Go on with the run of a store from its last checkpoint, with the bits of a run that was never stopped.
 
@@ -25,6 +32,8 @@ def resume(
         store: A store that `simulate(..., store=...)` began.
         discrete: The discretisation of the run; needed only if its system or group is of your own making, which a
             store cannot hold. Another one than that of the store is refused.
+        events: The events of the run, if it looks for some: a store holds their names, directions and stops, but no
+            functions. Others than those of the store are refused. To read a finished run `load_orbit` needs none.
         throw: Raise if the run cannot go on; otherwise return the good steps and the outcome.
         progress: Show a progress bar on standard error.
 
@@ -33,7 +42,7 @@ def resume(
 
     Raises:
         FileNotFoundError: There is nothing at the path.
-        ValueError: The path is no store of a run with checkpoints, or of another schema or discretisation.
+        ValueError: The path is no store of a run with checkpoints, or of another schema, discretisation or events.
         BlockingIOError: Another process is writing the store; the message names it.
         OSError: The disk is full; the store stays valid.
         OutcomeError: With `throw`, the run could not go on.
@@ -41,9 +50,9 @@ def resume(
     Example:
         >>> orbit = nh.resume("run.zarr")  # doctest: +SKIP
     """
-    path, run = _opened(store, discrete)
-    with io.locked(path):
-        return go_on(run, io.open_stream(path), throw=throw, progress=progress)
+    stream, run, watch = _opened("resume", store, discrete, events)
+    with io.locked(stream.path):
+        return go_on(run, io.open_stream(stream.path), watch, throw=throw, progress=progress)
 
 
 def extend(
@@ -51,6 +60,7 @@ def extend(
     steps: int,
     *,
     discrete: Discretization | None = None,
+    events: Any = None,
     throw: bool = True,
     progress: bool = False,
 ) -> Orbit:
@@ -62,6 +72,7 @@ def extend(
         store: A store that `simulate(..., store=...)` made.
         steps: How many steps more.
         discrete: As in `resume`.
+        events: As in `resume`.
         throw: As in `resume`.
         progress: Show a progress bar on standard error.
 
@@ -69,7 +80,8 @@ def extend(
         The whole orbit, as from `simulate(..., store=...)`.
 
     Raises:
-        ValueError: A bad number of steps, or a run that ended because it could not go on; and as in `resume`.
+        ValueError: A bad number of steps, or a run that ended because it could not go on, or by an event; and as in
+            `resume`.
         BlockingIOError: Another process is writing the store; the message names it.
         OSError: The disk is full; `resume` goes on.
         OutcomeError: With `throw`, the run could not go on.
@@ -78,17 +90,28 @@ def extend(
         >>> orbit = nh.extend("run.zarr", 1_000_000)  # doctest: +SKIP
     """
     steps = count("extend(steps=...)", steps, "Pass how many steps more.")
-    path, run = _opened(store, discrete)
-    with io.locked(path):
-        outcome = io.read_attributes(path).get("outcome", Outcome.successful.name)
-        if outcome != Outcome.successful.name:
-            remedy = f"{Outcome[outcome].message} More steps from there do not exist."
-            raise error("extend(store=...)", "be a run that can go on", f"outcome {outcome}", remedy)
-        return go_on(run, io.open_stream(path).lengthened(steps), throw=throw, progress=progress)
+    stream, run, watch = _opened("extend", store, discrete, events)
+    with io.locked(stream.path):
+        _refuse_ended(io.read_attributes(stream.path))
+        longer = io.open_stream(stream.path).lengthened(steps)
+        return go_on(run, longer, watch, throw=throw, progress=progress)
 
 
-def _opened(store: str | Path, discrete: Discretization | None) -> tuple[Path, CompiledRun]:
-    stream: Stream = io.open_stream(store)
+def _refuse_ended(stored: dict[str, Any]) -> None:
+    """Refuse a run that came to its end before its last step."""
+    outcome, event = stored.get("outcome", Outcome.successful.name), stored.get("stopped_by")
+    if event is not None:
+        remedy = "Run it again without `stop`, or with a later one, to go past it."
+        raise error("extend(store=...)", "be a run that can go on", f"one that the event {event!r} ended", remedy)
+    if outcome != Outcome.successful.name:
+        remedy = f"{Outcome[outcome].message} More steps from there do not exist."
+        raise error("extend(store=...)", "be a run that can go on", f"outcome {outcome}", remedy)
+
+
+def _opened(
+    owner: str, store: str | Path, discrete: Discretization | None, events: Any
+) -> tuple[Stream, CompiledRun, Watch | None]:
+    stream = io.open_stream(store)
     motion = cast(Discretization, io.restore_motion(io.read_attributes(store), discrete))
     run = compiled_run("resume(store=...)", motion, "principal", "auto", stream.plan.every, stream.reconstruct)
-    return stream.path, run
+    return stream, run, watch_of_store(owner, stream, run, events)

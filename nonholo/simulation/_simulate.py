@@ -124,8 +124,9 @@ def simulate(
             to rounding; see `Orbit.events`. A stopping event ends the run with the last saved state before it.
         throw: Raise if the run cannot go on; otherwise return the good steps and the outcome.
         progress: Show a progress bar on standard error.
-        store: A new path. The saved states of a compiled run go there block by block, in bounded memory; `resume` and
-            `extend` go on with it. An orbit that would fill 1 GiB is not returned whole but as its last block.
+        store: A new path. The saved states of a compiled run, and the crossings of its events, go there block by block,
+            in bounded memory; `resume` and `extend` go on with it. An orbit that would fill 1 GiB is not returned whole
+            but as its last block.
         checkpoint_every: Steps between two checkpoints of the store, a multiple of `save_every`; by default blocks of a
             few megabytes. A run that is stopped loses at most so many steps.
 
@@ -163,12 +164,9 @@ def simulate(
     starts["restricted_velocity"] = restricted_velocity
     watch = None if events is None else watched("simulate", discrete, events, rule, reconstruct)
     if store is not None:
-        if watch is not None:
-            remedy = "Leave the store out, or look for `crossings` of its orbit, with save_every=1."
-            raise error("simulate(events=...)", "come without a store", repr(str(store)), remedy)
         stored = compiled_run("simulate(store=...)", discrete, rule, backend, every, reconstruct)
         start = first_state(discrete, configuration, int(reconstruct), True, starts)
-        return run_into_store(stored, start, steps, store, checkpoint_every, throw=throw, progress=progress)
+        return run_into_store(stored, start, steps, store, checkpoint_every, watch, throw=throw, progress=progress)
     refuse_checkpoints(checkpoint_every)
     compiled = rule == "principal" and backend != "jax"
     held = 1 + steps // every if reconstruct else 0

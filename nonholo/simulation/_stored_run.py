@@ -1,5 +1,6 @@
 """Runs that are written to a store block by block, in bounded memory, and can stop at any moment."""
 
+import dataclasses
 import errno
 import warnings
 from collections.abc import Callable
@@ -11,7 +12,9 @@ from nonholo._progress import progress_bar
 from nonholo._results import Outcome, finished
 from nonholo.io import Checkpoint, Plan, Stream
 from nonholo.orbit import Orbit
+from nonholo.simulation._events_scan import Watch, search
 from nonholo.simulation._prepared import Start
+from nonholo.simulation._stored_events import computed_with_events, descriptions, seen_by
 from nonholo.simulation._stretch import CompiledRun, opened
 
 _ROWS, _NUMBERS, _STEPS = 1 << 16, 1 << 22, 1 << 23  # at most in a block: states, numbers in an array, steps
@@ -25,19 +28,25 @@ def run_into_store(
     steps: int,
     store: str | Path,
     checkpoint_every: int | None,
+    watch: Watch | None,
     *,
     throw: bool,
     progress: bool,
 ) -> Orbit:
-    """Run from a start into a new store; return the orbit."""
+    """Run from a start into a new store, looking for events if there is a watch; return the orbit."""
     io.check_target(store)
     plan = Plan(steps, run.every, rows_of_block("simulate(checkpoint_every=...)", run, steps, checkpoint_every))
     vector, first = opened(run, start, steps, throw)
+    opening, events = Checkpoint(0, Outcome.successful, vector), None
+    if watch is not None:
+        found, _ = search(watch, first, 0)
+        first = dataclasses.replace(first, events=found.log())
+        opening, events = opening._replace(seen=seen_by(found, 0)), descriptions(watch.events)
     if not len(first):
         return first
-    stream = io.create_stream(Path(store), first, plan, vector)
+    stream = io.create_stream(Path(store), first, plan, opening, events)
     with io.locked(stream.path):
-        return go_on(run, stream, throw=throw, progress=progress)
+        return go_on(run, stream, watch, throw=throw, progress=progress)
 
 
 def rows_of_block(where: str, run: CompiledRun, steps: int, block_steps: int | None) -> int:
@@ -59,13 +68,13 @@ def refuse_checkpoints(checkpoint_every: int | None) -> None:
         raise error(where, "come with a store", got, "Pass store='run.zarr' too, or leave it out.")
 
 
-def go_on(run: CompiledRun, stream: Stream, *, throw: bool, progress: bool) -> Orbit:
+def go_on(run: CompiledRun, stream: Stream, watch: Watch | None, *, throw: bool, progress: bool) -> Orbit:
     """Compute what a locked store lacks, block after block, and return the orbit."""
     stream.prepare()
     _warn_of_other_versions(stream)
     again = f"nonholo.resume({str(stream.path)!r})"
     try:
-        reached = _completed(run, stream, progress)
+        reached = _completed(run, stream, watch, progress)
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"Stopped at step {_standing(stream)}. Go on with {again} (nonholo resume).") from None
     except OSError as failure:
@@ -88,7 +97,7 @@ def _standing(stream: Stream) -> str:
     return f"{stream.reached()} of {stream.plan.steps}"
 
 
-def _completed(run: CompiledRun, stream: Stream, progress: bool) -> Checkpoint:
+def _completed(run: CompiledRun, stream: Stream, watch: Watch | None, progress: bool) -> Checkpoint:
     """Compute every block that is missing or damaged; return the end of the run."""
     plan, computed = stream.plan, not stream.is_finished
     marked = max((block for block in range(plan.blocks) if stream.is_marked(block)), default=-1)
@@ -97,13 +106,13 @@ def _completed(run: CompiledRun, stream: Stream, progress: bool) -> Checkpoint:
         for block in range(plan.blocks):
             sound = _sound(stream, block) if block <= marked else None
             computed = computed or sound is None
-            reached = sound or _computed(run, stream, block, reached, lambda done: report(done, plan.steps))
+            reached = sound or _computed(run, stream, watch, block, reached, lambda done: report(done, plan.steps))
             report(reached.done, plan.steps)
-            if reached.outcome != Outcome.successful:
+            if reached.is_last:
                 break
     end = _known(reached)
     if computed:
-        stream.finish(end.done, end.outcome)
+        stream.finish(end)
     return end
 
 
@@ -121,18 +130,26 @@ def _sound(stream: Stream, block: int) -> Checkpoint | None:
 
 
 def _is_final(stream: Stream, block: int, reached: Checkpoint) -> bool:
-    """Tell whether a block needs no more rows: not so if the run was extended, or failed and was not yet cut."""
-    return reached.done == stream.plan.stop(block) or (reached.outcome != Outcome.successful and stream.is_finished)
+    """Tell whether a block needs no more rows: not so if the run was extended, or ended and was not yet cut."""
+    return reached.done == stream.plan.stop(block) or (reached.is_last and stream.is_finished)
 
 
 def _computed(
-    run: CompiledRun, stream: Stream, block: int, begin: Checkpoint | str, report: Callable[[int], object]
+    run: CompiledRun,
+    stream: Stream,
+    watch: Watch | None,
+    block: int,
+    start: Checkpoint | str,
+    report: Callable[[int], object],
 ) -> Checkpoint:
     """Compute a block and write it."""
-    plan = stream.plan
-    vector = _known(begin).vector.copy()
-    orbit, done = run.stretch(vector, plan.begin(block), plan.stop(block), report, opening=block == 0)
-    reached = Checkpoint(done, orbit.outcome, vector)
+    plan, begin = stream.plan, _known(start)
+    if watch is None:
+        vector = begin.vector.copy()
+        orbit, done = run.stretch(vector, plan.begin(block), plan.stop(block), report, opening=block == 0)
+        reached = Checkpoint(done, orbit.outcome, vector)
+    else:
+        orbit, reached = computed_with_events(run, stream, watch, block, begin, report)
     stream.write(block, orbit, reached)
     return reached
 
@@ -145,7 +162,7 @@ def _known(state: Checkpoint | str) -> Checkpoint:
 
 def _loaded(run: CompiledRun, stream: Stream, reached: Checkpoint) -> Orbit:
     """Return the orbit, of one that would fill the memory the last block."""
-    states = 1 + reached.done // run.every
+    states = 1 + reached.done // run.every + (0 if reached.seen is None else int(reached.seen.counts.sum()))
     if states * (2 + sum(run.sizes)) <= _LOADED:
         return io.load_orbit(stream.path, discrete=run.discrete)
     return io.load_last_block(stream.path, run.discrete)

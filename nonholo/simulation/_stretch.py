@@ -61,6 +61,10 @@ class CompiledRun:
         code, state = kernels.start(self.closed.body, scaled, coded)
         return np.concatenate((scaled, kernels.chart_of(self.closed.body, state), coded, state)), Outcome(code)
 
+    def first(self, vector: np.ndarray) -> Orbit:
+        """Return the state in the first part of a vector as an orbit at time zero."""
+        return self.stretch(vector, 0, 0, _silent, opening=True)[0]
+
     def stretch(
         self, vector: np.ndarray, begun: int, stop: int, report: Callable[[int], object], *, opening: bool
     ) -> tuple[Orbit, int]:
@@ -109,7 +113,7 @@ def compiled_run(where: str, discrete: Discretization, rule: Any, backend: str, 
 def opened(run: CompiledRun, start: Start, steps: int, throw: bool) -> tuple[np.ndarray, Orbit]:
     """Return the vector of a run at its start and its first state, an empty orbit (or an error) if there is none."""
     vector, outcome = run.start(start.reduced, start.pose)
-    first, _ = run.stretch(vector, 0, 0, _silent, opening=True)
+    first = run.first(vector)
     if outcome != Outcome.successful:
         empty = dataclasses.replace(first.chosen(slice(0, 0)), outcome=outcome)
         return vector, finished(empty, float(run.discrete.time_step), 0, steps, throw)

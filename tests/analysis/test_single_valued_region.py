@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 
 import nonholo as nh
+from nonholo.analysis import deltoid
 
+ANGLES = 2 * np.pi * (np.arange(90) + 0.5) / 90  # none of them an equilibrium
 RATIOS = [0.01, 0.2, 0.499, 0.5, 0.501, 0.8, 0.8256, 0.8258, 1.0, 2.0, 5.0, 50.0]  # of m a^2 to J
 
 
@@ -61,6 +63,37 @@ def test_bound_is_sharp(ratio: float, sign: int) -> None:
     for contact in found.contact:
         assert system.constrained_energy(contact) == pytest.approx(found.energy, rel=1e-13)
         assert _real_branches(discrete, contact + 1e-3 * (centre - contact)) == 3
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_principal_energy_is_the_least_on_two_sides(ratio: float) -> None:
+    """The closed form is the least energy on the right side of the deltoid, angles 0 to 2 pi/3, found by search."""
+    discrete = _sleigh(ratio, b=0.4)
+    side = deltoid(discrete).touching(np.linspace(0, 2 * np.pi / 3, 3001))
+    least = min(float(discrete.system.constrained_energy(r)) for r in side)
+    bound = nh.single_valued_region(discrete).principal_energy
+    assert bound * (1 - 1e-13) <= least <= bound * (1 + 1e-5)  # the mesh is one of 7e-4
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+@pytest.mark.parametrize("sign", [1, -1])
+def test_every_momentum_has_a_principal_value_below(ratio: float, sign: int) -> None:
+    """Below the principal energy all directions of momentum have a principal value; above it some have none."""
+    discrete = _sleigh(ratio, b=0.4, sign=sign)
+    bound, without = nh.single_valued_region(discrete).principal_energy, []
+    for share in (0.999, 1.3):
+        scale = np.sqrt(2 * share * bound)
+        around = [scale * (np.cos(x) * E1 + np.sin(x) * E2) for E1, E2 in [_axes(discrete)] for x in ANGLES]
+        without.append(sum(nh.displacements_over(discrete, r).principal is None for r in around))
+    assert without[0] == 0
+    assert without[1] > 0
+
+
+def _axes(discrete: nh.Discretization) -> np.ndarray:
+    """Return momenta (p_theta, p_1) of energy 1/2 along pi and along p_1."""
+    s = discrete.system
+    pi, p1 = np.sqrt(s.inertia + s.mass * s.a**2), np.sqrt(s.mass)
+    return np.array([[pi, 0.0], [-s.b * p1, p1]])
 
 
 @pytest.mark.parametrize("ratio", [0.2, 1.0, 5.0])

@@ -44,8 +44,8 @@ def test_turning_sweep_shows_the_closed_form(nonholo: Callable[..., Result]) -> 
     J, h = found["inertia"].values, found["time_step"].values
     row = found["turning_deviation"].values[:, 0] / (h[0] ** 2 * J / (24 * (1 + J) ** 2))
     assert np.abs(row - 1).max() < 0.01  # 0.3 h^2, with h = 0.1
-    at_cusp = 2 * np.sqrt((J / 8 - 1) ** 2 + 27 * J**2 / (64 * (1 + J)))
-    bound = np.where(J < 2, at_cusp, (1 + J) / np.sqrt(J))
+    sleighs = [nh.discretize(nh.ChaplyginSleigh(1.0, inertia, 1.0), 1.0) for inertia in J]
+    bound = np.sqrt([2 * nh.single_valued_region(sleigh).principal_energy for sleigh in sleighs])
     lost = found["outcome"].values != 0
     below = h < bound[:, None]
     assert not lost[below].any()

@@ -1,6 +1,7 @@
 """`nonholo sweep`, and `info`, `plot`, `resume` and `extend` of what it leaves."""
 
 import json
+import os
 import re
 import signal
 import subprocess
@@ -20,6 +21,7 @@ from nonholo.cli._problems import ScenarioError
 from nonholo.cli._scenario_file import Setting, parse_setting
 from nonholo.cli._sweep_file import load_sweep_scenario, sweep_text
 from nonholo.ensembles import standing_of
+from nonholo.io import locked
 
 Command = Callable[..., Result]
 BODY = """
@@ -323,6 +325,16 @@ def test_info_of_a_stopped_sweep(stopped: Path, nonholo: Command) -> None:
     assert "go on with: nonholo resume s.zarr" in shown.replace("\n", "")
 
 
+def test_info_names_who_writes(stopped: Path, nonholo: Command) -> None:
+    """While a process writes a sweep, `info` names it, and `resume` by another one is refused."""
+    with locked(stopped):
+        shown = nonholo("info", stopped).stdout
+        assert f"written by process {os.getpid()} on" in " ".join(shown.split())
+        result = nonholo("resume", stopped)
+    assert result.exit_code == 2
+    assert "is being written by process" in result.stderr
+
+
 def test_resume_of_a_stopped_sweep(stopped: Path, nonholo: Command) -> None:
     """`resume` does the rest: the result is the one of a sweep that was not stopped, bit by bit."""
     told = _told(nonholo("resume", stopped, "--workers", 1, "--json"))
@@ -361,6 +373,23 @@ def test_ctrl_c() -> None:
     assert 0 < standing.done < standing.members
 
 
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--scheduler", "nix"), "must be one of threads, processes, synchronous or an address"),
+        (("--members", "2.5"), "--members 2.5: design.members: must be a valid integer"),
+        (("--members", "0"), "--members 0: design.members: must be greater than 0"),
+        (("--set", "design.kind='random'"), "my.toml: design.members: is missing"),
+    ],
+)
+def test_options_that_are_refused(options: tuple[str, str], told: str, nonholo: Command) -> None:
+    """A bad option ends with exit code 2 before there is a store."""
+    result = nonholo("sweep", _written(GRID), *options)
+    assert result.exit_code == 2
+    assert told in " ".join(result.stderr.split())
+    assert not list(Path().glob("runs/*"))
+
+
 def test_extend_of_a_sweep_is_refused(nonholo: Command) -> None:
     """A sweep has no end to go past; the refusal says what to do."""
     store = _told(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"]
@@ -386,6 +415,12 @@ def test_simulate_of_a_sweep_is_refused(nonholo: Command) -> None:
     result = nonholo("simulate", _written(GRID))
     assert result.exit_code == 2
     assert "nonholo sweep my.toml" in result.stderr
+
+
+def test_help_shows_the_tables(nonholo: Command) -> None:
+    """The help names the tables of a scenario, whose brackets are no markup."""
+    shown = nonholo("sweep", "--help").stdout
+    assert all(f"[{table}]" in shown for table in ("body", "start", "run", "design", "design.values", "keep", "output"))
 
 
 def test_template_runs(nonholo: Command) -> None:

@@ -42,7 +42,7 @@ def done(path: Path) -> int:
     return len(list((path / "run" / "blocks").glob("*.json")))
 
 
-def wait_for(condition: Callable[[], Any], seconds: float = 30.0) -> Any:
+def wait_for(condition: Callable[[], Any], seconds: float = 60.0) -> Any:
     """Wait until something is so, and return it."""
     end = time.monotonic() + seconds
     while not (found := condition()):
@@ -62,9 +62,10 @@ def kill_often(name: str, path: Path, scheduler: str, victims: list[str]) -> Non
         client = os.fork()
         if client == 0:
             _as_client(name, path, scheduler)
-        if scheduler == "processes":
-            wait_for(lambda: done(path) > before)  # noqa: B023
-        time.sleep(chance.uniform(0.0, 0.3 if scheduler == "processes" else 0.9))
+        if scheduler == "processes" or chance.random() < 0.7:  # at some block, else when it begins
+            enough = before + chance.integers(1, 20)
+            wait_for(lambda: done(path) >= enough)  # noqa: B023
+        time.sleep(chance.uniform(0.0, 0.1))
         ended += _killed(client, victim)
     sys.stdout.write(f"{ended}")
 

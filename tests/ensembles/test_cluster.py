@@ -1,6 +1,7 @@
 """Sweeps on a real Dask cluster, over TCP on loopback: the bits of threads, whoever is killed."""
 
 import random
+import re
 import signal
 import socket
 import subprocess
@@ -22,6 +23,7 @@ from nonholo.ensembles import _cluster
 from nonholo.ensembles._store import SweepStore
 
 BLOCKS = DESIGN.members // BLOCK
+PAGE = (Path(__file__).parents[2] / "docs" / "how-to" / "beyond-one-machine.md").read_text()
 MODULE = "def task(block):\n    return block['x'] ** 2\n"
 WITHOUT = """
 import sys
@@ -134,6 +136,25 @@ def test_addresses_without_a_scheduler_are_refused(
         nh.sweep(slow, DESIGN, tmp_path / "a.zarr", address)
     assert time.monotonic() - begun < 20
     assert not (tmp_path / "a.zarr").exists()
+
+
+def test_the_page(running: Cluster, tmp_path: Path) -> None:
+    """The code of the page on clusters runs, for fewer members: the script on a cluster, and its groups."""
+    run, groups = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    for text, ours in (
+        ("10**9", "100"),
+        ("/shared/tops.zarr", str(tmp_path / "a.zarr")),
+        ("tcp://host:8786", running.address),
+    ):
+        assert text in run
+        run = run.replace(text, ours)
+    names: dict[str, Any] = {"__name__": "__main__"}
+    exec(run, names)  # noqa: S102
+    assert nh.load_sweep(tmp_path / "a.zarr").sizes["member"] == 100
+    exec(groups.replace("10_000", "10"), names)  # noqa: S102
+    found = nh.sweep(names["headings"], nh.RandomDesign(3, {"a": nh.Uniform(0.1, 1.0)}), tmp_path / "b.zarr", block=2)
+    assert found["headings"].dims == ("member", "bin")
+    assert (found["headings"].sum("bin") == 10).all()
 
 
 def test_a_number_of_workers_is_refused(tmp_path: Path) -> None:

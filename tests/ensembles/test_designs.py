@@ -91,9 +91,10 @@ def test_names_and_seeds_are_independent(one: tuple[str, int], other: tuple[str,
 
 
 def test_random_numbers_of_tasks_are_not_those_of_the_design() -> None:
-    """A task may draw numbers by member, which are independent of the design and of other streams."""
-    block = block_of(nh.RandomDesign(MEMBERS, {"x": nh.Uniform(-1, 1)}), 0, MEMBERS)
-    drawn = [block["x"], *(2 * block.random(1, stream)[:, 0] - 1 for stream in ("", "x", "y"))]
+    """A task may draw numbers by member, independent of the design, of other streams and of other seeds."""
+    block, other = (block_of(nh.RandomDesign(MEMBERS, {"x": nh.Uniform(-1, 1)}, seed), 0, MEMBERS) for seed in (0, 1))
+    streams = [block.random(1, stream) for stream in ("", "x", "y")] + [other.random(1)]
+    drawn = [block["x"], other["x"], *(2 * stream[:, 0] - 1 for stream in streams)]
     for one, other in itertools.combinations(drawn, 2):
         assert abs(np.mean(one * other)) < 5 / 3 / np.sqrt(MEMBERS)
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import xarray
 from ensembles import faults
+from ensembles.small import same
 
 import nonholo as nh
 from nonholo._results import Outcome
@@ -24,13 +25,6 @@ FEW = nh.RandomDesign(50, faults.TOP_DESIGN, seed=6)
 
 def _swept(task: Any, path: Path, design: Any = GRID, **options: Any) -> xarray.Dataset:
     return nh.sweep(task, design, path / "run.zarr", **{"scheduler": "synchronous", **options}).load()
-
-
-def _same(one: xarray.Dataset, other: xarray.Dataset) -> bool:
-    return one.variables.keys() == other.variables.keys() and all(
-        one[name].dims == other[name].dims and one[name].values.tobytes() == other[name].values.tobytes()
-        for name in one.variables
-    )
 
 
 def test_result_is_labelled(tmp_path: Path) -> None:
@@ -265,7 +259,7 @@ def test_bad_arguments_are_refused(options: dict[str, Any], match: str, tmp_path
 def test_bits_do_not_depend_on_blocks(scheduler: str, block: int, design: Any, tmp_path: Path) -> None:
     """A task of one's own has the same result in blocks of any size, by any scheduler."""
     found = _swept(_calm, tmp_path, design, block=block, scheduler=scheduler)
-    assert _same(found, nh.sweep(_calm, design, tmp_path / "whole.zarr", "synchronous").load())
+    assert same(found, nh.sweep(_calm, design, tmp_path / "whole.zarr", "synchronous").load())
 
 
 @pytest.fixture(scope="module")
@@ -281,7 +275,17 @@ def test_bits_of_ensembles_do_not_depend_on_blocks(
     scheduler: str, block: int, whole: xarray.Dataset, tmp_path: Path
 ) -> None:
     """Tops have the same bits in blocks of any size, by any scheduler, alone or beside others in a vector register."""
-    assert _same(_swept(faults.TOPS, tmp_path, FEW, block=block, scheduler=scheduler, workers=2), whole)
+    assert same(_swept(faults.TOPS, tmp_path, FEW, block=block, scheduler=scheduler, workers=2), whole)
+
+
+@pytest.mark.parametrize(
+    ("task", "members", "blocks"), [(_calm, 1000, 32), (_calm, 20, 20), (faults.TOPS, 1000, 32), (faults.TOPS, 40, 2)]
+)
+def test_small_sweeps_are_cut_for_all_cores(task: Any, members: int, blocks: int, tmp_path: Path) -> None:
+    """A sweep that would be one block is some thirty, but not of fewer members than the compiled loop takes at once."""
+    names = {"x": nh.Normal(), "y": nh.Normal()} if task is _calm else faults.TOP_DESIGN
+    _swept(task, tmp_path, nh.RandomDesign(members, names))
+    assert faults.done(tmp_path / "run.zarr") == blocks
 
 
 def test_loaded_sweep_is_the_sweep(tmp_path: Path) -> None:
@@ -291,8 +295,8 @@ def test_loaded_sweep_is_the_sweep(tmp_path: Path) -> None:
         found = _swept(_calm, tmp_path, scenario="[design]")
         path = tmp_path / "run.zarr"
         with xarray.open_zarr(path, chunks=None) as opened:
-            assert _same(opened.load(), found)
-        assert _same(nh.load_sweep(path).load(), found)
+            assert same(opened.load(), found)
+        assert same(nh.load_sweep(path).load(), found)
     assert found.attrs["scenario"] == "[design]"
 
 
@@ -301,7 +305,7 @@ def test_resumed_sweep_keeps_its_blocks(tmp_path: Path) -> None:
     first = _swept(_calm, tmp_path, block=3, resume=True)
     times = [mark.stat().st_mtime_ns for mark in (tmp_path / "run.zarr" / "run" / "blocks").iterdir()]
     assert len(times) == 6
-    assert _same(_swept(_calm, tmp_path, block=1, resume=True), first)
+    assert same(_swept(_calm, tmp_path, block=1, resume=True), first)
     assert times == [mark.stat().st_mtime_ns for mark in (tmp_path / "run.zarr" / "run" / "blocks").iterdir()]
 
 
@@ -333,7 +337,7 @@ def test_two_sweeps_at_a_time(tmp_path: Path) -> None:
     for thread in threads:
         thread.join()
     wanted = _swept(_calm, tmp_path)
-    assert all(_same(found[number], wanted) for number in range(2))
+    assert all(same(found[number], wanted) for number in range(2))
 
 
 def test_progress_counts_members(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

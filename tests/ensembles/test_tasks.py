@@ -1,11 +1,13 @@
 """`EnsembleTask`: the members of a design run as those of `ensemble`, and of `simulate`."""
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from bodies import GENERAL
 
 import nonholo as nh
 from nonholo.ensembles import standing_of
@@ -101,14 +103,29 @@ def test_description_makes_the_task_again() -> None:
     }
 
 
-@pytest.mark.parametrize(("steps", "every"), [(10, None), (10_000, None), (10_000, 1), (10**7, 1)])
-def test_blocks_fit_in_memory(steps: int, every: int | None) -> None:
-    """Blocks are whole ones of the kernel, and their states stay below some 32 MiB, or are as few as they may be."""
+def test_systems_that_data_cannot_hold_are_refused() -> None:
+    """A task with a function as its difference does not come back from its description, and says why."""
+    described = _task(restricted_velocity=(1.0, 0.2)).describe()
+    motion = json.loads(described["motion"]) | {"difference": "callable"}  # as a function is described
+    with pytest.raises(ValueError, match="one whose difference is a callable"):
+        ensemble_task_from({**described, "motion": json.dumps(motion)})
+
+
+@pytest.mark.parametrize(
+    ("steps", "every", "members"),
+    [(10, None, 2**16), (10_000, None, 26_816), (10_000, 1, 32), (100, 1, 5184), (10**9, None, 32)],
+)
+def test_blocks_are_pieces_of_work(steps: int, every: int | None, members: int) -> None:
+    """Blocks are whole ones of the kernel, at most 2^16 members, 2^22 numbers in states and 2^28 steps."""
     task = _task(restricted_velocity=(1.0, 0.2), steps=steps, save_every=every)
-    states = 1 if every is None else steps + 1
-    assert task.block % 32 == 0
-    assert task.block == 32 or task.block * states * 8 <= 2**22
-    assert every is not None or task.block >= 2**15
+    assert task.block == members
+
+
+def test_blocks_of_systems_that_run_one_by_one() -> None:
+    """Members of other systems make small blocks, one at least."""
+    for steps, members in ((2**10, 2**10), (10**7, 1)):
+        discrete = nh.discretize(GENERAL["sleigh 3"][0], 0.05)
+        assert _task(discrete, restricted_velocity=GENERAL["sleigh 3"][1], steps=steps).block == members
 
 
 def test_refused_members_are_isolated_and_named(tmp_path: Path) -> None:

@@ -7,7 +7,6 @@ import pytest
 import xarray
 
 import nonholo as nh
-from nonholo.analysis import deltoid
 
 INERTIAS = np.array([0.1, 0.5, 1.0, 3.0, 10.0])
 START = 1e-8
@@ -67,18 +66,10 @@ def test_no_sleigh_is_lost_below_the_sides_of_the_deltoid(inertia: float, tmp_pa
     assert (found["outcome"] == 1).all()
 
 
-@pytest.mark.parametrize("inertia", INERTIAS)
-def test_where_the_ellipse_meets_the_deltoid(inertia: float) -> None:
-    """The closed form is the least energy on the right side of the deltoid, 0 < angle < 2 pi/3, found by search."""
-    sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, inertia, 1.0), 1.0)
-    side = deltoid(sleigh).touching(np.linspace(0, 2 * np.pi / 3, 3001))
-    least = min(float(sleigh.system.constrained_energy(r)) for r in side)
-    assert abs(np.sqrt(2 * least) / _bound(inertia) - 1) < 1e-6  # of a minimum found on a mesh of 7e-4
-
-
-def _bound(J: float) -> float:
-    """Return the time step at which sleighs with mass 1, a = 1 and speed 1 meet a side that ends the branch."""
-    return (1 + J) / np.sqrt(J) if J > 2 else 2 * np.sqrt((J / 8 - 1) ** 2 + 27 * J**2 / (64 * (1 + J)))
+def _bound(inertia: float) -> float:
+    """Return the time step at which the energy 1/2 is the one below which all momenta have a principal value."""
+    unit = nh.discretize(nh.ChaplyginSleigh(1.0, inertia, 1.0), 1.0)
+    return float(np.sqrt(2 * nh.single_valued_region(unit).principal_energy))
 
 
 def test_turn_of_each_step() -> None:
@@ -109,3 +100,16 @@ def test_turning_of_a_top_is_refused(tmp_path: Path) -> None:
     task = nh.EnsembleTask(top, steps=5, restricted_velocity=(0.5, 0.1), reductions="turning_deviation")
     with pytest.raises(ValueError, match="must have a plane sleigh"):
         nh.sweep(task, nh.Grid({"time_step": [0.1]}), tmp_path / "s.zarr")
+
+
+def test_lost_sleighs_are_sound_chunks(tmp_path: Path) -> None:
+    """A block of members that have no number is on disk like any other: the result is loaded, and nothing repaired."""
+    task = nh.EnsembleTask(
+        nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 1.0), 6.0),
+        steps=10,
+        restricted_velocity=(START, -1.0),
+        reductions=["turning_deviation", "energy_drift"],
+    )
+    nh.sweep(task, nh.Grid({"time_step": [0.5, 6.0]}), tmp_path / "lost.zarr", block=1)
+    assert np.isnan(nh.load_sweep(tmp_path / "lost.zarr")["turning_deviation"].values).tolist() == [False, True]
+    assert nh.load_sweep(tmp_path / "lost.zarr").equals(nh.resume(tmp_path / "lost.zarr"))

@@ -219,6 +219,39 @@ def test_what_is_refused_of_draws(draws: xarray.Dataset, arguments: dict[str, st
         nh.plot.sweep_map(draws, "wide", **arguments)
 
 
+def test_one_member_is_refused(plane: xarray.Dataset) -> None:
+    """A result without axes has no picture; nor has one axis against itself."""
+    with pytest.raises(ValueError, match="Got one member"):
+        nh.plot.sweep_map(plane.isel(a=0, b=0), "value")
+    with pytest.raises(ValueError, match="Got 'a' twice"):
+        nh.plot.sweep_map(plane, "value", x="a", y="a")
+
+
+@pytest.mark.parametrize("columns", [slice(2, 4), slice(0, 1)])
+def test_parts_without_success_or_without_failure(plane: xarray.Dataset, columns: slice) -> None:
+    """A part in which all failed has only cells of outcomes, one in which none failed has no legend."""
+    part = plane.isel(b=columns)
+    picture = nh.plot.sweep_map(part, "value", x="a", y="b")
+    assert picture.drawn.get_array().mask.all() == (columns.start == 2)
+    assert len(_legend(picture)) == (2 if columns.start == 2 else 0)
+
+
+def test_draws_that_all_failed(draws: xarray.Dataset) -> None:
+    """Draws without success still have their marks, dots and counts."""
+    lost = draws.isel(member=np.flatnonzero(draws["outcome"].values))
+    for places in ({}, {"x": "a"}, {"x": "a", "y": "b"}):
+        picture = nh.plot.sweep_map(lost, "wide", **places)
+        assert _legend(picture) == [f"no real branch ({lost.sizes['member']})"]
+
+
+def test_axis_of_vectors_is_numbered(tmp_path: Path) -> None:
+    """Vectors along an axis of a grid have no place on it but their number."""
+    design = nh.Grid({"v": [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]})
+    found = nh.sweep(lambda block: {"value": block["v"].sum(axis=1)}, design, tmp_path / "s.zarr")
+    line = nh.plot.sweep_map(found, "value").drawn
+    assert line.get_xydata().tolist() == [[0, 1], [1, 1], [2, 2]]
+
+
 def test_other_objects_are_refused() -> None:
     """What is no result of a sweep is refused."""
     with pytest.raises(ValueError, match=r"Got Dataset. Pass what nh.sweep or nh.load_sweep returned"):

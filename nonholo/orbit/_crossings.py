@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from nonholo._types import Float, Int
-from nonholo.orbit import Orbit
+from nonholo.orbit._orbit import Orbit
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)

@@ -1,0 +1,88 @@
+"""The last poses of the members of a sweep as CSV, block by block."""
+
+import contextlib
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TextIO, cast
+
+import numpy as np
+
+from nonholo import io
+from nonholo._checks import error
+from nonholo.ensembles._begin import restored_task
+from nonholo.ensembles._block import MemberBlock, block_of
+from nonholo.ensembles._ensemble_task import EnsembleTask
+from nonholo.ensembles._standing import standing_of
+from nonholo.ensembles._store import Mark, SweepStore, open_store
+from nonholo.simulation import Ensemble
+from nonholo.simulation._ensemble_members import Members
+
+_WANTED = ("outcome", "final_time", "final_pose")
+
+
+def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: bool = False) -> None:
+    """Write the last pose of each member of a sweep, with its number, its values of the design, its outcome and time.
+
+    Columns of the pose are those of `Orbit.to_csv`, with angles between -pi and pi. Of a sweep that is not finished the
+    finished blocks are written, and a `RuntimeWarning` says how far it came.
+
+    Args:
+        store: A store of a sweep that kept "final_state" with poses.
+        target: A new file, or a stream of text.
+        overwrite: Replace an older file.
+
+    Raises:
+        FileExistsError: The target exists, and is not to be replaced.
+        ValueError: The store holds no poses, or is damaged; the message names the array and the chunk.
+
+    Example:
+        >>> sweep_to_csv("sweep.zarr", "poses.csv")  # doctest: +SKIP
+    """
+    opened = open_store(store)
+    if "final_pose" not in opened.outputs:
+        remedy = "Keep 'final_state' with reconstruct=True; nonholo.load_sweep(store) has other results."
+        raise error("sweep_to_csv(store=...)", "hold poses", f"'{store}', which holds none", remedy)
+    blocks = [block for block in range(opened.layout.blocks) if isinstance(opened.mark(block), Mark)]
+    for flaw in filter(None, map(opened.flaw, blocks)):
+        remedy = f"nonholo.resume('{store}') computes its block again."
+        raise error("sweep_to_csv(store=...)", "be sound", f"'{store}', in which there is {flaw}", remedy)
+    if len(blocks) < opened.layout.blocks:
+        warnings.warn(f"The sweep in '{store}' is not finished: {standing_of(store)}.", RuntimeWarning, stacklevel=2)
+    task = cast(EnsembleTask, restored_task(opened, None))
+    to_file = isinstance(target, str | Path)
+    new = io.new_file(Path(target), overwrite=overwrite) if to_file else contextlib.nullcontext(cast(TextIO, target))
+    with new as file:
+        file.writelines(io.table_lines(_names(opened, task), (_rows(opened, task, block) for block in blocks)))
+
+
+def _names(store: SweepStore, task: EnsembleTask) -> list[str]:
+    values = _flat(block_of(store.design, 0, 1))
+    return ["member", *(name for name, _ in values), "outcome", *io.column_names(task.discrete.system.group)]
+
+
+def _rows(store: SweepStore, task: EnsembleTask, block: int) -> np.ndarray:
+    piece = store.layout.piece(block)
+    members = block_of(store.design, piece.first, piece.count)
+    outcome, time, compact = (store.rows(name, piece) for name in _WANTED)
+    pose = io.separate_rows(task.discrete.system.group, _configurations(task.members(members), compact))
+    columns = [members.index, *(values for _, values in _flat(members)), outcome, time, *pose.T]
+    rows = np.empty((piece.count, len(columns)), dtype=object)  # whole numbers are written as such
+    for place, column in enumerate(columns):
+        rows[:, place] = column.tolist()
+    return rows
+
+
+def _configurations(members: Members, compact: np.ndarray) -> np.ndarray:
+    """Return compact poses of members as matrices in the user's frame; nothing else of their states is needed."""
+    count = len(members)
+    momenta, none = np.zeros((count, 1, members.discrete.system.rank)), np.zeros(count, dtype=int)
+    states = Ensemble(members, 1, None, momenta, momenta, compact[:, None], none, none, momenta[:, 0])
+    return states.configuration[:, 0]
+
+
+def _flat(block: MemberBlock) -> Iterator[tuple[str, np.ndarray]]:
+    """Give every number of the values of members a name."""
+    for name, values in block.items():
+        for place in np.ndindex(values.shape[1:]):
+            yield name + (f"[{';'.join(map(str, place))}]" if place else ""), values[:, *place]

@@ -1,0 +1,70 @@
+"""How a stored run is cut into blocks, and what is kept of the state between two of them."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from nonholo._results import Outcome
+from nonholo._types import Float
+from nonholo.io._stored_events import Seen, packed, packed_size, unpacked
+
+
+class Plan(NamedTuple):
+    """How a run is cut into blocks: block b holds the saved states b * rows to (b + 1) * rows - 1.
+
+    Example:
+        >>> plan = Plan(steps=100, every=10, rows=4)
+        >>> plan.blocks, [(plan.begin(b), plan.stop(b)) for b in range(3)]
+        (3, [(0, 30), (30, 70), (70, 100)])
+    """
+
+    steps: int
+    every: int
+    rows: int
+
+    @property
+    def blocks(self) -> int:
+        """Number of blocks."""
+        return -(-(1 + self.steps // self.every) // self.rows)
+
+    def begin(self, block: int) -> int:
+        """Return the step at which the computation of a block begins."""
+        return max(0, (block * self.rows - 1) * self.every)
+
+    def stop(self, block: int) -> int:
+        """Return the step at which it ends; the last block also takes the steps after the last saved state."""
+        return self.steps if block == self.blocks - 1 else self.begin(block + 1)
+
+
+class Checkpoint(NamedTuple):
+    """Where a run stands: the last good step, the outcome so far, the vector to go on from, what its events saw."""
+
+    done: int
+    outcome: Outcome
+    vector: np.ndarray
+    seen: Seen | None = None
+
+    @property
+    def is_last(self) -> bool:
+        """Whether the run ended here: it cannot go on, or an event ended it."""
+        return self.outcome != Outcome.successful or self.is_stopped
+
+    @property
+    def is_stopped(self) -> bool:
+        """Whether an event ended the run here."""
+        return self.seen is not None and self.seen.stopped >= 0
+
+
+def packed_checkpoint(reached: Checkpoint) -> Float[np.ndarray, "L"]:
+    """Return a checkpoint as one row of numbers."""
+    seen = () if reached.seen is None else packed(reached.seen)
+    return np.concatenate(([reached.done, int(reached.outcome)], reached.vector, seen))
+
+
+def unpacked_checkpoint(row: Float[np.ndarray, "L"], events: int | None) -> Checkpoint:
+    """Return the checkpoint in a row of numbers of a run that looks for so many events; None if it looks for none."""
+    done, outcome, numbers = int(row[0]), Outcome(int(row[1])), row[2:]
+    if events is None:
+        return Checkpoint(done, outcome, numbers)
+    vector, seen = np.split(numbers, [-packed_size(events)])
+    return Checkpoint(done, outcome, vector, unpacked(seen))

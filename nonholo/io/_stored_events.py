@@ -1,0 +1,117 @@
+"""Crossings as rows of numbers, and what a run has seen of its events at a checkpoint.
+
+A row of `run/events` is the position of the event, the step, the fraction, the direction, then the state there. The
+rows of a block begin with a chunk of their own; what is left of its last chunk is NaN. The functions are not stored.
+"""
+
+import dataclasses
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from nonholo._results import Outcome
+from nonholo._types import Float, Int
+from nonholo.orbit import Crossings, EventLog, Orbit
+
+EVENTS = "run/events"
+_PLACE = 4  # entries of a row before its state: event, step, fraction, direction
+_STATE = ("time", "reduced_momentum", "cayley", "pose", "turned")
+
+
+class Seen(NamedTuple):
+    """What a run has seen of its events at a checkpoint.
+
+    Attributes:
+        counts: Crossings of each so far.
+        values: Values at the last state.
+        heading: The heading there; 0 where there is none.
+        stopped: Position of the event that ended the run, -1 if none did.
+        chunks: Chunks of crossings so far.
+    """
+
+    counts: Int[np.ndarray, "E"]
+    values: Float[np.ndarray, "E"]
+    heading: float
+    stopped: int
+    chunks: int
+
+
+def seen_nothing(events: int) -> Seen:
+    """Return what is kept of so many events before the first state."""
+    return Seen(np.zeros(events, dtype=np.int64), np.zeros(events), 0.0, -1, 0)
+
+
+def packed(seen: Seen) -> Float[np.ndarray, "L"]:
+    """Return it as one row of numbers."""
+    return np.concatenate((seen.counts, seen.values, [seen.heading, seen.stopped, seen.chunks]))
+
+
+def unpacked(row: Float[np.ndarray, "L"]) -> Seen:
+    """Return what a row of numbers means.
+
+    Example:
+        >>> unpacked(packed(Seen(np.array([3, 1]), np.array([0.5, -2.0]), 1.25, -1, 2)))
+        Seen(counts=array([3, 1]), values=array([ 0.5, -2. ]), heading=1.25, stopped=-1, chunks=2)
+    """
+    count = (len(row) - 3) // 2
+    heading, stopped, chunks = row[2 * count :]
+    return Seen(row[:count].astype(np.int64), row[count : 2 * count], float(heading), int(stopped), int(chunks))
+
+
+def packed_size(events: int) -> int:
+    """Return the number of entries of such a row."""
+    return 2 * events + 3
+
+
+def rows_of(log: EventLog) -> Float[np.ndarray, "C width"]:
+    """Return the crossings of a block as rows, one event after another."""
+    parts = [_rows(event, found) for event, found in enumerate(log.found)]
+    return np.concatenate(parts) if parts else np.empty((0, _PLACE))
+
+
+def _rows(event: int, found: Crossings) -> np.ndarray:
+    states = [rows for name in _STATE if (rows := getattr(found.states, name)) is not None]
+    return np.column_stack([np.full(len(found), event), found.step, found.fraction, found.direction, *states])
+
+
+def log_of(rows: Float[np.ndarray, "C width"], names: tuple[str, ...], orbit: Orbit, by: str | None) -> EventLog:
+    """Return the crossings in rows of an orbit's run, and which event ended it."""
+    return EventLog(names, tuple(_found(rows[rows[:, 0] == event], orbit) for event in range(len(names))), by)
+
+
+def _found(rows: np.ndarray, orbit: Orbit) -> Crossings:
+    widths = [_width(getattr(orbit, name)) for name in _STATE[:-1]]
+    columns = np.split(rows, np.cumsum([_PLACE, *widths]), axis=1)
+    place, *states, turned = map(np.ascontiguousarray, columns)
+    kept = {name: None if getattr(orbit, name) is None else part for name, part in zip(_STATE, states, strict=False)}
+    kept |= {"time": states[0][:, 0], "turned": turned[:, 0] if turned.shape[1] else None}
+    reached = dataclasses.replace(orbit, outcome=Outcome.successful, save_every=1, events=None, **kept)
+    step, direction = (place[:, entry].astype(np.int64) for entry in (1, 3))
+    return Crossings(step, np.ascontiguousarray(place[:, 2]), direction, reached)
+
+
+def _width(given: np.ndarray | None) -> int:
+    if given is None:
+        return 0
+    return 1 if given.ndim == 1 else given.shape[1]
+
+
+def known(rows: Float[np.ndarray, "D width"], after: int = 0) -> Float[np.ndarray, "C width"]:
+    """Return the rows of chunks that hold crossings, of them those after the state of a step."""
+    step, fraction = rows[:, 1], rows[:, 2]
+    return rows[np.isfinite(rows[:, 0]) & ((step > after) | ((step == after) & (fraction > 0)))]
+
+
+def described(events: list[dict[str, Any]]) -> str:
+    """Name events with what they are told.
+
+    Example:
+        >>> described([{"name": "cusp", "direction": 0, "stop": 0}, {"name": "east", "direction": 1, "stop": 3}])
+        "'cusp', 'east' (direction=1, stop=3)"
+    """
+    return ", ".join(_described(event) for event in events) or "none"
+
+
+def _described(event: dict[str, Any]) -> str:
+    told = ", ".join(f"{name}={event[name]}" for name in ("direction", "stop") if event[name])
+    return f"{event['name']!r}" + (f" ({told})" if told else "")

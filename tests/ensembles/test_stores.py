@@ -1,0 +1,224 @@
+"""Stores that are moved, belong to something else or may not be written; tasks that have to be passed again."""
+
+import json
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+from ensembles import faults
+from ensembles.small import DESIGN, resumed, same, simple, stop_at, swept
+
+import nonholo as nh
+from nonholo.ensembles import standing_of
+
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+SLEIGHS = nh.Grid({"a": [0.1, 0.2]})
+
+
+def test_moved_store_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A store that was moved to another folder goes on there; another one in its old place is another one."""
+    path, moved = tmp_path / "run.zarr", tmp_path / "elsewhere" / "moved.zarr"
+    with monkeypatch.context() as patch:
+        stop_at(patch, 1, KeyboardInterrupt())
+        with pytest.raises(KeyboardInterrupt):
+            swept(path)
+    moved.parent.mkdir()
+    path.rename(moved)
+    whole = swept(path, block=3)
+    assert same(resumed(moved), whole)
+    assert same(nh.load_sweep(moved), whole)
+
+
+def test_store_made_again_at_the_same_path(tmp_path: Path) -> None:
+    """A store that is removed and made again with other blocks is not taken for the old one."""
+    path = tmp_path / "run.zarr"
+    swept(path, block=1)
+    path.rename(tmp_path / "old.zarr")
+    assert same(swept(path, block=3), nh.load_sweep(tmp_path / "old.zarr").load())
+    assert standing_of(path).done == 6
+
+
+def test_existing_path_is_refused(tmp_path: Path) -> None:
+    """What is at a path is never overwritten, be it a store, a folder or a file."""
+    store, folder, file = (tmp_path / name for name in ("run.zarr", "folder", "file"))
+    whole = swept(store)
+    folder.mkdir()
+    file.write_text("mine")
+    for path in (store, folder, file):
+        with pytest.raises(FileExistsError, match=r"must be new.*Choose another path.*resume=True"):
+            swept(path)
+    assert same(nh.load_sweep(store), whole)
+    assert not list(folder.iterdir())
+    assert file.read_text() == "mine"
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="root has to become another user")
+def test_read_only_folder_is_refused() -> None:
+    """A folder that may not be written is an error with its path; a finished store there can still be loaded."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        whole = swept(folder / "run.zarr")
+        folder.chmod(0o755)
+        os.seteuid(65534)
+        try:
+            with pytest.raises(PermissionError, match=r"Permission denied\. Nothing was computed yet.*new\.zarr"):
+                swept(folder / "new.zarr")
+            with pytest.raises(PermissionError):
+                resumed(folder / "run.zarr")
+            found = nh.load_sweep(folder / "run.zarr").load()
+        finally:
+            os.seteuid(0)
+        assert same(found, whole)
+        assert [path.name for path in folder.iterdir()] == ["run.zarr"]
+
+
+def _sleighs(path: Path, *, time_step: float = 0.1, values: Any = (0.1, 0.2), **options: Any) -> xarray.Dataset:
+    sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), time_step)
+    task = nh.EnsembleTask(sleigh, **{"steps": 3, "restricted_velocity": (1.0, 0.5), **options})
+    return nh.sweep(task, nh.Grid({"a": values}), path, resume=True)
+
+
+@pytest.mark.parametrize(
+    ("changes", "match"),
+    [
+        ({"steps": 4}, r"task\.steps is 4 instead of 3"),
+        ({"restricted_velocity": (1.0, 0.6)}, r"task\.start is .*0\.6\]\] instead of .*0\.5"),
+        ({"reductions": ["energy_drift"]}, r'task\.reductions is \["energy_drift"\] instead of \["final_state"\]'),
+        ({"time_step": 0.2}, r"task\.motion is .*0\.2.* instead of .*0\.1"),
+        ({"values": (0.1, 0.3)}, r"design\.axes\.a is"),
+        ({"values": (0.1, 0.2, 0.3)}, r"design\.axes\.a is"),
+    ],
+)
+def test_another_sweep_is_refused(changes: dict[str, Any], match: str, tmp_path: Path) -> None:
+    """A store is not gone on with by another task or design: the difference is named, and nothing is changed."""
+    path = tmp_path / "run.zarr"
+    whole = _sleighs(path).load()
+    with pytest.raises(ValueError, match=f"must hold this sweep.*where {match}"):
+        _sleighs(path, **changes)
+    assert same(_sleighs(path), whole)
+
+
+def _functions(path: Path) -> None:
+    swept(path)
+    nh.resume(path, task=faults.noisy)
+
+
+def _another_seed(path: Path) -> None:
+    swept(path)
+    nh.sweep(simple, nh.Grid(DESIGN.axes, seed=2), path, resume=True)
+
+
+def _another_kind_of_design(path: Path) -> None:
+    swept(path)
+    nh.sweep(simple, nh.RandomDesign(6, {"x": nh.Normal()}, seed=1), path, resume=True)
+
+
+def _another_schema(path: Path) -> None:
+    swept(path)
+    document = json.loads((path / "zarr.json").read_text())
+    document["attributes"]["schema"] = 99
+    (path / "zarr.json").write_text(json.dumps(document))
+    resumed(path)
+
+
+def _orbit(path: Path) -> None:
+    nh.simulate(SLEIGH, steps=20, restricted_velocity=(1.0, 0.0), store=path)
+
+
+def _sweep_where_an_orbit_is(path: Path) -> None:
+    _orbit(path)
+    swept(path, resume=True)
+
+
+def _load_an_orbit_as_a_sweep(path: Path) -> None:
+    _orbit(path)
+    nh.load_sweep(path)
+
+
+def _load_a_sweep_as_an_orbit(path: Path) -> None:
+    swept(path)
+    nh.load_orbit(path)
+
+
+def _task_for_an_orbit(path: Path) -> None:
+    _orbit(path)
+    nh.resume(path, task=simple)
+
+
+def _scheduler_for_an_orbit(path: Path) -> None:
+    _orbit(path)
+    nh.resume(path, scheduler="threads")
+
+
+def _system_for_a_sweep(path: Path) -> None:
+    swept(path)
+    nh.resume(path, discrete=SLEIGH)
+
+
+def _no_store(path: Path) -> None:
+    path.mkdir()
+    nh.resume(path)
+
+
+@pytest.mark.parametrize(
+    ("mistake", "match"),
+    [
+        (_functions, r'task\.name is "ensembles\.faults:noisy" instead of "ensembles\.small:simple"'),
+        (_another_seed, r"design\.seed is 2 instead of 1"),
+        (_another_kind_of_design, r'design\.kind is "RandomDesign" instead of "Grid"'),
+        (_another_schema, r"have a schema of \(1,\). Got schema 99"),
+        (_sweep_where_an_orbit_is, "a store of an orbit"),
+        (_load_an_orbit_as_a_sweep, "a store of an orbit"),
+        (_load_a_sweep_as_an_orbit, "a store of a sweep"),
+        (_task_for_an_orbit, "come with the store of a sweep"),
+        (_scheduler_for_an_orbit, "come with the store of a sweep"),
+        (_system_for_a_sweep, "come with the store of an orbit"),
+        (_no_store, "must be a store of a run or a sweep"),
+    ],
+)
+def test_wrong_stores_are_refused(mistake: Callable[[Path], None], match: str, tmp_path: Path) -> None:
+    """What does not belong together is refused, with the difference named."""
+    with pytest.raises(ValueError, match=match):
+        mistake(tmp_path / "run.zarr")
+
+
+def test_nothing_at_the_path_is_refused(tmp_path: Path) -> None:
+    """A path at which there is nothing is named."""
+    for call in (nh.resume, nh.load_sweep):
+        with pytest.raises(FileNotFoundError, match=r"nothing\.zarr"):
+            call(tmp_path / "nothing.zarr")
+
+
+def test_orbits_are_resumed_as_ever(tmp_path: Path) -> None:
+    """A finished orbit's store is an orbit, whatever the door."""
+    _orbit(tmp_path / "run.zarr")
+    orbit = nh.simulate(SLEIGH, steps=20, restricted_velocity=(1.0, 0.0))
+    assert np.array_equal(nh.resume(tmp_path / "run.zarr").reduced_momentum, orbit.reduced_momentum)
+
+
+def test_tasks_without_a_name_have_to_be_passed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A task that no process can import is asked for by `resume`, and goes on once it is passed."""
+    path, task = tmp_path / "run.zarr", lambda block: simple(block)
+    mixed = nh.EnsembleTask(SLEIGH, steps=3, restricted_velocity=(1.0, 0.5), reductions=[lambda batch: batch.outcome])
+    for store, each, design in ((path, task, DESIGN), (tmp_path / "mixed.zarr", mixed, SLEIGHS)):
+        with monkeypatch.context() as patch:
+            stop_at(patch, 0, KeyboardInterrupt())
+            with pytest.raises(KeyboardInterrupt):
+                nh.sweep(each, design, store, "synchronous")
+        with pytest.raises(ValueError, match=r"task can be made again.*without an importable name.*task=\.\.\."):
+            nh.resume(store)
+        assert same(nh.resume(store, task=each).load(), nh.sweep(each, design, f"{store}.whole").load())
+
+
+def test_tasks_with_a_name_are_found(tmp_path: Path) -> None:
+    """A function that any process can import, and an `EnsembleTask` of data, need not be passed."""
+    for name in ("noisy", "tops"):
+        task, design, _ = faults.SWEEPS[name]
+        whole = nh.sweep(task, design, tmp_path / name, block=design.members).load()
+        (tmp_path / name / "run" / "blocks" / "0.json").unlink()
+        assert same(nh.resume(tmp_path / name).load(), whole)

@@ -1,0 +1,341 @@
+"""Events of stored runs: the crossings of the run without a store, bit for bit, whatever happens on the way."""
+
+import functools
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.io import Stream, standing
+
+MASS = [[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]
+TOP = nh.discretize(nh.SuslovTop(MASS), 0.1)
+ROUND = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
+FOLDING = nh.discretize(TOP.system, 1.0)
+FOLDS = {"momentum": np.array([1.93257157, -0.68979744])}
+STATE = ("time", "reduced_momentum", "cayley", "pose", "turned")
+CUTS, KILLS = 3, 3  # of each kind of run; of one in another process
+BLOCKS = 11  # of 44 states
+
+
+def east(orbit: nh.Orbit) -> np.ndarray:
+    """Zero where the sleigh looks along the first axis, or back."""
+    return np.sin(orbit.heading)
+
+
+def entry(orbit: nh.Orbit) -> np.ndarray:
+    """An entry of the pose that changes its sign in every motion here."""
+    return orbit.configuration[:, 0, 1] - 0.01
+
+
+def forward(orbit: nh.Orbit) -> np.ndarray:
+    """A component of the momentum, from a level on."""
+    return orbit.restricted_momentum[:, 0] - 0.1
+
+
+TURNS = nh.Event(east, direction=1)
+RUNS: dict[str, tuple[nh.Discretization, list[Any], dict[str, Any]]] = {
+    "sleigh by heading": (ROUND, [TURNS, entry], {"body_velocity": (4.0, 1.0, 0.0)}),
+    "sleigh with a cusp": (
+        nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.2), 0.1), [nh.cusp, entry], {"body_velocity": (0.1, -1.0, 0)},
+    ),
+    "top": (TOP, [entry, forward], {"restricted_velocity": (0.7, -0.3)}),
+    "order 4": (nh.discretize(TOP.system, 0.1, order=4), [entry, forward], {"restricted_velocity": (0.7, -0.3)}),
+    "top in 4 dimensions": (
+        nh.discretize(nh.SuslovTop(np.diag([1.0, 1.3, 0.8, 1.1]) + 0.1), 0.1),
+        [entry, forward],
+        {"restricted_velocity": (1.0, 0.2, -0.6)},
+    ),
+    "Veselova top": (nh.discretize(nh.VeselovaTop(MASS), 0.1), [entry],
+                     {"restricted_velocity": (1.0, -0.6)}),
+    "without poses": (TOP, [forward], {"restricted_velocity": (0.7, 0.5), "reconstruct": False}),
+}  # fmt: skip
+
+
+def same_states(one: nh.Orbit, other: nh.Orbit) -> bool:
+    """Tell whether the arrays of two orbits have the same bits."""
+    pairs = [(getattr(one, name), getattr(other, name)) for name in STATE]
+    return all(a is b is None or (a.shape == b.shape and a.tobytes() == b.tobytes()) for a, b in pairs)
+
+
+def same(one: nh.Orbit, other: nh.Orbit) -> bool:
+    """Tell whether two runs have the same states, ends and crossings, to the last bit."""
+    ends = [(run.outcome, run.save_every, run.events.names, run.events.stopped_by) for run in (one, other)]
+    crossings = zip(one.events.found, other.events.found, strict=True)
+    return (
+        ends[0] == ends[1]
+        and same_states(one, other)
+        and all(
+            same_states(a.states, b.states)
+            and all(np.array_equal(getattr(a, name), getattr(b, name)) for name in ("step", "fraction", "direction"))
+            for a, b in crossings
+        )
+    )
+
+
+def begun(path: Path | None, events: list[Any], steps: int = 600, **options: Any) -> nh.Orbit:
+    """Run the uniform circle, into a store of blocks of 35 steps if there is a path."""
+    stored = {} if path is None else {"store": path, "checkpoint_every": 35}
+    return nh.simulate(
+        ROUND, body_velocity=(4.0, 1.0, 0.0), steps=steps, save_every=7, events=events, **stored, **options
+    )
+
+
+def cut(path: Path, monkeypatch: pytest.MonkeyPatch, block: int, late: bool, run: Callable[[], object]) -> None:
+    """Let a run be interrupted before it writes a block or, late, when all of it but its checkpoint is written."""
+    write = Stream.write
+
+    def interrupted(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    def failing(self: Stream, number: int, *rest: Any) -> None:
+        if number == block:
+            patch.setattr("nonholo.io._stream.packed_checkpoint" if late else "nonholo.io.Stream._remove", interrupted)
+        write(self, number, *rest)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Stream, "write", failing)
+        with pytest.raises(KeyboardInterrupt, match="Stopped at step"):
+            run()
+    with pytest.raises(ValueError, match="be a finished run"):
+        nh.load_orbit(path)
+
+
+@pytest.mark.parametrize("every", [1, 7])
+@pytest.mark.parametrize("name", RUNS)
+def test_stored_run_has_the_crossings(name: str, every: int, tmp_path: Path) -> None:
+    """A stored run in one block has the crossings of the run without a store, bit for bit, also when it is loaded."""
+    discrete, events, start = RUNS[name]
+    run = {"steps": 300, "save_every": every, "events": events, **start}
+    whole, stored = nh.simulate(discrete, **run), nh.simulate(discrete, **run, store=tmp_path / "run.zarr")
+    assert sum(map(len, whole.events.found)) > 0
+    assert same(stored, whole)
+    assert same(nh.load_orbit(tmp_path / "run.zarr"), whole)
+
+
+@pytest.mark.parametrize("name", ["sleigh by heading", "sleigh with a cusp", "top", "order 4"])
+def test_blocks_do_not_change_crossings(name: str, tmp_path: Path) -> None:
+    """In blocks of 21 steps the crossings are those of one block: headings and numbers of crossings are carried on."""
+    discrete, events, start = RUNS[name]
+    run = {"steps": 300, "save_every": 7, "events": events, **start}
+    stored = nh.simulate(discrete, **run, store=tmp_path / "run.zarr", checkpoint_every=21)
+    assert same(stored, nh.simulate(discrete, **run))
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_runs_cut_at_random_blocks_go_on(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Cut at random blocks, resumed and cut again (21 times in all), a run has the bits of the undisturbed one."""
+    discrete, events, start = RUNS[name]
+    run = {"steps": 301, "save_every": 7, "checkpoint_every": 28, "events": events, **start}
+    undisturbed = nh.simulate(discrete, **run, store=tmp_path / "whole.zarr")
+    chance = np.random.default_rng(len(name))
+    for number in range(CUTS):
+        path, (first, second) = tmp_path / f"{number}.zarr", np.sort(chance.integers(0, BLOCKS, 2))
+        cut(path, monkeypatch, first, number == 1, functools.partial(nh.simulate, discrete, **run, store=path))
+        cut(path, monkeypatch, second, number != 1, functools.partial(nh.resume, path, events=events))
+        assert same(nh.resume(path, events=events), undisturbed)
+
+
+_KILLER = """
+import glob, os, random, signal, sys, time
+import numpy as np
+import nonholo as nh
+path, kills, chance = sys.argv[1], int(sys.argv[2]), random.Random(7)
+circle = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
+run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 20_000, "save_every": 10}
+events = [nh.Event(lambda orbit: np.sin(orbit.heading), direction=1, name="east")]
+nh.simulate(circle, **run | {"steps": 100}, events=events)  # compiled before the first fork
+killed = wanted = 0
+for _ in range(kills):
+    child = os.fork()
+    if child == 0:
+        if os.path.exists(path):
+            nh.resume(path, events=events)
+        else:
+            nh.simulate(circle, **run, events=events, store=path, checkpoint_every=500)
+        os._exit(0)
+    wanted += chance.randrange(2, 7)
+    while len(glob.glob(path + "/run/checkpoints/c/*")) < wanted:
+        time.sleep(0.002)
+    time.sleep(chance.uniform(0, 0.05))
+    os.kill(child, signal.SIGKILL)
+    killed += os.WIFSIGNALED(os.waitpid(child, 0)[1])
+print(killed)
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="kills forked processes")
+def test_killed_runs_go_on(tmp_path: Path) -> None:
+    """Killed three times while it computes, and resumed, a run has the crossings of the undisturbed one."""
+    path, events = tmp_path / "run.zarr", [nh.Event(east, direction=1)]
+    arguments = [sys.executable, "-c", _KILLER, str(path), str(KILLS)]
+    done = subprocess.run(arguments, capture_output=True, text=True, check=True)  # noqa: S603
+    assert int(done.stdout) == KILLS, "the run was over before the last kill: it has to be longer"
+    now = standing(path)
+    assert now is not None
+    assert 0 < now.done < now.steps
+    whole = nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=20_000, save_every=10, events=events)
+    assert same(nh.resume(path, events=events), whole)
+    assert not list(path.rglob("*.partial"))
+
+
+@pytest.mark.parametrize("stop", [1, 2, 7])
+def test_stopping_event_ends_the_store(stop: int, tmp_path: Path) -> None:
+    """A stopping event finishes the store: its arrays are cut, it says what ended it, and it is not extended."""
+    path, events = tmp_path / "run.zarr", [entry, nh.Event(east, direction=1, stop=stop)]
+    stored, whole = begun(path, events, steps=2000), begun(None, events, steps=2000)
+    assert whole.events.stopped_by == "east"
+    assert same(stored, whole)
+    assert same(nh.resume(path, events=events), whole)
+    attributes = json.loads((path / "zarr.json").read_text())["attributes"]
+    assert (attributes["stopped_by"], attributes["outcome"]) == ("east", "successful")
+    assert json.loads(attributes["crossings"]) == [len(found) for found in whole.events.found]
+    with pytest.raises(ValueError, match=r"go on.*event 'east' ended"):
+        nh.extend(path, 10, events=events)
+
+
+def test_stop_that_was_not_cut_is_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that an event ended, killed before its arrays were cut, ends there when it is resumed."""
+    path, events = tmp_path / "run.zarr", [nh.Event(east, direction=1, stop=3)]
+    with monkeypatch.context() as patch:
+        patch.setattr(Stream, "finish", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+        with pytest.raises(KeyboardInterrupt):
+            begun(path, events)
+    assert same(nh.resume(path, events=events), begun(None, events))
+
+
+@pytest.mark.parametrize("lengths", [(50, 550), (245, 1, 354)])
+def test_extended_run_has_the_crossings_of_the_long_run(lengths: tuple[int, ...], tmp_path: Path) -> None:
+    """Crossings before and after the end of a run that is extended, also those of a stop there, are found once."""
+    path, events = tmp_path / "run.zarr", [entry, nh.Event(east, direction=1, stop=20)]
+    begun(path, events, lengths[0])
+    for steps in lengths[1:]:
+        nh.extend(path, steps, events=events)
+    whole = begun(None, events, sum(lengths))
+    assert whole.events.stopped_by == "east"
+    assert same(nh.load_orbit(path), whole)
+
+
+@pytest.mark.parametrize("chunk", ["run/events/c/2/0", "run/checkpoints/c/4/0", "pose/c/3/0"])
+@pytest.mark.parametrize("damage", ["missing", "flipped"])
+def test_damaged_block_is_computed_again(chunk: str, damage: str, tmp_path: Path) -> None:
+    """A missing or changed chunk of crossings, of a checkpoint or of states is named, and the run is whole again."""
+    path = tmp_path / "run.zarr"
+    whole, file = begun(path, [TURNS, entry]), path / chunk
+    content = bytearray(file.read_bytes())
+    content[len(content) // 2] ^= 1
+    file.unlink() if damage == "missing" else file.write_bytes(content)
+    array, key = chunk.split("/c/")
+    with pytest.warns(RuntimeWarning, match=f"chunk c/{key} of the array {array}"):
+        again = nh.resume(path, events=[TURNS, entry])
+    assert same(again, whole)
+    assert same(nh.load_orbit(path), whole)
+
+
+def test_damaged_crossings_are_not_read(tmp_path: Path) -> None:
+    """A store that lacks a chunk of crossings is refused by name."""
+    path = tmp_path / "run.zarr"
+    begun(path, [TURNS])
+    (path / "run/events/c/2/0").unlink()
+    with pytest.raises(ValueError, match="chunk c/2/0 of the array run/events"):
+        nh.load_orbit(path)
+
+
+def test_failed_run_keeps_its_crossings(tmp_path: Path) -> None:
+    """A stored run that cannot go on keeps the crossings up to there, and its outcome."""
+    event = nh.Event(lambda orbit: orbit.configuration[:, 2, 2], name="level")
+    run = {"steps": 500, "events": [event], "throw": False, **FOLDS}
+    whole = nh.simulate(FOLDING, **run)
+    assert len(whole) < 400
+    assert len(whole.events["level"]) > 0
+    path = tmp_path / "run.zarr"
+    assert same(nh.simulate(FOLDING, **run, store=path, checkpoint_every=5), whole)
+    assert same(nh.resume(path, events=[event], throw=False), whole)
+
+
+def test_many_crossings_fill_several_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Crossings of a block that do not fit in one chunk of three rows are kept in several, those of none in none."""
+    monkeypatch.setattr("nonholo.io._stored_crossings._MOST", 3)
+    path, rare = tmp_path / "run.zarr", nh.Event(lambda orbit: orbit.heading - 200.0, name="rare")
+    for name, events in (("many", [TURNS, entry]), ("few", [rare])):
+        stored = begun(path / name, events)
+        assert same(stored, begun(None, events))
+        assert same(nh.resume(path / name, events=events), stored)
+    assert len(list((path / "few/run/events").rglob("c/*/0"))) == 1
+    assert len(list((path / "many/run/events").rglob("c/*/0"))) > 600 // 35
+
+
+def test_large_orbit_comes_with_the_crossings_of_its_last_block(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where only the last block of states is returned, its crossings are; the store holds all."""
+    monkeypatch.setattr("nonholo.simulation._stored_run._LOADED", 100)
+    tail, whole = begun(tmp_path / "run.zarr", [TURNS]), begun(None, [TURNS])
+    found, known = tail.events["east"], whole.events["east"]
+    begin = tail.time[0] - 7 * ROUND.time_step
+    assert 0 < len(found) == np.count_nonzero(known.time > begin)
+    assert np.array_equal(found.time, known.time[-len(found) :])
+    assert same(nh.load_orbit(tmp_path / "run.zarr"), whole)
+
+
+def opposite(orbit: nh.Orbit) -> np.ndarray:
+    """Another function than `east`."""
+    return np.cos(orbit.heading)
+
+
+@pytest.mark.parametrize("going_on", [nh.resume, lambda path, **given: nh.extend(path, 10, **given)])
+@pytest.mark.parametrize(
+    ("events", "words"),
+    [
+        (None, r"events of the store, 'east' \(direction=1\), 'entry'\. Got None .* Pass events=.* holds no functions"),
+        ([entry, TURNS], r"Got 'entry', 'east' \(direction=1\)"),
+        ([TURNS], r"Got 'east' \(direction=1\)\. Pass the ones"),
+        ([nh.Event(east, direction=1, stop=3), entry], r"Got 'east' \(direction=1, stop=3\)"),
+        ([nh.Event(opposite, direction=1, name="east"), entry], "another one of 'east': 1 instead of 0 at the first"),
+        (TURNS, "be a list of events"),
+    ],
+)
+def test_other_events_are_refused(going_on: Callable[..., object], events: Any, words: str, tmp_path: Path) -> None:
+    """A run with events goes on with the same events only; the message says what the store has and what was got."""
+    path = tmp_path / "run.zarr"
+    begun(path, [TURNS, entry], steps=70)
+    with pytest.raises(ValueError, match=words):
+        going_on(path, events=events)
+
+
+def test_events_of_a_store_without_are_refused(tmp_path: Path) -> None:
+    """A run that was begun without events cannot go on with some: what came before was not searched."""
+    path = tmp_path / "run.zarr"
+    nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=70, store=path)
+    with pytest.raises(ValueError, match=r"events of the store, no events\. Got 'east'"):
+        nh.resume(path, events=[TURNS])
+    assert nh.resume(path).events is None
+
+
+def test_bad_functions_leave_no_store(tmp_path: Path) -> None:
+    """A function that gives no number for the first state is refused before there is a store."""
+    with pytest.raises(ValueError, match="take an orbit"):
+        begun(tmp_path / "run.zarr", [lambda orbit: orbit.nothing])
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_function_that_fails_on_the_way_leaves_a_valid_store(tmp_path: Path) -> None:
+    """Where a function fails at a later state the run stops there, and goes on with one that does not."""
+
+    def brittle(orbit: nh.Orbit) -> np.ndarray:
+        return np.where(orbit.time > 30, np.nan, east(orbit))
+
+    path, sound = tmp_path / "run.zarr", [nh.Event(east, name="brittle")]
+    with pytest.raises(ValueError, match=r"be finite. Got nan at time 30"):
+        begun(path, [brittle])
+    now = standing(path)
+    assert now is not None
+    assert now.done == 273, "the last block of 35 steps that ends before step 300"
+    assert same(nh.resume(path, events=sound), begun(None, sound))
