@@ -37,7 +37,7 @@ def begun(task: Task, design: Design, path: Path, block: Any, scenario: str | No
     """Make the store of a sweep, after its task has been tried."""
     size = _block(task, design.members) if block is None else count("sweep(block=...)", block, "Pass how many members.")
     with in_one_thread():
-        returned = probed(task, lambda member: block_of(design, member, 1), design.members)
+        returned = probed(task, lambda first, some: block_of(design, first, some), design.members)
     drawn = {name: _drawn(name, shape) for name, shape in design.drawn.items()}
     _check_names(design, drawn, returned)
     layout = layout_of(tuple(design.sizes.values()), size)

@@ -62,16 +62,31 @@ def attempted(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> Res
     return Results(arrays, (halves[0].messages + halves[1].messages)[:_TOLD])
 
 
-def probed(task: Task, block_at: Callable[[int], MemberBlock], members: int) -> dict[str, Output]:
-    """Return what a task returns, from a few members spread over the design: the first for which it does not raise."""
+def probed(task: Task, block_at: Callable[[int, int], MemberBlock], members: int) -> dict[str, Output]:
+    """Return what a task returns, from a few members spread over the design: the first for which it does not raise.
+
+    A task that takes two members and returns something else than two rows is refused.
+    """
     first_failure = None
     for member in dict.fromkeys((members - 1) * probe // (_PROBES - 1) for probe in range(_PROBES)):
         try:
-            return _outputs(_named(task(block_at(member)), 1))
+            outputs = _outputs(_named(task(block_at(member, 1)), 1))
         except Exception as failure:
             first_failure = first_failure or failure
+            continue
+        _check_two(task, block_at(0, min(2, members)), outputs)
+        return outputs
     got = f"{type(first_failure).__name__} for the first: {str(first_failure).rstrip('.')}"
     raise error("sweep(task=...)", "run for one of the members tried", got, "Mend the design.") from first_failure
+
+
+def _check_two(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> None:
+    """Refuse a task that is wrong for blocks, which would be done member by member and take long."""
+    try:
+        returned = task(block)
+    except Exception:  # of some members: these are found when it runs
+        return
+    _checked(_named(returned, block.count), outputs, block.count)
 
 
 def _outputs(named: dict[str, Any]) -> dict[str, Output]:

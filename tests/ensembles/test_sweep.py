@@ -208,6 +208,7 @@ def test_changing_results_are_refused(later: Callable[[nh.MemberBlock], Any], ma
     [
         (lambda _: "text", "be an array of numbers"),
         (lambda _: 1.0, "leading member axis"),
+        (lambda block: block["x"][:1], r"leading member axis. Got shape \(1,\) for 2 members"),
         (lambda block: np.ones((block.count, 0)), "hold numbers"),
         (lambda block: (("one", "two"), block.random(2)), "name each axis but the first"),
         (lambda block: {"run": block["x"]}, "leave the names run"),
