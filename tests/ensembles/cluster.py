@@ -27,13 +27,14 @@ class Cluster:
         self.folder, self.workers = folder, []
         file = folder / "scheduler.json"
         options = ["--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--dashboard-address", "127.0.0.1:0"]
-        self.scheduler = self._started("scheduler", *options, "--scheduler-file", str(file))
+        self.scheduler = self._started("scheduler", *options, "--idle-timeout", "120", "--scheduler-file", str(file))
         wait_for(file.exists)
         self.address: str = json.loads(file.read_text())["address"]
 
     def add_worker(self, *, nanny: bool = False, path: pathlib.Path = HERE) -> None:
         """Start a worker of one thread that imports from a folder."""
         options = ["--host", "127.0.0.1", "--nthreads", "1", "--no-dashboard", "--dashboard-address", "127.0.0.1:0"]
+        options += ["--death-timeout", "30"]  # none outlives a killed test run for long
         places = ["--local-directory", str(self.folder), "--nanny" if nanny else "--no-nanny"]
         self.workers.append(self._started("worker", self.address, *options, *places, path=path))
 
