@@ -1,6 +1,6 @@
 """`ensemble`: many motions at once, from checked starts and parameters to decoded results or a user's reduction."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -105,7 +105,7 @@ def ensemble(
     with progress_bar("members", progress) as show:
         report = _counting(show, len(members))
         if reduce is not None:
-            return joined(_blocks(members, momenta, full, plan, watched, reduce, report))
+            return joined(len(members), _blocks(members, momenta, full, plan, watched, reduce, report))
         if watched is None:
             return _block(members, momenta, full, plan, watched, report)
         blocks = _blocks(members, momenta, full, plan, watched, lambda block: block, report)
@@ -171,14 +171,12 @@ def _blocks(
     events: dict[str, Event] | None,
     reduce: Callable[[Ensemble], Any],
     report: Report,
-) -> list[tuple[int, Any]]:
-    """Run block by block, keeping only what a function makes of each."""
+) -> Iterator[tuple[int, Any]]:
+    """Run block by block; give the number of members of each, and what a function makes of it."""
     state = 2 * momenta.shape[1] + members.discrete.system.group.pose_size * plan.posed
     size = max(1, _BLOCK // (state * states_of(plan.steps, plan.every if events is None else 1)))
     blocks = [slice(begin, begin + size) for begin in range(0, len(members), size)]
-    kept = []
     for part in blocks:
         rows = momenta[part], None if full is None else full[part]
         block = _block(members.part(part), *rows, plan, events, report)
-        kept.append((len(block), reduce(block)))
-    return kept
+        yield len(block), reduce(block)
