@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from ensembles.small import HEED_CTRL_C
 from typer.testing import Result
 
 import nonholo as nh
@@ -360,7 +361,8 @@ def test_resume_of_a_damaged_sweep(nonholo: Command) -> None:
 def test_ctrl_c() -> None:
     """SIGINT to the command leaves a store that can be gone on with, and exit code 1."""
     text = RANDOM.replace("members = 12", "members = 2000000").replace("steps = 20", "steps = 500")
-    command = [sys.executable, "-c", "from nonholo.cli import main; main()", "sweep", _written(text), "-o", "s.zarr"]
+    program = f"{HEED_CTRL_C}\nfrom nonholo.cli import main; main()"
+    command = [sys.executable, "-c", program, "sweep", _written(text), "-o", "s.zarr"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)  # noqa: S603
     until = time.monotonic() + 60
     while not list(Path().glob("s.zarr/run/blocks/*.json")) and time.monotonic() < until:

@@ -53,10 +53,14 @@ def stop_at(monkeypatch: pytest.MonkeyPatch, block: int, failure: BaseException)
     monkeypatch.setattr(SweepStore, "write", failing)
 
 
+# a test run in the background ignores Ctrl-C, and so would all that it starts
+HEED_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
+
+
 def python(code: str, **options: Any) -> subprocess.Popen[str]:
     """Start a process that knows the sweeps to be disturbed."""
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
-    program = f"from ensembles.faults import *\n{code}"
+    program = f"{HEED_CTRL_C}\nfrom ensembles.faults import *\n{code}"
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     command = [sys.executable, "-W", "error::RuntimeWarning", "-c", program]  # such as that of a damaged store
     return subprocess.Popen(command, env=environment, **pipes, **options)  # noqa: S603
