@@ -78,7 +78,7 @@ def _eigenvalues(polynomial: fmpz_poly) -> tuple[int, list[complex]]:
     companion = np.eye(d, k=-1)
     companion[0] = [-x / b[d] for x in b[d - 1 :: -1]]
     try:
-        return exponent, np.linalg.eigvals(companion).tolist()
+        return exponent, np.linalg.eigvals(companion).astype(complex).tolist()
     except np.linalg.LinAlgError:
         return exponent, []
 

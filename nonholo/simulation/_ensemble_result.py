@@ -36,7 +36,7 @@ class Ensemble:
         cayley: Chart coordinates of the displacements, canonical frame, shape (M, K, m).
         pose: Compact poses, canonical frame, shape (M, K, size); None if not reconstructed.
         outcome: How each member ended, values of `Outcome`, shape (M,).
-        steps_done: Good steps of each member, shape (M,).
+        steps_done: Good steps of each member, shape (M,); of states at crossings with the fraction of the last one.
         first_momentum: Compact momenta of the starts, canonical frame, shape (M, k).
         events: What `events=` of the run found, a `MemberEvents`: by name or position how many crossings each member
             has, and the states at the first and the last. None without `events=`.
@@ -55,7 +55,7 @@ class Ensemble:
     cayley: Float[np.ndarray, "M K m"]
     pose: Float[np.ndarray, "M K size"] | None
     outcome: Int[np.ndarray, "M"]
-    steps_done: Int[np.ndarray, "M"]
+    steps_done: Int[np.ndarray, "M"] | Float[np.ndarray, "M"]
     first_momentum: Float[np.ndarray, "M k"]
     events: MemberEvents | None = None
 

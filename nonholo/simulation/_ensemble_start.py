@@ -31,11 +31,11 @@ class ScalarMembers:
         pose: First poses, (m, 4).
     """
 
-    table: Callable[[], Float[np.ndarray, "f m"]]
-    scale: Float[np.ndarray, "m"]
-    inertia: Float[np.ndarray, "m 2 2"]
-    frame_map: Float[np.ndarray, "m 2 2"]
-    pose: Float[np.ndarray, "m 4"]
+    table: Callable[[], Float[np.ndarray, "f _"]]
+    scale: Float[np.ndarray, "_"]
+    inertia: Float[np.ndarray, "_ 2 2"]
+    frame_map: Float[np.ndarray, "_ 2 2"]
+    pose: Float[np.ndarray, "_ 4"]
 
     @functools.cached_property
     def fields(self) -> Float[np.ndarray, "f m"]:

@@ -56,7 +56,7 @@ class Event:
     @property
     def last(self) -> float:
         """The number of the crossing that ends the motion; infinite if none does."""
-        return int(self.stop) if self.stop else math.inf
+        return float(self.stop) if self.stop else math.inf
 
 
 def checked_events(owner: str, events: Any) -> dict[str, Event]:
