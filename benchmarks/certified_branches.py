@@ -8,7 +8,8 @@ compared with FLINT's isolation of the exact polynomials too, which shares no pr
 
 The count is how many values there are, which are real, with which multiplicities; the certificate adds enclosures of
 the matrices. Both are timed once, as they come: by the clock, which also sees what else the machine does, and in
-processor time. What took more than a millisecond by the clock is repeated alone at the end, best of five.
+processor time. What took more than a millisecond by the clock is repeated alone at the end, in four
+rounds of five.
 """
 
 import collections
@@ -111,24 +112,25 @@ def timed(task: Callable[..., object], *arguments: object) -> tuple[float, float
     return time.perf_counter() - start, time.thread_time() - busy
 
 
-def alone(task: Callable[..., object], *arguments: object) -> float:
-    """Return the seconds of the best of five calls without garbage collection."""
+def alone(task: Callable[..., object], problems: list[tuple]) -> np.ndarray:
+    """Return the least seconds of each call without garbage collection, in rounds since the machine has other work."""
     gc.collect()
     gc.disable()
     try:
-        return min(timed(task, *arguments)[0] for _ in range(5))
+        rounds = [[min(timed(task, *x)[0] for _ in range(5)) for x in problems] for _ in range(4)]
     finally:
         gc.enable()
+    return np.min(rounds, axis=0)
 
 
 def report(name: str, task: Callable[..., object], problems: list[tuple], taken: list[tuple[float, float]]) -> None:
     """Print median, tail and worst time, and what is left of the slow ones when they are repeated alone."""
     clock, busy = np.array(taken).T
-    repeated = [alone(task, *problem) for problem, seconds in zip(problems, clock, strict=True) if seconds > LIMIT]
+    repeated = alone(task, [problem for problem, seconds in zip(problems, clock, strict=True) if seconds > LIMIT])
     median, tail, worst = 1e3 * np.quantile(clock, [0.5, 0.99, 1.0])
     print(f"{name:12} median {median:.2f} ms, 99 % {tail:.2f}, worst {worst:.2f}", end="; ")
     print(f"above 1 ms {len(repeated)} of {len(clock)}, in processor time {(busy > LIMIT).sum()}", end=", ")
-    print(f"alone {sum(x > LIMIT for x in repeated)}, worst alone {1e3 * max(repeated, default=0):.2f} ms")
+    print(f"alone {(repeated > LIMIT).sum()}, worst alone {1e3 * max(repeated, default=0):.2f} ms")
 
 
 def place_of(off: float) -> str:

@@ -47,12 +47,11 @@ def enclosures(discrete: Discretization, canonical: np.ndarray) -> Enclosures | 
         return str(reason)
     if not found:
         return "no displacement is isolated"
-    for bits, more in zip(PRECISIONS, (*PRECISIONS[1:], None), strict=True):
+    for bits in PRECISIONS:
+        found = [x._replace(balls=sharpened(x.factor, x.balls, bits) or x.balls) for x in found]
         values = _values(problem, found, bits)
         if values is not None:
             return _as_matrices(discrete, problem, *values)
-        if more is not None:
-            found = [x._replace(balls=sharpened(x.factor, x.balls, more) or x.balls) for x in found]
     return f"{PRECISIONS[-1]} bits do not separate the values from infinity"
 
 

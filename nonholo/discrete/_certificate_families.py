@@ -5,7 +5,8 @@ writes its displacements as $(z_0, z)(z_0, z)^T = qq^T/\nu$ with polynomials q a
 proved in docs/theory/branches.md, "Certificates".
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import zip_longest
 from typing import Any, NamedTuple
 
 from flint import fmpq_mat, fmpq_poly, fmpz, fmpz_mat, fmpz_poly
@@ -29,10 +30,10 @@ class Family(NamedTuple):
 
 
 class _Secular(NamedTuple):
-    r"""Polynomials in $\mu$: $\Delta = \det(B + \mu)$, adj(B + mu) c, N_1, N_2 and Y."""
+    r"""Polynomials in $\mu$: $\Delta = \det(B + \mu)$, adj(B + mu) c by powers, N_1, N_2 and Y."""
 
     determinant: fmpz_poly
-    adjugate_c: list[fmpz_poly]
+    adjugate_c: list[fmpz_mat]
     n1: fmpz_poly
     n2: fmpz_poly
     y: list[fmpz_poly]
@@ -81,7 +82,7 @@ def _at_the_coupling(problem: Problem) -> Iterator[Family]:
     secular = _secular(problem)
     if secular.n1.gcd(secular.determinant).degree() > 0:
         raise UncertainError("the restricted momentum equals the coupling, which is special to the axes of the body")
-    q = [secular.determinant, *secular.adjugate_c]
+    q = [secular.determinant, *_polynomials(secular.adjugate_c)]
     norm = _dot(q, q)
     finite = _without(secular.n1, norm)
     yield Family(finite, q, norm)
@@ -111,17 +112,31 @@ def _generic(problem: Problem) -> Iterator[Family]:
 
 
 def _secular(problem: Problem) -> _Secular:
-    B, c, d, half, k = *problem[:4], len(problem.excess)
+    B, c, d = problem.stiffness, _column(problem.coupling), _column(problem.excess)
     determinant = (-B).charpoly()
-    sides = fmpz_mat([[x, y] for x, y in zip(c, d, strict=True)])
-    terms = [sides]
-    for coefficient in determinant.coeffs()[k - 1 : 0 : -1]:
-        terms.append(sides * coefficient - B * terms[-1])  # adj(B + mu), from its equation, power by power
-    terms.reverse()
-    solved = [fmpz_poly(list(row)) for row in zip(*(term.entries() for term in terms), strict=True)]
-    Ac, Ad = solved[0::2], solved[1::2]
-    n1, n2 = determinant * _X + _dot(c, Ac), determinant * half - _dot(c, Ad)
-    return _Secular(determinant, Ac, n1, n2, [(n1 * u + n2 * v) // determinant for u, v in zip(Ad, Ac, strict=True)])
+    Ac, Ad = (_solved(B, [x * side for x in determinant.coeffs()]) for side in (c, d))
+    along = c.transpose()
+    n1 = determinant * _X + _polynomials(along * x for x in Ac)[0]
+    n2 = determinant * problem.half - _polynomials(along * x for x in Ad)[0]
+    sides = [x * d + y * c for x, y in zip_longest(n1.coeffs(), n2.coeffs(), fillvalue=0)]
+    return _Secular(determinant, Ac, n1, n2, _polynomials(_solved(B, sides)))
+
+
+def _solved(B: fmpz_mat, sides: list[fmpz_mat]) -> list[fmpz_mat]:
+    r"""Return the coefficients of $(B + \mu)^{-1}$ times a polynomial vector, if they are those of a polynomial."""
+    found = [sides[-1]]
+    for side in sides[-2:0:-1]:
+        found.append(side - B * found[-1])
+    return found[::-1]
+
+
+def _column(vector: list[fmpz]) -> fmpz_mat:
+    return fmpz_mat(len(vector), 1, vector)
+
+
+def _polynomials(coefficients: Iterable[fmpz_mat]) -> list[fmpz_poly]:
+    """Return the entries of a polynomial vector."""
+    return [fmpz_poly(list(row)) for row in zip(*(x.entries() for x in coefficients), strict=True)]
 
 
 def _hidden(problem: Problem, common: fmpz_poly, numerators: list[fmpz_poly]) -> Iterator[Family]:

@@ -9,7 +9,7 @@ Reference: docs/theory/branches.md, "Certificates".
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
-from flint import fmpq, fmpz, fmpz_mat
+from flint import fmpq, fmpq_mat, fmpz, fmpz_mat
 
 from nonholo.systems import ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
 
@@ -57,7 +57,8 @@ def problem_of(system: Body, time_step: float, momentum: np.ndarray) -> Problem:
 
 def _problem(B: list, c: list, r: list, half: fmpq = _ZERO, lever: tuple | None = None) -> Problem:
     d = [x - y for x, y in zip(r, c, strict=True)]
-    unit = max(x.q for row in (*B, c, d, [half]) for x in row)
+    whole_B, denominator = fmpq_mat(B).numer_denom()
+    unit = max(denominator, *(x.q for x in (*c, *d, half)))
 
     def whole(x: fmpq) -> fmpz:
         return (x * unit).p
@@ -66,13 +67,12 @@ def _problem(B: list, c: list, r: list, half: fmpq = _ZERO, lever: tuple | None 
     if lever is not None:
         arm, push, offset, moment = lever
         exact = Lever(arm, push, offset, moment * unit)
-    matrix = fmpz_mat([[whole(x) for x in row] for row in B])
-    return Problem(matrix, [whole(x) for x in c], [whole(x) for x in d], whole(half), exact)
+    return Problem(whole_B * (unit // denominator), [whole(x) for x in c], [whole(x) for x in d], whole(half), exact)
 
 
 def _stiffness(rows: list[list[fmpq]], diagonal: fmpq, first: int) -> list[list[fmpq]]:
-    k = len(rows)
-    return [[rows[i][first + j] + (diagonal if i == j else 0) for j in range(k)] for i in range(k)]
+    square = (row[first : first + len(rows)] for row in rows)
+    return [[x + diagonal if i == j else x for j, x in enumerate(row)] for i, row in enumerate(square)]
 
 
 def _rows(matrix: np.ndarray) -> list[list[fmpq]]:

@@ -5,24 +5,26 @@ root, so d disjoint discs hold one each, and a disc around a real z holds a real
 """
 
 import math
-from itertools import combinations, pairwise
+from itertools import chain, combinations, pairwise
 from typing import Any
 
 import numpy as np
 from flint import acb, acb_poly, arb, ctx, fmpz, fmpz_poly
 
 PRECISIONS = (192, 384, 1024, 4096)  # bits
+_ROUGH = 64  # bits, enough to tell most roots apart
 _CLOSE = 1e-4  # relative distance up to which rounding may have merged or split two eigenvalues
 _STEPS = 8  # of Newton's method; two suffice from a good guess
 
 
 def isolated(polynomial: fmpz_poly) -> list[acb] | None:
     """Return a ball for each real root and one of each conjugate pair, None if no precision separates them."""
-    balls = sharpened(polynomial, _guessed(polynomial), PRECISIONS[0])
-    if balls is None:
-        found = (sharpened(polynomial, _searched(polynomial, bits), bits) for bits in PRECISIONS)
-        balls = next((good for good in found if good is not None), None)
-    return balls
+    guessed = _guessed(polynomial)
+    found = chain(
+        (sharpened(polynomial, guessed, bits) for bits in (_ROUGH, PRECISIONS[0])),
+        (sharpened(polynomial, _searched(polynomial, bits), bits) for bits in PRECISIONS),
+    )
+    return next((balls for balls in found if balls is not None), None)
 
 
 def sharpened(polynomial: fmpz_poly, centres: list[acb], bits: int) -> list[acb] | None:

@@ -4,12 +4,13 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from flint import acb, ctx, fmpz, fmpz_poly
+from flint import acb, ctx, fmpq_mat, fmpz, fmpz_mat, fmpz_poly
 from sturm import real_roots
 
 import nonholo as nh
 from nonholo.discrete import Discretization, _certificate_roots
 from nonholo.discrete._certificate import located
+from nonholo.discrete._certificate_families import _secular
 from nonholo.discrete._certificate_problem import Problem, problem_of
 from nonholo.discrete._certificate_roots import isolated, sharpened
 
@@ -144,3 +145,23 @@ def test_special_counts(discrete: Discretization, r: list[float], multiplicity: 
     assert sorted(counted) == multiplicity
     for x in found:
         assert sum(mu.imag == 0 for mu in x.balls) == real_roots(x.factor)
+
+
+@pytest.mark.parametrize("coupled", [True, False])
+@pytest.mark.parametrize("k", [2, 3, 5, 7])
+def test_secular_polynomials_are_those_of_their_definition(k: int, coupled: bool) -> None:
+    r"""At more points than there are degrees, $\Delta$, N_1, N_2 and Y are what linear algebra says they are."""
+    rng = np.random.default_rng(k)
+    c, d = rng.integers(-99, 99, (2, k)) * [[coupled], [1]]
+    spread = rng.integers(-9, 9, (k, k))
+    B, half = (spread @ spread.T).tolist(), 7
+    whole = [[fmpz(x) for x in row] for row in (c.tolist(), d.tolist())]
+    secular = _secular(Problem(fmpz_mat(B), *whole, fmpz(half), None))
+    for mu in range(1, 2 * k + 3):  # no eigenvalue of B is negative
+        shifted = fmpz_mat([[x + mu * (i == j) for j, x in enumerate(row)] for i, row in enumerate(B)])
+        sides = fmpz_mat([[int(x), int(y)] for x, y in zip(c, d, strict=True)])
+        solved = (fmpq_mat(shifted).solve(fmpq_mat(sides)) * shifted.det()).numer_denom()[0].tolist()
+        Ac, Ad = (np.array(column) for column in zip(*solved, strict=True))
+        n1, n2 = shifted.det() * mu + c @ Ac, shifted.det() * half - c @ Ad
+        assert (secular.determinant(mu), secular.n1(mu), secular.n2(mu)) == (shifted.det(), n1, n2)
+        assert [y(mu) * shifted.det() for y in secular.y] == list(n1 * Ad + n2 * Ac)
