@@ -5,14 +5,13 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from stopping import stopped_at
 from typer.testing import Result
 
 import nonholo as nh
-from nonholo.io import Stream
 
 Command = Callable[..., Result]
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
@@ -46,19 +45,10 @@ def test_a_simulated_scenario_is_exported(nonholo: Command) -> None:
     assert [float(line.split(",")[0]) for line in lines[1:]] == orbit.time[::10].tolist()
 
 
-def test_unfinished_run_is_told_on_standard_error(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_unfinished_run_is_told_on_standard_error(nonholo: Command) -> None:
     """The finished blocks of a stopped run are exported, and standard error says how far they go."""
-    write = Stream.write
-
-    def interrupted(self: Stream, number: int, *rest: Any) -> None:
-        if number == 2:
-            raise KeyboardInterrupt
-        write(self, number, *rest)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(Stream, "write", interrupted)
-        with pytest.raises(KeyboardInterrupt):
-            nh.simulate(SLEIGH, steps=50, store="run.zarr", checkpoint_every=20, **START)
+    with stopped_at(2):
+        nh.simulate(SLEIGH, steps=50, store="run.zarr", checkpoint_every=20, **START)
     result = nonholo("export", "run.zarr")
     assert result.exit_code == 0
     assert "Warning: The run in 'run.zarr' is not finished: its poses go up to step 39 of 50" in result.stderr

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from stopping import stopped_at
 from typer.testing import Result
 
 import nonholo as nh
@@ -18,19 +19,10 @@ START = {"body_velocity": (1.0, 0.3, 0.0)}
 
 
 @pytest.fixture
-def stopped(monkeypatch: pytest.MonkeyPatch) -> Path:
+def stopped() -> Path:
     """A run of 500 steps that Ctrl-C stopped in its sixth block of 40."""
-    write = Stream.write
-
-    def interrupted(self: Stream, number: int, *rest: Any) -> None:
-        if number == 5:
-            raise KeyboardInterrupt
-        write(self, number, *rest)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(Stream, "write", interrupted)
-        with pytest.raises(KeyboardInterrupt):
-            nh.simulate(SLEIGH, steps=500, store="run.zarr", checkpoint_every=40, **START)
+    with stopped_at(5):
+        nh.simulate(SLEIGH, steps=500, store="run.zarr", checkpoint_every=40, **START)
     return Path("run.zarr")
 
 

@@ -1,13 +1,11 @@
 """Certified branches: enclosures against 40-digit roots, exact counts at folds, agreement with numerical branches."""
 
-import importlib.util
 import sys
-from pathlib import Path
-from types import ModuleType
 
 import mpmath
 import numpy as np
 import pytest
+from scripts import script
 from sturm import real_roots
 
 import nonholo as nh
@@ -65,38 +63,29 @@ def test_enclosures_hold_the_displacements(discrete: Discretization, r: list[flo
             assert radius <= 32 * np.finfo(float).eps * (1 + np.abs(W).max())
 
 
-def _benchmark() -> ModuleType:
-    """Load the script that compares 10,000 problems."""
-    path = Path(__file__).parents[2] / "benchmarks" / "certified_branches.py"
-    spec = importlib.util.spec_from_file_location("certified_branches", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.mark.parametrize("kind", ["top 3", "sleigh", "top 4", "top 6", "sleigh SE(3)"])
 def test_random_problems_are_certified_and_agree(kind: str) -> None:
     """All of 60 random problems are certified; further than 1e-11 from a fold values, counts and reality agree.
 
     Closer than that two roots differ by about the root of rounding, and the numerical branches are one double root.
     """
-    script, rng = _benchmark(), np.random.default_rng(7)
+    module, rng = script("benchmarks/certified_branches.py"), np.random.default_rng(7)
     for _ in range(60):
-        discrete = script.random_body(rng, kind)
-        r, off = script.random_momentum(rng, discrete)
+        discrete = module.random_body(rng, kind)
+        r, off = module.random_momentum(rng, discrete)
         certified = nh.displacements_over(discrete, r, certify=True)
         assert certified.certified
         if off > 1e-11:
-            assert script.disagreement(certified, nh.displacements_over(discrete, r)) == ""
+            assert module.disagreement(certified, nh.displacements_over(discrete, r)) == ""
 
 
 @pytest.mark.parametrize("kind", ["top 3", "sleigh", "top 4", "top 6", "sleigh SE(3)"])
 def test_random_counts_are_exact(kind: str) -> None:
     """For 40 random problems, some of them nearly on a fold, the real values are as many as Sturm's theorem says."""
-    script, rng = _benchmark(), np.random.default_rng(8)
+    module, rng = script("benchmarks/certified_branches.py"), np.random.default_rng(8)
     for _ in range(40):
-        discrete = script.random_body(rng, kind)
-        r = script.random_momentum(rng, discrete)[0]
+        discrete = module.random_body(rng, kind)
+        r = module.random_momentum(rng, discrete)[0]
         found = located(problem_of(discrete.system.canonical, discrete.time_step, discrete.system.to_canonical(r)))
         counted = [sum(mu.imag == 0 for mu in x.balls) for x in found]
         assert counted == [real_roots(x.factor) for x in found]

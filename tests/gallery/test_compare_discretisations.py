@@ -1,28 +1,19 @@
 """The comparison of discretisations: its figures on short runs, and the picture made of them."""
 
-import importlib.util
-import sys
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
+from scripts import script
 
 import nonholo as nh
 
-SCRIPT = Path(__file__).parents[2] / "docs" / "gallery" / "compare_discretisations.py"
 
-
-@pytest.fixture(scope="module")
-def script() -> ModuleType:
+@pytest.fixture(scope="module", name="script")
+def gallery_script() -> ModuleType:
     """Return the script as a module."""
-    spec = importlib.util.spec_from_file_location("compare_discretisations", SCRIPT)
-    assert spec
-    assert spec.loader
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
+    return script("docs/gallery/compare_discretisations.py")
 
 
 def test_matrix_and_skew_keep_everything(script: ModuleType) -> None:

@@ -1,12 +1,12 @@
 """The walk through the multivalued map: its scripts print what the page quotes, and the numbers are right."""
 
-import importlib.util
 import re
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
+import scripts
 
 import nonholo as nh
 
@@ -25,12 +25,7 @@ PANELS = {  # of each picture, with the inset of the last one
 
 def script(name: str) -> ModuleType:
     """Return a script of the gallery as a module."""
-    spec = importlib.util.spec_from_file_location(name, GALLERY / f"{name}.py")
-    assert spec
-    assert spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return scripts.script(f"docs/gallery/{name}.py")
 
 
 @pytest.mark.parametrize("name", PANELS)

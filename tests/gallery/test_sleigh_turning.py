@@ -1,25 +1,18 @@
 """The gallery script on turning sleighs: what it quotes, and the picture made of it."""
 
-import importlib.util
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 import xarray
+from scripts import script
 
-SCRIPT = Path(__file__).parents[2] / "docs" / "gallery" / "sleigh_turning.py"
 
-
-@pytest.fixture(scope="module")
-def script() -> ModuleType:
+@pytest.fixture(scope="module", name="script")
+def gallery_script() -> ModuleType:
     """Return the script as a module."""
-    spec = importlib.util.spec_from_file_location("sleigh_turning", SCRIPT)
-    assert spec
-    assert spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return script("docs/gallery/sleigh_turning.py")
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,6 @@ import re
 import subprocess
 import sys
 import tracemalloc
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +14,10 @@ import numpy as np
 import pytest
 from problems import PROBLEMS
 from scipy.spatial.transform import Rotation
+from stopping import stopped_at
 
 import nonholo as nh
-from nonholo.io import Stream, locked, store_to_csv
+from nonholo.io import locked, store_to_csv
 
 EPS = np.finfo(float).eps
 SPINNING = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.3), 0.1)  # turns for ever
@@ -42,21 +42,6 @@ def _of_store(store: Path, **options: Any) -> str:
     target = io.StringIO()
     store_to_csv(store, target, **options)
     return target.getvalue()
-
-
-def _stop_at(monkeypatch: pytest.MonkeyPatch, block: int, run: Callable[[], object]) -> None:
-    """Let Ctrl-C come when a run writes a block."""
-    write = Stream.write
-
-    def interrupted(self: Stream, number: int, *rest: Any) -> None:
-        if number == block:
-            raise KeyboardInterrupt
-        write(self, number, *rest)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(Stream, "write", interrupted)
-        with pytest.raises(KeyboardInterrupt):
-            run()
 
 
 @pytest.fixture
@@ -204,12 +189,11 @@ def test_callable_difference_is_no_obstacle(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("block", [0, 1, 5])
-def test_unfinished_store_gives_its_finished_blocks(
-    block: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_unfinished_store_gives_its_finished_blocks(block: int, tmp_path: Path) -> None:
     """What a stopped run finished is exported, and a warning says how far it goes and how to go on."""
     path, given = tmp_path / "run.zarr", {"save_every": 2, **SPIN}
-    _stop_at(monkeypatch, block, lambda: nh.simulate(SPINNING, steps=99, store=path, checkpoint_every=16, **given))
+    with stopped_at(block):
+        nh.simulate(SPINNING, steps=99, store=path, checkpoint_every=16, **given)
     last = max(0, 16 * block - 2)
     with pytest.warns(RuntimeWarning, match=rf"up to step {last} of 99\. Go on with nonholo\.resume\('.*run\.zarr'\)"):
         text = _of_store(path)
@@ -217,10 +201,11 @@ def test_unfinished_store_gives_its_finished_blocks(
     assert text == "".join(whole.splitlines(keepends=True)[: 1 + 8 * block])
 
 
-def test_run_that_is_being_written_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_run_that_is_being_written_is_exported(tmp_path: Path) -> None:
     """While a process writes a store its finished blocks are there for others, and the warning names the writer."""
     path = tmp_path / "run.zarr"
-    _stop_at(monkeypatch, 2, lambda: nh.simulate(SPINNING, steps=99, store=path, checkpoint_every=16, **SPIN))
+    with stopped_at(2):
+        nh.simulate(SPINNING, steps=99, store=path, checkpoint_every=16, **SPIN)
     with (
         locked(path),
         pytest.warns(RuntimeWarning, match=rf"step 31 of 99\. It is being written by process {os.getpid()}"),
@@ -228,9 +213,10 @@ def test_run_that_is_being_written_is_exported(tmp_path: Path, monkeypatch: pyte
         assert len(_of_store(path).splitlines()) == 33
 
 
-def test_extended_store_gives_its_full_blocks(store: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_extended_store_gives_its_full_blocks(store: Path, tmp_path: Path) -> None:
     """A last block that was not full is written anew when a run is extended, and left out until then."""
-    _stop_at(monkeypatch, 12, lambda: nh.extend(store, 50))
+    with stopped_at(12):
+        nh.extend(store, 50)
     with pytest.warns(RuntimeWarning, match="up to step 95 of 150"):
         text = _of_store(store)
     whole = _written(nh.simulate(SPINNING, steps=95, **SPIN), tmp_path)

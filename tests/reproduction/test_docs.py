@@ -1,11 +1,10 @@
 """The pages on the paper and its errata are what the findings say."""
 
-import importlib.util
 import re
 from pathlib import Path
-from types import ModuleType
 
 import pytest
+from scripts import script
 
 from nonholo.reproduction._checklist import sections
 from nonholo.reproduction._registry import entries
@@ -13,18 +12,10 @@ from nonholo.reproduction._registry import entries
 DOCS = Path(__file__).parents[2] / "docs"
 
 
-def script() -> ModuleType:
-    """Load docs/make_paper_pages.py."""
-    spec = importlib.util.spec_from_file_location("make_paper_pages", DOCS / "make_paper_pages.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.mark.parametrize("name", ["paper.md", "errata.md"])
 def test_page_is_up_to_date(name: str) -> None:
     """The page in the repository is the one that the script writes: `python docs/make_paper_pages.py`."""
-    assert (DOCS / name).read_text("utf-8") == script().page(name)
+    assert (DOCS / name).read_text("utf-8") == script("docs/make_paper_pages.py").page(name)
 
 
 def test_every_row_of_the_errata_is_on_its_page() -> None:
@@ -45,4 +36,4 @@ def test_every_finding_is_on_the_page_of_the_paper() -> None:
 
 def test_bars_stay_within_their_cell() -> None:
     """Absolute values and norms in formulas, and bars in words, do not end a cell of a table."""
-    assert script()._cell("a | b $|x| \\| y$\nc") == r"a \| b $\vert x\vert  \Vert  y$ c"
+    assert script("docs/make_paper_pages.py")._cell("a | b $|x| \\| y$\nc") == r"a \| b $\vert x\vert  \Vert  y$ c"

@@ -3,14 +3,13 @@
 import functools
 import json
 import os
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from simulation import killed
 
 import nonholo as nh
 from nonholo.io import Stream, standing
@@ -21,7 +20,7 @@ ROUND = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
 FOLDING = nh.discretize(TOP.system, 1.0)
 FOLDS = {"momentum": np.array([1.93257157, -0.68979744])}
 STATE = ("time", "reduced_momentum", "cayley", "pose", "turned")
-CUTS, KILLS = 3, 3  # of each kind of run; of one in another process
+CUTS = 3  # of each kind of run
 BLOCKS = 11  # of 44 states
 
 
@@ -143,46 +142,14 @@ def test_runs_cut_at_random_blocks_go_on(name: str, tmp_path: Path, monkeypatch:
         assert same(nh.resume(path, events=events), undisturbed)
 
 
-_KILLER = """
-import glob, os, random, signal, sys, time
-import numpy as np
-import nonholo as nh
-path, kills, chance = sys.argv[1], int(sys.argv[2]), random.Random(7)
-circle = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
-run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 20_000, "save_every": 10}
-events = [nh.Event(lambda orbit: np.sin(orbit.heading), direction=1, name="east")]
-nh.simulate(circle, **run | {"steps": 100}, events=events)  # compiled before the first fork
-killed = wanted = 0
-for _ in range(kills):
-    child = os.fork()
-    if child == 0:
-        if os.path.exists(path):
-            nh.resume(path, events=events)
-        else:
-            nh.simulate(circle, **run, events=events, store=path, checkpoint_every=500)
-        os._exit(0)
-    wanted += chance.randrange(2, 7)
-    while len(glob.glob(path + "/run/checkpoints/c/*")) < wanted:
-        time.sleep(0.002)
-    time.sleep(chance.uniform(0, 0.05))
-    os.kill(child, signal.SIGKILL)
-    killed += os.WIFSIGNALED(os.waitpid(child, 0)[1])
-print(killed)
-"""
-
-
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills forked processes")
 def test_killed_runs_go_on(tmp_path: Path) -> None:
     """Killed three times while it computes, and resumed, a run has the crossings of the undisturbed one."""
-    path, events = tmp_path / "run.zarr", [nh.Event(east, direction=1)]
-    arguments = [sys.executable, "-c", _KILLER, str(path), str(KILLS)]
-    done = subprocess.run(arguments, capture_output=True, text=True, check=True)  # noqa: S603
-    assert int(done.stdout) == KILLS, "the run was over before the last kill: it has to be longer"
-    now = standing(path)
-    assert now is not None
+    path = tmp_path / "run.zarr"
+    now = killed.leave_killed("events", path, kills=3)
     assert 0 < now.done < now.steps
-    whole = nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=20_000, save_every=10, events=events)
-    assert same(nh.resume(path, events=events), whole)
+    discrete, run, events = killed.RUNS["events"]
+    assert same(nh.resume(path, events=events), nh.simulate(discrete, **run, events=events))
     assert not list(path.rglob("*.partial"))
 
 

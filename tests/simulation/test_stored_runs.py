@@ -14,16 +14,17 @@ import numpy as np
 import pytest
 from bodies import GENERAL
 from problems import PROBLEMS
+from simulation import killed
+from stopping import stopped_at
 
 import nonholo as nh
-from nonholo.io import Stream, standing
+from nonholo.io import Stream
 from nonholo.systems import AbstractSystem
 
 TOP = nh.discretize(PROBLEMS[0].system, 0.1)
 SLEIGH = nh.discretize(PROBLEMS[7].system, 0.1)
 WIDE = nh.discretize(GENERAL["sleigh 3"][0], 0.05)
 NAMES = ("time", "reduced_momentum", "cayley", "pose")
-KILLS = 20
 START = {"restricted_velocity": (0.7, -0.3)}
 FOLDING = nh.discretize(PROBLEMS[0].system, 1.0)
 FOLDS = {"momentum": np.array([1.93257157, -0.68979744])}
@@ -44,18 +45,6 @@ def _begun(path: Path, steps: int = 500, **options: Any) -> nh.Orbit:
 
 def _whole(steps: int = 500) -> nh.Orbit:
     return nh.simulate(SLEIGH, steps=steps, save_every=2, **START)
-
-
-def _stop_at(monkeypatch: pytest.MonkeyPatch, block: int, failure: BaseException) -> None:
-    """Let the writing of a block end in a failure."""
-    write = Stream.write
-
-    def failing(self: Stream, number: int, *rest: Any) -> None:
-        if number == block:
-            raise failure
-        write(self, number, *rest)
-
-    monkeypatch.setattr(Stream, "write", failing)
 
 
 @pytest.mark.parametrize(
@@ -139,25 +128,22 @@ def test_failed_run_that_was_not_cut_is_resumed_in_silence(tmp_path: Path, monke
     assert _same(nh.resume(path, throw=False), nh.simulate(FOLDING, steps=500, throw=False, **FOLDS))
 
 
-def test_interrupted_run_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_interrupted_run_goes_on(tmp_path: Path) -> None:
     """Ctrl-C says how far the run came and how to go on; resumed, it is the undisturbed run."""
     path = tmp_path / "run.zarr"
-    with monkeypatch.context() as patch:
-        _stop_at(patch, 5, KeyboardInterrupt())
-        with pytest.raises(KeyboardInterrupt, match=r"Stopped at step 198 of 500\. Go on with nonholo\.resume"):
-            _begun(path)
+    with stopped_at(5, match=r"Stopped at step 198 of 500\. Go on with nonholo\.resume"):
+        _begun(path)
     with pytest.raises(ValueError, match="must be a finished run"):
         nh.load_orbit(path)
     assert _same(nh.resume(path), _whole())
 
 
-def test_full_disk_leaves_a_valid_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_full_disk_leaves_a_valid_store(tmp_path: Path) -> None:
     """A full disk is an error that names the store and the remedy; with room again the run goes on."""
     path = tmp_path / "run.zarr"
-    with monkeypatch.context() as patch:
-        _stop_at(patch, 3, OSError(errno.ENOSPC, "No space left on device"))
-        with pytest.raises(OSError, match=r"No space left.*step 118 of 500\. Free space.*run\.zarr") as caught:
-            _begun(path)
+    full = OSError(errno.ENOSPC, "No space left on device")
+    with stopped_at(3, full, r"No space left.*step 118 of 500\. Free space.*run\.zarr") as caught:
+        _begun(path)
     assert caught.value.errno == errno.ENOSPC
     assert _same(nh.resume(path), _whole())
 
@@ -195,42 +181,14 @@ def test_lost_start_is_refused(tmp_path: Path) -> None:
         nh.resume(path)
 
 
-_KILLER = """
-import os, random, signal, sys, time
-import nonholo as nh
-path, kills, chance = sys.argv[1], int(sys.argv[2]), random.Random(7)
-sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1e-3)
-run = {"body_velocity": (1.0, 0.3, 0.0), "steps": 300_000, "save_every": 2}
-nh.simulate(sleigh, **run)  # compiled before the first fork
-killed = 0
-for _ in range(kills):
-    child = os.fork()
-    if child == 0:
-        if os.path.exists(path):
-            nh.resume(path)
-        else:
-            nh.simulate(sleigh, **run, store=path, checkpoint_every=1_000)
-        os._exit(0)
-    time.sleep(chance.uniform(0.05, 0.5))
-    os.kill(child, signal.SIGKILL)
-    killed += os.WIFSIGNALED(os.waitpid(child, 0)[1])
-print(killed)
-"""
-
-
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills forked processes")
 def test_killed_runs_go_on(tmp_path: Path) -> None:
     """Killed at 20 random moments and resumed each time, a run is the undisturbed one, and leaves no rubbish."""
     path = tmp_path / "run.zarr"
-    arguments = [sys.executable, "-c", _KILLER, str(path), str(KILLS)]
-    done = subprocess.run(arguments, capture_output=True, text=True, check=True)  # noqa: S603
-    assert int(done.stdout) == KILLS, "the run was over before the last kill: it has to be longer"
-    now = standing(path)
-    assert now is not None
+    now = killed.leave_killed("sleigh", path, kills=20)
     assert 0 < now.done < now.steps
-    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1e-3)
-    whole = nh.simulate(discrete, body_velocity=(1.0, 0.3, 0.0), steps=300_000, save_every=2)
-    assert _same(nh.resume(path), whole)
+    discrete, run, _ = killed.RUNS["sleigh"]
+    assert _same(nh.resume(path), nh.simulate(discrete, **run))
     assert not list(path.rglob("*.partial"))
 
 
