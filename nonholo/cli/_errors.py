@@ -1,6 +1,8 @@
 """Errors as users of the command line see them: a sentence on standard error and an exit code, never a traceback."""
 
 import contextlib
+import sys
+import warnings
 from collections.abc import Iterator
 from typing import NoReturn
 
@@ -17,8 +19,17 @@ def leave(message: str, code: int) -> NoReturn:
 
 
 def warn(message: str) -> None:
-    """Print a warning on standard error."""
-    typer.secho(f"Warning: {message}", fg=typer.colors.YELLOW, err=True)
+    """Print a warning on standard error, above a progress bar, which replaces `sys.stderr` while it is shown."""
+    typer.secho(f"Warning: {message}", fg=typer.colors.YELLOW, file=sys.stderr)
+
+
+@contextlib.contextmanager
+def told_warnings() -> Iterator[None]:
+    """Print warnings of the library as they come."""
+    with warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_: warn(str(message))
+        warnings.simplefilter("always", RuntimeWarning)
+        yield
 
 
 @contextlib.contextmanager

@@ -2,7 +2,6 @@
 
 import os
 import sys
-import warnings
 from pathlib import Path
 from typing import Annotated
 
@@ -30,7 +29,7 @@ def export(
     from nonholo.cli._caches import use_cache_folders
 
     use_cache_folders()
-    from nonholo.cli._errors import FAILED, USAGE, store_errors
+    from nonholo.cli._errors import FAILED, USAGE, store_errors, told_warnings
     from nonholo.io import SWEEP_FORMAT, check_file, format_of, read_attributes, store_to_csv
 
     is_sweep = format_of(store) == SWEEP_FORMAT
@@ -41,9 +40,7 @@ def export(
             read_attributes(store)
         if output:
             check_file(output, overwrite=overwrite)
-    with store_errors(FAILED), warnings.catch_warnings():
-        warnings.showwarning = _told
-        warnings.simplefilter("always", RuntimeWarning)
+    with store_errors(FAILED), told_warnings():
         try:
             shown = output is not None and sys.stderr.isatty()
             if is_sweep:
@@ -57,10 +54,3 @@ def export(
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     if output:
         typer.echo(output)
-
-
-def _told(message: Warning | str, *_: object) -> None:
-    """Print a warning of the library when it comes, before the rows."""
-    from nonholo.cli._errors import warn
-
-    warn(str(message))

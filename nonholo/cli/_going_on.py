@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import cast
 
 from nonholo._results import OutcomeError
-from nonholo.cli._errors import FAILED, USAGE, leave, store_errors, warn
+from nonholo.cli._errors import FAILED, USAGE, leave, store_errors, told_warnings, warn
 from nonholo.cli._provenance import show_provenance
 from nonholo.cli._sweep_report import show_sweep, sweep_figures
 from nonholo.ensembles import resume, standing_of
@@ -22,16 +22,13 @@ _TOLD = 5  # warnings of a sweep that are told
 def go_on_and_report(store: Path, going_on: Callable[[bool], Orbit], *, json: bool) -> None:
     """Run, name what was damaged, report what the store holds now."""
     stopped = None
-    with warnings.catch_warnings(record=True) as told, store_errors(USAGE):
-        warnings.simplefilter("always", RuntimeWarning)
+    with told_warnings(), store_errors(USAGE):
         try:
             orbit = going_on(sys.stderr.isatty())
         except OutcomeError as failure:
             orbit, stopped = cast(Orbit, failure.orbit), str(failure)
         except KeyboardInterrupt as failure:
             leave(str(failure), FAILED)
-    for warning in told:
-        warn(str(warning.message))
     show_provenance(store, read_attributes(store), orbit, json=json)
     if stopped:
         leave(f"Stopped early; the good steps are kept. {stopped}", FAILED)
@@ -61,10 +58,11 @@ def going(store: Path) -> Iterator[None]:
             if not store.exists() or isinstance(failure, FileExistsError | BlockingIOError):
                 raise
             leave(f"{failure.strerror or failure} (nonholo resume {store})", FAILED)
-    for warning in told[:_TOLD]:
-        warn(str(warning.message))
-    if len(told) > _TOLD:
-        warn(f"and {len(told) - _TOLD} more of this kind.")
+        finally:
+            for warning in told[:_TOLD]:
+                warn(str(warning.message))
+            if len(told) > _TOLD:
+                warn(f"and {len(told) - _TOLD} more of this kind.")
 
 
 def _where(store: Path) -> str:

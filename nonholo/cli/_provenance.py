@@ -15,7 +15,7 @@ from nonholo.io import Standing
 from nonholo.orbit import Orbit
 
 _MOST_BLOCKS = 1000  # of a sweep that are read, some milliseconds each
-_NESTED = ("parameters", "motion", "versions", "arrays", "run")
+_NESTED = ("parameters", "motion", "versions", "arrays", "run", "sweep")
 
 
 def show_provenance(store: Path, stored: dict[str, Any], orbit: Orbit | None, *, json: bool) -> None:
@@ -43,7 +43,7 @@ def show_standing(store: Path, stored: dict[str, Any], standing: Standing, *, js
 
 def show_sweep_standing(store: Path, stored: dict[str, Any], *, json: bool) -> None:
     """Print how far a sweep came and, if it is finished, sound and not too large, the ranges of its quantities."""
-    told = {name: jsonlib.loads(value) if name in (*_NESTED, "sweep") else value for name, value in stored.items()}
+    told = _told(stored)
     result = failure = None
     with store_errors(USAGE):
         opened = open_store(store)
@@ -67,10 +67,7 @@ def _told(stored: dict[str, Any]) -> dict[str, Any]:
 
 
 def _made(told: dict[str, Any]) -> dict[str, str]:
-    return {
-        "motion": _listed(told["motion"]),
-        **_scenario(told),
-    }
+    return {"motion": _listed(told["motion"]), **_scenario(told)}
 
 
 def _scenario(told: dict[str, Any]) -> dict[str, str]:

@@ -1,12 +1,13 @@
 """Running a scenario and keeping what it gave: the orbit, its store, its pictures."""
 
+import contextlib
 import itertools
 import os
 import re
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from nonholo._results import OutcomeError
 from nonholo.cli._pictures import beside
@@ -18,6 +19,7 @@ from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
 
 RUNS = Path("runs")
+Made = TypeVar("Made")
 
 
 class Ran(NamedTuple):
@@ -72,19 +74,22 @@ def keep(orbit: Orbit, loaded: Loaded, store: Path | None, *, overwrite: bool) -
     """Save a run at the path given or under the next free number; return where."""
     motion, scenario = orbit.motion, loaded.scenario
     text = effective_text(scenario.in_force(motion) if isinstance(motion, Discretization) else scenario)
+    replace = overwrite and store is not None  # what has a number is never replaced
+    path, _ = at_free_path(loaded.name, store, lambda at: save_orbit(orbit, at, overwrite=replace, scenario=text))
+    return path
+
+
+def at_free_path(name: str, store: Path | None, make: Callable[[Path], Made]) -> tuple[Path, Made]:
+    """Make a store at the path given or under the next free number; return where, and what came of it."""
     if store is not None:
-        save_orbit(orbit, store, overwrite=overwrite, scenario=text)
-        return store
-    for path in next_names(loaded.name):
-        try:
-            save_orbit(orbit, path, scenario=text)
-        except FileExistsError:  # another run was faster
-            continue
-        return path
+        return store, make(store)
+    for path in _next_names(name):
+        with contextlib.suppress(FileExistsError):  # another run was faster
+            return path, make(path)
     raise AssertionError("the numbers do not end")
 
 
-def next_names(name: str) -> Iterable[Path]:
+def _next_names(name: str) -> Iterable[Path]:
     """Return the numbered paths that are free for a scenario, in order."""
     pattern = re.compile(re.escape(name) + r"-(\d+)\.\w+")
     taken = [int(match[1]) for path in RUNS.iterdir() if (match := pattern.fullmatch(path.name))]

@@ -14,7 +14,7 @@ from nonholo.cli._errors import USAGE, leave, scenario_errors, store_errors
 from nonholo.cli._going_on import going
 from nonholo.cli._pictures import beside
 from nonholo.cli._problems import ScenarioError, problem_of_value
-from nonholo.cli._run import check_output, next_names
+from nonholo.cli._run import at_free_path, check_output
 from nonholo.cli._scenario_file import Loaded, Setting, parse_setting
 from nonholo.cli._sweep_file import load_sweep_scenario, sweep_text
 from nonholo.cli._sweep_picture import draw_sweep
@@ -47,7 +47,7 @@ def sweep_and_keep(
     design, shown = loaded.scenario.design.design(), sys.stderr.isatty() and not quiet
     run = functools.partial(sweep, task, design, scheduler=scheduler, workers=workers, progress=shown, scenario=text)
     with store_errors(USAGE):
-        store, result = _kept(run, loaded.name, output)
+        store, result = at_free_path(loaded.name, output, lambda path: _kept(run, path))
     seconds = time.perf_counter() - begun
     wanted = loaded.scenario.output
     picture = draw_sweep(result, beside(store, "png"), wanted.color, wanted.x, wanted.y) if wanted.plot else None
@@ -73,15 +73,6 @@ def _task(loaded: Loaded[SweepScenario]) -> EnsembleTask:
         raise ScenarioError([problem_of_value(failure, section, loaded.source, loaded.options)]) from None
 
 
-def _kept(run: Callable[..., xarray.Dataset], name: str, store: Path | None) -> tuple[Path, xarray.Dataset]:
-    """Run at the path given or under the next free number; return where, and the result."""
-    for path in next_names(name) if store is None else (store,):
-        try:
-            with going(path):
-                result = run(store=path)
-        except FileExistsError:
-            if store is not None:
-                raise
-            continue  # another run was faster
-        return path, result
-    raise AssertionError("the numbers do not end")
+def _kept(run: Callable[..., xarray.Dataset], store: Path) -> xarray.Dataset:
+    with going(store):
+        return run(store=store)

@@ -1,6 +1,5 @@
 """One piece of work: compute a block of a sweep and write it, unless it is there and sound."""
 
-import collections
 import functools
 import os
 import socket
@@ -66,8 +65,6 @@ def outcome_name(code: int) -> str:
 
 def _mark(results: Results, members: int, seconds: float) -> Mark:
     codes, counts = np.unique(results.arrays[OUTCOME], return_counts=True)
-    outcomes = collections.Counter(
-        {outcome_name(int(code)): int(count) for code, count in zip(codes, counts, strict=True)}
-    )
+    outcomes = {outcome_name(int(code)): int(count) for code, count in zip(codes, counts, strict=True)}
     writer = f"{socket.gethostname()}:{os.getpid()}"
-    return Mark(members, dict(outcomes), seconds, time.time(), writer, [list(told) for told in results.messages])
+    return Mark(members, outcomes, seconds, time.time(), writer, [list(told) for told in results.messages])

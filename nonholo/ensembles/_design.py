@@ -106,7 +106,7 @@ class Grid(AbstractDesign):
 class RandomDesign(AbstractDesign):
     """Members drawn from distributions: member i is the same in every design with this seed, however many there are.
 
-    Names are those of a `Grid`. A value that is no distribution is the same for all members.
+    Names are those of a `Grid`.
 
     Example:
         >>> design = RandomDesign(1_000_000, {"a": Uniform(0.1, 1.0), "restricted_velocity": Direction(2)}, seed=3)

@@ -1,23 +1,22 @@
 """The last poses of the members of a sweep as CSV, block by block."""
 
-import contextlib
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TextIO, cast
+from typing import TextIO
 
 import numpy as np
 
 from nonholo import io
 from nonholo._checks import error
-from nonholo.ensembles._begin import restored_task
 from nonholo.ensembles._block import MemberBlock, block_of
-from nonholo.ensembles._ensemble_task import EnsembleTask
+from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
 from nonholo.ensembles._standing import standing_of
 from nonholo.ensembles._store import Mark, SweepStore, open_store
 from nonholo.simulation import Ensemble
 from nonholo.simulation._ensemble_members import Members
 
+_WHERE = "sweep_to_csv(store=...)"
 _WANTED = ("outcome", "final_time", "final_pose")
 
 
@@ -34,26 +33,35 @@ def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: b
 
     Raises:
         FileExistsError: The target exists, and is not to be replaced.
-        ValueError: The store holds no poses, or is damaged; the message names the array and the chunk.
+        ValueError: The store holds no poses, or a system that it cannot hold as data, or is damaged; the message names
+            the array and the chunk.
 
     Example:
         >>> sweep_to_csv("sweep.zarr", "poses.csv")  # doctest: +SKIP
     """
     opened = open_store(store)
-    if "final_pose" not in opened.outputs:
-        remedy = "Keep 'final_state' with reconstruct=True; nonholo.load_sweep(store) has other results."
-        raise error("sweep_to_csv(store=...)", "hold poses", f"'{store}', which holds none", remedy)
+    task = _task(opened)
+    io.check_file(target, overwrite=overwrite)
     blocks = [block for block in range(opened.layout.blocks) if isinstance(opened.mark(block), Mark)]
-    for flaw in filter(None, map(opened.flaw, blocks)):
-        remedy = f"nonholo.resume('{store}') computes its block again."
-        raise error("sweep_to_csv(store=...)", "be sound", f"'{store}', in which there is {flaw}", remedy)
+    opened.check(_WHERE, blocks)
     if len(blocks) < opened.layout.blocks:
         warnings.warn(f"The sweep in '{store}' is not finished: {standing_of(store)}.", RuntimeWarning, stacklevel=2)
-    task = cast(EnsembleTask, restored_task(opened, None))
-    to_file = isinstance(target, str | Path)
-    new = io.new_file(Path(target), overwrite=overwrite) if to_file else contextlib.nullcontext(cast(TextIO, target))
-    with new as file:
+    with io.new_file(target, overwrite=overwrite) as file:
         file.writelines(io.table_lines(_names(opened, task), (_rows(opened, task, block) for block in blocks)))
+
+
+def _task(store: SweepStore) -> EnsembleTask:
+    """Return the task without its reductions, of which poses need none."""
+    told = store.description["task"]
+    if "final_state" not in told.get("reductions", ()) or "final_pose" not in store.outputs:
+        remedy = "Keep 'final_state' with reconstruct=True; nonholo.load_sweep(store) has other results."
+        raise error(_WHERE, "hold poses", f"'{store.path}', which holds none", remedy)
+    try:
+        return ensemble_task_from(told | {"reductions": []})
+    except ValueError as failure:
+        remedy = "nonholo.load_sweep(store) has the poses as they are kept."
+        got = f"'{store.path}', {str(failure).rstrip('.')}"
+        raise error(_WHERE, "hold its system as data", got, remedy) from failure
 
 
 def _names(store: SweepStore, task: EnsembleTask) -> list[str]:

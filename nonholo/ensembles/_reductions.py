@@ -41,7 +41,7 @@ def _final_state(batch: Ensemble) -> Reduced:
 
 
 def _energy_drift(batch: Ensemble) -> Reduced:
-    begun, ended = batch.first_energy, batch.energy[np.arange(len(batch)), _last(batch)]
+    begun, ended = batch.first_energy, _ended(batch).energy[:, 0]
     with np.errstate(invalid="ignore"):  # 0/0 at rest, where energy cannot drift
         drift = np.where(ended == begun, 0.0, np.abs(ended - begun) / begun)
     return {"energy_drift": ((), np.where(np.isfinite(ended), drift, np.nan), _told("relative error of energy", "1"))}
@@ -77,11 +77,11 @@ def _turning_deviation(batch: Ensemble) -> Reduced:
 
 
 def _axis_angle(batch: Ensemble) -> Float[np.ndarray, "M"]:
-    if batch.pose is None:
+    scalar, ended = scalar_members(batch.members), _ended(batch)
+    if ended.pose is None:
         raise error("reduction 'limit_angle'", "have poses", "reconstruct=False", "Leave that out.")
-    scalar, rows, last = scalar_members(batch.members), np.arange(len(batch)), _last(batch)
-    pose = np.stack([np.broadcast_to(scalar.pose, (len(batch), 4)), batch.pose[rows, last]], axis=1)
-    r = np.stack([batch.first_momentum, batch.reduced_momentum[rows, last]], axis=1)
+    pose = np.stack([np.broadcast_to(scalar.pose, (len(batch), 4)), ended.pose[:, 0]], axis=1)
+    r = np.stack([batch.first_momentum, ended.reduced_momentum[:, 0]], axis=1)
     velocity = applied(np.linalg.inv(scalar.inertia), r)
     body = np.stack([-velocity[..., 1], velocity[..., 0], np.zeros_like(velocity[..., 0])], axis=-1)
     axes = (batch.members.discrete.system.group.matrix_from_pose(pose) @ body[..., None])[..., 0]
@@ -124,19 +124,13 @@ def _jacobians(batch: Ensemble, member: int) -> Float[np.ndarray, "steps k k"]:
 
 
 def _ended(batch: Ensemble) -> Ensemble:
-    """Return the last good state of each member alone."""
-    rows, last = np.arange(len(batch)), _last(batch)
+    """Return the last good state of each member alone; of one that did not start any row, which is NaN."""
+    every, rows = batch.save_every, np.arange(len(batch))
+    last = np.zeros_like(rows) if every is None else batch.steps_done // every
     kept = {name: getattr(batch, name) for name in ("reduced_momentum", "cayley", "pose")}
     states = {name: None if array is None else array[rows, last][:, None] for name, array in kept.items()}
-    done = batch.steps_done if batch.save_every is None else last * batch.save_every
+    done = batch.steps_done if every is None else last * every
     return dataclasses.replace(batch, save_every=None, steps_done=done, **states)
-
-
-def _last(batch: Ensemble) -> np.ndarray:
-    """Return the row of the last good state of each member; of one that did not start any row, which is NaN."""
-    if batch.save_every is None:
-        return np.zeros(len(batch), dtype=int)
-    return batch.steps_done // batch.save_every
 
 
 def _told(meaning: str, units: str = "") -> dict[str, str]:

@@ -1,6 +1,5 @@
 """`resume`: going on with what a store holds, an orbit or a sweep."""
 
-import errno
 import warnings
 from pathlib import Path
 from typing import Any
@@ -16,8 +15,6 @@ from nonholo.ensembles._blocks import Done, Work
 from nonholo.ensembles._scheduling import checked_scheduler, do_all
 from nonholo.ensembles._standing import opened_result, standing_of
 from nonholo.ensembles._store import SweepStore, attributes_of, open_store
-
-_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def resume(
@@ -66,17 +63,16 @@ def resume(
     if stored is None and Path(store).exists():
         got, remedy = f"'{store}', of which zarr.json does not say that", "Check the path, or run it again."
         raise error("resume(store=...)", "be a store of a run or a sweep", got, remedy)
-    if stored != io.SWEEP_FORMAT:
-        given = {"task": task, "scheduler": scheduler, "workers": workers}
-        for name, value in given.items():
-            if value is not None:
-                got, remedy = f"{value!r} for '{store}'", "Leave it out for an orbit."
-                raise error(f"resume({name}=...)", "come with the store of a sweep", got, remedy)
-        return simulation.resume(store, discrete=discrete, events=events, throw=throw, progress=progress)
-    for name, value in {"discrete": discrete, "events": events}.items():
+    if stored == io.SWEEP_FORMAT:
+        given, owner, remedy = {"discrete": discrete, "events": events}, "an orbit", "Pass task=..., or nothing."
+    else:
+        given, owner = {"task": task, "scheduler": scheduler, "workers": workers}, "a sweep"
+        remedy = "Leave it out for an orbit."
+    for name, value in given.items():
         if value is not None:
-            remedy = "Pass task=..., or nothing."
-            raise error(f"resume({name}=...)", "come with the store of an orbit", f"{value!r} for '{store}'", remedy)
+            raise error(f"resume({name}=...)", f"come with the store of {owner}", f"{value!r} for '{store}'", remedy)
+    if stored != io.SWEEP_FORMAT:
+        return simulation.resume(store, discrete=discrete, events=events, throw=throw, progress=progress)
     name, workers = checked_scheduler(scheduler, workers)
     opened = open_store(store)
     return go_on(Work(opened, restored_task(opened, task)), name, workers, progress)
@@ -85,18 +81,10 @@ def resume(
 def go_on(work: Work, scheduler: str, workers: int | None, progress: bool) -> xarray.Dataset:
     """Do every block that a store lacks, and open the result."""
     store = work.store
-    again = f"nonholo.resume({str(store.path)!r})"
     with io.locked(store.path):
         store.prepare()
-        try:
+        with io.telling_how_to_go_on(store.path, "The sweep", lambda: standing_of(store.path)):
             _complete(work, scheduler, workers, progress)
-        except KeyboardInterrupt:
-            told = f"Stopped at {standing_of(store.path)}. Go on with {again} (nonholo resume)."
-            raise KeyboardInterrupt(told) from None
-        except OSError as failure:
-            remedy = "Free space" if failure.errno in _FULL else "Remedy that"
-            reason = f"{failure.strerror or failure}. The sweep stands at {standing_of(store.path)}. {remedy}"
-            raise OSError(failure.errno or errno.EIO, f"{reason}, then call {again}", str(store.path)) from failure
     return opened_result(store)
 
 

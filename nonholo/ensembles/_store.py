@@ -8,10 +8,9 @@ import asyncio
 import dataclasses
 import functools
 import json
-import shutil
 import uuid
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -135,6 +134,12 @@ class SweepStore:
                 return f"{found}, {io.chunk_name(name, array, self._index(name, block))}"
         return None
 
+    def check(self, where: str, blocks: Iterable[int]) -> None:
+        """Refuse a store of which one of these blocks is damaged."""
+        for flaw in filter(None, map(self.flaw, blocks)):
+            remedy = f"nonholo.resume('{self.path}') computes its block again."
+            raise error(where, "be sound", f"'{self.path}', in which there is {flaw}", remedy)
+
     def rows(self, name: str, piece: Piece) -> np.ndarray:
         """Return an array of a block, one row for each member."""
         found = np.asarray(self._arrays[name][piece.place])
@@ -161,7 +166,7 @@ class SweepStore:
         return self.path / "run" / "blocks" / f"{block}.json"
 
     def _axis(self, name: str) -> np.ndarray:
-        array = _opened(self.path, name)
+        array = io.writable_array(self.path, name)
         found = io.read_chunk(self.path, name, array, (0,) * array.ndim)
         if isinstance(found, str):
             got = f"{found}, in '{self.path}'"
@@ -174,7 +179,8 @@ class SweepStore:
 
     @functools.cached_property
     def _arrays(self) -> dict[str, zarr.Array]:
-        return {name: _opened(self.path, name) for name in self.outputs}
+        opened = {name: io.writable_array(self.path, name) for name in self.outputs}
+        return {name: array.with_config({"write_empty_chunks": True}) for name, array in opened.items()}
 
 
 @functools.lru_cache(maxsize=16)
@@ -192,21 +198,19 @@ def create_store(
     extra: dict[str, Any],
 ) -> SweepStore:
     """Make a store without rows; it appears at the path only when it is complete."""
-    target = path.resolve()
+    target, made = path.resolve(), uuid.uuid4().hex
     if target.exists():
         raise _exists(path)
-    part, made = io.sibling(target, "partial"), uuid.uuid4().hex
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        _create(part, made, description, design, layout, outputs, extra)
-        io.put_in_place(part, target, overwrite=False)
-    except OSError as failure:
-        if target.exists():
+    told = description | {"layout": layout, "outputs": {name: dataclasses.astuple(o) for name, o in outputs.items()}}
+    about = {"format": FORMAT, "schema": SCHEMA, "made": made, "finished": False, "sweep": json.dumps(told)}
+    with io.new_beside(path) as part:
+        group = zarr.create_group(part, zarr_format=3, attributes=about | {"versions": io.versions_text()} | extra)
+        _create_arrays(group, design, layout, outputs)
+        (part / "run" / "blocks").mkdir()
+        try:
+            io.put_in_place(part, target, overwrite=False)
+        except FileExistsError:
             raise _exists(path) from None
-        reason = f"{failure.strerror}. Nothing was computed yet. Free space, or choose another path"
-        raise OSError(failure.errno, reason, str(path)) from failure
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
     return SweepStore(target, made)
 
 
@@ -226,22 +230,7 @@ def attributes_of(path: str | Path) -> dict[str, Any]:
     return io.read_attributes(path, FORMAT, (SCHEMA,))
 
 
-def _create(
-    part: Path,
-    made: str,
-    description: dict[str, Any],
-    design: Design,
-    layout: Layout,
-    outputs: dict[str, Output],
-    extra: dict[str, Any],
-) -> None:
-    told = {
-        **description,
-        "layout": layout,
-        "outputs": {name: dataclasses.astuple(out) for name, out in outputs.items()},
-    }
-    about = {"format": FORMAT, "schema": SCHEMA, "made": made, "finished": False, "sweep": json.dumps(told)}
-    group = zarr.create_group(part, zarr_format=3, attributes=about | {"versions": io.versions_text()} | extra)
+def _create_arrays(group: zarr.Group, design: Design, layout: Layout, outputs: dict[str, Output]) -> None:
     for name, values in design.axes.items():
         variable = xarray.Variable(axis_dimensions(name, values), values, {"long_name": "value of the design"})
         io.create_array(group, name, variable, len(values), len(values), is_coordinate=True)[:] = values
@@ -257,13 +246,3 @@ def _create(
             attributes=output.attributes,
         )
     group.create_group("run")  # or xarray would wonder what that folder is
-    (part / "run" / "blocks").mkdir()
-
-
-def _opened(path: Path, name: str) -> zarr.Array:
-    try:
-        array = zarr.open_array(path / name, mode="r+", zarr_format=3).with_config({"write_empty_chunks": True})
-    except Exception as failure:
-        got = f"'{path}', where its metadata cannot be read: {failure}"
-        raise error("resume(store=...)", f"hold the array {name}", got, _AGAIN) from failure
-    return array

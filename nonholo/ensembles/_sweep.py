@@ -94,9 +94,5 @@ def load_sweep(store: str | Path) -> xarray.Dataset:
     if not opened.is_finished:
         got, remedy = f"'{store}', at {standing_of(store)}", f"Go on with nonholo.resume('{store}')."
         raise error(where, "be a finished sweep", got, remedy)
-    for number in range(opened.layout.blocks):
-        flaw = opened.flaw(number)
-        if flaw is not None:
-            remedy = f"nonholo.resume('{store}') computes its block again."
-            raise error(where, "be sound", f"'{store}', in which there is {flaw}", remedy)
+    opened.check(where, range(opened.layout.blocks))
     return opened_result(opened)

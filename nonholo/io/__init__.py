@@ -25,17 +25,17 @@ from nonholo.io._plan import Checkpoint, Plan
 from nonholo.io._pose_columns import column_names, separate_rows
 from nonholo.io._save import (
     check_target,
-    codecs,
     consolidate,
     create_array,
     edit_attributes,
+    new_beside,
     put_in_place,
     save_orbit,
-    sibling,
+    telling_how_to_go_on,
     write_whole,
 )
 from nonholo.io._stored_events import Seen, described
-from nonholo.io._stream import Standing, Stream, create_stream, open_stream, standing
+from nonholo.io._stream import Standing, Stream, create_stream, open_stream, standing, writable_array
 
 __all__ = [
     "SWEEP_FORMAT",
@@ -49,7 +49,6 @@ __all__ = [
     "check_target",
     "chunk_name",
     "chunk_path",
-    "codecs",
     "column_names",
     "consolidate",
     "create_array",
@@ -62,6 +61,7 @@ __all__ = [
     "load_last_block",
     "load_orbit",
     "locked",
+    "new_beside",
     "new_file",
     "open_stream",
     "orbit_to_csv",
@@ -74,10 +74,11 @@ __all__ = [
     "restore_motion",
     "save_orbit",
     "separate_rows",
-    "sibling",
     "standing",
     "store_to_csv",
     "table_lines",
+    "telling_how_to_go_on",
     "versions_text",
+    "writable_array",
     "write_whole",
 ]

@@ -3,7 +3,7 @@
 import contextlib
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import TextIO, cast
+from typing import TextIO
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from nonholo._checks import count, error
 from nonholo._progress import progress_bar
 from nonholo._types import Float
 from nonholo.io._pose_columns import Stretch, column_names, rows_of
-from nonholo.io._save import sibling
+from nonholo.io._save import new_beside
 from nonholo.io._stored_poses import open_poses
 from nonholo.orbit import Orbit, as_orbit
 from nonholo.systems import System
@@ -87,13 +87,10 @@ def store_to_csv(
         >>> store_to_csv("run.zarr", "poses.csv", every=100)  # doctest: +SKIP
     """
     every = count("store_to_csv(every=...)", every, "Pass 1 for every saved state.")
-    path = Path(target) if isinstance(target, str | Path) else None
-    if path:
-        check_file(path, overwrite=overwrite)
+    check_file(target, overwrite=overwrite)
     poses = open_poses(Path(store))
     poses.check()
-    opened = new_file(path, overwrite=overwrite) if path else contextlib.nullcontext(cast(TextIO, target))
-    with opened as file, progress_bar("states", progress) as report:
+    with new_file(target, overwrite=overwrite) as file, progress_bar("states", progress) as report:
         stretches = _reported(poses.stretches(), lambda done: report(done, poses.rows))
         file.writelines(_lines(poses.system, stretches, every))
 
@@ -129,28 +126,24 @@ def _reported(stretches: Iterable[Stretch], report: Callable[[int], object]) -> 
 
 
 @contextlib.contextmanager
-def new_file(path: Path, *, overwrite: bool) -> Iterator[TextIO]:
-    """Give a file to write to, which takes its name only when it is complete."""
-    check_file(path, overwrite=overwrite)
-    target = path.resolve()
-    part = sibling(target, "partial")
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
+def new_file(target: str | Path | TextIO, *, overwrite: bool) -> Iterator[TextIO]:
+    """Give a file to write to, which takes its name only when it is complete, or the stream that is the target."""
+    if not isinstance(target, str | Path):
+        yield target
+        return
+    check_file(target, overwrite=overwrite)
+    with new_beside(Path(target)) as part:
         with part.open("w", encoding="ascii", newline="\n") as file:
             yield file
-        check_file(path, overwrite=overwrite)
-        part.replace(target)
-    except FileExistsError:
-        raise
-    except OSError as failure:
-        reason = f"{failure.strerror}. Nothing at this path was changed. Free space, or choose another path"
-        raise OSError(failure.errno, reason, str(path)) from failure
-    finally:
-        part.unlink(missing_ok=True)
+        check_file(target, overwrite=overwrite)
+        part.replace(Path(target).resolve())
 
 
-def check_file(path: Path, *, overwrite: bool) -> None:
+def check_file(target: str | Path | TextIO, *, overwrite: bool) -> None:
     """Refuse a path that exists, unless it is a file that may be replaced."""
+    if not isinstance(target, str | Path):
+        return
+    path = Path(target)
     if path.exists() and not (overwrite and path.is_file()):
         how = "Choose another path"
         remedy = f"It is not a file. {how}." if overwrite else f"{how}, or pass overwrite=True (--overwrite)."

@@ -13,8 +13,9 @@ from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.io._attributes import FORMAT, READABLE, SWEEP_FORMAT, restore_motion
+from nonholo.io._plan import Plan
 from nonholo.io._stored_events import EVENTS, known, log_of
-from nonholo.orbit import EventLog, Orbit
+from nonholo.orbit import STATES, EventLog, Orbit
 
 _WHERE = "load_orbit(path=...)"
 _NAN = "NaN"
@@ -57,7 +58,7 @@ def _loaded(root: Path, discrete: Discretization | None, *, last: bool) -> Orbit
     except (KeyError, json.JSONDecodeError) as failure:
         raise error(_WHERE, "hold complete attributes", f"'{root}' without {failure}", _AGAIN) from failure
     arrays = {name: _read(root, name, tuple(shape), last) for name, shape in shapes.items()}
-    compact = {name: arrays.get(name) for name in ("time", "reduced_momentum", "cayley", "pose", "turned")}
+    compact = {name: arrays.get(name) for name in STATES}
     branch = stored.get("branch", "principal")  # stores of before branch rules have none
     orbit = Orbit(motion, outcome=outcome, save_every=every, branch=branch, **compact)  # type: ignore[arg-type]
     if "events" not in stored:
@@ -82,8 +83,8 @@ def _events(root: Path, stored: dict[str, Any], orbit: Orbit, begin: int) -> Eve
 
 def _begin_of_last(stored: dict[str, Any], states: int) -> int:
     """Return the step at which the last block of states begins."""
-    rows = json.loads(stored["run"])["rows"]
-    return max(0, ((states - 1) // rows * rows - 1) * stored["save_every"])
+    run = json.loads(stored["run"])
+    return Plan(run["steps"], stored["save_every"], run["rows"]).begin((states - 1) // run["rows"])
 
 
 def read_attributes(path: str | Path, expected: str = FORMAT, readable: tuple[int, ...] = READABLE) -> dict[str, Any]:

@@ -1,11 +1,13 @@
 """Writing a store: all of it or nothing, beside the old one until the new one is complete."""
 
+import contextlib
+import errno
 import json
-import os
 import shutil
 import threading
 import uuid
 import warnings
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +18,12 @@ from zarr.codecs import BloscCodec, Crc32cCodec
 
 from nonholo.io._attributes import FORMAT, attributes_of_text
 from nonholo.io._dataset import orbit_to_dataset
+from nonholo.io._load import format_of
 from nonholo.orbit import Orbit, as_orbit
 
 _ROWS = 100_000  # states in one chunk
 _FILTERS = threading.Lock()  # warning filters belong to the whole process
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scenario: str | None = None) -> None:
@@ -44,18 +48,41 @@ def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scena
     as_orbit("save_orbit(orbit=...)", orbit, "for one in coordinates use orbit.to_dataset().to_zarr(path).")
     target = Path(path).resolve()
     check_target(target, overwrite=overwrite)
-    part = sibling(target, "partial")
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
+    with new_beside(Path(path)) as part:
         _write(orbit_to_dataset(orbit), {} if scenario is None else attributes_of_text(scenario), part)
         put_in_place(part, target, overwrite=overwrite)
-    except FileExistsError:
-        raise
+
+
+@contextlib.contextmanager
+def new_beside(path: Path) -> Iterator[Path]:
+    """Give a hidden new name beside a path; what is left of it is removed, and a failure names the path."""
+    part = sibling(path.resolve(), "partial")
+    try:
+        part.parent.mkdir(parents=True, exist_ok=True)
+        yield part
     except OSError as failure:
+        if failure.errno is None:  # a refusal of ours, which says it all
+            raise
         reason = f"{failure.strerror}. Nothing at this path was changed. Free space, or choose another path"
         raise OSError(failure.errno, reason, str(path)) from failure
     finally:
         shutil.rmtree(part, ignore_errors=True)
+        with contextlib.suppress(OSError):  # where it is a file
+            part.unlink()
+
+
+@contextlib.contextmanager
+def telling_how_to_go_on(store: Path, what: str, standing: Callable[[], object]) -> Iterator[None]:
+    """Tell, if the writing of a store is stopped or fails, how far it came and how to go on."""
+    again = f"nonholo.resume({str(store)!r})"
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(f"Stopped at {standing()}. Go on with {again} (nonholo resume).") from None
+    except OSError as failure:
+        remedy = "Free space" if failure.errno in _FULL else "Remedy that"
+        reason = f"{failure.strerror or failure}. {what} stands at {standing()}. {remedy}, then call {again}"
+        raise OSError(failure.errno or errno.EIO, reason, str(store)) from failure
 
 
 def check_target(path: str | Path, *, overwrite: bool = False) -> None:
@@ -64,19 +91,12 @@ def check_target(path: str | Path, *, overwrite: bool = False) -> None:
         return
     if not overwrite:
         raise _exists(path, "Choose another path, or pass overwrite=True (--overwrite) to replace it.")
-    if not _is_store(Path(path)):
+    if format_of(path) != FORMAT:
         raise _exists(path, "It is not a store of an orbit, so it is not replaced. Choose another path.")
 
 
 def _exists(path: str | Path, remedy: str) -> FileExistsError:
     return FileExistsError(f"`save_orbit(path=...)` must be new. Got '{path}', which exists. {remedy}")
-
-
-def _is_store(path: Path) -> bool:
-    try:
-        return json.loads((path / "zarr.json").read_text())["attributes"]["format"] == FORMAT
-    except (OSError, ValueError, KeyError, TypeError):
-        return False
 
 
 def sibling(target: Path, purpose: str) -> Path:
@@ -110,30 +130,28 @@ def _write_array(group: zarr.Group, name: str, variable: xarray.Variable, *, is_
 def create_array(
     group: zarr.Group, name: str, variable: xarray.Variable, rows: int, chunk: int, *, is_coordinate: bool
 ) -> zarr.Array:
-    """Make the array of a variable for so many rows, so many in a chunk; rows that are not written are NaN."""
+    """Make the array of a variable for so many rows, so many in a chunk; rows that are not written are NaN.
+
+    Chunks are compressed, then get a checksum of what is on disk.
+    """
     return group.create_array(
         name,
         shape=(rows, *variable.shape[1:]),
         dtype="float64",
         chunks=(chunk, *variable.shape[1:]),
-        compressors=codecs(),
+        compressors=(BloscCodec(cname="zstd", clevel=3, shuffle="shuffle"), Crc32cCodec()),
         fill_value=float("nan"),
         dimension_names=[str(dimension) for dimension in variable.dims],
         attributes=variable.attrs | ({} if is_coordinate else {"coordinates": "time"}),
     )
 
 
-def codecs() -> tuple[BloscCodec, Crc32cCodec]:
-    """Return how chunks are written: compressed, then with a checksum of what is on disk."""
-    return BloscCodec(cname="zstd", clevel=3, shuffle="shuffle"), Crc32cCodec()
-
-
 def write_whole(path: Path, text: str) -> None:
     """Write a small file at once: a reader sees the old one or the new one, and a killed writer leaves a `.partial`."""
-    part = path.with_name(f"{path.name}.{uuid.uuid4().hex}.partial")
+    part = sibling(path, "partial")
     try:
         part.write_text(text)
-        os.replace(part, path)
+        part.replace(path)
     finally:
         part.unlink(missing_ok=True)
 

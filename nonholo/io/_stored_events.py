@@ -11,11 +11,10 @@ import numpy as np
 
 from nonholo._results import Outcome
 from nonholo._types import Float, Int
-from nonholo.orbit import Crossings, EventLog, Orbit
+from nonholo.orbit import STATES, Crossings, EventLog, Orbit
 
 EVENTS = "run/events"
 _PLACE = 4  # entries of a row before its state: event, step, fraction, direction
-_STATE = ("time", "reduced_momentum", "cayley", "pose", "turned")
 
 
 class Seen(NamedTuple):
@@ -70,7 +69,7 @@ def rows_of(log: EventLog) -> Float[np.ndarray, "C width"]:
 
 
 def _rows(event: int, found: Crossings) -> np.ndarray:
-    states = [rows for name in _STATE if (rows := getattr(found.states, name)) is not None]
+    states = [rows for name in STATES if (rows := getattr(found.states, name)) is not None]
     return np.column_stack([np.full(len(found), event), found.step, found.fraction, found.direction, *states])
 
 
@@ -80,10 +79,10 @@ def log_of(rows: Float[np.ndarray, "C width"], names: tuple[str, ...], orbit: Or
 
 
 def _found(rows: np.ndarray, orbit: Orbit) -> Crossings:
-    widths = [_width(getattr(orbit, name)) for name in _STATE[:-1]]
+    widths = [_width(getattr(orbit, name)) for name in STATES[:-1]]
     columns = np.split(rows, np.cumsum([_PLACE, *widths]), axis=1)
     place, *states, turned = map(np.ascontiguousarray, columns)
-    kept = {name: None if getattr(orbit, name) is None else part for name, part in zip(_STATE, states, strict=False)}
+    kept = {name: None if getattr(orbit, name) is None else part for name, part in zip(STATES, states, strict=False)}
     kept |= {"time": states[0][:, 0], "turned": turned[:, 0] if turned.shape[1] else None}
     reached = dataclasses.replace(orbit, outcome=Outcome.successful, save_every=1, events=None, **kept)
     step, direction = (place[:, entry].astype(np.int64) for entry in (1, 3))

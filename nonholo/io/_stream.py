@@ -9,7 +9,6 @@ store is unfinished it has no outcome among its attributes and no consolidated m
 import dataclasses
 import functools
 import json
-import shutil
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,7 +22,7 @@ from nonholo.io._dataset import orbit_to_dataset
 from nonholo.io._load import chunk_name, chunk_path, read_attributes, read_chunk
 from nonholo.io._lock import owner_of
 from nonholo.io._plan import Checkpoint, Plan, packed_checkpoint, unpacked_checkpoint
-from nonholo.io._save import check_target, consolidate, create_array, edit_attributes, put_in_place, sibling
+from nonholo.io._save import check_target, consolidate, create_array, edit_attributes, new_beside, put_in_place
 from nonholo.io._stored_crossings import chunks_of, create_crossings, cut_crossings, flaw_of_rows, write_crossings
 from nonholo.io._stored_events import EVENTS, Seen, seen_nothing
 from nonholo.orbit import EventLog, Orbit
@@ -190,7 +189,7 @@ class Stream:
     def _arrays(self) -> dict[str, zarr.Array]:
         names = [*json.loads(read_attributes(self.path)["arrays"]), _CHECKPOINTS]
         names += [EVENTS] if self.events is not None else []
-        return {name: _opened(self.path, name) for name in names}
+        return {name: writable_array(self.path, name) for name in names}
 
 
 def create_stream(
@@ -199,13 +198,9 @@ def create_stream(
     """Make a store with the first checkpoint and no rows yet; it appears at the path only when it is complete."""
     target = path.resolve()
     check_target(target)
-    part = sibling(target, "partial")
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
+    with new_beside(path) as part:
         _create(part, first, plan, opening, {} if events is None else {"events": json.dumps(events)})
         put_in_place(part, target, overwrite=False)
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
     return Stream(target, plan, first.pose is not None)
 
 
@@ -219,7 +214,8 @@ def open_stream(path: str | Path) -> Stream:
     return Stream(Path(path).resolve(), Plan(run["steps"], stored["save_every"], run["rows"]), run["reconstruct"])
 
 
-def _opened(path: Path, name: str) -> zarr.Array:
+def writable_array(path: Path, name: str) -> zarr.Array:
+    """Open an array of a store to go on with."""
     try:
         return zarr.open_array(path / name, mode="r+", zarr_format=3)
     except Exception as failure:

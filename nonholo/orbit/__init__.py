@@ -1,10 +1,11 @@
 """The orbit: compact states of a motion and their decoding by the group. Nothing is simulated here."""
 
-from nonholo.orbit._crossings import Crossings, EventLog, joined_crossings, joined_logs, joined_states
-from nonholo.orbit._orbit import AbstractMotion, Orbit, as_orbit
+from nonholo.orbit._crossings import Crossings, EventLog, joined_crossings, joined_states
+from nonholo.orbit._orbit import STATES, AbstractMotion, Orbit, as_orbit
 from nonholo.orbit._poses import configurations, unwrapped
 
 __all__ = [
+    "STATES",
     "AbstractMotion",
     "Crossings",
     "EventLog",
@@ -12,7 +13,6 @@ __all__ = [
     "as_orbit",
     "configurations",
     "joined_crossings",
-    "joined_logs",
     "joined_states",
     "unwrapped",
 ]

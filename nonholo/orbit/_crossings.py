@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from nonholo._types import Float, Int
-from nonholo.orbit._orbit import Orbit
+from nonholo.orbit._orbit import STATES, Orbit
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -87,8 +87,7 @@ class EventLog:
 
 def joined_states(parts: Sequence[Orbit]) -> Orbit:
     """Return states of one motion one after another."""
-    names = ("time", "reduced_momentum", "cayley", "pose", "turned")
-    columns = {name: [getattr(part, name) for part in parts] for name in names}
+    columns = {name: [getattr(part, name) for part in parts] for name in STATES}
     kept = {name: None if rows[0] is None else np.concatenate(rows) for name, rows in columns.items()}
     return dataclasses.replace(parts[0], **kept)
 
@@ -99,9 +98,3 @@ def joined_crossings(parts: Sequence[Crossings]) -> Crossings:
         np.concatenate([getattr(part, name) for part in parts]) for name in ("step", "fraction", "direction")
     )
     return Crossings(step, fraction, direction, joined_states([part.states for part in parts]))
-
-
-def joined_logs(logs: Sequence[EventLog]) -> EventLog:
-    """Return what was found in blocks of a run one after another."""
-    found = tuple(joined_crossings(column) for column in zip(*(log.found for log in logs), strict=True))
-    return EventLog(logs[-1].names, found, logs[-1].stopped_by)

@@ -19,6 +19,8 @@ from nonholo.groups import SE
 from nonholo.orbit._poses import configurations, unwrapped
 from nonholo.systems import AbstractLRSystem, System
 
+STATES = ("time", "reduced_momentum", "cayley", "pose", "turned")  # the arrays of an orbit, a row for each state
+
 
 def as_orbit(where: str, value: Any, coordinates: str) -> "Orbit":
     """Refuse what is not an orbit on a group; `coordinates` says what to do with an orbit in coordinates."""
@@ -114,8 +116,7 @@ class Orbit:
 
     def chosen(self, states: slice | np.ndarray) -> "Orbit":
         """Return some of the states, by a slice or a mask, each with the same `save_every` as before."""
-        names = ("time", "reduced_momentum", "cayley", "pose", "turned")
-        kept = {name: None if (rows := getattr(self, name)) is None else rows[states] for name in names}
+        kept = {name: None if (rows := getattr(self, name)) is None else rows[states] for name in STATES}
         return dataclasses.replace(self, **kept)
 
     @property

@@ -1,6 +1,5 @@
 """`iterate`: the run of `simulate`, block by block."""
 
-import dataclasses
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,9 +11,9 @@ from nonholo.discrete import Discretization
 from nonholo.discrete._branch_rules import BranchRule
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
-from nonholo.simulation._events_pieces import watched_pieces
+from nonholo.simulation._events_pieces import searched_first, stretch_of
 from nonholo.simulation._events_run import watched
-from nonholo.simulation._events_scan import Watch, search
+from nonholo.simulation._events_scan import Watch
 from nonholo.simulation._prepared import checked_counts, first_state
 from nonholo.simulation._stored_run import rows_of_block
 from nonholo.simulation._stretch import CompiledRun, compiled_run, opened
@@ -83,29 +82,19 @@ def iterate(
     start = first_state(discrete, configuration, int(reconstruct), True, starts)
     vector, first = opened(run, start, steps, throw)
     if not len(first):
-        return iter((first if watch is None else dataclasses.replace(first, events=search(watch, first, 0)[0].log()),))
-    if watch is not None:
-        return _watched_blocks(run, vector, watch, plan, throw=throw, progress=progress)
-    return _blocks(run, vector, plan, throw=throw, progress=progress)
+        return iter((searched_first(watch, first)[0],))
+    return _blocks(run, vector, watch, plan, throw=throw, progress=progress)
 
 
-def _blocks(run: CompiledRun, vector: np.ndarray, plan: Plan, *, throw: bool, progress: bool) -> Iterator[Orbit]:
-    with progress_bar("steps", progress) as report:
-        for number in range(plan.blocks):
-            begin, stop = plan.begin(number), plan.stop(number)
-            block, done = run.stretch(vector, begin, stop, lambda now: report(now, plan.steps), opening=number == 0)
-            yield from _given(run, block, done, plan.steps, throw)
-            if block.outcome != Outcome.successful:
-                return
-
-
-def _watched_blocks(
-    run: CompiledRun, vector: np.ndarray, watch: Watch, plan: Plan, *, throw: bool, progress: bool
+def _blocks(
+    run: CompiledRun, vector: np.ndarray, watch: Watch | None, plan: Plan, *, throw: bool, progress: bool
 ) -> Iterator[Orbit]:
     with progress_bar("steps", progress) as report:
-        for piece in watched_pieces(run, vector, watch, plan, lambda now: report(now, plan.steps)):
-            block = run.orbit(piece.rows, piece.begun, piece.begun == 0, piece.outcome)
-            yield from _given(run, dataclasses.replace(block, events=piece.log), piece.done, plan.steps, throw)
+        for number in range(plan.blocks):
+            block, done, watch = stretch_of(run, vector, watch, plan, number, lambda now: report(now, plan.steps))
+            yield from _given(run, block, done, plan.steps, throw)
+            if block.outcome != Outcome.successful or (watch is not None and watch.stopped_by):
+                return
 
 
 def _given(run: CompiledRun, block: Orbit, done: int, steps: int, throw: bool) -> Iterator[Orbit]:

@@ -1,16 +1,16 @@
-"""Stretches of a compiled run that is searched for events at every single step, whatever states it keeps."""
+"""Blocks of a compiled run; one with events is searched at every single step, whatever states it keeps."""
 
 import dataclasses
 import operator
-from collections.abc import Callable, Iterable, Iterator
-from typing import Any, NamedTuple, TypeAlias
+from collections.abc import Callable, Iterable
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from nonholo import kernels
 from nonholo._results import Outcome
 from nonholo.io import Plan
-from nonholo.orbit import EventLog
+from nonholo.orbit import Orbit
 from nonholo.simulation._events_scan import Watch, search
 from nonholo.simulation._stretch import CompiledRun
 
@@ -20,52 +20,29 @@ PIECE, NUMBERS = 1 << 14, 1 << 20  # at most in a stretch that is searched at on
 _SHORT = 256  # steps of the first stretch, which an event may soon end; others are at most as long as all before
 
 
-class Piece(NamedTuple):
-    """A stretch of a watched run.
+def searched_first(watch: Watch | None, first: Orbit) -> tuple[Orbit, Watch | None]:
+    """Return the first state of a run with what was found there if there is a watch, and what is known then."""
+    if watch is None:
+        return first, None
+    found, _ = search(watch, first, 0)
+    return dataclasses.replace(first, events=found.log()), found
 
-    Attributes:
-        rows: The saved states as the kernel sees them: momenta, charts, poses.
-        begun: The step before which the stretch begins.
-        done: The last good step.
-        outcome: How it ended.
-        log: The crossings in it.
+
+def stretch_of(
+    run: CompiledRun, vector: np.ndarray, watch: Watch | None, plan: Plan, block: int, report: Callable[[int], object]
+) -> tuple[Orbit, int, Watch | None]:
+    """Compute a block of a run, to its end or to what ends the run, looking for events if there is a watch.
+
+    The vector becomes that of the last good step.
+
+    Returns:
+        The states of the block, the last good step, and what is known of the events then.
     """
-
-    rows: KernelRows
-    begun: int
-    done: int
-    outcome: Outcome
-    log: EventLog
-
-
-def watched_pieces(
-    run: CompiledRun, vector: np.ndarray, watch: Watch, plan: Plan, report: Callable[[int], object]
-) -> Iterator[Piece]:
-    """Go through a compiled run block by block, looking for events at every step; end with the run."""
-    for block in range(plan.blocks):
-        begin, stop = plan.begin(block), plan.stop(block)
-        piece, watch = watched_piece(run, vector, watch, begin, stop, report, opening=block == 0)
-        yield piece
-        if piece.outcome != Outcome.successful or watch.stopped_by:
-            return
-
-
-def watched_piece(
-    run: CompiledRun,
-    vector: np.ndarray,
-    watch: Watch,
-    begun: int,
-    stop: int,
-    report: Callable[[int], object],
-    *,
-    opening: bool,
-) -> tuple[Piece, Watch]:
-    """Go on from step `begun` to step `stop` or to what ends the run; return the stretch, and what is known after it.
-
-    The vector, whose first part is here the row of the state reached, becomes that of the last good step.
-    """
+    begun, stop, opening = plan.begin(block), plan.stop(block), block == 0
+    if watch is None:
+        return *run.stretch(vector, begun, stop, report, opening=opening), None
     width, fine = sum(run.sizes), dataclasses.replace(run, every=1)
-    state = vector[width:]
+    state = vector[width:]  # before it is, with events, the row of the state reached: the last one that was searched
     last = _each(lambda row: row[None], np.split(vector[:width], np.cumsum(run.sizes)[:-1]))
     first = fine.orbit(last, begun, True, Outcome.successful)
     watch, _ = search(dataclasses.replace(watch, parts=()), first, begun)
@@ -74,18 +51,13 @@ def watched_piece(
         code, seen = _advanced(run, state, last, min(stop - done, max(done, _SHORT)))
         watch, count = search(watch, fine.orbit(seen, done, True, Outcome.successful), done)
         saved = slice(run.every - done % run.every, count, run.every)
-        kept.append(_each(operator.itemgetter(saved), seen))
+        kept.append(_each(lambda rows, saved=saved: rows[saved].copy(), seen))  # a view would hold every state
         last, done = _each(operator.itemgetter(slice(count - 1, count)), seen), done + count - 1
         report(done)
     outcome = Outcome.successful if watch.stopped_by else Outcome(code)
-    rows = joined_rows(kept)
+    orbit = run.orbit(_each(np.concatenate, zip(*kept, strict=True)), begun, opening, outcome)
     vector[:width] = np.concatenate([row[0] for row in last])
-    return Piece(rows, begun, done, outcome, watch.log()), watch
-
-
-def joined_rows(parts: Iterable[KernelRows]) -> KernelRows:
-    """Return rows of the kernel one after another."""
-    return _each(np.concatenate, zip(*parts, strict=True))
+    return dataclasses.replace(orbit, events=watch.log()), done, watch
 
 
 def _advanced(run: CompiledRun, state: np.ndarray, last: KernelRows, most: int) -> tuple[int, KernelRows]:

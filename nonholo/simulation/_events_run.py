@@ -1,4 +1,4 @@
-"""Runs of the discrete map that look for events at every step, whatever states they keep."""
+"""Runs of the discrete map in memory; those with events look for them at every step, whatever states they keep."""
 
 import dataclasses
 from collections.abc import Callable
@@ -10,14 +10,12 @@ from nonholo._results import Outcome, finished
 from nonholo.discrete import Discretization
 from nonholo.discrete._branch_rules import BranchRule
 from nonholo.io import Plan
-from nonholo.orbit import Orbit, joined_logs
+from nonholo.orbit import Orbit
 from nonholo.simulation._events import Event, checked_events
 from nonholo.simulation._events_between import between_states
-from nonholo.simulation._events_pieces import NUMBERS, PIECE, joined_rows, watched_pieces
+from nonholo.simulation._events_pieces import NUMBERS, PIECE, searched_first, stretch_of
 from nonholo.simulation._events_scan import Watch, search
 from nonholo.simulation._prepared import Start
-from nonholo.simulation._rule_run import Rows
-from nonholo.simulation._stored_run import rows_of_block
 from nonholo.simulation._stretch import CompiledRun, opened
 from nonholo.systems import AbstractLRSystem
 
@@ -43,29 +41,21 @@ def watched_events(
     return named
 
 
-def compiled_with_events(
-    run: CompiledRun, start: Start, watch: Watch, steps: int, *, throw: bool, progress: bool
+def run_compiled(
+    run: CompiledRun, start: Start, watch: Watch | None, steps: int, *, throw: bool, progress: bool
 ) -> Orbit:
-    """Run a compiled step from a start, looking for events; return the orbit with what was found."""
+    """Run a compiled step from a start, looking for events if there is a watch; return the orbit."""
     vector, first = opened(run, start, steps, throw)
     if not len(first):
-        return dataclasses.replace(first, events=search(watch, first, 0)[0].log())
-    plan = Plan(steps, run.every, rows_of_block("simulate(steps=...)", run, steps, None))
+        return searched_first(watch, first)[0]
+    whole = Plan(steps, run.every, 1 + steps // run.every)  # one block
     with progress_bar("steps", progress) as report:
-        pieces = list(watched_pieces(run, vector, watch, plan, lambda done: report(done, steps)))
-    rows, end = joined_rows(piece.rows for piece in pieces), pieces[-1]
-    log = joined_logs([piece.log for piece in pieces])
-    orbit = dataclasses.replace(run.orbit(rows, 0, True, end.outcome), events=log)
-    return finished(orbit, float(run.discrete.time_step), end.done, steps, throw)
+        orbit, done, _ = stretch_of(run, vector, watch, whole, 0, lambda now: report(now, steps))
+    return finished(orbit, float(run.discrete.time_step), done, steps, throw)
 
 
 def run_with_events(
-    run: Callable[[int, int, bool], tuple[Rows, Outcome, int]],
-    orbit_of: Callable[[Rows, Outcome, int], Orbit],
-    watch: Watch,
-    steps: int,
-    every: int,
-    progress: bool,
+    run: Callable[[int, int, bool], tuple[Orbit, int]], watch: Watch, steps: int, every: int, progress: bool
 ) -> tuple[Orbit, int]:
     """Run a step that is not compiled, keeping every state; return the orbit with what was found, and the last step.
 
@@ -73,17 +63,15 @@ def run_with_events(
     """
     length, ends = min(steps, _FIRST), any(event.stop for event in watch.events.values())
     while True:
-        rows, outcome, done = run(length, 1, progress)
-        seen, kept = searched(watch, orbit_of(rows, outcome, 1))
-        if seen.stopped_by or outcome != Outcome.successful or length == steps:
+        orbit, done = run(length, 1, progress)
+        seen, kept = searched(watch, orbit)
+        if seen.stopped_by or orbit.outcome != Outcome.successful or length == steps:
             break
         length = min(steps, _GROWTH * length) if ends else steps
+    orbit = dataclasses.replace(orbit[:kept:every], events=seen.log())
     if seen.stopped_by:
-        outcome, done = Outcome.successful, kept - 1
-    momenta, charts, poses = rows
-    thin = slice(0, kept, every)
-    orbit = orbit_of((momenta[thin], charts[thin], poses if poses is None else poses[thin]), outcome, every)
-    return dataclasses.replace(orbit, events=seen.log()), done
+        return dataclasses.replace(orbit, outcome=Outcome.successful), kept - 1
+    return orbit, done
 
 
 def searched(watch: Watch, orbit: Orbit) -> tuple[Watch, int]:

@@ -44,7 +44,7 @@ class Watch:
         return [event.last - count for event, count in zip(self.events.values(), done, strict=True)]
 
     def gone_on(
-        self, found: tuple[Crossings, ...], values: np.ndarray, heading: float | None, stopped_by: str | None
+        self, found: tuple[Crossings, ...], values: np.ndarray | None, heading: float | None, stopped_by: str | None
     ) -> "Watch":
         """Return what is known after another stretch."""
         counts = tuple(map(operator.add, self.counts or (0,) * len(found), map(len, found)))
@@ -79,7 +79,7 @@ def search(watch: Watch, stretch: Orbit, begun: int) -> tuple[Watch, int]:
         stopped, found, kept = _cut(watch, found, [event for event, end in enumerate(ends) if end == last])
     found = tuple(dataclasses.replace(part, step=part.step + begun) for part in found)
     heading = float(stretch.turned[-1]) if stretch.turned is not None else None
-    return watch.gone_on(found, values[:, -1:], heading, stopped), kept
+    return watch.gone_on(found, values[:, -1:] if len(stretch) else watch.values, heading, stopped), kept
 
 
 def _values(watch: Watch, stretch: Orbit) -> Float[np.ndarray, "E K"]:

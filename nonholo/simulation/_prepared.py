@@ -52,6 +52,8 @@ def first_pose(discrete: Discretization, configuration: Any, saved: int, compile
         got = f"{saved} of {group.size}^2 numbers each"
         remedy = "Pass reconstruct=False or a larger save_every."
         raise error("simulate(reconstruct=...)", f"make poses of at most {_LARGEST} numbers", got, remedy)
-    if configuration is not None:
-        return in_group("simulate(configuration=...)", group, configuration)
-    return None if saved == 0 and compiled and is_secular(discrete) else group.identity
+    needless = saved == 0 and compiled and is_secular(discrete)
+    if configuration is None:
+        return None if needless else group.identity
+    g = in_group("simulate(configuration=...)", group, configuration)
+    return None if needless else g

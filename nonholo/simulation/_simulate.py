@@ -1,37 +1,25 @@
 """`simulate`: an orbit of the discrete map, from a checked start to a decoded result."""
 
-import functools
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, overload
 
 import numpy as np
 
-from nonholo import kernels
 from nonholo._checks import error
-from nonholo._progress import progress_bar
-from nonholo._results import Outcome, finished
+from nonholo._results import finished
 from nonholo.discrete import Discretization
 from nonholo.discrete._branch_rules import BranchRule
 from nonholo.discrete._composition import compiled_step
 from nonholo.discrete._start import check_first_state
-from nonholo.discrete._structured import (
-    Structured,
-    decoded,
-    decoded_poses,
-    encoded,
-    encoded_poses,
-    from_kernel,
-)
 from nonholo.orbit import Orbit
 from nonholo.simulation._composed_run import composed_runner
-from nonholo.simulation._events_run import compiled_with_events, run_with_events, watched
-from nonholo.simulation._prepared import checked_counts, first_state
-from nonholo.simulation._rule_run import Rows, Run, rule_runner
+from nonholo.simulation._events_run import run_compiled, run_with_events, watched
+from nonholo.simulation._prepared import Start, checked_counts, first_state
+from nonholo.simulation._rule_run import Run, rule_runner
 from nonholo.simulation._stored_run import refuse_checkpoints, run_into_store
 from nonholo.simulation._stretch import CompiledRun, compiled_run
 from nonholo.systems._coordinate_system import AbstractCoordinateDiscretization, OrbitT, refuse_in_coordinates
-
-_BLOCK = 1 << 20  # steps between two reports of progress
 
 
 @overload
@@ -171,26 +159,33 @@ def simulate(
     compiled = rule == "principal" and backend != "jax"
     held = 1 + steps // every if reconstruct else 0
     start = first_state(discrete, configuration, held, compiled, starts)
-    if watch is not None and compiled and (closed := compiled_step(discrete)) is not None:
+    if compiled and (closed := compiled_step(discrete)) is not None:
         going = CompiledRun(discrete, closed, every, reconstruct)
-        return compiled_with_events(going, start, watch, steps, throw=throw, progress=progress)
-    reduced, pose, demanded = start
-    run = _runner(discrete, backend) if rule == "principal" else rule_runner(discrete, rule, backend, demanded)
-    orbit_of = functools.partial(_orbit, discrete, reconstruct=reconstruct, rule=rule)
-    if watch is not None:
-        orbit, done = run_with_events(functools.partial(run, reduced, pose), orbit_of, watch, steps, every, progress)
-    else:
-        rows, outcome, done = run(reduced, pose, steps, every, progress)
-        orbit = orbit_of(rows, outcome, every)
-    if demanded is not None and len(orbit):
-        check_first_state(demanded, orbit[:1].displacement[0], orbit[:1].momentum[0])
+        return run_compiled(going, start, watch, steps, throw=throw, progress=progress)
+    run = _uncompiled(discrete, start, rule, backend, reconstruct)
+    orbit, done = run(steps, every, progress) if watch is None else run_with_events(run, watch, steps, every, progress)
+    if start.demanded is not None and len(orbit):
+        check_first_state(start.demanded, orbit[:1].displacement[0], orbit[:1].momentum[0])
     return finished(orbit, float(discrete.time_step), done, steps, throw)
 
 
-def _runner(discrete: Discretization, backend: str) -> Run:
-    closed = compiled_step(discrete)
-    if closed is not None and backend != "jax":
-        return lambda *arguments: _run_compiled(discrete, closed, *arguments)
+def _uncompiled(
+    discrete: Discretization, start: Start, rule: BranchRule, backend: str, reconstruct: bool
+) -> Callable[[int, int, bool], tuple[Orbit, int]]:
+    """Return what runs a map that is not compiled: from `steps`, `every`, `progress` to the orbit and the last step."""
+    reduced, pose, demanded = start
+    run = _by_definition(discrete, backend) if rule == "principal" else rule_runner(discrete, rule, backend, demanded)
+    branch = rule if isinstance(rule, str) else "callable"
+
+    def orbit_of(steps: int, every: int, progress: bool) -> tuple[Orbit, int]:
+        (momenta, charts, poses), outcome, done = run(reduced, pose, steps, every, progress)
+        time, kept = discrete.time_step * (every * np.arange(len(momenta))), poses if reconstruct else None
+        return Orbit(discrete, time, momenta, charts, kept, outcome, every, branch=branch), done
+
+    return orbit_of
+
+
+def _by_definition(discrete: Discretization, backend: str) -> Run:
     if backend == "numba":
         remedy = "Pass backend='jax', or difference='matrix'."
         raise error("simulate(backend=...)", "have a closed form of the step", repr(discrete.difference), remedy)
@@ -199,43 +194,3 @@ def _runner(discrete: Discretization, backend: str) -> Run:
     if discrete.order > 2:
         return composed_runner(discrete)
     return lambda *arguments: run_by_definition(discrete, *arguments)
-
-
-def _run_compiled(
-    discrete: Discretization,
-    closed: Structured,
-    reduced: np.ndarray,
-    pose: np.ndarray,
-    steps: int,
-    every: int,
-    progress: bool,
-) -> tuple[Rows, Outcome, int]:
-    group = discrete.system.group
-    scaled, coded = encoded(closed, reduced), encoded_poses(closed, group, pose) if pose.size else pose
-    code, state = kernels.start(closed.body, scaled, coded)
-    started = code == 0
-    saved = 1 + steps // every
-    momenta, charts, poses = (np.empty((saved, size)) for size in (*kernels.sizes(closed.body)[:2], coded.size))
-    momenta[0], charts[0], poses[0] = scaled, kernels.chart_of(closed.body, state), coded
-    done, block = 0, max(1, _BLOCK // every) * every
-    with progress_bar("steps", progress) as report:
-        while code == 0 and done < steps:
-            first = 1 + done // every
-            chunk = min(block, steps - done)
-            rows = momenta[first:], charts[first:], poses[first:]
-            good, code = kernels.advance(closed.body, state, chunk, every, rows)
-            done += good
-            report(done, steps)
-    kept = 1 + done // every if started else 0
-    poses = decoded_poses(closed, group, poses[:kept]) if pose.size else None
-    rows = decoded(closed, momenta[:kept]), from_kernel(closed, charts[:kept]), poses
-    return rows, Outcome(code), done
-
-
-def _orbit(
-    discrete: Discretization, rows: Rows, outcome: Outcome, every: int, reconstruct: bool, rule: BranchRule
-) -> Orbit:
-    momenta, charts, poses = rows
-    time = discrete.time_step * (every * np.arange(len(momenta)))
-    branch = rule if isinstance(rule, str) else "callable"
-    return Orbit(discrete, time, momenta, charts, poses if reconstruct else None, outcome, every, branch=branch)

@@ -1,7 +1,5 @@
 """Runs that are written to a store block by block, in bounded memory, and can stop at any moment."""
 
-import dataclasses
-import errno
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -12,13 +10,13 @@ from nonholo._progress import progress_bar
 from nonholo._results import Outcome, finished
 from nonholo.io import Checkpoint, Plan, Stream
 from nonholo.orbit import Orbit
-from nonholo.simulation._events_scan import Watch, search
+from nonholo.simulation._events_pieces import searched_first, stretch_of
+from nonholo.simulation._events_scan import Watch
 from nonholo.simulation._prepared import Start
-from nonholo.simulation._stored_events import computed_with_events, descriptions, seen_by
+from nonholo.simulation._stored_events import descriptions, gone_on_from, seen_by
 from nonholo.simulation._stretch import CompiledRun, opened
 
 _ROWS, _NUMBERS, _STEPS = 1 << 16, 1 << 22, 1 << 23  # at most in a block: states, numbers in an array, steps
-_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 _LOADED = 1 << 27  # numbers of an orbit that is returned whole, 1 GiB
 
 
@@ -37,13 +35,12 @@ def run_into_store(
     io.check_target(store)
     plan = Plan(steps, run.every, rows_of_block("simulate(checkpoint_every=...)", run, steps, checkpoint_every))
     vector, first = opened(run, start, steps, throw)
-    opening, events = Checkpoint(0, Outcome.successful, vector), None
-    if watch is not None:
-        found, _ = search(watch, first, 0)
-        first = dataclasses.replace(first, events=found.log())
-        opening, events = opening._replace(seen=seen_by(found, 0)), descriptions(watch.events)
+    first, found = searched_first(watch, first)
     if not len(first):
         return first
+    opening, events = Checkpoint(0, Outcome.successful, vector), None
+    if found is not None:
+        opening, events = opening._replace(seen=seen_by(found, 0)), descriptions(found.events)
     stream = io.create_stream(Path(store), first, plan, opening, events)
     with io.locked(stream.path):
         return go_on(run, stream, watch, throw=throw, progress=progress)
@@ -72,15 +69,8 @@ def go_on(run: CompiledRun, stream: Stream, watch: Watch | None, *, throw: bool,
     """Compute what a locked store lacks, block after block, and return the orbit."""
     stream.prepare()
     _warn_of_other_versions(stream)
-    again = f"nonholo.resume({str(stream.path)!r})"
-    try:
+    with io.telling_how_to_go_on(stream.path, "The run", lambda: f"step {_standing(stream)}"):
         reached = _completed(run, stream, watch, progress)
-    except KeyboardInterrupt:
-        raise KeyboardInterrupt(f"Stopped at step {_standing(stream)}. Go on with {again} (nonholo resume).") from None
-    except OSError as failure:
-        remedy = "Free space" if failure.errno in _FULL else "Remedy that"
-        reason = f"{failure.strerror}. The run stands at step {_standing(stream)}. {remedy}, then call {again}"
-        raise OSError(failure.errno, reason, str(stream.path)) from failure
     orbit = _loaded(run, stream, reached)
     return finished(orbit, float(run.discrete.time_step), reached.done, stream.plan.steps, throw)
 
@@ -143,13 +133,11 @@ def _computed(
     report: Callable[[int], object],
 ) -> Checkpoint:
     """Compute a block and write it."""
-    plan, begin = stream.plan, _known(start)
-    if watch is None:
-        vector = begin.vector.copy()
-        orbit, done = run.stretch(vector, plan.begin(block), plan.stop(block), report, opening=block == 0)
-        reached = Checkpoint(done, orbit.outcome, vector)
-    else:
-        orbit, reached = computed_with_events(run, stream, watch, block, begin, report)
+    begin = _known(start)
+    vector, (going, chunks) = begin.vector.copy(), gone_on_from(watch, begin.seen)
+    orbit, done, now = stretch_of(run, vector, going, stream.plan, block, report)
+    seen = None if now is None else seen_by(now, stream.chunks_after(chunks, orbit.events))
+    reached = Checkpoint(done, orbit.outcome, vector, seen)
     stream.write(block, orbit, reached)
     return reached
 

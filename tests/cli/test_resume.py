@@ -76,6 +76,19 @@ def test_ctrl_c_says_how_to_go_on(stopped: Path, nonholo: Command, monkeypatch: 
     assert "Stopped at step 199 of 500" in result.stderr
 
 
+def test_ctrl_c_does_not_hide_damage(stopped: Path, nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A damaged chunk is named even if Ctrl-C ends the command before its block is whole again."""
+
+    def interrupted(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    (stopped / "pose" / "c" / "2" / "0").unlink()
+    monkeypatch.setattr(Stream, "write", interrupted)
+    result = nonholo("resume", stopped)
+    assert result.exit_code == 1
+    assert "chunk c/2/0 of the array pose" in result.stderr
+
+
 def test_locked_and_foreign_stores_are_refused(stopped: Path, nonholo: Command) -> None:
     """A store that another process writes and one that does not exist end in a sentence and exit code 2."""
     (stopped / "run" / "lock.json").write_text('{"pid": 1, "host": "elsewhere", "since": "today"}')

@@ -1,5 +1,6 @@
 """`nonholo sweep`, and `info`, `plot`, `resume` and `extend` of what it leaves."""
 
+import errno
 import json
 import os
 import re
@@ -22,6 +23,7 @@ from nonholo.cli._problems import ScenarioError
 from nonholo.cli._scenario_file import Setting, parse_setting
 from nonholo.cli._sweep_file import load_sweep_scenario, sweep_text
 from nonholo.ensembles import standing_of
+from nonholo.ensembles._store import SweepStore
 from nonholo.io import locked
 
 Command = Callable[..., Result]
@@ -342,6 +344,25 @@ def test_resume_of_a_stopped_sweep(stopped: Path, nonholo: Command) -> None:
     assert told["done"] == 12
     whole = _told(nonholo("sweep", _written(RANDOM), "--json", "--no-plot"))
     assert nh.load_sweep(stopped).equals(nh.load_sweep(whole["store"]))
+
+
+def test_full_disk_does_not_hide_damage(stopped: Path, nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Damaged chunks are named even if the disk is full before the last block, whichever that is, is written."""
+    write, written = SweepStore.write, []
+
+    def full(*arguments: Any) -> None:
+        written.append(arguments)
+        if len(written) == 12:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        write(*arguments)
+
+    for chunk in (stopped / "final_time" / "c").iterdir():
+        chunk.unlink()
+    monkeypatch.setattr(SweepStore, "write", full)
+    result = nonholo("resume", stopped, "--scheduler", "synchronous")
+    assert result.exit_code == 1
+    assert "No space left on device. The sweep stands at" in result.stderr
+    assert "of the array final_time. Block" in result.stderr
 
 
 def test_resume_of_a_damaged_sweep(nonholo: Command) -> None:

@@ -149,7 +149,7 @@ def test_no_room_for_a_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     """If not even the empty store can be written, nothing is left at its path nor beside it."""
     full = OSError(errno.ENOSPC, "No space left on device")
     monkeypatch.setattr(io, "create_array", lambda *_, **__: (_ for _ in ()).throw(full))
-    with pytest.raises(OSError, match=r"No space left on device. Nothing was computed yet.*run\.zarr"):
+    with pytest.raises(OSError, match=r"No space left on device. Nothing at this path was changed.*run\.zarr"):
         swept(tmp_path / "run.zarr")
     assert not list(tmp_path.iterdir())
 

@@ -1,6 +1,7 @@
 """The last poses of a sweep as CSV: those of `simulate`, in the user's body frame."""
 
 import csv
+import json
 from pathlib import Path
 
 import numpy as np
@@ -55,6 +56,36 @@ def test_space(tmp_path: Path) -> None:
     vector = np.array([g[2, 1] - g[1, 2], g[0, 2] - g[2, 0], g[1, 0] - g[0, 1]]) / (4 * w)
     assert abs(4 * w * w - 1 - np.trace(g)) < 1e-13
     assert np.abs(vector - [x, y, z]).max() < 1e-13
+
+
+def test_reductions_need_not_be_found(tmp_path: Path) -> None:
+    """Poses beside what a reduction without an importable name keeps are those of a sweep without it."""
+    for name, more in (("plain", []), ("own", [lambda batch: {"mine": batch.outcome}])):
+        task = _task(SLEIGH, reductions=["final_state", *more])
+        nh.sweep(task, nh.Grid({"a": [0.1, 0.3]}), tmp_path / f"{name}.zarr")
+        sweep_to_csv(tmp_path / f"{name}.zarr", tmp_path / f"{name}.csv")
+    assert len(_read(tmp_path / "own.csv")) == 2
+    assert (tmp_path / "own.csv").read_text() == (tmp_path / "plain.csv").read_text()
+
+
+def test_refused_for_a_function(tmp_path: Path) -> None:
+    """What a function calls a pose is of no known system, and is refused like a sweep without poses."""
+    nh.sweep(lambda block: {"final_pose": block["a"]}, nh.Grid({"a": [0.1, 0.3]}), tmp_path / "s.zarr")
+    with pytest.raises(ValueError, match=r"`sweep_to_csv\(store=\.\.\.\)` must hold poses"):
+        sweep_to_csv(tmp_path / "s.zarr", tmp_path / "poses.csv")
+    assert not (tmp_path / "poses.csv").exists()
+
+
+def test_refused_without_the_system(tmp_path: Path) -> None:
+    """A store whose discretisation is no data is told to hold it, not to be passed a task."""
+    nh.sweep(_task(SLEIGH), nh.Grid({"a": [0.1, 0.3]}), tmp_path / "s.zarr")
+    document = json.loads((tmp_path / "s.zarr" / "zarr.json").read_text())
+    told = json.loads(document["attributes"]["sweep"])
+    told["task"]["motion"] = json.dumps(json.loads(told["task"]["motion"]) | {"difference": "callable"})
+    document["attributes"]["sweep"] = json.dumps(told)
+    (tmp_path / "s.zarr" / "zarr.json").write_text(json.dumps(document))
+    with pytest.raises(ValueError, match=r"hold its system as data\. Got .*one whose difference is a callable\."):
+        sweep_to_csv(tmp_path / "s.zarr", tmp_path / "poses.csv")
 
 
 def test_refused_without_poses(tmp_path: Path) -> None:

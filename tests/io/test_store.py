@@ -204,6 +204,18 @@ except OSError as failure:
     assert list(store.parent.iterdir()) == [store]
 
 
+@pytest.mark.parametrize("place", ["run.zarr", "folder/run.zarr"])
+def test_refused_place_is_named(place: str, tmp_path: Path) -> None:
+    """A place below a file is refused with its path and a remedy, for a run into a store as for a saved orbit."""
+    (tmp_path / "file").write_text("mine")
+    path = tmp_path / "file" / place
+    for write in (lambda: nh.save_orbit(_orbit(5), path), lambda: _orbit(5, store=path)):
+        with pytest.raises(OSError, match=r"Nothing at this path was changed\. .*choose another path") as caught:
+            write()
+        assert caught.value.filename == str(path)
+    assert (tmp_path / "file").read_text() == "mine"
+
+
 def test_failed_swap_brings_the_old_store_back(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """If the new store cannot take its place, the old one returns to it."""
     rename = Path.rename

@@ -226,6 +226,25 @@ def test_blocks_of_one_state() -> None:
     assert sum(len(block.events[0]) for block in blocks) == len(nh.simulate(ROUND, **run).events[0]) == 2
 
 
+@pytest.mark.parametrize("every", [1, 7])
+def test_blocks_of_one_state_are_those_of_the_run(every: int) -> None:
+    """With events and one state per block, each state has its own time, and the bits of the run without events."""
+    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 30, "save_every": every}
+    whole = nh.simulate(ROUND, **run)
+    blocks = list(nh.iterate(ROUND, **run, block_steps=every, events=[east]))
+    assert [len(block) for block in blocks] == [1] * (1 + 30 // every)
+    for field in STATE:
+        assert np.array_equal(np.concatenate([getattr(block, field) for block in blocks]), getattr(whole, field))
+
+
+def test_a_stored_run_without_start_has_no_crossings(tmp_path: pathlib.Path) -> None:
+    """A start beyond the fold gives an orbit of no states and crossings, and no store."""
+    beyond = {"body_velocity": (40.0, 0.0, 0.0), "steps": 3, "throw": False, "store": tmp_path / "run.zarr"}
+    orbit = nh.simulate(nh.discretize(TOP.system, 1.0), **beyond, events=[lambda orbit: orbit.time - 1.0])
+    assert (len(orbit), orbit.outcome, len(orbit.events[0])) == (0, nh.Outcome.no_real_branch, 0)
+    assert not list(tmp_path.iterdir())
+
+
 def test_crossings_of_an_orbit_are_those_of_the_run() -> None:
     """An orbit that is already there has the same crossings as the run that looks for them."""
     run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 200}

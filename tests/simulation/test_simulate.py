@@ -192,6 +192,21 @@ def test_no_poses_unless_asked() -> None:
         _ = nh.simulate(TOP, **GOOD).position
 
 
+def test_a_first_pose_that_is_not_kept_does_not_matter() -> None:
+    """A left-invariant top without poses has the same momenta from any configuration, in blocks and with events too."""
+    discrete = nh.discretize(nh.SuslovTop(np.diag([1.0, 1.3, 0.8, 1.1]) + 0.1), 0.1)
+    run = {"restricted_velocity": (1.0, 0.2, -0.6), "steps": 20, "reconstruct": False}
+    turned = {**run, "configuration": discrete.system.group.exp(np.linspace(0.1, 0.6, 6))}
+    momenta = nh.simulate(discrete, **run).reduced_momentum
+    events = [lambda orbit: orbit.time - 1.0]
+    for orbit in (
+        nh.simulate(discrete, **turned),
+        nh.simulate(discrete, **turned, events=events),
+        *nh.iterate(discrete, **turned),
+    ):
+        assert np.array_equal(orbit.reduced_momentum, momenta)
+
+
 def test_numba_backend_needs_a_closed_form() -> None:
     """The compiled backend is refused for a discrete Lagrangian without one."""
     with pytest.raises(ValueError, match="have a closed form"):

@@ -286,6 +286,15 @@ def test_events_of_a_store_without_are_refused(tmp_path: Path) -> None:
     assert nh.resume(path).events is None
 
 
+@pytest.mark.parametrize("begun_with", [None, []])
+@pytest.mark.parametrize("going_with", [None, []])
+def test_no_events_are_an_empty_list_of_them(begun_with: Any, going_with: Any, tmp_path: Path) -> None:
+    """A run without events goes on without, however that is said."""
+    path, run = tmp_path / "run.zarr", {"body_velocity": (4.0, 1.0, 0.0), "save_every": 7}
+    nh.simulate(ROUND, steps=70, events=begun_with, store=path, **run)
+    assert same_states(nh.extend(path, 70, events=going_with), nh.simulate(ROUND, steps=140, **run))
+
+
 def test_bad_functions_leave_no_store(tmp_path: Path) -> None:
     """A function that gives no number for the first state is refused before there is a store."""
     with pytest.raises(ValueError, match="take an orbit"):
