@@ -1,5 +1,6 @@
 """All blocks of a sweep by the workers of a Dask cluster; the only file that loads `distributed`."""
 
+import asyncio
 import errno
 import functools
 import itertools
@@ -9,7 +10,7 @@ import socket
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from typing import Any
 
 from nonholo._checks import error
@@ -24,9 +25,23 @@ _WHERE = "sweep(scheduler=...)"
 
 
 def check_cluster(address: str) -> None:
-    """Refuse an address at which no scheduler answers, before any work."""
-    with _client(address):
-        pass
+    """Refuse an address at which no scheduler answers, before any work.
+
+    Not by a client: one that cannot start is closed by the garbage collector, in any thread, and may block the next.
+    """
+    distributed = _distributed()
+
+    async def answer() -> dict[str, Any]:
+        async with distributed.rpc(address, timeout=_CONNECT) as asked:
+            return await asyncio.wait_for(asked.identity(), _CONNECT)
+
+    try:
+        with ThreadPoolExecutor(1) as pool:  # the loop of a notebook runs in this thread
+            kind = pool.submit(asyncio.run, answer()).result()["type"]
+    except Exception as failure:  # whatever else listens there may answer anything
+        raise _no_scheduler(f"{address}: {str(failure) or f'no answer in {_CONNECT} s'}") from None
+    if kind != "Scheduler":
+        raise _no_scheduler(f"{address}, a {kind.lower()}")
 
 
 def do_on_cluster(work: Work, blocks: Iterator[int], address: str, take: Callable[[Done], None]) -> None:
@@ -34,7 +49,7 @@ def do_on_cluster(work: Work, blocks: Iterator[int], address: str, take: Callabl
     from distributed.comm.core import CommClosedError
     from distributed.scheduler import KilledWorker
 
-    with _client(address) as client:
+    with _distributed().Client(address, timeout=_CONNECT, set_as_default=False) as client:
         try:
             _do_blocks(work, blocks, client, take)
         except KilledWorker as failure:
@@ -104,13 +119,9 @@ def _batches(running: Any, client: Any) -> Iterator[list[Any]]:
             time.sleep(_PAUSE)
 
 
-def _client(address: str) -> Any:
-    distributed = _distributed()
-    try:
-        return distributed.Client(address, timeout=_CONNECT, set_as_default=False)
-    except Exception as failure:  # whatever else listens there may answer anything
-        remedy = "Start `dask scheduler`, and workers by `dask worker ADDRESS`."
-        raise error(_WHERE, "be the address of a Dask scheduler", f"{address}: {failure}", remedy) from None
+def _no_scheduler(got: str) -> ValueError:
+    remedy = "Start `dask scheduler`, and workers by `dask worker ADDRESS`."
+    return error(_WHERE, "be the address of a Dask scheduler", got, remedy)
 
 
 def _distributed() -> Any:

@@ -7,7 +7,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +16,7 @@ import numpy as np
 import pytest
 from ensembles.small import HEED_CTRL_C
 from typer.testing import Result
+from waiting import wait_for
 
 import nonholo as nh
 from nonholo.cli._problems import ScenarioError
@@ -385,11 +385,9 @@ def test_ctrl_c() -> None:
     program = f"{HEED_CTRL_C}\nfrom nonholo.cli import main; main()"
     command = [sys.executable, "-c", program, "sweep", _written(text), "-o", "s.zarr"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)  # noqa: S603
-    until = time.monotonic() + 60
-    while not list(Path().glob("s.zarr/run/blocks/*.json")) and time.monotonic() < until:
-        time.sleep(0.05)
+    wait_for(lambda: list(Path().glob("s.zarr/run/blocks/*.json")))
     process.send_signal(signal.SIGINT)
-    told = process.communicate(timeout=60)[1]
+    told = process.communicate(timeout=120)[1]
     assert process.returncode == 1
     assert "Go on with: nonholo resume s.zarr" in told
     standing = standing_of("s.zarr")

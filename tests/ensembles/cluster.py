@@ -8,10 +8,11 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from waiting import wait_for
 
 import nonholo as nh
 
@@ -34,7 +35,7 @@ class Cluster:
     def add_worker(self, *, nanny: bool = False, path: pathlib.Path = HERE) -> None:
         """Start a worker of one thread that imports from a folder."""
         options = ["--host", "127.0.0.1", "--nthreads", "1", "--no-dashboard", "--dashboard-address", "127.0.0.1:0"]
-        options += ["--death-timeout", "30"]  # none outlives a killed test run for long
+        options += ["--death-timeout", "60"]  # none outlives a killed test run for long
         places = ["--local-directory", str(self.folder), "--nanny" if nanny else "--no-nanny"]
         self.workers.append(self._started("worker", self.address, *options, *places, path=path))
 
@@ -74,15 +75,6 @@ def cluster(folder: pathlib.Path, workers: int = 2, **options: Any) -> Iterator[
 def environment(path: pathlib.Path) -> dict[str, str]:
     """Return the environment of a process that imports from a folder and uses one thread for each task."""
     return {**os.environ, "PYTHONPATH": str(path), "OMP_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
-
-
-def wait_for(condition: Callable[[], bool], seconds: float = 30.0) -> None:
-    """Wait until something is so."""
-    end = time.monotonic() + seconds
-    while not condition():
-        if time.monotonic() > end:
-            raise TimeoutError(f"not after {seconds} s: {condition}")
-        time.sleep(0.01)
 
 
 def slow(block: nh.MemberBlock) -> dict[str, np.ndarray]:

@@ -4,13 +4,13 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import dask.threaded  # noqa: F401  # loaded before the first fork
 import numpy as np
 import xarray
+from waiting import wait_for
 
 import nonholo as nh
 
@@ -40,16 +40,6 @@ def go_on(name: str, path: Path, scheduler: str = "threads") -> xarray.Dataset:
 def done(path: Path) -> int:
     """Return how many blocks are finished."""
     return len(list((path / "run" / "blocks").glob("*.json")))
-
-
-def wait_for(condition: Callable[[], Any], seconds: float = 60.0) -> Any:
-    """Wait until something is so, and return it."""
-    end = time.monotonic() + seconds
-    while not (found := condition()):
-        if time.monotonic() > end:
-            raise TimeoutError("it was not so in time")
-        time.sleep(0.01)
-    return found
 
 
 def kill_often(name: str, path: Path, scheduler: str, victims: list[str]) -> None:
@@ -87,7 +77,7 @@ def _killed(client: int, victim: str) -> bool:
         return os.waitstatus_to_exitcode(os.waitpid(client, 0)[1]) == 3
     (os.killpg if victim == "all" else os.kill)(client, signal.SIGKILL)
     status = os.waitstatus_to_exitcode(os.waitpid(client, 0)[1])
-    wait_for(lambda: not any(map(_is_running, workers)), seconds=10.0)
+    wait_for(lambda: not any(map(_is_running, workers)))
     return status == -signal.SIGKILL
 
 

@@ -14,9 +14,12 @@ from os import kill
 from pathlib import Path
 from typing import Any
 
+import distributed
 import pytest
 import xarray
-from ensembles.cluster import BLOCK, DESIGN, Cluster, begin, cluster, done, environment, slow, wait_for
+from ensembles.cluster import BLOCK, DESIGN, Cluster, begin, cluster, done, environment, slow
+from ensembles.small import same
+from waiting import wait_for
 
 import nonholo as nh
 from nonholo.ensembles import _cluster
@@ -51,12 +54,6 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> xarray.Dataset:
     return nh.sweep(slow, DESIGN, tmp_path_factory.mktemp("threads") / "a.zarr", block=BLOCK).load()
 
 
-def _same(one: xarray.Dataset, other: xarray.Dataset) -> bool:
-    return one.variables.keys() == other.variables.keys() and all(
-        one[name].values.tobytes() == other[name].values.tobytes() for name in one.variables
-    )
-
-
 def _in_background(address: str, store: Path) -> Future[xarray.Dataset]:
     """Start the sweep of `slow` on a cluster, by a client in a thread."""
     pool = ThreadPoolExecutor(1)
@@ -81,9 +78,10 @@ def test_workers_compute_the_bits_of_threads(running: Cluster, tmp_path: Path) -
     top = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.1)
     task = nh.EnsembleTask(top, steps=100, reductions=["final_state", "energy_drift", "limit_angle"])
     design = nh.RandomDesign(200, {"mass_tensor": nh.MassTensor(3, 0.5, 2.0), "restricted_velocity": nh.Direction(2)})
-    wait_for(lambda: len(nh.ensembles._cluster._client(running.address).ncores()) == 2)
+    with distributed.Client(running.address, set_as_default=False) as client:
+        client.wait_for_workers(2, timeout=120)
     found = nh.sweep(task, design, tmp_path / "a.zarr", running.address, block=8)
-    assert _same(found, nh.sweep(task, design, tmp_path / "b.zarr", block=32))
+    assert same(found, nh.sweep(task, design, tmp_path / "b.zarr", block=32))
     assert len(set(done(tmp_path / "a.zarr"))) == 2
 
 
@@ -120,22 +118,33 @@ def test_workers_without_the_store_are_refused(
         nh.sweep(slow, DESIGN, tmp_path / "a.zarr", running.address)
 
 
-@pytest.mark.parametrize("answers", [False, True], ids=["nobody", "another"])
+@pytest.mark.parametrize("listens", ["nobody", "another", "somebody silent"])
 def test_addresses_without_a_scheduler_are_refused(
-    answers: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    listens: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where nobody listens, or another server does, a sweep ends at once and leaves nothing."""
+    """Where nobody listens, or another server does, a sweep ends at once and leaves nothing, no thread either."""
     monkeypatch.setattr(_cluster, "_CONNECT", 1)
     server, begun = socket.create_server(("127.0.0.1", 0)), time.monotonic()
     address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
-    if answers:
+    if listens == "another":
         threading.Thread(target=_answer, args=(server,), daemon=True).start()
-    else:
+    elif listens == "nobody":
         server.close()
-    with pytest.raises(ValueError, match=f"must be the address of a Dask scheduler. Got {address}"):
+    threads = set(threading.enumerate())
+    with pytest.raises(ValueError, match=f"must be the address of a Dask scheduler. Got {address}: [A-Zn]"):
         nh.sweep(slow, DESIGN, tmp_path / "a.zarr", address)
-    assert time.monotonic() - begun < 20
+    server.close()
+    assert time.monotonic() - begun < 60
+    assert set(threading.enumerate()) <= threads
     assert not (tmp_path / "a.zarr").exists()
+
+
+def test_the_address_of_a_worker_is_refused(running: Cluster, tmp_path: Path) -> None:
+    """Workers listen too; whoever passes the address of one is told so."""
+    with distributed.Client(running.address, set_as_default=False) as client:
+        worker = next(iter(client.scheduler_info()["workers"]))
+    with pytest.raises(ValueError, match=rf"must be the address of a Dask scheduler\. Got {worker}, a worker\."):
+        nh.sweep(slow, DESIGN, tmp_path / "a.zarr", worker)
 
 
 def test_the_page(running: Cluster, tmp_path: Path) -> None:
@@ -178,7 +187,7 @@ def test_a_killed_worker_is_replaced(nanny: bool, tmp_path: Path, undisturbed: x
         kill(_worker_of(tmp_path / "a.zarr"), signal.SIGKILL)
         if not nanny:
             made.add_worker()
-        assert _same(swept.result(timeout=40), undisturbed)
+        assert same(swept.result(timeout=120), undisturbed)
     assert len(set(done(tmp_path / "a.zarr"))) == 2
 
 
@@ -194,7 +203,7 @@ def test_killed_clients_go_on(
         client.kill()
         client.wait()
         assert len(done(store)) < BLOCKS
-        assert _same(nh.resume(store), undisturbed)
+        assert same(nh.resume(store), undisturbed)
     with capsys.disabled():
         sys.stdout.write(f"\n{trials} clients of a cluster killed and resumed, same bits\n")
 
@@ -216,8 +225,8 @@ def test_a_killed_cluster_is_told(
         with pytest.raises(
             OSError, match=r"to the scheduler at tcp.* was lost. The sweep stands at \d+ of 240 members"
         ):
-            swept.result(timeout=40)
-    assert _same(nh.resume(tmp_path / "a.zarr"), undisturbed)
+            swept.result(timeout=120)
+    assert same(nh.resume(tmp_path / "a.zarr"), undisturbed)
 
 
 def test_a_cluster_without_workers_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from ensembles import faults
 from ensembles.small import python, resumed, same, stop_at, swept
+from waiting import wait_for
 
 import nonholo as nh
 from nonholo import io
@@ -65,13 +66,13 @@ def test_interrupted_sweep_goes_on(scheduler: str, tmp_path: Path) -> None:
     """Ctrl-C says how far the sweep came and how to go on, and nothing else; the store is valid."""
     path = tmp_path / "run.zarr"
     process = python(f"go_on('noisy', Path({str(path)!r}), {scheduler!r})", start_new_session=True)
-    faults.wait_for(lambda: faults.done(path) > 3)
+    wait_for(lambda: faults.done(path) > 3)
     if scheduler == "processes":
-        faults.wait_for(lambda: len(_writers(path)) == 2)  # both work, and do not care
+        wait_for(lambda: len(_writers(path)) == 2)  # both work, and do not care
         before = faults.done(path)
         for writer in _writers(path):
             os.kill(writer, signal.SIGINT)
-        faults.wait_for(lambda: faults.done(path) > before + 4, seconds=20.0)
+        wait_for(lambda: faults.done(path) > before + 4)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does
     _, complaint = process.communicate(timeout=100)
     assert process.returncode == -signal.SIGINT
