@@ -9,7 +9,7 @@ import typer
 from nonholo.cli._errors import FAILED, USAGE, leave, scenario_errors, store_errors
 from nonholo.cli._pictures import beside, draw, warn_of_older
 from nonholo.cli._report import as_json, duration, figures, show
-from nonholo.cli._run import Ran, check_output, keep, run
+from nonholo.cli._run import Ran, check_output, run_and_keep
 from nonholo.cli._scenario_file import Loaded, Setting, load_scenario, parse_setting
 from nonholo.orbit import Orbit
 
@@ -30,12 +30,9 @@ def simulate_and_keep(
         loaded = load_scenario(name, given + [parse_setting(text) for text in settings])
     with store_errors(USAGE):
         check_output(output, overwrite=overwrite)
-    with scenario_errors():
-        ran = _run(loaded, progress=sys.stderr.isatty() and not quiet)
-    if ran.orbit is None:
+    store, ran = _run_and_keep(loaded, output, overwrite=overwrite, progress=sys.stderr.isatty() and not quiet)
+    if store is None or ran.orbit is None:
         leave(f"Nothing to keep. {ran.stopped}", FAILED)
-    with store_errors(FAILED):
-        store = keep(ran.orbit, loaded, output, overwrite=overwrite)
     wanted = loaded.scenario.output
     drawn = draw(ran.orbit, beside(store, "png") if wanted.plot else None, beside(store, "gif") if wanted.gif else None)
     warn_of_older(store, drawn)
@@ -44,9 +41,12 @@ def simulate_and_keep(
         leave(f"Stopped early; the good steps are kept. {ran.stopped}", FAILED)
 
 
-def _run(loaded: Loaded, *, progress: bool) -> Ran:
+def _run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progress: bool) -> tuple[Path | None, Ran]:
     try:
-        return run(loaded, progress=progress)
+        with store_errors(FAILED), scenario_errors():
+            return run_and_keep(loaded, store, overwrite=overwrite, progress=progress)
+    except KeyboardInterrupt as stop:
+        leave(str(stop) or "Stopped; so short a run keeps nothing.", FAILED)
     except MemoryError:
         leave("So many states do not fit in memory. Keep fewer of them: raise run.save_every.", USAGE)
 
@@ -56,6 +56,8 @@ def _report(loaded: Loaded, ran: Ran, orbit: Orbit, paths: dict[str, str | None]
         typer.echo(paths["store"])
         return
     measured = figures(orbit)
+    if is_part := orbit.time[0] > 0:  # only the last block of so large a run was loaded
+        measured["steps"] = round(orbit.time[-1] / loaded.scenario.run.time_step)
     each = ran.seconds / max(1, measured["steps"])
     if json:
         times = {"seconds": ran.seconds, "seconds_per_step": each}
@@ -64,6 +66,8 @@ def _report(loaded: Loaded, ran: Ran, orbit: Orbit, paths: dict[str, str | None]
     length = f"{measured['steps']} of {loaded.scenario.run.steps}, time step {loaded.scenario.run.time_step:g}"
     title = loaded.scenario.title or loaded.name
     heading = {"title": title, "steps": length, "time per step": f"{duration(each)}, once compiled"}
+    if is_part:
+        heading["shown"] = f"the last {len(orbit):,} states; the store has all"
     show(measured, heading)
     for kind, path in paths.items():
         if path:

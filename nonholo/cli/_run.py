@@ -1,15 +1,18 @@
 """Running a scenario and keeping what it gave: the orbit, its store, its pictures."""
 
 import contextlib
+import functools
 import itertools
 import os
 import re
+import shutil
 import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from nonholo._results import OutcomeError
+from nonholo.cli._errors import USAGE, leave
 from nonholo.cli._pictures import beside
 from nonholo.cli._problems import ScenarioError, problem_of_value
 from nonholo.cli._scenario_file import Loaded, effective_text
@@ -17,6 +20,7 @@ from nonholo.discrete import Discretization
 from nonholo.io import check_target, save_orbit
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
+from nonholo.simulation._stored_run import size_in_blocks
 
 RUNS = Path("runs")
 Made = TypeVar("Made")
@@ -30,22 +34,54 @@ class Ran(NamedTuple):
     stopped: str | None
 
 
-def run(loaded: Loaded, *, progress: bool) -> Ran:
-    """Run a scenario; compilation is over before the clock starts."""
-    scenario, discrete = loaded.scenario, _discretized(loaded)
+def run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progress: bool) -> tuple[Path | None, Ran]:
+    """Run a scenario and keep it at the path given or under the next free number; return where, and what it gave.
+
+    Compilation is over before the clock starts. What takes several blocks goes to the store as it is computed.
+    """
+    scenario, discrete = loaded.scenario, _tried(loaded)
+    going = functools.partial(simulate, discrete, steps=scenario.run.steps, progress=progress, **scenario.options())
+    text = effective_text(scenario.in_force(discrete) if isinstance(discrete, Discretization) else scenario)
+    if size := size_in_blocks(discrete, scenario.run.branch, scenario.run.steps, scenario.run.save_every):
+        _check_room(size, RUNS if store is None else store.parent)
+        if overwrite and store is not None:
+            shutil.rmtree(store, ignore_errors=True)
+        return at_free_path(loaded.name, store, lambda path: _ran(going, store=path, scenario=text))
+    ran = _ran(going)
+    if ran.orbit is None:
+        return None, ran
+    orbit, replace = ran.orbit, overwrite and store is not None  # what has a number is never replaced
+    path, _ = at_free_path(loaded.name, store, lambda at: save_orbit(orbit, at, overwrite=replace, scenario=text))
+    return path, ran
+
+
+def _check_room(size: int, folder: Path) -> None:
+    free = shutil.disk_usage(folder).free
+    if size > free:
+        told = f"So many states are {size / 1e9:.3g} GB before compression, of which {free / 1e9:.3g} are free"
+        leave(f"{told} in '{folder}'. Keep fewer of them: raise run.save_every.", USAGE)
+
+
+def _tried(loaded: Loaded) -> Discretization:
+    """Return the discretised body of a scenario after a first step, which compiles."""
+    discrete = _discretized(loaded)
     try:
-        simulate(discrete, steps=1, throw=False, **scenario.options())
+        simulate(discrete, steps=1, throw=False, **loaded.scenario.options())
     except OutcomeError:
         pass  # a start off the principal branch: the run proper says so
     except ValueError as failure:
         section = "run" if str(failure).startswith("`simulate(branch=") else "start"
         raise ScenarioError([problem_of_value(failure, section, loaded.source, loaded.options)]) from None
+    return discrete
+
+
+def _ran(going: Callable[..., Orbit], **kept: Any) -> Ran:
     begun = time.perf_counter()
     try:
-        orbit = simulate(discrete, steps=scenario.run.steps, progress=progress, **scenario.options())
+        orbit = going(**kept)
     except OutcomeError as failure:
-        kept = failure.orbit if isinstance(failure.orbit, Orbit) and len(failure.orbit) else None
-        return Ran(kept, time.perf_counter() - begun, str(failure))
+        good = failure.orbit if isinstance(failure.orbit, Orbit) and len(failure.orbit) else None
+        return Ran(good, time.perf_counter() - begun, str(failure))
     return Ran(orbit, time.perf_counter() - begun, None)
 
 
@@ -68,15 +104,6 @@ def check_output(store: Path | None, *, overwrite: bool) -> None:
     for picture in (beside(store, "png"), beside(store, "gif")):
         if picture.exists() and not overwrite:
             raise FileExistsError(f"A picture '{picture}' exists. Choose another name, or pass --overwrite.")
-
-
-def keep(orbit: Orbit, loaded: Loaded, store: Path | None, *, overwrite: bool) -> Path:
-    """Save a run at the path given or under the next free number; return where."""
-    motion, scenario = orbit.motion, loaded.scenario
-    text = effective_text(scenario.in_force(motion) if isinstance(motion, Discretization) else scenario)
-    replace = overwrite and store is not None  # what has a number is never replaced
-    path, _ = at_free_path(loaded.name, store, lambda at: save_orbit(orbit, at, overwrite=replace, scenario=text))
-    return path
 
 
 def at_free_path(name: str, store: Path | None, make: Callable[[Path], Made]) -> tuple[Path, Made]:

@@ -17,7 +17,7 @@ import xarray
 import zarr
 
 from nonholo._checks import error
-from nonholo.io._attributes import attributes
+from nonholo.io._attributes import attributes, attributes_of_text
 from nonholo.io._dataset import orbit_to_dataset
 from nonholo.io._load import chunk_name, chunk_path, read_attributes, read_chunk
 from nonholo.io._lock import owner_of
@@ -193,13 +193,20 @@ class Stream:
 
 
 def create_stream(
-    path: Path, first: Orbit, plan: Plan, opening: Checkpoint, events: list[dict[str, Any]] | None = None
+    path: Path,
+    first: Orbit,
+    plan: Plan,
+    opening: Checkpoint,
+    events: list[dict[str, Any]] | None = None,
+    scenario: str | None = None,
 ) -> Stream:
     """Make a store with the first checkpoint and no rows yet; it appears at the path only when it is complete."""
+    extra = {} if events is None else {"events": json.dumps(events)}
+    extra |= {} if scenario is None else attributes_of_text(scenario)
     target = path.resolve()
     check_target(target)
     with new_beside(path) as part:
-        _create(part, first, plan, opening, {} if events is None else {"events": json.dumps(events)})
+        _create(part, first, plan, opening, extra)
         put_in_place(part, target, overwrite=False)
     return Stream(target, plan, first.pose is not None)
 
@@ -240,12 +247,12 @@ def standing(path: str | Path) -> Standing | None:
     return Standing(stream.reached(), stream.plan.steps, owner_of(stream.path))
 
 
-def _create(part: Path, first: Orbit, plan: Plan, opening: Checkpoint, events: dict[str, str]) -> None:
+def _create(part: Path, first: Orbit, plan: Plan, opening: Checkpoint, extra: dict[str, str]) -> None:
     dataset, rows = orbit_to_dataset(first), 1 + plan.steps // plan.every
     told = {name: value for name, value in attributes(first).items() if name != "outcome"}
     run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.pose is not None}
     shapes = {str(name): (rows, *variable.shape[1:]) for name, variable in dataset.variables.items()}
-    told |= {"run": json.dumps(run), "arrays": json.dumps(shapes), **events}
+    told |= {"run": json.dumps(run), "arrays": json.dumps(shapes), **extra}
     group = zarr.create_group(part, zarr_format=3, attributes=told)
     for name, variable in dataset.variables.items():
         create_array(group, str(name), variable, rows, plan.rows, is_coordinate=name in dataset.coords)
@@ -254,5 +261,5 @@ def _create(part: Path, first: Orbit, plan: Plan, opening: Checkpoint, events: d
     labelled = xarray.Variable(("block", "entry"), row[None])
     checkpoints = create_array(group, _CHECKPOINTS, labelled, plan.blocks + 1, 1, is_coordinate=True)
     checkpoints[0] = row
-    if events:
+    if first.events is not None:
         create_crossings(group, first.events)

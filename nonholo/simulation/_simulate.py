@@ -17,7 +17,7 @@ from nonholo.simulation._composed_run import composed_runner
 from nonholo.simulation._events_run import run_compiled, run_with_events, watched
 from nonholo.simulation._prepared import Start, checked_counts, first_state
 from nonholo.simulation._rule_run import Run, rule_runner
-from nonholo.simulation._stored_run import refuse_checkpoints, run_into_store
+from nonholo.simulation._stored_run import refuse_without_store, run_into_store
 from nonholo.simulation._stretch import CompiledRun, compiled_run
 from nonholo.systems._coordinate_system import AbstractCoordinateDiscretization, OrbitT, refuse_in_coordinates
 
@@ -41,6 +41,7 @@ def simulate(
     progress: bool = False,
     store: str | Path | None = None,
     checkpoint_every: int | None = None,
+    scenario: str | None = None,
 ) -> Orbit: ...
 @overload
 def simulate(
@@ -73,6 +74,7 @@ def simulate(
     progress: bool = False,
     store: str | Path | None = None,
     checkpoint_every: int | None = None,
+    scenario: str | None = None,
 ) -> Any:
     r"""Run the discrete Euler-Poincare-Suslov map.
 
@@ -117,6 +119,7 @@ def simulate(
             but as its last block.
         checkpoint_every: Steps between two checkpoints of the store, a multiple of `save_every`; by default blocks of a
             few megabytes. A run that is stopped loses at most so many steps.
+        scenario: A text that says how the orbit is made, kept in the store.
 
     Returns:
         The orbit; of a system in coordinates a `nonholo.lagrange_dalembert.CoordinateOrbit`.
@@ -145,17 +148,19 @@ def simulate(
             events=(events, None),
             store=(store, None),
             checkpoint_every=(checkpoint_every, None),
+            scenario=(scenario, None),
         )
         options = {"save_every": save_every, "throw": throw, "progress": progress}
         return discrete.simulate(configuration=configuration, steps=steps, **starts, **options)
     steps, every, rule = checked_counts(discrete, steps, save_every, branch, backend, displacement)
     starts["restricted_velocity"] = restricted_velocity
     watch = None if events is None else watched("simulate", discrete, events, rule, reconstruct)
+    kept = {"checkpoint_every": checkpoint_every, "scenario": scenario}
     if store is not None:
         stored = compiled_run("simulate(store=...)", discrete, rule, backend, every, reconstruct)
         start = first_state(discrete, configuration, int(reconstruct), True, starts)
-        return run_into_store(stored, start, steps, store, checkpoint_every, watch, throw=throw, progress=progress)
-    refuse_checkpoints(checkpoint_every)
+        return run_into_store(stored, start, steps, store, watch, **kept, throw=throw, progress=progress)
+    refuse_without_store(**kept)
     compiled = rule == "principal" and backend != "jax"
     held = 1 + steps // every if reconstruct else 0
     start = first_state(discrete, configuration, held, compiled, starts)

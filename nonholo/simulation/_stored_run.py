@@ -3,13 +3,17 @@
 import warnings
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from nonholo import io
 from nonholo._checks import count, error
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, finished
+from nonholo.discrete import Discretization
+from nonholo.discrete._branch_rules import BranchRule
+from nonholo.discrete._composition import compiled_step
 from nonholo.io import Checkpoint, Plan, Stream
-from nonholo.orbit import Orbit
+from nonholo.orbit import AbstractMotion, Orbit
 from nonholo.simulation._events_pieces import searched_first, stretch_of
 from nonholo.simulation._events_scan import Watch
 from nonholo.simulation._prepared import Start
@@ -25,9 +29,10 @@ def run_into_store(
     start: Start,
     steps: int,
     store: str | Path,
-    checkpoint_every: int | None,
     watch: Watch | None,
     *,
+    checkpoint_every: int | None,
+    scenario: str | None,
     throw: bool,
     progress: bool,
 ) -> Orbit:
@@ -41,7 +46,7 @@ def run_into_store(
     opening, events = Checkpoint(0, Outcome.successful, vector), None
     if found is not None:
         opening, events = opening._replace(seen=seen_by(found, 0)), descriptions(found.events)
-    stream = io.create_stream(Path(store), first, plan, opening, events)
+    stream = io.create_stream(Path(store), first, plan, opening, events, scenario)
     with io.locked(stream.path):
         return go_on(run, stream, watch, throw=throw, progress=progress)
 
@@ -58,11 +63,20 @@ def rows_of_block(where: str, run: CompiledRun, steps: int, block_steps: int | N
     return asked // run.every
 
 
-def refuse_checkpoints(checkpoint_every: int | None) -> None:
-    """Refuse a distance of checkpoints in a run without a store."""
-    if checkpoint_every is not None:
-        where, got = "simulate(checkpoint_every=...)", f"{checkpoint_every!r} without a store"
-        raise error(where, "come with a store", got, "Pass store='run.zarr' too, or leave it out.")
+def size_in_blocks(discrete: AbstractMotion, branch: BranchRule, steps: int, every: int) -> int:
+    """Return the bytes of all states of a run if it can go into a store block by block and takes several, else 0."""
+    if branch != "principal" or not isinstance(discrete, Discretization) or (closed := compiled_step(discrete)) is None:
+        return 0
+    run, states = CompiledRun(discrete, closed, every, True), 1 + steps // every
+    return 8 * states * sum(run.sizes) if states > rows_of_block("", run, steps, None) else 0
+
+
+def refuse_without_store(**given: Any) -> None:
+    """Refuse what only a store can keep."""
+    for name, value in given.items():
+        if value is not None:
+            got, remedy = f"{value!r} without a store", "Pass store='run.zarr' too, or leave it out."
+            raise error(f"simulate({name}=...)", "come with a store", got, remedy)
 
 
 def go_on(run: CompiledRun, stream: Stream, watch: Watch | None, *, throw: bool, progress: bool) -> Orbit:

@@ -17,6 +17,7 @@ import nonholo as nh
 from nonholo import plotting
 from nonholo.cli import _caches, _run
 from nonholo.cli._scenario_file import load_scenario
+from nonholo.simulation import _stored_run
 
 Command = Callable[..., Result]
 Figures = Callable[..., dict[str, Any]]
@@ -69,14 +70,16 @@ def test_numbers_go_on_after_the_largest(nonholo: Command) -> None:
     assert nonholo("simulate", "sleigh", "--no-plot", "-q", "--steps", 3).stdout.strip() == "runs/sleigh-008.zarr"
 
 
-def test_runs_at_the_same_time_get_different_stores(tmp_path: Path) -> None:
-    """Runs that end together all keep their orbit."""
+@pytest.mark.parametrize("rows", [100, 10_000], ids=["several blocks", "one block"])
+def test_runs_at_the_same_time_get_different_stores(rows: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs that begin and end together all keep their orbit."""
+    monkeypatch.setattr(_stored_run, "_ROWS", rows)
     loaded = load_scenario("sleigh", [])
     _run.check_output(None, overwrite=False)
-    orbit = _run.run(loaded, progress=False).orbit
     with ThreadPoolExecutor(4) as pool:
-        stores = list(pool.map(lambda _: _run.keep(orbit, loaded, None, overwrite=False), range(8)))
-    assert len(set(stores)) == 8
+        kept = list(pool.map(lambda _: _run.run_and_keep(loaded, None, overwrite=False, progress=False), range(8)))
+    assert len({store for store, _ in kept}) == 8
+    assert all(len(nh.load_orbit(store)) == 1 + loaded.scenario.run.steps for store, _ in kept)
     assert len(list((tmp_path / "runs").iterdir())) == 8
 
 
@@ -317,7 +320,7 @@ def test_no_cache_folder_at_all(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("steps", [10**13, 10**30])
 def test_more_states_than_memory(steps: int, nonholo: Command) -> None:
-    """A run that could never be held in memory is refused in words."""
+    """A run that could never be held on the disk is refused in words."""
     result = nonholo("simulate", "sleigh", "--no-plot", "--steps", steps)
     assert result.exit_code == 2
     assert result.exception is None or isinstance(result.exception, SystemExit)

@@ -12,6 +12,7 @@ from typer.testing import Result
 
 import nonholo as nh
 from nonholo.io import Stream
+from nonholo.simulation import _stored_run
 
 Command = Callable[..., Result]
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
@@ -97,3 +98,71 @@ def test_locked_and_foreign_stores_are_refused(stopped: Path, nonholo: Command) 
     assert "process 1 on elsewhere since today" in refused.stderr
     assert "written by process 1 on elsewhere" in nonholo("info", stopped).stdout.replace("\n", " ")
     assert nonholo("extend", "nothing.zarr", "--steps", 3).exit_code == 2
+
+
+@pytest.fixture
+def short_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Blocks of 16 states, so that small runs take several."""
+    monkeypatch.setattr(_stored_run, "_ROWS", 16)
+
+
+@pytest.mark.usefixtures("short_blocks")
+def test_long_run_is_gone_on_with(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run of several blocks that Ctrl-C stops leaves a store that `resume` finishes, with the scenario in it."""
+    write = Stream.write
+
+    def interrupted(self: Stream, number: int, *rest: Any) -> None:
+        if number == 3:
+            raise KeyboardInterrupt
+        write(self, number, *rest)
+
+    command = ("simulate", "sleigh", "--steps", 100, "--no-plot")
+    with monkeypatch.context() as patch:
+        patch.setattr(Stream, "write", interrupted)
+        stopped = nonholo(*command)
+    assert stopped.exit_code == 1
+    assert "Stopped at step 47 of 100. Go on with nonholo.resume(" in stopped.stderr
+    assert nonholo("resume", "runs/sleigh-001.zarr").exit_code == 0
+    monkeypatch.setattr(_stored_run, "_ROWS", 1000)
+    assert nonholo(*command, "-o", "whole.zarr").exit_code == 0
+    resumed, whole = (nh.load_orbit(path) for path in ("runs/sleigh-001.zarr", "whole.zarr"))
+    assert resumed.pose.tobytes() == whole.pose.tobytes()
+    texts = [nonholo("info", path, "--scenario").stdout for path in ("runs/sleigh-001.zarr", "whole.zarr")]
+    assert texts[0] == texts[1] != ""
+
+
+@pytest.mark.usefixtures("short_blocks")
+def test_long_run_replaces_a_store_only_when_told(nonholo: Command) -> None:
+    """A store of several blocks is refused and replaced like any other, and the next number is taken without -o."""
+    command = ("simulate", "sleigh", "--no-plot", "--steps")
+    assert nonholo(*command, 50, "-o", "run.zarr").exit_code == 0
+    refused = nonholo(*command, 70, "-o", "run.zarr")
+    assert refused.exit_code == 2
+    assert "--overwrite" in refused.stderr
+    assert nonholo(*command, 70, "-o", "run.zarr", "--overwrite").exit_code == 0
+    assert len(nh.load_orbit("run.zarr")) == 71
+    for number in (1, 2):
+        assert nonholo(*command, 50, "-q").stdout == f"runs/sleigh-00{number}.zarr\n"
+
+
+def test_long_run_that_cannot_go_on_is_kept(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The good steps of a run of several blocks are in its store, with the outcome."""
+    monkeypatch.setattr(_stored_run, "_ROWS", 4)
+    given = ("--set", "run.time_step=1.0", "--set", "start={momentum=[1.93257157, -0.68979744]}")
+    result = nonholo("simulate", "suslov", "--steps", 500, "--no-plot", *given)
+    assert result.exit_code == 1
+    assert "the good steps are kept" in result.stderr
+    orbit = nh.load_orbit("runs/suslov-001.zarr")
+    assert orbit.outcome != nh.Outcome.successful
+    assert 4 < len(orbit) < 20
+
+
+@pytest.mark.usefixtures("short_blocks")
+def test_figures_of_the_last_block_say_so(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where an orbit is too large to be loaded the steps are all of them, and the figures say what they are of."""
+    monkeypatch.setattr(_stored_run, "_LOADED", 100)
+    command = ("simulate", "sleigh", "--steps", 100, "--no-plot")
+    shown = nonholo(*command)
+    assert "100 of 100" in shown.stdout
+    assert "the last 5 states; the store has all" in shown.stdout
+    assert json.loads(nonholo(*command, "--json").stdout)["steps"] == 100

@@ -138,6 +138,16 @@ def test_interrupted_run_goes_on(tmp_path: Path) -> None:
     assert _same(nh.resume(path), _whole())
 
 
+def test_scenario_is_kept_in_the_store(tmp_path: Path) -> None:
+    """The text that says how a run is made is there from its beginning; without a store it is refused."""
+    with stopped_at(5):
+        _begun(tmp_path / "run.zarr", scenario="mine")
+    assert json.loads((tmp_path / "run.zarr" / "zarr.json").read_text())["attributes"]["scenario"] == "mine"
+    assert _same(nh.resume(tmp_path / "run.zarr"), _whole())
+    with pytest.raises(ValueError, match=r"`simulate\(scenario=\.\.\.\)` must come with a store"):
+        nh.simulate(SLEIGH, steps=5, scenario="mine", **START)
+
+
 def test_full_disk_leaves_a_valid_store(tmp_path: Path) -> None:
     """A full disk is an error that names the store and the remedy; with room again the run goes on."""
     path = tmp_path / "run.zarr"
