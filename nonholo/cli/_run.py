@@ -39,10 +39,11 @@ def run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progres
 
     Compilation is over before the clock starts. What takes several blocks goes to the store as it is computed.
     """
-    scenario, discrete = loaded.scenario, _tried(loaded)
+    scenario, (discrete, starts) = loaded.scenario, _tried(loaded)
     going = functools.partial(simulate, discrete, steps=scenario.run.steps, progress=progress, **scenario.options())
     text = effective_text(scenario.in_force(discrete) if isinstance(discrete, Discretization) else scenario)
-    if size := size_in_blocks(discrete, scenario.run.branch, scenario.run.steps, scenario.run.save_every):
+    size = size_in_blocks(discrete, scenario.run.branch, scenario.run.steps, scenario.run.save_every)
+    if size and starts:
         _check_room(size, RUNS if store is None else store.parent)
         if overwrite and store is not None:
             shutil.rmtree(store, ignore_errors=True)
@@ -62,17 +63,17 @@ def _check_room(size: int, folder: Path) -> None:
         leave(f"{told} in '{folder}'. Keep fewer of them: raise run.save_every.", USAGE)
 
 
-def _tried(loaded: Loaded) -> Discretization:
-    """Return the discretised body of a scenario after a first step, which compiles."""
+def _tried(loaded: Loaded) -> tuple[Discretization, bool]:
+    """Return the discretised body of a scenario after a first step, which compiles, and whether there is a start."""
     discrete = _discretized(loaded)
     try:
-        simulate(discrete, steps=1, throw=False, **loaded.scenario.options())
+        first = simulate(discrete, steps=1, throw=False, **loaded.scenario.options())
     except OutcomeError:
-        pass  # a start off the principal branch: the run proper says so
+        return discrete, False  # off the principal branch: the run proper says so
     except ValueError as failure:
         section = "run" if str(failure).startswith("`simulate(branch=") else "start"
         raise ScenarioError([problem_of_value(failure, section, loaded.source, loaded.options)]) from None
-    return discrete
+    return discrete, len(first) > 0
 
 
 def _ran(going: Callable[..., Orbit], **kept: Any) -> Ran:

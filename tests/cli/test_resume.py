@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from stopping import stopped_at
+from stopping import failing_at, stopped_at
 from typer.testing import Result
 
 import nonholo as nh
@@ -109,16 +109,8 @@ def short_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("short_blocks")
 def test_long_run_is_gone_on_with(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     """A run of several blocks that Ctrl-C stops leaves a store that `resume` finishes, with the scenario in it."""
-    write = Stream.write
-
-    def interrupted(self: Stream, number: int, *rest: Any) -> None:
-        if number == 3:
-            raise KeyboardInterrupt
-        write(self, number, *rest)
-
     command = ("simulate", "sleigh", "--steps", 100, "--no-plot")
-    with monkeypatch.context() as patch:
-        patch.setattr(Stream, "write", interrupted)
+    with failing_at(3):
         stopped = nonholo(*command)
     assert stopped.exit_code == 1
     assert "Stopped at step 47 of 100. Go on with nonholo.resume(" in stopped.stderr
@@ -143,6 +135,17 @@ def test_long_run_replaces_a_store_only_when_told(nonholo: Command) -> None:
     assert len(nh.load_orbit("run.zarr")) == 71
     for number in (1, 2):
         assert nonholo(*command, 50, "-q").stdout == f"runs/sleigh-00{number}.zarr\n"
+
+
+@pytest.mark.usefixtures("short_blocks")
+def test_older_store_stays_where_nothing_replaces_it(nonholo: Command) -> None:
+    """A start without a principal root keeps nothing, and --overwrite takes nothing away for it."""
+    command = ("simulate", "suslov", "--no-plot", "-o", "run.zarr", "--steps", 50)
+    assert nonholo(*command).exit_code == 0
+    failed = nonholo(*command, "--overwrite", "--time-step", 1.2)
+    assert failed.exit_code == 1
+    assert "Nothing to keep" in failed.stderr
+    assert len(nh.load_orbit("run.zarr")) == 51
 
 
 def test_long_run_that_cannot_go_on_is_kept(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
