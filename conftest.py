@@ -1,4 +1,4 @@
-"""Names that doctests use, and no deadlines for drawn examples: the first one compiles."""
+"""How the tests run: caches of compilers, cores, profiles; names that doctests use."""
 
 import sys
 from collections.abc import Iterator
@@ -7,12 +7,49 @@ import hypothesis
 import numpy as np
 import pytest
 
-import nonholo as nh
+sys.path.insert(0, "tests")  # before `pythonpath` is read
+import compilers
+from profiles import COLLECTED, DEFAULT, PROFILES, profile_of
+
+compilers.use_caches()
+
+import nonholo as nh  # noqa: E402
 
 collect_ignore_glob = ["tests/golden/*"]  # programs that write references, not tests
 
-hypothesis.settings.register_profile("nonholo", deadline=None)
-hypothesis.settings.load_profile("nonholo")
+# drawn examples have no deadline: the first one compiles
+hypothesis.settings.register_profile(DEFAULT, deadline=None, max_examples=25)
+hypothesis.settings.register_profile("problems", deadline=None, max_examples=200)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the choice of a profile."""
+    choices = [DEFAULT, *(name for name, profile in PROFILES.items() if not profile.command), "all"]
+    parser.addoption("--profile", choices=choices, default=DEFAULT, help="which part of the tests runs")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Register the mark, and what belongs to the profile."""
+    config.addinivalue_line("markers", "profile(name, keep=(), instead=None): a test of a profile but for kept cases")
+    thorough = config.getoption("--profile") in ("problems", "all")
+    hypothesis.settings.load_profile("problems" if thorough else DEFAULT)
+    compilers.compile_once()
+
+
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
+    """Run a single file in one process, so that it starts at once and a debugger works."""
+    paths = [argument.split("::")[0] for argument in config.args]
+    return 0 if len(paths) == 1 and paths[0].endswith(".py") else None
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Keep the tests of the chosen profile."""
+    chosen = config.getoption("--profile")
+    config.stash[COLLECTED] = list(items)
+    others = [item for item in items if chosen not in ("all", profile_of(item))]
+    if others:
+        config.hook.pytest_deselected(items=others)
+        items[:] = [item for item in items if chosen in ("all", profile_of(item))]
 
 
 @pytest.fixture(autouse=True)

@@ -58,6 +58,7 @@ def test_falls_by_the_claimed_amount(name: str) -> None:
     assert np.abs(change - expected).max() <= 1e-13 * max(1.0, np.abs(orbit.momentum).max())
 
 
+@pytest.mark.profile("routes", keep=["top 4", "sleigh 3"])
 @pytest.mark.parametrize("name", NAMES)
 def test_falls_along_the_flow(name: str) -> None:
     """L falls between all saved states of a flow."""

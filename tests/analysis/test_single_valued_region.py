@@ -65,6 +65,7 @@ def test_bound_is_sharp(ratio: float, sign: int) -> None:
         assert _real_branches(discrete, contact + 1e-3 * (centre - contact)) == 3
 
 
+@pytest.mark.profile("problems", keep=["0.501", "0.8258", "5.0"])
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_principal_energy_is_the_least_on_two_sides(ratio: float) -> None:
     """The closed form is the least energy on the right side of the deltoid, angles 0 to 2 pi/3, found by search."""
@@ -75,6 +76,7 @@ def test_principal_energy_is_the_least_on_two_sides(ratio: float) -> None:
     assert bound * (1 - 1e-13) <= least <= bound * (1 + 1e-5)  # the mesh is one of 7e-4
 
 
+@pytest.mark.profile("problems", keep=["1-0.5", "-1-50.0", "1-0.8256"])
 @pytest.mark.parametrize("ratio", RATIOS)
 @pytest.mark.parametrize("sign", [1, -1])
 def test_every_momentum_has_a_principal_value_below(ratio: float, sign: int) -> None:

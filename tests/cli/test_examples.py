@@ -14,6 +14,7 @@ _FOLDER = Path(__file__).parents[2] / "examples"
 _FILES = sorted(path for path in _FOLDER.glob("*.toml") if not path.stem.endswith("_sweep"))
 
 
+@pytest.mark.profile("routes", keep=["suslov*", "*sleigh", "long_run", "tilted_axis", "four_steps"])
 @pytest.mark.parametrize("path", _FILES, ids=lambda path: path.stem)
 def test_example_runs(path: Path, figures: Callable[..., dict[str, Any]]) -> None:
     """Each example succeeds, with energy kept to rounding where the discretisation promises it."""

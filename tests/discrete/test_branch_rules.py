@@ -43,6 +43,7 @@ def test_the_principal_value_is_that_of_a_continuation(family: str) -> None:
         assert np.abs(found - W).max() < 1e-12 * np.abs(W).max()
 
 
+@pytest.mark.profile("routes", keep=["top 3"])
 @pytest.mark.parametrize("family", ["top 3", "motion 3"])
 def test_the_traced_step_takes_the_same_value(family: str) -> None:
     """`step`, in closed form (top) and by definition (motion), agrees with the continuation too."""

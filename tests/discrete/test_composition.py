@@ -196,6 +196,7 @@ def test_compiled_runs_agree_with_the_definition(system: AbstractSystem) -> None
         assert np.abs(getattr(compiled, name) - getattr(defined, name)).max() < 1e-13
 
 
+@pytest.mark.profile("routes", instead="test_compiled_runs_agree_with_the_definition")
 def test_the_logarithmic_difference_composes() -> None:
     """The step with l(log W / h) is reversible too: order 4 by slope, and g_(k+1) = g_k W_k."""
     exact = nh.flow(TOP, restricted_velocity=VELOCITY, times=[0.0, 1.0], method="closed_form")

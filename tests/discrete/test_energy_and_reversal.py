@@ -9,6 +9,7 @@ import nonholo as nh
 from nonholo.systems import AbstractLLSystem
 
 
+@pytest.mark.profile("problems", keep=["0.1-*"])
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: p.name)
 @pytest.mark.parametrize("time_step", [0.01, 0.1, 0.5])
 def test_energy_drift_over_long_runs(problem: Problem, time_step: float) -> None:

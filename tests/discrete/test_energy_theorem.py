@@ -28,6 +28,7 @@ def test_energy_of_every_dimension(group: object, k: int) -> None:
     assert found.reversal_defect <= 1e-12
 
 
+@pytest.mark.profile("routes", keep=["SO(4)-3"])
 @pytest.mark.parametrize(("group", "k"), [(nh.SO(4), 3), (nh.SO(4), 4), (nh.SE(3), 3)], ids=str)
 def test_the_exponential_constraint_drifts(group: object, k: int) -> None:
     """With exp d instead, and d no symmetric pair, the energy visibly changes."""
@@ -89,6 +90,7 @@ def test_what_every_system_keeps(name: str) -> None:
         assert np.ptp(orbit.spatial_momentum @ direction) <= 1e-11 * np.abs(orbit.spatial_momentum).max()
 
 
+@pytest.mark.profile("routes", keep=["suslov 4", "any d on SE(3)", "veselova 3"])
 @pytest.mark.parametrize("name", GENERAL)
 def test_slope_two(name: str) -> None:
     """Halving the step divides the errors of momentum and pose against the flow by four."""
@@ -103,6 +105,7 @@ def test_slope_two(name: str) -> None:
             assert abs(-np.polyfit(np.log(steps), np.log(errors), 1)[0] - 2) <= 0.1
 
 
+@pytest.mark.profile("routes", keep=["veselova 3"])
 @pytest.mark.parametrize("name", [name for name in GENERAL if "veselova" in name or "right" in name])
 def test_energy_of_right_invariant_constraints_oscillates(name: str) -> None:
     """With the constraint fixed in space, the energy is not exact: its oscillation falls by four per halving."""

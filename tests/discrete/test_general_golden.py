@@ -44,6 +44,7 @@ def _orbit(case: dict, **options: object) -> nh.Orbit:
     return nh.simulate(discrete, **start, steps=20, **options)
 
 
+@pytest.mark.profile("routes", keep=["[!l]*", "left_invariant-SE3-skew-*"])
 @pytest.mark.parametrize("case", CASES, ids=_name)
 def test_orbit_agrees_with_matrix_equations(case: dict) -> None:
     """Displacement, momentum, pose, multipliers and energy of 20 steps agree with the 50-digit reference."""
@@ -62,6 +63,7 @@ def test_spatial_displacement(case: dict) -> None:
     assert _relative(_orbit(case).spatial_displacement, numbers(case["spatial_displacement"])) <= TOLERANCE
 
 
+@pytest.mark.profile("routes", keep=["left_invariant-SE3-skew-*"])
 @pytest.mark.parametrize("case", [case for case in CASES if case["group"] != "SO(10)"], ids=_name)
 def test_definition_route_agrees(case: dict) -> None:
     """The same orbits by the definition, in JAX."""

@@ -25,6 +25,7 @@ FUNCTIONS = {
 }
 
 
+@pytest.mark.profile("routes", keep=["sleigh"])
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_functions_of_the_same_variety_give_the_same_orbit(name: str) -> None:
     """Equations f(W) = 0 of exp d in the user's frame reproduce the default, by another chart and more unknowns."""
@@ -55,6 +56,7 @@ def _general(group: object) -> AbstractLLSystem:
     return nh.LLSystem(group, mass_tensor(group, rng), random_rows(group, 3, rng))
 
 
+@pytest.mark.profile("routes", keep=["system2-skew-matrix-False", "system3-skew-matrix-True"])
 @pytest.mark.parametrize(
     ("system", "constraint", "difference", "consistent"),
     [

@@ -178,6 +178,7 @@ def _answer(server: socket.socket) -> None:
         connection.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
 
 
+@pytest.mark.profile("faults", keep=["nanny"])
 @pytest.mark.parametrize("nanny", [False, True], ids=["alone", "nanny"])
 def test_a_killed_worker_is_replaced(nanny: bool, tmp_path: Path, undisturbed: xarray.Dataset) -> None:
     """The sweep waits while there is no worker, and ends with the same bits on the one that comes next."""
@@ -191,27 +192,24 @@ def test_a_killed_worker_is_replaced(nanny: bool, tmp_path: Path, undisturbed: x
     assert len(set(done(tmp_path / "a.zarr"))) == 2
 
 
-def test_killed_clients_go_on(
-    running: Cluster, tmp_path: Path, undisturbed: xarray.Dataset, capsys: pytest.CaptureFixture[str]
-) -> None:
+@pytest.mark.profile("faults", keep=["0"])
+@pytest.mark.parametrize("trial", range(3))
+def test_killed_clients_go_on(running: Cluster, trial: int, tmp_path: Path, undisturbed: xarray.Dataset) -> None:
     """After a client is killed at a random moment threads end its sweep with the same bits, and workers are free."""
-    chance, trials = random.Random(1), 3  # noqa: S311
-    for trial in range(trials):
-        store = tmp_path / f"{trial}.zarr"
-        client = begin(running.address, store)
-        _some_blocks(store, chance)
-        client.kill()
-        client.wait()
-        assert len(done(store)) < BLOCKS
-        assert same(nh.resume(store), undisturbed)
-    with capsys.disabled():
-        sys.stdout.write(f"\n{trials} clients of a cluster killed and resumed, same bits\n")
+    store = tmp_path / "a.zarr"
+    client = begin(running.address, store)
+    _some_blocks(store, random.Random(trial))  # noqa: S311
+    client.kill()
+    client.wait()
+    assert len(done(store)) < BLOCKS
+    assert same(nh.resume(store), undisturbed)
 
 
 def _kill_scheduler(made: Cluster) -> None:
     made.scheduler.kill()
 
 
+@pytest.mark.profile("faults", keep=["scheduler"])
 @pytest.mark.parametrize("strike", [_kill_scheduler, Cluster.kill], ids=["scheduler", "all"])
 def test_a_killed_cluster_is_told(
     strike: Callable[[Cluster], Any], tmp_path: Path, undisturbed: xarray.Dataset, monkeypatch: pytest.MonkeyPatch

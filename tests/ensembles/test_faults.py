@@ -38,6 +38,7 @@ def _printed(code: str) -> str:
     return told
 
 
+@pytest.mark.profile("faults", keep=["noisy-threads"])
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="looks for processes in /proc")
 @pytest.mark.parametrize(
     ("name", "scheduler"), [("noisy", "threads"), ("tops", "threads"), ("noisy", "processes")], ids=str
@@ -60,6 +61,7 @@ def test_killed_sweeps_go_on(name: str, scheduler: str, tmp_path: Path, capsys: 
     assert standing_of(path).owner is None
 
 
+@pytest.mark.profile("faults", keep=["threads"])
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="looks for processes in /proc")
 @pytest.mark.parametrize("scheduler", ["threads", "processes"])
 def test_interrupted_sweep_goes_on(scheduler: str, tmp_path: Path) -> None:
@@ -128,6 +130,7 @@ def test_full_disk_leaves_a_valid_store(scheduler: str, tmp_path: Path, monkeypa
     assert same(resumed(path), swept(tmp_path / "whole.zarr"))
 
 
+@pytest.mark.profile("faults", keep=["threads"])
 @pytest.mark.parametrize("scheduler", ["threads", "processes"])
 def test_limit_of_the_system_on_file_sizes(scheduler: str, tmp_path: Path) -> None:
     """A limit met while zarr writes ends in the same clean error, and the sweep goes on without it."""

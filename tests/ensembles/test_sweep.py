@@ -269,6 +269,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> xarray.Dataset:
     return nh.sweep(faults.TOPS, FEW, tmp_path_factory.mktemp("whole") / "run.zarr", "synchronous").load()
 
 
+@pytest.mark.profile("faults", keep=["threads-*", "synchronous-7"])
 @pytest.mark.parametrize(
     ("scheduler", "block"), [("threads", 1), ("threads", 7), ("threads", 64), ("synchronous", 7), ("processes", 7)]
 )

@@ -32,6 +32,7 @@ def change(name: str, h: float, duration: float, **parameters: float) -> np.ndar
     return energy - energy[0]
 
 
+@pytest.mark.profile("routes", keep=["particle-*"])
 @pytest.mark.parametrize(
     ("name", "duration"),
     [

@@ -49,12 +49,14 @@ def test_every_public_example_is_tested() -> None:
     assert set(EXAMPLES) == set(nh.examples.__all__) - {"Example"}
 
 
+@pytest.mark.profile("routes", keep=["particle"])
 @pytest.mark.parametrize("name", EXACT)
 def test_the_flow_is_the_published_solution(name: str) -> None:
     """Configurations agree with the closed form; a few steps of relative error 1e-13 stay below 1e-11."""
     assert np.abs(flow(name).configuration - ready(name).exact(TIMES)).max() <= 1e-11
 
 
+@pytest.mark.profile("routes", keep=["particle", "rolling_disk"])
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_conserved_quantities_are_constant_along_the_flow(name: str) -> None:
     """Each of them varies by rounding and solver errors only, and there is at least one."""
@@ -64,6 +66,7 @@ def test_conserved_quantities_are_constant_along_the_flow(name: str) -> None:
     assert max(np.ptp(values) / np.abs(values).max(initial=1.0) for values in found) <= 1e-11
 
 
+@pytest.mark.profile("routes", keep=["particle", "snakeboard"])
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_energy_and_constraint_hold_along_the_flow(name: str) -> None:
     """Energy is conserved in all of them, and the velocity stays admissible to rounding."""
@@ -72,6 +75,7 @@ def test_energy_and_constraint_hold_along_the_flow(name: str) -> None:
     assert orbit.constraint_residual.max() <= 1e-14
 
 
+@pytest.mark.profile("routes", keep=["particle"])
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_the_map_satisfies_its_constraint_and_has_order_two(name: str) -> None:
     """Discrete constraints hold to rounding; configurations converge to the flow with slope 2.0 +- 0.1."""
@@ -94,6 +98,7 @@ def test_the_disk_rolls_on_the_circle_of_the_midpoint_rule() -> None:
     assert np.abs(np.hypot(points[:, 0], points[:, 1] - radius) - radius).max() <= 1e-13
 
 
+@pytest.mark.profile("routes", instead="test_the_disk_rolls_on_the_circle_of_the_midpoint_rule")
 def test_the_knife_edge_draws_the_cycloid_of_the_midpoint_rule() -> None:
     """The speed of each step is w + G h / sin(h phi') sin(phi) at the heading of its middle."""
     orbit, h = run("knife_edge_on_incline", 40), 0.1
@@ -114,6 +119,7 @@ def test_the_robot_speeds_up_like_a_sleigh() -> None:
     assert np.abs(v[:, 2] - largest / np.cosh(phase)).max() <= 1e-11
 
 
+@pytest.mark.profile("routes", keep=["[!r]*"])
 @pytest.mark.parametrize(
     ("name", "kept"),
     [("particle", ["y'"]), ("snakeboard", ["phi'", "theta' + psi'"]), ("two_wheeled_robot", ["axle"])],

@@ -15,6 +15,7 @@ PAGES = (
 )
 
 
+@pytest.mark.profile("paper", keep=["theory/*", "how-to/run-an-ensemble.md", "how-to/choose-a-branch-rule.md"])
 @pytest.mark.parametrize("page", PAGES)
 def test_the_blocks_run(page: str) -> None:
     """The blocks of a page, one after another in one namespace, raise nothing."""

@@ -39,6 +39,7 @@ def _everything(group: AbstractMatrixGroup, x: jax.Array) -> dict[str, jax.Array
     }
 
 
+@pytest.mark.profile("routes", keep=["SO(3)", "SE(2)", "Translations(3)", "ProductGroup(SE(2)*"])
 @pytest.mark.parametrize("group", COMPILED, ids=str)
 def test_compiled_functions_agree_with_numpy(group: AbstractMatrixGroup) -> None:
     """One jit over everything, the group a static argument, on several points at once."""
@@ -48,6 +49,7 @@ def test_compiled_functions_agree_with_numpy(group: AbstractMatrixGroup) -> None
         assert close(np.asarray(found[name]), expected, 300), name
 
 
+@pytest.mark.profile("routes", keep=["*-SE(3)"])
 @pytest.mark.parametrize("group", [SO(4), SO(6), SE(3), SE(4)], ids=str)
 @pytest.mark.parametrize("angle", [1e-9, 0.5, 2.5, 3.1])
 def test_traced_logarithm_of_large_turns(group: AbstractMatrixGroup, angle: float) -> None:
@@ -58,6 +60,7 @@ def test_traced_logarithm_of_large_turns(group: AbstractMatrixGroup, angle: floa
     assert np.abs(found - x).max() <= (2e-14 if angle < 3 else 1e-12) * np.abs(x).max()
 
 
+@pytest.mark.profile("routes", keep=["*-ProductGroup*", "reverse-SO(2)"])
 @pytest.mark.parametrize(
     "group", [SO(2), SO(4), SE(3), HEISENBERG, SL2, SL3, ProductGroup(SE(2), Translations(1))], ids=str
 )
@@ -71,6 +74,7 @@ def test_derivatives_at_the_identity(group: AbstractMatrixGroup, derivative: obj
         assert close(np.asarray(found), np.eye(group.dim), 20)
 
 
+@pytest.mark.profile("routes", keep=["SE(3)"])
 @pytest.mark.parametrize("group", [SO(4), SE(3), SL2], ids=str)
 def test_derivative_of_the_traced_logarithm(group: AbstractMatrixGroup) -> None:
     """Automatic differentiation of log at a general point is dexp^-1."""

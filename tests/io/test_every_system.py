@@ -57,6 +57,7 @@ def _run(motion: nh.Discretization, **options: Any) -> nh.Orbit:
     return nh.simulate(motion, restricted_velocity=0.3 * np.cos(np.arange(k)), steps=6, **options)
 
 
+@pytest.mark.profile("routes", keep=["[!n]*", "nothing moves"])
 @pytest.mark.parametrize("make", MOTIONS.values(), ids=MOTIONS)
 def test_round_trip(make: Callable[[], Any], tmp_path: Path) -> None:
     """Compact arrays, fields of the system and everything decoded from them have the bits of the saved orbit."""
@@ -105,6 +106,7 @@ def test_round_trip_of_motions_on_jax(make: Callable[[], Any], tmp_path: Path) -
         assert getattr(orbit, name).tobytes() == getattr(loaded, name).tobytes(), name
 
 
+@pytest.mark.profile("routes", keep=["SuslovTop*", "LRSystem*"])
 @pytest.mark.parametrize(
     "system",
     [

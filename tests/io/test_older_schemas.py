@@ -36,6 +36,7 @@ def _decoded() -> list[Any]:
     return [(name, key) for name, told in _EXPECTED.items() for key in keys if key in told]
 
 
+@pytest.mark.profile("routes", keep=["top-*", "flow-*", "sleigh-[!m]*"])
 @pytest.mark.parametrize(("name", "key"), _decoded())
 def test_decoded_motion(name: str, key: str) -> None:
     """What the library makes of the compact arrays is what it made of them then, to a few units in the last place."""

@@ -49,6 +49,7 @@ def run(rule: str, h: float, steps: int, **changes) -> CoordinateOrbit:  # noqa:
     return dataclasses.replace(SYSTEM, rule=rule).discretize(h).simulate(**(START | {"steps": steps} | changes))
 
 
+@pytest.mark.profile("routes", keep=["midpoint"])
 @pytest.mark.parametrize("rule", RULES)
 def test_the_equations_hold_with_their_sign(rule: str) -> None:
     """D1 L_d(q_k, q_k+1) + D2 L_d(q_k-1, q_k) = -lambda A(q_k), with derivatives taken in end points."""
@@ -120,6 +121,7 @@ def test_the_start_is_second_order_in_momentum(rule: str) -> None:
     assert abs(-np.polyfit(np.log(counts), np.log(errors), 1)[0] - 2.0) <= 0.1
 
 
+@pytest.mark.profile("routes", keep=["midpoint"])
 @pytest.mark.parametrize("rule", RULES)
 def test_without_gyroscopic_terms_the_map_is_reversible(rule: str) -> None:
     """L_d is symmetric for a Lagrangian even in v: the reversed displacement leads back."""

@@ -108,6 +108,7 @@ def test_the_energy_theorem_shows_in_coordinates() -> None:
     assert np.ptp(ours.energy) > 1e-3
 
 
+@pytest.mark.profile("routes", instead="test_poses_are_those_of_the_group_route")
 def test_a_blade_that_depends_on_position_has_slope_two() -> None:
     """L_d is left-invariant, the constraint is not: this route still converges to the flow with order 2 +- 0.1."""
     bend = 0.3

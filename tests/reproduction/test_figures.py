@@ -33,6 +33,7 @@ def test_labels_are_known() -> None:
     assert {figure.finding.kind for figure in FIGURES.values()} == {"figure"}
 
 
+@pytest.mark.profile("routes", keep=["[!n]*"])
 @pytest.mark.parametrize("figure", FIGURES.values(), ids=FIGURES)
 def test_axes_are_named(figure: Figure) -> None:
     """All axes with ticks have labels, and the caption and the claims can be shown."""

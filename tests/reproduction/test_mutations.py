@@ -23,6 +23,9 @@ def sample() -> list[Mutant]:
     return random.Random(5).sample(known, min(SAMPLE, len(known)))  # noqa: S311 (a choice of tests)
 
 
+@pytest.mark.profile(
+    "paper", keep=["suslov_momenta*", "energy_theorem*", "suslov_euler_angles*", "sleigh_discrete.discrete_velocities*"]
+)
 @pytest.mark.parametrize("mutant", sample(), ids=str)
 def test_a_changed_formula_turns_a_finding_red(mutant: Mutant) -> None:
     """Some finding notices the change."""
@@ -36,6 +39,7 @@ def test_every_formula_is_used(module: ModuleType) -> None:
     assert not [name for name in functions(module) if not users(module, name)]
 
 
+@pytest.mark.profile("paper", keep=["suslov_displacements*", "symmetric_pairs*"])
 @pytest.mark.parametrize("mutant", sample()[:10], ids=lambda mutant: mutant.place)
 def test_an_unchanged_formula_survives(mutant: Mutant) -> None:
     """Findings notice the change, not that a formula was replaced."""

@@ -94,6 +94,7 @@ def test_a_part_of_a_step_is_a_shorter_step() -> None:
     assert np.abs(half.configuration[0] - step.configuration[1]).max() < 1e-15
 
 
+@pytest.mark.profile("routes", keep=["jax"])
 @pytest.mark.parametrize("options", [{"difference": "logarithmic"}, {"backend": "jax"}], ids=["logarithmic", "jax"])
 def test_runs_by_the_definition_find_the_same(options: dict[str, str]) -> None:
     """The crossing lies where the function is zero to rounding, and the run ends there."""

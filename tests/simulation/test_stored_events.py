@@ -128,6 +128,7 @@ def test_blocks_do_not_change_crossings(name: str, tmp_path: Path) -> None:
     assert same(stored, nh.simulate(discrete, **run))
 
 
+@pytest.mark.profile("faults", keep=["top", "sleigh with a cusp"])
 @pytest.mark.parametrize("name", RUNS)
 def test_runs_cut_at_random_blocks_go_on(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut at random blocks, resumed and cut again (21 times in all), a run has the bits of the undisturbed one."""
@@ -142,6 +143,7 @@ def test_runs_cut_at_random_blocks_go_on(name: str, tmp_path: Path, monkeypatch:
         assert same(nh.resume(path, events=events), undisturbed)
 
 
+@pytest.mark.profile("faults", instead="test_runs_cut_at_random_blocks_go_on")
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills forked processes")
 def test_killed_runs_go_on(tmp_path: Path) -> None:
     """Killed three times while it computes, and resumed, a run has the crossings of the undisturbed one."""
@@ -190,6 +192,7 @@ def test_extended_run_has_the_crossings_of_the_long_run(lengths: tuple[int, ...]
     assert same(nh.load_orbit(path), whole)
 
 
+@pytest.mark.profile("faults", keep=["flipped-run/events*", "missing-pose*"])
 @pytest.mark.parametrize("chunk", ["run/events/c/2/0", "run/checkpoints/c/4/0", "pose/c/3/0"])
 @pytest.mark.parametrize("damage", ["missing", "flipped"])
 def test_damaged_block_is_computed_again(chunk: str, damage: str, tmp_path: Path) -> None:

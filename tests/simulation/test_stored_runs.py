@@ -158,6 +158,7 @@ def test_full_disk_leaves_a_valid_store(tmp_path: Path) -> None:
     assert _same(nh.resume(path), _whole())
 
 
+@pytest.mark.profile("faults", keep=["*-run/checkpoints", "flipped-energy", "missing-pose", "empty-time"])
 @pytest.mark.parametrize("array", [*NAMES, "energy", "run/checkpoints"])
 @pytest.mark.parametrize("damage", ["missing", "flipped", "cut", "empty"])
 def test_damaged_chunk_is_named_and_computed_again(array: str, damage: str, tmp_path: Path) -> None:
@@ -191,11 +192,13 @@ def test_lost_start_is_refused(tmp_path: Path) -> None:
         nh.resume(path)
 
 
+@pytest.mark.profile("faults", keep=["3"])
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills forked processes")
-def test_killed_runs_go_on(tmp_path: Path) -> None:
-    """Killed at 20 random moments and resumed each time, a run is the undisturbed one, and leaves no rubbish."""
+@pytest.mark.parametrize("kills", [3, 20])
+def test_killed_runs_go_on(kills: int, tmp_path: Path) -> None:
+    """Killed at random moments and resumed each time, a run is the undisturbed one, and leaves no rubbish."""
     path = tmp_path / "run.zarr"
-    now = killed.leave_killed("sleigh", path, kills=20)
+    now = killed.leave_killed("sleigh", path, kills)
     assert 0 < now.done < now.steps
     discrete, run, _ = killed.RUNS["sleigh"]
     assert _same(nh.resume(path), nh.simulate(discrete, **run))

@@ -66,6 +66,7 @@ def test_a_compiled_step_against_the_definition() -> None:
     assert report["definition"].status == "ok"
 
 
+@pytest.mark.profile("routes", keep=["robot"])
 @pytest.mark.parametrize(
     ("system", "least", "most"), [(ON_SL2, 1e-3, 1e-1), (ROBOT, 1e-7, 1e-1)], ids=["SL(2)", "robot"]
 )

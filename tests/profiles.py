@@ -1,0 +1,121 @@
+"""The profiles of the tests: what is long by nature runs under a name of its own, beside the default run.
+
+`@pytest.mark.profile(NAME, keep=PATTERNS)` moves a test to a profile; cases whose id matches a pattern stay in the
+default run. Where none stays, `instead=TEST` names the one that guards the property there. `pytest --profile NAME` runs
+a profile, `--profile all` everything. `python tests/profiles.py` prints the commands whose rooms a change touches, for
+`.ci/run`.
+"""
+
+import argparse
+import dataclasses
+import fnmatch
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+DEFAULT = "default"
+PYTHON = ".venv/bin/python"
+COLLECTED: pytest.StashKey[list[pytest.Item]] = pytest.StashKey()
+
+
+@dataclasses.dataclass(frozen=True)
+class Profile:
+    """A part of the tests with a command of its own.
+
+    Attributes:
+        about: What it holds, and why that is long.
+        rooms: Folders below `nonholo/` and `tests/` whose change it guards.
+        command: What runs it; by default its marked tests.
+    """
+
+    about: str
+    rooms: tuple[str, ...]
+    command: str = ""
+
+
+_MECHANICS = ("numerics", "kernels", "groups", "systems", "discrete", "continuous")
+_RUNS = ("kernels", "orbit", "simulation", "io", "ensembles")
+PROFILES = {
+    "routes": Profile(
+        "every body by every route: the definition in JAX, which compiles a program for each",
+        (*_MECHANICS, "lagrange_dalembert", "orbit", "simulation", "analysis", "testing", "examples"),
+    ),
+    "faults": Profile(
+        "processes and clusters that are killed, disks that are full, blocks that are damaged",
+        (*_RUNS, "cli"),
+    ),
+    "problems": Profile(
+        "many random problems and long orbits, with the tolerances of the default run",
+        (*_MECHANICS, "lagrange_dalembert", "simulation", "analysis", "examples"),
+    ),
+    "paper": Profile(
+        "changed formulas of the paper that findings must notice, and the pages of the docs, executed",
+        ("reproduction", "plotting", "analysis", "examples"),
+    ),
+    "shapes": Profile(
+        "annotations of shapes and types, checked at run time by jaxtyping and beartype",
+        (*_MECHANICS, "orbit", "simulation", "_types", "_checks"),
+        f"{PYTHON} -m pytest -q tests/groups tests/systems tests/discrete tests/simulation -k 'not refused' "
+        "--jaxtyping-packages=nonholo.groups,nonholo.systems,nonholo.orbit,nonholo.discrete,nonholo.simulation,"
+        "beartype.beartype",
+    ),
+    "mutants": Profile(
+        "hand-made errors in all rooms that the default run must notice", (), f"{PYTHON} tests/mutants.py"
+    ),
+}
+
+
+def command(name: str) -> str:
+    """Return the command that runs a profile."""
+    return PROFILES[name].command or f"{PYTHON} -m pytest -q --profile {name}"
+
+
+def profile_of(item: pytest.Item) -> str:
+    """Return the profile of a test: the default one, or that of its mark unless its case is kept."""
+    mark = item.get_closest_marker("profile")
+    if mark is None:
+        return DEFAULT
+    case = getattr(item, "callspec", None)
+    stays = case is not None and any(fnmatch.fnmatchcase(case.id, pattern) for pattern in mark.kwargs.get("keep", ()))
+    return DEFAULT if stays else mark.args[0]
+
+
+def changed_files(base: str | None = None) -> list[str] | None:
+    """Return the files that differ from the last tag or merge base; None when that cannot be told."""
+    known = base or _git("describe", "--tags", "--abbrev=0") or _git("merge-base", "HEAD", "@{upstream}")
+    if not known or _git("rev-parse", known + "^{commit}") == _git("rev-parse", "HEAD"):
+        return None
+    return _git("diff", "--name-only", known).splitlines()
+
+
+def _git(*arguments: str) -> str:
+    done = subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True, check=False)  # noqa: S603, S607
+    return done.stdout.strip() if done.returncode == 0 else ""
+
+
+def touched(files: list[str] | None) -> list[str]:
+    """Return the profiles whose rooms files lie in; all but the mutants when in doubt."""
+    every = [name for name, profile in PROFILES.items() if profile.rooms]
+    rooms = {_room(file) for file in files or []}
+    if files is None or None in rooms:
+        return every
+    return [name for name in every if rooms & set(PROFILES[name].rooms)]
+
+
+def _room(file: str) -> str | None:
+    """Return the room of a file, "" where only the default run is concerned, None where that is in doubt."""
+    parts = Path(file).parts
+    if parts[0] in ("nonholo", "tests") and len(parts) > 1:
+        return parts[1].removesuffix(".py") if len(parts) > 2 or parts[1].startswith("_") else None
+    return "" if parts[0] in ("docs", "benchmarks", "examples") or file.endswith(".md") else None
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description="Print the commands of the profiles that a change concerns.")
+    parser.add_argument("--all", action="store_true", help="of all profiles")
+    parser.add_argument("--base", help="the commit to compare with; by default the last tag or the merge base")
+    given = parser.parse_args()
+    for chosen in list(PROFILES) if given.all else touched(changed_files(given.base)):
+        print(command(chosen))  # noqa: T201

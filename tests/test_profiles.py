@@ -1,0 +1,114 @@
+"""Nothing is lost between the profiles: each has its command, keeps representatives, and stands on its page."""
+
+import sys
+from collections import defaultdict
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+import profiles
+import pytest
+from profiles import COLLECTED, PROFILES, ROOT, command, profile_of, touched
+from scripts import script
+
+
+@pytest.fixture(name="cases")
+def _cases(request: pytest.FixtureRequest) -> dict[str, list[pytest.Item]]:
+    """All collected tests of profiles, by name."""
+    found = defaultdict(list)
+    for item in request.config.stash[COLLECTED]:
+        if item.get_closest_marker("profile"):
+            found[item.nodeid.split("[")[0]].append(item)
+    return found
+
+
+def test_every_profile_has_its_command() -> None:
+    """CONTRIBUTING gives the command of each profile."""
+    text = (ROOT / "CONTRIBUTING.md").read_text()
+    assert not [name for name in PROFILES if f"`{command(name)}`" not in text and command(name) not in text]
+
+
+def test_every_room_is_guarded() -> None:
+    """The rooms of the profiles exist, and each room of the library belongs to one at least."""
+    rooms = {path.name.removesuffix(".py") for path in (ROOT / "nonholo").iterdir() if path.name[:2] != "__"}
+    listed = {room for profile in PROFILES.values() for room in profile.rooms}
+    assert listed <= rooms
+    assert rooms - listed <= {"py.typed", "_progress", "_results"}
+
+
+def test_marks_mean_something(cases: dict[str, list[pytest.Item]]) -> None:
+    """Marks name a profile; each pattern of kept cases keeps one, and leaves one to the profile."""
+    for name, items in cases.items():
+        mark = items[0].get_closest_marker("profile")
+        assert mark.args[0] in PROFILES, name
+        ids = [item.callspec.id for item in items if hasattr(item, "callspec")]
+        patterns = mark.kwargs.get("keep", [])
+        assert not [p for p in patterns if not any(fnmatchcase(case, p) for case in ids)], name
+        assert any(profile_of(item) == mark.args[0] for item in items), name
+
+
+def test_every_property_stays_in_the_default_run(
+    request: pytest.FixtureRequest, cases: dict[str, list[pytest.Item]]
+) -> None:
+    """A test with no case there names the one that stands for it, which has one."""
+    default = {i.originalname for i in request.config.stash[COLLECTED] if profile_of(i) == profiles.DEFAULT}
+    for name, items in cases.items():
+        if profiles.DEFAULT not in map(profile_of, items) and _complete(request):
+            assert items[0].get_closest_marker("profile").kwargs["instead"] in default, name
+
+
+def test_the_page_is_current(request: pytest.FixtureRequest) -> None:
+    """docs/tests.md gives the counts of the tests that there are."""
+    if not _complete(request):
+        pytest.skip("some tests were not collected")
+    page = script("docs/make_tests_page.py").page(request.config.stash[COLLECTED])
+    hint = "run `.venv/bin/python docs/make_tests_page.py`"
+    assert (ROOT / "docs" / "tests.md").read_text() == page, hint
+
+
+def _complete(request: pytest.FixtureRequest) -> bool:
+    files = {Path(item.nodeid.split("::")[0]) for item in request.config.stash[COLLECTED]}
+    return {path.relative_to(ROOT) for path in (ROOT / "tests").rglob("test_*.py")} <= files
+
+
+@pytest.mark.parametrize(
+    ("files", "expected"),
+    [
+        ([], set()),
+        (["docs/house.md", "README.md", "benchmarks/gpu.py"], set()),
+        (["nonholo/cli/_plot.py"], {"faults"}),
+        (["tests/plotting/test_section.py", "docs/paper.md"], {"paper"}),
+        (["nonholo/kernels/_sleigh.py"], {"routes", "faults", "problems", "shapes"}),
+        (["nonholo/_checks.py"], {"shapes"}),
+        (["pyproject.toml"], set(PROFILES) - {"mutants"}),
+        (["tests/bodies.py"], set(PROFILES) - {"mutants"}),
+        (None, set(PROFILES) - {"mutants"}),
+    ],
+)
+def test_touched_profiles(files: list[str] | None, expected: set[str]) -> None:
+    """A change of one room runs the profiles that guard it, one of what all share runs all of them."""
+    assert set(touched(files)) == expected
+
+
+def test_the_base_of_a_change_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Files differ from a named commit; where none is known all profiles run."""
+    if not profiles._git("rev-parse", "HEAD~1"):
+        pytest.skip("a checkout without history")
+    assert profiles.changed_files("HEAD~1")
+    monkeypatch.setattr(profiles, "_git", lambda *_: "")
+    assert profiles.changed_files() is None
+
+
+def test_a_callee_changes_the_cache(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Numba's folder has another name after any file of the kernels has changed."""
+    import compilers
+
+    kernel = tmp_path / "nonholo" / "kernels" / "_small.py"
+    kernel.parent.mkdir(parents=True)
+    monkeypatch.setattr(compilers, "ROOT", tmp_path)
+    names = []
+    for text in ("a", "b"):
+        kernel.write_text(text)
+        monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+        compilers.use_caches()
+        names.append(sys.modules["os"].environ["NUMBA_CACHE_DIR"])
+    assert names[0] != names[1]
