@@ -31,8 +31,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Register the mark, and what belongs to the profile."""
     config.addinivalue_line("markers", "profile(name, keep=(), instead=None): a test of a profile but for kept cases")
-    thorough = config.getoption("--profile") in ("problems", "all")
-    hypothesis.settings.load_profile("problems" if thorough else DEFAULT)
+    chosen = config.getoption("--profile")
+    hypothesis.settings.load_profile("problems" if chosen in ("problems", "all") else DEFAULT)
+    if chosen == DEFAULT:
+        compilers.compile_quickly()
     compilers.compile_once()
 
 

@@ -66,6 +66,14 @@ PROFILES = {
     ),
 }
 
+_GROUP = "nonholo.lagrange_dalembert._"
+DOCTESTS = {  # examples that compile for long
+    f"{_GROUP}group_discretization.GroupDiscretization.simulate": "routes",
+    f"{_GROUP}group_orbit.GroupOrbit": "routes",
+    f"{_GROUP}on_group.GroupLagrangeDAlembert.flow": "routes",
+    "nonholo.examples._robot.two_wheeled_robot": "routes",
+}
+
 
 def command(name: str) -> str:
     """Return the command that runs a profile."""
@@ -76,7 +84,7 @@ def profile_of(item: pytest.Item) -> str:
     """Return the profile of a test: the default one, or that of its mark unless its case is kept."""
     mark = item.get_closest_marker("profile")
     if mark is None:
-        return DEFAULT
+        return DOCTESTS.get(item.name, DEFAULT)
     case = getattr(item, "callspec", None)
     stays = case is not None and any(fnmatch.fnmatchcase(case.id, pattern) for pattern in mark.kwargs.get("keep", ()))
     return DEFAULT if stays else mark.args[0]

@@ -34,6 +34,7 @@ def test_edges_of_a_right_invariant_run(velocity: tuple[float, float]) -> None:
     assert found.reversal_defect < 1e-14
 
 
+@pytest.mark.profile("routes", instead="test_edges_of_a_right_invariant_run")
 def test_undefined_quantities_are_none() -> None:
     """A flow has no displacements, a run without poses no group residual, another difference no reversal defect."""
     flow = nh.invariants(nh.flow(SLEIGH.system, body_velocity=(1, 0, 0), times=[0.0, 1.0]))

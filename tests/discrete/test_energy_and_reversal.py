@@ -82,6 +82,7 @@ def test_an_ideal_rod_feels_no_constraint() -> None:
     assert np.ptp(orbit.spatial_momentum, axis=0).max() < 1e-14
 
 
+@pytest.mark.profile("routes", instead="test_the_exponential_constraint_drifts")
 def test_logarithmic_difference_does_not_conserve_energy() -> None:
     """The energy theorem belongs to the matrix difference: the logarithmic one wanders visibly, as the theory says."""
     top = PROBLEMS[0].system

@@ -119,7 +119,7 @@ def _special_linear() -> tuple[nh.LLSystem, np.ndarray]:
     return nh.LLSystem(group, annihilator=[[0.0, 1.0, -1.0]], inertia_operator=inertia), np.array([0.4, 0.3])
 
 
-@pytest.mark.profile("routes", keep=["rolling_disk"])
+@pytest.mark.profile("routes", instead="test_steps_on_other_groups")
 @pytest.mark.parametrize("build", [_rolling_disk, _special_linear], ids=lambda f: f.__name__[1:])
 def test_slope_two_on_other_groups(build: object) -> None:
     """On groups without a mass tensor the logarithmic difference is of order two, in momenta along d and pose."""

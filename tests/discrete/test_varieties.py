@@ -38,6 +38,7 @@ def test_functions_of_the_same_variety_give_the_same_orbit(name: str) -> None:
     assert nh.invariants(found).constraint_residual <= 1e-14
 
 
+@pytest.mark.profile("routes", instead="test_functions_of_the_same_variety_give_the_same_orbit")
 def test_the_naive_constraint_spirals() -> None:
     """With W - I in d the balanced sleigh turns by a constant angle D and its steps shrink by cos D: a spiral."""
     sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.0)

@@ -56,6 +56,7 @@ def test_the_disk_keeps_its_energy() -> None:
     assert np.ptp(run("rolling_disk", 0.1, 2000.0).energy) <= 1e-10
 
 
+@pytest.mark.profile("routes", instead="test_the_midpoint_rule_is_reversible")
 @pytest.mark.parametrize("name", ["knife_edge_on_incline", "non_reversible"])
 def test_reversible_motions_have_bounded_errors(name: str) -> None:
     """The last tenth of 20000 steps oscillates as much as the first, and about the same mean (5 percent)."""
@@ -66,6 +67,7 @@ def test_reversible_motions_have_bounded_errors(name: str) -> None:
     assert abs(last.mean() - first.mean()) <= 0.05 * np.ptp(first)
 
 
+@pytest.mark.profile("routes", keep=["particle"])
 @pytest.mark.parametrize("name", ["particle", "two_wheeled_robot"])
 def test_motions_that_become_straight_settle(name: str) -> None:
     """The error tends to a constant: in the last half of the run it varies 1e8 times less than in the first."""
@@ -73,6 +75,7 @@ def test_motions_that_become_straight_settle(name: str) -> None:
     assert np.ptp(errors[10000:]) <= 1e-8 * np.ptp(errors[:10000])
 
 
+@pytest.mark.profile("routes", instead="test_motions_that_become_straight_settle")
 def test_the_knife_edge_stays_on_the_slope() -> None:
     """From rest, x of the discrete motion stays in the strip of the cycloid but for 2 h^2, and y drifts as it does."""
     orbit = run("knife_edge_on_incline", 0.1, 2000.0)
@@ -87,6 +90,7 @@ def slope(h: float, **parameters: float) -> float:
     return float(np.polyfit(orbit.time, orbit.energy, 1)[0])
 
 
+@pytest.mark.profile("routes", instead="test_the_energy_error_is_of_second_order")
 def test_without_reversal_the_energy_drifts() -> None:
     """The rate is about -0.015 h^2, and proportional to h^2 within 10 percent; with a reversal it is 100 times less."""
     rates = [slope(h) / h**2 for h in (0.1, 0.05)]
@@ -100,6 +104,7 @@ def test_a_swinging_driver_is_reversible() -> None:
     assert abs(slope(0.1, turning=1.0)) <= 0.01 * abs(slope(0.1))
 
 
+@pytest.mark.profile("problems", instead="test_the_disk_keeps_its_energy")
 def test_the_quartic_oscillator_is_chaotic() -> None:
     """A change of 1e-8 grows to the size of the motion within t = 400."""
     example = ready("chaotic_quartic_oscillator")
@@ -114,6 +119,7 @@ def test_the_quartic_oscillator_is_chaotic() -> None:
     assert apart[1500:].max() >= 0.5
 
 
+@pytest.mark.profile("problems", instead="test_the_disk_keeps_its_energy")
 def test_the_energy_of_the_chaotic_motion_wanders() -> None:
     """Over 16 times the time the mean square of 24 errors grows 3 to 60 times: like t (16), not t^2 (256) nor not."""
     example, h = ready("chaotic_quartic_oscillator"), 0.2

@@ -66,7 +66,7 @@ def test_conserved_quantities_are_constant_along_the_flow(name: str) -> None:
     assert max(np.ptp(values) / np.abs(values).max(initial=1.0) for values in found) <= 1e-11
 
 
-@pytest.mark.profile("routes", keep=["particle", "snakeboard"])
+@pytest.mark.profile("routes", keep=["particle", "rolling_disk"])
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_energy_and_constraint_hold_along_the_flow(name: str) -> None:
     """Energy is conserved in all of them, and the velocity stays admissible to rounding."""
@@ -134,6 +134,7 @@ def test_what_the_midpoint_rule_conserves(name: str, kept: list[str]) -> None:
     assert max(spread.values()) > 1e-5
 
 
+@pytest.mark.profile("routes", instead="test_conserved_quantities_are_constant_along_the_flow")
 def test_one_pair_of_oscillators_has_its_own_potential() -> None:
     """With one pair the coupling z_1 z_2 is absent, and the conserved function is the energy of the Lagrangian."""
     single = nh.examples.chaotic_quartic_oscillator(pairs=1)

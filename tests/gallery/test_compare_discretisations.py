@@ -9,6 +9,8 @@ from scripts import script
 
 import nonholo as nh
 
+pytestmark = pytest.mark.profile("paper", instead="test_the_page_quotes_what_the_script_prints")
+
 
 @pytest.fixture(scope="module", name="script")
 def gallery_script() -> ModuleType:

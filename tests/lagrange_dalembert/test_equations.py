@@ -121,7 +121,7 @@ def test_the_start_is_second_order_in_momentum(rule: str) -> None:
     assert abs(-np.polyfit(np.log(counts), np.log(errors), 1)[0] - 2.0) <= 0.1
 
 
-@pytest.mark.profile("routes", keep=["midpoint"])
+@pytest.mark.profile("routes", instead="test_the_midpoint_rule_is_reversible")
 @pytest.mark.parametrize("rule", RULES)
 def test_without_gyroscopic_terms_the_map_is_reversible(rule: str) -> None:
     """L_d is symmetric for a Lagrangian even in v: the reversed displacement leads back."""
@@ -167,6 +167,7 @@ def test_regularity_of_one_constraint_is_the_golden_ratio() -> None:
     assert abs(plane.regularity(np.zeros(3), [1.0, -1.0, 0.0], time_step=0.1) - (np.sqrt(5) - 1) / 2) <= 1e-14
 
 
+@pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
 def test_functions_of_two_configurations_are_taken_too() -> None:
     """An L_d(q, q') and F(q, q') made for one time step give the orbit of the rule that they spell out."""
     h = 0.1

@@ -105,6 +105,7 @@ def rates(_: float, z: np.ndarray) -> np.ndarray:
     return np.concatenate([[omega, dx, dy], solution[:3]])
 
 
+@pytest.mark.profile("routes", instead="test_the_flow_is_the_published_solution")
 def test_the_flow_solves_the_equations() -> None:
     """Pose and velocity agree with an independent integration of hand-written equations."""
     x, y = START["configuration"][:2, 2]

@@ -4,9 +4,12 @@ import functools
 
 import jax.numpy as jnp
 import numpy as np
+import pytest
 
 import nonholo as nh
 from nonholo.lagrange_dalembert import CoordinateOrbit, LagrangeDAlembert
+
+pytestmark = pytest.mark.profile("routes", instead="test_invariant_constraints_give_the_known_maps")
 
 SLEIGH = nh.ChaplyginSleigh(mass=1.3, inertia=0.7, a=0.5, b=0.2)
 STEP = 0.15
@@ -108,7 +111,6 @@ def test_the_energy_theorem_shows_in_coordinates() -> None:
     assert np.ptp(ours.energy) > 1e-3
 
 
-@pytest.mark.profile("routes", instead="test_poses_are_those_of_the_group_route")
 def test_a_blade_that_depends_on_position_has_slope_two() -> None:
     """L_d is left-invariant, the constraint is not: this route still converges to the flow with order 2 +- 0.1."""
     bend = 0.3

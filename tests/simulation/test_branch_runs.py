@@ -78,6 +78,7 @@ def test_the_definition_follows_the_same_values() -> None:
     np.testing.assert_allclose(defined.displacement, compact.displacement, rtol=0, atol=1e-12)
 
 
+@pytest.mark.profile("routes", instead="test_the_definition_follows_the_same_values")
 def test_other_systems_follow_by_their_definition() -> None:
     """Where not all values are known "nearest" continues a root: here from a later displacement of the same orbit."""
     discrete = nh.discretize(GENERAL["any d on SO(4)"][0], 0.1)

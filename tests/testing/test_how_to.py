@@ -9,6 +9,8 @@ import pytest
 
 import nonholo as nh
 
+pytestmark = pytest.mark.profile("paper", instead="test_the_blocks_run")
+
 PAGE = (pathlib.Path(__file__).parents[2] / "docs" / "how-to" / "define-your-own-system.md").read_text()
 
 
