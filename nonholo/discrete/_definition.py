@@ -46,16 +46,22 @@ def reduced_discrete_lagrangian(discrete: Discretization) -> Callable[[Array], A
 
 def value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup) -> tuple[np.ndarray, np.ndarray]:
     """Return a discrete Lagrangian and its derivative along the group at the identity."""
+    return in_double(_value_and_slope, lagrangian, group, np.zeros(group.dim))
 
-    def at(x: Array) -> Array:
-        return lagrangian(group.exp(x))
 
-    return in_double(jax.value_and_grad(at), np.zeros(group.dim))
+@functools.partial(jax.jit, static_argnums=(0, 1))
+def _value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup, x: Array) -> tuple[Array, Array]:
+    return jax.value_and_grad(lambda x: lagrangian(group.exp(x)))(x)
 
 
 def map_each(function: Callable[[Array], Array], W: Float[np.ndarray, "K N N"]) -> np.ndarray:
     """Return the values of a function of one matrix at each of several."""
-    return in_double(jax.vmap(function), W)
+    return in_double(_map_each, function, W)
+
+
+@functools.partial(jax.jit, static_argnums=0)
+def _map_each(function: Callable[[Array], Array], W: Array) -> Array:
+    return jax.vmap(function)(W)
 
 
 def is_even(function: Callable[[Array], Array], group: AbstractMatrixGroup) -> bool:
@@ -71,11 +77,16 @@ def sample_displacements(discrete: Discretization, count: int) -> Float[np.ndarr
     velocities = rng.normal(size=(count, len(system.constraint_subspace)))
     velocities *= 0.3 / (discrete.time_step * np.linalg.norm(velocities, axis=1, keepdims=True))
     momenta = velocities @ np.asarray(system.constrained_inertia)
-    solve = equinox.filter_jit(jax.vmap(principal_displacement, in_axes=(None, 0, None)))
-    charts, codes = in_double(solve, discrete, momenta, system.group.identity)
+    displacements, codes = in_double(_displacements, discrete, momenta, system.group.identity)
     if codes.any():
         raise OutcomeError(Outcome(int(codes.max())), "A displacement of a step of 0.3")
-    return in_double(jax.vmap(functools.partial(displaced, discrete)), charts)
+    return displacements
+
+
+@equinox.filter_jit
+def _displacements(discrete: Discretization, momenta: Array, g: Array) -> tuple[Array, Array]:
+    charts, codes = jax.vmap(lambda r: principal_displacement(discrete, r, g))(momenta)
+    return jax.vmap(lambda y: displaced(discrete, y))(charts), codes
 
 
 def legendre_by_derivative(discrete: Discretization, W: Float[Array, "... N N"], side: str) -> Float[Array, "... dim"]:
@@ -147,22 +158,28 @@ def _equations(discrete: Discretization, g: Array) -> Callable[[Array, Array], A
 def next_charts_by_definition(discrete: Discretization, states: Orbit) -> Float[np.ndarray, "K m"]:
     """Return the canonical chart coordinates that follow, one step from each state."""
     poses = states.configuration if isinstance(states.system, AbstractLRSystem) else _identities(states)
-    step = equinox.filter_jit(jax.vmap(step_from, in_axes=(None, 0, 0)))
-    return in_double(step, discrete, states.canonical_chart, poses)[1]
+    return in_double(_steps_from, discrete, states.canonical_chart, poses)[1]
 
 
 def _identities(states: Orbit) -> np.ndarray:
     return np.broadcast_to(states.system.group.identity, (len(states), *states.system.group.identity.shape))
 
 
-def step_from(discrete: Discretization, y: Array, g: Array, nearest: bool = False) -> tuple[Array, Array, Array, Array]:
-    """Return restricted momentum, chart and pose after one step to the principal or nearest value, and the outcome."""
+def step_from(discrete: Discretization, y: Array, g: Array) -> tuple[Array, Array, Array, Array]:
+    """Return restricted momentum, chart and pose after one step to the principal value, and the outcome."""
+    r, after = _pushed(discrete, y, g)
+    following, code = principal_displacement(discrete, r, after)
+    return r, following, after, code
+
+
+def _pushed(discrete: Discretization, y: Array, g: Array) -> tuple[Array, Array]:
+    """Return restricted momentum and pose after a displacement."""
     W = displaced(discrete, y)
     after = W @ g if isinstance(discrete.system, AbstractLRSystem) else g @ W
-    r = restricted(discrete, momentum_of(discrete, y, g, "right"), after)
-    ahead = nearest_displacement(discrete, y, r) if nearest else principal_displacement(discrete, r, after)
-    following, code = ahead
-    return r, following, after, code
+    return restricted(discrete, momentum_of(discrete, y, g, "right"), after), after
+
+
+_steps_from = equinox.filter_jit(jax.vmap(step_from, in_axes=(None, 0, 0)))
 
 
 def run_by_definition(
@@ -181,14 +198,14 @@ def run_by_definition(
     """
     group, C, frame = discrete.system.group, discrete.system.frame_map, discrete.system.frame
     r, g = np.linalg.solve(C, reduced), group.matrix_from_pose(pose) @ group.inverse(frame)
-    first = in_double(equinox.filter_jit(principal_displacement), discrete, r, g) if chart is None else (chart, 0)
-    y, code = first
+    y, begun = (np.zeros(len(discrete.variety.chart)), -1) if chart is None else (chart, 0)
+    _, code, r, y, g = in_double(_advance, discrete, nearest, np.int64(begun), np.int64(0), r, y, g)
     saved = [(r, y, g)] if code == 0 else []
     done = 0
     with progress_bar("steps", progress) as report:
         while code == 0 and done < steps:
             batch = min(every, steps - done)
-            good, code, r, y, g = in_double(_advance, discrete, nearest, np.int64(batch), r, y, g)
+            good, code, r, y, g = in_double(_advance, discrete, nearest, np.int64(0), np.int64(batch), r, y, g)
             done += int(good)
             if code == 0 and batch == every:
                 saved.append((r, y, g))
@@ -200,15 +217,23 @@ def run_by_definition(
 
 
 @equinox.filter_jit
-def _advance(discrete: Discretization, nearest: bool, steps: Array, r: Array, y: Array, g: Array) -> tuple[Array, ...]:
+def _advance(
+    discrete: Discretization, nearest: bool, begun: Array, steps: Array, r: Array, y: Array, g: Array
+) -> tuple[Array, ...]:
+    """Take steps; before the first one, if `begun` is -1 and y zero, find the displacement with momenta r at g.
+
+    From zero the nearest value is the principal one, and the root is compiled once for both.
+    """
     group = discrete.system.group
 
     def body(carry: tuple[Array, ...]) -> tuple[Array, ...]:
         done, _, *now = carry
-        *ahead, code = step_from(discrete, now[1], now[2], nearest)
-        ahead[2] = group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(ahead[2])))
+        r, g = _pushed(discrete, now[1], now[2])
+        g = group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(g)))
+        r, g = (jnp.where(done < 0, old, new) for new, old in ((r, now[0]), (g, now[2])))
+        y, code = nearest_displacement(discrete, now[1], r) if nearest else principal_displacement(discrete, r, g)
         good = code == 0
-        return done + good, code, *(jnp.where(good, new, old) for new, old in zip(ahead, now, strict=True))
+        return done + good, code, *(jnp.where(good, new, old) for new, old in zip((r, y, g), now, strict=True))
 
-    start = (jnp.asarray(0), jnp.asarray(0), jnp.asarray(r), jnp.asarray(y), jnp.asarray(g))
+    start = (jnp.asarray(begun), jnp.asarray(0), jnp.asarray(r), jnp.asarray(y), jnp.asarray(g))
     return jax.lax.while_loop(lambda c: (c[0] < steps) & (c[1] == 0), body, start)

@@ -1,7 +1,7 @@
 """The principal root of a system of equations, for JAX: continuation from zero, then Newton's method."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp

@@ -13,14 +13,15 @@ import numpy as np
 
 from nonholo._types import Array
 
+_FEWEST = 64  # intervals of a compiled solve; those of no length cost next to nothing
 _SMALLEST_STEP = 1e-13  # of an interval; below it a solve is given up
 
 State = tuple[Array, ...]
 
 
 def padded(rows: np.ndarray) -> np.ndarray:
-    """Repeat the last row until their number is one more than a power of two, so that few sizes are compiled."""
-    missing = (1 << max(len(rows) - 2, 0).bit_length()) + 1 - len(rows)
+    """Repeat the last row until there are 65, 129, 257... rows: few sizes are compiled, and one for most flows."""
+    missing = (1 << max(len(rows) - 2, _FEWEST - 1).bit_length()) + 1 - len(rows)
     return np.concatenate([rows, np.broadcast_to(rows[-1:], (missing, *rows.shape[1:]))])
 
 
