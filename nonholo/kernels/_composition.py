@@ -16,6 +16,7 @@ from nonholo.kernels._general import GeneralBody
 from nonholo.kernels._interface import Body, increment, move
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._secular import SecularBody
+from nonholo.kernels._small import assign
 from nonholo.kernels._substeps import at_rest, charted, chosen, prepared, pushed, solved
 
 _SETTLED = 1e-150  # of the largest momentum; squares below it underflow
@@ -123,19 +124,24 @@ def _advance(
     w, room, code, done = prepared(p, m, weights), _room(k, roots.shape[2]), 0, 0
     before, at = m.copy(), pose.copy()
     while done < steps:
-        before[:], at[:] = m, pose
+        assign(before, m)
+        assign(at, pose)
         code = _sweep(p, w, weights, m, lost, pose, roots, room)
         if code != 0:
             break
-        now[:], g[:] = before, at
+        assign(now, before)
+        assign(g, at)
         done += 1
         if done % every == 0:
             row = done // every - 1
-            momenta[row], poses[row] = now, g
-            room[0][:] = weights[0] * now
+            assign(momenta[row], now)
+            assign(poses[row], g)
+            assign(room[0], weights[0] * now)
             charted(p, room[0], roots[0, 0], charts[row])
-    ahead[:k], ahead[k:] = m, lost
-    after[:size], after[size:] = pose, roots.ravel()
+    assign(ahead, m)
+    assign(ahead[k:], lost)
+    assign(after, pose)
+    assign(after[size:], roots.ravel())
     return done, code
 
 
@@ -148,7 +154,10 @@ def _each(
     room, roots = _room(momenta.shape[1], len(rest)), np.empty((len(weights), 3, len(rest)))
     lost = np.zeros(momenta.shape[1])
     for row in range(len(momenta)):
-        roots[:], lost[:] = rest, 0.0
+        lost[:] = 0.0
+        for i in range(len(weights)):
+            for j in range(3):
+                assign(roots[i, j], rest)
         w = prepared(p, momenta[row], weights)
         codes[row] = _sweep(p, w, weights, after[row], lost, moved[row], roots, room)
     return after, moved, codes, lost, roots

@@ -9,6 +9,7 @@ import numpy as np
 
 from nonholo.kernels._interface import Body, certified, correction, increment, move, principal
 from nonholo.kernels._scalar import COMPILED, scalar
+from nonholo.kernels._small import assign
 
 STATE_SIZE = 14
 _SETTLED = 1e-150  # of one momentum to the other; squares below it underflow
@@ -19,11 +20,11 @@ CORRECTIONS = 8  # of a guess, before the root is followed from momentum zero
 def start(p: Body, momentum: np.ndarray, pose: np.ndarray, state: np.ndarray) -> int:
     """Fill the state of a run that begins with scaled momenta and a pose; return the outcome of the first root."""
     code, y1, y2 = _solve(p, momentum[0], momentum[1], 0.0, 0.0)
-    state[0:2] = momentum
+    assign(state, momentum)
     state[2:4] = 0.0
     for i in (4, 6, 8):
         state[i], state[i + 1] = y1, y2
-    state[10:14] = pose
+    assign(state[10:], pose)
     return code
 
 
@@ -53,7 +54,7 @@ def advance(
             momenta[row, 0], momenta[row, 1] = m1, m2
             charts[row, 0], charts[row, 1] = y1, y2
             poses[row, 0], poses[row, 1], poses[row, 2], poses[row, 3] = q0, q1, q2, q3
-    state[:] = np.array((m1, m2, k1, k2, y1, y2, u1, u2, v1, v2, q0, q1, q2, q3))
+    assign(state, np.array((m1, m2, k1, k2, y1, y2, u1, u2, v1, v2, q0, q1, q2, q3)))
     return done, code
 
 
@@ -121,5 +122,6 @@ def step_each(
         else:
             good, w1, w2 = _newton(p, m1, m2, guesses[k, 0], guesses[k, 1])
             codes[k] = 0 if good else 3
-        next_momenta[k], next_charts[k] = (m1, m2), (w1, w2)
+        next_momenta[k, 0], next_momenta[k, 1] = m1, m2
+        next_charts[k, 0], next_charts[k, 1] = w1, w2
     return next_momenta, next_charts, codes

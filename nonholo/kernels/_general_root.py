@@ -4,7 +4,7 @@ import numba
 import numpy as np
 
 from nonholo.kernels._general import LOST, GeneralBody, Workspace, displaced, equations, skew_part
-from nonholo.kernels._small import eliminate, multiply, paired
+from nonholo.kernels._small import assign, eliminate, multiply, paired
 
 _STEPS = 12  # of Newton's method
 _FIRST = 0.25  # first continuation step, in s
@@ -77,7 +77,7 @@ def _tangent(p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray, s: floa
     displaced(p, w, y)
     equations(p, w, s * m)
     w.residual[:] = 0.0
-    w.residual[: len(m), 0] = m
+    assign(w.residual[:, 0], m)
     det = eliminate(w.slope, w.residual)
     return det, w.residual[:, 0].copy()
 

@@ -5,7 +5,7 @@ import numpy as np
 
 from nonholo.kernels._general import GeneralBody, Workspace, displaced, increments, see_tensor, workspace
 from nonholo.kernels._general_root import newton, solve
-from nonholo.kernels._small import multiply
+from nonholo.kernels._small import assign, assign_rows, multiply
 
 
 @numba.njit(cache=True)
@@ -21,7 +21,8 @@ def _in_units(p: GeneralBody, g: np.ndarray, factor: float) -> np.ndarray:
     """Return a motion with its translation multiplied by a factor."""
     scaled = g.copy()
     if len(g) > p.size:
-        scaled[: p.size, p.size] *= factor
+        for i in range(p.size):
+            scaled[i, p.size] *= factor
     return scaled
 
 
@@ -53,7 +54,7 @@ def _rectify(moved: np.ndarray, n: int, scratch: np.ndarray, g: np.ndarray) -> N
                 total += moved[k, i] * moved[k, j]
             scratch[i, j] = -0.5 * total
         scratch[i, i] += 1.5
-    g[:] = moved
+    assign_rows(g, moved)
     for i in range(n):
         for j in range(n):
             g[i, j] = 0.0
@@ -99,9 +100,10 @@ def advance(
         done += 1
         if done % every == 0:
             row = done // every - 1
-            momenta[row], charts[row], poses[row] = m, y * p.stretch, g.ravel()
-    state[: 2 * k] = np.concatenate((m, lost))
-    state[2 * k :] = np.concatenate((y, u, v, g.ravel()))
+            assign(momenta[row], m)
+            assign(charts[row], y * p.stretch)
+            assign(poses[row], g.ravel())
+    assign(state, np.concatenate((m, lost, y, u, v, g.ravel())))
     return done, code
 
 
@@ -138,12 +140,12 @@ def step_each(
             see_pose(p, w, g)
         else:
             increments(w, term)
-        next_momenta[row] = momenta[row] + term
+        assign(next_momenta[row], momenta[row] + term)
         y = guesses[row] / p.stretch
         if principal_only:
             codes[row], y = solve(p, w, next_momenta[row], y)
         else:
             good, _ = newton(p, w, next_momenta[row], y)
             codes[row] = 0 if good else 3
-        next_charts[row] = y * p.stretch
+        assign(next_charts[row], y * p.stretch)
     return next_momenta, next_charts, codes

@@ -12,6 +12,7 @@ import numpy as np
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._secular import SecularBody, coordinate, newton, term
 from nonholo.kernels._secular_root import certain_radius, level_of, principal
+from nonholo.kernels._small import assign
 
 _SETTLED = 1e-150  # of the scale of the momenta; squares below it underflow
 
@@ -159,12 +160,11 @@ def advance(
         done += 1
         if done % every == 0:
             row = done // every - 1
-            momenta[row] = m
+            assign(momenta[row], m)
             chart_of(p, m, nu, tau, charts[row])
-            poses[row] = rows.ravel()
-    state[:size], state[size : 2 * size] = m, lost
-    state[2 * size : 2 * size + 7] = np.array((nu, tau, nu1, tau1, nu2, tau2, certain))
-    state[2 * size + 7 :] = rows.ravel()
+            assign(poses[row], rows.ravel())
+    unknowns = np.array((nu, tau, nu1, tau1, nu2, tau2, certain))
+    assign(state, np.concatenate((m, lost, unknowns, rows.ravel())))
     return done, code
 
 

@@ -54,6 +54,21 @@ def _sandwich(G: np.ndarray, Q: np.ndarray, half: np.ndarray, out: np.ndarray, n
 
 
 @numba.njit(cache=True)
+def assign(target: np.ndarray, source: np.ndarray) -> None:
+    """Write the numbers of a row to another one; numba compiles `target[:] = source` for seconds."""
+    for i in range(len(source)):
+        target[i] = source[i]
+
+
+@numba.njit(cache=True)
+def assign_rows(target: np.ndarray, source: np.ndarray) -> None:
+    """Write the numbers of a matrix to another one."""
+    for i in range(source.shape[0]):
+        for j in range(source.shape[1]):
+            target[i, j] = source[i, j]
+
+
+@numba.njit(cache=True)
 def transpose(A: np.ndarray, out: np.ndarray) -> None:
     """Write the transpose of a square matrix."""
     for i in range(len(A)):
@@ -81,7 +96,7 @@ def eliminate(A: np.ndarray, B: np.ndarray) -> float:
     if n > _LARGE:
         det = np.linalg.det(A)
         if np.isfinite(det) and det != 0:
-            B[:] = np.linalg.solve(A, B)
+            assign_rows(B, np.linalg.solve(A, B))
         return det
     for k in range(n):
         det *= _swap(A, B, k) * A[k, k]

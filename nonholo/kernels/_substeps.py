@@ -18,6 +18,7 @@ from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._secular import SecularBody, term
 from nonholo.kernels._secular_root import certain_radius, level_of
 from nonholo.kernels._sleigh import SleighBody
+from nonholo.kernels._small import assign
 from nonholo.kernels._suslov import SuslovBody
 
 
@@ -28,7 +29,7 @@ def _two_prepared(p: Body, m: np.ndarray, weights: np.ndarray) -> np.ndarray:
 
 @numba.njit(cache=True, **COMPILED)
 def _two_charted(p: Body, m: np.ndarray, root: np.ndarray, chart: np.ndarray) -> None:
-    chart[:] = root
+    assign(chart, root)
 
 
 @numba.njit(cache=True, **COMPILED)
@@ -90,7 +91,7 @@ def _general_solved(
 ) -> int:
     _general_run.see_pose(p, w, pose.reshape(w.X.shape))
     code, found = _general_root.solve(p, w, m, guess)
-    root[:] = found
+    assign(root, found)
     return code
 
 
@@ -107,7 +108,7 @@ def _general_pushed(
 
 @numba.njit(cache=True)
 def _general_charted(p: GeneralBody, m: np.ndarray, root: np.ndarray, chart: np.ndarray) -> None:
-    chart[:] = root * p.stretch
+    assign(chart, root * p.stretch)
 
 
 def chosen(
