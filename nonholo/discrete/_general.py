@@ -34,7 +34,7 @@ def general_body(system: AbstractSystem, variety: Variety) -> kernels.GeneralBod
     return kernels.GeneralBody(
         tensor=_plain(system.homogeneous_mass_tensor * np.outer(shrink, shrink)),
         directions=_plain(group.hat(system.constraint_subspace) * motions),
-        places=np.argwhere(chart),
+        places=np.ascontiguousarray(np.argwhere(chart)),  # of one layout, empty or not: compiled once
         entries=_plain((chart / lengths[:, None, None])[chart != 0]),
         forbidden=_plain(forbidden_matrices(group, forbidden) / motions),
         size=n,
