@@ -121,8 +121,7 @@ def chosen(
         return table[type(p)](p, *rest)
 
     def choose(p: Any, *_: Any) -> Any:
-        compiled = table[p.instance_class]
-        return lambda p, *rest: compiled(p, *rest)
+        return table[p.instance_class].py_func  # a call of the compiled one would be optimized once more
 
     overload(piece, jit_options=COMPILED, strict=False)(choose)
     return piece
