@@ -6,12 +6,14 @@ Increments ($e^X - I$ instead of $e^X$) keep their relative accuracy near the id
 import functools
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from nonholo._types import Array, Float
 
 _TERMS = 16  # of the series for norms below 1/2
+_DOUBLINGS = 20  # of traced matrices: norms up to 500,000, as in jax.scipy.linalg.expm
 _ROOT_ITERATIONS = 16  # enough for angles up to 3.14 and stretches up to exp(12) of one square root
 _NODES, _WEIGHTS = (half[12:] for half in np.polynomial.legendre.leggauss(24))  # exact to rounding for |K| <= 1
 
@@ -24,21 +26,14 @@ def identity_like(X: Float[Array, "... N N"]) -> Float[Array, "N N"]:
 def integrated_exponential(X: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
     r"""Return $\varphi_1(X) = \int_0^1 e^{sX}ds = \sum_k X^k/(k+1)!$, for singular $X$ too.
 
-    NumPy: series of $X/2^s$ and s doublings of all matrices together. JAX: the upper right block of the exponential of
-    $\begin{pmatrix} X & I \\ 0 & 0\end{pmatrix}$.
+    Series of $X/2^s$ and s doublings, in NumPy of all matrices together.
 
     Example:
         >>> X = np.diag([1.0, 0.0])
         >>> np.diag(integrated_exponential(X)).round(8)  # e - 1 and 1
         array([1.71828183, 1.        ])
     """
-    if isinstance(X, np.ndarray):
-        return _by_doubling(X)
-    from jax.scipy.linalg import expm
-
-    xp, n = X.__array_namespace__(), X.shape[-1]
-    upper = xp.concatenate([X, xp.broadcast_to(identity_like(X), X.shape)], axis=-1)
-    return expm(xp.concatenate([upper, xp.zeros_like(upper)], axis=-2))[..., :n, n:]
+    return _by_doubling(X) if isinstance(X, np.ndarray) else _by_doubling_in_loops(X)
 
 
 def exponential_increment(X: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
@@ -58,6 +53,23 @@ def _by_doubling(X: np.ndarray) -> np.ndarray:
     for _ in range(doublings):
         phi, E = phi + phi @ E / 2, 2 * E + E @ E
     return phi
+
+
+def _by_doubling_in_loops(X: Array) -> Array:
+    """Return the same of traced matrices, NaN for too large ones; loops compile faster than the fractions of `expm`."""
+    import jax.numpy as jnp
+    from jax.lax import fori_loop, stop_gradient
+
+    norm = stop_gradient(jnp.max(jnp.sum(jnp.abs(X), axis=-1, keepdims=True), axis=-2, keepdims=True))
+    doublings = jnp.maximum(0, jnp.frexp(norm)[1] + 1)
+    Y, eye = X / 2.0 ** doublings.astype(X.dtype), identity_like(X)
+    phi = fori_loop(0, _TERMS - 2, lambda i, phi: eye + Y @ phi / (_TERMS - 1 - i), eye + Y / _TERMS)
+
+    def doubled(i: Array, state: tuple[Array, Array]) -> tuple[Array, Array]:
+        phi, E = state
+        return jnp.where(i < doublings, phi + phi @ E / 2, phi), jnp.where(i < doublings, 2 * E + E @ E, E)
+
+    return jnp.where(doublings > _DOUBLINGS, jnp.nan, fori_loop(0, _DOUBLINGS, doubled, (phi, phi @ Y))[0])
 
 
 def cayley_increment(X: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
@@ -80,9 +92,7 @@ def principal_logarithm(W: Float[Array, "... N N"], halvings: int) -> Float[Arra
     for twice that logarithm. Nothing is checked: compare the exponential of the result.
     """
     xp, eye = W.__array_namespace__(), identity_like(W)
-    K = inverse_cayley(W)
-    for _ in range(halvings):
-        K = xp.linalg.solve(eye + _square_root(eye - K @ K), K)
+    K = _repeated(lambda K: xp.linalg.solve(eye + _square_root(eye - K @ K), K), halvings, inverse_cayley(W))
     nodes, weights = xp.asarray(_NODES, dtype=W.dtype), xp.asarray(_WEIGHTS, dtype=W.dtype)
     squares = (nodes * nodes)[:, None, None] * (K @ K)[..., None, :, :]
     terms = xp.linalg.solve(eye - squares, xp.broadcast_to(K[..., None, :, :], squares.shape))
@@ -93,16 +103,21 @@ def _square_root(A: Array) -> Array:
     """The iteration of Denman and Beavers in product form, whose rounding errors do not grow."""
     eye, invert = identity_like(A), A.__array_namespace__().linalg.inv
 
-    def improved(_: Array, state: tuple[Array, Array]) -> tuple[Array, Array]:
+    def improved(state: tuple[Array, Array]) -> tuple[Array, Array]:
         root, product = state
         inverse = invert(product)
         return root @ (eye + inverse) / 2, eye / 2 + (product + inverse) / 4
 
-    if not isinstance(A, np.ndarray):
-        from jax.lax import fori_loop  # compiled once instead of sixteen times
+    return _repeated(improved, _ROOT_ITERATIONS, (A, A))[0]
 
-        return fori_loop(0, _ROOT_ITERATIONS, improved, (A, A))[0]
-    return functools.reduce(lambda state, k: improved(k, state), range(_ROOT_ITERATIONS), (A, A))[0]
+
+def _repeated(function: Callable[[Any], Any], times: int, state: Any) -> Any:
+    """Return what a function makes of arrays after so many calls; JAX compiles it once."""
+    if isinstance(state, np.ndarray) or (isinstance(state, tuple) and isinstance(state[0], np.ndarray)):
+        return functools.reduce(lambda x, _: function(x), range(times), state)
+    from jax.lax import fori_loop
+
+    return fori_loop(0, times, lambda _, x: function(x), state)
 
 
 def of_skew(X: Float[np.ndarray, "... n n"], function: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
