@@ -53,7 +53,7 @@ def _elsewhere(items: list[pytest.Item]) -> str:
     for name, cases in by_name.items():
         if DEFAULT not in map(profile_of, cases):
             mark = cases[0].get_closest_marker("profile")
-            rows.append([f"`{name}`", profile_of(cases[0]), mark.kwargs["instead"]])
+            rows.append([f"`{name}`", profile_of(cases[0]), mark.kwargs["instead"] if mark else "other examples"])
     return _table(["test", "profile", "in the default run"], rows)
 
 
