@@ -33,6 +33,26 @@ class Root(NamedTuple):
     regularity: Array  # reciprocal Frobenius norm of its inverse
 
 
+class _Path(NamedTuple):
+    """How far a root has been followed.
+
+    Attributes:
+        count: Number of attempts.
+        s: How far the residual at the start has been taken away.
+        stride: Step of s that is tried next.
+        root: The root at s.
+        regularity: That at the start.
+        elsewhere: Whether the guess led to a root, though not to one that counts.
+    """
+
+    count: Array
+    s: Array
+    stride: Array
+    root: Root
+    regularity: Array
+    elsewhere: Array
+
+
 Matrix = Callable[[Array], tuple[Array, Scaled, tuple[Array, Array]]]
 """Maps a velocity to the scaled matrix of the equations, its units, and the values (P, F)."""
 
@@ -54,19 +74,45 @@ def solve(
 
 
 def root(matrix: Matrix, rows: Array, p: Array, near: Array, guess: Array, sign: Array) -> tuple[Array, Array, Array]:
-    """Solve P = p + multipliers @ rows, F = 0; return velocity, multipliers and outcome."""
+    r"""Solve P = p + multipliers @ rows, F = 0; return velocity, multipliers and outcome.
+
+    A loop of attempts, so that the equations are compiled once: from the guess; at `near`, which is the root of the
+    equations less their residual there; then along $R(x) = (1 - s) R(x_0)$ from s = 0 to 1.
+    """
     correction, offset = _correction(matrix, rows, p, near)
-    none = jnp.zeros((rows.shape[0],))
-    fast = _newton(correction, guess, none, jnp.zeros_like(offset))
-    trusted = fast.converged & (fast.sign == sign)
 
-    def kept() -> tuple[Array, Array, Array]:
-        return fast.velocity, fast.multipliers, jnp.where(fast.regularity < _SINGULAR, int(Outcome.no_real_branch), 0)
+    def attempt(path: _Path) -> _Path:
+        fast, first = path.count == 0, path.count == 1
+        ahead = jnp.where(first, 0.0, jnp.where(fast, 1.0, jnp.minimum(path.s + path.stride, 1.0)))
+        begin = jnp.where(fast, guess, path.root.velocity)
+        found = _newton(correction, begin, path.root.multipliers, (1 - ahead) * offset)
+        good = found.converged & (found.sign == sign) & ~first
+        kept = jax.tree.map(lambda new, old: jnp.where(good, new, old), found, path.root)
+        stride = jnp.where(good, 2 * path.stride, path.stride / 2)
+        return _Path(
+            path.count + 1,
+            jnp.where(good, ahead, path.s),
+            jnp.where(fast | first, path.stride, stride),
+            kept._replace(regularity=jnp.where(first, found.regularity, kept.regularity)),
+            jnp.where(first, found.regularity, path.regularity),
+            jnp.where(fast, found.converged, path.elsewhere),
+        )
 
-    def followed() -> tuple[Array, Array, Array]:
-        return _continue(correction, offset, near, none, sign, fast.converged)
+    zero, one, no = jnp.zeros(()), jnp.ones(()), jnp.asarray(False)
+    start = Root(near, jnp.zeros((rows.shape[0],)), no, zero, one)
+    begun = _Path(jnp.asarray(0), zero, 0.25 * one, start, one, no)
+    path = jax.lax.while_loop(lambda path: (path.s < 1) & (path.stride > _SMALLEST), attempt, begun)
+    finite = (path.count == 1) | (jnp.all(jnp.isfinite(offset)) & jnp.isfinite(path.regularity))
+    return path.root.velocity, path.root.multipliers, jnp.where(finite, _outcome(path), int(Outcome.nonfinite))
 
-    return jax.lax.cond(trusted, kept, followed)
+
+def _outcome(path: _Path) -> Array:
+    """Say what ended a path if it did not arrive."""
+    singular = path.root.regularity < _SINGULAR
+    folded = (path.root.regularity < _NEAR_FOLD * path.regularity) | singular
+    code = jnp.where(path.elsewhere, int(Outcome.branch_unverified), int(Outcome.not_converged))
+    code = jnp.where(folded, int(Outcome.no_real_branch), code)
+    return jnp.where((path.s == 1) & ~singular, int(Outcome.successful), code)
 
 
 def _correction(matrix_at: Matrix, rows: Array, p: Array, near: Array) -> tuple[Correction, Array]:
@@ -107,29 +153,3 @@ def _newton(correction: Correction, v: Array, multipliers: Array, offset: Array)
     zero = jnp.zeros(())
     start = (jnp.asarray(0), zero, Root(v, multipliers, jnp.asarray(False), zero, zero))
     return jax.lax.while_loop(lambda c: (c[0] < _ITERATIONS) & ~c[2].converged, body, start)[2]
-
-
-def _continue(
-    correction: Correction, offset: Array, v: Array, multipliers: Array, sign: Array, elsewhere: Array
-) -> tuple[Array, Array, Array]:
-    r"""Follow $R(x) = (1 - s) R(x_0)$ from s = 0 to 1, and say what ended the path if it does not arrive."""
-
-    def body(carry: tuple[Array, Array, Root]) -> tuple[Array, Array, Root]:
-        s, stride, root = carry
-        ahead = jnp.minimum(s + stride, 1.0)
-        found = _newton(correction, root.velocity, root.multipliers, (1 - ahead) * offset)
-        good = found.converged & (found.sign == sign)
-        kept = jax.tree.map(lambda new, old: jnp.where(good, new, old), found, root)
-        return jnp.where(good, ahead, s), jnp.where(good, 2 * stride, stride / 2), kept
-
-    first = correction(v, multipliers, offset)
-    start = Root(v, multipliers, jnp.asarray(True), first[3], first[4])
-    s, _, end = jax.lax.while_loop(
-        lambda c: (c[0] < 1) & (c[1] > _SMALLEST), body, (jnp.zeros(()), jnp.asarray(0.25), start)
-    )
-    finite = jnp.all(jnp.isfinite(offset)) & jnp.isfinite(first[4])
-    folded = (end.regularity < _NEAR_FOLD * first[4]) | (end.regularity < _SINGULAR)
-    code = jnp.where(elsewhere, int(Outcome.branch_unverified), int(Outcome.not_converged))
-    code = jnp.where(folded, int(Outcome.no_real_branch), code)
-    code = jnp.where((s == 1) & ~(end.regularity < _SINGULAR), int(Outcome.successful), code)
-    return end.velocity, end.multipliers, jnp.where(finite, code, int(Outcome.nonfinite))
