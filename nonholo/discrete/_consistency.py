@@ -43,11 +43,13 @@ def consistency_defect(discrete: Discretization, discretization_map: Callable[[A
     group, annihilator = discrete.system.group, np.asarray(discrete.system.annihilator)
     where = "consistency_defect(discretization_map=...)"
     own = {"matrix": lambda W: group.vee(W - group.identity), "logarithmic": group.log}
-    if discretization_map is None and callable(discrete.difference):
+    if discretization_map is not None:
+        velocities = map_each(discretization_map, sample_displacements(discrete, _SAMPLES))
+    elif callable(discrete.difference):
         got = "none, with a callable difference"
         raise error(where, "be given", got, "Pass the map W -> velocity that the difference was made with.")
-    W = sample_displacements(discrete, _SAMPLES)
-    velocities = map_each(discretization_map, W) if discretization_map else own[discrete.difference](W)
+    else:
+        velocities = own[discrete.difference](sample_displacements(discrete, _SAMPLES))
     if velocities.shape != (_SAMPLES, group.dim) or not np.all(np.isfinite(velocities)):
         got = f"shape {velocities.shape[1:]}" if velocities.shape[1:] != (group.dim,) else "a value that is not finite"
         raise error(where, f"return {group.dim} finite coordinates", got, "Use `vee` on a matrix of the algebra.")
