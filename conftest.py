@@ -33,8 +33,6 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "profile(name, keep=(), instead=None): a test of a profile but for kept cases")
     chosen = config.getoption("--profile")
     hypothesis.settings.load_profile("problems" if chosen in ("problems", "all") else DEFAULT)
-    if chosen == DEFAULT:
-        compilers.compile_quickly()
     compilers.compile_once()
 
 

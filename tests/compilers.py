@@ -30,11 +30,6 @@ def use_caches() -> None:
     os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "-1")
 
 
-def compile_quickly() -> None:
-    """Let XLA leave out the passes that only make programs faster; before JAX is imported."""
-    os.environ.setdefault("JAX_DISABLE_MOST_OPTIMIZATIONS", "1")
-
-
 def compile_once() -> None:
     """Let numba ask its cache again when another process has just compiled the same function."""
     from numba.core import dispatcher
