@@ -167,6 +167,22 @@ def test_values_that_tie_are_unverified() -> None:
     assert after.outcome == Outcome.branch_unverified
 
 
+@pytest.mark.parametrize("angle", [1.0, 2.5, -0.7])
+def test_a_double_value_is_unverified(angle: float) -> None:
+    """On the deltoid two values of the sleigh are one: not even a rule that names it determines the next step."""
+    arriving = nh.analysis.deltoid(SLEIGH).touching(angle)
+    back = _real(nh.displacements_over(SLEIGH, -arriving))[0]
+    counts = []
+
+    def double(found: Branches, _: np.ndarray) -> int:
+        counts.append(int(found.multiplicity.max()))
+        return int(found.multiplicity.argmax())
+
+    after = nh.step(SLEIGH, nh.discrete_legendre(SLEIGH, nh.SE(2).inverse(back)), branch=double)
+    assert counts == [2]
+    assert after.outcome == Outcome.branch_unverified
+
+
 def test_a_start_on_a_fold_is_unverified() -> None:
     """The balanced sleigh folds at a quarter turn: its root is double there and cannot be followed."""
     W = nh.SE(2).exp(np.array([np.pi / 2, 0.3, 0.0]))

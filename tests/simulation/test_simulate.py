@@ -40,6 +40,13 @@ def test_thinning_keeps_single_steps(discrete: nh.Discretization) -> None:
     assert np.abs(whole[2:15:6].multipliers - whole.multipliers[2:14:6]).max() < 1e-14
 
 
+def test_parts_of_a_thinned_orbit_are_thinned() -> None:
+    """A part of a thinned orbit has the multipliers of single steps too, and is thinned by both strides."""
+    thin = nh.simulate(TOP, restricted_velocity=(0.7, -0.3), steps=24, save_every=6)
+    assert np.array_equal(thin[1:4].multipliers, thin.multipliers[1:3])
+    assert [part.save_every for part in (thin[1:4], thin[::2], thin[::2][1:])] == [6, 12, 12]
+
+
 def test_shapes_of_an_orbit() -> None:
     """An orbit of steps = N has N + 1 states and N multipliers; W_N is computed, g_{N+1} is not."""
     orbit = nh.simulate(SLEIGH, body_velocity=(0.5, 1.0, 0.0), steps=7)
@@ -142,6 +149,7 @@ GOOD = {"body_velocity": (0.4, 0.9, 0.0), "steps": 3}
     [
         ({**GOOD, "steps": 0}, r"simulate\(steps=...\)` must be a positive integer. Got 0"),
         ({**GOOD, "steps": 2.5}, "positive integer. Got 2.5"),
+        ({**GOOD, "steps": True}, "positive integer. Got True"),
         ({**GOOD, "save_every": -1}, r"save_every=...\)` must be a positive integer"),
         ({"steps": 3}, "exactly one of body_velocity, .*Got none"),
         ({**GOOD, "momentum": (1, 2)}, "Got body_velocity and momentum"),
