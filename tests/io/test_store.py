@@ -127,6 +127,24 @@ def test_decoded_dataset() -> None:
     assert "configuration" not in orbit_to_dataset(_orbit(reconstruct=False), decoded=True)
 
 
+def test_units_of_every_array() -> None:
+    """Each array of a dataset says in which unit its numbers are."""
+    flow = nh.flow(nh.ChaplyginSleigh(1.1, 0.7, 0.3), body_velocity=(0.3, -1.0, 0.0), times=[0.0, 1.0])
+    datasets = [orbit_to_dataset(orbit, decoded=True) for orbit in (_orbit(), flow)]
+    assert {str(name): rows.attrs["units"] for dataset in datasets for name, rows in dataset.variables.items()} == {
+        "time": "time unit",
+        "reduced_momentum": "momentum unit",
+        "cayley": "1",
+        "pose": "1, lengths in length unit",
+        "turned": "rad",
+        "energy": "energy unit",
+        "momentum": "momentum unit",
+        "body_velocity": "1 / time unit",
+        "configuration": "1",
+        "displacement": "1",
+    }
+
+
 def test_provenance(tmp_path: Path) -> None:
     """A store names system, motion, versions, precision, conventions and the scenario with its hash."""
     nh.save_orbit(_orbit(), tmp_path / "o.zarr", scenario="title = 'x'\n")

@@ -16,13 +16,18 @@ def _crossings(steps: int) -> nh.Crossings:
 def test_dots_are_the_quantities_at_the_crossings() -> None:
     """Each dot is a crossing, with the two quantities as its place and the time as its colour."""
     found = _crossings(100)
-    drawn = nh.plot.section(
-        found, lambda states: states.position[:, 0], lambda states: states.heading, labels=("x", "heading")
-    )
+    drawn = nh.plot.section(found, lambda states: states.position[:, 0], lambda states: states.heading)
     assert np.array_equal(drawn.points, np.stack([found.states.position[:, 0], found.states.heading], axis=1))
     assert np.array_equal(drawn.dots.get_offsets(), drawn.points)
     assert np.array_equal(drawn.dots.get_array(), found.time)
-    assert drawn.axes.get_xlabel() == "x"
+
+
+def test_axes_bear_the_names_of_their_quantities() -> None:
+    """The first label is that of the abscissa, the second that of the ordinate."""
+    drawn = nh.plot.section(
+        _crossings(20), lambda states: states.position[:, 0], lambda states: states.heading, labels=("x", "heading")
+    )
+    assert (drawn.axes.get_xlabel(), drawn.axes.get_ylabel()) == ("x", "heading")
 
 
 def test_sections_without_crossings_are_refused() -> None:
