@@ -70,6 +70,12 @@ def test_rank(rows: list[list[int]], rank: int) -> None:
     assert twin.rank(ctx.matrix(rows)) == rank
 
 
+@pytest.mark.parametrize("defects", [[1.0, ctx.nan, 2.0], [ctx.nan], [ctx.matrix([[0, 1], [ctx.nan, 0]])]], ids=str)
+def test_undefined_difference_is_the_worst(defects: list) -> None:
+    """A difference that is not a number is worse than every number, wherever it stands."""
+    assert twin.worst(*defects) == float("inf")
+
+
 def test_both_puts_two_precisions_under_one_tolerance() -> None:
     """A defect of 1e-12 in the library counts as 1e-45, one at 50 digits as it is."""
     assert twin.both(0.0, 1e-12) == pytest.approx(1e-45)
