@@ -1,0 +1,120 @@
+"""Errors made by hand, each in a copy of the repository; each must turn a test red.
+
+`python tests/mutants.py [NAME ...] [--list]` tries those of tests/mutants.toml, or the rooms and errors that are named.
+"""
+
+import dataclasses
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import tomllib
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+_PYTEST = ("-m", "pytest", "-q", "-x", "--tb=short", "-n", "0", "-p", "no:randomly")
+_COMPILED = ("nonholo/kernels/", "nonholo/numerics/")  # numba's cache does not notice callees in other files
+_LIMIT = 600  # seconds
+_FIRST = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.MULTILINE)
+
+
+@dataclasses.dataclass(frozen=True)
+class Mutant:
+    """An error: what stands in a file exactly once, what stands there instead, and the tests that notice it."""
+
+    name: str
+    file: str
+    old: str
+    new: str
+    why: str
+    tests: tuple[str, ...]
+
+    @property
+    def room(self) -> str:
+        """Return the first part of the name."""
+        return self.name.partition(".")[0]
+
+    def occurrences(self, root: Path = ROOT) -> int:
+        """Return how often the text that is replaced stands in its file."""
+        return (root / self.file).read_text().count(self.old)
+
+
+def mutants() -> list[Mutant]:
+    """Return the errors of the table, room by room."""
+    rooms = tomllib.loads(Path(__file__).with_suffix(".toml").read_text()).items()
+    rows = {f"{room}.{name}": row for room, named in rooms for name, row in named.items()}
+    return [Mutant(name, **row | {"tests": tuple(row["tests"])}) for name, row in rows.items()]
+
+
+def tried(mutant: Mutant, copy: Path, caches: Path) -> tuple[bool, str]:
+    """Apply an error in the copy, run its tests there and take it back; return whether and by what it was caught."""
+    if mutant.occurrences(copy) != 1:
+        return False, f"DOES NOT APPLY: {mutant.occurrences(copy)} places in {mutant.file}"
+    path = copy / mutant.file
+    text, before = path.read_text(), path.stat()
+    with tempfile.TemporaryDirectory() as fresh:
+        numba = Path(fresh) if mutant.file.startswith(_COMPILED) else caches / "numba"
+        try:
+            path.write_text(text.replace(mutant.old, mutant.new))
+            code, output = _run(copy, caches, numba, *_PYTEST, *mutant.tests)
+        finally:
+            path.write_text(text)
+            os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))  # what was compiled from it is still good
+    if (first := _FIRST.search(output)) and (code == 1 or (code == 2 and mutant.file in output)):
+        return True, f"caught {'by' if code == 1 else 'in collecting'} {first[1]}"
+    return False, "SURVIVED" if code == 0 else f"SURVIVED, pytest ended with {code}: {output.splitlines()[-1:]}"
+
+
+def _run(copy: Path, caches: Path, numba: Path, *arguments: str) -> tuple[int | None, str]:
+    """Run Python on the package of the copy; return its exit status, None after the limit, and what it wrote."""
+    own = {"PYTHONPATH": copy, "NUMBA_CACHE_DIR": numba, "JAX_COMPILATION_CACHE_DIR": caches / "jax"}
+    own |= {"JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": 0, "PYTEST_ADDOPTS": ""}
+    environment, command = os.environ | {name: str(value) for name, value in own.items()}, [sys.executable, *arguments]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    try:
+        done = subprocess.run(command, cwd=copy, env=environment, timeout=_LIMIT, **pipes)  # noqa: S603
+    except subprocess.TimeoutExpired:
+        return None, f"no end in {_LIMIT} s"
+    return done.returncode, done.stdout
+
+
+def _copied(copy: Path, caches: Path) -> None:
+    """Copy what git tracks, or would, as it is in the working tree; prove that the copy has a package of its own."""
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout  # noqa: S603
+    for name in filter(lambda name: (ROOT / name).is_file(), listed.split("\0")):
+        (copy / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(ROOT / name, copy / name)
+    found = _run(copy, caches, caches / "numba", "-c", "import nonholo; print(nonholo.__file__)")
+    if found != (0, f"{copy / 'nonholo' / '__init__.py'}\n"):
+        raise RuntimeError(f"Not the package of the copy: {found}")
+
+
+def main(arguments: list[str]) -> int:
+    """Try or list the errors that are named, by room or in full, or all; return 1 if one was not caught."""
+    names, known = set(arguments) - {"--list"}, mutants()
+    if unknown := names - {name for mutant in known for name in (mutant.name, mutant.room)}:
+        sys.exit(f"No error is called {', '.join(sorted(unknown))}.")
+    chosen = [mutant for mutant in known if not names or names & {mutant.name, mutant.room}]
+    if "--list" in arguments:
+        sys.stdout.writelines(f"{mutant.name}: {mutant.why}, {mutant.file}\n" for mutant in chosen)
+        return 0
+    count = 0
+    with tempfile.TemporaryDirectory() as folder:
+        copy, caches = Path(folder).resolve() / "copy", Path(folder) / "caches"
+        _copied(copy, caches)
+        for mutant in chosen:
+            begun = time.perf_counter()
+            caught, told = tried(mutant, copy, caches)
+            count += caught
+            sys.stdout.write(f"{mutant.name}: {told}, {time.perf_counter() - begun:.0f} s\n")
+            sys.stdout.flush()
+    sys.stdout.write(f"{count} of {len(chosen)} caught\n")
+    return int(count < len(chosen))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

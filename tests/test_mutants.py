@@ -1,0 +1,36 @@
+"""The table of errors made by hand fits the repository; `python tests/mutants.py` tries them."""
+
+from collections import Counter
+
+import pytest
+from mutants import ROOT, Mutant, mutants
+
+_LEAST = 60
+_NO_ROOMS = {"__init__", "_types"}  # names alone
+
+
+def _rooms() -> set[str]:
+    entries = (ROOT / "nonholo").iterdir()
+    return {entry.stem for entry in entries if entry.suffix == ".py" or (entry / "__init__.py").is_file()} - _NO_ROOMS
+
+
+@pytest.mark.parametrize("mutant", mutants(), ids=lambda mutant: mutant.name)
+def test_row_applies(mutant: Mutant) -> None:
+    """What a row replaces stands exactly once in its file, and what stands there instead is something else."""
+    assert mutant.occurrences() == 1
+    assert mutant.new != mutant.old
+
+
+@pytest.mark.parametrize("mutant", mutants(), ids=lambda mutant: mutant.name)
+def test_tests_of_a_row_exist(mutant: Mutant) -> None:
+    """A row names tests, and says in its name in which room its file is."""
+    assert mutant.tests
+    assert all((ROOT / place).exists() for place in mutant.tests)
+    assert mutant.file.removesuffix(".py").split("/")[1] == mutant.name.partition(".")[0]
+
+
+def test_every_room_has_errors() -> None:
+    """Each room has at least two rows, and the table at least sixty."""
+    counts = Counter(mutant.name.partition(".")[0] for mutant in mutants())
+    assert {room for room, count in counts.items() if count >= 2} == _rooms()
+    assert counts.total() >= _LEAST
