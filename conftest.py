@@ -1,19 +1,21 @@
 """How the tests run: caches of compilers, cores, profiles; names that doctests use."""
 
+# ruff: noqa: E402
 import sys
 from collections.abc import Iterator
+
+sys.path.insert(0, "tests")  # before `pythonpath` is read
+import compilers
+
+compilers.use_caches()
+compilers.use_one_thread()
 
 import hypothesis
 import numpy as np
 import pytest
-
-sys.path.insert(0, "tests")  # before `pythonpath` is read
-import compilers
 from profiles import COLLECTED, DEFAULT, PROFILES, profile_of
 
-compilers.use_caches()
-
-import nonholo as nh  # noqa: E402
+import nonholo as nh
 
 collect_ignore_glob = ["tests/golden/*"]  # programs that write references, not tests
 

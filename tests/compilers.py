@@ -30,6 +30,11 @@ def use_caches() -> None:
     os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "-1")
 
 
+def use_one_thread() -> None:
+    """Let linear algebra run in one thread, before NumPy is imported: each core has a process of its own."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+
 def compile_once() -> None:
     """Let numba ask its cache again when another process has just compiled the same function."""
     from numba.core import dispatcher

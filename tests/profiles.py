@@ -70,6 +70,7 @@ _GROUP = "nonholo.lagrange_dalembert._"
 DOCTESTS = {  # examples that compile for long
     f"{_GROUP}group_discretization.GroupDiscretization.simulate": "routes",
     f"{_GROUP}group_orbit.GroupOrbit": "routes",
+    f"{_GROUP}on_group.GroupLagrangeDAlembert": "routes",
     f"{_GROUP}on_group.GroupLagrangeDAlembert.flow": "routes",
     "nonholo.examples._robot.two_wheeled_robot": "routes",
 }

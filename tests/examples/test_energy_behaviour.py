@@ -99,6 +99,7 @@ def test_without_reversal_the_energy_drifts() -> None:
     assert abs(slope(0.1, asymmetry=0.0)) <= 0.01 * abs(slope(0.1))
 
 
+@pytest.mark.profile("routes", instead="test_the_midpoint_rule_is_reversible")
 def test_a_swinging_driver_is_reversible() -> None:
     """The same asymmetry does not spoil the energy while the pendulum only swings."""
     assert abs(slope(0.1, turning=1.0)) <= 0.01 * abs(slope(0.1))

@@ -107,6 +107,7 @@ def test_the_knife_edge_draws_the_cycloid_of_the_midpoint_rule() -> None:
     assert np.ptp(along - h / np.sin(h) * np.sin(heading)) <= 1e-13
 
 
+@pytest.mark.profile("routes", instead="test_motions_that_become_straight_settle")
 def test_the_robot_speeds_up_like_a_sleigh() -> None:
     """Speed is u_inf tanh kappa(t - t0), turning rate omega_0 sech kappa(t - t0), constants as derived."""
     orbit = flow("two_wheeled_robot")
@@ -119,7 +120,7 @@ def test_the_robot_speeds_up_like_a_sleigh() -> None:
     assert np.abs(v[:, 2] - largest / np.cosh(phase)).max() <= 1e-11
 
 
-@pytest.mark.profile("routes", keep=["[!r]*"])
+@pytest.mark.profile("routes", keep=["particle"])
 @pytest.mark.parametrize(
     ("name", "kept"),
     [("particle", ["y'"]), ("snakeboard", ["phi'", "theta' + psi'"]), ("two_wheeled_robot", ["axle"])],

@@ -65,6 +65,7 @@ def test_the_equations_hold_with_their_sign(rule: str) -> None:
             assert np.abs(constraint(q, r)).max() <= 1e-13
 
 
+@pytest.mark.profile("routes", keep=["midpoint*"])
 @pytest.mark.parametrize("rule", RULES)
 def test_momentum_and_energy_are_derivatives_of_the_action(rule: str) -> None:
     """Momentum is -D1 L_d and energy -dL_d/dh at fixed end points (centred difference, error h^2 1e-8)."""

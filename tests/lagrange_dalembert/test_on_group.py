@@ -130,7 +130,7 @@ def errors() -> np.ndarray:
     return np.array(rows)
 
 
-@pytest.mark.profile("routes", instead="test_the_flow_solves_the_equations")
+@pytest.mark.profile("routes", instead="test_invariant_constraints_give_the_known_maps")
 @pytest.mark.parametrize("what", ["pose", "momentum", "force"])
 def test_a_mixed_system_converges_with_order_two(what: str) -> None:
     """Poses, momenta along the constraint and impulse / h, with its sign, tend to the flow; slope 2.0 +- 0.1."""
@@ -182,6 +182,7 @@ def test_a_momentum_starts_where_the_velocity_does() -> None:
     assert np.abs(run(0.1, 5, momentum=p).configuration - run(0.1, 5).configuration).max() <= 1e-14
 
 
+@pytest.mark.profile("routes", instead="test_public_doors_are_the_methods")
 def test_the_public_verbs_hand_over() -> None:
     """`discretize`, `simulate` and `flow` of the package run the same motions."""
     velocity = admissible(0.9, 1.0)

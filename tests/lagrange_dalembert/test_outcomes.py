@@ -89,6 +89,8 @@ def test_the_branch_is_followed_not_guessed(near: float, guess: float, outcome: 
     with jax.enable_x64(True):
         one = jnp.ones(())
         p = jnp.array([np.sin(1.0) + FORCE / 2 - FORCE])
-        v, _, code = solve(FOLDING, one, jnp.zeros(1), p + FORCE / 2, jnp.array([near]), jnp.array([guess]), one)
+        v, _, code = jax.jit(solve, static_argnums=0)(
+            FOLDING, one, jnp.zeros(1), p + FORCE / 2, jnp.array([near]), jnp.array([guess]), one
+        )
     assert int(code) == outcome
     assert root is None or abs(float(v[0]) - np.arcsin(np.sin(1.0) + FORCE / 2)) <= 0.1

@@ -109,6 +109,7 @@ def test_runs_by_the_definition_find_the_same(options: dict[str, str]) -> None:
     assert np.array_equal(orbit.pose, plain.pose)
 
 
+@pytest.mark.profile("routes", instead="test_runs_by_the_definition_find_the_same")
 def test_a_callable_lagrangian_has_parts_of_steps() -> None:
     """The path s r to the principal root is defined without a time step; it gives those of the closed form."""
     J = TOP.system.mass_tensor
