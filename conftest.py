@@ -32,7 +32,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Register the mark, and what belongs to the profile."""
-    config.addinivalue_line("markers", "profile(name, keep=(), instead=None): a test of a profile but for kept cases")
+    config.addinivalue_line("markers", "profile(name, keep=(), cases=(), instead=None): a test of a profile")
     chosen = config.getoption("--profile")
     hypothesis.settings.load_profile("problems" if chosen in ("problems", "all") else DEFAULT)
     compilers.compile_once()

@@ -3,8 +3,10 @@
 `python tests/mutants.py [NAME ...] [--list]` tries those of tests/mutants.toml, or the rooms and errors that are named.
 """
 
+import concurrent.futures
 import dataclasses
 import os
+import queue
 import re
 import shutil
 import subprocess
@@ -15,7 +17,7 @@ import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-_PYTEST = ("-m", "pytest", "-q", "-x", "--tb=short", "-n", "0", "-p", "no:randomly")
+_PYTEST = ("-m", "pytest", "-q", "-x", "--tb=short", "-n", "0")
 _COMPILED = ("nonholo/kernels/", "nonholo/numerics/")  # numba's cache does not notice callees in other files
 _LIMIT = 600  # seconds
 _FIRST = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.MULTILINE)
@@ -102,18 +104,29 @@ def main(arguments: list[str]) -> int:
     if "--list" in arguments:
         sys.stdout.writelines(f"{mutant.name}: {mutant.why}, {mutant.file}\n" for mutant in chosen)
         return 0
-    count = 0
     with tempfile.TemporaryDirectory() as folder:
-        copy, caches = Path(folder).resolve() / "copy", Path(folder) / "caches"
-        _copied(copy, caches)
-        for mutant in chosen:
-            begun = time.perf_counter()
-            caught, told = tried(mutant, copy, caches)
-            count += caught
-            sys.stdout.write(f"{mutant.name}: {told}, {time.perf_counter() - begun:.0f} s\n")
-            sys.stdout.flush()
-    sys.stdout.write(f"{count} of {len(chosen)} caught\n")
-    return int(count < len(chosen))
+        caught = _all_tried(chosen, Path(folder).resolve())
+    sys.stdout.write(f"{caught} of {len(chosen)} caught\n")
+    return int(caught < len(chosen))
+
+
+def _all_tried(chosen: list[Mutant], folder: Path) -> int:
+    """Try errors on all cores, each core in a copy of its own; return how many were caught."""
+    copies: queue.SimpleQueue[Path] = queue.SimpleQueue()
+    for core in range(os.cpu_count() or 1):
+        _copied(folder / f"{core}", folder / "caches")
+        copies.put(folder / f"{core}")
+
+    def told(mutant: Mutant) -> bool:
+        begun, copy = time.perf_counter(), copies.get()
+        caught, words = tried(mutant, copy, folder / "caches")
+        copies.put(copy)
+        sys.stdout.write(f"{mutant.name}: {words}, {time.perf_counter() - begun:.0f} s\n")
+        sys.stdout.flush()
+        return caught
+
+    with concurrent.futures.ThreadPoolExecutor(copies.qsize()) as pool:
+        return sum(pool.map(told, chosen))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """The profiles of the tests: what is long by nature runs under a name of its own, beside the default run.
 
 `@pytest.mark.profile(NAME, keep=PATTERNS)` moves a test to a profile; cases whose id matches a pattern stay in the
-default run. Where none stays, `instead=TEST` names the one that guards the property there. `pytest --profile NAME` runs
+default run; with `cases=PATTERNS` the others stay. Where none stays, `instead=TEST` names the one that guards the property there. `pytest --profile NAME` runs
 a profile, `--profile all` everything. `python tests/profiles.py` prints the commands whose rooms a change touches, for
 `.ci/run`.
 """
@@ -72,6 +72,9 @@ DOCTESTS = {  # examples that compile for long
     f"{_GROUP}group_orbit.GroupOrbit": "routes",
     f"{_GROUP}on_group.GroupLagrangeDAlembert": "routes",
     f"{_GROUP}on_group.GroupLagrangeDAlembert.flow": "routes",
+    "nonholo.lagrange_dalembert._discretization.CoordinateDiscretization.simulate": "routes",
+    "nonholo.lagrange_dalembert._system.LagrangeDAlembert.flow": "routes",
+    "nonholo.discrete._consistency.consistency_defect": "routes",
     "nonholo.examples._robot.two_wheeled_robot": "routes",
 }
 
@@ -86,8 +89,12 @@ def profile_of(item: pytest.Item) -> str:
     mark = item.get_closest_marker("profile")
     if mark is None:
         return DOCTESTS.get(item.name, DEFAULT)
-    case = getattr(item, "callspec", None)
-    stays = case is not None and any(fnmatch.fnmatchcase(case.id, pattern) for pattern in mark.kwargs.get("keep", ()))
+    case = item.callspec.id if hasattr(item, "callspec") else ""
+
+    def matches(patterns: list[str]) -> bool:
+        return any(fnmatch.fnmatchcase(case, pattern) for pattern in patterns)
+
+    stays = not matches(mark.kwargs["cases"]) if "cases" in mark.kwargs else matches(mark.kwargs.get("keep", []))
     return DEFAULT if stays else mark.args[0]
 
 

@@ -46,6 +46,7 @@ def test_single_time(system: AbstractLLSystem, method: str | None) -> None:
     assert orbit.multipliers.shape == (1, 1)
 
 
+@pytest.mark.profile("routes", keep=["top"])
 @BOTH
 def test_states_do_not_depend_on_the_other_times(system: AbstractLLSystem) -> None:
     """A state among few and among many times is the same to the tolerance: every time is stepped to."""

@@ -57,7 +57,7 @@ def _general(group: object) -> AbstractLLSystem:
     return nh.LLSystem(group, mass_tensor(group, rng), random_rows(group, 3, rng))
 
 
-@pytest.mark.profile("routes", keep=["system2-skew-matrix-False", "system3-skew-matrix-True"])
+@pytest.mark.profile("routes", keep=["system2-skew-matrix-False"])
 @pytest.mark.parametrize(
     ("system", "constraint", "difference", "consistent"),
     [

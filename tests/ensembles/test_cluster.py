@@ -209,7 +209,7 @@ def _kill_scheduler(made: Cluster) -> None:
     made.scheduler.kill()
 
 
-@pytest.mark.profile("faults", keep=["scheduler"])
+@pytest.mark.profile("faults", instead="test_a_cluster_without_workers_is_told")
 @pytest.mark.parametrize("strike", [_kill_scheduler, Cluster.kill], ids=["scheduler", "all"])
 def test_a_killed_cluster_is_told(
     strike: Callable[[Cluster], Any], tmp_path: Path, undisturbed: xarray.Dataset, monkeypatch: pytest.MonkeyPatch

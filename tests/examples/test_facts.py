@@ -56,7 +56,7 @@ def test_the_flow_is_the_published_solution(name: str) -> None:
     assert np.abs(flow(name).configuration - ready(name).exact(TIMES)).max() <= 1e-11
 
 
-@pytest.mark.profile("routes", keep=["particle", "rolling_disk"])
+@pytest.mark.profile("routes", keep=["particle"])
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_conserved_quantities_are_constant_along_the_flow(name: str) -> None:
     """Each of them varies by rounding and solver errors only, and there is at least one."""

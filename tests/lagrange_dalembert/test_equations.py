@@ -99,6 +99,7 @@ def test_blocks_join_without_a_seam() -> None:
     assert np.abs(rest.configuration - whole.configuration[at : at + 51]).max() <= 1e-12
 
 
+@pytest.mark.profile("routes", instead="test_the_start_is_second_order_in_momentum")
 def test_momentum_starts_where_the_velocity_does() -> None:
     """p_0 = dL/dv, and p_0 plus any multiple of the constraint form, set out with the same step."""
     q, v = START["configuration"], START["body_velocity"]
@@ -108,6 +109,7 @@ def test_momentum_starts_where_the_velocity_does() -> None:
     assert np.abs(orbit.configuration - run("midpoint", 0.1, 5).configuration).max() <= 1e-14
 
 
+@pytest.mark.profile("routes", keep=["midpoint"])
 @pytest.mark.parametrize("rule", RULES)
 def test_the_start_is_second_order_in_momentum(rule: str) -> None:
     """Along admissible directions P_k is the momentum of the flow to second order: slope 2.0 +- 0.1."""

@@ -192,6 +192,7 @@ def test_the_public_verbs_hand_over() -> None:
     assert np.array_equal(again.configuration, flow().configuration)
 
 
+@pytest.mark.profile("routes", instead="test_blocks_join_without_a_seam")
 def test_thinning_keeps_the_numbers_and_labels_name_them() -> None:
     """Saving every fourth step changes nothing else; the dataset holds the same numbers by name."""
     full, thin = run(0.1, 20), run(0.1, 20, save_every=4)

@@ -39,6 +39,7 @@ def test_panels(top_orbit: nh.Orbit, sleigh_orbit: nh.Orbit) -> None:
     assert _titles(sleigh_run((0.1, -1.0, 0.0), steps=20, reconstruct=False)) == TITLES["no poses"]
 
 
+@pytest.mark.profile("paper", instead="test_a_flow_beside_and_alone")
 def test_panels_of_flows(sleigh_orbit: nh.Orbit) -> None:
     """A continuous orbit has the same panels, forwards and backwards in time, and can accompany a discrete one."""
     system = sleigh_orbit.system
