@@ -1,9 +1,9 @@
 """The profiles of the tests: what is long by nature runs under a name of its own, beside the default run.
 
 `@pytest.mark.profile(NAME, keep=PATTERNS)` moves a test to a profile; cases whose id matches a pattern stay in the
-default run; with `cases=PATTERNS` the others stay. Where none stays, `instead=TEST` names the one that guards the property there. `pytest --profile NAME` runs
-a profile, `--profile all` everything. `python tests/profiles.py` prints the commands whose rooms a change touches, for
-`.ci/run`.
+default run; with `cases=PATTERNS` the others stay. Where none stays, `instead=TEST` names the one that guards the
+property there. `pytest --profile NAME` runs a profile, `--profile all` everything. `python tests/profiles.py` prints
+the commands whose rooms a change touches, for `.ci/run`.
 """
 
 import argparse

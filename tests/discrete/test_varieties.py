@@ -76,6 +76,7 @@ def test_consistency(system: AbstractLLSystem, constraint: str, difference: str,
     assert defect <= 1e-12 if consistent else defect >= 1e-3
 
 
+@pytest.mark.profile("routes", instead="test_consistency")
 def test_consistency_with_a_map_of_the_users() -> None:
     """The skew constraint is consistent with the map that takes W to (W - W^-1)/2; a callable l_d needs its map."""
     group = SLEIGH.group

@@ -66,7 +66,7 @@ def test_conserved_quantities_are_constant_along_the_flow(name: str) -> None:
     assert max(np.ptp(values) / np.abs(values).max(initial=1.0) for values in found) <= 1e-11
 
 
-@pytest.mark.profile("routes", keep=["particle", "rolling_disk"])
+@pytest.mark.profile("routes", keep=["particle"])
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_energy_and_constraint_hold_along_the_flow(name: str) -> None:
     """Energy is conserved in all of them, and the velocity stays admissible to rounding."""

@@ -51,7 +51,7 @@ def both(name: str) -> tuple[GroupOrbit, nh.Orbit]:
     return rewritten(system).discretize(0.15).simulate(**start), nh.simulate(nh.discretize(system, 0.15), **start)
 
 
-@pytest.mark.profile("routes", keep=["*-sleigh"])
+@pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("what", ["momentum", "displacement", "configuration", "multipliers"])
 def test_invariant_constraints_give_the_known_maps(name: str, what: str) -> None:
@@ -130,7 +130,7 @@ def errors() -> np.ndarray:
     return np.array(rows)
 
 
-@pytest.mark.profile("routes", instead="test_invariant_constraints_give_the_known_maps")
+@pytest.mark.profile("routes", instead="test_the_map_satisfies_its_constraint_and_has_order_two")
 @pytest.mark.parametrize("what", ["pose", "momentum", "force"])
 def test_a_mixed_system_converges_with_order_two(what: str) -> None:
     """Poses, momenta along the constraint and impulse / h, with its sign, tend to the flow; slope 2.0 +- 0.1."""
@@ -205,7 +205,7 @@ def test_thinning_keeps_the_numbers_and_labels_name_them() -> None:
     assert "displacement" not in flow().to_dataset()
 
 
-@pytest.mark.profile("routes", instead="test_invariant_constraints_give_the_known_maps")
+@pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
 def test_chaplygins_ball_keeps_its_momentum_about_the_contact() -> None:
     """On SO(3) x R^2: with the midpoint rule R I R^T Om + m x e3 x x' in space is constant to rounding."""
     group, mass, tensor = nh.ProductGroup(nh.SO(3), nh.Translations(2)), 1.5, np.diag([0.2, 0.3, 0.45])

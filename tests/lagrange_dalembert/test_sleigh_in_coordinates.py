@@ -9,7 +9,7 @@ import pytest
 import nonholo as nh
 from nonholo.lagrange_dalembert import CoordinateOrbit, LagrangeDAlembert
 
-pytestmark = pytest.mark.profile("routes", instead="test_invariant_constraints_give_the_known_maps")
+pytestmark = pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
 
 SLEIGH = nh.ChaplyginSleigh(mass=1.3, inertia=0.7, a=0.5, b=0.2)
 STEP = 0.15

@@ -149,7 +149,7 @@ def energy(W: Any) -> Any:
     return jnp.trace(X @ jnp.asarray(SLEIGH.homogeneous_mass_tensor) @ X.T) / (2 * STEP)
 
 
-@pytest.mark.profile("routes", instead="test_a_discrete_lagrangian_of_first_order")
+@pytest.mark.profile("routes", instead="test_a_wrong_momentum")
 def test_a_discrete_lagrangian_of_the_wrong_sign() -> None:
     """Minus the kinetic energy is seen at the identity, and in the order of the motion that it gives."""
     report = check_discretization(nh.discretize(SLEIGH, STEP, difference=lambda W: -energy(W)), throw=False)
@@ -158,6 +158,7 @@ def test_a_discrete_lagrangian_of_the_wrong_sign() -> None:
     assert report["left momentum"].passed  # the momentum of the wrong Lagrangian is right
 
 
+@pytest.mark.profile("routes", instead="test_a_wrong_momentum")
 def test_a_discrete_lagrangian_of_first_order() -> None:
     """An odd cubic term leaves every equation in place, but the order falls to one."""
 
