@@ -61,7 +61,7 @@ def test_killed_sweeps_go_on(name: str, scheduler: str, tmp_path: Path, capsys: 
     assert standing_of(path).owner is None
 
 
-@pytest.mark.profile("faults", keep=["threads"])
+@pytest.mark.profile("faults", instead="test_interruption_after_each_block")
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="looks for processes in /proc")
 @pytest.mark.parametrize("scheduler", ["threads", "processes"])
 def test_interrupted_sweep_goes_on(scheduler: str, tmp_path: Path) -> None:
@@ -130,7 +130,7 @@ def test_full_disk_leaves_a_valid_store(scheduler: str, tmp_path: Path, monkeypa
     assert same(resumed(path), swept(tmp_path / "whole.zarr"))
 
 
-@pytest.mark.profile("faults", keep=["threads"])
+@pytest.mark.profile("faults", instead="test_full_disk_leaves_a_valid_store")
 @pytest.mark.parametrize("scheduler", ["threads", "processes"])
 def test_limit_of_the_system_on_file_sizes(scheduler: str, tmp_path: Path) -> None:
     """A limit met while zarr writes ends in the same clean error, and the sweep goes on without it."""
