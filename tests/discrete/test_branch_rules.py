@@ -56,6 +56,7 @@ def test_the_traced_step_takes_the_same_value(family: str) -> None:
         assert np.abs(after.displacement - W).max() < 1e-12 * np.abs(W).max()
 
 
+@pytest.mark.profile("problems", keep=["top 3", "sleigh"])
 @pytest.mark.parametrize("family", FAMILIES)
 def test_beyond_the_fold_steps_are_refused(family: str) -> None:
     """Where the ray of the momentum has passed its fold, by a millionth or more, no step succeeds."""

@@ -51,6 +51,7 @@ def test_panels_of_flows(sleigh_orbit: nh.Orbit) -> None:
     assert _titles(sleigh_orbit, flow=forwards) == TITLES["sleigh"]
 
 
+@pytest.mark.profile("paper", keep=["one state", "top at rest", "backward sleigh"])
 @pytest.mark.parametrize("run", FEW.values(), ids=FEW)
 def test_unusual_orbits_are_drawn(run: object, tmp_path: Path) -> None:
     """Short, resting, balanced and thinned orbits are drawn and saved without a warning."""

@@ -128,7 +128,7 @@ def test_blocks_do_not_change_crossings(name: str, tmp_path: Path) -> None:
     assert same(stored, nh.simulate(discrete, **run))
 
 
-@pytest.mark.profile("faults", keep=["top", "sleigh with a cusp"])
+@pytest.mark.profile("faults", keep=["sleigh with a cusp"])
 @pytest.mark.parametrize("name", RUNS)
 def test_runs_cut_at_random_blocks_go_on(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut at random blocks, resumed and cut again (21 times in all), a run has the bits of the undisturbed one."""
