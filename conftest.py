@@ -13,7 +13,7 @@ compilers.use_one_thread()
 import hypothesis
 import numpy as np
 import pytest
-from profiles import COLLECTED, DEFAULT, PROFILES, profile_of
+from profiles import COLLECTED, DEFAULT, MARKED, chosen_profiles, profile_of
 
 import nonholo as nh
 
@@ -26,15 +26,14 @@ hypothesis.settings.register_profile("problems", deadline=None, max_examples=200
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the choice of a profile."""
-    choices = [DEFAULT, *(name for name, profile in PROFILES.items() if not profile.command), "all"]
-    parser.addoption("--profile", choices=choices, default=DEFAULT, help="which part of the tests runs")
+    about = f"which parts of the tests run, with commas: {', '.join(MARKED)}; or all"
+    parser.addoption("--profile", type=chosen_profiles, default={DEFAULT}, help=about)
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Register the mark, and what belongs to the profile."""
     config.addinivalue_line("markers", "profile(name, keep=(), cases=(), instead=None): a test of a profile")
-    chosen = config.getoption("--profile")
-    hypothesis.settings.load_profile("problems" if chosen in ("problems", "all") else DEFAULT)
+    hypothesis.settings.load_profile("problems" if "problems" in config.getoption("--profile") else DEFAULT)
     compilers.compile_once()
 
 
@@ -48,10 +47,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Keep the tests of the chosen profile."""
     chosen = config.getoption("--profile")
     config.stash[COLLECTED] = list(items)
-    others = [item for item in items if chosen not in ("all", profile_of(item))]
+    others = [item for item in items if profile_of(item) not in chosen]
     if others:
         config.hook.pytest_deselected(items=others)
-        items[:] = [item for item in items if chosen in ("all", profile_of(item))]
+        items[:] = [item for item in items if profile_of(item) in chosen]
 
 
 @pytest.fixture(autouse=True)

@@ -8,9 +8,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
-from profiles import DEFAULT, PROFILES, command, profile_of  # noqa: E402
-
-_MARKED = [name for name, profile in PROFILES.items() if not profile.command]
+from profiles import DEFAULT, MARKED, PROFILES, command, profile_of  # noqa: E402
 
 
 class Collected:
@@ -35,7 +33,7 @@ def page(items: list[pytest.Item]) -> str:
     for item in items:
         doctest = item.nodeid.startswith("nonholo")
         counts[room_of(item), "doctests" if doctest else profile_of(item)] += 1
-    columns = ["doctests", DEFAULT, *_MARKED]
+    columns = ["doctests", *MARKED]
     rooms = sorted({room for room, _ in counts})
     rows = [[room, *(counts[room, column] or "" for column in columns)] for room in rooms]
     rows.append(["**all**", *(sum(counts[room, column] for room in rooms) for column in columns)])
@@ -68,8 +66,10 @@ _TEXT = """\
 
 `.venv/bin/python -m pytest -q` is the default run: every property at least once, on the cores there are, each file in
 one process. What is long by nature belongs to a profile. A test is moved there by
-`@pytest.mark.profile(NAME, keep=PATTERNS)`; cases whose id matches a pattern stay. `--profile all` runs everything,
-`.ci/run` the default run and the profiles whose rooms a change touches, `.ci/run --all` all of them.
+`@pytest.mark.profile(NAME, keep=PATTERNS)`; cases whose id matches a pattern stay (or, with `cases=`, go).
+`--profile routes,faults` runs
+two of them, `--profile all` every marked test; `.ci/run` the default run and the profiles whose rooms a change touches,
+`.ci/run --all` all of them.
 
 {profiles}
 

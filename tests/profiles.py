@@ -66,6 +66,7 @@ PROFILES = {
     ),
 }
 
+MARKED = [DEFAULT, *(name for name, profile in PROFILES.items() if not profile.command)]
 _GROUP = "nonholo.lagrange_dalembert._"
 DOCTESTS = {  # examples that compile for long
     f"{_GROUP}group_discretization.GroupDiscretization.simulate": "routes",
@@ -82,6 +83,21 @@ DOCTESTS = {  # examples that compile for long
 def command(name: str) -> str:
     """Return the command that runs a profile."""
     return PROFILES[name].command or f"{PYTHON} -m pytest -q --profile {name}"
+
+
+def commands(names: list[str]) -> list[str]:
+    """Return the commands that run profiles; those that are marked run together."""
+    marked = [name for name in names if name in MARKED]
+    together = [f"{PYTHON} -m pytest -q --profile {','.join(marked)}"] if marked else []
+    return together + [command(name) for name in names if name not in MARKED]
+
+
+def chosen_profiles(text: str) -> set[str]:
+    """Return the profiles that an option names, with commas between them."""
+    chosen = set(MARKED) if text == "all" else set(text.split(","))
+    if not chosen <= set(MARKED):
+        raise argparse.ArgumentTypeError(f"must be of {', '.join(MARKED)}, or all. Got {text}")
+    return chosen
 
 
 def profile_of(item: pytest.Item) -> str:
@@ -133,5 +149,5 @@ if __name__ == "__main__":
     parser.add_argument("--all", action="store_true", help="of all profiles")
     parser.add_argument("--base", help="the commit to compare with; by default the last tag or the merge base")
     given = parser.parse_args()
-    for chosen in list(PROFILES) if given.all else touched(changed_files(given.base)):
-        print(command(chosen))  # noqa: T201
+    for line in commands(list(PROFILES) if given.all else touched(changed_files(given.base))):
+        print(line)  # noqa: T201

@@ -1,5 +1,6 @@
 """Nothing is lost between the profiles: each has its command, keeps representatives, and stands on its page."""
 
+import argparse
 import sys
 from collections import defaultdict
 from fnmatch import fnmatchcase
@@ -88,6 +89,21 @@ def _complete(request: pytest.FixtureRequest) -> bool:
 def test_touched_profiles(files: list[str] | None, expected: set[str]) -> None:
     """A change of one room runs the profiles that guard it, one of what all share runs all of them."""
     assert set(touched(files)) == expected
+
+
+def test_marked_profiles_run_together() -> None:
+    """One run collects the tests of several profiles; those with a command of their own follow."""
+    first, second = profiles.commands(["routes", "shapes", "paper"])
+    assert first.endswith("pytest -q --profile routes,paper")
+    assert second == command("shapes")
+    assert profiles.commands([]) == []
+
+
+def test_unknown_profiles_are_refused() -> None:
+    """The message names those that there are."""
+    assert profiles.chosen_profiles("faults,default") == {"faults", DEFAULT}
+    with pytest.raises(argparse.ArgumentTypeError, match=r"must be of default, routes.*or all\. Got fault"):
+        profiles.chosen_profiles("fault")
 
 
 def test_the_base_of_a_change_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
