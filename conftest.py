@@ -3,8 +3,9 @@
 # ruff: noqa: E402
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
-sys.path.insert(0, "tests")  # before `pythonpath` is read
+sys.path.insert(0, str(Path(__file__).parent / "tests"))  # before `pythonpath` is read
 import compilers
 
 compilers.use_caches()
@@ -13,7 +14,7 @@ compilers.use_one_thread()
 import hypothesis
 import numpy as np
 import pytest
-from profiles import COLLECTED, DEFAULT, MARKED, chosen_profiles, profile_of
+from profiles import COLLECTED, DEFAULT, MARKED, chosen_profiles, runs
 
 import nonholo as nh
 
@@ -47,10 +48,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Keep the tests of the chosen profile."""
     chosen = config.getoption("--profile")
     config.stash[COLLECTED] = list(items)
-    others = [item for item in items if profile_of(item) not in chosen]
+    others = [item for item in items if not runs(item, chosen)]
     if others:
         config.hook.pytest_deselected(items=others)
-        items[:] = [item for item in items if profile_of(item) in chosen]
+        items[:] = [item for item in items if runs(item, chosen)]
 
 
 @pytest.fixture(autouse=True)

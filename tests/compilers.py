@@ -12,7 +12,7 @@ from typing import Any
 
 ROOT = Path(__file__).parents[1]
 _PATIENCE = 300.0  # seconds to wait for another process that compiles; then one compiles for itself
-_held: set[str] = set()
+_held: set[Path] = set()
 
 
 def use_caches() -> None:
@@ -40,34 +40,36 @@ def compile_once() -> None:
     from numba.core import dispatcher
 
     alone: Callable[..., Any] = dispatcher.Dispatcher.compile
+    folder = Path(os.environ["NUMBA_CACHE_DIR"])
+    folder.mkdir(parents=True, exist_ok=True)
 
     @functools.wraps(alone)
     def compiled(self: Any, signature: Any) -> Any:
         function = self.py_func
         if not function.__module__.startswith("nonholo."):
             return alone(self, signature)
-        with _lock(f"{function.__module__}.{function.__name__}.{function.__code__.co_firstlineno}"):
+        place = f"{function.__module__}.{function.__name__}.{function.__code__.co_firstlineno}"
+        with _lock(folder / f"{place.replace('<', '').replace('>', '')}.lock"):
             return alone(self, signature)
 
     dispatcher.Dispatcher.compile = compiled
 
 
 @contextlib.contextmanager
-def _lock(name: str) -> Iterator[None]:
-    if name in _held:
+def _lock(path: Path) -> Iterator[None]:
+    """Hold a lock on a file, once in a process, or go on without it after a long wait."""
+    if path in _held:
         yield
         return
-    folder = Path(os.environ["NUMBA_CACHE_DIR"])
-    folder.mkdir(parents=True, exist_ok=True)
-    with (folder / f"{name.replace('<', '').replace('>', '')}.lock").open("w") as file:
+    with path.open("w") as file:
         end = time.monotonic() + _PATIENCE
         while not _locked(file.fileno()) and time.monotonic() < end:
             time.sleep(0.05)
-        _held.add(name)
+        _held.add(path)
         try:
             yield
         finally:
-            _held.discard(name)
+            _held.discard(path)
 
 
 def _locked(descriptor: int) -> bool:

@@ -47,7 +47,7 @@ PROFILES = {
         (*_RUNS, "cli"),
     ),
     "problems": Profile(
-        "many random problems and long orbits, with the tolerances of the default run",
+        "many random problems, long orbits, and eight times the examples of tests that draw them",
         (*_MECHANICS, "lagrange_dalembert", "simulation", "analysis", "examples"),
     ),
     "paper": Profile(
@@ -112,6 +112,12 @@ def profile_of(item: pytest.Item) -> str:
 
     stays = not matches(mark.kwargs["cases"]) if "cases" in mark.kwargs else matches(mark.kwargs.get("keep", []))
     return DEFAULT if stays else mark.args[0]
+
+
+def runs(item: pytest.Item, chosen: set[str]) -> bool:
+    """Tell whether a test is of the chosen profiles; those that draw their cases are also of "problems", with more."""
+    drawn = getattr(getattr(item, "obj", None), "is_hypothesis_test", False)
+    return profile_of(item) in chosen or ("problems" in chosen and drawn)
 
 
 def changed_files(base: str | None = None) -> list[str] | None:
