@@ -134,3 +134,11 @@ def test_wrong_shapes_are_refused() -> None:
         SO(1)
     with pytest.raises(ValueError, match=r"SE\(n=\.\.\.\).*positive integer.*Got 2\.5"):
         SE(2.5)
+
+
+@pytest.mark.parametrize("axis", np.eye(3), ids=["e1", "e2", "e3"])
+@pytest.mark.parametrize("angle", [3.2, 4.0, 6.0, -3.5])
+def test_the_logarithm_goes_the_shorter_way(angle: float, axis: np.ndarray) -> None:
+    """A turn by more than a half is the rest of a full turn the other way."""
+    rest = angle - np.copysign(2 * np.pi, angle)
+    assert np.abs(SO(3).log(SO(3).exp(angle * axis)) - rest * axis).max() <= 1e-14
