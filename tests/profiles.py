@@ -67,14 +67,14 @@ PROFILES = {
 }
 
 MARKED = [DEFAULT, *(name for name, profile in PROFILES.items() if not profile.command)]
-_GROUP = "nonholo.lagrange_dalembert._"
+_DALEMBERT = "nonholo.lagrange_dalembert._"
 DOCTESTS = {  # examples that compile for long
-    f"{_GROUP}group_discretization.GroupDiscretization.simulate": "routes",
-    f"{_GROUP}group_orbit.GroupOrbit": "routes",
-    f"{_GROUP}on_group.GroupLagrangeDAlembert": "routes",
-    f"{_GROUP}on_group.GroupLagrangeDAlembert.flow": "routes",
-    "nonholo.lagrange_dalembert._discretization.CoordinateDiscretization.simulate": "routes",
-    "nonholo.lagrange_dalembert._system.LagrangeDAlembert.flow": "routes",
+    f"{_DALEMBERT}group_discretization.GroupDiscretization.simulate": "routes",
+    f"{_DALEMBERT}group_orbit.GroupOrbit": "routes",
+    f"{_DALEMBERT}on_group.GroupLagrangeDAlembert": "routes",
+    f"{_DALEMBERT}on_group.GroupLagrangeDAlembert.flow": "routes",
+    f"{_DALEMBERT}discretization.CoordinateDiscretization.simulate": "routes",
+    f"{_DALEMBERT}system.LagrangeDAlembert.flow": "routes",
     "nonholo.discrete._consistency.consistency_defect": "routes",
     "nonholo.examples._robot.two_wheeled_robot": "routes",
 }
