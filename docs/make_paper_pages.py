@@ -1,16 +1,18 @@
 """Write docs/paper.md and docs/errata.md from the findings of the paper: `python docs/make_paper_pages.py`."""
 
 import re
+from collections import Counter
 from pathlib import Path
 
 import jinja2
 
 from nonholo.reproduction._checklist import Section, sections
+from nonholo.reproduction._finding import Finding
 from nonholo.reproduction._registry import Entry, entries
+from nonholo.reproduction._verdict import Verdict
 
 DOCS = Path(__file__).parent
 NAMES = ("paper.md", "errata.md")
-_VERDICTS = {True: "as printed", "misprint": "misprint", False: "**refuted**"}
 
 
 def page(name: str) -> str:
@@ -20,35 +22,48 @@ def page(name: str) -> str:
     return environment.get_template(f"{name}.j2").render(
         sections=sections(),
         findings=findings,
+        verdicts=verdicts,
         errata=errata,
         count=len(entries()),
         rows=sum(len(section.errata) for section in sections()),
     )
 
 
+def verdicts(*, errata: bool) -> str:
+    """Return the table of what is said of statements: of all findings, or of the rows of the errata."""
+    words = [_deciding(number)[0].verdict for section in sections() for number in section.errata]
+    count = Counter(words if errata else [entry.finding.verdict for entry in entries()])
+    rows = [_row(f"**{word}**", word.meaning, str(count[word])) for word in Verdict if count[word]]
+    return "\n".join([f"| | meaning | {'rows' if errata else 'findings'} |", "|---|---|---:|", *rows])
+
+
 def findings(section: Section) -> str:
     """Return the table of the findings of a section."""
     own = [entry for entry in entries() if entry.section is section]
     rows = [_row(_where(entry), *_texts(entry), f"{entry.finding.tolerance:.0e}") for entry in own]
-    return "\n".join(["| place and label | printed | | right | holds to |", "|---|---|---|---|---|", *rows])
+    return "\n".join(["| place and label | printed | | right, or added | holds to |", "|---|---|---|---|---|", *rows])
 
 
 def errata(*keys: str) -> str:
     """Return the table of the errata of sections."""
     numbers = [number for key in keys for section in sections() if section.key == key for number in section.errata]
     rows = [_erratum(number) for number in numbers]
-    return "\n".join(["| no. | place | printed | right | finding |", "|---|---|---|---|---|", *rows])
+    return "\n".join(["| no. | place | printed | | right | finding |", "|---|---|---|---|---|---|", *rows])
 
 
 def _erratum(number: str) -> str:
     """Return the row of an erratum: the words of the finding that is most its own, the labels of all that decide it."""
+    deciding = _deciding(number)
+    labels = ", ".join(dict.fromkeys(f"`{finding.label}`" for finding in deciding))
+    return _row(number, deciding[0].source, deciding[0].claim, deciding[0].verdict, deciding[0].corrected or "", labels)
+
+
+def _deciding(number: str) -> list[Finding]:
+    """Return the findings that decide a row of the errata, the one with its label first."""
     deciding = [entry.finding for entry in entries() if number in entry.finding.errata]
     if not deciding:
         raise ValueError(f"No finding decides row {number} of the errata.")
-    own = min(deciding, key=lambda finding: (finding.label != number, finding.as_printed is True, len(finding.errata)))
-    claim = " (**claim**)" if own.as_printed is False else ""
-    labels = ", ".join(dict.fromkeys(f"`{finding.label}`" for finding in deciding))
-    return _row(number, own.source + claim, own.claim, own.corrected or "right as printed", labels)
+    return sorted(deciding, key=lambda finding: (finding.label != number, len(finding.errata)))
 
 
 def _where(entry: Entry) -> str:
@@ -57,7 +72,7 @@ def _where(entry: Entry) -> str:
 
 
 def _texts(entry: Entry) -> tuple[str, str, str]:
-    return entry.finding.claim, _VERDICTS[entry.finding.as_printed], entry.finding.corrected or ""
+    return entry.finding.claim, entry.finding.verdict, entry.finding.corrected or ""
 
 
 def _row(*cells: str) -> str:

@@ -56,7 +56,11 @@ def _show(results: "list[Result]", *, each: bool) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    heading = ("label", "defect", "as printed", "tolerance", "holds") if each else ("section", "findings", "hold")
+    heading = (
+        ("label", "verdict", "defect", "of what is denied", "tolerance", "holds")
+        if each
+        else ("section", "findings", "hold")
+    )
     table = Table(*heading, "seconds")
     for row in _findings(results) if each else _sections(results):
         table.add_row(*row)
@@ -67,6 +71,7 @@ def _findings(results: "list[Result]") -> list[tuple[str, ...]]:
     return [
         (
             result.entry.finding.label,
+            result.entry.finding.verdict,
             _short(result.measured and result.measured.corrected),
             _short(result.measured and result.measured.printed),
             _short(result.entry.finding.tolerance),

@@ -14,11 +14,11 @@ class Section:
     """A section of the paper and the names in it.
 
     Attributes:
-        key: "section4", as in the names of its modules of statements; "tail" behind the end of the document.
+        key: "section4", as in the names of its modules of statements.
         title: Its heading, in our spelling.
         labels: Labels and footnotes, in order.
         errata: Rows of the errata, in the order of their table.
-        claims: Labels of findings without a label in the paper.
+        claims: Names of ours for findings without a label in the paper.
     """
 
     key: str

@@ -4,8 +4,9 @@ import dataclasses
 from collections.abc import Callable
 from typing import Literal
 
+from nonholo.reproduction._verdict import Verdict
+
 Kind = Literal["equation", "lemma", "proposition", "theorem", "remark", "figure", "footnote"]
-Printed = Literal[True, False, "misprint"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -14,7 +15,8 @@ class Measured:
 
     Attributes:
         corrected: Defect of the right statement.
-        printed: Defect of the printed one, where it differs: large, at the counterexample.
+        printed: Defect of the one that is denied, where there is one: large. It is the printed statement of an
+            erratum, or what a remark or an answer excludes.
         note: What was evaluated, in a few words: "40 random tops, n = 3, 4, 6".
     """
 
@@ -25,19 +27,19 @@ class Measured:
 
 @dataclasses.dataclass(frozen=True)
 class Finding:
-    """A statement of the paper, whether it is right as printed, and how it is measured.
+    """A statement of the paper, its verdict, and how it is measured.
 
     Attributes:
         label: Label of the equation, theorem or figure in the paper; "footnote-3"; of an unlabelled slip its row of the
-            errata, "S14" or "C22".
+            errata, "S6" or "C2"; otherwise a name of ours.
         kind: Kind of statement.
         source: Place in the paper: "Section 4, equation (ep3.26)".
-        claim: What is printed, in our words, with formulas between dollar signs.
-        as_printed: True; False for a wrong claim; "misprint" for a slip in a formula whose sense is right.
-        corrected: The right statement where the printed one is not.
+        claim: What is printed, with formulas between dollar signs: between quotation marks the words of the paper,
+            which every verdict but "right as printed" needs; otherwise our words.
+        verdict: What is said of it.
+        corrected: The right statement; of remarks and questions what is added, what is answered.
         errata: Rows of the errata that it decides.
-        tolerance: Largest defect of a right statement; where the claim is not right as printed, the defect of the
-            printed statement has to be larger than 1000 times as much.
+        tolerance: Largest defect of a right statement; the one that is denied has to have more than 1000 times as much.
         measure: Evaluates it.
     """
 
@@ -45,7 +47,7 @@ class Finding:
     kind: Kind
     source: str
     claim: str
-    as_printed: Printed
+    verdict: Verdict
     corrected: str | None
     errata: tuple[str, ...]
     tolerance: float
@@ -55,8 +57,9 @@ class Finding:
         """Tell whether the right statement holds and the wrong one fails."""
         if not measured.corrected <= self.tolerance:
             return False
-        wrong = self.as_printed is not True
-        return not wrong or (measured.printed is not None and measured.printed > 1000 * self.tolerance)
+        if measured.printed is None:
+            return not self.verdict.is_erratum
+        return measured.printed > 1000 * self.tolerance
 
 
 def finding(
@@ -65,16 +68,20 @@ def finding(
     source: str,
     claim: str,
     *,
-    as_printed: Printed = True,
+    verdict: Verdict = Verdict.AS_PRINTED,
     corrected: str | None = None,
     errata: tuple[str, ...] = (),
     tolerance: float,
 ) -> Callable[[Callable[[], Measured]], Finding]:
     """Turn a function that measures a statement into its finding."""
-    if (as_printed is True) != (corrected is None):
+    if (verdict is Verdict.AS_PRINTED) != (corrected is None):
         raise ValueError(f"Finding {label!r} must have `corrected` exactly where it is not right as printed.")
+    if verdict.is_erratum != bool(errata):
+        raise ValueError(f"Finding {label!r} must have a row of the errata exactly where something is to be corrected.")
+    if corrected is not None and not ("\u201c" in claim and "\u201d" in claim):
+        raise ValueError(f"Finding {label!r} must quote the paper, since it is not right as printed.")
 
     def build(measure: Callable[[], Measured]) -> Finding:
-        return Finding(label, kind, source, claim, as_printed, corrected, errata, tolerance, measure)
+        return Finding(label, kind, source, claim, verdict, corrected, errata, tolerance, measure)
 
     return build

@@ -64,7 +64,7 @@ def _as_json(result: Result) -> dict[str, Any]:
         "kind": finding.kind,
         "source": finding.source,
         "claim": finding.claim,
-        "as_printed": finding.as_printed,
+        "verdict": finding.verdict,
         "corrected": finding.corrected,
         "measured": _number(measured.corrected if measured else None),
         "printed_measured": _number(measured.printed if measured else None),

@@ -15,11 +15,12 @@ from nonholo import __version__
 from nonholo.reproduction._checklist import Section
 from nonholo.reproduction._formulas import to_html
 from nonholo.reproduction._run import Result
+from nonholo.reproduction._verdict import Verdict
 
 GENERATOR = '<meta name="generator" content="nonholo paper">'
 _MIME = {"svg": "image/svg+xml", "png": "image/png"}
 _LARGE = 400_000  # bytes of an SVG, beyond which its PNG is embedded
-_VERDICTS = {True: "as printed", "misprint": "misprint", False: "refuted"}
+_ADDED = {Verdict.SETTLED: "Answer", Verdict.REMARK: "Added"}  # in the place of "Right"
 
 
 class _Card(NamedTuple):
@@ -27,7 +28,8 @@ class _Card(NamedTuple):
 
     result: Result
     anchor: str
-    verdict: str
+    verdict: Verdict
+    heading: str
     status: str
     picture: str | None
 
@@ -46,8 +48,9 @@ def page(results: Sequence[Result], remark: str = "") -> str:
         generator=Markup(GENERATOR),  # noqa: S704 (ours)
         sections=list(_sections(results)),
         failed=[result for result in results if not result.holds],
-        counts=Counter(_VERDICTS[result.entry.finding.as_printed] for result in results),
+        counts=Counter(result.entry.finding.verdict for result in results),
         total=len(results),
+        verdicts=list(Verdict),
         seconds=sum(result.seconds for result in results),
         remark=remark,
         versions=f"nonholo {__version__}, Python {platform.python_version()}",
@@ -74,9 +77,10 @@ def _sections(results: Sequence[Result]) -> Iterator[tuple[Section, list[_Card]]
 def _card(result: Result, seen: Counter[str]) -> _Card:
     finding = result.entry.finding
     seen[finding.label] += 1
-    status = "fails" if not result.holds else "holds" if finding.corrected is None else "correction holds"
-    verdict = _VERDICTS[finding.as_printed]
-    return _Card(result, anchor(finding.label, seen[finding.label]), verdict, status, _embedded(result))
+    status = "fails" if not result.holds else "correction holds" if finding.verdict.is_erratum else "holds"
+    heading = _ADDED.get(finding.verdict, "Right")
+    place = anchor(finding.label, seen[finding.label])
+    return _Card(result, place, finding.verdict, heading, status, _embedded(result))
 
 
 def _embedded(result: Result) -> str | None:

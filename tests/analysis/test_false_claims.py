@@ -1,4 +1,4 @@
-"""Counterexamples to claims of the paper, most of them on sleighs. Rows are those of docs/errata.md."""
+"""Counterexamples to claims of the paper, most of them on sleighs. Names: docs/errata.md, docs/paper.md."""
 
 import numpy as np
 import pytest
@@ -74,7 +74,7 @@ def test_the_equation_without_half_angles_is_not_equivalent() -> None:
 
 
 def test_three_displacements_and_a_cubic_surface() -> None:
-    """C22: generic momenta have three displacements. The printed fourth, a shift, has a momentum off the surface."""
+    """three-preimages: generic momenta have three displacements. The fourth, a shift, is off the surface."""
     for r in np.random.default_rng(1).normal(size=(20, 2)):
         found = nh.displacements_over(SLEIGH, r)
         assert found.multiplicity.sum() == len(found.displacement) == 3
@@ -89,7 +89,7 @@ def test_three_displacements_and_a_cubic_surface() -> None:
 
 
 def test_the_cubic_for_the_sine_leaves_the_unit_strip() -> None:
-    """C24: on phat = 0, |pi| > J, it has the real double root z = pi/J beyond 1, of two complex angles."""
+    """surface: on phat = 0, |pi| > J, it has the real double root z = pi/J beyond 1, of two complex angles."""
     pi = 1.5 * INERTIA
     found = nh.displacements_over(SLEIGH, _restricted(pi, 0.0))
     sines = found.displacement[:, 1, 0]
@@ -175,7 +175,7 @@ def test_a_balanced_sleigh_need_not_repeat_its_step() -> None:
 
 
 def test_the_half_plane_is_kept_beyond_the_single_valued_region() -> None:
-    """C36: below E = 2 m a^2/h^2, more than E*, pi keeps its sign on every real branch, and above it not."""
+    """half-plane: below E = 2 m a^2/h^2, more than E*, pi keeps its sign on every real branch, and above it not."""
     bound, rng = 2 * MASS * OFFSET**2, np.random.default_rng(3)
     kept = []
     for share in (0.99, 4.0):

@@ -13,14 +13,24 @@ from nonholo.reproduction import _registry, _run
 from nonholo.reproduction._checklist import sections
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._registry import Entry
+from nonholo.reproduction._verdict import Verdict
 
 Command = Callable[..., Ended]
 
 
-@finding("right.eqn", "equation", "Section 4, equation", "$1 = 1$", errata=("S14",), tolerance=1e-45)
+@finding(
+    "right.eqn",
+    "equation",
+    "Section 4, equation",
+    "\u201c$1 = 2$\u201d",
+    verdict=Verdict.MISPRINT,
+    corrected="$1 = 1$",
+    errata=("S14",),
+    tolerance=1e-45,
+)
 def right() -> Measured:
     """Hold."""
-    return Measured(0.0)
+    return Measured(0.0, 1.0)
 
 
 @finding("wrong.eqn", "equation", "Section 4, equation", "$1 = 2$", tolerance=1e-45)
@@ -54,6 +64,7 @@ def test_findings_that_hold_end_the_command_with_0(nonholo: Command) -> None:
         ended = nonholo("paper", "-o", f"part{number}", "--only", name)
         assert ended.exit_code == 0, ended.output
         assert "right.eqn" in ended.stdout
+        assert "misprint" in ended.stdout
         assert f"part{number}/index.html" in ended.stdout
         assert labels(f"part{number}") == ["right.eqn"]
         assert f"chosen with --only: {name}." in Path(f"part{number}", "index.html").read_text()

@@ -23,12 +23,12 @@ def test_every_row_of_the_errata_is_on_its_page() -> None:
     rows = re.findall(r"^\| ([SC]\d+) \|(.*)\|$", (DOCS / "errata.md").read_text("utf-8"), re.MULTILINE)
     assert sorted(number for number, _ in rows) == sorted(number for part in sections() for number in part.errata)
     for number, cells in rows:
-        assert len(re.findall(r"(?<!\\)\|", cells)) == 3, number
+        assert len(re.findall(r"(?<!\\)\|", cells)) == 4, number
 
 
 def test_every_finding_is_on_the_page_of_the_paper() -> None:
     """The page of the paper has one row for each finding, with as many cells as the heading."""
-    rows = re.findall(r"^\| (?!place)(.*)\|$", (DOCS / "paper.md").read_text("utf-8"), re.MULTILINE)
+    rows = re.findall(r"^\| (?!place)([^*|].*)\|$", (DOCS / "paper.md").read_text("utf-8"), re.MULTILINE)
     assert len(rows) == len(entries())
     for cells in rows:
         assert len(re.findall(r"(?<!\\)\|", cells)) == 4, cells

@@ -17,6 +17,7 @@ from nonholo.reproduction._formulas import to_html
 from nonholo.reproduction._page import page
 from nonholo.reproduction._registry import Entry, entries
 from nonholo.reproduction._run import Result, evaluate, evaluate_all
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.figures import Figure
 
 VOID = {"meta", "img", "input", "link", "br"}
@@ -32,8 +33,8 @@ def plus() -> Measured:
     "minus",
     "lemma",
     "Section 4, a < b",
-    "It is wrong.",
-    as_printed=False,
+    "\u201cIt is wrong.\u201d",
+    verdict=Verdict.FALSE,
     corrected="right",
     tolerance=1.0,
     errata=("S1",),
@@ -140,6 +141,7 @@ def test_page_says_what_was_found() -> None:
         "correction holds",
         "It is wrong.",
         "Right:</strong> right",
+        Verdict.FALSE.meaning,
         "1.0e-16",
         "1.0e-12",
         "inf",
@@ -200,8 +202,9 @@ def test_folder(tmp_path: Path) -> None:
     told = json.loads((folder / "findings.json").read_text())
     assert [row["label"] for row in told] == ["plus", "minus", "raises"]
     assert [row["holds"] for row in told] == [True, True, False]
+    assert [row["verdict"] for row in told] == ["right as printed", "false", "right as printed"]
     assert (told[0]["measured"], told[1]["printed_measured"], told[2]["measured"]) == (1e-16, "inf", None)
-    keys = {"kind", "claim", "as_printed", "corrected", "tolerance", "seconds", "source", "errata", "note", "figure"}
+    keys = {"kind", "claim", "verdict", "corrected", "tolerance", "seconds", "source", "errata", "note", "figure"}
     assert keys <= set(told[0])
 
 

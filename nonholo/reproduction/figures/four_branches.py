@@ -11,6 +11,7 @@ from nonholo.plotting import _theme as theme
 from nonholo.plotting import branches as draw_branches
 from nonholo.reproduction import _suslov_twin as data
 from nonholo.reproduction._finding import Measured, finding
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.figures._figure import Figure
 
 START = (-0.25, -0.375)  # the half-angle tangents of an equilibrium
@@ -33,8 +34,9 @@ def draw() -> Any:
     "sys",
     "figure",
     "Section 6, step 2 of the map: picture of four real values",
-    r"There are at most two different real solutions.",
-    as_printed=False,
+    r"“Thus there are at most two different real solutions $(\tilde q_1^{(j)}, \tilde q_2^{(j)}, \tilde q_0^{(j)})$ "
+    r"with $\tilde q_0^{(j)} > 0$.”",
+    verdict=Verdict.FALSE,
     corrected="There are four for this top, all on the curve of one energy.",
     errata=("S30",),
     tolerance=1e-12,

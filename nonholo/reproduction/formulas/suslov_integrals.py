@@ -148,15 +148,3 @@ def multiplier(J: Matrix, z0: Number, zeta: Number) -> Number:
     """Return by what a step multiplies small distances from the equilibrium with z = -zeta c."""
     D, q = determinant(J), coupling_form(J)
     return (D * z0 - zeta * q) / (D * z0 + zeta * q)
-
-
-def principal_frame_form(masses: Sequence[Number], gamma: Sequence[Number]) -> list[Vector]:
-    """Return the matrix of the integral in the principal frame, with the forbidden axis gamma."""
-    J1, J2, J3 = masses
-    x, y, z = gamma
-    xy, xz, yz = -(J1 + J2) * x * y, -(J1 + J3) * x * z, -(J2 + J3) * y * z
-    return [
-        [(J1 + J3) * z**2 + (J1 + J2) * y**2, xy, xz],
-        [xy, (J2 + J3) * z**2 + (J1 + J2) * x**2, yz],
-        [xz, yz, (J2 + J3) * y**2 + (J1 + J3) * x**2],
-    ]

@@ -7,6 +7,7 @@ from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._bodies import SLEIGH, TOP, TOP_4, Body, displacements, in_double
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import energy_theorem, symmetric_pairs
 
 
@@ -92,16 +93,16 @@ def _sleigh_velocity(s: Number, u: Number) -> list[Number]:
 
 
 @finding(
-    "C39",
+    "mirror-image",
     "remark",
     "Section 1, last paragraph",
-    r"That both discretisations keep the reduced constrained energy is quite unexpected: discrete variational "
-    r"integrators do not keep energy in general.",
-    as_printed=False,
-    corrected=r"It follows from a mirror image. Let $X = \frac12(W - W^{-1}) \in \mathfrak{d}$. The step takes $r$ to "
-    r"its mirror image in the line of $\mathbb{I}|_\mathfrak{d}X$, in the metric of the energy. With "
-    r"$l_d = l(\log W)$, variational too, it does not, and the energy is not kept.",
-    errata=("C39",),
+    "“This conservation law replaces the momentum conservation in the general case and seems to be quite "
+    "unexpected, since generically the discrete variational integrators do not preserve the energy and this "
+    "property does not change in the nonholonomic case.”",
+    verdict=Verdict.SETTLED,
+    corrected=r"It follows from a mirror image. Let $X = \frac12(W - W^{-1}) \in \mathfrak{d}$. The step takes $r$ "
+    r"to its mirror image in the line of $\mathbb{I}|_\mathfrak{d}X$, in the metric of the energy. With $l_d = "
+    r"l(\log W)$, variational too, it does not, and the energy is not kept.",
     tolerance=1e-45,
 )
 def mirror_image() -> Measured:

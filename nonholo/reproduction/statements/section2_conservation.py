@@ -18,6 +18,7 @@ from nonholo.reproduction._bodies import (
 )
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import general
 
 
@@ -67,15 +68,14 @@ def reduced_energy() -> Measured:
 
 
 @finding(
-    "S5",
+    "admissible-momenta",
     "remark",
     "Section 2, before equation (reducedenergy.eqn)",
-    r"The momenta of admissible velocities, $\langle a^j, \mathbb{I}^{-1}p\rangle = 0$, form the subspace "
-    r"$\mathfrak{d}^\perp$.",
-    as_printed="misprint",
-    corrected=r"The set is the image $\mathbb{I}(\mathfrak{d})$. It is not the annihilator of $\mathfrak{d}$, "
-    r"which the sign suggests: $\langle\mathbb{I}\omega, \omega\rangle > 0$.",
-    errata=("S5",),
+    r"“$p$ lies in the subspace $\mathfrak{d}^\perp = \{\langle a^j, \mathbb{I}^{-1}p\rangle = 0,\ j = 1, \dots, "
+    r"s\} \subset \mathfrak{g}^*$”",
+    verdict=Verdict.REMARK,
+    corrected=r"The set is the image $\mathbb{I}(\mathfrak{d})$; the symbol is defined by it and does not mean the "
+    r"annihilator of $\mathfrak{d}$: $\langle\mathbb{I}\omega, \omega\rangle > 0$.",
     tolerance=1e-45,
 )
 def momentum_subspace() -> Measured:
@@ -93,9 +93,9 @@ def momentum_subspace() -> Measured:
     "reducedenergy.eqn",
     "equation",
     "Section 2, equation (reducedenergy.eqn)",
-    r"In a basis whose last $s$ covectors are the constraints the reduced constrained energy is $\frac12\sum_{i,j=1}^s "
-    r"\mathbb{I}_{ij}\omega^i\omega^j = \frac12\sum_{i,j=1}^s J^{ij}p_ip_j$.",
-    as_printed="misprint",
+    r"“such that $a^j = e^{n-j+1}$, $j = 1, \dots, s$. In such a basis, the reduced constrained energy becomes "
+    r"$\frac12\sum_{i,j=1}^s \mathbb{I}_{ij}\omega^i\omega^j = \frac12\sum_{i,j=1}^s J^{ij}p_ip_j$.”",
+    verdict=Verdict.MISPRINT,
     corrected=r"The sums run over $1, \dots, n - s$: $s$ counts the constraints. $J^{ij}$ is the inverse of "
     r"$\mathbb{I}|_\mathfrak{d}$.",
     errata=("S1",),
@@ -125,10 +125,10 @@ def adapted_energy() -> Measured:
     "S4",
     "remark",
     "Section 2, remark after equation (reducedenergy.eqn)",
-    r"Without constraints the spatial momentum $J = \mathrm{Ad}^*_g p$ is conserved.",
-    as_printed="misprint",
-    corrected=r"With the $\mathrm{Ad}^*$ of equation (disc.momentum.eqn) it is $\mathrm{Ad}^*_{g^{-1}}p$. The letter "
-    r"$J$ also names the inverse inertia there.",
+    r"“the Euler-Poincare equations, which conserve the spatial momentum $J = \mathrm{Ad}^*_g p$”",
+    verdict=Verdict.MISPRINT,
+    corrected=r"With the $\mathrm{Ad}^*$ of equation (disc.momentum.eqn) it is $\mathrm{Ad}^*_{g^{-1}}p$. The "
+    r"letter $J$ also names the inverse inertia there.",
     errata=("S4",),
     tolerance=1e-45,
 )

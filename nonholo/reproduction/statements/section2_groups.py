@@ -18,6 +18,7 @@ from nonholo.reproduction._bodies import (
 )
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import general
 
 
@@ -29,8 +30,8 @@ def _as_column(body: Body, X: Matrix) -> Matrix:
     "linv_const.eqn",
     "equation",
     "Section 2, equation (linv_const.eqn)",
-    r"The constraints are $\langle a^j, \omega\rangle = 0$ with the body velocity $\omega = TL_{q^{-1}}\dot g$.",
-    as_printed="misprint",
+    r"“where $\omega = g^{-1}\dot g = TL_{q^{-1}}\dot g$ is the body velocity operator”",
+    verdict=Verdict.MISPRINT,
     corrected=r"$\omega = g^{-1}\dot g = TL_{g^{-1}}\dot g$; there is no $q$. With another element in its place "
     r"$\omega$ would not even lie in the algebra.",
     errata=("S3",),
@@ -54,8 +55,8 @@ def linv_const() -> Measured:
     "S2",
     "remark",
     "Section 2, before equation (EPS.eqn)",
-    r"The body momentum $p = \partial l/\partial\omega$ is a map $\mathfrak{g}^* \to \mathbb{R}$.",
-    as_printed="misprint",
+    r"“Define the body momentum $p : \mathfrak{g}^* \to \mathbb{R}$ by the formula $p = \partial l/\partial\omega$.”",
+    verdict=Verdict.MISPRINT,
     corrected=r"$p \in \mathfrak{g}^*$ is a covector with $\dim\mathfrak{g}$ components.",
     errata=("S2",),
     tolerance=1e-45,

@@ -12,6 +12,7 @@ from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._bodies import BALANCED_TOP, SLEIGH, TILTED_TOP, TOP, Body, displacements, velocities
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import general
 
 _WEIGHT = ctx.mpf("0.25")
@@ -108,11 +109,12 @@ def constraint_functions() -> Measured:
     "consistency",
     "remark",
     "Section 2, remark after equation (gen.constr)",
-    r"If $L_d = L\circ\Psi$, then $\mathcal{D}_d$ must be consistent with $\mathcal{D}$, that is "
-    r"$\nu^j\circ\Psi = 0$ on it.",
-    as_printed=False,
-    corrected=r"It need not be. The displacements $\exp\mathfrak{d}$ are consistent with $\log W$ always, and with "
-    r"the projection of $W - I$ for tops. The sleigh of Section 7, with the discrete Lagrangian (approx), is not.",
+    r"“the variety $\mathcal{D}_d$ must be consistent with the continuous distribution $\mathcal{D}$: "
+    r"$\mathcal{D}_d$ is locally defined by the equations $\nu^j\circ\Psi = 0$”",
+    verdict=Verdict.REMARK,
+    corrected=r"A definition of Cortes and Martinez, repeated; Section 7 departs from it. The displacements "
+    r"$\exp\mathfrak{d}$ are consistent with $\log W$ always, and with the projection of $W - I$ for tops. Those of "
+    r"the sleigh, with the discrete Lagrangian (approx), are not.",
     tolerance=1e-45,
 )
 def consistency() -> Measured:
@@ -181,9 +183,8 @@ def discrete_multipliers() -> Measured:
     "S13",
     "remark",
     "Sections 2 and 3, equations (dis_LA.eqn) and (dis_LA_1.eqn)",
-    r"The multipliers are $\lambda_j^k$ with forms $A^j$ in one equation and $\lambda_k^j$ with forms $A_j$ in "
-    r"the other.",
-    as_printed="misprint",
+    r"“$\sum_{j=1}^s\lambda_j^kA^j(q_k)$” in (dis_LA.eqn), “$\sum_{j=1}^s\lambda_k^jA_j(g_k)$” in (dis_LA_1.eqn)",
+    verdict=Verdict.MISPRINT,
     corrected=r"One table $\lambda_k^j$ with forms $A^j$: a row for each step, a column for each constraint.",
     errata=("S13",),
     tolerance=1e-45,

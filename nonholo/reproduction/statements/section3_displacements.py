@@ -17,6 +17,7 @@ from nonholo.reproduction._bodies import (
 )
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import general, symmetric_pairs
 
 _PAIRS = (TOP, TOP_4, SLEIGH)
@@ -91,13 +92,14 @@ def symmetric_pair() -> Measured:
     "S-Cartan",
     "proposition",
     "Section 3, proposition (S-Cartan)",
-    r"Under (cartan) $\exp\mathfrak{d}$ is a smooth submanifold, homeomorphic to $G/H$ or to its quotient by a finite "
-    r"group.",
-    as_printed=False,
+    r"“Under the condition (cartan) the set $\mathcal{S} = \exp\mathfrak{d}$ is a smooth submanifold of $G$, which "
+    r"is either homeomorphic to the symmetric space $G/H$ or is a factor of $G/H$ by a finite group action.”",
+    verdict=Verdict.FALSE,
     corrected=r"So it is for the pairs of the paper, where $gH \mapsto g\,\sigma(g)^{-1}$ is two to one onto "
-    r"$\exp\mathfrak{d}$, and for Riemannian symmetric pairs of groups. The condition (cartan) alone is not enough: in "
-    r"$SL(2, \mathbb{R})$, $\mathfrak{h}$ the diagonal matrices, $\exp\mathfrak{d}$ is no manifold at $-I$: near $-I$ "
-    r"it has points with off-diagonal entries $bc < 0$, none with $bc > 0$, where the trace is below $-2$.",
+    r"$\exp\mathfrak{d}$, and for Riemannian symmetric pairs of groups. The condition (cartan) alone is not enough: "
+    r"in $SL(2, \mathbb{R})$, $\mathfrak{h}$ the diagonal matrices, $\exp\mathfrak{d}$ is no manifold at $-I$: near "
+    r"$-I$ it has points with off-diagonal entries $bc < 0$, none with $bc > 0$, where the trace is below $-2$.",
+    errata=("S50",),
     tolerance=1e-45,
 )
 def cartan_model() -> Measured:
@@ -167,8 +169,8 @@ def _printed_locus(body: Body, W: Matrix) -> Matrix:
     "S9",
     "remark",
     "Section 3, momentum locus",
-    r"The momenta lie on $\mathcal{U} = \{L^*_Wl_d'(W) : W \in \mathcal{S}\}$.",
-    as_printed="misprint",
+    r"“$\mathcal{U} = \{p \in \mathfrak{g}^* \mid p = L^*_Wl_d'(W), W \in \mathcal{S}\} \subset g^*$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"$\mathcal{U} = \{R^*_Wl_d'(W) : W \in \mathcal{S}\}$. The printed set is $-\mathcal{U}$ whenever "
     r"$l_d(W^{-1}) = l_d(W)$.",
     errata=("S9",),

@@ -1,4 +1,4 @@
-"""Section 3, the discrete Euler-Poincare-Suslov equations: signs, the three steps of the map, inversion of time."""
+"""Section 3, the discrete Euler-Poincare-Suslov equations: signs, the three steps of the map."""
 
 import itertools
 
@@ -7,9 +7,10 @@ import numpy as np
 import nonholo as nh
 from nonholo.reproduction import _sequences as sequences
 from nonholo.reproduction import _twin as twin
-from nonholo.reproduction._bodies import ANY_4, SLEIGH, SMALL, TOP, TOP_4, Body, apart
+from nonholo.reproduction._bodies import ANY_4, SLEIGH, SMALL, TOP, TOP_4, Body
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import general
 
 
@@ -17,9 +18,9 @@ from nonholo.reproduction.formulas import general
     "S10",
     "remark",
     "Section 3, before equation (disc.momentum.eqn)",
-    r"$l_d'(W_k)TL_{W_k}\mathrm{Ad}_{W_k^{-1}}\omega = \langle l_d'(W_k), TL_{W_k}\mathrm{Ad}_{W_k}\omega\rangle = "
-    r"\langle\mathrm{Ad}^*_{W_k^{-1}}TL^*_{W_k}l_d'(W_k), \omega\rangle$.",
-    as_printed="misprint",
+    r"“$l_d'(W_k)TL_{W_k}\mathrm{Ad}_{W_k^{-1}}\omega = \langle l_d'(W_k), TL_{W_k}\mathrm{Ad}_{W_k}\omega\rangle = "
+    r"\langle\mathrm{Ad}^*_{W_k^{-1}}TL^*_{W_k}l_d'(W_k), \omega\rangle$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"The middle term has $\mathrm{Ad}_{W_k^{-1}}$.",
     errata=("S10",),
     tolerance=1e-45,
@@ -42,10 +43,11 @@ def transported_slope() -> Measured:
     "disc.momentum.eqn",
     "equation",
     "Section 3, equation (disc.momentum.eqn)",
-    r"$P_{k+1} - \mathrm{Ad}^*_{W_k}P_k = \sum_j\lambda_{k+1}^ja_j$, with the multipliers of (discEP.eqn).",
-    as_printed="misprint",
-    corrected=r"The multipliers have the opposite sign: the left-hand side is minus that of (discEP.eqn).",
-    errata=("S11",),
+    r"“(discEP.eqn) becomes discrete Euler-Poincare-Suslov equations $P_{k+1} - \mathrm{Ad}^*_{W_k}P_k = "
+    r"\sum_{j=1}^s\lambda_{k+1}^ja_j$”",
+    verdict=Verdict.REMARK,
+    corrected=r"The letter $\lambda$ is used anew: the multipliers have the opposite sign of those of (discEP.eqn), "
+    r"whose left-hand side is minus this one.",
     tolerance=1e-45,
 )
 def momentum_equation() -> Measured:
@@ -117,50 +119,3 @@ def three_steps() -> Measured:
         chosen = points[np.linalg.norm(points, axis=1).argmin()]
         defects += [abs(chosen - orbit.momentum[1]).max(), abs(system.restrict(chosen - arriving)).max()]
     return Measured(twin.both(0.0, max(defects)), note="tops n = 3, 4 and a sleigh")
-
-
-@finding(
-    "standard-momentum",
-    "remark",
-    "After the bibliography (not typeset), indices of momenta",
-    r"The usual momentum belongs to $W_{k-1}$; here $P_k$ is a function of $W_k$.",
-    tolerance=1e-45,
-)
-def shifted_momentum() -> Measured:
-    """Along orbits the usual momentum plus the force of constraint is the momentum of the next displacement."""
-    defects = []
-    for body in (TOP, SLEIGH, TOP_4, ANY_4):
-        discrete, orbit = nh.discretize(body.system, 1.0), sequences.orbit(body)
-        for k in range(sequences.STEPS):
-            usual = body.arriving(sequences.exactly(orbit.displacement[k]))
-            found = usual + general.reaction(orbit.multipliers[k].tolist(), body.forms)
-            defects.append(apart(orbit.momentum[k + 1], found))
-            defects.append(apart(nh.discrete_legendre(discrete, orbit.displacement[k], side="right"), usual))
-    return Measured(twin.both(0.0, max(defects)), note="4 orbits")
-
-
-@finding(
-    "time-inversion",
-    "remark",
-    "After the bibliography (not typeset), discrete time inversion",
-    r"Reversing the order of the indices gives equations of the same form, which iterate backward.",
-    tolerance=1e-45,
-)
-def time_inversion() -> Measured:
-    """Compare the jumps of momentum of a sequence and of its inverses in reverse order, which takes poses back."""
-    defects = []
-    for body in (*SMALL, TOP_4):
-        for before, after in itertools.pairwise(sequences.displacements(body)):
-            forward = general.momentum_jump(body.momentum(after), body.arriving(before))
-            backward = general.momentum_jump(body.momentum(before**-1), body.arriving(after**-1))
-            defects.append(forward - backward)
-    orbits = [_return(body) for body in (TOP, SLEIGH, TOP_4)]
-    return Measured(twin.both(twin.worst(*defects), max(orbits)), note="4 bodies; 3 orbits of the library and back")
-
-
-def _return(body: Body) -> float:
-    """Return how far an orbit that starts at the inverse of the last displacement ends from that of the first."""
-    orbit = sequences.orbit(body)
-    last = body.group.inverse(orbit.displacement[-1])
-    back = nh.simulate(nh.discretize(body.system, 1.0), displacement=last, steps=sequences.STEPS)
-    return float(abs(back.displacement[-1] @ orbit.displacement[0] - body.group.identity).max())

@@ -19,6 +19,7 @@ from nonholo.reproduction._bodies import (
 )
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import general
 
 
@@ -37,8 +38,9 @@ def _slope(body: Body, W: Matrix) -> Matrix:
     "S6",
     "remark",
     "Section 3, left-invariant discrete Lagrangians",
-    r"The discrete Lagrangian is a map $L_d: G \times G \to G$ with $L_d(g g_k, g g_{k+1}) = L_d(g_k, g_{k+1})$.",
-    as_printed="misprint",
+    r"“Let the discrete Lagrangian $L_d : G \times G \to G$ be invariant with respect to the left diagonal action "
+    r"of $G$ on $G \times G$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"$L_d: G \times G \to \mathbb{R}$. Then $L_d(g_k, g_{k+1}) = l_d(W_k)$, $W_k = g_k^{-1}g_{k+1}$.",
     errata=("S6",),
     tolerance=1e-45,
@@ -77,15 +79,15 @@ def approximation() -> Measured:
 
 
 @finding(
-    "S47",
+    "energy-of-differences",
     "remark",
     "Section 3, before equation (approx)",
-    r"The discrete Lagrangians $l(\log(W)/h)$ and $l((W - I)/h)$ serve equally well.",
-    as_printed=False,
-    corrected=r"Only the second one keeps the reduced constrained energy. On every branch the step takes "
-    r"$r = P(W)|_\mathfrak{d}$ to $r' = \mathrm{Ad}^*_WP(W)|_\mathfrak{d}$. With $W - I$ both have the same energy, "
-    r"with $\log W$ they have not.",
-    errata=("S47",),
+    r"“its discrete analog $l_d$ can be chosen in form $l_d = l((\log W_k)/h)$”, “one can approximate $(\log "
+    r"W_k)/h$ with $W_k - I$”, “This will be our default choice”",
+    verdict=Verdict.REMARK,
+    corrected=r"Of the two only the default choice keeps the reduced constrained energy. On every branch the step "
+    r"takes $r = P(W)|_\mathfrak{d}$ to $r' = \mathrm{Ad}^*_WP(W)|_\mathfrak{d}$. With $W - I$ both have the same "
+    r"energy, with $\log W$ in general not.",
     tolerance=1e-45,
 )
 def logarithm() -> Measured:
@@ -112,8 +114,8 @@ def _energy_change(body: Body, discrete: nh.Discretization, W: Matrix) -> float:
     "S7",
     "remark",
     "Section 3, first formula for the discrete momentum",
-    r"$P_k = L^*_{g_k}D_2L_d(g_{k-1}, g_k) = L^*_{W_k}Dl_d(W_k)$.",
-    as_printed="misprint",
+    r"“$P_k = L^*_{g_k}D_2L_d(g_{k-1}, g_k) \equiv L^*_{W_k}D\,l_d(W_k)$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"$P_k = -L^*_{g_k}D_1L_d(g_k, g_{k+1}) = R^*_{W_k}Dl_d(W_k)$. The printed pullback is "
     r"$\mathrm{Ad}^*_{W_k}P_k$.",
     errata=("S7",),
@@ -172,12 +174,12 @@ def _usual(body: Body, g: Matrix, W: Matrix) -> Matrix:
     "disc.mom.dfn",
     "equation",
     "Section 3, equation (disc.mom.dfn)",
-    r"$\langle\omega, P_k\rangle = -\frac{d}{d\varepsilon}L_d(g_ke^{\omega\varepsilon}, g_{k+1})$ or "
-    r"$\langle\omega, P_k\rangle = -\frac{d}{d\varepsilon}l_d(e^{\omega\varepsilon}W_k)$ at $\varepsilon = 0$.",
-    as_printed="misprint",
+    r"“$\langle\omega, P_k\rangle = -\frac{d}{d\varepsilon}L_d(g_ke^{\omega\varepsilon}, g_{k+1})|_{\varepsilon=0}$ "
+    r"or $\langle\omega, P_k\rangle = -\frac{d}{d\varepsilon}l_d(e^{\omega\varepsilon}W_k)|_{\varepsilon=0}$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"The second form is $+\frac{d}{d\varepsilon}l_d(e^{\omega\varepsilon}W_k)$: moving $g_k$ by "
     r"$e^{\omega\varepsilon}$ takes $W_k$ to $e^{-\omega\varepsilon}W_k$.",
-    errata=("S8", "C1"),
+    errata=("S8",),
     tolerance=1e-45,
 )
 def momentum_definition() -> Measured:

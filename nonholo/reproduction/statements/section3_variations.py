@@ -8,6 +8,7 @@ from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._bodies import ANY_4, SLEIGH, SMALL, TOP, TOP_4, Body, slopes
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import general
 
 
@@ -52,10 +53,10 @@ def admissible_variations() -> Measured:
     "S12",
     "remark",
     "Section 3, action sums and constraint functions",
-    r"The reduced action sum is a function on $G^{N-1}$; the constraint functions are $\mathcal{F}_j(q_k, q_{k+1})$.",
-    as_printed="misprint",
-    corrected=r"It is a function on $G^N$, of $W_0, \dots, W_{N-1}$; the arguments of $\mathcal{F}_j$ are "
-    r"$g_k, g_{k+1}$.",
+    r"“the reduced action sum $s_d : G^{N-1} \to \mathbb{R}$” and “$\mathcal{F}_j(q_k, q_{k+1}) = f_j(W_k)$”",
+    verdict=Verdict.MISPRINT,
+    corrected=r"It is a function on $G^N$, of $W_0, \dots, W_{N-1}$; the arguments of $\mathcal{F}_j$ are $g_k, "
+    r"g_{k+1}$.",
     errata=("S12",),
     tolerance=1e-45,
 )

@@ -8,6 +8,7 @@ from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._bodies import in_double
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import suslov_continuous as suslov
 
 
@@ -87,10 +88,10 @@ def eliminated_equation() -> Measured:
     "ep3.26",
     "equation",
     "Section 4, equation (ep3.26)",
-    r"$\frac{d}{dt}(\mathbb{I}\omega) = (\mathbb{I}\omega, \gamma)\,\omega \times \mathbb{I}^{-1}\gamma$.",
-    as_printed="misprint",
-    corrected=r"$\frac{d}{dt}(\mathbb{I}\omega) = \frac{(\mathbb{I}\omega, \gamma)}{(\gamma, \mathbb{I}^{-1}\gamma)}\,"
-    r"\mathbb{I}^{-1}\gamma \times \omega$: the other sign, and a denominator.",
+    r"“$\frac{d}{dt}(\mathbb{I}\omega) = (\mathbb{I}\omega, \gamma)\,\omega\times\mathbb{I}^{-1}\gamma$”",
+    verdict=Verdict.MISPRINT,
+    corrected=r"$\frac{d}{dt}(\mathbb{I}\omega) = \frac{(\mathbb{I}\omega, \gamma)}{(\gamma, "
+    r"\mathbb{I}^{-1}\gamma)}\,\mathbb{I}^{-1}\gamma \times \omega$: the other sign, and a denominator.",
     errata=("S14",),
     tolerance=1e-45,
 )

@@ -9,6 +9,7 @@ from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._bodies import in_double
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import suslov_continuous as suslov
 
 
@@ -16,10 +17,10 @@ from nonholo.reproduction.formulas import suslov_continuous as suslov
     "ep3.27",
     "equation",
     "Section 4, equation (ep3.27)",
-    r"The energy integral is $(\omega, \mathbb{I}\omega) = (M, \mathbb{I}^{-1}M) = h$.",
-    as_printed="misprint",
-    corrected=r"It is an integral, and twice the energy: $h = 2E$.",
-    errata=("S15",),
+    r"“The Suslov system possesses the energy integral $(\omega, \mathbb{I}\omega) \equiv (M, \mathbb{I}^{-1}M) = "
+    r"h$”",
+    verdict=Verdict.REMARK,
+    corrected="It is twice the energy: $h = 2E$.",
     tolerance=1e-45,
 )
 def energy_integral() -> Measured:
@@ -63,12 +64,10 @@ def equilibria() -> Measured:
     "cont_sus_int",
     "equation",
     "Section 4, equation (cont_sus_int)",
-    r"In the principal basis there is the integral $(M, \hat{\mathbb{I}}M)$ with a degenerate matrix of second degree "
-    r"in $\gamma$, which coincides with (ep3.27) on the constraint plane.",
-    as_printed="misprint",
-    corrected=r"$(M, \hat{\mathbb{I}}M) = \det\mathbb{I}\,(\gamma, \mathbb{I}^{-1}\gamma)\,(\omega, \mathbb{I}\omega)$ "
-    r"there: equal up to a constant factor. $\hat{\mathbb{I}}\gamma = 0$.",
-    errata=("S15",),
+    r"The integral $(M, \hat{\mathbb{I}}M)$ “coincides with the restriction of (ep3.27) onto the constraint plane”",
+    verdict=Verdict.REMARK,
+    corrected=r"Up to a constant factor: $(M, \hat{\mathbb{I}}M) = \det\mathbb{I}\,(\gamma, "
+    r"\mathbb{I}^{-1}\gamma)\,(\omega, \mathbb{I}\omega)$ there. $\hat{\mathbb{I}}\gamma = 0$.",
     tolerance=1e-45,
 )
 def degenerate_integral() -> Measured:
@@ -155,12 +154,13 @@ _ALIGNED = (
     "suslov-space-axes",
     "remark",
     "Section 4, before figure (Suslov.fig)",
-    r"In space the axes of the two limit rotations are different.",
-    as_printed=False,
-    corrected=r"In general. If $J_{12} = J_{23} = 0$, their angle $\delta$ is $\sin\frac\delta2 = "
-    r"|\cos(\frac\pi2\sqrt q)|\,/\cosh\frac{\pi B_2}{2|J_{13}|}$, $q = B_2(B_1 - B_2)/J_{13}^2$, "
-    r"$B_i = J_{ii} + J_{33}$. It vanishes for $q = 1, 9, 25, \dots$, for instance for "
-    r"$J_{11} = \frac34$, $J_{22} = J_{33} = J_{13} = \frac12$.",
+    "“Note that in space the axes of the limit permanent rotations are different.”",
+    verdict=Verdict.EXCEPTIONS,
+    corrected=r"Except on special bodies. If $J_{12} = J_{23} = 0$, the angle $\delta$ between them, which Fedorov, "
+    r"Maciejewski and Przybylska (2009) found from the monodromy, is $\sin\frac\delta2 = |\cos(\frac\pi2\sqrt "
+    r"q)|\,/\cosh\frac{\pi B_2}{2|J_{13}|}$, $q = B_2(B_1 - B_2)/J_{13}^2$, $B_i = J_{ii} + J_{33}$. It vanishes "
+    r"for $q = 1, 9, 25, \dots$, for instance for $J_{11} = \frac34$, $J_{22} = J_{33} = J_{13} = \frac12$.",
+    errata=("S51",),
     tolerance=1e-7,
 )
 def axes_in_space() -> Measured:

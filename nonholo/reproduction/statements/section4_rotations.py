@@ -7,6 +7,7 @@ from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._bodies import in_double
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import general
 from nonholo.reproduction.formulas import suslov_continuous as suslov
 
@@ -117,11 +118,11 @@ def _momentum_rate(J: Matrix, x: list[Number]) -> Matrix:
     "Suslov_eq",
     "equation",
     "Section 4, equation (Suslov_eq)",
-    r"With $\omega = g^{-1}g$: $\frac{d}{dt}(\mathbb{I}\omega) = [\mathcal{I}\omega, \omega] + "
-    r"\sum_{1<p<q\le n-1}\lambda_{pq}\,e_p \wedge e_q$.",
-    as_printed="misprint",
-    corrected=r"$\omega = g^{-1}\dot g$; the sum is over $1 \le p < q \le n - 1$, $(n-1)(n-2)/2$ planes, one for each "
-    r"constraint; $\mathcal{I}$ and $\mathbb{I}$ are one operator.",
+    r"“$\omega(t) = g^{-1}\cdot g(t) \in so(n)$” and “$\frac{d}{dt}(\mathbb{I}\omega) = [\mathcal{I}\omega, \omega] "
+    r"+ \sum_{1<p<q\le n-1}\lambda_{pq}\,e_p\wedge e_q$”",
+    verdict=Verdict.MISPRINT,
+    corrected=r"$\omega = g^{-1}\dot g$; the sum is over $1 \le p < q \le n - 1$, $(n-1)(n-2)/2$ planes, one for "
+    r"each constraint; $\mathcal{I}$ and $\mathbb{I}$ are one operator.",
     errata=("S16",),
     tolerance=1e-45,
 )

@@ -7,6 +7,7 @@ from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._sleigh_twin import BODIES, PLANE, Body, kinetic, momenta, points, pose, poses
 from nonholo.reproduction._twin import ctx, worst
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import sleigh_continuous as formulas
 
 VELOCITIES = [twin.numbers(511 + k, 3, -2, 2) for k in range(3)] + [
@@ -47,9 +48,9 @@ def center_of_mass() -> Measured:
     "C2",
     "equation",
     "Section 5, the words on J before equation (Caplag)",
-    r"$J$ is the moment of inertia about the contact point.",
-    as_printed=False,
-    corrected=r"The formulas add $m(a^2 + b^2)$, so $J$ is the moment of inertia about the centre of mass.",
+    "“Let $m$ and $J$ denote the mass and moment of inertia of the sleigh relative to the contact point.”",
+    verdict=Verdict.FALSE,
+    corrected="The formulas add $m(a^2 + b^2)$, so $J$ is the moment of inertia about the centre of mass.",
     errata=("C2",),
     tolerance=1e-45,
 )
@@ -69,11 +70,15 @@ def meaning_of_inertia() -> Measured:
     "C3",
     "equation",
     "Section 5, the two displays of the kinetic energy of the centre of mass",
-    r"The kinetic energy of the centre of mass is $m[\dot x^2 + \dot y^2 + (a^2 + b^2)\dot\theta^2 + \dots]$, in body "
-    r"components $m[(a^2 + b^2)\omega^2 + v_1^2 + v_2^2 - 2b\,\omega v_1^2 + 2a\,\omega v_2]$.",
-    as_printed="misprint",
-    corrected=r"Both have the factor $m/2$, and the mixed term is $-2b\,\omega v_1$.",
-    errata=("C3", "C4"),
+    r"“$m[\dot x^2 + \dot y^2 + (a^2 + b^2)\dot\theta^2 + 2\dot\theta(a(-\dot x\sin\theta + \dot y\cos\theta) - "
+    r"b(\dot x\cos\theta + \dot y\sin\theta))]$” and “$m[(a^2 + b^2)\omega^2 + v_1^2 + v_2^2 - 2b\,\omega v_1^2 + "
+    r"2a\,\omega v_2]$”",
+    verdict=Verdict.MISPRINT,
+    corrected="Both have the factor $m/2$. (The power of $v_1$ is the slip of (Caplag).)",
+    errata=(
+        "C3",
+        "C4",
+    ),
     tolerance=1e-45,
 )
 def energy_of_center() -> Measured:
@@ -95,9 +100,10 @@ def energy_of_center() -> Measured:
     "Caplag",
     "equation",
     "Section 5, equation (Caplag)",
-    r"$l = \frac12[(J + m(a^2 + b^2))\omega^2 + m(v_1^2 + v_2^2) - 2mb\,\omega v_1^2 + 2ma\,\omega v_2]$.",
-    as_printed="misprint",
-    corrected=r"The mixed term is $-2mb\,\omega v_1$: the kinetic energy is quadratic.",
+    r"“$l = \frac12[(J + m(a^2 + b^2))\omega^2 + m(v_1^2 + v_2^2) - 2mb\,\omega v_1^2 + 2ma\,\omega v_2]$”",
+    verdict=Verdict.MISPRINT,
+    corrected=r"The mixed term is $-2mb\,\omega v_1$, and $-2b\,\omega v_1$ in the display before: the kinetic "
+    r"energy is quadratic.",
     errata=("C4",),
     tolerance=1e-45,
 )
@@ -119,8 +125,8 @@ def caplag() -> Measured:
     "C5",
     "equation",
     "Section 5, the components of the body momentum",
-    r"$p_\theta = (J + m(a^2 + b^2))\omega + 2m(av_2 - bv_1)$, $p_1 = m(v_1 - b\omega)$, $p_2 = m(v_2 + a\omega)$.",
-    as_printed="misprint",
+    r"“$p_\theta \equiv \frac{\partial l}{\partial\omega} = (J + m(a^2 + b^2))\omega + 2m(av_2 - bv_1)$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"$p_\theta = (J + m(a^2 + b^2))\omega + m(av_2 - bv_1)$.",
     errata=("C5",),
     tolerance=1e-45,

@@ -11,6 +11,7 @@ from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._sleigh_twin import ALONG, BODIES, PLANE, UNBALANCED, Body, points, rates, velocity_of
 from nonholo.reproduction._sleigh_twin import momenta as momenta_at
 from nonholo.reproduction._twin import Matrix, Number, ctx, worst
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import sleigh_continuous as formulas
 
 MOMENTA = [twin.numbers(531 + k, 2, -2, 2) for k in range(3)] + [
@@ -193,10 +194,11 @@ def footnote_arches() -> Measured:
     "C8",
     "remark",
     "Section 5, stability of the equilibria",
-    r"The equilibria in the upper half plane are asymptotically stable, those in the lower half plane unstable.",
-    as_printed=False,
-    corrected=r"They attract inside their level of energy only, and where $ap_1 > 0$: the upper ones for $a > 0$, the "
-    r"lower ones for $a < 0$. The rate is $-ap_1/(J + ma^2)$.",
+    "“The equilibria located in the upper half plane are asymptotically stable ... whereas the equilibria in the "
+    "lower half plane are unstable”",
+    verdict=Verdict.EXCEPTIONS,
+    corrected="For $a > 0$, as in the figure. For $a < 0$ it is the other way round: those with $ap_1 > 0$ "
+    "attract, inside their level of energy, with the rate $-ap_1/(J + ma^2)$.",
     errata=("C8",),
     tolerance=1e-45,
 )

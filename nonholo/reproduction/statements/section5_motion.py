@@ -20,6 +20,7 @@ from nonholo.reproduction._sleigh_twin import (
     rates,
 )
 from nonholo.reproduction._twin import Number, ctx, worst
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import sleigh_continuous as formulas
 
 TIMES = [ctx.mpf(t) for t in ("-2.5", "0.3", "7")]
@@ -78,8 +79,8 @@ def balanced_flow() -> Measured:
     "C6",
     "equation",
     "Section 5, the straight solution of equation (xyth.eqn)",
-    r"For $\omega = 0$: $x = x_0 + v_1\cos\theta_0\,t$, $y = y_0 + v_1\sin\theta_0$.",
-    as_printed="misprint",
+    r"“$x = x_0 + v_1\cos\theta_0\,t$, $y = y_0 + v_1\sin\theta_0$ if $\omega = 0$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"$y = y_0 + v_1\sin\theta_0\,t$.",
     errata=("C6",),
     tolerance=1e-45,
@@ -100,8 +101,8 @@ def straight_motion() -> Measured:
     "C7",
     "equation",
     "Section 5, the cusp of the contact point",
-    r"$v_1$ vanishes where the momentum trajectory meets the line $mb\,p_1 + (J + m(a^2 + b^2))p_2 = 0$.",
-    as_printed="misprint",
+    "“the momentum trajectory intersects the line $mbp_1 + (J + m(a^2 + b^2))p_2 = 0$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"The line is $mb\,p_\theta + (J + m(a^2 + b^2))p_1 = 0$.",
     errata=("C7",),
     tolerance=1e-45,
@@ -209,10 +210,10 @@ def _flow_gaps(body: Body, peak: Number) -> list:
     "C9",
     "remark",
     "Section 5, after the limit of the Suslov problem",
-    r"The dynamics of the group variables $(\theta, x, y)$ cannot be explicitly written.",
-    as_printed=False,
-    corrected=r"$\theta$ is elementary, $\frac{\omega_0}{\kappa}\,\mathrm{gd}(\kappa t)$, and $x + iy$ is "
-    r"hypergeometric.",
+    r"“the dynamics of the group variables $(\theta, x, y)$ cannot be explicitly written”",
+    verdict=Verdict.EXCEPTIONS,
+    corrected=r"Except the heading, which is elementary: $\theta = \frac{\omega_0}{\kappa}\,\mathrm{gd}(\kappa t)$. "
+    r"If explicit means elementary it is true in general of $x$ and $y$: $x + iy$ is hypergeometric.",
     errata=("C9",),
     tolerance=1e-40,
 )
@@ -224,12 +225,11 @@ def closed_form() -> Measured:
 
 
 @finding(
-    "C10",
+    "asymptotic-angle",
     "remark",
     "Section 5, after the limit of the Suslov problem",
     r"The angle between the asymptotic directions of the contact point can be computed. (No formula is printed: the "
     r"heading turns by $\pi\sqrt{1 + J/(ma^2)}$, the direction of motion by $\pi(\sqrt{1 + J/(ma^2)} - 1)$.)",
-    errata=("C10",),
     tolerance=1e-45,
 )
 def asymptotic_angle() -> Measured:

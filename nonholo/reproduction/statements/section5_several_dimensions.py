@@ -10,6 +10,7 @@ from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._sleigh_twin import Point, homogeneous, kinetic, paired, rates, solid
 from nonholo.reproduction._twin import Matrix, Number, ctx, worst
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import sleigh_continuous as formulas
 
 
@@ -91,10 +92,11 @@ def se_n_bracket() -> Measured:
     "C11",
     "equation",
     "Section 5, the body velocity operator",
-    r"$\xi = g^{-1}\dot g \in se(n)$, after $(\xi, v)$ with $\xi \in so(n)$: one letter for two objects, while the "
-    r"angular velocity is $\omega = R^{-1}\dot R$.",
-    as_printed="misprint",
-    corrected=r"The velocity in $se(n)$ is the pair $(\omega, v)$; so the two objects need two letters.",
+    r"“the body velocity operator is defined as the left-trivialization $\xi(t) = g^{-1}\dot g(t) \in se(n)$”, "
+    r"while “The elements of $se(n)$ are written as $(\xi, v)$.”",
+    verdict=Verdict.MISPRINT,
+    corrected=r"$\eta = g^{-1}\dot g$, the letter of the display before: the velocity in $se(n)$ is the pair "
+    r"$(\omega, v)$; so the two objects need two letters.",
     errata=("C11",),
     tolerance=1e-45,
 )
@@ -108,11 +110,11 @@ def one_letter_for_two() -> Measured:
     "cont.sl.lagr",
     "equation",
     "Section 5, equation (cont.sl.lagr)",
-    r"$L = -\frac14\mathrm{tr}(\xi\mathbb{J}\xi^T) = -\frac14\mathrm{tr}(\omega(J + m\,a\otimes a)\omega) + m(v, "
-    r"\omega a) + \frac m2(v, v)$ with $\mathbb{J} = S\,\mathrm{diag}(J_1, \dots, J_n, m)\,S^T$.",
-    as_printed="misprint",
-    corrected=r"$L = \frac12\mathrm{tr}(\xi\mathbb{J}\xi^T) = -\frac12\mathrm{tr}(\omega(J + m\,a\otimes a)\omega) + "
-    r"\dots$",
+    r"“$L = -\frac14\mathrm{tr}(\xi\,\mathbb{J}\,\xi^T) \equiv -\frac14\mathrm{tr}(\omega(J + ma\otimes a)\omega) + "
+    r"m(v, \omega a) + \frac m2(v, v)$”",
+    verdict=Verdict.MISPRINT,
+    corrected=r"$L = \frac12\mathrm{tr}(\xi\mathbb{J}\xi^T) = -\frac12\mathrm{tr}(\omega(J + m\,a\otimes a)\omega) "
+    r"+ \dots$",
     errata=("C12",),
     tolerance=1e-45,
 )
@@ -166,9 +168,9 @@ def _spin(body: list[Point], xi: Matrix, about: list) -> Matrix:
     "C13",
     "equation",
     "Section 5, the words after equation (cont.mom.se(n))",
-    r"$M$ is the angular momentum of the body with respect to its centre of mass.",
-    as_printed=False,
-    corrected=r"$M$ is the angular momentum about the body origin $A$, hence its terms with $v$.",
+    "“Here $M$ is the angular momentum of the body with respect to its center of mass $C$”",
+    verdict=Verdict.FALSE,
+    corrected="$M$ is the angular momentum about the body origin $A$, hence its terms with $v$.",
     errata=("C13",),
     tolerance=1e-45,
 )
@@ -212,14 +214,14 @@ def d_for_se_n() -> Measured:
 
 
 @finding(
-    "C14",
+    "full-mass-tensor",
     "remark",
     "Sections 5 and 7, the mass tensor beside the constraint",
-    r"Together with $\mathfrak{d}$ of this form the mass tensor is taken diagonal.",
-    as_printed=False,
-    corrected=r"This is a restriction. The constraint has fixed the body frame, and $J_{12}, \dots, J_{1n}$ enter: "
-    r"$\dot\pi = |w|^2c - (c, w)w - ma_1u\,w$ with $c = (J_{12}, \dots, J_{1n})$.",
-    errata=("C14",),
+    r"“as above, $J = \mathrm{diag}(J_1, \dots, J_n)$ be its mass tensor”, and “Another natural choice is to define "
+    r"the constraint subspace $\mathfrak{d} \in se(n)$ to be the set of matrices of the form” (d_for_se_n)",
+    verdict=Verdict.REMARK,
+    corrected=r"Together a simplification. The constraint has fixed the body frame, and in general $J_{12}, \dots, "
+    r"J_{1n}$ enter: $\dot\pi = |w|^2c - (c, w)w - ma_1u\,w$ with $c = (J_{12}, \dots, J_{1n})$.",
     tolerance=1e-45,
 )
 def full_mass_tensor() -> Measured:

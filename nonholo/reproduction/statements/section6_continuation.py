@@ -6,19 +6,20 @@ from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._bodies import BALANCED_TOP, TOP, TOP_4, Body, displacements, slopes
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import general
 
 
 @finding(
-    "S48",
+    "continuation",
     "remark",
     "Section 6, before equation (*)",
-    r"The discrete Lagrangian is (cont.so-n.lagr) with $\Omega - \mathbf{I}$ for $\omega$; it gives $M = \Omega J - "
-    r"J\Omega^T$. How $l$ continues to matrices that are not skew is left open.",
-    as_printed="misprint",
-    corrected=r"It has to be $\frac12\mathrm{tr}(XJX^T)$. On skew matrices $-\frac12\mathrm{tr}(JX^2)$ is the same, "
-    r"but gives another discrete Lagrangian and another momentum.",
-    errata=("S48",),
+    r"“Define the left-invariant discrete Lagrangian on $SO(n)\times SO(n)$ by substituting $\omega$ in "
+    r"(cont.so-n.lagr) by $R_k^T(R_{k+1} - R_k) \equiv \Omega_k - \mathbf{I}$.”",
+    verdict=Verdict.REMARK,
+    corrected=r"How $l$ continues to matrices that are not skew is left to the reader. For the printed momentum it "
+    r"has to be $\frac12\mathrm{tr}(XJX^T)$. On skew matrices $-\frac12\mathrm{tr}(JX^2)$ is the same, but gives "
+    r"another discrete Lagrangian and another momentum.",
     tolerance=1e-45,
 )
 def continuation() -> Measured:

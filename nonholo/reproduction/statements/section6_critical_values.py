@@ -5,6 +5,7 @@ from nonholo.reproduction import _suslov_twin as data
 from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, Vector, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import suslov_integrals as formulas
 
 GENERIC = (*data.REGULAR, "flat")
@@ -14,10 +15,10 @@ GENERIC = (*data.REGULAR, "flat")
     "quatern_int",
     "equation",
     "Section 6, equation (quatern_int)",
-    r"(sus_int) gives rise to the printed quartic $H$ in $(q_0, q_1, q_2)$.",
-    as_printed="misprint",
-    corrected=r"It equals $4H$.",
-    errata=("S33",),
+    "“which gives rise to the following quartic integral in terms of the parameters $q_0, q_1, q_2$”, $H$ of "
+    "(quatern_int)",
+    verdict=Verdict.REMARK,
+    corrected="(sus_int) equals $4H$.",
     tolerance=1e-45,
 )
 def quartic() -> Measured:
@@ -78,10 +79,12 @@ def _equatorial(J: Matrix) -> tuple[Number, Vector]:
     "S36",
     "remark",
     "Section 6, invariant curves: critical values",
-    r"There are two critical values $h^* < h^{**}$ of the energy, with saddles and with centres.",
-    as_printed=False,
-    corrected=r"There is also a saddle $h_e$ on the equator, $h_e < h^*$ or $h^* < h_e < h^{**}$. With $h = \mu/4$ the "
-    r"others are the roots of $(1 - |c|^2/D)\mu^2 - (\mathrm{tr}B - c\cdot Bc/D)\mu + D = 0$.",
+    "“At a certain critical value $h = h^*$ the branches intersect at two opposite saddle points and form a "
+    "separatrix, and for the next critical value $h^{**} > h^*$ the two branches shrink to opposite center points.”",
+    verdict=Verdict.FALSE,
+    corrected=r"Half-turns are critical too: a saddle $h_e$ on the equator with $h_e < h^*$ or $h^* < h_e < "
+    r"h^{**}$, for some bodies a second one with a third minimum between them. With $h = \mu/4$ the others are the "
+    r"roots of $(1 - |c|^2/D)\mu^2 - (\mathrm{tr}B - c\cdot Bc/D)\mu + D = 0$.",
     errata=("S36",),
     tolerance=1e-45,
 )
@@ -104,10 +107,11 @@ def critical_values() -> Measured:
     "S36",
     "remark",
     "Section 6, invariant curves: condition",
-    r"The two critical values exist if the quadratic form of the constrained inertia is positive definite.",
-    as_printed=False,
-    corrected=r"Both exist if $D > 2|c|^2$, $D = \det B$; positivity is not enough: a tilted rod has no saddle off the "
-    r"equator. The condition is sufficient, not necessary: another tilted body violates it and has both.",
+    "“Assume that quadratic form $(J_{22} + J_{33})q_1^2 - 2J_{12}q_1q_2 + (J_{33} + J_{11})q_2^2$ is positive "
+    "definite. Then” both critical values exist",
+    verdict=Verdict.FALSE,
+    corrected=r"Both exist if $D > 2|c|^2$, $D = \det B$; positivity is not enough: a tilted rod has no saddle off "
+    r"the equator. The condition is sufficient, not necessary: another tilted body violates it and has both.",
     errata=("S36",),
     tolerance=1e-45,
 )
@@ -162,11 +166,11 @@ def _momentum(J: Matrix, q: Vector, tangent: Vector, e: Number) -> Matrix:
     "S39",
     "remark",
     "Section 6, stationary solutions",
-    r"Neither the saddles nor the centres of the foliation are stationary, and from a centre the next point is "
-    r"complex.",
-    as_printed=False,
-    corrected=r"False if $c$ is an eigenvector of $B$, for instance $J_{12} = J_{23} = 0$: one of them lies on the "
-    r"line of equilibria, at $q_0^2 = \frac12$. It is true for other bodies.",
+    r"“neither the saddle points nor the centers of the invariant foliation on $\mathbb{RP}^2$ are stationary "
+    r"points” and “when the initial point is a center, the next point is necessarily complex”",
+    verdict=Verdict.EXCEPTIONS,
+    corrected=r"Except if $c$ is an eigenvector of $B$, for instance $J_{12} = J_{23} = 0$: then one of them lies "
+    r"on the line of equilibria, at $q_0^2 = \frac12$.",
     errata=("S39",),
     tolerance=1e-45,
 )

@@ -9,6 +9,7 @@ from nonholo.reproduction import _suslov_twin as data
 from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, Vector, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import suslov_integrals as formulas
 from nonholo.reproduction.statements.section6_critical_values import GENERIC, critical_points
 
@@ -17,11 +18,10 @@ from nonholo.reproduction.statements.section6_critical_values import GENERIC, cr
     "quatern_int",
     "equation",
     "Section 6, invariant curves of (quatern_int): degree",
-    r"The invariant curves are algebraic of order 8.",
-    as_printed="misprint",
-    corrected=r"On the projective plane of displacements they are quartics; on the sphere, which covers it twice, and "
-    r"in the space of momenta the order is 8.",
-    errata=("S37",),
+    "“Thus, the invariant varieties are algebraic curves of order 8.”",
+    verdict=Verdict.REMARK,
+    corrected="So they are on the sphere and in the space of momenta. On the projective plane of displacements, "
+    "which the sphere covers twice, they are quartics.",
     tolerance=1e-45,
 )
 def degree() -> Measured:
@@ -72,14 +72,14 @@ def level_curves() -> Measured:
 
 
 @finding(
-    "S35",
+    "outer-oval",
     "remark",
     "Section 6, invariant curves: small values",
-    r"For small $h$ the second component is an oval close to the equator $q_0 = 0$.",
-    as_printed=False,
-    corrected=r"It is a small oval around the one half-turn with $J_{13}q_1 + J_{23}q_2 = 0$, where the integral "
-    r"vanishes; elsewhere on the equator it does not.",
-    errata=("S35",),
+    r"“for small positive values of $h$ one branch is a small oval around the origin $(0,0)$ whereas the other "
+    r"branch is an oval close to the equator $\{q_0=0\}$ of the sphere. It may or may not intersect the equator.”",
+    verdict=Verdict.REMARK,
+    corrected="For small $h$ it does: it is a small oval around the one half-turn with $J_{13}q_1 + J_{23}q_2 = "
+    "0$, where the integral vanishes; elsewhere on the equator it does not.",
     tolerance=1e-45,
 )
 def outer_oval() -> Measured:
@@ -125,11 +125,12 @@ def between() -> Measured:
     "S49",
     "remark",
     "Section 6, remark on the choice of a branch",
-    r"Below $h^*$ the value is chosen by the smallest norm inside, by the largest outside: one value lies on each "
-    r"component.",
-    as_printed=False,
-    corrected=r"Inside one value was found wherever $h < h^*$ and $D > 2|c|^2$. Outside there are one or three: the "
-    r"body with four real values has three outside, at $E < h^*$.",
+    r"“have to belong to the same connected component of the invariant curve. In other words, if the initial point "
+    r"lies in the interior (exterior) part of $\mathcal{S}$, one has to choose a real solution of (sys) that has "
+    r"the smallest (largest) norm”",
+    verdict=Verdict.FALSE,
+    corrected="Inside one value was found wherever $h < h^*$ and $D > 2|c|^2$. Outside there are one or three: the "
+    "body with four real values has three outside, at $E < h^*$.",
     errata=("S49",),
     tolerance=1e-45,
 )

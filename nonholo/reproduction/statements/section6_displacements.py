@@ -6,6 +6,7 @@ from nonholo.reproduction import _suslov_twin as data
 from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, Vector, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import suslov_displacements as formulas
 
 DIMENSIONS = (3, 4, 6)
@@ -51,11 +52,11 @@ def symmetries() -> Measured:
     "symm",
     "lemma",
     "Section 6, lemma (symm), part 1",
-    r"The symmetries (sp) are the structure of the admissible rotations.",
-    as_printed=False,
-    corrected=r"They are necessary only. With $\mathrm{tr}(\mathrm{diag}(1, .., 1, -1)\,\Omega) = n - 2$ they suffice. "
-    r"For $n = 3$ the rotation $\mathrm{diag}(-1, -1, 1)$ satisfies (sp), and is not admissible.",
-    errata=("S22",),
+    r"“In the basis $e_1, \dots, e_n$, the admissible rotation matrices have the structure” (sp)",
+    verdict=Verdict.REMARK,
+    corrected=r"So they have; the converse is not said. With $\mathrm{tr}(\mathrm{diag}(1, .., 1, -1)\,\Omega) = n "
+    r"- 2$ the symmetries (sp) are sufficient too; without it not: for $n = 3$ the rotation $\mathrm{diag}(-1, -1, "
+    r"1)$ satisfies (sp), and is not admissible.",
     tolerance=1e-45,
 )
 def structure() -> Measured:
@@ -87,8 +88,8 @@ def _from_symmetries(W: Matrix) -> Matrix:
     "S28",
     "lemma",
     "Section 6, lemma (symm), part 2",
-    r"The admissible rotations are the projective space $S^{n-1}/\mathbb{Z}^2$.",
-    as_printed="misprint",
+    r"“homeomorphic to the projective space $\mathbb{P}^{n-1} = S^{n-1}/\mathbb{Z}^2$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"$S^{n-1}/\mathbb{Z}_2$: two opposite points of the sphere give one rotation.",
     errata=("S28",),
     tolerance=1e-45,
@@ -182,11 +183,12 @@ def columns() -> Measured:
     "half-angle-signs",
     "equation",
     "Section 6, proof of lemma (symm), end",
-    r"Opposite points of the sphere belong to one rotation because $\sin\frac\theta2 = -\sin\frac{2\pi - \theta}2$ and "
-    r"$\cos\frac\theta2 = -\cos\frac{2\pi - \theta}2$.",
-    as_printed="misprint",
+    r"“Since $\sin(\theta/2) = -\sin(2\pi - \theta)/2$ and $\cos(\theta/2) = -\cos(2\pi - \theta)/2$ ... opposite "
+    r"points on $S^{n-1}$ correspond to the same admissible rotation”",
+    verdict=Verdict.MISPRINT,
     corrected=r"$\sin\frac\theta2 = +\sin\frac{2\pi - \theta}2$. The opposite point belongs to the angle $2\pi - "
     r"\theta$ and the vector $-u$.",
+    errata=("S52",),
     tolerance=1e-45,
 )
 def half_angle_signs() -> Measured:
@@ -222,9 +224,9 @@ def linearised() -> Measured:
     "S24",
     "equation",
     "Section 6, constraints in trace form",
-    r"The conditions (sp) are $\mathrm{tr}(R_k^T\,e_j\wedge e_n\,R_{k+1} - R_{k+1}^T\,e_j\wedge e_n\,R_k) = 0$, "
-    r"$j < n$.",
-    as_printed="misprint",
+    r"“Note that (sp) imply left-invariant constraints on $SO(n)\times SO(n)$ in the form "
+    r"$\mathrm{tr}(R_k^T\,e_j\wedge e_n\,R_{k+1} - R_{k+1}^T\,e_j\wedge e_n\,R_k) = 0$, $j = 1, \dots, n-1$.”",
+    verdict=Verdict.MISPRINT,
     corrected=r"$\mathrm{tr}(R_{k+1}\,(e_i\wedge e_j)\,R_k^T) = 0$, $i < j < n$: $(n-1)(n-2)/2$ conditions. The "
     r"printed ones are $n - 1$, in space, and in the allowed planes.",
     errata=("S24",),

@@ -6,6 +6,7 @@ from nonholo.reproduction import _suslov_twin as data
 from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import suslov_momenta as formulas
 
 NOTE = "all four values after three displacements, two bodies"
@@ -73,10 +74,9 @@ def arriving() -> Measured:
     "diff_suslov",
     "equation",
     "Section 6, equation (diff_suslov)",
-    r"As vectors, $M_{k+1} = M_k + 4(\ldots)$ with the printed components and the same $\lambda_k$ in the last one.",
-    as_printed="misprint",
-    corrected=r"The multiplier is another: $4\lambda_{\mathrm{vector}} = -\lambda_{\mathrm{matrix}}$.",
-    errata=("S31",),
+    r"“(suslov) can be written in form” (diff_suslov), with the letter $\lambda_k$ in both",
+    verdict=Verdict.REMARK,
+    corrected=r"They are two multipliers: $4\lambda_{\mathrm{vector}} = -\lambda_{\mathrm{matrix}}$.",
     tolerance=1e-45,
 )
 def vector_form() -> Measured:

@@ -11,6 +11,7 @@ from nonholo.reproduction import _suslov_twin as data
 from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, Vector, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import suslov_euler_angles as formulas
 
 NOTE = "random angles up to 4, equal angles, theta = 0, nearly opposite positions"
@@ -63,10 +64,11 @@ def matrix() -> Measured:
     "L_angles",
     "equation",
     "Section 6, equation (L_angles), first block",
-    r"In $L_d$ the moment $A_1$ has the printed factor: prefactor $+\frac12$, and a last term with another $\frac12$.",
-    as_printed="misprint",
-    corrected=r"In $-\mathrm{tr}(\Omega_kJ)$ the prefactor is $-\frac12$ and the last term "
-    r"$(\cos\theta_{k+1} - \cos\theta_k)\sin\Delta\phi_k\sin(\psi_k + \psi_{k+1})$ has coefficient 1.",
+    r"“$L_d = \frac12[\dots + \frac12[\cos\theta_{k+1} - \cos\theta_k]\sin(\Delta\phi_k)\sin(\psi_k + "
+    r"\psi_{k+1})]A_1$”",
+    verdict=Verdict.MISPRINT,
+    corrected=r"In $-\mathrm{tr}(\Omega_kJ)$ the prefactor is $-\frac12$ and the last term $(\cos\theta_{k+1} - "
+    r"\cos\theta_k)\sin\Delta\phi_k\sin(\psi_k + \psi_{k+1})$ has coefficient 1.",
     errata=("S19",),
     tolerance=1e-45,
 )
@@ -86,9 +88,9 @@ def first() -> Measured:
     "L_angles",
     "equation",
     "Section 6, equation (L_angles), second block",
-    r"In $L_d$ the moment $A_2$ has the printed factor, which contains $\sin(\phi_k + \phi_{k+1})$, $\Delta\psi_k$ and "
-    r"two letters for $\theta$.",
-    as_printed="misprint",
+    r"“$\frac12[\dots - \cos\vartheta_k\sin(\phi_k + \phi_{k+1})\sin(\Delta\psi_k) - "
+    r"\cos\vartheta_{k+1}\sin(\Delta\phi_k)\sin(\psi_k + \psi_{k+1})]A_2$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"It is the factor of $A_1$ with $\psi_k + \psi_{k+1}$ increased by $\pi$.",
     errata=("S20",),
     tolerance=1e-45,
@@ -104,7 +106,6 @@ def second() -> Measured:
     "equation",
     "Section 6, equation (L_angles), third block",
     r"In $L_d = -\mathrm{tr}(\Omega_kJ)$, up to a constant, the moment $A_3$ has the printed factor.",
-    errata=("S21",),
     tolerance=1e-45,
 )
 def third() -> Measured:

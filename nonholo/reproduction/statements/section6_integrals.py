@@ -62,12 +62,11 @@ def _determinant(J: Matrix) -> Number:
 
 
 @finding(
-    "S34",
+    "energy-in-n-dimensions",
     "theorem",
     "Section 6, theorem (ints), other dimensions",
     r"The integral is stated for $n = 3$. It exists for every $n$: with the momenta $r$ along the constraint, "
     r"$r\cdot B^{-1}r$ is kept, $B = A + J_{nn}\mathrm{Id}$ with the leading block $A$ of $J$.",
-    errata=("S34",),
     tolerance=1e-45,
 )
 def every_dimension() -> Measured:

@@ -6,6 +6,7 @@ from nonholo.reproduction import _suslov_twin as data
 from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import suslov_displacements as formulas
 
 
@@ -22,10 +23,11 @@ def _tops() -> list[tuple[Matrix, Matrix]]:
     "limits",
     "equation",
     "Section 6, equation (limits)",
-    r"For $R_{k+1} = R + \varepsilon\dot R$ the finite rotation $\Omega_k = R_k^TR_{k+1}$ is "
-    r"$\mathbf I + R^{-1}\dot R = \mathbf I + \varepsilon\omega$.",
-    as_printed="misprint",
-    corrected=r"$\Omega_k = \mathbf I + \varepsilon R^{-1}\dot R$: the factor $\varepsilon$ is missing in the middle.",
+    r"“when $R_{k+1} = R_k + \varepsilon\dot R$, $\varepsilon << 1$, one has $\Omega_k = \mathbf{I} + R^{-1}\dot R "
+    r"= \mathbf{I} + \varepsilon\omega$”",
+    verdict=Verdict.MISPRINT,
+    corrected=r"$\Omega_k = \mathbf I + \varepsilon R^{-1}\dot R$: the factor $\varepsilon$ is missing in the "
+    r"middle.",
     errata=("S17",),
     tolerance=1e-45,
 )
@@ -47,11 +49,10 @@ def limits() -> Measured:
     "S18",
     "equation",
     "Section 6, discrete Lagrangian",
-    r"Putting $\Omega - \mathbf I$ for $\omega$ into the kinetic energy gives "
-    r"$l_d(\Omega) = \frac12\mathrm{tr}(\Omega J)$, whose momentum is $M = \Omega J - J\Omega^T$.",
-    as_printed="misprint",
-    corrected=r"$l_d(\Omega) = \mathrm{tr}J - \mathrm{tr}(\Omega J)$, from $l = \frac12\mathrm{tr}(wJw^T)$; with the "
-    r"printed one the definition gives $-\frac12M$.",
+    r"“we get $l_d(\Omega_k) = \frac12\mathrm{tr}(\Omega_kJ)$”, with the momentum “$M_k = \Omega_kJ - J\Omega_k^T$”",
+    verdict=Verdict.MISPRINT,
+    corrected=r"$l_d(\Omega) = \mathrm{tr}J - \mathrm{tr}(\Omega J)$, from $l = \frac12\mathrm{tr}(wJw^T)$; with "
+    r"the printed one the definition gives $-\frac12M$.",
     errata=("S18",),
     tolerance=1e-45,
 )

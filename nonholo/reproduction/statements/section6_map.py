@@ -4,6 +4,7 @@ from nonholo.reproduction import _suslov_twin as data
 from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, Vector, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import suslov_momenta as formulas
 
 NOTE = "all four values after three displacements, two bodies"
@@ -13,10 +14,10 @@ NOTE = "all four values after three displacements, two bodies"
     "sys",
     "equation",
     "Section 6, equation (sys) and step 3 of the map",
-    r"The next displacement solves (sys), whose right sides are those of (full) without the factor 2; the last "
-    r"momentum follows, again without it.",
-    as_printed="misprint",
-    corrected=r"All three right sides have to be multiplied by 2.",
+    r"“$(M_{k+1})_1 = ((J_{22} + J_{33})\tilde q_1 - J_{12}\tilde q_2)\sqrt{1 - \tilde q_1^2 - \tilde q_2^2} - "
+    r"(J_{13}\tilde q_1 + J_{23}\tilde q_2)\tilde q_2$”, the other two components likewise",
+    verdict=Verdict.MISPRINT,
+    corrected="All three right sides have to be multiplied by 2.",
     errata=("S32",),
     tolerance=1e-45,
 )
@@ -39,9 +40,11 @@ def system() -> Measured:
     "last-momentum",
     "equation",
     "Section 6, step 3 of the map",
-    r"The last component of the next momentum is obtained from (sys).",
-    as_printed="misprint",
-    corrected=r"From (full): the system (sys) consists of the other two components.",
+    r"The formula for $(\bar M_{k+1})_3$ “is obtained from (sys) by substitutions $k \to k+1$ and the $q \to \tilde "
+    r"q$”",
+    verdict=Verdict.MISPRINT,
+    corrected="From (full): the system (sys) consists of the other two components.",
+    errata=("S53",),
     tolerance=1e-45,
 )
 def last_momentum() -> Measured:

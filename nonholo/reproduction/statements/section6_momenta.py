@@ -7,6 +7,7 @@ from nonholo.reproduction import _suslov_twin as data
 from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Vector, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import suslov_momenta as formulas
 
 NOTE = "8 bodies, balanced, tilted, with J1 = J2 among them; 12 displacements, half-turns among them"
@@ -38,13 +39,12 @@ def diagonal_momentum() -> Measured:
 
 
 @finding(
-    "S44",
+    "diagonal-tensor",
     "equation",
     "Section 6, momentum locus",
-    r"The diagonal tensor is $J = \mathrm{diag}(J_1, J_2, J_3)^T$.",
-    as_printed="misprint",
-    corrected=r"$J = \mathrm{diag}(J_1, J_2, J_3)$: the transposed matrix is the same, the sign is superfluous.",
-    errata=("S44",),
+    r"“the tensor $J$ is diagonal, $J = \mathrm{diag}(J_1, J_2, J_3)^T$”",
+    verdict=Verdict.REMARK,
+    corrected="The transposed matrix is the same.",
     tolerance=1e-45,
 )
 def superfluous_transposition() -> Measured:
@@ -57,11 +57,11 @@ def superfluous_transposition() -> Measured:
     "Steiner",
     "equation",
     "Section 6, equation (Steiner)",
-    r"Where $J$ is diagonal the momenta lie on Steiner's Roman surface with the printed quartic equation.",
-    as_printed="misprint",
-    corrected=r"For $J_1 \neq J_2$. For $J_1 = J_2$ the locus is the flat disc $M_3 = 0$, "
-    r"$M_1^2/(J_2 + J_3)^2 + M_2^2/(J_1 + J_3)^2 \leq 1$.",
-    errata=("S29",),
+    r"“$\mathcal{U}$ coincides with the Steiner Roman surface in $\mathbb{R}^3$ given by the quartic equation” "
+    r"(Steiner)",
+    verdict=Verdict.REMARK,
+    corrected=r"The equation divides by $J_1 - J_2$, so $J_1 \neq J_2$. For $J_1 = J_2$ the locus is the flat disc "
+    r"$M_3 = 0$, $M_1^2/(J_2 + J_3)^2 + M_2^2/(J_1 + J_3)^2 \leq 1$.",
     tolerance=1e-45,
 )
 def steiner() -> Measured:
@@ -188,12 +188,12 @@ def _distances(J: twin.Matrix, M: Vector) -> np.ndarray:
     "S30",
     "remark",
     "Section 6, after equation (full) and step 2 of the map",
-    r"If the quadratic form of the constrained inertia is positive definite, a pair $(M_1, M_2)$ has at most two real "
-    r"inverse images; the map is 2-real valued.",
-    as_printed=False,
-    corrected=r"Four occur: $J$ with diagonal $(\frac54, 1, \frac54)$, $J_{12} = 0$, $J_{13} = -\frac12$, "
-    r"$J_{23} = -\frac34$ and $y = (-\frac14, -\frac38)$, $(-\frac{16}{13}, -\frac{24}{13})$, and near "
-    r"$(-3.8131, -0.5088)$, $(7.6026, -8.9649)$; $q_1 = -q_0y_2$, $q_2 = q_0y_1$.",
+    r"“if the quadratic form $(J_{22} + J_{33})q_1^2 - 2J_{12}q_1q_2 + (J_{33} + J_{11})q_2^2$ is "
+    r"positive-definite, then any pair $(M_1, M_2)$ has at most two real inverse images on $\mathcal{U}$”",
+    verdict=Verdict.FALSE,
+    corrected=r"Four occur: $J$ with diagonal $(\frac54, 1, \frac54)$, $J_{12} = 0$, $J_{13} = -\frac12$, $J_{23} = "
+    r"-\frac34$ and $y = (-\frac14, -\frac38)$, $(-\frac{16}{13}, -\frac{24}{13})$, and near $(-3.8131, -0.5088)$, "
+    r"$(7.6026, -8.9649)$; $q_1 = -q_0y_2$, $q_2 = q_0y_1$.",
     errata=("S30",),
     tolerance=1e-45,
 )

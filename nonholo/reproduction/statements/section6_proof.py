@@ -4,6 +4,7 @@ from nonholo.reproduction import _suslov_twin as data
 from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, Vector, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import suslov_integrals as formulas
 from nonholo.reproduction.statements.section6_critical_values import critical_roots
 
@@ -14,10 +15,10 @@ NOTE = "8 bodies, balanced, tilted, with J1 = J2 among them; 12 displacements, h
     "M_1",
     "equation",
     "Section 6, equation (M_1)",
-    r"$\mathcal{M}_1 = (J_{13}q_1 + J_{23}q_2)[Q + Dq_0]$, $D = (J_{11} + J_{33})(J_{22} + J_{33}) - J_{12}^2$, for "
-    r"the momenta (full).",
-    as_printed="misprint",
-    corrected=r"It is true of the combination of $M/2$.",
+    r"“In view of relations (full) one has $\mathcal{M}_1 = (J_{13}q_1 + J_{23}q_2)[Q + ((J_{11} + J_{33})(J_{22} + "
+    r"J_{33}) - J_{12}^2)q_0]$”",
+    verdict=Verdict.MISPRINT,
+    corrected="It is true of the combination of $M/2$.",
     errata=("S45",),
     tolerance=1e-45,
 )
@@ -30,9 +31,9 @@ def first() -> Measured:
     "M_2",
     "equation",
     "Section 6, equation (M_2)",
-    r"$\mathcal{M}_2 = Qq_0 - (J_{13}q_1 + J_{23}q_2)^2$ for the momenta (full).",
-    as_printed="misprint",
-    corrected=r"It is true of the combination of $M/2$.",
+    r"“In view of relations (full) one has ... $\mathcal{M}_2 = Qq_0 - (J_{13}q_1 + J_{23}q_2)^2$”",
+    verdict=Verdict.MISPRINT,
+    corrected="It is true of the combination of $M/2$.",
     errata=("S45",),
     tolerance=1e-45,
 )
@@ -66,10 +67,10 @@ def _side(J: Matrix, q: Vector) -> Number:
     "S41",
     "equation",
     "Section 6, proof of theorem (discr_sus_dyn)",
-    r"A step adds $(J_{13}q_1 + J_{23}q_2)^2$ to $\mathcal{M}_2$.",
-    as_printed="misprint",
-    corrected=r"It adds $2(J_{13}q_1 + J_{23}q_2)^2$, for the combination of $M/2$; four times the square for that of "
-    r"$M$.",
+    r"“in view of (diff_suslov), $\mathcal{M}_{2,k+1} = \mathcal{M}_{2,k} + (J_{13}q_1 + J_{23}q_2)^2$”",
+    verdict=Verdict.MISPRINT,
+    corrected="It adds $2(J_{13}q_1 + J_{23}q_2)^2$, for the combination of $M/2$; four times the square for that "
+    "of $M$.",
     errata=("S41",),
     tolerance=1e-45,
 )
@@ -87,11 +88,11 @@ def growth_of_second() -> Measured:
     "S42",
     "equation",
     "Section 6, proof of theorem (discr_sus_dyn)",
-    r"With $s = J_{13}q_1 + J_{23}q_2$ a step adds $-sQ$ to $\mathcal{M}_1$, which becomes $sDq_0$; hence its sign is "
-    r"kept.",
-    as_printed="misprint",
-    corrected=r"It adds $-2sQ$ to the combination of $M/2$, which becomes $s(Dq_0 - Q)$; for the sign $Dq_0 > |Q|$ is "
-    r"needed.",
+    r"“$\mathcal{M}_{1,k+1} - \mathcal{M}_{1,k} = -(J_{13}q_1 + J_{23}q_2)Q$ and, therefore, $\mathcal{M}_{1,k+1} = "
+    r"(J_{13}q_1 + J_{23}q_2)((J_{11} + J_{33})(J_{22} + J_{33}) - J_{12}^2)q_0$”",
+    verdict=Verdict.MISPRINT,
+    corrected="It adds $-2sQ$ to the combination of $M/2$, which becomes $s(Dq_0 - Q)$; for the sign $Dq_0 > |Q|$ "
+    "is needed.",
     errata=("S42",),
     tolerance=1e-45,
 )
@@ -110,8 +111,9 @@ def growth_of_first() -> Measured:
     "S43",
     "remark",
     "Section 6, proof of theorem (discr_sus_dyn)",
-    r"In the domain $E \leq h^*$ the bracket $Q + Dq_0$ is positive, because $D > 0$ and $q_0 \geq 0$.",
-    as_printed=False,
+    r"“Using the properties $(J_{11} + J_{33})(J_{22} + J_{33}) - J_{12}^2 > 0$, $q_0 \ge 0$, one can show that in "
+    r"the domain $\mathcal{U}_0$ the expression in square brackets in (M_1) is positive.”",
+    verdict=Verdict.FALSE,
     corrected=r"It is positive inside if $\mu_1 < D^2/(c\cdot Bc)$, where $\mu_1 = 4h^*$ of the reduced energy "
     r"$m\cdot B^{-1}m$, $m = M/2$; for this $D > 2|c|^2$ is sufficient.",
     errata=("S43",),

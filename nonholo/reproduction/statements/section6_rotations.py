@@ -10,6 +10,7 @@ from nonholo.reproduction import _suslov_twin as data
 from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Vector, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import suslov_displacements as formulas
 
 NOTE = "12 displacements: random, tiny, none, half-turns, almost half-turns"
@@ -33,13 +34,13 @@ def _angle(q: Vector) -> Vector:
 
 
 @finding(
-    "S25",
+    "rotation-axis",
     "remark",
     "Section 6, rotations about an axis",
-    r"The displacement (sp1) is a rotation about $\rho = (z_2, -z_1, 0)$.",
-    as_printed="misprint",
-    corrected=r"By the positive angle $\theta$ it turns about $(-z_2, z_1, 0)$: the same line in the other direction.",
-    errata=("S25",),
+    r"“the rotation axis is directed along vector $\rho = (z_2, -z_1, 0)^T \in \mathbb{R}^3$”",
+    verdict=Verdict.REMARK,
+    corrected=r"This is the axis. By the positive angle $\theta$ the turn is about $(-z_2, z_1, 0)$, the same line "
+    r"in the other direction.",
     tolerance=1e-45,
 )
 def axis() -> Measured:
@@ -57,9 +58,10 @@ def axis() -> Measured:
     "Rod",
     "equation",
     "Section 6, equation (Rod)",
-    r"The matrix $W(q_0, .., q_3)$ turns about $(q_1, q_2, q_3)$ by the angle with $q_0 = \cos(\theta/2)$.",
-    as_printed="misprint",
-    corrected=r"It turns about $(q_1, q_2, -q_3)$; the usual matrix has $q_3$ with the other sign.",
+    r"“The operator $W$ describes a finite rotation in $\mathbb{R}^3$ about the vector $\mathbf{e} = (q_1, q_2, "
+    r"q_3)^T$ by the angle $\theta$ such that $q_0 = \cos\theta/2$.”",
+    verdict=Verdict.MISPRINT,
+    corrected="It turns about $(q_1, q_2, -q_3)$; the usual matrix has $q_3$ with the other sign.",
     errata=("S26",),
     tolerance=1e-45,
 )
@@ -77,9 +79,11 @@ def rodrigues() -> Measured:
     "S23",
     "remark",
     "Section 6, after equation (Rod)",
-    r"$\Omega_{12} = \Omega_{21}$ in (Rod) implies $q_3 = 0$.",
-    as_printed="misprint",
-    corrected=r"It implies $q_0q_3 = 0$, because $\Omega_{12} - \Omega_{21} = 4q_0q_3$; half-turns satisfy it too.",
+    r"“the conditions (sp) say that $\Omega_k$ is a finite rotation about an axis lying in the plane $(e_1, e_2)$”, "
+    r"for “Setting in (Rod) $(\Omega_k)_{12} = (\Omega_k)_{21}$ implies $q_3 = 0$”",
+    verdict=Verdict.EXCEPTIONS,
+    corrected=r"Except on half-turns: it implies $q_0q_3 = 0$, because $\Omega_{12} - \Omega_{21} = 4q_0q_3$. The "
+    r"half-turn about $e_3$ satisfies all of (sp).",
     errata=("S23",),
     tolerance=1e-45,
 )
@@ -121,9 +125,9 @@ def admissible() -> Measured:
     "S27",
     "equation",
     "Section 6, after equation (PE)",
-    r"The position after $k$ steps is $R_k = \Omega_{k-1}\cdots\Omega_0$; in general it is not a rotation about an "
-    r"axis in the plane of $e_1$, $e_2$.",
-    as_printed="misprint",
+    r"“the $k$-th position of the body $R_k = \Omega_{k-1}\cdots\Omega_0$ is not a rotation in the plane $(e_1, "
+    r"e_2)$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"$R_k = R_0\,\Omega_0\cdots\Omega_{k-1}$.",
     errata=("S27",),
     tolerance=1e-45,

@@ -7,6 +7,7 @@ from nonholo.reproduction import _suslov_twin as data
 from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, Vector, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import suslov_integrals as formulas
 from nonholo.reproduction.formulas import suslov_momenta
 
@@ -43,9 +44,9 @@ def mirror() -> Measured:
     "S38",
     "equation",
     "Section 6, stationary solutions",
-    r"There the multiplier is chosen so that $(M_{k+1})_3 = (M_{k+1})_3$.",
-    as_printed="misprint",
-    corrected=r"So that $(M_{k+1})_3 = (M_k)_3$; then $M_{k+1} = M_k$ and the displacement is repeated.",
+    r"“Then it is natural to choose the multiplier $\lambda_k$ such that $(\bar M_{k+1})_3 = (\bar M_{k+1})_3$.”",
+    verdict=Verdict.MISPRINT,
+    corrected="So that $(M_{k+1})_3 = (M_k)_3$; then $M_{k+1} = M_k$ and the displacement is repeated.",
     errata=("S38",),
     tolerance=1e-45,
 )
@@ -103,9 +104,10 @@ def balanced() -> Measured:
     "discr_sus_dyn",
     "theorem",
     "Section 6, theorem (discr_sus_dyn)",
-    r"From the inner part of $\mathcal{S}$ an orbit stays on its branch and in one of the half-planes $\Delta_\pm$; it "
-    r"comes from the equilibria in $\Theta_-$ and goes to the equilibria in $\Theta_-$.",
-    as_printed="misprint",
+    r"“tends to the unstable equilibria semi-line $\mathbb{P}_u = \mathbb{P}\cap\Theta_-$ and the stable equilibria "
+    r"semi-line $\mathbb{P}_s = \mathbb{P}\cap\Theta_-$ respectively. It lies entirely in one of the semi-planes "
+    r"$\Delta_\pm$.”",
+    verdict=Verdict.MISPRINT,
     corrected=r"It goes to the equilibria in $\Theta_+$. For $D > 2|c|^2$; that the inner value is unique is observed.",
     errata=("S40",),
     tolerance=1e-45,

@@ -7,6 +7,7 @@ from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._sleigh_twin import Body, real_tangents
 from nonholo.reproduction._twin import Number, ctx, worst
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import sleigh_continuous as continuous
 from nonholo.reproduction.formulas import sleigh_discrete as formulas
 
@@ -83,12 +84,11 @@ def bi_asymptotic() -> Measured:
 
 
 @finding(
-    "C34",
+    "single-valued",
     "theorem",
     "Section 7, the theorem for b = 0",
-    r"For $E < m^2a^2(J + ma^2)$ the map is single-valued. (This is not sharp: with $M = ma^2$, $I = J + M$ it is so "
-    r"below $\frac{I}{a^2}\min\{4M^2, (\frac J4 - 2M)^2 + \frac{27MJ^2}{16I}\}$, 3.79 to 4 times as much.)",
-    errata=("C34",),
+    r"For $E < m^2a^2(J + ma^2)$ the map is single-valued. (This is not sharp: with $M = ma^2$, $I = J + M$ it is "
+    r"so below $\frac{I}{a^2}\min\{4M^2, (\frac J4 - 2M)^2 + \frac{27MJ^2}{16I}\}$, 3.79 to 4 times as much.)",
     tolerance=1e-45,
 )
 def single_valued() -> Measured:
@@ -121,9 +121,9 @@ def _level(body: Body, turning: Number, p_hat: Number) -> Number:
     "C35",
     "theorem",
     "Section 7, proof of the theorem for b = 0",
-    r"For $0 < p_1 < ma$, $E < m^2a^2(J + ma^2)$ one has $2amV_2 > p_\theta$ if $p_\theta > 0$, and the opposite if "
-    r"$p_\theta < 0$; the other points are inside the ellipse of $V_1 = 0$.",
-    as_printed=False,
+    r"“one shows that $2amV_{2,k} > p_{\theta,k}$ for $p_{\theta,k} > 0$ and $2amV_{2,k} < p_{\theta,k}$ for "
+    r"$p_{\theta,k} < 0$”",
+    verdict=Verdict.FALSE,
     corrected=r"$2amV_2 < p_\theta$ for $p_\theta > 0$, so that $p_{\theta,k+1} > 0$ by the discrete equations. "
     r"Points with $p_1 < 0$ outside the ellipse are left over; the theorem holds there too.",
     errata=("C35",),
@@ -146,12 +146,11 @@ def inequality_of_the_proof() -> Measured:
 
 
 @finding(
-    "C36",
+    "half-plane",
     "theorem",
     "Section 7, proof of the theorem for b = 0",
-    r"In that region $p_{\theta,k}$ and $p_{\theta,k+1}$ do not have different signs. (It is so for $E < 4m^2a^2(J + "
-    r"ma^2)$ on every real branch; generally if $-2J < \hat p(1 + t^2) < 2J + 4ma^2$.)",
-    errata=("C36",),
+    r"In that region $p_{\theta,k}$ and $p_{\theta,k+1}$ do not have different signs. (It is so for $E < 4m^2a^2(J "
+    r"+ ma^2)$ on every real branch; generally if $-2J < \hat p(1 + t^2) < 2J + 4ma^2$.)",
     tolerance=1e-45,
 )
 def half_plane() -> Measured:

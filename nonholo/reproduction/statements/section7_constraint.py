@@ -7,6 +7,7 @@ from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._sleigh_twin import TURNS, admissible, pose, poses
 from nonholo.reproduction._twin import Matrix, Number, ctx, worst
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import sleigh_continuous as continuous
 from nonholo.reproduction.formulas import sleigh_discrete as formulas
 
@@ -49,8 +50,8 @@ def naive_choice() -> Measured:
     "C19",
     "equation",
     "Section 7, the paragraph on the discrete constraint",
-    r"The helical displacement is $\Omega_k = X_{k+1}X_k^T$.",
-    as_printed="misprint",
+    r"“discrete helical velocities $\Omega_k = X_{k+1}X_k^T$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"$\Omega_k = X_k^{-1}X_{k+1}$, which is left-invariant.",
     errata=("C19",),
     tolerance=1e-45,
@@ -79,8 +80,8 @@ def _two_cosets(n: int, seed: int) -> tuple[Matrix, list[Matrix]]:
     "C20",
     "remark",
     "Section 7, before the proposition on the variety",
-    r"$\exp\mathfrak{d}$ must be a covering of $SE(n)/SE(n-1)$.",
-    as_printed=False,
+    r"“$\exp\mathfrak{d}$ must be a covering of the homogeneous space $SE(n)/SE(n-1)$”",
+    verdict=Verdict.FALSE,
     corrected=r"The quotient covers $\exp\mathfrak{d}$ twice: with $\sigma$ the involution that reverses "
     r"$\mathfrak{d}$, $g \to g\,\sigma(g)^{-1}$ has the same value at the cosets $(q, \nu)$ and $(-q, -\nu)$, where "
     r"$q = Re_1$, $\nu = (x, q)$.",
@@ -104,12 +105,12 @@ def coverings() -> Measured:
     "circ.motion",
     "proposition",
     "Section 7, proposition (circ.motion)",
-    r"$\mathcal{S} = \exp\mathfrak{d}$ is a Moebius band, the lines $\nu(z_1, z_2)$ over the projective line, and is "
-    r"defined by any of (constr.omegas), (se2.const), (se.const).",
-    as_printed=False,
-    corrected=r"It is a Moebius band, $(V_1, V_2) = \nu(\cos\frac{\Delta\theta}{2}, \sin\frac{\Delta\theta}{2})$ with "
-    r"$(\Delta\theta, \nu) \sim (\Delta\theta + 2\pi, -\nu)$, defined by (se2.const). The other two also admit "
-    r"$\Delta\theta = 0$ with any translation.",
+    r"“The variety $\mathcal{S} = \exp\mathfrak{d} \subset SE(2)$ is diffeomorphic to the the canonical line bundle "
+    r"... and it is defined by the condition” (constr.omegas)",
+    verdict=Verdict.EXCEPTIONS,
+    corrected=r"Except at $\Delta\theta = 0$, where (constr.omegas) and (se.const) admit every translation. It is a "
+    r"Moebius band, $(V_1, V_2) = \nu(\cos\frac{\Delta\theta}{2}, \sin\frac{\Delta\theta}{2})$ with $(\Delta\theta, "
+    r"\nu) \sim (\Delta\theta + 2\pi, -\nu)$, defined by (se2.const).",
     errata=("C21",),
     tolerance=1e-45,
 )
@@ -135,7 +136,6 @@ def circ_motion() -> Measured:
     "equation",
     "Section 7, equation (constr.omegas)",
     r"On $\mathcal{S}$: $\frac{\Omega_{23}}{\Omega_{13}} = \frac{1 - \Omega_{11}}{\Omega_{21}}$.",
-    errata=("C21",),
     tolerance=1e-45,
 )
 def constr_omegas() -> Measured:
@@ -167,10 +167,10 @@ def se2_const() -> Measured:
     "se.const",
     "equation",
     "Section 7, equation (se.const)",
-    r"(se2.const) is equivalent to $V_1(1 - \cos\Delta\theta) - V_2\sin\Delta\theta = 0$.",
-    as_printed=False,
-    corrected=r"It implies this, which is $2\sin\frac{\Delta\theta}{2}$ times (se2.const) up to sign, hence true at "
-    r"$\Delta\theta = 0$ for every translation.",
+    r"“or, equivalently, $V_{1,k}[1 - \cos(\Delta\theta_k)] - V_{2,k}\sin(\Delta\theta_k) = 0$”",
+    verdict=Verdict.EXCEPTIONS,
+    corrected=r"Except at $\Delta\theta = 0$: it is $2\sin\frac{\Delta\theta}{2}$ times (se2.const) up to sign, "
+    r"hence true there for every translation.",
     errata=("C21",),
     tolerance=1e-45,
 )

@@ -9,6 +9,7 @@ from nonholo.reproduction import _twin as twin
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._sleigh_twin import BODIES, PLANE, TURNS, Body, admissible, lagrangian, points, pose, poses
 from nonholo.reproduction._twin import Matrix, Number, ctx, worst
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import sleigh_continuous as continuous
 from nonholo.reproduction.formulas import sleigh_discrete as formulas
 
@@ -32,10 +33,8 @@ def _gaps(left: Iterable, right: Iterable) -> list:
     "Om_k",
     "equation",
     "Section 7, equation (Om_k)",
-    r"$\Omega_k = X_k^{-1}X_{k+1}$ is the rotation by $\Delta\theta_k = \theta_{k+1} - \cos\theta_k$ and the "
-    r"translation $(\cos\theta_k\Delta x_k + \sin\theta_k\Delta y_k,\ -\sin\theta_k\Delta x_k + \cos\theta_k\Delta "
-    r"y_k)$.",
-    as_printed="misprint",
+    r"“$\Delta\theta_k = \theta_{k+1} - \cos\theta_k$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"$\Delta\theta_k = \theta_{k+1} - \theta_k$.",
     errata=("C15",),
     tolerance=1e-45,
@@ -54,10 +53,10 @@ def om_k() -> Measured:
     "sl",
     "equation",
     "Section 7, equation (sl)",
-    r"Up to a constant $L_d = \frac12\mathrm{tr}(\Omega\mathbb{J}\Omega^T) - \frac12\mathrm{tr}(\mathbb{J}\Omega^T + "
-    r"\Omega\mathbb{I})$, where $\mathbb{J}$ has the entry $J2 + mb^2$ and $J$ is the moment of inertia about the "
-    r"origin $A$.",
-    as_printed="misprint",
+    r"“$L_d(X_{k+1}, X_k) = \frac12\mathrm{tr}(\Omega_k\mathbb{J}\Omega_k^T) - "
+    r"\frac12\mathrm{tr}(\mathbb{J}\Omega_k^T + \Omega_k\mathbb{I})$” with the entry “$J2 + mb^2$” of $\mathbb{J}$, "
+    r"where “$J$ is its scalar moment of inertia with respect to the origin $A$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"The last product is $\Omega\mathbb{J}$, the entry $J/2 + mb^2$, and $J$ is about the centre of mass.",
     errata=("C16",),
     tolerance=1e-45,
@@ -102,10 +101,9 @@ def discr_L2() -> Measured:
     "cont.lim",
     "equation",
     "Section 7, equation (cont.lim) and the words after it",
-    r"With $\Delta\theta = \varepsilon\omega$, $\Delta x = \varepsilon\dot x$, $\Delta y = \varepsilon\dot y$ and "
-    r"$\Delta\cos\theta = -\varepsilon\,\omega\sin\theta$, $\Delta\sin\theta = \varepsilon\,\omega\cos\theta$ to "
-    r"first order, $L_d/\varepsilon$ tends to the continuous Lagrangian.",
-    as_printed="misprint",
+    r"“expression (discr.L2) divided by $\varepsilon$ transforms to the continuous Lagrangian (Caplag) plus higher "
+    r"order terms in $\varepsilon$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"$L_d/\varepsilon^2$ tends to it.",
     errata=("C17",),
     tolerance=1e-40,
@@ -181,9 +179,8 @@ def discr_vel() -> Measured:
     "discr.ad.sl",
     "equation",
     "Section 7, equation (discr.ad.sl)",
-    r"$\mathrm{Ad}^*_{\Omega}P = (p_\omega - p_2V_1 + p_1V_2,\ \cos\Delta\theta\,p_1 + \sin\Delta\theta\,p_2,\ "
-    r"-\sin\Delta\theta\,p_1 + \cos\Delta\theta\,p_2)$.",
-    as_printed="misprint",
+    r"“$p_{\omega,k} - p_{2,k}V_{1,k} + p_{1,k}V_{2,k}$”, the first row of $\mathrm{Ad}^*_{\Omega_k}P_k$",
+    verdict=Verdict.MISPRINT,
     corrected=r"The first letter is $p_\theta$; the formula is right.",
     errata=("C18",),
     tolerance=1e-45,

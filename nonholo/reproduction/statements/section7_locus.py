@@ -18,6 +18,7 @@ from nonholo.reproduction._sleigh_twin import (
     tangents,
 )
 from nonholo.reproduction._twin import Matrix, Number, ctx, worst
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import sleigh_discrete as formulas
 
 CENTRED = [body._replace(b=ctx.zero) for body in BODIES]
@@ -57,10 +58,9 @@ def quartic() -> Measured:
     "det.delta.phi",
     "equation",
     "Section 7, equation (det.delta.phi)",
-    r"For $b = 0$, $z = \sin\Delta\theta$ and $\hat p = ap_1 + 2ma^2$: $J^2z^3 - 2Jp_\theta z^2 + (\hat p^2 + 2J\hat "
-    r"p + p_\theta^2)z - 2p_\theta\hat p = 0$. (It holds for every $b$ with $p_\theta + bp_1$ in the place of "
-    r"$p_\theta$.)",
-    errata=("C23",),
+    r"For $b = 0$, $z = \sin\Delta\theta$ and $\hat p = ap_1 + 2ma^2$: $J^2z^3 - 2Jp_\theta z^2 + (\hat p^2 + "
+    r"2J\hat p + p_\theta^2)z - 2p_\theta\hat p = 0$. (It holds for every $b$ with $p_\theta + bp_1$ in the place "
+    r"of $p_\theta$.)",
     tolerance=1e-45,
 )
 def det_delta_phi() -> Measured:
@@ -90,16 +90,17 @@ def _polynomial_gaps(body: Body, p_1: Number, turning: Number) -> list:
 
 
 @finding(
-    "C22",
+    "three-preimages",
     "remark",
     "Section 7, before the discrete momentum locus",
-    r"The momenta of admissible displacements form a quartic surface, and a generic $(p_\theta, p_1)$ has four points "
-    r"on it and four displacements.",
-    as_printed=False,
-    corrected=r"A cubic surface, $(\pi - ap_2)(\hat p^2 + a^2p_2^2) = 2J\hat p\,ap_2$ with $\pi = p_\theta + bp_1$, "
-    r"and three: the roots of $\hat pt^3 - \pi t^2 + (2J + \hat p)t - \pi$, $t = \tan\frac{\Delta\theta}{2}$. The "
-    r"fourth is the plane $\pi = ap_2$ of $\Delta\theta = 0$.",
-    errata=("C22",),
+    r"“under the constraint (se.const) the image of the discrete Legendre transformation (disc.mom.sl) is an "
+    r"algebraic quartic subvariety ... and to a generic pair $(p_\theta, p_1)$ there correspond four distinct "
+    r"points”",
+    verdict=Verdict.REMARK,
+    corrected=r"So it is: (se.const) also admits the plane $\pi = ap_2$ of $\Delta\theta = 0$ (row C21), $\pi = "
+    r"p_\theta + bp_1$. For $\exp\mathfrak{d}$ alone it is the cubic surface $(\pi - ap_2)(\hat p^2 + a^2p_2^2) = "
+    r"2J\hat p\,ap_2$ with three points: the roots of $\hat pt^3 - \pi t^2 + (2J + \hat p)t - \pi$, $t = "
+    r"\tan\frac{\Delta\theta}{2}$.",
     tolerance=1e-43,
 )
 def three_preimages() -> Measured:
@@ -119,12 +120,11 @@ def three_preimages() -> Measured:
     "surface",
     "lemma",
     "Section 7, lemma (surface), part 1",
-    r"The surface of the cubic in $(p_\theta, \hat p, z)$ lies between the planes $z = \pm1$ and touches them along "
-    r"$\pm p_\theta - \hat p = J$; both axes lie on it.",
-    as_printed=False,
-    corrected=r"The isolated line $\hat p = 0$, $z = p_\theta/J$ belongs to it too, beyond the planes for "
-    r"$\lvert p_\theta\rvert > J$. It belongs to complex angles.",
-    errata=("C24",),
+    r"“the surface $\tilde{\mathcal{U}}$ is given by cubic equation ... $\tilde{\mathcal{U}}$ lies entirely between "
+    r"the planes $z = \pm1$ and is tangent to them along the lines $\ell_\pm = \{\pm p_\theta - \hat p_1 = J\}$”",
+    verdict=Verdict.REMARK,
+    corrected=r"So does the image. The cubic also vanishes on the isolated line $\hat p = 0$, $z = p_\theta/J$, "
+    r"which goes beyond the planes for $\lvert p_\theta\rvert > J$ and belongs to complex angles there.",
     tolerance=1e-43,
 )
 def surface_between_planes() -> Measured:
@@ -170,9 +170,9 @@ ALLOWED = {"upper": ("+", "+--"), "lower": ("+", "+++"), "side": ("-", "++-", "-
     "surface",
     "lemma",
     "Section 7, lemma (surface), part 2",
-    r"Over the upper and the lower quadrant of the lines $\pm p_\theta - \hat p = J$ the cosine of $\Delta\theta$ is "
-    r"positive, over the others negative.",
-    as_printed=False,
+    r"“For the parts of $\tilde{\mathcal{U}}$ over the quadrants $L_{++}$ ... and $L_{--}$ ... one has "
+    r"$\cos(\Delta\theta) > 0$ ... and in the rest of quadrants one has $\cos(\Delta\theta) < 0$”",
+    verdict=Verdict.FALSE,
     corrected=r"So it is outside the deltoid. Inside, where there are three angles, the signs are $+, -, -$ in the "
     r"upper quadrant, $+, +, +$ in the lower, $+, +, -$ or $-, -, -$ at the sides (observed); and $\Delta\theta = "
     r"\pi$ occurs all along $\hat p = 0$.",
@@ -199,8 +199,9 @@ def surface_signs() -> Measured:
     "C26",
     "lemma",
     "Section 7, proof of lemma (surface), part 2",
-    r"The proof speaks of $p_x$ and of the plane $(p_\theta, Y)$.",
-    as_printed="misprint",
+    r"“for large $|p_x|$” and “the sign of $\cos(\Delta\theta)$ can change only under passage from one quadrant on "
+    r"the plane $(p_\theta, Y)$ to another one”",
+    verdict=Verdict.MISPRINT,
     corrected=r"They are $p_1$ and $(p_\theta, \hat p)$. A sign changes on a line of tangency for the branch that "
     r"touches the plane there, not for all branches over the point.",
     errata=("C26",),
@@ -224,7 +225,6 @@ def proof_of_signs() -> Measured:
     r"curve is symmetric, touches the $p_\theta$ axis at the origin and has the cusps $(0, -2J)$, $(\pm c_1, c_2)$. "
     r"(It is Steiner's deltoid, $c_1 = \frac{3\sqrt3}{4}J$, $c_2 = \frac14J$; the segment is $\hat p = 0$, $\lvert "
     r"p_\theta\rvert < J$, where two angles have the same sine.)",
-    errata=("C27",),
     tolerance=1e-43,
 )
 def surface_deltoid() -> Measured:
@@ -269,11 +269,11 @@ def _library_counts(J: Number) -> float:
     "ell",
     "lemma",
     "Section 7, lemma (surface), part 4, equation (ell)",
-    r"$V_1 = 0$ projects to the ellipse $p_\theta = (J + ma^2)\sin\Delta\theta$, $\hat p = ma^2(1 + "
-    r"\cos\Delta\theta)$; inside $V_1 < 0$, outside $V_1 > 0$.",
-    as_printed=False,
-    corrected=r"$V_1 = 0$ there and, at $\Delta\theta = \pi$, on the whole axis $\hat p = 0$. The signs are those of "
-    r"the principal branch near the origin (observed).",
+    r"“The curve $\{V_1=0\} \subset \tilde{\mathcal{U}}$ is projected onto the ellipse ... Inside the ellipse the "
+    r"values of $V_1$ are negative and outside are positive.”",
+    verdict=Verdict.FALSE,
+    corrected=r"$V_1 = 0$ there and, at $\Delta\theta = \pi$, on the whole axis $\hat p = 0$. The signs are those "
+    r"of the principal branch near the origin (observed).",
     errata=("C28",),
     tolerance=1e-45,
 )

@@ -25,6 +25,7 @@ from nonholo.reproduction._sleigh_twin import (
     velocity_of,
 )
 from nonholo.reproduction._twin import Matrix, Number, ctx, worst
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import sleigh_continuous as continuous
 from nonholo.reproduction.formulas import sleigh_discrete as formulas
 
@@ -91,8 +92,9 @@ def ep_sleigh() -> Measured:
     "C29",
     "equation",
     "Section 7, the display before equation (discrete.constr.se2.eqn)",
-    r"$p_{1,k+1} = mV_x - bm\sin\Delta\theta + am[\Delta x\cos\theta_{k+1} + \Delta y\sin\theta_{k+1}]$.",
-    as_printed="misprint",
+    r"“$p_{1,k+1} = mV_{x,k} - bm\sin(\Delta\theta_k) + am[\Delta x_k\cos\theta_{k+1} + \Delta "
+    r"y_k\sin\theta_{k+1}]$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"The bracket, a length, is $(1 - \cos\Delta\theta)$. The formula for $p_{\theta,k+1}$ is right.",
     errata=("C29",),
     tolerance=1e-45,
@@ -136,8 +138,9 @@ def discrete_constr() -> Measured:
     "C30",
     "equation",
     "Section 7, the three steps of the map",
-    r"Step 2 finds $p_{\theta,k+1}$, $p_{2,k+1}$; step 3 and the text have $V_x$ and $p_x$.",
-    as_printed="misprint",
+    r"“One finds $p_{\theta,k+1}, p_{2,k+1}$ from (discrete.constr.se2.eqn).” Step 3 has “$V_{x,k+1}$”, the text "
+    r"“$p_{x,k}$”",
+    verdict=Verdict.MISPRINT,
     corrected=r"It finds $p_{\theta,k+1}$, $p_{1,k+1}$; the others are $V_1$ and $p_1$. So the three steps give the "
     r"map.",
     errata=("C30",),
@@ -155,16 +158,16 @@ def three_steps() -> Measured:
 
 
 @finding(
-    "C31",
+    "without-quotient",
     "equation",
     "Section 7, step 3 of the map",
-    r"$\Delta\theta_{k+1}$ and $V_{1,k+1}$ solve equations with the quotient $\frac{1 - "
-    r"\cos\Delta\theta}{\sin\Delta\theta}$.",
-    as_printed=False,
-    corrected=r"The quotient has no value at $\Delta\theta = 0$ and hides $\Delta\theta = \pi$. The cubic of $t = "
-    r"\tan\frac{\Delta\theta}{2}$ has the first, that of $U = e^{i\Delta\theta}$, $U^3 - \kappa U^2 + \bar\kappa U - "
-    r"1 = 0$ with $\kappa = (2i\pi - 2\hat p - J)/J$ and $\pi = p_\theta + bp_1$, both.",
-    errata=("C31",),
+    r"“by choosing a solution of the system of equations” with the term $\frac{1 - "
+    r"\cos(\Delta\theta_{k+1})}{\sin(\Delta\theta_{k+1})}$",
+    verdict=Verdict.REMARK,
+    corrected=r"At $\Delta\theta = 0$ the quotient means its limit; at $\Delta\theta = \pi$, where $\hat p = 0$, it "
+    r"has none. The cubic of $t = \tan\frac{\Delta\theta}{2}$ has the first, that of $U = e^{i\Delta\theta}$, $U^3 "
+    r"- \kappa U^2 + \bar\kappa U - 1 = 0$ with $\kappa = (2i\pi - 2\hat p - J)/J$ and $\pi = p_\theta + bp_1$, "
+    r"both.",
     tolerance=1e-43,
 )
 def without_quotient() -> Measured:
@@ -283,14 +286,13 @@ def stationary_line() -> Measured:
 
 
 @finding(
-    "C33",
+    "multiplier-of-branch",
     "remark",
     "Section 7, stationary solutions",
-    r"It is natural to choose $\lambda_k$ so that $p_{2,k+1} = p_{2,k}$ as well.",
-    as_printed=False,
-    corrected=r"Nothing is left to choose: the branch fixes $\lambda_{k+1} = p_{2,k+1} + p_{2,k} - "
-    r"2am\sin\Delta\theta_k$. A shift may be followed by a turn where $-2J < \hat p < 0$.",
-    errata=("C33",),
+    r"“Hence, it is natural to choose such $\lambda_k$ in (EP_sleigh) that $p_{2,k+1} = p_{2,k}$ as well.”",
+    verdict=Verdict.REMARK,
+    corrected=r"This is the choice of a branch: each has its $\lambda_{k+1} = p_{2,k+1} + p_{2,k} - "
+    r"2am\sin\Delta\theta_k$. On another one a shift may be followed by a turn where $-2J < \hat p < 0$.",
     tolerance=1e-43,
 )
 def multiplier_of_branch() -> Measured:
@@ -318,11 +320,12 @@ BALANCED = [body._replace(a=ctx.zero) for body in BODIES[:5]]
     "C32",
     "remark",
     "Section 7, the case a = 0",
-    r"For $a = 0$ all solutions are stationary: $\Delta\theta_{k+1} = \Delta\theta_k$, $V_{1,k+1} = V_{1,k}$.",
-    as_printed=False,
-    corrected=r"The momenta along the constraint are constant. $\sin\Delta\theta = (p_\theta + bp_1)/J$ has two "
-    r"solutions; the step repeats on one branch and may go to the supplementary angle. None is real if $\lvert "
-    r"p_\theta + bp_1\rvert > J$.",
+    r"“for $a=0$ all the solutions are stationary.” “this implies $\Delta\theta_{k+1} = \Delta\theta_k$, $V_{1,k+1} "
+    r"= V_{1,k}$”",
+    verdict=Verdict.EXCEPTIONS,
+    corrected=r"Except on another branch. The momenta along the constraint are constant, but $\sin\Delta\theta = "
+    r"(p_\theta + bp_1)/J$ has two solutions; the step repeats on one branch and may go to the supplementary angle. "
+    r"None is real if $\lvert p_\theta + bp_1\rvert > J$.",
     errata=("C32",),
     tolerance=1e-45,
 )

@@ -19,6 +19,7 @@ from nonholo.reproduction._bodies import (
 )
 from nonholo.reproduction._finding import Measured, finding
 from nonholo.reproduction._twin import Matrix, Number, ctx
+from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import correspondences, energy_theorem, general, suslov_continuous
 
 
@@ -100,10 +101,12 @@ def _count(images: Images, generations: int) -> int:
     "C37",
     "remark",
     "Section 8, first paragraph",
-    r"The momentum of the discrete sleigh is given explicitly by theta functions and exponents.",
-    as_printed=False,
-    corrected=r"Contradicted by its complex images: $3^N$ distinct ones after $N$ steps. Branches that are "
-    r"translations of a torus, as theta functions make them, commute, and have at most $\frac12(N+1)(N+2)$ images.",
+    "“This enables one to obtain explicit solutions for the momentum dynamics of both discrete systems in terms of "
+    "theta-functions and exponents.”",
+    verdict=Verdict.CONTRADICTED,
+    corrected=r"The complex images of the sleigh speak against it: $3^N$ distinct ones after $N$ steps, as far as "
+    r"counted. Branches that are translations of a torus, as theta functions make them, commute, and have at most "
+    r"$\frac12(N+1)(N+2)$ images.",
     errata=("C37",),
     tolerance=1e-45,
 )
@@ -117,15 +120,16 @@ def sleigh_solvability() -> Measured:
 
 
 @finding(
-    "S46",
+    "top-solvability",
     "remark",
     "Section 8, first paragraph",
-    r"The momentum of the discrete top is given explicitly by theta functions and exponents. Whether this is due to "
-    r"the low dimension is not clear.",
-    as_printed=False,
-    corrected=r"Contradicted in the same way: $4^N$ distinct images after $N$ steps. What holds, for every $n$, is "
-    r"the energy integral, and a Lyapunov function: a step changes $(c, r)$ by $-4(|z|^2|c|^2 - (c, z)^2) \le 0$.",
-    errata=("S46",),
+    "“This enables one to obtain explicit solutions for the momentum dynamics of both discrete systems in terms of "
+    "theta-functions and exponents.”",
+    verdict=Verdict.CONTRADICTED,
+    corrected=r"So do those of the top: $4^N$ distinct images after $N$ steps, as far as counted. What holds, for "
+    r"every $n$, is the energy integral, and a Lyapunov function: a step changes $(c, r)$ by $-4(|z|^2|c|^2 - (c, "
+    r"z)^2) \le 0$.",
+    errata=("C37",),
     tolerance=1e-45,
 )
 def top_solvability() -> Measured:
@@ -170,16 +174,16 @@ def _random_body(group: AbstractMatrixGroup, k: int) -> Body:
 
 
 @finding(
-    "C38",
+    "energy-of-subspaces",
     "remark",
     "Section 8, second paragraph",
-    r"It is not clear whether the properties are due to the low dimension, and whether such discretisations exist for "
-    r"the multidimensional problems.",
-    as_printed=False,
-    corrected=r"Energy is kept for every $n$ and every left-invariant $\mathfrak{d}$ with displacements such that "
-    r"$\frac12(W - W^{-1}) \in \mathfrak{d}$. With $\exp\mathfrak{d}$, the choice of the paper, it is "
-    r"not kept in general.",
-    errata=("C38",),
+    "“It is not currently clear if the complete solvability is due to the (low) dimension of the systems and if it "
+    "is possible to construct completely solvable discretizations of the multidimensional Suslov and Chaplygin "
+    "problems.”",
+    verdict=Verdict.REMARK,
+    corrected=r"Solvability is not decided here. Energy does not depend on the dimension: it is kept for every $n$ "
+    r"and every left-invariant $\mathfrak{d}$ with displacements such that $\frac12(W - W^{-1}) \in \mathfrak{d}$. "
+    r"With $\exp\mathfrak{d}$, the choice of the paper, it is not kept for general $\mathfrak{d}$.",
     tolerance=1e-45,
 )
 def several_dimensions() -> Measured:

@@ -1,0 +1,41 @@
+"""What is said of a statement of the paper: one word, and what the word means."""
+
+import enum
+
+
+class Verdict(enum.StrEnum):
+    """Whether a statement of the paper is right, and if not, in which way.
+
+    Example:
+        >>> Verdict.MISPRINT.is_erratum, Verdict.REMARK.is_erratum, str(Verdict.EXCEPTIONS)
+        (True, False, 'with exceptions')
+    """
+
+    AS_PRINTED = "right as printed"
+    MISPRINT = "misprint"
+    EXCEPTIONS = "with exceptions"
+    FALSE = "false"
+    CONTRADICTED = "contradicted by computation"
+    SETTLED = "settled here"
+    REMARK = "remark"
+
+    @property
+    def meaning(self) -> str:
+        """Return what the word means."""
+        return _MEANINGS[self]
+
+    @property
+    def is_erratum(self) -> bool:
+        """Tell whether the statement needs a correction; its finding then shows that the printed one fails."""
+        return self in (Verdict.MISPRINT, Verdict.EXCEPTIONS, Verdict.FALSE, Verdict.CONTRADICTED)
+
+
+_MEANINGS = {
+    Verdict.AS_PRINTED: "the statement holds as it stands",
+    Verdict.MISPRINT: "a slip in a formula or a word; what was meant is right",
+    Verdict.EXCEPTIONS: "true, except on special bodies or sets that are named",
+    Verdict.FALSE: "there is a counterexample",
+    Verdict.CONTRADICTED: "numbers speak against it; this is evidence and no proof",
+    Verdict.SETTLED: "a question that the paper leaves open is answered",
+    Verdict.REMARK: "no error: something is added or made precise",
+}
