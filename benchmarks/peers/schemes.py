@@ -3,13 +3,13 @@ r"""Schemes that call a solver at each step, written from their published descri
 - `moser_veselov`: the discrete Lagrange-d'Alembert principle on group elements, [fedorov-zenkov-2004]: the map that the
   library computes in closed form. `scipy.optimize.root` finds each displacement.
 - `cayley_lagrange_dalembert`: the principle with $l_d = h\,l(\mathrm{cay}^{-1}(W)/h)$ for the top, in the form of
-  N. Bou-Rabee, J. E. Marsden, Found. Comput. Math. 9 (2009); for such maps of the Suslov problem see
-  arXiv:1506.01289 (F. Jimenez, J. Scheurle) and arXiv:1605.02666 (L. C. Garcia-Naranjo, F. Jimenez).
-- `midpoint_coordinates`: the principle with the midpoint rule in $(\theta, x, y)$, J. Cortes, S. Martinez,
-  Nonlinearity 14 (2001), for the sleigh.
-- `midpoint_retraction`: a discretisation map on the constraint distribution, after V. Vivek, D. Martin de Diego,
-  R. Banavar, arXiv:2505.12103, and arXiv:2604.04962. Of the latter only abstract and introduction were at hand: the
-  choice of the symmetric Cayley map, $\eta = (\eta_k + \eta_{k+1})/2$, $g_{k+1} = g_k\,\mathrm{cay}(h\eta)$, is ours.
+  [bou-rabee-marsden-2009]; for such maps of the Suslov problem see [jimenez-scheurle-2018] and
+  [garcia-naranjo-jimenez-2016].
+- `midpoint_coordinates`: the principle with the midpoint rule in $(\theta, x, y)$, [cortes-martinez-2001],
+  for the sleigh.
+- `midpoint_retraction`: a discretisation map on the constraint distribution, of the kind of
+  [vivek-martin-banavar-2025]; the choice of the symmetric Cayley map, $\eta = (\eta_k + \eta_{k+1})/2$,
+  $g_{k+1} = g_k\,\mathrm{cay}(h\eta)$, is ours.
 
 Each function returns body velocities and poses at all steps.
 """

@@ -1,4 +1,4 @@
-r"""Why the discrete map is not the time-h map of a smooth flow: its linearising coordinates at both ends do not agree.
+r"""Against a smooth flow: the linearising coordinates of the discrete map at both ends, whose difference is computed.
 
 Tops with n = 3 and sleighs in the plane. Theory: docs/theory/invariant-measure.md.
 """

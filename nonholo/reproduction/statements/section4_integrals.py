@@ -146,6 +146,7 @@ _ALIGNED = (
     _SPECIAL,
     ((0.75, 0.0, 0.375), (0.0, 0.5, 0.0), (0.375, 0.0, 0.5)),
     ((0.5, 0.0, 0.4375), (0.0, 0.75, 0.0), (0.4375, 0.0, 0.5)),
+    ((1.5, 0.0, 0.5), (0.0, 0.7, 0.0), (0.5, 0.0, 0.8)),
     ((0.5, 0.0, 0.4375), (0.0, 0.5, 0.0), (0.4375, 0.0, 0.5)),
 )
 
@@ -171,7 +172,7 @@ def axes_in_space() -> Measured:
         found = _angle_in_space(nh.SuslovTop(J))
         defects.append(abs(found - float(angle)))
         coinciding += found < 1e-6
-    return Measured(max(defects), float(coinciding), "4 bodies; printed: a count of bodies whose axes coincide")
+    return Measured(max(defects), float(coinciding), "5 bodies; printed: a count of bodies whose axes coincide")
 
 
 def _angle_in_space(top: nh.SuslovTop) -> float:
@@ -179,7 +180,7 @@ def _angle_in_space(top: nh.SuslovTop) -> float:
     rows, field = top.constraint_subspace, nh.vector_field(top)
     start = np.concatenate([top.constrained_inertia @ (0.0, 1.0), np.eye(3).ravel()])
     ends = []
-    for span in (60.0, -60.0):
+    for span in (90.0, -90.0):
         state = solve_ivp(field, (0.0, span), start, method="DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
         ends.append(state[2:].reshape(3, 3) @ rows.T @ top.restricted_velocity(state[:2]))
     return float(np.arctan2(np.linalg.norm(np.cross(*ends)), np.dot(*ends)))
