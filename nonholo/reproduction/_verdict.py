@@ -34,7 +34,7 @@ _MEANINGS = {
     Verdict.AS_PRINTED: "the statement holds as it stands",
     Verdict.MISPRINT: "a slip in a formula or a word; what was meant is right",
     Verdict.EXCEPTIONS: "true, except on special bodies or sets that are named",
-    Verdict.FALSE: "there is a counterexample",
+    Verdict.FALSE: "a counterexample or the definition shows that it does not hold",
     Verdict.CONTRADICTED: "numbers speak against it; this is evidence and no proof",
     Verdict.SETTLED: "a question that the paper leaves open is answered",
     Verdict.REMARK: "no error: something is added or made precise",
