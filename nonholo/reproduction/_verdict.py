@@ -8,12 +8,12 @@ class Verdict(enum.StrEnum):
 
     Example:
         >>> Verdict.MISPRINT.is_erratum, Verdict.REMARK.is_erratum, str(Verdict.EXCEPTIONS)
-        (True, False, 'with exceptions')
+        (True, False, 'false with exceptions')
     """
 
     AS_PRINTED = "right as printed"
     MISPRINT = "misprint"
-    EXCEPTIONS = "with exceptions"
+    EXCEPTIONS = "false with exceptions"
     FALSE = "false"
     CONTRADICTED = "contradicted by computation"
     SETTLED = "settled here"
@@ -33,7 +33,7 @@ class Verdict(enum.StrEnum):
 _MEANINGS = {
     Verdict.AS_PRINTED: "the statement holds as it stands",
     Verdict.MISPRINT: "a slip in a formula or a word; what was meant is right",
-    Verdict.EXCEPTIONS: "true, except on special bodies or sets that are named",
+    Verdict.EXCEPTIONS: "false as it stands, but only for special bodies or sets, which are named",
     Verdict.FALSE: "a counterexample or the definition shows that it does not hold",
     Verdict.CONTRADICTED: "numbers speak against it; this is evidence and no proof",
     Verdict.SETTLED: "a question that the paper leaves open is answered",
