@@ -64,7 +64,7 @@ def invariants(orbit: Orbit) -> Invariants:
     return Invariants(
         states=len(orbit),
         steps=(len(orbit) - 1) * orbit.save_every if discrete else 0,
-        energy_drift=float(np.abs(energy - energy[0]).max() / (energy[0] or 1.0)),
+        energy_drift=float(np.abs(energy - energy[0]).max() / (abs(energy[0]) or 1.0)),
         constraint_residual=float(np.abs(orbit.motion.constraint_residual(sample)).max(initial=0.0)),
         group_residual=None if orbit.pose is None else _group_residual(sample),
         reversal_defect=_reversal_defect(sample),

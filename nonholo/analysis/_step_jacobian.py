@@ -60,12 +60,12 @@ def momentum_slope(discrete: Discretization, W: Float[np.ndarray, "... N N"]) ->
     r"""Return the derivative of hF by the definition, in directions of Cayley coordinates.
 
     From $W = (I - Y)^{-1}(I + Y)$ follows $dW = \tfrac12(W + I)\,dY\,(W + I)$, and
-    $h\langle P, x\rangle = \mathrm{tr}(\hat x W\mathbb{J}(W - I)^T)$.
+    $h\langle P, x\rangle = \mathrm{tr}(\hat x W\mathbb{J}(W - I)^*)$.
     """
-    system = discrete.system
+    system, star = discrete.system, discrete.system.group.form_adjoint
     rows, tensor = system.group.hat(system.constraint_subspace), np.asarray(system.homogeneous_mass_tensor)
     sum_, X = (W + system.group.identity)[..., None, :, :], W - system.group.identity
     dW = sum_ @ rows @ sum_ / 2
-    arm = dW @ tensor @ np.swapaxes(X, -1, -2)[..., None, :, :]
-    turned = (W @ tensor)[..., None, :, :] @ np.swapaxes(dW, -1, -2)
+    arm = dW @ tensor @ star(X)[..., None, :, :]
+    turned = (W @ tensor)[..., None, :, :] @ star(dW)
     return np.einsum("iab,...jba->...ij", rows, arm + turned)

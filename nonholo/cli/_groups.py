@@ -17,9 +17,10 @@ NAME, TABLE = "group by name", "group by basis"
 
 
 class GroupTable(Section):
-    """A group of the user's own: matrices that span its Lie algebra."""
+    """A group of the user's own: matrices that span its Lie algebra, and the form that it preserves, if any."""
 
     basis: list[Matrix]
+    form: Matrix | None = None
 
 
 def group_of(given: str | GroupTable) -> "AbstractMatrixGroup":
@@ -32,7 +33,7 @@ def group_of(given: str | GroupTable) -> "AbstractMatrixGroup":
     from nonholo.groups import MatrixGroup, ProductGroup
 
     if isinstance(given, GroupTable):
-        return MatrixGroup(given.basis)
+        return MatrixGroup(given.basis, given.form)
     factors = [_factor(name.strip()) for name in given.split(" x ")]
     return factors[0] if len(factors) == 1 else ProductGroup(*factors)
 

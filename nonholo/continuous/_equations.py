@@ -95,7 +95,7 @@ def spatial_velocity(
     """Return the spatial velocity along rows S of a body at a pose with spatial momenta r along them."""
     xp = g.__array_namespace__()
     rows = xp.asarray(S, dtype=g.dtype)
-    inertia = inertia_form(group.hat(rows), g @ tensor @ xp.swapaxes(g, -1, -2))
+    inertia = inertia_form(group, group.hat(rows), g @ tensor @ xp.swapaxes(g, -1, -2))
     return xp.linalg.solve(inertia, xp.broadcast_to(r, inertia.shape[:-1])[..., None])[..., 0] @ rows
 
 

@@ -35,7 +35,7 @@ def reduced_discrete_lagrangian(discrete: Discretization) -> Callable[[Array], A
 
     def of_matrix(W: Array) -> Array:
         X = W - jnp.eye(W.shape[-1])
-        return jnp.trace(X @ jnp.asarray(system.homogeneous_mass_tensor) @ X.T) / (2 * h)
+        return jnp.trace(X @ jnp.asarray(system.homogeneous_mass_tensor) @ system.group.form_adjoint(X)) / (2 * h)
 
     def of_logarithm(W: Array) -> Array:
         x = system.group.log(W)
@@ -232,6 +232,7 @@ def _advance(
         g = group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(g)))
         r, g = (jnp.where(done < 0, old, new) for new, old in ((r, now[0]), (g, now[2])))
         y, code = nearest_displacement(discrete, now[1], r) if nearest else principal_displacement(discrete, r, g)
+        code = jnp.where(jnp.all(jnp.isfinite(g)), code, int(Outcome.nonfinite))
         good = code == 0
         return done + good, code, *(jnp.where(good, new, old) for new, old in zip((r, y, g), now, strict=True))
 

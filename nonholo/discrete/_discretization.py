@@ -159,7 +159,7 @@ def discretize(
 
     $$ l_d(W) = h\, l\bigl((W - I)/h\bigr) \ \text{(matrix)}, \qquad l_d(W) = h\, l(\log W/h)\ \text{(logarithmic)}, $$
 
-    with $h$ the time step and, for matrices, $l(X) = \tfrac12\mathrm{tr}(X\,\mathbb{J}\,X^T)$. With "matrix" and "skew"
+    with $h$ the time step and, for matrices, $l(X) = \tfrac12\mathrm{tr}(X\,\mathbb{J}\,X^*)$. With "matrix" and "skew"
     the step of a left-invariant system conserves the reduced constrained energy exactly, whatever the constraint
     subspace; with any other choice it does not (`Discretization.conserves_energy` tells).
 
@@ -171,10 +171,10 @@ def discretize(
         system: What moves.
         time_step: h > 0.
         difference: "matrix", "logarithmic" or a callable $L_d(W)$ of a JAX matrix that includes the factor h. By
-            default "matrix" where it is defined, for a mass tensor on SO(n) or SE(n), and "logarithmic" elsewhere.
+            default "matrix" where it is defined, for a mass tensor, and "logarithmic" elsewhere.
         constraint: "skew", (W - W^-1)/2 in d on the component through the identity; "exponential", exp d; "naive",
             W - I projected to the algebra, in d; or functions f_j(W) of a JAX matrix, zero on the variety. By default
-            "skew" where it is defined, on SO(n) and SE(n), and "exponential" elsewhere.
+            "skew" where it is defined, on SO(n), SE(n) and groups with a form, and "exponential" elsewhere.
         order: 2, or 4, 6, 8: a symmetric composition of 5, 9, 15 steps of order 2 with time steps of either sign. It
             needs difference "matrix" or "logarithmic" and constraint "skew" or "exponential". See
             docs/theory/compositions.md for what momenta and displacements of its orbits are.
@@ -213,9 +213,8 @@ def _difference(system: AbstractSystem, difference: Difference | None) -> Differ
     choice(where, difference, ("matrix", "logarithmic"), "Or pass a callable L_d(W).")
     if difference == "matrix" and not defined:
         got = "a kinetic energy given by an inertia operator, which says nothing of W - I outside the algebra"
-        raise error(
-            where, "be defined for the system", got, "Pass 'logarithmic', or build the system of a mass tensor."
-        )
+        remedy = "Pass 'logarithmic', or build the system of a mass tensor, on SO(n), SE(n) or MatrixGroup(form=...)."
+        raise error(where, "be defined for the system", got, remedy)
     return difference
 
 
@@ -235,12 +234,13 @@ def _scalar(where: str, system: AbstractSystem, difference: Callable[[Array], Ar
 
 
 def _constraint(system: AbstractSystem, constraint: object) -> Constraint:
-    rigid = system.group.is_rigid
+    defined = system.group.has_skew_part
     if constraint is None:
-        return "skew" if rigid else "exponential"
+        return "skew" if defined else "exponential"
     where = "discretize(constraint=...)"
     checked = checked_constraint(where, system, constraint)
-    if checked == "skew" and not rigid:
+    if checked == "skew" and not defined:
         got = f"{system.group}, where (W - W^-1)/2 need not lie in the algebra"
-        raise error(where, "be defined on the group", got, "Pass 'exponential'.")
+        remedy = "Pass 'exponential' or, if the group preserves a form G, build it as MatrixGroup(basis, form=G)."
+        raise error(where, "be defined on the group", got, remedy)
     return checked

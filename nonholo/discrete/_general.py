@@ -15,6 +15,7 @@ import numpy as np
 
 from nonholo import kernels
 from nonholo.discrete._variety import Variety, forbidden_matrices
+from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractLRSystem, AbstractSystem, inertia_from_mass_tensor
 
 _SINES = np.linspace(0.0, 1.0, 401)[1:-1]  # of the largest angle in the ball
@@ -31,9 +32,11 @@ def general_body(system: AbstractSystem, variety: Variety) -> kernels.GeneralBod
     lengths = np.linalg.norm(chart, axis=(1, 2))
     forbidden = np.zeros((0, group.dim)) if variety.exact else variety.annihilator
     radius, level = (0.0, 0.0) if isinstance(system, AbstractLRSystem) else _certain_ball(system)
+    tensor = system.homogeneous_mass_tensor * np.outer(shrink, shrink)
+    matrices = _in_form(group, tensor, group.hat(system.constraint_subspace) * motions)
     return kernels.GeneralBody(
-        tensor=_plain(system.homogeneous_mass_tensor * np.outer(shrink, shrink)),
-        directions=_plain(group.hat(system.constraint_subspace) * motions),
+        tensor=_plain(matrices[0]),
+        directions=_plain(matrices[1]),
         places=np.ascontiguousarray(np.argwhere(chart)),  # of one layout, empty or not: compiled once
         entries=_plain((chart / lengths[:, None, None])[chart != 0]),
         forbidden=_plain(forbidden_matrices(group, forbidden) / motions),
@@ -44,7 +47,17 @@ def general_body(system: AbstractSystem, variety: Variety) -> kernels.GeneralBod
         level=level,
         unit=unit,
         stretch=_plain(1 / lengths),
+        form=_plain(matrices[2]),
+        inverse_form=_plain(matrices[3]),
     )
+
+
+def _in_form(group: AbstractMatrixGroup, tensor: Any, directions: Any) -> tuple[Any, ...]:
+    """Return J G^-1, G D_i, G and its inverse; J, D_i and empty matrices where there is no form."""
+    if group.form is None:
+        return tensor, directions, np.zeros((0, 0)), np.zeros((0, 0))
+    inverse = np.linalg.inv(group.form)
+    return tensor @ inverse, group.form @ directions, group.form, inverse
 
 
 def _plain(array: Any) -> np.ndarray:
@@ -53,16 +66,22 @@ def _plain(array: Any) -> np.ndarray:
 
 
 def _size_of_rotations(system: AbstractSystem) -> int:
-    """Return n: matrices of SO(n) have entries in the last row of their algebra, those of SE(n) have none."""
-    basis = system.group.basis
-    return basis.shape[1] if np.any(basis[:, -1]) else basis.shape[1] - 1
+    """Return n: matrices of SO(n) have entries in the last row of their algebra, those of SE(n) have none.
+
+    N on a group with a form.
+    """
+    basis, form = system.group.basis, system.group.form
+    return basis.shape[1] if form is not None or np.any(basis[:, -1]) else basis.shape[1] - 1
 
 
 def _certain_ball(system: AbstractSystem) -> tuple[float, float]:
-    """Return the squared radius of the ball and the largest squared momentum for which it certifies; or zeros.
+    """Return the squared radius of the ball and the largest squared momentum for which it certifies.
 
-    In the unit of length of the body.
+    In the unit of length of the body. Zeros if there is no ball; no momentum at all on a group with a form, where the
+    energy need not be definite: there every root is followed from momentum zero.
     """
+    if system.group.form is not None:
+        return 0.0, -np.inf
     slope, least = _stiffness(system, _length_unit(system))
     cosine = np.sqrt(1 - _SINES**2)
     lipschitz = slope(_SINES, cosine)

@@ -76,9 +76,9 @@ def logarithmic_legendre(discrete: "Discretization", W: Float[Array, "... N N"],
 def matrix_legendre(
     group: AbstractMatrixGroup, tensor: Inexact[Array, "N N"], X: Inexact[Array, "... N N"], side: str
 ) -> Inexact[Array, "... dim"]:
-    r"""Return $\mathrm{tr}(E_i W\mathbb{J}X^T)$ (left) or $\mathrm{tr}(W E_i\mathbb{J}X^T)$ (right), $W = I + X$."""
+    r"""Return $\mathrm{tr}(E_i W\mathbb{J}X^*)$ (left) or $\mathrm{tr}(W E_i\mathbb{J}X^*)$ (right), $W = I + X$."""
     xp = X.__array_namespace__()
-    arm = xp.asarray(tensor, dtype=X.dtype) @ xp.swapaxes(X, -1, -2)
+    arm = xp.asarray(tensor, dtype=X.dtype) @ group.form_adjoint(X)
     carried = arm + X @ arm if side == "left" else arm + arm @ X
     return xp.einsum("iab,...ba->...i", xp.asarray(group.basis, dtype=X.dtype), carried)
 

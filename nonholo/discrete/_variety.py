@@ -61,7 +61,7 @@ class Variety:
 
     def coordinates(self, W: Float[np.ndarray, "N N"]) -> Float[np.ndarray, "m"]:
         """Return the chart coordinates of a displacement of less than half a turn."""
-        if self.exponential or not self.group.is_rigid:
+        if self.exponential or not self.group.has_skew_part:
             x = self.group.log(W)
         else:
             x = self.group.vee(2 * (W - self.group.identity) @ np.linalg.inv(W + self.group.identity))
@@ -98,7 +98,7 @@ def _variety(group: AbstractMatrixGroup, rows: tuple, constraint: str) -> Variet
     data, shape, other, other_shape = rows
     subspace = np.frombuffer(data).reshape(shape)
     annihilator = np.frombuffer(other).reshape(other_shape)
-    closed = group.is_rigid and _cubes_stay(group, subspace, annihilator)
+    closed = group.has_skew_part and _cubes_stay(group, subspace, annihilator)
     exponential = constraint == "exponential" and not closed
     chart = subspace if closed or exponential else np.eye(group.dim)
     return Variety(group, chart, annihilator, constraint, exponential)

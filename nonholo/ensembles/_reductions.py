@@ -43,7 +43,7 @@ def _final_state(batch: Ensemble) -> Reduced:
 def _energy_drift(batch: Ensemble) -> Reduced:
     begun, ended = batch.first_energy, _ended(batch).energy[:, 0]
     with np.errstate(invalid="ignore"):  # 0/0 at rest, where energy cannot drift
-        drift = np.where(ended == begun, 0.0, np.abs(ended - begun) / begun)
+        drift = np.where(ended == begun, 0.0, np.abs((ended - begun) / begun))
     return {"energy_drift": ((), np.where(np.isfinite(ended), drift, np.nan), _told("relative error of energy", "1"))}
 
 

@@ -31,7 +31,9 @@ class AbstractMatrixGroup(abc.ABC):
     pose_size: int
     """Numbers in a compact pose."""
     is_rigid: bool
-    """Whether the group moves a body with a mass tensor, SO(n) or SE(n); (W - W^-1)/2 lies in the algebra there."""
+    """Whether the group moves the points of a body, SO(n) or SE(n)."""
+    form: np.ndarray | None = None
+    """G of a quadratic group, whose inverse is G^-1 W^T G; None for SO(n), where it is the identity, and all others."""
 
     @abc.abstractmethod
     def exp_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
@@ -86,6 +88,11 @@ class AbstractMatrixGroup(abc.ABC):
         """Return the rate of change of a compact pose that moves with the body velocity `x`."""
 
     @property
+    def has_skew_part(self) -> bool:
+        """Whether (W - W^-1)/2 lies in the algebra, and a mass tensor gives the kinetic energy: SO(n), SE(n), forms."""
+        return self.is_rigid or self.form is not None
+
+    @property
     def identity(self) -> Float[np.ndarray, "N N"]:
         """The identity matrix."""
         return np.eye(self.size)
@@ -99,12 +106,12 @@ class AbstractMatrixGroup(abc.ABC):
         return _from_identity(self.cayley_increment(x))
 
     def retract(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
-        """Return the displacement with chart coordinates `x`: `cayley` on SO(n) and SE(n), else `exp`."""
+        """Return the displacement with chart coordinates `x`: `cayley` where W has a skew part, else `exp`."""
         return _from_identity(self.retract_increment(x))
 
     def retract_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return `retract(x)` minus the identity, without cancellation."""
-        return self.cayley_increment(x) if self.is_rigid else self.exp_increment(x)
+        return self.cayley_increment(x) if self.has_skew_part else self.exp_increment(x)
 
     def hat(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return the matrix of the algebra with coordinates `x`."""
@@ -113,6 +120,15 @@ class AbstractMatrixGroup(abc.ABC):
     def vee(self, X: Inexact[Array, "... N N"]) -> Inexact[Array, "... dim"]:
         """Return the coordinates of a matrix of the algebra (of its orthogonal projection, if it lies outside)."""
         return self.coordinates.vector(self._matrix(X))
+
+    def form_adjoint(self, X: Inexact[Array, "... N N"]) -> Inexact[Array, "... N N"]:
+        r"""Return $X^* = G^{-1}X^TG$, the adjoint of a matrix in the form of the group; $X^T$ where there is none."""
+        xp = X.__array_namespace__()
+        turned = xp.swapaxes(X, -1, -2)
+        if self.form is None:
+            return turned
+        G, inverse = (xp.asarray(each, dtype=X.dtype) for each in (self.form, np.linalg.inv(self.form)))
+        return inverse @ turned @ G
 
     def adjoint(self, g: Float[Array, "... N N"]) -> Float[Array, "... dim dim"]:
         r"""Return the matrix of $\mathrm{Ad}_g$: column i holds the coordinates of $g\,e_i\,g^{-1}$."""

@@ -12,6 +12,7 @@ from nonholo.groups import _dexp
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
 from nonholo.groups._lie_algebra import checked_basis
+from nonholo.groups._quadratic_form import checked_form
 from nonholo.numerics._matrix_functions import (
     cayley_increment,
     exponential_increment,
@@ -30,11 +31,17 @@ class MatrixGroup(AbstractMatrixGroup):
     The compact pose is the matrix row by row, never corrected; random elements are exponentials of standard normal
     coordinates. `log` is the principal logarithm: it exists if no eigenvalue is real and negative.
 
+    With a form the group is *quadratic*: $g^TGg = G$, its inverse is $G^{-1}g^TG$, a mass tensor may be given to
+    `LLSystem`, and the discrete map conserves the energy (docs/theory/energy-theorem.md).
+
     Args:
         basis: Matrices $E_1, \dots, E_{dim}$, linearly independent, with every commutator in their span.
+        form: G, a nondegenerate (N, N) matrix, symmetric, antisymmetric or neither, with $x^TG + Gx = 0$ for every
+            $x$ of the algebra, which must also contain every $x^3$: SO(p, q), Sp(2n), U(p, q).
 
     Raises:
-        ValueError: The basis is not finite, dependent, or a commutator leaves its span (named with its distance).
+        ValueError: The basis is not finite, dependent, or a commutator leaves its span (named with its distance); the
+            form is degenerate or not preserved, or cubes leave the algebra, as those of SU(p, q), p + q > 2.
 
     Example:
         The Heisenberg group, $[E_1, E_2] = E_3$:
@@ -52,22 +59,38 @@ class MatrixGroup(AbstractMatrixGroup):
         MatrixGroup(dim=3, N=2)
         >>> sl2.bracket(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))
         array([0., 2., 0.])
+
+        The Lorentz group SO(2, 1):
+
+        >>> G = np.diag([1.0, 1.0, -1.0])
+        >>> lorentz = MatrixGroup(G @ SO(3).basis, form=G)
+        >>> lorentz.inverse(lorentz.exp([0.0, 1.0, 0.0])).round(3)
+        array([[ 1.543,  0.   , -1.175],
+               [ 0.   ,  1.   ,  0.   ],
+               [-1.175,  0.   ,  1.543]])
     """
 
     basis: Array
+    form: Array | None = None
     is_rigid: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "basis", checked_basis("MatrixGroup(basis=...)", self.basis))
+        if self.form is not None:
+            object.__setattr__(self, "form", checked_form("MatrixGroup(form=...)", self.basis, self.form))
 
     def __repr__(self) -> str:
-        return f"MatrixGroup(dim={self.dim}, N={self.size})"
+        return f"MatrixGroup(dim={self.dim}, N={self.size}{'' if self.form is None else ', with a form'})"
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, MatrixGroup) and np.array_equal(self.basis, other.basis)
+        return isinstance(other, MatrixGroup) and self._content == other._content
 
     def __hash__(self) -> int:
-        return hash((self.basis.shape, self.basis.tobytes()))
+        return hash(self._content)
+
+    @functools.cached_property
+    def _content(self) -> tuple:
+        return self.basis.shape, self.basis.tobytes(), None if self.form is None else self.form.tobytes()
 
     @property
     def dim(self) -> int:
@@ -91,7 +114,9 @@ class MatrixGroup(AbstractMatrixGroup):
 
     @functools.cached_property
     def has_cayley(self) -> bool:
-        """Whether the Cayley map stays in the group, tried on random elements of the algebra."""
+        """Whether the Cayley map stays in the group: with a form, or by trying random elements of the algebra."""
+        if self.has_skew_part:
+            return True
         X = self.hat(np.random.default_rng(0).normal(size=(4, self.dim)))
         X = X / np.abs(X).sum(axis=-1).max()
         return bool(np.all(self.residual(np.eye(self.size) + cayley_increment(X)) < _REPRODUCED))
@@ -140,15 +165,31 @@ class MatrixGroup(AbstractMatrixGroup):
     def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
         """Return the inverse matrix."""
         g = self._matrix(g)
+        if self.form is not None:
+            return self.form_adjoint(g)
         return g.__array_namespace__().linalg.inv(g)
 
     def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
-        """Return how far the logarithm is from the algebra; infinite where there is no logarithm (JAX: undefined)."""
+        """Return how far the logarithm is from the algebra; infinite where there is no logarithm (JAX: undefined).
+
+        With a form: the residual of g* g = I relative to |g*| |g|, or how far (g - g*)/2 is from the algebra relative
+        to |g|, whichever is larger; at least 2 for a negative determinant.
+        """
         g = self._matrix(g)
         xp = g.__array_namespace__()
+        if self.form is not None:
+            return self._form_residual(g)
         X = _checked_logarithm(g) if isinstance(g, np.ndarray) else principal_logarithm(g, _HALVINGS)
         gap = xp.max(abs(X - self.hat(self.vee(X))), axis=(-2, -1))
         return xp.where(xp.isnan(gap), xp.inf, gap)
+
+    def _form_residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
+        xp, turned = g.__array_namespace__(), self.form_adjoint(g)
+        K = (g - turned) / 2
+        defect, outside = turned @ g - identity_like(g), K - self.hat(self.vee(K))
+        size, other, defect, outside = (xp.max(abs(X), axis=(-2, -1)) for X in (g, turned, defect, outside))
+        found = xp.maximum(defect / xp.maximum(size * other, 1), outside / xp.maximum(size, 1))
+        return xp.maximum(found, 1 - xp.sign(xp.linalg.det(g)))
 
     def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:
         """Return the largest imaginary part of an eigenvalue of `hat(x)`."""

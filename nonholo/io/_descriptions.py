@@ -50,7 +50,8 @@ def describe_group(group: AbstractMatrixGroup) -> dict[str, Any]:
     if isinstance(group, ProductGroup):
         return {"group": "ProductGroup", "factors": [describe_group(factor) for factor in group.factors]}
     if isinstance(group, MatrixGroup):
-        return {"group": "MatrixGroup", "basis": group.basis.tolist()}
+        form = {} if group.form is None else {"form": group.form.tolist()}
+        return {"group": "MatrixGroup", "basis": group.basis.tolist()} | form
     for family, n in (("SO", group.size), ("SE", group.size - 1), ("Translations", group.size - 1)):
         least = 1 if family == "Translations" else 2
         if n >= least and group == _FAMILIES[family](n):
@@ -64,7 +65,7 @@ def restore_group(described: dict[str, Any]) -> AbstractMatrixGroup:
     if kind == "ProductGroup":
         return ProductGroup(*map(restore_group, described["factors"]))
     if kind == "MatrixGroup":
-        return MatrixGroup(described["basis"])
+        return MatrixGroup(described["basis"], described.get("form"))
     if kind not in _FAMILIES:
         raise error("load_orbit(path=...)", "hold a group of this version", repr(kind), "Upgrade nonholo.")
     return _FAMILIES[kind](described["n"])

@@ -1,4 +1,4 @@
-r"""The step for any left- or right-invariant constraint on SO(n) and SE(n), straight from its matrix equations.
+r"""The step for any invariant constraint on SO(n), SE(n) and groups of a form, straight from its matrix equations.
 
 The displacement is $W = I + X = (I - Y)^{-1}(I + Y)$, $Y = \sum_a y_a C_a$. Unknowns are its m Cayley coordinates,
 equations
@@ -11,7 +11,8 @@ $2GC_aG$, $G = (I - Y)^{-1}$. Here $D_i$ is a basis of $\mathfrak{d}$, momenta a
 $m = h r/\ell^2$, and all lengths in units of a length $\ell$ of the body, so that translations and rotations are
 numbers of one size. Where $\exp\mathfrak{d}$ solves the constraint, the $C_a$ are the $D_i$ and there is no second
 kind; otherwise the $C_a$ span the algebra. With `spatial` the constraint is right-invariant: the pose carries J to
-space, and m is constant.
+space, and m is constant. On the group of a form G the transpose is $X^* = G^{-1}X^TG$: the kernel is given $GD_i$ and
+$JG^{-1}$, so that $Q_i = GD_iJG^{-1}$ has the same pairings.
 """
 
 from typing import NamedTuple
@@ -28,8 +29,8 @@ class GeneralBody(NamedTuple):
     """Matrices of a body and its constraint.
 
     Attributes:
-        tensor: Mass tensor, (N, N).
-        directions: D_i, (k, N, N).
+        tensor: Mass tensor, (N, N); J G^-1 with a form.
+        directions: D_i, (k, N, N); G D_i with a form.
         places: Index a, row and column of the entries of C_a that are not zero, (E, 3).
         entries: Their values, (E,).
         forbidden: A_j, (m - k, N, N); the pairing is the sum of products of entries.
@@ -40,6 +41,8 @@ class GeneralBody(NamedTuple):
         level: Largest squared norm of scaled momenta for which it is.
         unit: The length l; poses are in the unit of the user's.
         stretch: Factors from the coordinates y of this kernel to those of the caller, (m,).
+        form: G, (N, N); (0, 0) on SO(n) and SE(n).
+        inverse_form: Its inverse, of the same shape.
     """
 
     tensor: np.ndarray
@@ -54,6 +57,8 @@ class GeneralBody(NamedTuple):
     level: float
     unit: float
     stretch: np.ndarray
+    form: np.ndarray
+    inverse_form: np.ndarray
 
 
 class Workspace(NamedTuple):
@@ -113,7 +118,8 @@ def see_tensor(p: GeneralBody, w: Workspace, J: np.ndarray) -> None:
 def displaced(p: GeneralBody, w: Workspace, y: np.ndarray) -> float:
     """Compute X = 2 (I - Y)^{-1} Y and G = I + X / 2; return how far it turns, the sum of tan^2(angle / 2).
 
-    Beyond `LOST`, where I - Y may be singular to rounding, they are not computed.
+    Beyond `LOST`, where I - Y may be singular to rounding, they are not computed; nor where its determinant is not
+    positive, beyond the edge of the chart on groups with boosts.
     """
     return _displaced(p.places, p.entries, p.size, y, w.X, w.G, w.scratch)
 
@@ -134,7 +140,8 @@ def _displaced(
         scratch[i, i] += 1.0
     if not (turning < LOST):
         return turning
-    eliminate(scratch, X)
+    if not eliminate(scratch, X) > 0:
+        return LOST
     for i in range(len(X)):
         for j in range(len(X)):
             G[i, j] = X[i, j] / 2
@@ -143,9 +150,19 @@ def _displaced(
 
 
 @numba.njit(cache=True)
-def _invert(X: np.ndarray, n: int, V: np.ndarray) -> None:
-    """Write the inverse of the rotation or rigid motion I + X."""
-    transpose(X, V)
+def _adjoint(p: GeneralBody, X: np.ndarray, half: np.ndarray, out: np.ndarray) -> None:
+    """Write X* = G^{-1} X^T G, the transpose where there is no form."""
+    transpose(X, out)
+    if len(p.form) > 0:
+        multiply(p.inverse_form, out, half)
+        multiply(half, p.form, out)
+
+
+@numba.njit(cache=True)
+def _invert(p: GeneralBody, X: np.ndarray, half: np.ndarray, V: np.ndarray) -> None:
+    """Write the inverse of the group element I + X."""
+    n = p.size
+    _adjoint(p, X, half, V)
     for i in range(len(X)):
         V[i, i] += 1.0
     if n < len(X):
@@ -160,7 +177,7 @@ def _invert(X: np.ndarray, n: int, V: np.ndarray) -> None:
 def skew_part(p: GeneralBody, w: Workspace) -> None:
     """Write K = (W - W^{-1})/2 to the scratch matrix, and W^{-1} to V."""
     X, V, K = w.X, w.V, w.scratch
-    _invert(X, p.size, V)
+    _invert(p, X, w.half, V)
     for i in range(len(X)):
         for j in range(len(X)):
             K[i, j] = (X[i, j] - V[i, j]) / 2
@@ -201,10 +218,18 @@ def equations(p: GeneralBody, w: Workspace, m: np.ndarray) -> None:
 
 
 @numba.njit(cache=True)
-def increments(w: Workspace, term: np.ndarray) -> None:
-    r"""Compute the change of the scaled momenta in one step, $\mathrm{tr}(X D_i J X^T) = \langle Q_i, X^TX\rangle$."""
+def increments(p: GeneralBody, w: Workspace, term: np.ndarray) -> None:
+    r"""Compute the change of the scaled momenta in one step, $\mathrm{tr}(X D_i J X^*) = \langle Q_i, X^*X\rangle$.
+
+    Where boosts make X large, $X^*X = -(X + X^*)$ cancels less than the product.
+    """
     X, transposed, square, Q = w.X, w.V, w.scratch, w.Q
-    transpose(X, transposed)
-    multiply(transposed, X, square)
+    _adjoint(p, X, w.half, transposed)
+    if len(p.form) > 0 and paired(X, X) > 1.0:
+        for i in range(len(X)):
+            for j in range(len(X)):
+                square[i, j] = -(X[i, j] + transposed[i, j])
+    else:
+        multiply(transposed, X, square)
     for i in range(len(Q)):
         term[i] = paired(Q[i], square)

@@ -91,7 +91,7 @@ def principal(p: GeneralBody, w: Workspace, m: np.ndarray) -> tuple[int, np.ndar
     if len(y) == 0:
         return 0, y
     start, tangent = _tangent(p, w, m, y, 0.0)
-    s, size, now = 0.0, _FIRST, start
+    s, size, now, peak = 0.0, _FIRST, start, abs(start)
     while s < 1.0:
         size = min(size, 1.0 - s)
         ahead = 1.0 if size == 1.0 - s else s + size
@@ -103,21 +103,23 @@ def principal(p: GeneralBody, w: Workspace, m: np.ndarray) -> tuple[int, np.ndar
         if good and close and det * start > 0 and np.sum(moved * moved) <= 0.04 * (1 + np.sum(y * y)) ** 2:
             y, s, now, size = found, ahead, det, 2 * size
             det, tangent = _tangent(p, w, m, y, s)
+            if len(p.form) > 0:  # boosts scale the determinant
+                peak = max(peak, abs(det))
             if not det * start > 0:  # singular to rounding
-                return _why_it_ended(p, w, y, 0.0, start), y
+                return _why_it_ended(p, w, y, 0.0, peak), y
         elif size > max(_SMALLEST * s, _LEAST):
             size /= 4
         else:
-            return _why_it_ended(p, w, y, now, start), y
+            return _why_it_ended(p, w, y, now, peak), y
     return 0, y
 
 
 @numba.njit(cache=True)
-def _why_it_ended(p: GeneralBody, w: Workspace, y: np.ndarray, det: float, start: float) -> int:
-    """Tell a fold (1) from the end of the chart (2) and from a failure to converge (3)."""
-    if displaced(p, w, y) > _FAR:
+def _why_it_ended(p: GeneralBody, w: Workspace, y: np.ndarray, det: float, peak: float) -> int:
+    """Tell a fold (1) from the end of the chart or of all displacements (2) and from a failure to converge (3)."""
+    if displaced(p, w, y) > _FAR or (len(p.form) > 0 and paired(w.X, w.X) > _FAR**2):
         return 2
-    return 1 if abs(det) < 1e-2 * abs(start) else 3
+    return 1 if abs(det) < 1e-2 * peak else 3
 
 
 @numba.njit(cache=True)

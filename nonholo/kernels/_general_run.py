@@ -28,7 +28,10 @@ def _in_units(p: GeneralBody, g: np.ndarray, factor: float) -> np.ndarray:
 
 @numba.njit(cache=True)
 def move(p: GeneralBody, w: Workspace, g: np.ndarray) -> None:
-    """Advance a pose by the displacement; bring its rotation back to the group by one Newton-Schulz step."""
+    """Advance a pose by the displacement; bring its rotation back to the group by one Newton-Schulz step.
+
+    Not with a form: where poses grow, the residual of the group is known to no more digits than the pose.
+    """
     n, N, X, W, moved = p.size, len(g), w.X, w.V, w.H
     for i in range(N):
         for j in range(N):
@@ -41,7 +44,16 @@ def move(p: GeneralBody, w: Workspace, g: np.ndarray) -> None:
         multiply(W, g, moved)
     else:
         multiply(g, W, moved)
-    _rectify(moved, n, w.scratch, g)
+    if len(p.form) > 0:
+        assign_rows(g, moved)
+    else:
+        _rectify(moved, n, w.scratch, g)
+
+
+@numba.njit(cache=True)
+def overflowed(p: GeneralBody, g: np.ndarray) -> bool:
+    """Tell whether a pose of a group with a form, which may grow without bound, is no longer finite."""
+    return len(p.form) > 0 and not np.all(np.isfinite(g))
 
 
 @numba.njit(cache=True)
@@ -86,13 +98,15 @@ def advance(
     displaced(p, w, y)
     while done < steps:
         if not p.spatial:
-            increments(w, term)
+            increments(p, w, term)
         change = term - lost
         total = m + change
         after = g.copy()
         move(p, w, after)
         see_pose(p, w, after)
         code, found = solve(p, w, total, 3 * (y - u) + v)
+        if overflowed(p, after):
+            code = 5
         if code != 0:
             break
         lost = (total - m) - change
@@ -139,7 +153,7 @@ def step_each(
             move(p, w, g)
             see_pose(p, w, g)
         else:
-            increments(w, term)
+            increments(p, w, term)
         assign(next_momenta[row], momenta[row] + term)
         y = guesses[row] / p.stretch
         if principal_only:

@@ -92,7 +92,7 @@ def _general_solved(
     _general_run.see_pose(p, w, pose.reshape(w.X.shape))
     code, found = _general_root.solve(p, w, m, guess)
     assign(root, found)
-    return code
+    return 5 if _general_run.overflowed(p, pose) else code
 
 
 @numba.njit(cache=True)
@@ -102,7 +102,7 @@ def _general_pushed(
     """Push and move at the root whose displacement is in the workspace."""
     change[:] = 0.0
     if not p.spatial:
-        increments(w, change)
+        increments(p, w, change)
     _general_run.move(p, w, pose.reshape(w.X.shape))
 
 

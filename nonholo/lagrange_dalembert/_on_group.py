@@ -200,6 +200,6 @@ def mass_tensor_lagrangian(
 
     def discrete_lagrangian(W: Array, time_step: Array) -> Array:
         X = W - group.identity
-        return inertia_form(X[None], X.__array_namespace__().asarray(tensor))[0, 0] / (2 * time_step)
+        return inertia_form(group, X[None], X.__array_namespace__().asarray(tensor))[0, 0] / (2 * time_step)
 
     return discrete_lagrangian

@@ -199,7 +199,7 @@ class AbstractLRSystem(AbstractSystem):
         g = as_floats(configuration)
         xp, rows, mass_tensor = g.__array_namespace__(), self.constraint_subspace, self.homogeneous_mass_tensor
         if mass_tensor is not None:
-            return inertia_form(self.group.hat(rows), g @ mass_tensor @ xp.swapaxes(g, -1, -2))
+            return inertia_form(self.group, self.group.hat(rows), g @ mass_tensor @ xp.swapaxes(g, -1, -2))
         images = rows @ xp.swapaxes(self.group.adjoint(self.group.inverse(g)), -1, -2)
         return images @ self.inertia_operator @ xp.swapaxes(images, -1, -2)
 
@@ -246,7 +246,7 @@ def form_along(system: AbstractSystem) -> Float[Array, "k k"]:
     rows, mass_tensor = system.constraint_subspace, system.homogeneous_mass_tensor
     if mass_tensor is None:
         return rows @ system.inertia_operator @ rows.T
-    return inertia_form(system.group.hat(rows), mass_tensor)
+    return inertia_form(system.group, system.group.hat(rows), mass_tensor)
 
 
 def _solve(matrix: Float[Array, "... k k"] | WideInertia, vector: Float[Array, "... k"]) -> Float[Array, "... k"]:

@@ -5,12 +5,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from nonholo._checks import array, error, positive_definite, symmetric
+from nonholo._checks import array, error, invertible, positive_definite, symmetric
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, Equilibria, form_along
 from nonholo.systems._drift import constant_velocities
-from nonholo.systems._mass import checked_group, group_mass_tensor, inertia_from_mass_tensor
+from nonholo.systems._mass import checked_group, form_mass_tensor, group_mass_tensor, inertia_from_mass_tensor
 from nonholo.systems._subspace import subspace_and_annihilator
 
 
@@ -19,16 +19,19 @@ class LLSystem(AbstractLLSystem):
     r"""A system on any matrix group whose body velocity stays in a subspace of the algebra, of any dimension.
 
     $$ l(\omega) = \tfrac12\langle\mathbb{I}\omega, \omega\rangle \ \Bigl(= \tfrac12\mathrm{tr}(\hat\omega\,\mathbb{J}\,
-       \hat\omega^T)\Bigr), \qquad \omega \in \mathfrak{d}. $$
+       \hat\omega^*)\Bigr), \qquad \omega \in \mathfrak{d}, $$
 
-    With a mass tensor on SO(n) or SE(n) the discrete map of this library conserves the energy exactly; with a general
-    inertia operator it does not.
+    where $x^* = x^T$ on SO(n) and SE(n), and $x^* = G^{-1}x^TG$ on a `MatrixGroup` with the form G.
+
+    With a mass tensor the discrete map of this library conserves the energy exactly; with a general inertia operator it
+    does not.
 
     Reference: [fedorov-zenkov-2004], section 2.
 
     Args:
         group: The configuration space.
-        mass_tensor: $\mathbb{J}$: (n, n) on SO(n), homogeneous (n + 1, n + 1) on SE(n); or else `inertia_operator`.
+        mass_tensor: $\mathbb{J}$: (n, n) on SO(n), homogeneous (n + 1, n + 1) on SE(n), both symmetric;
+            (N, N) with $\mathbb{J}^* = \mathbb{J}$ on a group with a form; or else `inertia_operator`.
         constraint_subspace: Rows span $\mathfrak{d}$; an empty (0, dim) array forbids all motion, dim rows forbid none.
         annihilator: Rows span the covectors that vanish on $\mathfrak{d}$. One of the two may be left out: it is then
             computed, as coordinate rows where the given rows are coordinate rows, orthonormal otherwise.
@@ -37,7 +40,8 @@ class LLSystem(AbstractLLSystem):
     Raises:
         ValueError: Both or none of mass_tensor and inertia_operator; a mass tensor on another group; no constraint;
             dependent rows; a subspace and an annihilator that do not fit; a wrong shape, an asymmetry, a value that is
-            not finite; an inertia along the constraint that is not positive definite.
+            not finite; an inertia along the constraint that is not positive definite (on a group with a form, which has
+            motions of negative kinetic energy too: not invertible).
 
     Example:
         >>> from nonholo.systems import LLSystem
@@ -48,6 +52,18 @@ class LLSystem(AbstractLLSystem):
         >>> top.constrained_inertia
         array([[5., 0.],
                [0., 4.]])
+
+        The Suslov problem on SO(2, 1):
+
+        >>> G = np.diag([1.0, 1.0, -1.0])
+        >>> lorentz, J = nh.MatrixGroup(G @ nh.SO(3).basis, form=G), np.array([[1, 0, 0.3], [0, 2, 0.1], [0.3, 0.1, 4]])
+        >>> top = LLSystem(lorentz, J @ G, annihilator=[[0.0, 0.0, 1.0]])
+        >>> top.constrained_inertia
+        array([[2., 0.],
+               [0., 3.]])
+        >>> orbit = nh.simulate(nh.discretize(top, 0.1), body_velocity=(0.4, 0.2, 0.0), steps=100)
+        >>> bool(np.ptp(orbit.energy) < 1e-14), bool(np.ptp(orbit.body_velocity[:, 0]) > 0.1)
+        (True, True)
     """
 
     group: AbstractMatrixGroup
@@ -70,19 +86,22 @@ class LLSystem(AbstractLLSystem):
         checked_group("LLSystem(group=...)", group)
         if (mass_tensor is None) == (inertia_operator is None):
             got = "neither" if mass_tensor is None else "both"
-            remedy = "Pass the mass tensor of a body on SO(n) or SE(n), the inertia operator of anything else."
+            remedy = "Pass the mass tensor on SO(n), SE(n) or a group with a form, the inertia operator on any other."
             raise error("LLSystem(mass_tensor=...)", "be given, or else inertia_operator=", got, remedy)
         rows, covectors = subspace_and_annihilator("LLSystem", group.dim, constraint_subspace, annihilator)
         if mass_tensor is not None:
             where = "LLSystem(mass_tensor=...)"
-            mass_tensor = group_mass_tensor(where, group, mass_tensor, "Pass inertia_operator= instead.")
+            mass_tensor = _tensor(where, group, mass_tensor)
         else:
             where = "LLSystem(inertia_operator=...)"
             inertia_operator = _operator(where, inertia_operator, group.dim)
         values = (group, mass_tensor, inertia_operator, rows, covectors)
         for field, value in zip(dataclasses.fields(self), values, strict=True):
             object.__setattr__(self, field.name, value)
-        if len(rows):
+        if len(rows) and mass_tensor is not None and group.form is not None:
+            remedy = "Every admissible velocity needs a momentum of its own along the constraint."
+            invertible(where, self.constrained_inertia, "the inertia along the constraint", remedy)
+        elif len(rows):
             remedy = "Every admissible velocity needs a positive kinetic energy."
             positive_definite(where, self.constrained_inertia, "the inertia along the constraint", remedy)
 
@@ -127,6 +146,13 @@ class LLSystem(AbstractLLSystem):
             ValueError: Velocities change: the equilibria of a general system are not linear spaces.
         """
         return constant_velocities(self, "LLSystem")
+
+
+def _tensor(where: str, group: AbstractMatrixGroup, value: Any) -> Array:
+    if group.form is not None:
+        return form_mass_tensor(where, group, value)
+    instead = "Pass inertia_operator= instead or, if the group preserves a form G, MatrixGroup(basis, form=G)."
+    return group_mass_tensor(where, group, value, instead)
 
 
 def _operator(where: str, value: Any, dim: int) -> Array:

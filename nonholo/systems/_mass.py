@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error, symmetric
+from nonholo._checks import array, error, is_traced, symmetric
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._wide import narrow
@@ -37,28 +37,32 @@ def mass_tensor_from_inertia(inertia: Float[Array, "3 3"]) -> Float[Array, "3 3"
     return xp.trace(tensor) / 2 * xp.eye(3) - tensor
 
 
-def inertia_form(matrices: Float[Array, "k N N"], mass_tensor: Float[Array, "... N N"]) -> Float[Array, "... k k"]:
-    r"""Return $\bigl(\mathrm{tr}(D_i\mathbb{J}D_j^T)\bigr)_{ij}$ for velocities $D_i$ and a (homogeneous) mass tensor.
+def inertia_form(
+    group: AbstractMatrixGroup, matrices: Float[Array, "k N N"], mass_tensor: Float[Array, "... N N"]
+) -> Float[Array, "... k k"]:
+    r"""Return $\bigl(\mathrm{tr}(D_i\mathbb{J}D_j^*)\bigr)_{ij}$ for velocities $D_i$ and a (homogeneous) mass tensor.
 
-    A body that moves with the velocity $\xi$, a matrix, has kinetic energy $\tfrac12\mathrm{tr}(\xi\mathbb{J}\xi^T)$.
+    A body that moves with the velocity $\xi$, a matrix, has kinetic energy $\tfrac12\mathrm{tr}(\xi\mathbb{J}\xi^*)$;
+    the star is the transpose but for a group with a form (`AbstractMatrixGroup.form_adjoint`).
     """
     xp = mass_tensor.__array_namespace__()
     matrices = xp.asarray(matrices)
+    duals = xp.swapaxes(group.form_adjoint(matrices), -1, -2)
     size = matrices.shape[-1]
     momenta = matrices @ mass_tensor[..., None, :, :]
     flat = xp.reshape(momenta, (*momenta.shape[:-2], size * size))
-    return flat @ xp.reshape(matrices, (-1, size * size)).T
+    return flat @ xp.reshape(duals, (-1, size * size)).T
 
 
 def inertia_from_mass_tensor(group: AbstractMatrixGroup, mass_tensor: Float[Array, "N N"]) -> Float[Array, "dim dim"]:
-    r"""Return the inertia operator $\mathbb{I}_{ij} = \mathrm{tr}(E_i\mathbb{J}E_j^T)$ in the basis $E_i$.
+    r"""Return the inertia operator $\mathbb{I}_{ij} = \mathrm{tr}(E_i\mathbb{J}E_j^*)$ in the basis $E_i$.
 
     Example:
         >>> inertia_from_mass_tensor(SO(3), np.diag([1.0, 2.0, 3.0])).diagonal()
         array([5., 4., 3.])
     """
     narrow(f"The inertia operator on {group}", group.dim)
-    return inertia_form(group.basis, mass_tensor)
+    return inertia_form(group, group.basis, mass_tensor)
 
 
 def body_tensor(where: str, value: Array, remedy: str) -> Array:
@@ -85,6 +89,20 @@ def group_mass_tensor(where: str, group: AbstractMatrixGroup, value: Array, inst
     size = group.identity.shape[0]
     remedy = f"On {group!r} the mass tensor is ({size}, {size}): J on SO(n), homogeneous on SE(n)."
     return symmetric(where, array(where, value, (size, size), remedy), remedy)
+
+
+def form_mass_tensor(where: str, group: AbstractMatrixGroup, value: Array) -> Array:
+    r"""Return a mass tensor of a group with a form, refused unless $J^* = G^{-1}J^TG = J$."""
+    size = group.identity.shape[0]
+    remedy = "If G is symmetric or antisymmetric pass (J + J*)/2, which has the same kinetic energy."
+    tensor = array(where, value, (size, size), f"On {group!r} the mass tensor is ({size}, {size}).")
+    if is_traced(tensor):
+        return tensor
+    gap, G = np.abs(group.form_adjoint(tensor) - tensor).max(), np.abs(group.form)
+    sizes = np.abs(np.linalg.inv(group.form)) @ np.abs(tensor).T @ G
+    if gap > 64 * np.finfo(np.float64).eps * sizes.max():
+        raise error(where, "satisfy J* = G^-1 J^T G = J", f"a residual of {gap:.3g}", remedy)
+    return tensor
 
 
 def rotation_to(axis: np.ndarray) -> np.ndarray:

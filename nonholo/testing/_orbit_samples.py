@@ -124,7 +124,9 @@ class OrbitSamples:
             return _of_jax(kind, W)
         if kind == "matrix":
             X = W - self.group.identity
-            return np.einsum("...ab,bc,...ac->...", X, np.asarray(self.system.homogeneous_mass_tensor), X) / (2 * h)
+            G = np.eye(self.group.size) if self.group.form is None else self.group.form
+            J = np.asarray(self.system.homogeneous_mass_tensor) @ np.linalg.inv(G)  # tr(X J X*), X* = G^-1 X^T G
+            return np.einsum("...ab,bc,...dc,da->...", X, J, X, G) / (2 * h)
         x = self.group.log(W)
         return np.einsum("...a,ab,...b->...", x, np.asarray(self.system.inertia_operator), x) / (2 * h)
 

@@ -28,7 +28,8 @@ def _mass_tensor(s: SystemSamples) -> float:
     if tensor is None:
         raise NotApplicableError("the kinetic energy comes from an inertia operator")
     E = s.group.basis
-    return relative(s.inertia, np.einsum("iab,bc,jac->ij", E, np.asarray(tensor), E))
+    form = np.eye(s.group.size) if s.group.form is None else s.group.form  # tr(E_i J E_j*)
+    return relative(s.inertia, np.einsum("iab,bc,jdc,da->ij", E, np.asarray(tensor) @ np.linalg.inv(form), E, form))
 
 
 def _symmetry(s: SystemSamples) -> float:
@@ -36,10 +37,15 @@ def _symmetry(s: SystemSamples) -> float:
 
 
 def _positive(s: SystemSamples) -> float:
-    """Return the condition of the inertia along the constraint, infinite if an eigenvalue is not positive."""
+    """Return the condition of the inertia along the constraint, infinite if an eigenvalue is not positive.
+
+    On a group with a form they may be negative.
+    """
     need_motion(s)
     Q = np.linalg.qr(s.S.T)[0]
     eigenvalues = np.linalg.eigvalsh(Q.T @ (s.inertia + s.inertia.T) @ Q / 2)
+    if s.group.form is not None:
+        eigenvalues = np.sort(np.abs(eigenvalues))
     return float(eigenvalues[-1] / eigenvalues[0]) if eigenvalues[0] > 0 else np.inf
 
 
@@ -115,9 +121,14 @@ STATICS = (
     ),
     Check("complementary", "rows of constraint_subspace and annihilator together span the space", 0.0, _complementary),
     Check("annihilator", "annihilator @ constraint_subspace.T = 0", 1e-13, _annihilator),
-    Check("inertia of the mass tensor", "inertia_operator[i, j] = tr(E_i J E_j^T)", 1e-12, _mass_tensor),
+    Check("inertia of the mass tensor", "inertia_operator[i, j] = tr(E_i J E_j*)", 1e-12, _mass_tensor),
     Check("inertia symmetric", "inertia_operator is symmetric", 1e-13, _symmetry),
-    Check("inertia positive", "inertia along the constraint is positive: finite condition", 1e13, _positive),
+    Check(
+        "inertia positive",
+        "inertia along the constraint is positive, with a form invertible",
+        1e13,
+        _positive,
+    ),
     Check("constrained_inertia", "constrained_inertia = S I S^T", 1e-12, _constrained_inertia),
     Check("restriction", "restrict(p) = S p (in space: S coadjoint(g^-1, p))", 1e-12, _restriction),
     Check("restricted_velocity", "restricted_velocity inverts velocity -> momentum", 1e-11, _velocity),

@@ -68,7 +68,7 @@ def test_all_branches_conserve_energy() -> None:
         good, _ = newton(body, work, m, y)
         if good:
             displaced(body, work, y)
-            increments(work, term)
+            increments(body, work, term)
             after = m + term
             assert abs(after @ body.metric @ after / (m @ body.metric @ m) - 1) < 1e-9
             found.add(tuple(y.round(6)))
