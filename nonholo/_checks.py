@@ -144,17 +144,6 @@ def positive_definite(where: str, matrix: Array, what: str, remedy: str) -> None
         raise error(where, f"make {what} positive definite", got, remedy)
 
 
-def invertible(where: str, matrix: Array, what: str, remedy: str) -> None:
-    """Refuse a symmetric matrix that is singular to rounding, and name its eigenvalues."""
-    if is_traced(matrix):
-        return
-    units = np.sqrt(np.abs(matrix).max(axis=1))  # rows may mix lengths and angles
-    eigenvalues = np.linalg.eigvalsh(matrix / np.where(units > 0, units, 1) / np.where(units > 0, units, 1)[:, None])
-    if not np.abs(eigenvalues).min() > 1e-13 * np.abs(eigenvalues).max():
-        got = f"eigenvalues {np.linalg.eigvalsh(matrix).tolist()}"
-        raise error(where, f"make {what} invertible", got, remedy)
-
-
 def flow_times(value: Any) -> Array:
     """Return the times of a flow: at least one, in strict order, in either direction."""
     where, remedy = "flow(times=...)", "Sort the times; the start is at the first."

@@ -21,6 +21,7 @@ from nonholo.numerics._matrix_functions import (
 )
 
 _REPRODUCED = 1e-8  # relative error of exp(log(g)) beyond which there is no logarithm
+_KNOWN = 1e-12  # of 1 / (|g| |g^-1|), above which the sign of a determinant is no rounding error
 _HALVINGS = 3  # square roots before the integral of the logarithm: eigenvalues up to exp(16)
 
 
@@ -173,7 +174,7 @@ class MatrixGroup(AbstractMatrixGroup):
         """Return how far the logarithm is from the algebra; infinite where there is no logarithm (JAX: undefined).
 
         With a form: the residual of g* g = I relative to |g*| |g|, or how far (g - g*)/2 is from the algebra relative
-        to |g|, whichever is larger; at least 2 for a negative determinant.
+        to |g|, whichever is larger; 2 for a negative determinant. Other components of the group are not told apart.
         """
         g = self._matrix(g)
         xp = g.__array_namespace__()
@@ -185,11 +186,12 @@ class MatrixGroup(AbstractMatrixGroup):
 
     def _form_residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
         xp, turned = g.__array_namespace__(), self.form_adjoint(g)
-        K = (g - turned) / 2
-        defect, outside = turned @ g - identity_like(g), K - self.hat(self.vee(K))
-        size, other, defect, outside = (xp.max(abs(X), axis=(-2, -1)) for X in (g, turned, defect, outside))
-        found = xp.maximum(defect / xp.maximum(size * other, 1), outside / xp.maximum(size, 1))
-        return xp.maximum(found, 1 - xp.sign(xp.linalg.det(g)))
+        size, other = (xp.maximum(xp.max(abs(X), axis=(-2, -1), keepdims=True), 1) for X in (g, turned))
+        g, turned, eye = g / size, turned / other, identity_like(g) / size / other
+        K = (g - turned * (other / size)) / 2
+        worst = xp.maximum(abs(turned @ g - eye), abs(K - self.hat(self.vee(K))))
+        known = (eye[..., 0, 0] > _KNOWN) & (xp.linalg.det(g) < 0)
+        return xp.where(known, 2.0, xp.max(worst, axis=(-2, -1)))
 
     def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:
         """Return the largest imaginary part of an eigenvalue of `hat(x)`."""

@@ -5,13 +5,15 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from nonholo._checks import array, error, invertible, positive_definite, symmetric
+from nonholo._checks import array, error, is_traced, positive_definite, symmetric
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, Equilibria, form_along
 from nonholo.systems._drift import constant_velocities
 from nonholo.systems._mass import checked_group, form_mass_tensor, group_mass_tensor, inertia_from_mass_tensor
 from nonholo.systems._subspace import subspace_and_annihilator
+
+_SINGULAR = 1e-13  # relative to the terms of the inertia
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False, init=False)
@@ -99,8 +101,7 @@ class LLSystem(AbstractLLSystem):
         for field, value in zip(dataclasses.fields(self), values, strict=True):
             object.__setattr__(self, field.name, value)
         if len(rows) and mass_tensor is not None and group.form is not None:
-            remedy = "Every admissible velocity needs a momentum of its own along the constraint."
-            invertible(where, self.constrained_inertia, "the inertia along the constraint", remedy)
+            _refuse_singular(where, self)
         elif len(rows):
             remedy = "Every admissible velocity needs a positive kinetic energy."
             positive_definite(where, self.constrained_inertia, "the inertia along the constraint", remedy)
@@ -158,3 +159,17 @@ def _tensor(where: str, group: AbstractMatrixGroup, value: Any) -> Array:
 def _operator(where: str, value: Any, dim: int) -> Array:
     remedy = f"Pass the symmetric ({dim}, {dim}) matrix that takes body velocities to body momenta."
     return symmetric(where, array(where, value, (dim, dim), remedy), remedy)
+
+
+def _refuse_singular(where: str, system: LLSystem) -> None:
+    """Refuse an inertia along the constraint that is singular to rounding; it may have either sign."""
+    inertia, rows = system.constrained_inertia, np.abs(system.constraint_subspace)
+    if is_traced(inertia):
+        return
+    terms, units = rows @ np.abs(system.inertia_operator) @ rows.T, np.ones(len(rows))
+    for _ in range(8):  # rows may mix lengths and angles
+        units = units * np.sqrt((terms / units / units[:, None]).max(axis=1, initial=np.finfo(float).tiny))
+    if not np.abs(np.linalg.eigvalsh(inertia / units / units[:, None])).min() > _SINGULAR:
+        got = f"eigenvalues {np.linalg.eigvalsh(inertia).tolist()}"
+        remedy = "Every admissible velocity needs a momentum of its own along the constraint."
+        raise error(where, "make the inertia along the constraint invertible", got, remedy)

@@ -1,0 +1,61 @@
+"""Bodies on groups of a form: which mass tensors are taken, and the inertia that they define."""
+
+import numpy as np
+import pytest
+from forms import FORMS, tensor
+
+import nonholo as nh
+
+_GROUP = FORMS["SO(2,1)"]
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_the_inertia_operator(name: str) -> None:
+    """I_ij = tr(E_i J E_j*) = -tr(E_i J E_j), symmetric, and the same along d."""
+    group, rng = FORMS[name], np.random.default_rng(0)
+    one = nh.LLSystem(group, tensor(group, rng), np.eye(group.dim))
+    expected = -np.einsum("iab,bc,jca->ij", group.basis, one.mass_tensor, group.basis)
+    assert np.abs(one.inertia_operator - expected).max() < 1e-13 * np.abs(expected).max()
+    assert np.abs(one.constrained_inertia - expected.T).max() < 1e-13 * np.abs(expected).max()
+
+
+def test_tensors_that_do_not_fit_are_refused() -> None:
+    """A tensor that is not its own adjoint is told its residual; one that is symmetric in the wrong sense as well."""
+    J = np.array([[1.0, 0.0, 0.5], [0.0, 2.0, 0.0], [0.5, 0.0, 3.0]])  # symmetric, but J* has the entries -0.5
+    with pytest.raises(ValueError, match=r"LLSystem\(mass_tensor=.*J\* = G\^-1 J\^T G = J.*residual of 1\. If G is"):
+        nh.LLSystem(_GROUP, J, np.eye(3)[:2])
+    assert nh.LLSystem(_GROUP, J @ _GROUP.form, np.eye(3)[:2]).mass_tensor[0, 2] == -0.5
+    with pytest.raises(ValueError, match=r"shape \(3, 3\).*shape \(4, 4\)"):
+        nh.LLSystem(_GROUP, np.eye(4), np.eye(3)[:2])
+
+
+def test_the_inertia_along_d_may_be_indefinite_but_not_singular() -> None:
+    """On a cone of the Killing form two vectors have no energy: one line is refused, the plane through both is not."""
+    form = np.einsum("iab,jba->ij", _GROUP.basis, _GROUP.basis)
+    values, axes = np.linalg.eigh(form)
+    null = axes[:, 0] / np.sqrt(-values[0]) + axes[:, 2] / np.sqrt(values[2])
+    with pytest.raises(ValueError, match=r"inertia along the constraint invertible.*eigenvalues"):
+        nh.LLSystem(_GROUP, np.eye(3), [null])
+    plane = nh.LLSystem(_GROUP, np.eye(3), [null, axes[:, 0]])
+    assert np.linalg.det(plane.constrained_inertia) < 0
+
+
+def test_other_systems_stay_on_rigid_groups() -> None:
+    """A rigid body and a constraint fixed in space need SO(n) or SE(n)."""
+    with pytest.raises(ValueError, match=r"RigidBody.*be used on SO\(n\) or SE\(n\).*LLSystem"):
+        nh.RigidBody(_GROUP.form, _GROUP)
+    with pytest.raises(ValueError, match=r"LRSystem.*be used on SO\(n\) or SE\(n\)"):
+        nh.LRSystem(_GROUP, _GROUP.form, np.eye(3)[:2])
+
+
+def test_the_flow_knows_the_inertia_alone() -> None:
+    """A mass tensor and its inertia operator on the group without form give one continuous motion."""
+    J = np.diag([1.0, 2.0, 4.0]) @ _GROUP.form
+    rows = np.array([[1.0, 0.2, 0.0], [0.0, 0.3, 1.0]])
+    one = nh.LLSystem(_GROUP, J, rows)
+    if np.linalg.eigvalsh(one.constrained_inertia)[0] < 0:
+        pytest.fail("choose rows with a definite inertia")
+    other = nh.LLSystem(nh.MatrixGroup(_GROUP.basis), inertia_operator=one.inertia_operator, constraint_subspace=rows)
+    first, second = (nh.flow(s, restricted_velocity=[0.4, 0.3], times=[0.0, 1.0, 3.0]) for s in (one, other))
+    assert np.abs(first.configuration - second.configuration).max() < 1e-9
+    assert np.ptp(first.energy) < 1e-9
