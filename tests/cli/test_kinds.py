@@ -34,6 +34,8 @@ time_step = 0.1
 steps = 3
 """
 
+MASS_WITH_FORM = "mass_tensor = [[1, 0, -0.3], [0, 2, 0], [0.3, 0, -4]]"
+
 
 def _problems(text: str, *settings: str) -> list[str]:
     Path("my.toml").write_text(text)
@@ -152,6 +154,19 @@ def test_own_group_is_read_and_written() -> None:
     system = scenario.body.system()
     assert system.group == nh.MatrixGroup(tomllib.loads(OWN)["body"]["group"]["basis"])
     assert type(scenario).model_validate(tomllib.loads(effective_text(scenario))) == scenario
+
+
+def test_a_form_makes_the_energy_exact() -> None:
+    """With a form beside the basis a mass tensor is taken, and the discretisation is that of the theorem."""
+    lorentz = "{ basis = [[[0,0,0],[0,0,1],[0,1,0]],[[0,0,1],[0,0,0],[1,0,0]],[[0,1,0],[-1,0,0],[0,0,0]]] }"
+    text = OWN.replace(str(HEISENBERG), lorentz.replace(" }", ", form = [[1,0,0],[0,1,0],[0,0,-1]] }"))
+    Path("my.toml").write_text(text.replace("inertia_operator = [[2, 0, 0], [0, 1, 0], [0, 0, 1]]", MASS_WITH_FORM))
+    scenario = load_scenario("my.toml", []).scenario
+    discrete = scenario.discretization()
+    assert (discrete.difference, discrete.constraint) == ("matrix", "skew")
+    assert discrete.conserves_energy
+    assert type(scenario).model_validate(tomllib.loads(effective_text(scenario))) == scenario
+    assert _problems(text.replace("0,0,-1]] }", "0,0,1]] }"))
 
 
 def test_defaults_are_those_of_the_library() -> None:

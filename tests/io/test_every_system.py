@@ -17,6 +17,7 @@ from nonholo.systems import SYSTEMS, AbstractSystem
 
 _HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
 _PRODUCT = nh.ProductGroup(nh.SO(3), nh.ProductGroup(nh.SE(2), nh.Translations(2)), _HEISENBERG)
+_LORENTZ = nh.MatrixGroup(np.diag([1, 1, -1]) @ nh.SO(3).basis, form=np.diag([1, 1, -1]))
 _RNG = np.random.default_rng(3)
 
 
@@ -45,6 +46,9 @@ MOTIONS: dict[str, Callable[[], Any]] = {
     "right-invariant on SE(2)": lambda: nh.discretize(nh.LRSystem(nh.SE(2), _body(2), [[1.0, 0, 0], [0, 1.0, 0]]), 0.1),
     "left-invariant on SE(3)": lambda: nh.discretize(
         nh.LLSystem(nh.SE(3), _body(3), [[0, 0, 1.0, 0.5, 0, 0], [0, 1.0, 0, 0, 0, 0.3]]), 0.1
+    ),
+    "body of SO(2, 1)": lambda: nh.discretize(
+        nh.LLSystem(_LORENTZ, np.diag([1.0, 2.0, -4.0]), [[0, 1, 0], [1, 0, 0]]), 0.1
     ),
     "nothing moves": lambda: nh.discretize(nh.LLSystem(nh.SO(3), _tensor(3), np.empty((0, 3))), 0.1),
     "one direction": lambda: nh.discretize(nh.LLSystem(nh.SO(3), _tensor(3), [[1.0, 0.0, 0.0]]), 0.1),
@@ -135,7 +139,7 @@ def test_every_system_is_tried() -> None:
 
 @pytest.mark.parametrize(
     "group",
-    [nh.SO(2), nh.SO(3), nh.SO(6), nh.SE(2), nh.SE(4), nh.Translations(1), _HEISENBERG, _PRODUCT],
+    [nh.SO(2), nh.SO(3), nh.SO(6), nh.SE(2), nh.SE(4), nh.Translations(1), _HEISENBERG, _LORENTZ, _PRODUCT],
     ids=repr,
 )
 def test_groups_come_back(group: AbstractMatrixGroup) -> None:
