@@ -9,13 +9,17 @@ from typing import Any
 import numpy as np
 
 from nonholo._checks import error
+from nonholo._results import OutcomeError
 from nonholo._types import Float
 from nonholo.analysis._critical_energies import critical_energies
-from nonholo.analysis._followed import Approach, approach, followed
+from nonholo.analysis._equilibria import highest_energy
+from nonholo.analysis._followed import Approach, Ends, approach, followed, kept_velocity
 from nonholo.analysis._single_valued_region import single_valued_region
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.systems import AbstractLLSystem, ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
+
+_SAME = 1e-6  # relative distance of displacements beyond which two orbits are on different branches
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -32,10 +36,9 @@ class Asymptotics:
         spatial_axis_after: The same.
         heading_turn: How far a sleigh turns in all; its size alone for a system, with its sign for an orbit.
         motion_turn: The same for its direction of motion, modulo full turns: the sleigh starts out backwards.
-        persists: Whether the branch is known never to end, so that the limits are reached. It is for a flow, for a
-            discrete sleigh below its `principal_energy` of `single_valued_region`, and for a discrete top (n = 3) in
-            the regular regime below the saddle (this rests on the uniqueness of the inner root, which is observed, not
-            proved). Elsewhere the limits are those of an orbit that never loses its branch.
+        persists: Whether the orbit is known to go on for ever. It is for a flow, for a principal orbit of a plane
+            sleigh below its `principal_energy` of `single_valued_region` and of a top (n = 3) below its `fold` of
+            `critical_energies`. Elsewhere the limits are those of an orbit that does, on whatever branches.
     """
 
     velocity_before: Float[np.ndarray, "dim"] | None = None
@@ -52,12 +55,16 @@ class Asymptotics:
 def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
     r"""Return where the motions of a system, or one orbit of a flow or of a discrete map, come from and go to.
 
-    Every motion goes from the repelling to the attracting equilibrium of its energy. The heading of a sleigh turns by
+    Every motion goes from the repelling to the attracting equilibrium of its energy. For the discrete map this holds
+    for every real orbit that goes on for ever and is not stationary, whatever branches it takes, in every dimension, at
+    every energy; where no equilibrium has the energy (above `line` of `critical_energies`, `highest_energy` of
+    `equilibria`) none goes on for ever, and there are no limits. The heading of a sleigh turns by
 
     $$ \theta(\infty) - \theta(-\infty) = \mathrm{sgn}(\omega)\,\pi\sqrt{1 + J/(ma^2)} $$
 
     along the flow. A discrete orbit has the same limits of the velocity, exactly, and a turn that differs by O(h^2);
-    its turn and the axes in space are found by following the orbit to both ends.
+    its turn and the axes in space are found by following the principal orbit of its first state to both ends. They are
+    None if that ends on the way or is another orbit. Of a composition (order > 2) the limits are observed, not proved.
 
     Reference: [fedorov-zenkov-2004], sections 5 and 6, "bi-asymptotic".
 
@@ -66,7 +73,6 @@ def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
 
     Raises:
         ValueError: Another system or orbit; a discrete orbit that needs more than a million steps.
-        OutcomeError: A discrete orbit loses its branch on the way.
 
     Example:
         >>> print(f"{asymptotics(nh.ChaplyginSleigh(1.0, 0.75, 0.5)).heading_turn / np.pi:.12f}")
@@ -108,27 +114,29 @@ def _axis(system: AbstractLLSystem, velocity: Float[np.ndarray, "dim"]) -> Float
 
 
 def _of_orbit(system: AbstractLLSystem, orbit: Orbit) -> Asymptotics:
+    if _is_bound_to_end(orbit):
+        return Asymptotics(persists=False)
     velocity, found = orbit.body_velocity[0], approach(orbit)
     if found is None:
         return _resting(system, orbit, velocity)
     along, spectrum, energy = found.kept, found.spectrum, found.energy
     change = np.zeros_like(along) if spectrum.velocity is None else spectrum.velocity
-    persists = not isinstance(orbit.motion, Discretization) or _known_to_persist(orbit.motion, energy)
+    persists = _known_to_persist(orbit, energy)
     before, after = along - change, along + change
     if isinstance(system, ChaplyginSleigh):
         turn = _heading_turn(system, orbit, found)
-        backwards = float(np.copysign(np.pi, velocity[0]))
-        return Asymptotics(before, after, heading_turn=turn, motion_turn=turn - backwards, persists=persists)
+        forwards = None if turn is None else turn - float(np.copysign(np.pi, velocity[0]))
+        return Asymptotics(before, after, heading_turn=turn, motion_turn=forwards, persists=persists)
     axes = _axis(system, before), _axis(system, after)
     in_space = _in_space(orbit, axes, found)
     return Asymptotics(before, after, *axes, *in_space, persists=persists)
 
 
 def _in_space(orbit: Orbit, axes: tuple, found: Approach) -> tuple:
-    """Return both axes as seen in space; None without axes or poses."""
-    if axes[1] is None or orbit.pose is None:
+    """Return both axes as seen in space; None without axes or poses, or where the orbit is not followed to its ends."""
+    ends = None if axes[1] is None or orbit.pose is None else _ends(orbit, found)
+    if ends is None:
         return None, None
-    ends = followed(orbit, found)
     return ends.first.configuration[-1] @ axes[0], ends.last.configuration[-1] @ axes[1]
 
 
@@ -141,20 +149,45 @@ def _resting(system: AbstractLLSystem, orbit: Orbit, velocity: Float[np.ndarray,
     return Asymptotics(velocity, velocity, axis, axis, in_space, in_space, turn, turn)
 
 
-def _known_to_persist(discrete: Discretization, energy: float) -> bool:
-    if discrete.order > 2:
+def _is_bound_to_end(orbit: Orbit) -> bool:
+    """Tell whether an orbit of the map has more energy than every equilibrium."""
+    highest = highest_energy(orbit.motion) if isinstance(orbit.motion, Discretization) else None
+    return highest is not None and kept_velocity(orbit)[1] > highest
+
+
+def _known_to_persist(orbit: Orbit, energy: float) -> bool:
+    discrete = orbit.motion
+    if not isinstance(discrete, Discretization):
+        return True
+    if orbit.branch != "principal" or discrete.order > 2 or discrete.system.group.dim != 3:
         return False
     if isinstance(discrete.system, ChaplyginSleigh):
         return energy < single_valued_region(discrete).principal_energy
-    if discrete.system.group.dim != 3:
-        return False
-    found = critical_energies(discrete)
-    return found.regular and found.saddle is not None and energy < found.saddle
+    return energy < critical_energies(discrete).fold
 
 
-def _heading_turn(system: ChaplyginSleigh, orbit: Orbit, found: Approach) -> float:
+def _ends(orbit: Orbit, found: Approach) -> Ends | None:
+    """Return both ends of an orbit; None where its principal branch ends, or is not the one that the orbit took."""
+    try:
+        ends = followed(orbit, found)
+    except OutcomeError:
+        return None
+    return ends if orbit.branch == "principal" or _is_start_of(ends.last, orbit) else None
+
+
+def _is_start_of(principal: Orbit, orbit: Orbit) -> bool:
+    """Tell whether two discrete orbits with one first momentum have the same displacements as far as both go."""
+    again, mine = principal.displacement[:: orbit.save_every], orbit.displacement
+    both = min(len(again), len(mine))
+    return bool(np.abs(again[:both] - mine[:both]).max() <= _SAME * np.abs(mine).max())
+
+
+def _heading_turn(system: ChaplyginSleigh, orbit: Orbit, found: Approach) -> float | None:
     """Return the signed turn: in closed form for a flow, summed over all steps for a discrete orbit."""
     if not isinstance(orbit.motion, Discretization):
         return float(np.copysign(_of_system(system).heading_turn or 0.0, orbit.body_velocity[0, 0]))
-    first, last = followed(orbit, found)
+    ends = _ends(orbit, found)
+    if ends is None:
+        return None
+    first, last = ends
     return float(last.heading[-1] - last.heading[0] + first.heading[1] - first.heading[-1])

@@ -11,12 +11,15 @@ import numpy as np
 
 from nonholo._checks import error
 from nonholo._types import Float
+from nonholo.analysis._equilibria import highest_energy
+from nonholo.analysis._fold_energy import fold_energy
 from nonholo.discrete import Discretization
 from nonholo.discrete._composition import refuse_composition
 from nonholo.discrete._regions import Landscape, landscape
 from nonholo.systems import ChaplyginSleigh, SuslovTop
 
 _COINCIDENT = 1e-14  # relative distance of two energies below which a curve of critical points is assumed
+_AT_SADDLE = 1e-12  # relative distance below which a fold is the saddle, through which a line of folds passes
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -45,10 +48,16 @@ class CriticalEnergies:
 
     Attributes:
         saddle: $h^*$: two opposite saddles off the equator. Below it, in the regular regime, the component of the
-            level curve around the identity is separate.
+            level curve around the identity is separate, and each momentum has a displacement on it.
         centre: $h^{**}$: two opposite maxima off the equator. Equal to `saddle` if a closed curve of maxima replaces
             the four points.
         equatorial_saddle: $h_e$: the highest saddle among half-turns.
+        fold: $h_f$: the least energy of a fold that can be reached from the identity through lower energies, always
+            defined. Below it each momentum has exactly one displacement in the part of the level around the identity,
+            the principal one, and no principal orbit ends. In the regular regime
+            $\tfrac{125}{128}h^* < h_f \le h^*$, and $h_f = h^*$ if $\det B \ge 3|c|^2$.
+        line: The highest energy of an equilibrium, $q_c/(2h^2|c|^2)$, which turns by 90 degrees in a step. Above it
+            every real orbit ends, on whatever branches. None for a balanced body, all of whose states are equilibria.
         regular: $\det B > 2|c|^2$.
         points: All isolated critical points, the two (on the equator: one) opposite ones once, from low to high.
     """
@@ -56,6 +65,8 @@ class CriticalEnergies:
     saddle: float | None
     centre: float | None
     equatorial_saddle: float | None
+    fold: float
+    line: float | None
     regular: bool
     points: tuple[CriticalPoint, ...]
 
@@ -83,8 +94,8 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
         >>> found = critical_energies(nh.discretize(top, 1.0))
         >>> print(f"{found.equatorial_saddle:.6f} {found.saddle:.6f} {found.centre:.6f}")
         0.347449 0.930510 1.262473
-        >>> found.regular
-        True
+        >>> found.regular, found.fold == found.saddle, round(found.line, 6)
+        (True, True, 1.008824)
     """
     top = _checked("critical_energies(discrete=...)", discrete)
     land = landscape(top)
@@ -99,6 +110,8 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
         saddle=by_kind.get("saddle"),
         centre=by_kind.get("maximum"),
         equatorial_saddle=max(saddles, default=None),
+        fold=_fold(top, land, unit, by_kind.get("saddle")),
+        line=highest_energy(discrete),
         regular=land.is_regular,
         points=(CriticalPoint(0.0, "minimum", False, True, np.zeros(2)), *sorted(points, key=lambda p: p.energy)),
     )
@@ -118,6 +131,16 @@ def _checked(where: str, discrete: Any) -> SuslovTop:
         got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
         raise error(where, "conserve the energy", got, "Use the defaults of `discretize`.")
     return system
+
+
+def _fold(top: SuslovTop, land: Landscape, unit: float, saddle: float | None) -> float:
+    r"""Return $h_f$: the saddle where $D \ge 3|c|^2$, by theorem, otherwise found by a search."""
+    if saddle is not None and 3 * land.sharpness <= 1:
+        return saddle
+    fold = unit * fold_energy(np.asarray(top.constrained_inertia), np.asarray(top.coupling))
+    if saddle is None or not land.is_regular:
+        return fold
+    return fold if fold < (1 - _AT_SADDLE) * saddle else saddle
 
 
 def _off_equator(land: Landscape, unit: float) -> list[CriticalPoint]:

@@ -4,7 +4,7 @@ Theory: docs/theory/critical-energies-and-limits.md. The equilibria themselves a
 """
 
 import dataclasses
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -28,6 +28,8 @@ class EquilibriumSpectrum:
         rates: Transverse eigenvalues of the flow at `velocity`, all negative, sorted; of opposite sign at -`velocity`.
         multipliers: Transverse eigenvalues of one step at the equilibrium with the momenta of `velocity`, in the order
             of `rates`; reciprocal at the opposite one. None for a system without time step.
+        highest_energy: No equilibrium of the discrete map has more energy: there it turns by 90 degrees in a step. None
+            where there is no bound: without time step, if equilibria do not turn, or if every velocity is one.
     """
 
     subspace: Float[np.ndarray, "m dim"]
@@ -35,6 +37,7 @@ class EquilibriumSpectrum:
     velocity: Float[np.ndarray, "dim"] | None
     rates: Float[np.ndarray, "j"]
     multipliers: Float[np.ndarray, "j"] | None
+    highest_energy: float | None = None
 
 
 def equilibria(system: AbstractLLSystem | Discretization, energy: Array = 1.0) -> EquilibriumSpectrum:
@@ -74,8 +77,28 @@ def equilibria(system: AbstractLLSystem | Discretization, energy: Array = 1.0) -
     momentum = known.attracting @ np.asarray(body.inertia_operator)
     velocity = known.attracting * np.sqrt(level / float(body.constrained_energy(momentum)))
     rates = np.sort(_rates(body.canonical, velocity @ np.linalg.pinv(body.constraint_subspace)))
-    multipliers = None if step is None else _multipliers(body, velocity, rates, step)
-    return EquilibriumSpectrum(known.subspace, known.attracting, velocity, rates, multipliers)
+    if step is None:
+        return EquilibriumSpectrum(known.subspace, known.attracting, velocity, rates, None)
+    multipliers, highest = _multipliers(body, velocity, rates, step), _highest_energy(body, step)
+    return EquilibriumSpectrum(known.subspace, known.attracting, velocity, rates, multipliers, highest)
+
+
+def highest_energy(discrete: Discretization) -> float | None:
+    r"""Return the energy above which the discrete map has no equilibrium, $q_c/(2h^2|c|^2)$ for tops; None if none."""
+    return _highest_energy(cast("AbstractLLSystem", discrete.system), _steps(discrete))
+
+
+def _highest_energy(body: AbstractLLSystem, steps: Float[np.ndarray, "S"]) -> float | None:
+    velocity = body.equilibria().attracting
+    turn = 0.0 if velocity is None else np.abs(steps).max() * float(body.group.angle(velocity))
+    if turn == 0:
+        return None
+    return float(body.constrained_energy(velocity @ np.asarray(body.inertia_operator)) / turn**2)
+
+
+def _steps(discrete: Discretization) -> Float[np.ndarray, "S"]:
+    """Return the time steps of the substeps, one for order 2."""
+    return float(discrete.time_step) * weights(discrete.order)
 
 
 def _checked(where: str, value: Any) -> tuple[AbstractLLSystem, Float[np.ndarray, "S"] | None]:
@@ -89,7 +112,7 @@ def _checked(where: str, value: Any) -> tuple[AbstractLLSystem, Float[np.ndarray
     if not value.conserves_energy:
         got = f"difference={value.difference!r}, constraint={value.constraint!r}"
         raise error(where, "conserve the energy", got, "Use the defaults of `discretize`.")
-    return body, float(value.time_step) * weights(value.order)
+    return body, _steps(value)
 
 
 def _rates(body: AbstractLLSystem, w: Float[np.ndarray, "k"]) -> Float[np.ndarray, "j"]:
@@ -117,7 +140,7 @@ def _multipliers(body: AbstractLLSystem, velocity: np.ndarray, rates: np.ndarray
     """Return the products, over the substeps of a step, of their multipliers."""
     sine = np.abs(steps[:, None]) * float(body.group.angle(velocity))
     if sine.max() > 1:
-        remedy = "Lower the energy or the time step."
+        remedy = f"Lower the energy, to {_highest_energy(body, steps):.6g} at most, or the time step."
         got = f"time_step * angular velocity = {sine.max():.6g}"
         raise error("equilibria(energy=...)", "belong to a step of at most 90 degrees", got, remedy)
     share, change = (1 + np.sqrt((1 - sine) * (1 + sine))) / 2, steps[:, None] * rates / 2

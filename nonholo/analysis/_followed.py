@@ -48,10 +48,16 @@ def approach(orbit: Orbit) -> Approach | None:
     beside = float(np.linalg.norm(velocity - velocity @ np.linalg.pinv(rows) @ rows) / (np.linalg.norm(velocity) or 1))
     if known.attracting is None or beside <= _ROUNDING:
         return None
-    kept = _kept(system, velocity)
-    energy = float(orbit.energy[0]) - float(system.constrained_energy(kept @ np.asarray(system.inertia_operator)))
+    kept, energy = kept_velocity(orbit)
     subject = orbit.motion if isinstance(orbit.motion, Discretization) else system
     return Approach(kept, energy, equilibria(subject, energy), beside)
+
+
+def kept_velocity(orbit: Orbit) -> tuple[Float[np.ndarray, "dim"], float]:
+    """Return the part of the velocity that never changes, and the energy of the rest."""
+    system = cast("AbstractLLSystem", orbit.system)
+    kept = _kept(system, orbit.body_velocity[0])
+    return kept, float(orbit.energy[0]) - float(system.constrained_energy(kept @ np.asarray(system.inertia_operator)))
 
 
 def _kept(system: AbstractLLSystem, velocity: Float[np.ndarray, "dim"]) -> Float[np.ndarray, "dim"]:

@@ -1,0 +1,248 @@
+"""The energy up to which the displacement around the identity is unique, against dense samples and 40-digit cusps."""
+
+from collections.abc import Callable
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.analysis._fold_energy import fold_energy
+
+BODIES = {  # the first three have D/|c|^2 between 2 and 3; the last two are outside the regular regime
+    "three inner values": [
+        [1.645907, -0.975937, -0.176582],
+        [-0.975937, 0.591716, 0.106159],
+        [-0.176582, 0.106159, 0.028912],
+    ],
+    "a little below": [[0.1455, -0.1016, 0.0784], [-0.1016, 1.9212, 1.4494], [0.0784, 1.4494, 1.3992]],
+    "below the saddle": [[0.5086, -0.3131, 0.0789], [-0.3131, 0.2054, -0.0446], [0.0789, -0.0446, 0.0163]],
+    "near a rod": [[1.01, 0.5, 0.4], [0.5, 0.27, 0.2], [0.4, 0.2, 0.16]],
+    "a saddle, irregular": [[0.95, -1.75, 1.8], [-1.75, 3.7, -3.65], [1.8, -3.65, 3.65]],
+}
+THREE, REGULAR = next(iter(BODIES)), list(BODIES)[:3]
+
+
+def _top(name: str) -> nh.SuslovTop:
+    return nh.SuslovTop(BODIES[name])
+
+
+def _discrete(name: str, step: float = 1.0) -> nh.Discretization:
+    return nh.discretize(_top(name), step)
+
+
+def _body(sigma: float, ratio: float, angle: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return B with eigenvalues 1 and `ratio`, c with |c|^2 = sigma det B, and the value of the saddle."""
+    B, c = np.diag([1.0, ratio]), np.sqrt(sigma * ratio) * np.array([np.cos(angle), np.sin(angle)])
+    across = np.array([-c[1], c[0]])
+    kappa = np.eye(2) - np.outer(across, across) / ratio
+    return B, c, 1 / (4 * np.linalg.eigvals(np.linalg.solve(B, kappa)).real.max())
+
+
+def _bound(sigma: float) -> float:
+    return 1 - max(0.0, 3 * sigma - 1) ** 3 * (1 + sigma) / (16 * sigma)
+
+
+def _momenta(discrete: nh.Discretization, energy: float, angles: np.ndarray) -> np.ndarray:
+    circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    return circle @ np.linalg.cholesky(discrete.system.constrained_inertia).T * np.sqrt(2 * energy)
+
+
+class Twin:
+    """Energy and Jacobian determinant at angles (phi, theta) of axis and rotation, from the matrices alone; h = 1."""
+
+    def __init__(self, body: list, number: type = float) -> None:
+        self.J = [[number(x) for x in row] for row in body]
+        self.lib = mpmath if number is mpmath.mpf else np
+
+    def momentum(self, phi: Any, theta: Any) -> tuple:
+        """Return the components along e_1 ^ e_3 and e_2 ^ e_3 of W J - J W^T."""
+        cos, sin, versine = self.lib.cos(theta), self.lib.sin(theta), 1 - self.lib.cos(theta)
+        u = [self.lib.cos(phi), self.lib.sin(phi)]
+        W = [[(i == j) - versine * u[i] * u[j] for j in range(2)] + [sin * u[i]] for i in range(2)]
+        W.append([-sin * u[0], -sin * u[1], cos])
+        J = self.J
+        return tuple(sum(W[i][k] * J[k][2] - J[i][k] * W[2][k] for k in range(3)) for i in range(2))
+
+    def energy(self, phi: Any, theta: Any) -> Any:
+        """Return the energy."""
+        (x, y), J = self.momentum(phi, theta), self.J
+        p, q, r = J[0][0] + J[2][2], J[0][1], J[1][1] + J[2][2]
+        return (r * x * x - 2 * q * x * y + p * y * y) / (p * r - q * q) / 2
+
+    def determinant(self, phi: Any, theta: Any, e: Any) -> Any:
+        """Return the determinant of the momenta by the angles, by central differences."""
+        a, b = self.momentum(phi + e, theta), self.momentum(phi - e, theta)
+        c, d = self.momentum(phi, theta + e), self.momentum(phi, theta - e)
+        return ((a[0] - b[0]) * (c[1] - d[1]) - (a[1] - b[1]) * (c[0] - d[0])) / (4 * e * e)
+
+
+def _first_zero(of: Callable, phi: np.ndarray) -> np.ndarray:
+    """Return where a function that is positive near the identity first changes sign on each ray; pi if it does not."""
+    theta = np.linspace(1e-2, np.pi - 1e-6, 300)
+    negative = of(phi[:, None], theta) <= 0
+    first = np.argmax(negative, axis=1)
+    low, high = theta[np.maximum(first - 1, 0)], theta[first]
+    for _ in range(40):
+        middle = (low + high) / 2
+        below = of(phi, middle) <= 0
+        low, high = np.where(below, low, middle), np.where(below, middle, high)
+    return np.where(negative.any(axis=1), low, np.pi)
+
+
+def _lowest(body: list) -> tuple[float, float, bool]:
+    """Return the angles of the lowest first fold, or top of a ray, of dense rays, looked at closer and closer."""
+    twin, center = Twin(body), np.pi
+    side = np.sign(twin.determinant(0.0, 1e-2, 1e-4))
+    for width in (np.pi, 0.1, 0.01, 1e-3):
+        phi = center + width * np.linspace(-1.0, 1.0, 400)
+        fold = _first_zero(lambda x, y: side * twin.determinant(x, y, 1e-4), phi)
+        top = _first_zero(lambda x, y: twin.energy(x, y + 1e-5) - twin.energy(x, y - 1e-5), phi)
+        least = int(np.argmin(twin.energy(phi, np.minimum(fold, top))))
+        center = phi[least]
+    return float(center), float(min(fold[least], top[least])), bool(fold[least] < top[least])
+
+
+def _cusp(body: list, phi: float, theta: float) -> mpmath.mpf:
+    """Return the energy of the cusp near a fold: the determinant is stationary along the level."""
+    twin, e, d = Twin(body, mpmath.mpf), mpmath.mpf(10) ** -25, mpmath.mpf(10) ** -15
+
+    def slopes(of: Callable, x: Any, y: Any) -> tuple:
+        return (of(x + d, y) - of(x - d, y)) / (2 * d), (of(x, y + d) - of(x, y - d)) / (2 * d)
+
+    def wanted(x: Any, y: Any) -> tuple:
+        fold, height = slopes(lambda s, t: twin.determinant(s, t, e), x, y), slopes(twin.energy, x, y)
+        return twin.determinant(x, y, e), fold[0] * height[1] - fold[1] * height[0]
+
+    x, y = mpmath.mpf(phi), mpmath.mpf(theta)
+    for _ in range(8):
+        rows = [slopes(lambda s, t, i=i: wanted(s, t)[i], x, y) for i in range(2)]
+        move = mpmath.lu_solve(mpmath.matrix(rows), mpmath.matrix(wanted(x, y)))
+        x, y = x - move[0], y - move[1]
+    assert mpmath.norm(move) <= 1e-20
+    assert abs(x - phi) + abs(y - theta) <= 1e-3
+    return twin.energy(x, y)
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_fold_energy_against_the_matrices(name: str) -> None:
+    """The lowest fold that dense rays of the definition meet, polished to 30 digits, has the energy to 1e-11."""
+    phi, theta, is_fold = _lowest(BODIES[name])
+    assert is_fold
+    with mpmath.workdps(110):
+        expected = _cusp(BODIES[name], phi, theta)
+        assert abs(nh.critical_energies(_discrete(name)).fold / expected - 1) <= 1e-11
+
+
+def test_the_inner_displacement_is_not_unique_below_the_saddle() -> None:
+    """At 0.985 h* a momentum has three inner values, and a principal orbit ends; its limits are those of any branch."""
+    top = _discrete(THREE)
+    known = nh.critical_energies(top)
+    level = 0.985 * known.saddle
+    assert known.regular
+    assert known.fold < level < known.saddle
+    regions = [
+        nh.displacements_over(top, r).region.tolist() for r in _momenta(top, level, np.linspace(0.0, 2 * np.pi, 101))
+    ]
+    assert {row.count("inner") for row in regions} == {1, 3}
+    orbit = nh.simulate(top, momentum=[-0.34187683576850936, 0.21427098809515754], steps=50, throw=False)
+    assert orbit.outcome == nh.Outcome.no_real_branch
+    limits = nh.asymptotics(orbit)
+    assert not limits.persists
+    assert limits.spatial_axis_after is None
+    assert np.abs(limits.axis_after - nh.asymptotics(top.system).axis_after).max() <= 1e-14
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_below_the_fold_every_principal_orbit_goes_on(name: str) -> None:
+    """At 0.9999 of the energy 50 principal orbits go on; in the regular regime there is one inner value."""
+    top = _discrete(name, 0.5)
+    level = 0.9999 * nh.critical_energies(top).fold
+    for r in _momenta(top, level, np.linspace(0.1, 6.3, 50)):
+        orbit = nh.simulate(top, momentum=r, steps=40)
+        assert nh.asymptotics(orbit[:1]).persists
+        if name in REGULAR:
+            values = nh.displacements_over(top, r)
+            assert np.flatnonzero(values.region == "inner").tolist() == [values.principal]
+
+
+def test_rules_that_are_not_known_to_persist() -> None:
+    """What is known of principal orbits is not said of another rule, nor of a composition; limits remain."""
+    top = _discrete(THREE)
+    r = _momenta(top, 0.5 * nh.critical_energies(top).fold, np.array([1.0]))[0]
+    other = nh.asymptotics(nh.simulate(top, momentum=r, steps=3, branch="largest"))
+    composed = nh.asymptotics(nh.simulate(nh.discretize(top.system, 1.0, order=4), momentum=r / 9, steps=3))
+    near = nh.asymptotics(nh.simulate(top, momentum=r, steps=3, branch="nearest"))
+    assert [other.persists, composed.persists, near.persists] == [False, False, False]
+    assert other.spatial_axis_after is None
+    assert near.spatial_axis_after is not None
+    assert np.abs(other.velocity_after - near.velocity_after).max() <= 1e-15
+
+
+@pytest.mark.parametrize("sigma", [0.0, 0.05, 0.2, 1 / 3])
+def test_no_fold_below_the_saddle_for_three(sigma: float) -> None:
+    """For D >= 3|c|^2 the search, which does not know the theorem, meets nothing below the saddle."""
+    rng = np.random.default_rng(int(100 * sigma))
+    for _ in range(20):
+        B, c, saddle = _body(sigma, 10 ** -rng.uniform(0.0, 5.0), rng.uniform(0.0, np.pi))
+        assert fold_energy(B, c) == pytest.approx(saddle, rel=1e-9)
+
+
+@pytest.mark.profile("problems")
+def test_the_bound_on_many_bodies() -> None:
+    """On 10,000 bodies with D > 2|c|^2 the fold is not below the bound; for D >= 3|c|^2 it is the saddle."""
+    rng, below = np.random.default_rng(0), 0
+    for _ in range(10_000):
+        sigma, ratio = rng.uniform(0.02, 0.4999), 10 ** -rng.uniform(0.0, 4.0)
+        near_an_axis = rng.normal() * np.sqrt(ratio) + np.pi / 2 * rng.integers(2)
+        B, c, saddle = _body(sigma, ratio, near_an_axis if rng.random() < 0.5 else rng.uniform(0.0, np.pi))
+        relative = fold_energy(B, c) / saddle
+        assert relative >= _bound(sigma) - 1e-12
+        below += relative < 1 - 1e-9
+    assert below > 1000
+
+
+@pytest.mark.parametrize("sigma", [0.35, 0.42, 0.4999])
+def test_the_bound_is_sharp(sigma: float) -> None:
+    """Flat bodies with the direction of the proof across c come within a percent of it; the least of all is 125/128."""
+    eta = (3 * sigma - 1) / 2
+    limit, m = _bound(sigma), 1e-4
+    rho = (1 - eta**2) / limit
+    k = np.sqrt((1 / rho - 1) * (1 - (1 - sigma) * m * m * rho))
+    b = m * (1 - sigma)
+    B, c = np.array([[b, k], [k, (1 + k * k) / b]]), np.array([0.0, np.sqrt(sigma)])
+    saddle = 1 / (4 * np.linalg.eigvals(np.linalg.solve(B, np.diag([1 - sigma, 1.0]))).real.max())
+    assert 0 <= fold_energy(B, c) / saddle - limit <= 0.01 * (1 - limit)
+    assert limit >= 125 / 128
+
+
+def test_fold_scales_and_turns_with_the_body() -> None:
+    """The energies go with 1/h^2 and do not depend on the body frame."""
+    turn = nh.SO(3).random(np.random.default_rng(5))
+    turned = nh.SuslovTop(turn @ np.array(BODIES[THREE]) @ turn.T, axis=turn[:, 2])
+    one, other = (nh.critical_energies(nh.discretize(top, h)) for top, h in ((_top(THREE), 1.0), (turned, 0.25)))
+    assert [other.fold, other.line] == pytest.approx([16 * one.fold, 16 * one.line], rel=1e-11)
+
+
+def test_a_balanced_body_has_no_line() -> None:
+    """For c = 0 the folds are the ridge: the fold is the saddle, and no energy is above all equilibria."""
+    balanced = nh.critical_energies(nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 0.5])), 0.3))
+    assert balanced.fold == balanced.saddle
+    assert balanced.line is None
+
+
+def test_the_line_of_equilibria_ends_between_saddle_and_centre() -> None:
+    """Its top is the energy of the equilibrium that turns by 90 degrees; `equilibria` says the same."""
+    for name in REGULAR:
+        top = _discrete(name, 0.7)
+        known = nh.critical_energies(top)
+        assert known.saddle <= known.line <= known.centre
+        c = top.system.coupling
+        z = -np.sqrt(0.5) * c / np.hypot(*c)
+        W = np.block([[np.eye(2) - 2 * np.outer(z, z), np.sqrt(2) * z[:, None]], [-np.sqrt(2) * z, np.zeros(1)]])
+        orbit = nh.simulate(top, displacement=W, steps=1, throw=False, branch="smallest")
+        assert orbit.energy[0] == pytest.approx(known.line, rel=1e-13)
+        assert nh.equilibria(top, 0.5 * known.line).highest_energy == known.line
+        with pytest.raises(ValueError, match=f"Lower the energy, to {known.line:.6g} at most"):
+            nh.equilibria(top, 1.001 * known.line)
