@@ -13,6 +13,8 @@ from nonholo.reproduction._verdict import Verdict
 from nonholo.reproduction.formulas import suslov_integrals as formulas
 from nonholo.reproduction.statements.section6_critical_values import GENERIC, critical_points
 
+_FLAT = [[1.645907, -0.975937, -0.176582], [-0.975937, 0.591716, 0.106159], [-0.176582, 0.106159, 0.028912]]
+
 
 @finding(
     "quatern_int",
@@ -129,8 +131,9 @@ def between() -> Measured:
     r"lies in the interior (exterior) part of $\mathcal{S}$, one has to choose a real solution of (sys) that has "
     r"the smallest (largest) norm”",
     verdict=Verdict.FALSE,
-    corrected="Inside one value was found wherever $h < h^*$ and $D > 2|c|^2$. Outside there are one or three: the "
-    "body with four real values has three outside, at $E < h^*$.",
+    corrected=r"For $D > 2|c|^2$ inside there is always a value, and only one below the first fold $h_f$, "
+    r"$\frac{125}{128}h^* < h_f \le h^*$, which is $h^*$ if $D \ge 3|c|^2$; from $h_f$ on there may be three. Outside "
+    r"there are one or three: the body with four real values has three outside, at $E < h^*$.",
     errata=("S49",),
     tolerance=1e-45,
 )
@@ -144,4 +147,13 @@ def components() -> Measured:
         sides = [1 - data.point_of(v)[0] ** 2 < formulas.ridge(J, data.unit(v)) for v in real]
         facts += [below, sum(sides) == 1, len(sides) - sum(sides) in (1, 3)]
         outside.append(len(sides) - sum(sides))
-    return Measured(data.lacking(*facts), max(outside) - 1, "four displacements of two bodies")
+    facts.append(_inside_a_flat_body() == 3)
+    return Measured(data.lacking(*facts), max(outside) - 1, "four displacements of two bodies, one of a flat body")
+
+
+def _inside_a_flat_body() -> int:
+    """Count inner values of a momentum at 0.99 of the saddle's energy, of a body with D < 3|c|^2."""
+    flat = nh.discretize(nh.SuslovTop(_FLAT), 1.0)
+    found = nh.displacements_over(flat, [-0.3268, 0.1668])
+    facts = 0.98 < found.energy / nh.critical_energies(flat).saddle < 1.0
+    return facts * found.region.tolist().count("inner")

@@ -108,7 +108,8 @@ def balanced() -> Measured:
     r"semi-line $\mathbb{P}_s = \mathbb{P}\cap\Theta_-$ respectively. It lies entirely in one of the semi-planes "
     r"$\Delta_\pm$.”",
     verdict=Verdict.MISPRINT,
-    corrected=r"It goes to the equilibria in $\Theta_+$. For $D > 2|c|^2$; that the inner value is unique is observed.",
+    corrected=r"It goes to the equilibria in $\Theta_+$. Proved for $D > 2|c|^2$, $E < h^*$ and any choice among the "
+    r"inner values: one always exists, and below $h_f$ (S49) it is the only one.",
     errata=("S40",),
     tolerance=1e-45,
 )
