@@ -172,9 +172,10 @@ def discretize(
         time_step: h > 0.
         difference: "matrix", "logarithmic" or a callable $L_d(W)$ of a JAX matrix that includes the factor h. By
             default "matrix" where it is defined, for a mass tensor, and "logarithmic" elsewhere.
-        constraint: "skew", (W - W^-1)/2 in d on the component through the identity; "exponential", exp d; "naive",
-            W - I projected to the algebra, in d; or functions f_j(W) of a JAX matrix, zero on the variety. By default
-            "skew" where it is defined, on SO(n), SE(n) and groups with a form, and "exponential" elsewhere.
+        constraint: "skew", (W - W^-1)/2 in d on the irreducible analytic component through the identity;
+            "exponential", exp d; "naive", W - I projected to the algebra, in d; or functions f_j(W) of a JAX matrix,
+            zero on the variety. By default "skew" where it is defined, on SO(n), SE(n) and groups with a form, and
+            "exponential" elsewhere.
         order: 2, or 4, 6, 8: a symmetric composition of 5, 9, 15 steps of order 2 with time steps of either sign. It
             needs difference "matrix" or "logarithmic" and constraint "skew" or "exponential". See
             docs/theory/compositions.md for what momenta and displacements of its orbits are.

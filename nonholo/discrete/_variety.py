@@ -1,9 +1,9 @@
 r"""The displacement variety: where displacements may lie, as a chart and the equations that the chart leaves over.
 
-"skew": $(W - W^{-1})/2 \in \mathfrak{d}$, through the identity. "exponential": $\exp\mathfrak{d}$. "naive": $W - I$,
-projected to the algebra, in $\mathfrak{d}$. Or functions $f_j(W) = 0$. If $X^3 \in \mathfrak{d}$ for every
-$X \in \mathfrak{d}$ (tops, sleighs, the whole algebra, other symmetric pairs), the first two are the same set, and the
-Cayley image of $\mathfrak{d}$ too.
+"skew": $(W - W^{-1})/2 \in \mathfrak{d}$, the irreducible analytic component through the identity. "exponential":
+$\exp\mathfrak{d}$. "naive": $W - I$, projected to the algebra, in $\mathfrak{d}$. Or functions $f_j(W) = 0$. If
+$X^3 \in \mathfrak{d}$ for every $X \in \mathfrak{d}$ (tops, sleighs, the whole algebra, other symmetric pairs), the
+first two are the same set, and the Cayley image of $\mathfrak{d}$ too.
 """
 
 import dataclasses

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.analysis._fold_energy import fold_energy
+from nonholo.analysis._fold_energy import Directions, fold_energy
 
 BODIES = {  # the first three have D/|c|^2 between 2 and 3; the last two are outside the regular regime
     "three inner values": [
@@ -180,6 +180,30 @@ def test_rules_that_are_not_known_to_persist() -> None:
     assert np.abs(other.velocity_after - near.velocity_after).max() <= 1e-15
 
 
+def test_folds_in_polar_coordinates() -> None:
+    """The cubic and the form with eta are the fold function of docs/theory/invariant-measure.md; so is the energy."""
+    rng = np.random.default_rng(2)
+    for _ in range(200):
+        B, c, _ = _body(rng.uniform(0.0, 0.9), 10 ** -rng.uniform(0.0, 2.0), rng.uniform(0.0, np.pi))
+        D, angle, x = np.linalg.det(B), rng.uniform(0.0, 2 * np.pi), np.array([rng.uniform(0.0, 3.0)])
+        u = np.array([[np.cos(angle), np.sin(angle)]])
+        z0, z, across = x[0] / np.hypot(x[0], 1.0), u[0] / np.hypot(x[0], 1.0), np.array([-u[0, 1], u[0, 0]])
+        force = (c @ across) * across * (z @ z)
+        e = (z0 * B @ z + force) @ np.linalg.solve(B, z0 * B @ z + force)
+        f = D * z0 * (z0**2 - z @ z) + 2 * z0 * (z @ z) * (c @ across) ** 2 - c @ B @ z + 2 * (c @ z) * (z @ B @ z)
+        f = f / D * np.hypot(x[0], 1.0) ** 3
+        over = Directions.over(u, B, c)
+        (b, p, s, along), X = (float(part[0]) for part in over), x[0]
+        kappa, alpha, k = 1 - s * s, c @ u[0], u[0] @ B @ across
+        mu, rate = b / kappa, (2 * k * kappa - 2 * b * s * alpha / np.sqrt(D)) / kappa**2
+        Y = X * X - 1 + 2 * s * s
+        eta = Y / (Y + 2 * kappa)
+        cubic = X**3 - p * X * X - (1 - 2 * s * s) * X + 2 * along - p
+        polar = (Y + 2 * kappa) * (eta * (X - alpha * mu / D) - s * kappa * rate / (2 * np.sqrt(D)))
+        assert [cubic, polar] == pytest.approx([f, f], rel=1e-10, abs=1e-10 * (1 + p * p + along * along))
+        assert [over.energy(x)[0], mu / 4 * (1 - eta * eta)] == pytest.approx([e, e], rel=1e-11)
+
+
 @pytest.mark.parametrize("sigma", [0.0, 0.05, 0.2, 1 / 3])
 def test_no_fold_below_the_saddle_for_three(sigma: float) -> None:
     """For D >= 3|c|^2 the search, which does not know the theorem, meets nothing below the saddle."""
@@ -213,6 +237,9 @@ def test_the_bound_is_sharp(sigma: float) -> None:
     b = m * (1 - sigma)
     B, c = np.array([[b, k], [k, (1 + k * k) / b]]), np.array([0.0, np.sqrt(sigma)])
     saddle = 1 / (4 * np.linalg.eigvals(np.linalg.solve(B, np.diag([1 - sigma, 1.0]))).real.max())
+    last = np.sqrt(sigma) * b
+    J = np.block([[B - last * np.eye(2), c[:, None]], [c, last]])
+    assert np.linalg.eigvalsh(J).min() > 0
     assert 0 <= fold_energy(B, c) / saddle - limit <= 0.01 * (1 - limit)
     assert limit >= 125 / 128
 
