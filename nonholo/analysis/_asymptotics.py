@@ -150,8 +150,10 @@ def _resting(system: AbstractLLSystem, orbit: Orbit, velocity: Float[np.ndarray,
 
 
 def _is_bound_to_end(orbit: Orbit) -> bool:
-    """Tell whether an orbit of the map has more energy than every equilibrium."""
-    highest = highest_energy(orbit.motion) if isinstance(orbit.motion, Discretization) else None
+    """Tell whether an orbit of a map that keeps it has more energy than every equilibrium."""
+    if not isinstance(orbit.motion, Discretization) or not orbit.motion.conserves_energy:
+        return False
+    highest = highest_energy(orbit.motion)
     return highest is not None and kept_velocity(orbit)[1] > highest
 
 

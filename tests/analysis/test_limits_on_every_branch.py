@@ -230,3 +230,12 @@ def test_no_limits_above_the_line() -> None:
     assert limits.velocity_after is None
     assert limits.axis_before is None
     assert not limits.persists
+
+
+def test_a_map_that_does_not_keep_energy_is_refused_at_any_energy() -> None:
+    """Nothing is known of the limits of the logarithmic difference, above the line either."""
+    top = nh.SuslovTop(np.diag([1.0, 0.7, 0.9]) + 0.2)
+    logarithmic = nh.discretize(top, 2.0, difference="logarithmic")
+    orbit = nh.simulate(nh.discretize(top, 0.2), restricted_velocity=(1.0, -0.5), steps=1)
+    with pytest.raises(ValueError, match="conserve the energy"):
+        nh.asymptotics(dataclasses.replace(orbit, motion=logarithmic))

@@ -152,8 +152,7 @@ def components() -> Measured:
 
 
 def _inside_a_flat_body() -> int:
-    """Count inner values of a momentum at 0.99 of the saddle's energy, of a body with D < 3|c|^2."""
+    """Count inner values, which lie below the saddle, of a momentum above the first fold of a body with D < 3|c|^2."""
     flat = nh.discretize(nh.SuslovTop(_FLAT), 1.0)
     found = nh.displacements_over(flat, [-0.3268, 0.1668])
-    facts = 0.98 < found.energy / nh.critical_energies(flat).saddle < 1.0
-    return facts * found.region.tolist().count("inner")
+    return found.region.tolist().count("inner") if found.energy > nh.critical_energies(flat).fold else 0
