@@ -1,7 +1,7 @@
 r"""Up to which energy the momenta of a discrete top (n = 3) determine the displacement around the identity.
 
-Over a direction u of the velocities $\cot(\theta/2)$ of a fold is a root of a cubic; the least energy of all folds is a
-search along the circle of directions. Theory: docs/theory/critical-energies-and-limits.md, "Folds inside the ridge".
+On a ray of displacements with one axis $\cot(\theta/2)$ of a fold is a root of a cubic; the least energy of all folds
+is found by a search along the circle of axes. Theory: docs/theory/critical-energies-and-limits.md, "The first fold".
 """
 
 from collections.abc import Callable

@@ -65,7 +65,7 @@ def chosen(
         rule: Any but "principal" and "nearest".
         found: All values.
         present: The present displacement.
-        nearest: Tells the index of the nearest value, for "outer" where there are three.
+        nearest: Tells the index of the nearest value, for a region where there are three.
     """
     real = np.flatnonzero(found.is_real)
     if callable(rule):

@@ -88,7 +88,7 @@ def simulate(
     one goes on there. Every system with a left-invariant constraint has it. Of tops and sleighs with difference
     "matrix" all values are known: "smallest" and "largest" take the real one with that norm of the full momentum,
     "inner" and "outer" the one in that part of the invariant curve (n = 3 and det B > 2|c|^2, below the saddle's
-    energy; of three outer ones the nearest). A function `rule(found, present)` gets the `Branches` and the present W,
+    energy; of three there the nearest). A function `rule(found, present)` gets the `Branches` and the present W,
     and returns the index of a real one or None. A tie and a double root are `branch_unverified`.
 
     A discretised `LagrangeDAlembert` runs the map of its `CoordinateDiscretization.simulate`. It starts at a

@@ -232,6 +232,20 @@ def test_no_limits_above_the_line() -> None:
     assert not limits.persists
 
 
+def test_highest_energy_of_equilibria() -> None:
+    """It is q_c / (2 h^2 |c|^2) for a top with n = 4 and a sleigh that turns at rest; a sleigh that glides has none."""
+    top, gliding = BODIES["top"], BODIES["sleigh"]
+    c, h = top.coupling, 0.5
+    expected = c @ top.constrained_inertia @ c / (c @ c) / (2 * h * h)
+    assert nh.equilibria(nh.discretize(top, h), 0.1).highest_energy == pytest.approx(expected, rel=1e-13)
+    J = np.diag([0.5, 0.7, 0.4]) + 0.1
+    turning = nh.MultidimensionalSleigh(1.3, [0.0, 0.2, -0.1], J)
+    B, c = J[1:, 1:] + J[0, 0] * np.eye(2), J[0, 1:]
+    expected = c @ B @ c / (c @ c) / (2 * h * h)
+    assert nh.equilibria(nh.discretize(turning, h), 0.1).highest_energy == pytest.approx(expected, rel=1e-13)
+    assert nh.equilibria(nh.discretize(gliding, h), 0.1).highest_energy is None
+
+
 def test_a_map_that_does_not_keep_energy_is_refused_at_any_energy() -> None:
     """Nothing is known of the limits of the logarithmic difference, above the line either."""
     top = nh.SuslovTop(np.diag([1.0, 0.7, 0.9]) + 0.2)

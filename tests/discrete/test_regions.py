@@ -30,7 +30,7 @@ def _beyond_ridge(discrete: Discretization, W: np.ndarray) -> bool:
 @pytest.mark.parametrize("top", _TOPS.values(), ids=_TOPS)
 @pytest.mark.parametrize("part", [0.01, 0.3, 0.9, 0.999])
 def test_below_the_saddle_one_branch_is_inner(top: nh.SuslovTop, part: float) -> None:
-    """Below h* exactly one real branch, the principal one, lies before the ridge, all others beyond it."""
+    """For D >= 3|c|^2 exactly one real branch below h*, the principal one, lies before the ridge, others beyond it."""
     discrete = nh.discretize(top, 0.5)
     found = nh.displacements_over(
         discrete, np.sqrt(part * nh.critical_energies(discrete).saddle) * _direction(discrete)
@@ -60,7 +60,7 @@ def test_between_the_saddle_and_the_centre() -> None:
 
 
 def test_every_energy_of_the_map_keeps_one_inner_value() -> None:
-    """Along a run below h* each step has one inner value and it is the one that the run takes."""
+    """Along a run below h*, D >= 3|c|^2, each step has one inner value and it is the one that the run takes."""
     discrete = nh.discretize(_REGULAR, 0.5)
     r = np.sqrt(0.5 * nh.critical_energies(discrete).saddle) * _direction(discrete)
     orbit = nh.simulate(discrete, momentum=r, steps=3)
