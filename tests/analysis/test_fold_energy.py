@@ -125,6 +125,7 @@ def _cusp(body: list, phi: float, theta: float) -> mpmath.mpf:
     return twin.energy(x, y)
 
 
+@pytest.mark.profile("problems", keep=["three inner values", "near a rod"])
 @pytest.mark.parametrize("name", BODIES)
 def test_fold_energy_against_the_matrices(name: str) -> None:
     """The lowest fold that dense rays of the definition meet, polished to 30 digits, has the energy to 1e-11."""
@@ -215,16 +216,16 @@ def test_no_fold_below_the_saddle_for_three(sigma: float) -> None:
 
 @pytest.mark.profile("problems")
 def test_the_bound_on_many_bodies() -> None:
-    """On 10,000 bodies with D > 2|c|^2 the fold is not below the bound; for D >= 3|c|^2 it is the saddle."""
+    """On 4000 bodies with D > 2|c|^2 the fold is not below the bound; for D >= 3|c|^2 it is the saddle."""
     rng, below = np.random.default_rng(0), 0
-    for _ in range(10_000):
+    for _ in range(4000):
         sigma, ratio = rng.uniform(0.02, 0.4999), 10 ** -rng.uniform(0.0, 4.0)
         near_an_axis = rng.normal() * np.sqrt(ratio) + np.pi / 2 * rng.integers(2)
         B, c, saddle = _body(sigma, ratio, near_an_axis if rng.random() < 0.5 else rng.uniform(0.0, np.pi))
         relative = fold_energy(B, c) / saddle
         assert relative >= _bound(sigma) - 1e-12
         below += relative < 1 - 1e-9
-    assert below > 1000
+    assert below > 400
 
 
 @pytest.mark.parametrize("sigma", [0.35, 0.42, 0.4999])
