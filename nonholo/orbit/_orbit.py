@@ -143,8 +143,8 @@ class Orbit:
     def chart(self) -> Float[np.ndarray, "K k"]:
         """Coordinates of the displacements in rows S of the constraint subspace.
 
-        Where a retraction of the subspace covers the variety (Cayley on SO(n) and SE(n), else exp) they are the y of
-        W = retract(2 y S); otherwise the coordinates of (W - W^-1)/2.
+        Where a retraction of the subspace covers the variety (Cayley on SO(n), SE(n) and groups with a form, else exp)
+        they are the y of W = retract(2 y S); otherwise the coordinates of (W - W^-1)/2.
         """
         y, system = self.canonical_chart, self.system
         if y.shape[1] == system.rank:

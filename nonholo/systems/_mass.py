@@ -98,8 +98,8 @@ def form_mass_tensor(where: str, group: AbstractMatrixGroup, value: Array) -> Ar
     tensor = array(where, value, (size, size), f"On {group!r} the mass tensor is ({size}, {size}).")
     if is_traced(tensor):
         return tensor
-    gap, G = np.abs(group.form_adjoint(tensor) - tensor).max(), np.abs(group.form)
-    sizes = np.abs(np.linalg.inv(group.form)) @ np.abs(tensor).T @ G
+    gap, G = np.abs(group.form_adjoint(tensor) - tensor).max(), np.asarray(group.form)
+    sizes = np.abs(np.linalg.inv(G)) @ np.abs(tensor).T @ np.abs(G)
     if gap > 64 * np.finfo(np.float64).eps * sizes.max():
         raise error(where, "satisfy J* = G^-1 J^T G = J", f"a residual of {gap:.3g}", remedy)
     return tensor

@@ -24,6 +24,16 @@ def test_rest() -> None:
     assert (found.energy_drift, found.reversal_defect, found.largest_step_angle) == (0.0, 0.0, 0.0)
 
 
+def test_a_negative_energy() -> None:
+    """On SO(2, 1) a turn may have one: its drift is a size all the same."""
+    G = np.diag([1.0, 1.0, -1.0])
+    lorentz, J = nh.MatrixGroup(G @ nh.SO(3).basis, form=G), np.diag([1.0, 2.0, 4.0]) @ G
+    turning = nh.discretize(nh.LLSystem(lorentz, -J, annihilator=[[0.0, 0.3, 1.0]]), 0.2)
+    orbit = nh.simulate(turning, restricted_velocity=(0.5, 0.4), steps=200)
+    assert orbit.energy[0] < 0
+    assert 0 < nh.invariants(orbit).energy_drift < 1e-13
+
+
 @pytest.mark.parametrize("velocity", [(0.0, 0.0), (0.9, -0.4)], ids=["at rest", "one state"])
 def test_edges_of_a_right_invariant_run(velocity: tuple[float, float]) -> None:
     """Its steps depend on the pose: none that moves, or a single saved state, is measured all the same."""
