@@ -134,7 +134,7 @@ def _of_orbit(system: AbstractLLSystem, orbit: Orbit) -> Asymptotics:
 
 def _in_space(orbit: Orbit, axes: tuple, found: Approach) -> tuple:
     """Return both axes as seen in space; None without axes or poses, or where the orbit is not followed to its ends."""
-    ends = None if axes[1] is None or orbit.pose is None else _ends(orbit, found)
+    ends = None if axes[1] is None or orbit.canonical_pose is None else _ends(orbit, found)
     if ends is None:
         return None, None
     return ends.first.configuration[-1] @ axes[0], ends.last.configuration[-1] @ axes[1]
@@ -143,7 +143,7 @@ def _in_space(orbit: Orbit, axes: tuple, found: Approach) -> tuple:
 def _resting(system: AbstractLLSystem, orbit: Orbit, velocity: Float[np.ndarray, "dim"]) -> Asymptotics:
     """Return the limits of a motion with constant velocity: the heading of a balanced sleigh turns for ever."""
     axis = _axis(system, velocity)
-    in_space = None if axis is None or orbit.pose is None else orbit.configuration[0] @ axis
+    in_space = None if axis is None or orbit.canonical_pose is None else orbit.configuration[0] @ axis
     straight = isinstance(system, ChaplyginSleigh) and system.a != 0
     turn = 0.0 if straight else None
     return Asymptotics(velocity, velocity, axis, axis, in_space, in_space, turn, turn)

@@ -100,4 +100,4 @@ def _discrete(orbit: Orbit, discrete: Discretization, spectrum: EquilibriumSpect
 
 
 def _pose(orbit: Orbit) -> Float[np.ndarray, "N N"]:
-    return orbit.system.group.identity if orbit.pose is None else orbit.configuration[0]
+    return orbit.system.group.identity if orbit.canonical_pose is None else orbit.configuration[0]

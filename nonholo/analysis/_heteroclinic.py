@@ -127,5 +127,5 @@ def _joined(past: Orbit, future: Orbit) -> Orbit:
         time=h * np.arange(2 - len(past), len(future)),
         reduced_momentum=np.concatenate([-past.reduced_momentum[shifted], future.reduced_momentum]),
         cayley=np.concatenate([-past.canonical_chart[earlier], future.canonical_chart]),
-        pose=np.concatenate([np.asarray(past.pose)[shifted], np.asarray(future.pose)]),
+        canonical_pose=np.concatenate([np.asarray(past.canonical_pose)[shifted], np.asarray(future.canonical_pose)]),
     )

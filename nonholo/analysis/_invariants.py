@@ -66,7 +66,7 @@ def invariants(orbit: Orbit) -> Invariants:
         steps=(len(orbit) - 1) * orbit.save_every if discrete else 0,
         energy_drift=float(np.abs(energy - energy[0]).max() / (abs(energy[0]) or 1.0)),
         constraint_residual=float(np.abs(orbit.motion.constraint_residual(sample)).max(initial=0.0)),
-        group_residual=None if orbit.pose is None else _group_residual(sample),
+        group_residual=None if orbit.canonical_pose is None else _group_residual(sample),
         reversal_defect=_reversal_defect(sample),
         largest_step_angle=_largest_angle(sample) if discrete else None,
         outcome=orbit.outcome,
@@ -83,7 +83,7 @@ def _largest_angle(orbit: Orbit) -> float:
 
 
 def _group_residual(orbit: Orbit) -> float:
-    group, pose = orbit.system.group, orbit.pose
+    group, pose = orbit.system.group, orbit.canonical_pose
     decoded = group.residual(orbit.configuration).max()
     return float(max(decoded, np.abs(pose - group.normalize_pose(pose)).max()))
 

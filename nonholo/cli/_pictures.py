@@ -66,7 +66,7 @@ def _flow(orbit: "Orbit") -> "Orbit | None":
     """Return the continuous motion from the same start where a closed form makes it cheap."""
     import nonholo
 
-    if orbit.cayley is None or orbit.pose is None or not isinstance(orbit.system, nonholo.ChaplyginSleigh):
+    if orbit.cayley is None or orbit.canonical_pose is None or not isinstance(orbit.system, nonholo.ChaplyginSleigh):
         return None
     times = orbit.time[:: max(1, len(orbit) // _MOST_TIMES)]
     start = {"momentum": orbit.restricted_momentum[0], "configuration": orbit.configuration[0]}

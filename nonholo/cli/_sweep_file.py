@@ -12,7 +12,7 @@ from nonholo.cli._sweep_values import along, drawn, needs_size
 
 _TABLES = ("body", "start", "run")
 _STARTS = ("body_velocity", "restricted_velocity", "momentum")
-_COMPONENT = re.compile(r"(\w+)\[\d+\]")
+_COMPONENT = re.compile(rf"({'|'.join(_STARTS)})(?:_(\d+)|\[(\d+)\])")
 
 
 def load_sweep_scenario(name: str, settings: list[Setting]) -> Loaded[SweepScenario]:
@@ -65,6 +65,8 @@ def _complete(document: dict[str, Any]) -> None:
             own = document.setdefault(table, {})
             if isinstance(own, dict):
                 _complete_one(own, name, given)
+        if table == "start" and isinstance(held, dict) and isinstance(document.get(table), dict):
+            _complete_start(document[table], held)
 
 
 def _complete_one(own: dict[str, Any], name: str, given: Any) -> None:
@@ -74,6 +76,19 @@ def _complete_one(own: dict[str, Any], name: str, given: Any) -> None:
         return
     try:
         own[name] = _typical(given)
+    except ValueError:  # told as a problem of the design
+        return
+
+
+def _complete_start(own: dict[str, Any], held: dict[str, Any]) -> None:
+    """Give a start of which every component is varied, from the first one on, and none is given."""
+    parts = {(part[1], int(part[2] or part[3])): held[name] for name in held if (part := _COMPONENT.fullmatch(name))}
+    if not parts or any(name in own or name in held for name in _STARTS):
+        return
+    owner, _ = next(iter(parts))
+    wanted = [(owner, component) for component in range(len(parts))]
+    try:
+        own.update({owner: [_typical(parts[part]) for part in wanted]} if parts.keys() == set(wanted) else {})
     except ValueError:  # told as a problem of the design
         return
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def draw_sweep(result: "xarray.Dataset", picture: Path, color: str | None, x: str | None, y: str | None) -> str | None:
     """Draw a quantity over the design; return the path of the picture, None if there is none."""
     os.environ.setdefault("MPLBACKEND", "agg")
-    quantity, across, up = (None if name is None else library_name(name) for name in (color, x, y))
+    quantity, across, up = (None if name is None else _named(result, name) for name in (color, x, y))
     try:
         from nonholo import plotting
 
@@ -27,6 +27,14 @@ def draw_sweep(result: "xarray.Dataset", picture: Path, color: str | None, x: st
         warn(f"no picture: {type(failure).__name__}: {failure}")
         return None
     return str(picture)
+
+
+def _named(result: "xarray.Dataset", path: str) -> str:
+    """Return the name in a result of a key path; components have had brackets in older ones."""
+    from nonholo.ensembles import component_name
+
+    name = library_name(path)
+    return name if name in result.variables else component_name(name)
 
 
 def draw_stored_sweep(store: Path, picture: Path, color: str | None, x: str | None, y: str | None) -> tuple[str | None]:

@@ -12,6 +12,7 @@ from nonholo.ensembles._distributions import (
     Uniform,
 )
 from nonholo.ensembles._ensemble_task import EnsembleTask
+from nonholo.ensembles._names import component_name
 from nonholo.ensembles._poses_csv import sweep_to_csv
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles._resume import resume
@@ -33,6 +34,7 @@ __all__ = [
     "RandomDesign",
     "SweepStanding",
     "Uniform",
+    "component_name",
     "load_sweep",
     "resume",
     "standing_of",

@@ -7,7 +7,13 @@ from typing import Any
 from nonholo import io
 from nonholo._checks import count, error
 from nonholo.ensembles._block import block_of
-from nonholo.ensembles._describe import design_text, differences, function_from, function_name
+from nonholo.ensembles._describe import (
+    design_text,
+    differences,
+    function_from,
+    function_name,
+    with_component_names,
+)
 from nonholo.ensembles._design import Design, Grid, RandomDesign, axis_dimensions
 from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
 from nonholo.ensembles._layout import layout_of
@@ -63,7 +69,10 @@ def _check_names(design: Design, drawn: dict[str, Output], returned: dict[str, O
 
 def check_same(store: SweepStore, task: Any, design: Design) -> None:
     """Refuse another task or design than that of a store, with the differences."""
-    found = list(differences(json.loads(json.dumps(_described(task, design))), store.description))
+    ours, theirs = json.loads(json.dumps(_described(task, design))), store.description
+    for told in (ours, theirs):
+        told["design"] = with_component_names(told["design"])
+    found = list(differences(ours, theirs))
     if found:
         remedy = "Pass that task and design, or choose another path."
         raise error("sweep(store=...)", "hold this sweep", f"'{store.path}', where {'; '.join(found[:5])}", remedy)
@@ -74,13 +83,19 @@ def restored_task(store: SweepStore, task: Any) -> Task:
     if task is not None:
         check_task(task, store.design)
         check_same(store, task, store.design)
-        return task
+        return _as_begun(store, task)
     told = store.description["task"]
     try:
-        return ensemble_task_from(told) if told["kind"] == "EnsembleTask" else function_from(told["name"])
+        made = ensemble_task_from(told) if told["kind"] == "EnsembleTask" else function_from(told["name"])
+        return _as_begun(store, made)
     except (ImportError, ValueError) as failure:
         remedy = f"Pass it: nonholo.resume('{store.path}', task=...)."
         raise error("resume(store=...)", "be a sweep whose task can be made again", f"{failure}", remedy) from failure
+
+
+def _as_begun(store: SweepStore, task: Task) -> Task:
+    """Return the task with the results that a store was begun with."""
+    return task.as_of_schema_1() if store.schema == 1 and isinstance(task, EnsembleTask) else task
 
 
 def _described(task: Any, design: Design) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from nonholo._types import Float
 from nonholo.ensembles._design import AbstractDesign
+from nonholo.ensembles._names import component_name
 from nonholo.ensembles._uniform import uniform_numbers
 
 
@@ -33,6 +34,7 @@ class MemberBlock(Mapping[str, Any]):
     arrays: dict[str, np.ndarray]
 
     def __getitem__(self, name: str) -> np.ndarray:
+        name = name if name in self.arrays else component_name(name)
         if name not in self.arrays:
             raise KeyError(f"{name!r}: the design has {', '.join(self.arrays)}")
         return self.arrays[name]

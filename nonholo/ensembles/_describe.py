@@ -10,6 +10,7 @@ import numpy as np
 
 from nonholo.ensembles._design import Design, Grid, RandomDesign
 from nonholo.ensembles._distributions import DISTRIBUTIONS
+from nonholo.ensembles._names import component_name
 from nonholo.io import fields_of
 
 _NO_NAME = "a function without an importable name"
@@ -25,11 +26,22 @@ def design_text(design: Design) -> dict[str, Any]:
 
 
 def design_from(text: dict[str, Any], axis: Callable[[str], np.ndarray]) -> Design:
-    """Return the design of a description."""
+    """Return the design of a description, with the names that it has there: arrays and random draws go by them."""
     if text["kind"] == "Grid":
-        return Grid({name: axis(name) for name in text["axes"]}, seed=text["seed"])
+        along = {name: axis(name) for name in text["axes"]}
+        design: Design = Grid(along, seed=text["seed"])
+        object.__setattr__(design, "values_along", along)
+        return design
     drawn = {name: _distribution(dict(told)) for name, told in text["distributions"].items()}
-    return RandomDesign(text["members"], drawn, seed=text["seed"])
+    design = RandomDesign(text["members"], drawn, seed=text["seed"])
+    object.__setattr__(design, "distributions", drawn)
+    return design
+
+
+def with_component_names(text: dict[str, Any]) -> dict[str, Any]:
+    """Return the description of a design with the names that results have now; older ones have brackets."""
+    named = "axes" if text["kind"] == "Grid" else "distributions"
+    return text | {named: {component_name(name): told for name, told in text[named].items()}}
 
 
 def function_name(function: Callable[..., Any]) -> str:

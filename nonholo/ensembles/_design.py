@@ -11,7 +11,7 @@ import numpy as np
 from nonholo._checks import array, count, error
 from nonholo._types import Float
 from nonholo.ensembles._distributions import AbstractDistribution
-from nonholo.ensembles._names import OUTCOME, array_name
+from nonholo.ensembles._names import OUTCOME, array_name, component_name
 from nonholo.ensembles._uniform import uniform_numbers
 
 _REMEDY = "Pass a dictionary of names to"
@@ -58,9 +58,9 @@ class Grid(AbstractDesign):
     """Every combination of values along axes.
 
     Names are parameters of the system ("a", "mass", "mass_tensor", ...), "time_step", a start ("body_velocity",
-    "restricted_velocity", "momentum") or one component of it ("restricted_velocity[0]"); for a function of your own
-    whatever it reads. Values are numbers, or along the first axis vectors or matrices. The result has a dimension for
-    each axis.
+    "restricted_velocity", "momentum") or one component of it ("restricted_velocity_0"); for a function of your own
+    whatever it reads. A component may be written "restricted_velocity[0]"; the result calls it as Python and xarray
+    can. Values are numbers, or along the first axis vectors or matrices. The result has a dimension for each axis.
 
     Example:
         >>> design = Grid({"a": [0.1, 0.2], "time_step": np.linspace(0.1, 0.5, 5)})
@@ -73,7 +73,7 @@ class Grid(AbstractDesign):
     def __init__(self, axes: Any, seed: int = 0) -> None:
         if not isinstance(axes, Mapping) or not axes:
             raise error("Grid(axes=...)", "be a mapping of names to values", repr(axes), f"{_REMEDY} values.")
-        kept = {_name("Grid(axes=...)", name): _along(name, values) for name, values in axes.items()}
+        kept = {name: _along(name, axes[given]) for name, given in _named("Grid(axes=...)", axes).items()}
         if len({axis_dimension(name, values) for name, values in kept.items()}) < len(kept):
             raise error(
                 "Grid(axes=...)", "have other names than its vectors and matrices", ", ".join(kept), "Rename one."
@@ -121,13 +121,13 @@ class RandomDesign(AbstractDesign):
         if not isinstance(distributions, Mapping) or not distributions:
             got = repr(distributions)
             raise error("RandomDesign(distributions=...)", "be a mapping", got, f"{_REMEDY} distributions.")
+        named = _named("RandomDesign(distributions=...)", distributions)
         for name, value in distributions.items():
-            _name("RandomDesign(distributions=...)", name)
             if not isinstance(value, AbstractDistribution):
                 remedy = "Pass nh.Uniform(low, high), ...; what all members share belongs to the task."
                 raise error(f"RandomDesign({{{name!r}: ...}})", "be a distribution", repr(value), remedy)
         object.__setattr__(self, "count", count("RandomDesign(members=...)", members, "Pass how many."))
-        object.__setattr__(self, "distributions", dict(distributions))
+        object.__setattr__(self, "distributions", {name: distributions[given] for name, given in named.items()})
         object.__setattr__(self, "seed", _seed("RandomDesign(seed=...)", seed))
 
     def __repr__(self) -> str:
@@ -175,10 +175,14 @@ def _along(name: str, values: Any) -> np.ndarray:
     return checked
 
 
-def _name(where: str, name: Any) -> str:
-    if name == OUTCOME:
-        raise error(where, f"leave the name {OUTCOME} to the result", repr(name), "Rename it.")
-    return array_name(where, name)
+def _named(where: str, given: Mapping[Any, Any]) -> dict[str, str]:
+    """Return the given names by those of the result, refused if two are one."""
+    named = {component_name(array_name(where, name)): name for name in given}
+    if OUTCOME in named:
+        raise error(where, f"leave the name {OUTCOME} to the result", repr(OUTCOME), "Rename it.")
+    if len(named) < len(given):
+        raise error(where, "name each value once", ", ".join(given), "Leave one out.")
+    return named
 
 
 def _seed(where: str, seed: Any) -> int:

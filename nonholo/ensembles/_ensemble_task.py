@@ -1,5 +1,6 @@
 """The task of most sweeps: run the members of a block as an ensemble, keep what reductions make of it."""
 
+import copy
 import dataclasses
 import json
 import re
@@ -17,13 +18,12 @@ from nonholo.discrete._structured import scalar_step
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._names import OUTCOME
-from nonholo.ensembles._reductions import REDUCTIONS
+from nonholo.ensembles._reductions import REDUCTIONS, final_state_of_schema_1
+from nonholo.ensembles._starts import STARTS, check_starts, rows_of_starts, start_component
 from nonholo.io._descriptions import unstored
 from nonholo.simulation import Ensemble, ensemble
 from nonholo.simulation._ensemble_members import Members
 
-_STARTS = ("body_velocity", "restricted_velocity", "momentum")
-_COMPONENT = re.compile(r"(\w+)\[(\d+)\]")
 _MEMBER = re.compile(r"This is member (\d+)\.")
 _BLOCK, _NUMBERS = 1 << 16, 1 << 22  # most members of a block, and numbers of all their states
 _LANES, _STEPS = 32, 1 << 28  # members that the compiled loop takes at once, and most steps of a block: some seconds
@@ -35,7 +35,7 @@ class EnsembleTask:
     r"""Run the members of a design and keep some numbers of each.
 
     What the design does not name is as given here. Names of a design are parameters of the system, "time_step", a start
-    or one of its components, such as "restricted_velocity[0]".
+    or one of its components, such as "restricted_velocity_0". A start need not be given if all of it is varied.
 
     Reductions: "final_state" (restricted momentum, time, energy and compact pose of the last good state that is saved,
     and the number of good steps), "energy_drift" (of that state, relative), "limit_angle" (total turn of a plane
@@ -83,7 +83,7 @@ class EnsembleTask:
         save_every: int | None = None,
         reconstruct: bool = True,
     ) -> None:
-        starts = dict(zip(_STARTS, (body_velocity, restricted_velocity, momentum), strict=True))
+        starts = dict(zip(STARTS, (body_velocity, restricted_velocity, momentum), strict=True))
         given = [(name, _start(name, value)) for name, value in starts.items() if value is not None]
         if given:
             one_start("EnsembleTask", **starts)
@@ -102,7 +102,8 @@ class EnsembleTask:
 
     def __call__(self, block: MemberBlock) -> dict[str, Any]:
         """Run a block of members and reduce it."""
-        starts, parameters = self._split(block)
+        parameters = self._parameters(block)
+        starts: dict[str, Any] = rows_of_starts(self.start, block)
         run = {"steps": self.steps, "save_every": self._every, "reconstruct": self.reconstruct}
         try:
             batch = ensemble(self.discrete, parameters=parameters or None, **run, **starts)
@@ -133,46 +134,31 @@ class EnsembleTask:
 
     def check_design(self, names: list[str]) -> None:
         """Refuse a design that names what the task does not know, no start, or several."""
-        whole = [name for name in names if name in _STARTS]
-        if len(whole) > 1:
-            raise error("sweep(design=...)", "vary one start", " and ".join(whole), "Choose one.")
-        if not whole and self.start is None:
-            raise error("sweep(task=...)", "have a start", "none", "Pass body_velocity=..., or vary it in the design.")
+        check_starts(self.discrete, self.start, names)
         for name in names:
-            if part := _COMPONENT.fullmatch(name):
-                self._check_component(name, part[1], int(part[2]), whole)
-            elif name not in self._fields and name not in _STARTS:
+            if name not in self._fields and name not in STARTS and start_component(name) is None:
                 kind, known = type(self.discrete.system).__name__, ", ".join(self._fields)
-                remedy = f"{kind} has {known}; starts are {', '.join(_STARTS)}."
+                remedy = f"{kind} has {known}; starts are {', '.join(STARTS)}."
                 raise error("sweep(design=...)", "name parameters of the system or starts", repr(name), remedy)
 
-    def _check_component(self, name: str, start: str, component: int, whole: list[str]) -> None:
-        """Refuse a component of a start that the task does not have, or that the design varies as a whole."""
-        if whole or self.start is None or self.start[0] != start:
-            remedy = f"Pass EnsembleTask(..., {start}=...) with what the other components are."
-            raise error("sweep(design=...)", "vary components of the start of the task", repr(name), remedy)
-        if component >= len(self.start[1]):
-            got = f"{name!r} of a start with {len(self.start[1])}"
-            raise error("sweep(design=...)", "vary components that there are", got, "They are counted from 0.")
+    def as_of_schema_1(self) -> "EnsembleTask":
+        """Return the task with the results of stores of schema 1."""
+        task = copy.copy(self)
+        then = (final_state_of_schema_1 if r == "final_state" else r for r in self.reductions)
+        object.__setattr__(task, "reductions", tuple(then))
+        return task
 
     @property
     def _fields(self) -> list[str]:
         return [*self.discrete.system.leaves, "inertia_operator", "time_step"]
 
-    def _split(self, block: MemberBlock) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Return the start of each member and the parameters in which members differ."""
-        whole = [name for name in block if name in _STARTS]
-        name, value = (whole[0], block[whole[0]]) if whole else self.start or ("", np.zeros(0))
-        rows = np.broadcast_to(value, (block.count, np.shape(value)[-1])).copy()
-        for other in block:
-            if part := _COMPONENT.fullmatch(other):
-                rows[:, int(part[2])] = block[other]
-        parameters = {other: block[other] for other in block if other in self._fields}
-        return {name: rows}, parameters
+    def _parameters(self, block: MemberBlock) -> dict[str, Any]:
+        """Return the parameters in which members differ."""
+        return {name: block[name] for name in block if name in self._fields}
 
     def members(self, block: MemberBlock) -> Members:
         """Return the discretised systems of a block."""
-        return Members(self.discrete, self._split(block)[1], block.count)
+        return Members(self.discrete, self._parameters(block), block.count)
 
     def describe(self) -> dict[str, Any]:
         """Return the task as plain data."""

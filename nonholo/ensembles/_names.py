@@ -1,11 +1,14 @@
 """Names of arrays and of dimensions in the store of a sweep: what file systems and xarray take."""
 
+import re
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from nonholo._checks import error
 
 OUTCOME = "outcome"
+_BRACKETS = re.compile(r"\[(\d+)\]")
+_LAST = re.compile(r"(\w+)_(\d+)")
 _TAKEN = ("run", "zarr.json")
 
 
@@ -14,6 +17,27 @@ class Axes(NamedTuple):
 
     dimensions: tuple[str, ...]
     shape: tuple[int, ...]
+
+
+def component_name(name: str) -> str:
+    """Return the name of a component as Python and xarray take names.
+
+    Example:
+        >>> component_name("restricted_velocity[0]"), component_name("mass_tensor[0][1]"), component_name("a")
+        ('restricted_velocity_0', 'mass_tensor_0_1', 'a')
+    """
+    return _BRACKETS.sub(r"_\1", name)
+
+
+def component_of(name: str) -> tuple[str, int] | None:
+    """Return what a name is a component of, and which one; None if it looks like none.
+
+    Example:
+        >>> component_of("momentum_12"), component_of("momentum[2]"), component_of("momentum")
+        (('momentum', 12), ('momentum', 2), None)
+    """
+    part = _LAST.fullmatch(component_name(name))
+    return (part[1], int(part[2])) if part else None
 
 
 def array_name(where: str, name: Any) -> str:

@@ -73,7 +73,10 @@ def _rows(store: SweepStore, task: EnsembleTask, block: int) -> np.ndarray:
     piece = store.layout.piece(block)
     members = block_of(store.design, piece.first, piece.count)
     outcome, time, compact = (store.rows(name, piece) for name in _WANTED)
-    pose = io.separate_rows(task.discrete.system.group, _configurations(task.members(members), compact))
+    group = task.discrete.system.group
+    older = store.schema == 1
+    g = _from_canonical(task.members(members), compact) if older else group.matrix_from_pose(compact)
+    pose = io.separate_rows(group, g)
     columns = [members.index, *(values for _, values in _flat(members)), outcome, time, *pose.T]
     rows = np.empty((piece.count, len(columns)), dtype=object)  # whole numbers are written as such
     for place, column in enumerate(columns):
@@ -81,8 +84,8 @@ def _rows(store: SweepStore, task: EnsembleTask, block: int) -> np.ndarray:
     return rows
 
 
-def _configurations(members: Members, compact: np.ndarray) -> np.ndarray:
-    """Return compact poses of members as matrices in the user's frame; nothing else of their states is needed."""
+def _from_canonical(members: Members, compact: np.ndarray) -> np.ndarray:
+    """Return compact canonical poses as matrices in the user's frame; nothing else of the states is needed."""
     count = len(members)
     momenta, none = np.zeros((count, 1, members.discrete.system.rank)), np.zeros(count, dtype=int)
     states = Ensemble(members, 1, None, momenta, momenta, compact[:, None], none, none, momenta[:, 0])
@@ -93,4 +96,4 @@ def _flat(block: MemberBlock) -> Iterator[tuple[str, np.ndarray]]:
     """Give every number of the values of members a name."""
     for name, values in block.items():
         for place in np.ndindex(values.shape[1:]):
-            yield name + (f"[{';'.join(map(str, place))}]" if place else ""), values[:, *place]
+            yield "_".join([name, *map(str, place)]), values[:, *place]

@@ -35,8 +35,16 @@ def _final_state(batch: Ensemble) -> Reduced:
         "final_energy": ((), ended.energy[:, 0], _told("reduced constrained energy")),
         "steps_done": ((), batch.steps_done, _told("good steps", "1")),
     }
-    if ended.pose is not None:
-        found["final_pose"] = ("pose_component",), ended.pose[:, 0], _told("compact pose, canonical frame")
+    if (pose := ended.pose) is not None:
+        found["final_pose"] = ("pose_component",), pose[:, 0], _told("compact pose")
+    return found
+
+
+def final_state_of_schema_1(batch: Ensemble) -> Reduced:
+    """Return what "final_state" had in stores of schema 1: the pose in the canonical frame."""
+    found, ended = _final_state(batch), _ended(batch)
+    if ended.canonical_pose is not None:
+        found["final_pose"] = ("pose_component",), ended.canonical_pose[:, 0], _told("compact pose, canonical frame")
     return found
 
 
@@ -78,9 +86,9 @@ def _turning_deviation(batch: Ensemble) -> Reduced:
 
 def _axis_angle(batch: Ensemble) -> Float[np.ndarray, "M"]:
     scalar, ended = scalar_members(batch.members), _ended(batch)
-    if ended.pose is None:
+    if ended.canonical_pose is None:
         raise error("reduction 'limit_angle'", "have poses", "reconstruct=False", "Leave that out.")
-    pose = np.stack([np.broadcast_to(scalar.pose, (len(batch), 4)), ended.pose[:, 0]], axis=1)
+    pose = np.stack([np.broadcast_to(scalar.pose, (len(batch), 4)), ended.canonical_pose[:, 0]], axis=1)
     r = np.stack([batch.first_momentum, ended.reduced_momentum[:, 0]], axis=1)
     velocity = applied(np.linalg.inv(scalar.inertia), r)
     body = np.stack([-velocity[..., 1], velocity[..., 0], np.zeros_like(velocity[..., 0])], axis=-1)
@@ -127,7 +135,7 @@ def _ended(batch: Ensemble) -> Ensemble:
     """Return the last good state of each member alone; of one that did not start any row, which is NaN."""
     every, rows = batch.save_every, np.arange(len(batch))
     last = np.zeros_like(rows) if every is None else batch.steps_done // every
-    kept = {name: getattr(batch, name) for name in ("reduced_momentum", "cayley", "pose")}
+    kept = {name: getattr(batch, name) for name in ("reduced_momentum", "cayley", "canonical_pose")}
     states = {name: None if array is None else array[rows, last][:, None] for name, array in kept.items()}
     done = batch.steps_done if every is None else last * every
     return dataclasses.replace(batch, save_every=None, steps_done=done, **states)

@@ -28,7 +28,9 @@ from nonholo.ensembles._layout import Layout, Piece
 from nonholo.ensembles._results import Output, Results
 
 FORMAT = "nonholo.sweep"
-SCHEMA = 1
+SCHEMA = 2
+"""Written by this version. Schema 1 had last poses in the canonical frame, and names of components with brackets."""
+READABLE = (1, 2)
 _AGAIN = "Run the sweep again."
 _CODECS = BloscCodec(cname="lz4", clevel=5, shuffle="bitshuffle"), Crc32cCodec()
 """As fast as a sweep: the numbers of its members are too different from each other for a slower one to gain by it."""
@@ -79,6 +81,11 @@ class SweepStore:
     def description(self) -> dict[str, Any]:
         """The task and the design as plain data."""
         return {"task": self._told["task"], "design": self._told["design"]}
+
+    @property
+    def schema(self) -> int:
+        """The schema that it was begun with."""
+        return attributes_of(self.path)["schema"]
 
     @property
     def is_finished(self) -> bool:
@@ -227,7 +234,7 @@ def open_store(path: str | Path) -> SweepStore:
 
 def attributes_of(path: str | Path) -> dict[str, Any]:
     """Return the attributes of the store of a sweep, after checking that it is one of a known schema."""
-    return io.read_attributes(path, FORMAT, (SCHEMA,))
+    return io.read_attributes(path, FORMAT, READABLE)
 
 
 def _create_arrays(group: zarr.Group, design: Design, layout: Layout, outputs: dict[str, Output]) -> None:

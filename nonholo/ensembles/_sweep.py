@@ -6,7 +6,7 @@ from typing import Any
 import xarray
 
 from nonholo._checks import error
-from nonholo.ensembles._begin import begun, check_same, check_task
+from nonholo.ensembles._begin import begun, check_same, check_task, restored_task
 from nonholo.ensembles._blocks import Work
 from nonholo.ensembles._design import Design
 from nonholo.ensembles._resume import go_on
@@ -71,6 +71,7 @@ def sweep(
     if resume and Path(store).exists():
         opened = open_store(store)
         check_same(opened, task, design)
+        task = restored_task(opened, task)
     else:
         opened = begun(task, design, Path(store), block, scenario)
     return go_on(Work(opened, task), name, workers, progress)

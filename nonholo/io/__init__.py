@@ -2,6 +2,7 @@
 
 from nonholo.io._attributes import (
     SWEEP_FORMAT,
+    attributes,
     attributes_of_text,
     identity_of,
     other_versions,
@@ -9,7 +10,7 @@ from nonholo.io._attributes import (
     versions_text,
 )
 from nonholo.io._csv import check_file, new_file, orbit_to_csv, store_to_csv, table_lines
-from nonholo.io._dataset import orbit_to_dataset
+from nonholo.io._dataset import is_known, labels_of, orbit_to_dataset
 from nonholo.io._descriptions import fields_of
 from nonholo.io._load import (
     chunk_name,
@@ -21,8 +22,10 @@ from nonholo.io._load import (
     read_chunk,
 )
 from nonholo.io._lock import locked, owner_of
+from nonholo.io._pandas import orbit_to_pandas
 from nonholo.io._plan import Checkpoint, Plan
 from nonholo.io._pose_columns import column_names, separate_rows
+from nonholo.io._pose_variables import separate_variables
 from nonholo.io._save import (
     check_target,
     consolidate,
@@ -44,6 +47,7 @@ __all__ = [
     "Seen",
     "Standing",
     "Stream",
+    "attributes",
     "attributes_of_text",
     "check_file",
     "check_target",
@@ -58,6 +62,8 @@ __all__ = [
     "fields_of",
     "format_of",
     "identity_of",
+    "is_known",
+    "labels_of",
     "load_last_block",
     "load_orbit",
     "locked",
@@ -66,6 +72,7 @@ __all__ = [
     "open_stream",
     "orbit_to_csv",
     "orbit_to_dataset",
+    "orbit_to_pandas",
     "other_versions",
     "owner_of",
     "put_in_place",
@@ -74,6 +81,7 @@ __all__ = [
     "restore_motion",
     "save_orbit",
     "separate_rows",
+    "separate_variables",
     "standing",
     "store_to_csv",
     "table_lines",

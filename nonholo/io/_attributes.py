@@ -15,20 +15,23 @@ from nonholo.orbit import AbstractMotion, Orbit
 
 FORMAT = "nonholo.orbit"
 SWEEP_FORMAT = "nonholo.sweep"
-SCHEMA = 2
-"""Written by this version. Schema 1 had no groups among the parameters, and one dimension for momenta and charts."""
-READABLE = (1, 2)
+SCHEMA = 3
+"""Written by this version. Below 3 there were compact states and energies alone, in 1 no groups among parameters."""
+READABLE = (1, 2, 3)
 _MOTIONS: dict[str, Callable[..., AbstractMotion]] = {"Discretization": discretize, "ContinuousFlow": ContinuousFlow}
 _CONVENTIONS = (
     "W_k = g_k^-1 g_(k+1), P_k is the momentum at W_k, momenta are physical (L_d includes time_step). Arrays are in "
-    "the canonical body frame of the system. reduced_momentum: along the constraint subspace; for a right-invariant "
-    "constraint (LR systems) that of the spatial momentum. cayley: coordinates y of the displacement along rows S, "
+    "the user's body frame; quaternions are unit, scalar first, Hamilton's product, and take body coordinates to "
+    "space. The group canonical holds what runs go on from, in the canonical body frame of the system. "
+    "reduced_momentum: along the constraint subspace; for a right-invariant constraint (LR systems) that of the "
+    "spatial momentum. cayley: coordinates y of the displacement along rows S, "
     "W = retract(2 y S), the Cayley map on SO(n), SE(n) and groups with a form, else exp; S are the rows of the "
-    "constraint subspace or, where y has dim components, all of the algebra; for LR systems of the spatial "
-    "displacement U_k = g_(k+1) g_k^-1. pose: unit quaternion, scalar first, on SO(3); (cos, sin, x, y) on SE(2); "
-    "rotation matrix row by row on SO(n), followed by the position on SE(n); vector of translations; matrix row by row "
-    "on other groups; factors one after another. se(2) coordinates are (omega, v1, v2), so(3) the usual vector, so(n) "
-    "the coefficients of e_i ^ e_j, i < j, se(n) those of so(n), then v; the pairing is the dot product."
+    "constraint subspace or, "
+    "where y has dim components, all of the algebra; for LR systems of the spatial displacement "
+    "U_k = g_(k+1) g_k^-1. pose: unit quaternion, scalar first, on SO(3); (cos, sin, x, y) on SE(2); rotation matrix "
+    "row by row on SO(n), followed by the position on SE(n); vector of translations; matrix row by row on other "
+    "groups; factors one after another. se(2) coordinates are (omega, v1, v2), so(3) the usual vector, so(n) the "
+    "coefficients of e_i ^ e_j, i < j, se(n) those of so(n), then v; the pairing is the dot product."
 )
 
 

@@ -50,10 +50,10 @@ def orbit_to_csv(orbit: Orbit, path: str | Path, *, overwrite: bool = False) -> 
         >>> orbit_to_csv(orbit, "poses.csv")  # doctest: +SKIP
     """
     as_orbit("orbit_to_csv(orbit=...)", orbit, "one in coordinates is in orbit.to_dataset().to_dataframe().")
-    if orbit.pose is None:
+    if orbit.canonical_pose is None:
         remedy = "Run with reconstruct=True."
         raise error("Orbit.to_csv(...)", "be asked of an orbit with poses", "reconstruct=False", remedy)
-    whole = Stretch(orbit.time, orbit.pose, orbit.turned)
+    whole = Stretch(orbit.time, orbit.canonical_pose, orbit.turned)
     with new_file(Path(path), overwrite=overwrite) as file:
         file.writelines(_lines(orbit.system, [whole], 1))
 

@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+from collections.abc import Container
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.io._attributes import FORMAT, READABLE, SWEEP_FORMAT, restore_motion
+from nonholo.io._dataset import CANONICAL
 from nonholo.io._plan import Plan
 from nonholo.io._stored_events import EVENTS, known, log_of
 from nonholo.orbit import STATES, EventLog, Orbit
@@ -58,13 +60,19 @@ def _loaded(root: Path, discrete: Discretization | None, *, last: bool) -> Orbit
     except (KeyError, json.JSONDecodeError) as failure:
         raise error(_WHERE, "hold complete attributes", f"'{root}' without {failure}", _AGAIN) from failure
     arrays = {name: _read(root, name, tuple(shape), last) for name, shape in shapes.items()}
-    compact = {name: arrays.get(name) for name in STATES}
+    compact = {name: arrays.get(array) for name, array in stored_names(shapes).items()}
     branch = stored.get("branch", "principal")  # stores of before branch rules have none
     orbit = Orbit(motion, outcome=outcome, save_every=every, branch=branch, **compact)  # type: ignore[arg-type]
     if "events" not in stored:
         return orbit
     begin = _begin_of_last(stored, shapes["time"][0]) if last else 0
     return dataclasses.replace(orbit, events=_events(root, stored, orbit, begin))
+
+
+def stored_names(arrays: Container[str]) -> dict[str, str]:
+    """Return the names of the arrays of a store that hold the states of an orbit; older stores have them on top."""
+    names = {name: name.removeprefix("canonical_") for name in STATES}
+    return {name: CANONICAL + array if CANONICAL + array in arrays else array for name, array in names.items()}
 
 
 def _events(root: Path, stored: dict[str, Any], orbit: Orbit, begin: int) -> EventLog:

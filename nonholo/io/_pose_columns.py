@@ -13,8 +13,8 @@ from nonholo.io._descriptions import describe_group
 from nonholo.orbit import configurations, unwrapped
 from nonholo.systems import System
 
-_HEADING = ["theta"]
-_QUATERNION = ["qw", "qx", "qy", "qz"]
+HEADING = ["theta"]
+QUATERNION = ["qw", "qx", "qy", "qz"]
 
 
 class Stretch(NamedTuple):
@@ -32,7 +32,7 @@ def column_names(group: AbstractMatrixGroup) -> list[str]:
         >>> column_names(nh.SE(2)), column_names(nh.SO(3))
         (['t', 'x', 'y', 'theta'], ['t', 'qw', 'qx', 'qy', 'qz'])
     """
-    position, turn = _layout(group)
+    position, turn = layout(group)
     return ["t", *position, *turn]
 
 
@@ -41,36 +41,41 @@ def separate_rows(group: AbstractMatrixGroup, g: Float[np.ndarray, "R N N"]) -> 
 
     Angles are between -pi and pi, quaternions have a scalar that is not negative.
     """
-    position, turn = _layout(group)
-    turned = np.arctan2(g[:, 1, 0], g[:, 0, 0])[:, None] if turn == _HEADING else _turned(g, turn)
+    position, turn = layout(group)
+    turned = np.arctan2(g[:, 1, 0], g[:, 0, 0])[:, None] if turn == HEADING else _turned(g, turn)
     return np.concatenate([g[:, : len(position), len(position)], turned], axis=1)
 
 
-def rows_of(system: System, stretches: Iterable[Stretch], every: int) -> Iterator[Float[np.ndarray, "R c"]]:
-    """Return one in `every` of the states as rows of the columns; rows do not depend on how the motion is cut."""
-    position, turn = _layout(system.group)
-    n, first, before = len(position), 0, None
-    for time, pose, headings in _headed(stretches) if turn == _HEADING else stretches:
+def rows_of(
+    system: System, stretches: Iterable[Stretch], every: int, before: Float[np.ndarray, "1 c"] | None = None
+) -> Iterator[Float[np.ndarray, "R c"]]:
+    """Return one in `every` of the states as rows of the columns; rows do not depend on how the motion is cut.
+
+    The first row goes on from the one `before`, if there is one.
+    """
+    position, turn = layout(system.group)
+    n, first = len(position), 0
+    for time, pose, headings in _headed(stretches, before) if turn == HEADING else stretches:
         kept = slice(-first % every, None, every)
         g = configurations(system, pose[kept])
         turned = headings[kept, None] if headings is not None else _turned(g, turn)
-        if turn == _QUATERNION:
-            turned = _continued(turned, None if before is None else before[:, -4:])
+        if turn == QUATERNION:
+            turned = continued(turned, None if before is None else before[:, -4:])
         rows = np.concatenate([time[kept, None], g[:, :n, n], turned], axis=1)
         first, before = first + len(time), rows[-1:] if len(rows) else before
         yield rows
 
 
-def _layout(group: AbstractMatrixGroup) -> tuple[list[str], list[str]]:
-    """Return the names of the position and of the turn; groups that are none of ours have all entries as turn."""
+def layout(group: AbstractMatrixGroup) -> tuple[list[str], list[str]]:
+    """Return the columns of the position and of the turn; groups that are none of ours have all entries as turn."""
     described = describe_group(group)
     kind, n = described["group"], described.get("n", 0)
     if kind == "Translations":
         return _numbered(n), []
     position = [] if kind != "SE" else list("xyz"[:n]) if n <= 3 else _numbered(n)
     if (kind, n) == ("SE", 2):
-        return position, _HEADING
-    return position, _QUATERNION if n == 3 else _entries(n or group.size)
+        return position, HEADING
+    return position, QUATERNION if n == 3 else _entries(n or group.size)
 
 
 def _numbered(n: int) -> list[str]:
@@ -82,9 +87,9 @@ def _entries(size: int) -> list[str]:
     return [f"r{i}{between}{j}" for i in range(1, size + 1) for j in range(1, size + 1)]
 
 
-def _headed(stretches: Iterable[Stretch]) -> Iterator[Stretch]:
-    """Give stretches on SE(2) headings, each going on from the one before."""
-    before = None
+def _headed(stretches: Iterable[Stretch], row: Float[np.ndarray, "1 c"] | None) -> Iterator[Stretch]:
+    """Give stretches on SE(2) headings, each going on from the one before, the first from that at the end of a row."""
+    before = None if row is None else float(row[0, -1])
     for stretch in stretches:
         headings = unwrapped(stretch.pose, before) if stretch.headings is None else stretch.headings
         before = headings[-1] if len(headings) else before
@@ -93,14 +98,16 @@ def _headed(stretches: Iterable[Stretch]) -> Iterator[Stretch]:
 
 def _turned(g: np.ndarray, names: list[str]) -> Float[np.ndarray, "R c"]:
     """Return the rotations as quaternions or, row by row, as matrices."""
-    if names == _QUATERNION:
+    if names == QUATERNION:
         return quaternion_from_matrix(g[:, :3, :3])
     size = math.isqrt(len(names))
     return g[:, :size, :size].reshape(len(g), len(names))
 
 
-def _continued(q: Float[np.ndarray, "R 4"], before: Float[np.ndarray, "1 4"] | None) -> Float[np.ndarray, "R 4"]:
+def continued(
+    q: Float[np.ndarray, "... R 4"], before: Float[np.ndarray, "... 1 4"] | None = None
+) -> Float[np.ndarray, "... R 4"]:
     """Return the quaternions, each with the sign that is nearer to the one before it."""
-    chain = np.concatenate([q[:1] if before is None else before, q])
-    signs = np.where(np.sum(chain[1:] * chain[:-1], axis=1) < 0, -1.0, 1.0)
-    return q * np.cumprod(signs)[: len(q), None]
+    chain = np.concatenate([q[..., :1, :] if before is None else before, q], axis=-2)
+    signs = np.where(np.sum(chain[..., 1:, :] * chain[..., :-1, :], axis=-1) < 0, -1.0, 1.0)
+    return q * np.cumprod(signs, axis=-1)[..., : q.shape[-2], None]

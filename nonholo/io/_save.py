@@ -16,8 +16,8 @@ import xarray
 import zarr
 from zarr.codecs import BloscCodec, Crc32cCodec
 
-from nonholo.io._attributes import FORMAT, attributes_of_text
-from nonholo.io._dataset import orbit_to_dataset
+from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
+from nonholo.io._dataset import CANONICAL, stored_variables
 from nonholo.io._load import format_of
 from nonholo.orbit import Orbit, as_orbit
 
@@ -49,7 +49,8 @@ def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scena
     target = Path(path).resolve()
     check_target(target, overwrite=overwrite)
     with new_beside(Path(path)) as part:
-        _write(orbit_to_dataset(orbit), {} if scenario is None else attributes_of_text(scenario), part)
+        told = attributes(orbit) | ({} if scenario is None else attributes_of_text(scenario))
+        _write(stored_variables(orbit), told, part)
         put_in_place(part, target, overwrite=overwrite)
 
 
@@ -104,11 +105,12 @@ def sibling(target: Path, purpose: str) -> Path:
     return target.with_name(f".{target.name}.{uuid.uuid4().hex[:12]}.{purpose}")
 
 
-def _write(dataset: xarray.Dataset, extra: dict[str, Any], path: Path) -> None:
-    shapes = {str(name): variable.shape for name, variable in dataset.variables.items()}
-    group = zarr.create_group(path, zarr_format=3, attributes={**dataset.attrs, **extra, "arrays": json.dumps(shapes)})
-    for name, variable in dataset.variables.items():
-        _write_array(group, str(name), variable, is_coordinate=name in dataset.coords)
+def _write(variables: dict[str, xarray.Variable], told: dict[str, Any], path: Path) -> None:
+    shapes = {name: variable.shape for name, variable in variables.items()}
+    group = zarr.create_group(path, zarr_format=3, attributes={**told, "arrays": json.dumps(shapes)})
+    group.create_group(CANONICAL.rstrip("/"))
+    for name, variable in variables.items():
+        _write_array(group, name, variable)
     consolidate(path)
 
 
@@ -119,12 +121,17 @@ def consolidate(path: Path) -> None:
         zarr.consolidate_metadata(path)
 
 
-def _write_array(group: zarr.Group, name: str, variable: xarray.Variable, *, is_coordinate: bool) -> None:
+def _write_array(group: zarr.Group, name: str, variable: xarray.Variable) -> None:
     """Write an array one chunk after the other, so that a failure leaves no writer behind."""
     rows = len(variable)
-    array = create_array(group, name, variable, rows, max(1, min(_ROWS, rows)), is_coordinate=is_coordinate)
+    array = create_array(group, name, variable, rows, max(1, min(_ROWS, rows)), is_coordinate=is_coordinate(name))
     for first in range(0, rows, _ROWS):
         array[first : first + _ROWS] = np.ascontiguousarray(variable.values[first : first + _ROWS])
+
+
+def is_coordinate(name: str) -> bool:
+    """Tell the arrays of a store that need no times beside them: the times, and those of inner groups."""
+    return name == "time" or "/" in name
 
 
 def create_array(

@@ -11,22 +11,23 @@ import zarr
 
 from nonholo._checks import error
 from nonholo.io._descriptions import restore_system, unstored
-from nonholo.io._load import checked_block, opened_array, read_attributes
+from nonholo.io._load import checked_block, opened_array, read_attributes, stored_names
 from nonholo.io._lock import owner_of
 from nonholo.io._pose_columns import Stretch
 from nonholo.io._stream import open_stream
 from nonholo.systems import System
 
 _WHERE = "store_to_csv(store=...)"
-_WANTED = ("time", "pose", "turned")
+_WANTED = ("time", "canonical_pose", "turned")
 
 
 class StoredPoses(NamedTuple):
-    """What of a store tells where the body is: its system, the number of saved states, their arrays."""
+    """What of a store tells where the body is: its system, the number of saved states, their arrays and the names."""
 
     path: Path
     system: System
     rows: int
+    places: dict[str, str]
     arrays: dict[str, zarr.Array]
 
     def check(self) -> None:
@@ -36,35 +37,37 @@ class StoredPoses(NamedTuple):
 
     def stretches(self) -> Iterator[Stretch]:
         """Return the states chunk after chunk; only one chunk is in memory."""
-        chunk = self.arrays["pose"].chunks[0]
+        chunk = self.arrays["canonical_pose"].chunks[0]
         for number in range(-(-self.rows // chunk)):
             kept = slice(self.rows - number * chunk)
             found = {name: self._read(name, number)[kept] for name in self.arrays}
-            yield Stretch(found["time"], found["pose"], found.get("turned"))
+            yield Stretch(found["time"], found["canonical_pose"], found.get("turned"))
 
     def _read(self, name: str, number: int) -> np.ndarray:
         array = self.arrays[name]
-        return checked_block(self.path, name, array, (number,) + (0,) * (array.ndim - 1))
+        return checked_block(self.path, self.places[name], array, (number,) + (0,) * (array.ndim - 1))
 
 
 def open_poses(path: Path) -> StoredPoses:
     """Open a store, finished or not; a warning says how far an unfinished one goes."""
     stored = read_attributes(path)
     try:
-        shapes = {name: tuple(shape) for name, shape in json.loads(stored["arrays"]).items() if name in _WANTED}
+        shapes = json.loads(stored["arrays"])
+        places = {name: array for name, array in stored_names(shapes).items() if name in _WANTED and array in shapes}
         system = _system(path, stored)
     except KeyError as failure:
         raise error(_WHERE, "hold complete attributes", f"'{path}' without {failure}", "Run it again.") from failure
-    if "pose" not in shapes:
+    if "canonical_pose" not in places:
         remedy = "Run it again with reconstruct=True: poses cannot be added later."
         raise error(_WHERE, "hold poses", f"'{path}', which was run with reconstruct=False", remedy)
     if "outcome" in stored:
-        arrays = {name: opened_array(path, name, shape) for name, shape in shapes.items()}
-        return StoredPoses(path, system, shapes["pose"][0], arrays)
+        arrays = {name: opened_array(path, array, tuple(shapes[array])) for name, array in places.items()}
+        return StoredPoses(path, system, shapes["time"][0], places, arrays)
     stream = open_stream(path)
     rows = stream.saved()
     _warn(path, max(0, rows - 1) * stream.plan.every, stream.plan.steps)
-    return StoredPoses(path, system, rows, {name: opened_array(path, name, None) for name in shapes})
+    arrays = {name: opened_array(path, array, None) for name, array in places.items()}
+    return StoredPoses(path, system, rows, places, arrays)
 
 
 def _system(path: Path, stored: dict[str, Any]) -> System:

@@ -18,11 +18,19 @@ import zarr
 
 from nonholo._checks import error
 from nonholo.io._attributes import attributes, attributes_of_text
-from nonholo.io._dataset import orbit_to_dataset
+from nonholo.io._dataset import CANONICAL, HEADED, stored_variables
 from nonholo.io._load import chunk_name, chunk_path, read_attributes, read_chunk
 from nonholo.io._lock import owner_of
 from nonholo.io._plan import Checkpoint, Plan, packed_checkpoint, unpacked_checkpoint
-from nonholo.io._save import check_target, consolidate, create_array, edit_attributes, new_beside, put_in_place
+from nonholo.io._save import (
+    check_target,
+    consolidate,
+    create_array,
+    edit_attributes,
+    is_coordinate,
+    new_beside,
+    put_in_place,
+)
 from nonholo.io._stored_crossings import chunks_of, create_crossings, cut_crossings, flaw_of_rows, write_crossings
 from nonholo.io._stored_events import EVENTS, Seen, seen_nothing
 from nonholo.orbit import EventLog, Orbit
@@ -55,9 +63,9 @@ class Stream:
         if orbit.events is not None and reached.seen is not None:
             write_crossings(self._arrays[EVENTS], orbit.events, reached.seen.chunks)
         first = block * self.plan.rows
-        for name, variable in orbit_to_dataset(orbit).variables.items():
-            if len(orbit):
-                self._arrays[str(name)][first : first + len(orbit)] = np.ascontiguousarray(variable.values)
+        variables = stored_variables(orbit, self._turn_before(first), older=self._is_older) if len(orbit) else {}
+        for name, variable in variables.items():
+            self._arrays[name][first : first + len(orbit)] = np.ascontiguousarray(variable.values)
         self._arrays[_CHECKPOINTS][block + 1] = packed_checkpoint(reached)
 
     def checkpoint(self, block: int) -> Checkpoint | str:
@@ -117,6 +125,16 @@ class Stream:
             told["stopped_by"] = self.events[end.seen.stopped] if end.is_stopped else None
         edit_attributes(self.path, told)
         consolidate(self.path)
+
+    @functools.cached_property
+    def _is_older(self) -> bool:
+        """Whether the store has compact states and energies alone."""
+        return not any(name.startswith(CANONICAL) for name in self._names())
+
+    def _turn_before(self, row: int) -> np.ndarray | None:
+        """Return the heading or the quaternion of the state before a row, on which what follows goes on."""
+        turned = [name for name in HEADED if name in self._arrays]
+        return np.ravel(self._arrays[turned[0]][row - 1 : row])[None] if turned and row > 0 else None
 
     @functools.cached_property
     def events(self) -> tuple[str, ...] | None:
@@ -208,7 +226,7 @@ def create_stream(
     with new_beside(path) as part:
         _create(part, first, plan, opening, extra)
         put_in_place(part, target, overwrite=False)
-    return Stream(target, plan, first.pose is not None)
+    return Stream(target, plan, first.canonical_pose is not None)
 
 
 def open_stream(path: str | Path) -> Stream:
@@ -248,14 +266,15 @@ def standing(path: str | Path) -> Standing | None:
 
 
 def _create(part: Path, first: Orbit, plan: Plan, opening: Checkpoint, extra: dict[str, str]) -> None:
-    dataset, rows = orbit_to_dataset(first), 1 + plan.steps // plan.every
+    variables, rows = stored_variables(first), 1 + plan.steps // plan.every
     told = {name: value for name, value in attributes(first).items() if name != "outcome"}
-    run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.pose is not None}
-    shapes = {str(name): (rows, *variable.shape[1:]) for name, variable in dataset.variables.items()}
+    run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.canonical_pose is not None}
+    shapes = {name: (rows, *variable.shape[1:]) for name, variable in variables.items()}
     told |= {"run": json.dumps(run), "arrays": json.dumps(shapes), **extra}
     group = zarr.create_group(part, zarr_format=3, attributes=told)
-    for name, variable in dataset.variables.items():
-        create_array(group, str(name), variable, rows, plan.rows, is_coordinate=name in dataset.coords)
+    group.create_group(CANONICAL.rstrip("/"))
+    for name, variable in variables.items():
+        create_array(group, name, variable, rows, plan.rows, is_coordinate=is_coordinate(name))
     row = packed_checkpoint(opening)
     group.create_group("run")
     labelled = xarray.Variable(("block", "entry"), row[None])

@@ -2,7 +2,7 @@
 
 from nonholo.orbit._crossings import Crossings, EventLog, joined_crossings, joined_states
 from nonholo.orbit._orbit import STATES, AbstractMotion, Orbit, as_orbit
-from nonholo.orbit._poses import configurations, unwrapped
+from nonholo.orbit._poses import configurations, poses, unwrapped
 
 __all__ = [
     "STATES",
@@ -14,5 +14,6 @@ __all__ = [
     "configurations",
     "joined_crossings",
     "joined_states",
+    "poses",
     "unwrapped",
 ]

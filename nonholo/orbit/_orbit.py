@@ -16,10 +16,16 @@ from nonholo._checks import error
 from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.groups import SE
-from nonholo.orbit._poses import configurations, unwrapped
+from nonholo.orbit._poses import configurations, poses, unwrapped
 from nonholo.systems import AbstractLRSystem, System
 
-STATES = ("time", "reduced_momentum", "cayley", "pose", "turned")  # the arrays of an orbit, a row for each state
+STATES = (
+    "time",
+    "reduced_momentum",
+    "cayley",
+    "canonical_pose",
+    "turned",
+)  # the arrays of an orbit, a row for each state
 
 
 def as_orbit(where: str, value: Any, coordinates: str) -> "Orbit":
@@ -60,7 +66,8 @@ class AbstractMotion(abc.ABC):
 class Orbit:
     r"""A motion at K saved states, from `simulate` or `flow`.
 
-    Arrays are in the user's body frame, momenta in physical units. In a discrete orbit $W_k = g_k^{-1} g_{k+1}$ is the
+    What an orbit tells is in the user's body frame, momenta in physical units; the compact states that it is made of
+    are in the canonical frame of the system, where it says so. In a discrete orbit $W_k = g_k^{-1} g_{k+1}$ is the
     displacement and $P_k$ the momentum at $W_k$; with `save_every` > 1 displacements and multipliers are those of the
     single steps at the saved k. Of a composition (order > 2) the momentum is that at the first substep, the
     displacement that of the whole step.
@@ -71,7 +78,7 @@ class Orbit:
         reduced_momentum: Compact momenta, canonical frame, shape (K, k).
         cayley: Chart coordinates of the displacements, canonical frame, shape (K, m), m = k where the constraint is
             built into the chart; None for a flow.
-        pose: Compact poses, canonical frame, shape (K, size); None if not reconstructed.
+        canonical_pose: Compact poses, canonical frame, shape (K, size); None if not reconstructed.
         outcome: How the run ended.
         save_every: Steps between saved states.
         turned: Heading without ambiguity of full turns, where the run knows it, shape (K,).
@@ -91,7 +98,7 @@ class Orbit:
     time: Float[np.ndarray, "K"]
     reduced_momentum: Float[np.ndarray, "K k"]
     cayley: Float[np.ndarray, "K m"] | None
-    pose: Float[np.ndarray, "K size"] | None
+    canonical_pose: Float[np.ndarray, "K size"] | None
     outcome: Outcome = Outcome.successful
     save_every: int = 1
     turned: Float[np.ndarray, "K"] | None = None
@@ -181,6 +188,14 @@ class Orbit:
         return g @ D @ self.system.group.inverse(g)
 
     @property
+    def pose(self) -> Float[np.ndarray, "K size"] | None:
+        """Compact poses of the group in the user's body frame; None if not reconstructed.
+
+        A quaternion and its opposite are one pose; signs need not go on from row to row, as those of `to_dataset` do.
+        """
+        return None if self.canonical_pose is None else poses(self.system, self.canonical_pose)
+
+    @property
     def configuration(self) -> Float[np.ndarray, "K N N"]:
         """Poses as matrices."""
         return configurations(self.system, self._posed())
@@ -227,9 +242,16 @@ class Orbit:
             return self.system.constrained_energy(self.reduced_momentum, self.configuration)
         return self.system.canonical.constrained_energy(self.reduced_momentum)
 
-    def to_dataset(self) -> Any:
-        """Return the orbit as a labelled `xarray.Dataset` that `load_orbit` and Zarr understand."""
-        return importlib.import_module("nonholo.io").orbit_to_dataset(self)
+    def to_dataset(self, *, decoded: bool = False) -> Any:
+        """Return the orbit as a labelled `xarray.Dataset`, in the user's body frame.
+
+        `nonholo.io.orbit_to_dataset` names its variables; with `decoded` there are matrices and multipliers too.
+        """
+        return importlib.import_module("nonholo.io").orbit_to_dataset(self, decoded=decoded)
+
+    def to_pandas(self) -> Any:
+        """Return the orbit as a `pandas.DataFrame` with one column for each number of `to_dataset`, indexed by time."""
+        return importlib.import_module("nonholo.io").orbit_to_pandas(self)
 
     def to_csv(self, path: Any, *, overwrite: bool = False) -> None:
         """Write the times and poses to a new CSV file; `nonholo.io.orbit_to_csv` names its columns."""
@@ -240,6 +262,6 @@ class Orbit:
         return importlib.import_module("nonholo.plotting").overview(self, path)
 
     def _posed(self) -> np.ndarray:
-        if self.pose is None:
+        if self.canonical_pose is None:
             raise ValueError("`Orbit.configuration` needs poses. Got reconstruct=False. Run with reconstruct=True.")
-        return self.pose
+        return self.canonical_pose

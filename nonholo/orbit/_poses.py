@@ -13,6 +13,20 @@ def configurations(system: System, pose: Float[np.ndarray, "K size"]) -> Float[n
     return system.group.matrix_from_pose(pose) @ system.group.inverse(system.frame)
 
 
+def poses(system: System, canonical_pose: Float[np.ndarray, "K size"]) -> Float[np.ndarray, "K size"]:
+    """Return compact poses, in the user's body frame, from those in the canonical one; the same where frames are.
+
+    Example:
+        >>> from nonholo.systems import ChaplyginSleigh
+        >>> poses(ChaplyginSleigh(1.0, 1.0, 0.5, b=0.25), np.array([[1.0, 0.0, 3.0, 0.25]]))
+        array([[1., 0., 3., 0.]])
+    """
+    group = system.group
+    if np.array_equal(np.asarray(system.frame), group.identity):
+        return canonical_pose
+    return group.pose_from_matrix(configurations(system, canonical_pose))
+
+
 def unwrapped(pose: Float[np.ndarray, "K 4"], before: float | None = None) -> Float[np.ndarray, "K"]:
     """Return the angles of compact poses on SE(2); the shorter turn leads to each, to the first one from `before`.
 

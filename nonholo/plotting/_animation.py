@@ -85,7 +85,7 @@ def _scene_of(orbit: Orbit) -> tuple[Callable[[Orbit], float], Callable[..., tup
         got = f"{orbit!r} on {orbit.system.group}"
         requirement = "be an orbit of a Suslov top in space or a sleigh in the plane"
         raise error(where, requirement, got, "Use `overview` for a still picture.")
-    if orbit.pose is None:
+    if orbit.canonical_pose is None:
         raise error(where, "have poses", "an orbit without them", "Run with reconstruct=True.")
     return found
 

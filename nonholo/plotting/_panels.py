@@ -38,15 +38,15 @@ def panels_of(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
     energy = Panel(functools.partial(energy_error, orbit), is_timed=True)
     if not is_steered_in_space(orbit):
         return [*path, *momentum, velocity, energy]
-    if orbit.pose is None:
+    if orbit.canonical_pose is None:
         return [_components(orbit, flow)]
     return [*path, velocity, *momentum, energy]  # the momenta along such a constraint are constant: nothing to enlarge
 
 
 def _path(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
-    if orbit.pose is None:
+    if orbit.canonical_pose is None:
         return []
-    group, flow = orbit.system.group, flow if flow is not None and flow.pose is not None else None
+    group, flow = orbit.system.group, flow if flow is not None and flow.canonical_pose is not None else None
     if isinstance(orbit.system, ChaplyginSleigh):
         return [Panel(lambda axes: blade_track(orbit, axes=axes, flow=flow))]
     if group == SO(3):
@@ -80,8 +80,8 @@ def _body_axis(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
 
 
 def _velocity(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
-    headed = isinstance(orbit.system, ChaplyginSleigh) and orbit.pose is not None
-    if flow is not None and flow.pose is None and (headed or is_steered_in_space(orbit)):
+    headed = isinstance(orbit.system, ChaplyginSleigh) and orbit.canonical_pose is not None
+    if flow is not None and flow.canonical_pose is None and (headed or is_steered_in_space(orbit)):
         flow = None
     (heading_and_speed if headed else velocity_components)(orbit, axes, flow)
 

@@ -27,7 +27,7 @@ def drawable(where: str, orbit: Any) -> Orbit:
 
 def posed(where: str, orbit: Any) -> Orbit:
     """Return an orbit with at least one state and with poses."""
-    if drawable(where, orbit).pose is None:
+    if drawable(where, orbit).canonical_pose is None:
         raise error(where, "have poses", "an orbit without them", "Run with reconstruct=True.")
     return orbit
 

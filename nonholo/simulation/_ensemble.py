@@ -158,7 +158,7 @@ def _unstart(done: Ensemble, full: np.ndarray, found: np.ndarray) -> None:
     """Take the states from members that have another full momentum than the one they should start with."""
     missed = np.linalg.norm(full - found, axis=1) > _TOLERANCE * np.linalg.norm(found, axis=1)
     done.outcome[missed], done.steps_done[missed] = Outcome.off_momentum_locus, 0
-    for states in (done.reduced_momentum, done.cayley, done.pose):
+    for states in (done.reduced_momentum, done.cayley, done.canonical_pose):
         if states is not None:
             states[missed] = np.nan
 

@@ -16,7 +16,7 @@ from nonholo.simulation._ensemble_start import applied, energies, have_kernel, s
 from nonholo.simulation._events_members import MemberEvents
 from nonholo.systems import AbstractLRSystem, ChaplyginSleigh, SuslovTop, System
 
-_OF_FRAME = ("configuration", "position", "displacement")
+_OF_FRAME = ("configuration", "pose", "position", "displacement")
 _KEEPS_FRAME = {SuslovTop: {"mass_tensor"}, ChaplyginSleigh: {"mass", "inertia", "a"}}
 
 
@@ -34,7 +34,7 @@ class Ensemble:
         save_every: Steps between saved states; None if only the last one is kept.
         reduced_momentum: Compact momenta, canonical frame, shape (M, K, k).
         cayley: Chart coordinates of the displacements, canonical frame, shape (M, K, m).
-        pose: Compact poses, canonical frame, shape (M, K, size); None if not reconstructed.
+        canonical_pose: Compact poses, canonical frame, shape (M, K, size); None if not reconstructed.
         outcome: How each member ended, values of `Outcome`, shape (M,).
         steps_done: Good steps of each member, shape (M,); of states at crossings with the fraction of the last one.
         first_momentum: Compact momenta of the starts, canonical frame, shape (M, k).
@@ -53,7 +53,7 @@ class Ensemble:
     save_every: int | None
     reduced_momentum: Float[np.ndarray, "M K k"]
     cayley: Float[np.ndarray, "M K m"]
-    pose: Float[np.ndarray, "M K size"] | None
+    canonical_pose: Float[np.ndarray, "M K size"] | None
     outcome: Int[np.ndarray, "M"]
     steps_done: Int[np.ndarray, "M"] | Float[np.ndarray, "M"]
     first_momentum: Float[np.ndarray, "M k"]
@@ -74,7 +74,7 @@ class Ensemble:
         return self._orbit(member, kept)
 
     def _orbit(self, member: int, kept: slice) -> Orbit:
-        pose = None if self.pose is None else self.pose[member, kept]
+        pose = None if self.canonical_pose is None else self.canonical_pose[member, kept]
         return Orbit(
             self.members.of(member),
             self.time[member, kept],
@@ -136,6 +136,17 @@ class Ensemble:
         return self._decoded("configuration")
 
     @property
+    def pose(self) -> Float[np.ndarray, "M K size"] | None:
+        """Compact poses of the group in the user's body frame; None if not reconstructed."""
+        if self.canonical_pose is None or not have_kernel(self.members):
+            return None if self.canonical_pose is None else self._decoded("pose")
+        group = self.members.discrete.system.group
+        frames = group.matrix_from_pose(scalar_members(self.members).pose)[:, None]
+        if np.array_equal(frames, np.broadcast_to(group.identity, frames.shape)):
+            return self.canonical_pose
+        return group.pose_from_matrix(group.matrix_from_pose(self.canonical_pose) @ group.inverse(frames))
+
+    @property
     def position(self) -> Float[np.ndarray, "M K n"]:
         """Translation parts of the poses; for groups of motions."""
         return self._decoded("position")
@@ -147,10 +158,10 @@ class Ensemble:
         With `save_every=None` nothing is known of full turns, and the angle is between -pi and pi.
         """
         group = self.members.discrete.system.group
-        if group != SE(2) or self.pose is None:
+        if group != SE(2) or self.canonical_pose is None:
             got = f"{group}" if group != SE(2) else "reconstruct=False"
             raise error("Ensemble.heading", "have poses in the plane", got, "Use configuration, or reconstruct=True.")
-        return np.unwrap(np.arctan2(self.pose[..., 1], self.pose[..., 0]), axis=1)
+        return np.unwrap(np.arctan2(self.canonical_pose[..., 1], self.canonical_pose[..., 0]), axis=1)
 
     def to_dataset(self) -> Any:
         """Return the states as a labelled `xarray.Dataset` with dimensions `member` and `step`."""
@@ -161,7 +172,7 @@ class Ensemble:
         count, states = self.cayley.shape[:2]
         if self._is_shared(name):
             momenta, charts = (a.reshape(count * states, -1) for a in (self.reduced_momentum, self.cayley))
-            pose = None if self.pose is None else self.pose.reshape(count * states, -1)
+            pose = None if self.canonical_pose is None else self.canonical_pose.reshape(count * states, -1)
             found = getattr(Orbit(self.members.discrete, np.zeros(count * states), momenta, charts, pose), name)
             return found.reshape(count, states, *found.shape[1:])
         return np.stack([getattr(self._orbit(member, slice(None)), name) for member in range(count)])

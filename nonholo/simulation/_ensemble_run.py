@@ -148,7 +148,7 @@ def _run_each(members: Members, momenta: np.ndarray, plan: Plan, threads: int, r
     orbits = [found[member] for member in range(count)]
     reduced = _filled([orbit.reduced_momentum for orbit in orbits], states)
     charts = _filled([orbit.canonical_chart for orbit in orbits], states)
-    poses = [orbit.pose for orbit in orbits if orbit.pose is not None]
+    poses = [orbit.canonical_pose for orbit in orbits if orbit.canonical_pose is not None]
     posed = _filled(poses, states) if poses else None
     return Ensemble(members, plan.steps, plan.every, reduced, charts, posed, codes, done, momenta)
 

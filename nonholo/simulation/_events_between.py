@@ -49,8 +49,8 @@ def between_states(discrete: Discretization) -> Between:
         momenta, charts, poses = moved(states, fractions)
         time = states.time + fractions * discrete.time_step
         kept = dataclasses.replace(states, time=time, reduced_momentum=momenta, cayley=charts)
-        poses = None if states.pose is None else poses
-        return dataclasses.replace(kept, pose=poses, turned=_turned(states, poses))
+        poses = None if states.canonical_pose is None else poses
+        return dataclasses.replace(kept, canonical_pose=poses, turned=_turned(states, poses))
 
     return between
 
@@ -65,9 +65,9 @@ def _turned(states: Orbit, poses: np.ndarray | None) -> np.ndarray | None:
 
 def with_headings(states: Orbit, first: float | None) -> Orbit:
     """Return states of the plane with headings that go on from the given one; others as they are."""
-    if states.system.group != SE(2) or states.pose is None or states.turned is not None or not len(states):
+    if states.system.group != SE(2) or states.canonical_pose is None or states.turned is not None or not len(states):
         return states
-    return dataclasses.replace(states, turned=unwrapped(states.pose, before=first))
+    return dataclasses.replace(states, turned=unwrapped(states.canonical_pose, before=first))
 
 
 def _by_kernel(
@@ -88,8 +88,8 @@ def _by_kernel(
 def _poses(discrete: Discretization, states: Orbit) -> np.ndarray:
     """Return the poses of states; where they are not kept, any that the step can carry along."""
     group = discrete.system.group
-    if states.pose is not None:
-        return states.pose
+    if states.canonical_pose is not None:
+        return states.canonical_pose
     if is_secular(discrete):
         return np.empty((len(states), 0))
     return np.broadcast_to(group.pose_from_matrix(discrete.system.frame), (len(states), group.pose_size))

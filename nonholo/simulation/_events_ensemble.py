@@ -61,7 +61,7 @@ def _flats(events: dict[str, Event], block: Ensemble) -> Iterator[Flat]:
     """Give all members at once, or one after another where parameters differ."""
     members = np.arange(len(block))
     good = np.isfinite(block.reduced_momentum[..., 0])
-    planar = block.pose is not None and block.members.discrete.system.group == SE(2)
+    planar = block.canonical_pose is not None and block.members.discrete.system.group == SE(2)
     headings = block.heading if planar else None
     for chosen in members[:, None] if block.members.parameters else [members]:
         states, member, number = _flat_states(block, headings, chosen, good[chosen])
@@ -78,7 +78,7 @@ def _flat_states(
     """Return the good states of some members as one orbit, with their members and steps."""
     row, number = np.nonzero(good)
     member, discrete = chosen[row], block.members.of(int(chosen[0]))
-    pose = None if block.pose is None else block.pose[member, number]
+    pose = None if block.canonical_pose is None else block.canonical_pose[member, number]
     turned = None if headings is None else headings[member, number]
     momenta, charts = block.reduced_momentum[member, number], block.cayley[member, number]
     time = discrete.time_step * number
@@ -122,9 +122,14 @@ def _located(events: dict[str, Event], flat: Flat, event: int, at: np.ndarray) -
 
 def _nowhere(block: Ensemble) -> Ensemble:
     """Return one state of each member, still unknown."""
-    rows = (block.reduced_momentum, block.cayley, block.pose)
+    rows = (block.reduced_momentum, block.cayley, block.canonical_pose)
     momenta, charts, poses = (None if row is None else np.full((len(block), 1, row.shape[2]), np.nan) for row in rows)
-    unknown = {"reduced_momentum": momenta, "cayley": charts, "pose": poses, "steps_done": np.full(len(block), np.nan)}
+    unknown = {
+        "reduced_momentum": momenta,
+        "cayley": charts,
+        "canonical_pose": poses,
+        "steps_done": np.full(len(block), np.nan),
+    }
     return dataclasses.replace(block, save_every=None, **unknown)
 
 
@@ -132,27 +137,27 @@ def _fill(states: Ensemble, flat: Flat, found: Crossings, at: np.ndarray) -> Non
     """Write crossings into the states of their members."""
     who = flat.member[at]
     states.reduced_momentum[who, 0], states.cayley[who, 0] = found.states.reduced_momentum, found.states.canonical_chart
-    if states.pose is not None and found.states.pose is not None:
-        states.pose[who, 0] = found.states.pose
+    if states.canonical_pose is not None and found.states.canonical_pose is not None:
+        states.canonical_pose[who, 0] = found.states.canonical_pose
     states.steps_done[who] = flat.number[at] + (found.step - at) + found.fraction
 
 
 def _thinned(block: Ensemble, every: int | None, end: np.ndarray, stopped: np.ndarray) -> Ensemble:
     """Return the states that are kept of members that end with certain steps."""
-    rows = (block.reduced_momentum, block.cayley, block.pose)
+    rows = (block.reduced_momentum, block.cayley, block.canonical_pose)
     if every is None:
         kept = [None if row is None else np.take_along_axis(row, end[:, None, None], axis=1) for row in rows]
     else:
         late = every * np.arange(block.cayley[:, ::every].shape[1]) > end[:, None]
         kept = [None if row is None else np.where(late[..., None], np.nan, row[:, ::every]) for row in rows]
     outcome = np.where(stopped, int(Outcome.successful), block.outcome)
-    states = dict(zip(("reduced_momentum", "cayley", "pose"), kept, strict=True))
+    states = dict(zip(("reduced_momentum", "cayley", "canonical_pose"), kept, strict=True))
     return dataclasses.replace(block, save_every=every, **states, outcome=outcome, steps_done=end)
 
 
 def joined_blocks(whole: Members, blocks: Sequence[Ensemble]) -> Ensemble:
     """Return the ensemble of all members from blocks of them."""
-    names = ("reduced_momentum", "cayley", "pose", "outcome", "steps_done", "first_momentum")
+    names = ("reduced_momentum", "cayley", "canonical_pose", "outcome", "steps_done", "first_momentum")
     columns = {name: [getattr(block, name) for block in blocks] for name in names}
     arrays = {name: None if rows[0] is None else np.concatenate(rows) for name, rows in columns.items()}
     logs = [block.events for block in blocks if block.events is not None]

@@ -43,11 +43,15 @@ def _between_times(time: Float[np.ndarray, "K"], solve: Solve) -> Between:
 
 def _solved(state: Orbit, span: float, solve: Solve) -> Orbit:
     """Return what one state becomes after a time; NaN if the solver fails."""
-    begun = state.reduced_momentum[0], cast(np.ndarray, state.pose)[0]
+    begun = state.reduced_momentum[0], cast(np.ndarray, state.canonical_pose)[0]
     momenta, poses, turned, outcome = solve(*begun, np.array([0.0, span]))
     lost = np.nan if outcome != Outcome.successful else 0.0
     if turned is not None and state.turned is not None:
         turned = turned[-1:] + 2 * np.pi * np.rint((state.turned - turned[:1]) / (2 * np.pi))
     return dataclasses.replace(
-        state, time=state.time + span, reduced_momentum=momenta[-1:] + lost, pose=poses[-1:] + lost, turned=turned
+        state,
+        time=state.time + span,
+        reduced_momentum=momenta[-1:] + lost,
+        canonical_pose=poses[-1:] + lost,
+        turned=turned,
     )

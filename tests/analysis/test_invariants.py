@@ -70,5 +70,5 @@ def test_a_spoilt_orbit_is_seen(field: str, measure: str) -> None:
 def test_group_residual_is_seen() -> None:
     """Poses off the group show."""
     orbit = nh.simulate(nh.discretize(PROBLEMS[0].system, 0.1), restricted_velocity=(0.9, -0.4), steps=5)
-    stretched = dataclasses.replace(orbit, pose=np.array(orbit.pose) * (1 + 1e-9))
+    stretched = dataclasses.replace(orbit, canonical_pose=np.array(orbit.canonical_pose) * (1 + 1e-9))
     assert nh.invariants(stretched).group_residual > 1e-10

@@ -77,10 +77,10 @@ def test_wrong_usage_is_refused(arguments: tuple[object, ...], nonholo: Command)
 
 def test_damaged_store_is_refused(store: Path, nonholo: Command) -> None:
     """A lost chunk is named, with exit code 1, and no row is printed."""
-    (store / "pose" / "c" / "1" / "0").unlink()
+    (store / "canonical" / "pose" / "c" / "1" / "0").unlink()
     result = nonholo("export", store)
     assert result.exit_code == 1
-    assert "chunk c/1/0 of the array pose" in result.stderr
+    assert "chunk c/1/0 of the array canonical/pose" in result.stderr
     assert result.stdout == ""
 
 

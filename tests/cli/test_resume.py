@@ -58,11 +58,11 @@ def test_extend_goes_past_the_end(stopped: Path, nonholo: Command) -> None:
 def test_damage_is_told_on_standard_error(stopped: Path, nonholo: Command) -> None:
     """A damaged chunk is named in a warning, and the run is whole again."""
     nh.resume(stopped)
-    (stopped / "pose" / "c" / "2" / "0").unlink()
+    (stopped / "canonical" / "pose" / "c" / "2" / "0").unlink()
     result = nonholo("resume", stopped)
     assert result.exit_code == 0
     assert "Warning: The store" in result.stderr
-    assert "chunk c/2/0 of the array pose" in result.stderr
+    assert "chunk c/2/0 of the array canonical/pose" in result.stderr
 
 
 def test_ctrl_c_says_how_to_go_on(stopped: Path, nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -83,11 +83,11 @@ def test_ctrl_c_does_not_hide_damage(stopped: Path, nonholo: Command, monkeypatc
     def interrupted(*_: Any) -> None:
         raise KeyboardInterrupt
 
-    (stopped / "pose" / "c" / "2" / "0").unlink()
+    (stopped / "canonical" / "pose" / "c" / "2" / "0").unlink()
     monkeypatch.setattr(Stream, "write", interrupted)
     result = nonholo("resume", stopped)
     assert result.exit_code == 1
-    assert "chunk c/2/0 of the array pose" in result.stderr
+    assert "chunk c/2/0 of the array canonical/pose" in result.stderr
 
 
 def test_locked_and_foreign_stores_are_refused(stopped: Path, nonholo: Command) -> None:

@@ -96,9 +96,9 @@ def test_a_sweep_holds_the_orbits_of_simulate(nonholo: Command) -> None:
     assert told["store"] == "runs/my-001.zarr"
     assert told["outcomes"] == {"successful": 8}
     found = nh.load_sweep(told["store"])
-    cell = found.isel({"a": 1, "restricted_velocity[0]": 2})
+    cell = found.isel({"a": 1, "restricted_velocity_0": 2})
     discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
-    orbit = nh.simulate(discrete, restricted_velocity=(float(cell["restricted_velocity[0]"]), -1.0), steps=20)
+    orbit = nh.simulate(discrete, restricted_velocity=(float(cell["restricted_velocity_0"]), -1.0), steps=20)
     assert abs(float(cell["heading_turn"]) - orbit.heading[-1]) < 1e-14  # sums of 20 angles of some 0.03
 
 
@@ -466,3 +466,20 @@ def test_the_scenario_of_the_page(nonholo: Command) -> None:
     (block,) = re.findall(r"```toml\n(.*?)```", page.read_text(), re.DOTALL)
     told = _told(nonholo("sweep", _written(BODY + block), "--members", 12, "--json", "--no-plot"))
     assert told["members"] == 12
+
+
+@pytest.mark.parametrize("given", ["", "restricted_velocity = [7.0, 7.0]\n"])
+def test_a_start_that_is_varied_whole_need_not_be_given(given: str, nonholo: Command) -> None:
+    """Where every component of the start is varied the scenario may leave it out; the result is the same."""
+    varied = '"start.restricted_velocity[1]" = [-1.0, 0.5]\n[keep]'
+    text = GRID.replace("restricted_velocity = [0.3, -1.0]\n", given).replace("[keep]", varied)
+    found = nh.load_sweep(_told(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"])
+    cell = found.sel(a=0.5, restricted_velocity_0=0.2, restricted_velocity_1=0.5)
+    orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), restricted_velocity=(0.2, 0.5), steps=20)
+    assert abs(float(cell.heading_turn) - orbit.heading[-1]) < 1e-14  # sums of 20 angles of some 0.03
+
+
+def test_half_a_start_is_refused() -> None:
+    """Where a component is neither varied nor given the scenario is refused with what is missing."""
+    found = _problems(GRID.replace("restricted_velocity = [0.3, -1.0]\n", "").replace("velocity[0]", "velocity[1]"))
+    assert any(problem.startswith("my.toml: start: ") for problem in found), found

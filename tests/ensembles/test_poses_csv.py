@@ -48,7 +48,7 @@ def test_space(tmp_path: Path) -> None:
     result = CliRunner().invoke(app, ["export", str(tmp_path / "t.zarr"), "-o", str(tmp_path / "poses.csv")])
     assert result.exit_code == 0, result.output
     row = _read(tmp_path / "poses.csv")[1]
-    start = ["restricted_velocity[0]", "restricted_velocity[1]"]
+    start = ["restricted_velocity_0", "restricted_velocity_1"]
     assert list(row) == ["member", *start, "outcome", "t", "qw", "qx", "qy", "qz"]
     orbit = nh.simulate(TOP, restricted_velocity=found["restricted_velocity"][1].values, steps=20)
     w, x, y, z = (float(row[name]) for name in ("qw", "qx", "qy", "qz"))

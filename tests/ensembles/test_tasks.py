@@ -41,7 +41,7 @@ def test_members_are_those_of_ensemble(start: str) -> None:
     design = nh.Grid({"a": [0.1, 0.5], "time_step": [0.05, 0.1, 0.2], f"{start}[1]": [-1.0, 0.4]})
     found = _called(_task(**{start: (1.0, 7.0)}), design)
     values = design.values(0, 12)
-    rows = np.stack([np.ones(12), values[f"{start}[1]"]], axis=1)
+    rows = np.stack([np.ones(12), values[f"{start}_1"]], axis=1)
     parameters = {name: values[name] for name in ("a", "time_step")}
     _assert_is_ensemble(found, nh.ensemble(SLEIGH, steps=50, parameters=parameters, **{start: rows}))
 
@@ -157,9 +157,11 @@ START = {"restricted_velocity": (1.0, 0.2)}
         ({}, {"a": [1.0]}, "have a start. Got none"),
         (START, {"Mass": [1.0]}, "name parameters of the system or starts. Got 'Mass'. ChaplyginSleigh has mass,"),
         (START, {"velocity": [[1.0, 2.0]]}, "name parameters"),
-        (START, {"momentum[0]": [1.0]}, r"components of the start of the task. Got 'momentum\[0\]'"),
+        (START, {"momentum[0]": [1.0]}, "components of the start of the task. Got 'momentum_0'"),
         (START, {"momentum": STARTS, "restricted_velocity[0]": [1.0]}, "components of the start of the task"),
-        ({}, {"restricted_velocity[0]": [1.0]}, "have a start"),
+        ({}, {"restricted_velocity[0]": [1.0]}, r"vary all 2 components of a start that is not given. Got \[0\]"),
+        ({}, {"momentum_0": [1.0], "momentum_3": [1.0]}, r"vary all 2 or 3 components .* Got \[0, 3\]"),
+        ({}, {"momentum_0": [1.0], "body_velocity_1": [1.0]}, "vary components of one start"),
         (START, {"restricted_velocity[2]": [1.0]}, "that there are. Got .* of a start with 2"),
         ({}, {"momentum": STARTS, "body_velocity": [[1.0, 0.0, 0.0]]}, "vary one start"),
         (START, {"mass": [-1.0, 0.0]}, "run for one of the members tried. Got ValueError.*must be positive"),
@@ -202,3 +204,23 @@ def test_names_that_two_reductions_return_are_refused() -> None:
         task = _task(reductions=["final_state", lambda batch, name=name: {name: batch.outcome}], **START)
         with pytest.raises(ValueError, match=f"return each name once. Got '{name}'"):
             _called(task, nh.Grid({"a": [1.0]}))
+
+
+@pytest.mark.parametrize("spelling", ["{}_{}", "{}[{}]"])
+def test_a_start_that_is_varied_whole_need_not_be_given(spelling: str, tmp_path: Path) -> None:
+    """Components that are all varied are the start; results are selected by names that Python takes."""
+    name = "body_velocity"
+    design = nh.Grid({spelling.format(name, axis): values for axis, values in enumerate([[0.1, 0.3], [0.2], [0.0]])})
+    with nh.sweep(_task(), design, tmp_path / "s.zarr") as found:
+        cell = found.sel(body_velocity_0=0.3).isel(body_velocity_1=0, body_velocity_2=0)
+        assert found.body_velocity_0.values.tolist() == [0.1, 0.3]
+        orbit = nh.simulate(SLEIGH, body_velocity=(0.3, 0.2, 0.0), steps=50)
+        assert np.abs(cell.final_momentum.values - orbit.restricted_momentum[-1]).max() < 1e-13
+
+
+def test_blocks_know_components_under_both_names() -> None:
+    """A function of a block reads a component as the design wrote it, or as the result calls it."""
+    block = block_of(nh.Grid({"speed[2]": [1.0, 2.0]}), 0, 2)
+    assert block["speed[2]"].tolist() == block["speed_2"].tolist() == [1.0, 2.0]
+    with pytest.raises(ValueError, match="name each value once"):
+        nh.Grid({"speed[2]": [1.0], "speed_2": [1.0]})

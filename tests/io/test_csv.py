@@ -248,7 +248,7 @@ def test_memory_does_not_grow_with_the_length(tmp_path: Path) -> None:
     assert peaks[1] < 1.4 * peaks[0]
 
 
-@pytest.mark.parametrize("name", ["time", "pose"])
+@pytest.mark.parametrize("name", ["time", "canonical/pose"])
 def test_damaged_chunk_is_refused_by_name(name: str, store: Path, tmp_path: Path) -> None:
     """A changed byte late in the store is named before anything is written, to a file or to a stream."""
     chunk = next(path for path in (store / name / "c").rglob("*") if path.is_file() and "11" in path.parts)
@@ -265,8 +265,8 @@ def test_damaged_chunk_is_refused_by_name(name: str, store: Path, tmp_path: Path
 
 def test_missing_chunk_is_refused_by_name(store: Path) -> None:
     """A chunk that is not there is not read as NaN."""
-    (store / "pose" / "c" / "3" / "0").unlink()
-    with pytest.raises(ValueError, match="chunk c/3/0 of the array pose"):
+    (store / "canonical" / "pose" / "c" / "3" / "0").unlink()
+    with pytest.raises(ValueError, match="chunk c/3/0 of the array canonical/pose"):
         _of_store(store)
 
 

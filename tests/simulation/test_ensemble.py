@@ -35,7 +35,7 @@ def _parameters(system: Any, count: int) -> dict[str, np.ndarray]:
 
 
 def _assert_same_bits(found: nh.Ensemble, wanted: nh.Ensemble, part: slice = slice(None)) -> None:
-    for name in ("reduced_momentum", "cayley", "pose", "outcome", "steps_done"):
+    for name in ("reduced_momentum", "cayley", "canonical_pose", "outcome", "steps_done"):
         assert np.array_equal(getattr(found, name), getattr(wanted, name)[part], equal_nan=True), name
 
 
@@ -190,7 +190,7 @@ def test_other_systems_run_member_by_member(name: str) -> None:
     for parameters in ({}, {"mass_tensor": tensors}):
         batch = nh.ensemble(discrete, restricted_velocity=velocities, parameters=parameters, steps=20)
         orbit = nh.simulate(batch.members.of(1), restricted_velocity=velocities[1], steps=20)
-        for state in ("reduced_momentum", "cayley", "pose"):
+        for state in ("reduced_momentum", "cayley", "canonical_pose"):
             assert np.array_equal(getattr(batch, state)[1, 0], getattr(orbit, state)[-1])
         for quantity in DECODED:
             _assert_close(getattr(batch, quantity)[1, 0], getattr(orbit, quantity)[-1], 1e-14)
@@ -235,7 +235,7 @@ def test_jax_agrees_with_the_compiled_loop(system: Any) -> None:
     assert set(wanted.outcome) > {0}
     assert np.array_equal(found.outcome, wanted.outcome)
     assert np.array_equal(found.steps_done, wanted.steps_done)
-    for name in ("reduced_momentum", "cayley", "pose"):
+    for name in ("reduced_momentum", "cayley", "canonical_pose"):
         good = ~np.isnan(getattr(wanted, name))
         assert np.array_equal(good, ~np.isnan(getattr(found, name)))
         _assert_close(getattr(found, name)[good], getattr(wanted, name)[good], 1e-12)
@@ -281,7 +281,7 @@ def test_a_dataset_has_members_steps_and_parameters() -> None:
         save_every=3,
     ).to_dataset()
     assert dict(found.sizes) == {
-        "member": 2, "step": 3, "component": 2, "chart": 2, "pose_component": 4, "row": 3, "column": 3,
+        "member": 2, "step": 3, "component": 2, "quaternion_component": 4, "row": 3, "column": 3,
     }  # fmt: skip
     assert found.mass_tensor.dims == ("member", "row", "column")
     assert found.outcome.values.tolist() == [0, 0]

@@ -25,7 +25,7 @@ MOTIONS = {
     "order 4": nh.discretize(nh.SuslovTop(TOP.system.mass_tensor), 0.1, order=4),
     "order 6, sleigh": nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3), 0.1, order=6),
 }  # fmt: skip
-STATE = ("time", "reduced_momentum", "cayley", "pose")
+STATE = ("time", "reduced_momentum", "cayley", "canonical_pose")
 
 
 def start(discrete: nh.Discretization) -> np.ndarray:

@@ -57,7 +57,7 @@ def test_events_leave_members_alone(discrete: nh.Discretization, every: int | No
     """With and without events the states of all members are the same to the last bit."""
     run = {**ROWS, "steps": 60, "save_every": every}
     batch, plain = nh.ensemble(discrete, **run, events=[TILT]), nh.ensemble(discrete, **run)
-    for field in ("reduced_momentum", "cayley", "pose", "outcome", "steps_done", "time"):
+    for field in ("reduced_momentum", "cayley", "canonical_pose", "outcome", "steps_done", "time"):
         assert np.array_equal(getattr(batch, field), getattr(plain, field), equal_nan=True)
 
 

@@ -19,7 +19,7 @@ TOP = nh.discretize(nh.SuslovTop(MASS), 0.1)
 ROUND = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
 FOLDING = nh.discretize(TOP.system, 1.0)
 FOLDS = {"momentum": np.array([1.93257157, -0.68979744])}
-STATE = ("time", "reduced_momentum", "cayley", "pose", "turned")
+STATE = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
 CUTS = 3  # of each kind of run
 BLOCKS = 11  # of 44 states
 
@@ -192,8 +192,8 @@ def test_extended_run_has_the_crossings_of_the_long_run(lengths: tuple[int, ...]
     assert same(nh.load_orbit(path), whole)
 
 
-@pytest.mark.profile("faults", keep=["flipped-run/events*", "missing-pose*"])
-@pytest.mark.parametrize("chunk", ["run/events/c/2/0", "run/checkpoints/c/4/0", "pose/c/3/0"])
+@pytest.mark.profile("faults", keep=["flipped-run/events*", "missing-canonical/pose*"])
+@pytest.mark.parametrize("chunk", ["run/events/c/2/0", "run/checkpoints/c/4/0", "canonical/pose/c/3/0"])
 @pytest.mark.parametrize("damage", ["missing", "flipped"])
 def test_damaged_block_is_computed_again(chunk: str, damage: str, tmp_path: Path) -> None:
     """A missing or changed chunk of crossings, of a checkpoint or of states is named, and the run is whole again."""
