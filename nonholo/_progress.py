@@ -4,7 +4,7 @@ import contextlib
 from collections.abc import Callable, Iterator
 
 from rich.console import Console
-from rich.progress import Progress, ProgressColumn, Task
+from rich.progress import Progress, ProgressColumn, Task, TimeElapsedColumn
 from rich.text import Text
 
 
@@ -27,6 +27,19 @@ def progress_bar(title: str, wanted: bool) -> Iterator[Callable[[int, int], None
     if not wanted:
         yield lambda *_: None
         return
-    with Progress(*Progress.get_default_columns(), _Rate(), console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(title)
+    columns = (*Progress.get_default_columns(), TimeElapsedColumn(), _Rate())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(title, total=None)  # the bar pulses until it is known of how much
         yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+@contextlib.contextmanager
+def waiting(title: str, wanted: bool) -> Iterator[None]:
+    """Show what goes on, and for how long, where there is nothing to count.
+
+    Example:
+        >>> with waiting("measuring", wanted=False):
+        ...     pass
+    """
+    with progress_bar(title, wanted):
+        yield

@@ -1,8 +1,13 @@
 """The bar of progress: where it is written and what it says."""
 
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
 import pytest
 
-from nonholo._progress import progress_bar
+import nonholo as nh
+from nonholo._progress import progress_bar, waiting
 
 
 @pytest.fixture(autouse=True)
@@ -38,3 +43,42 @@ def test_bar_shows_what_is_done_of_the_whole(capsys: pytest.CaptureFixture[str])
 def test_no_bar_unless_wanted(capsys: pytest.CaptureFixture[str]) -> None:
     """Where no bar is wanted reports are taken and nothing is written."""
     assert _shown(capsys, wanted=False) == ("", "")
+
+
+def test_waiting_says_for_how_long(capsys: pytest.CaptureFixture[str]) -> None:
+    """Where there is nothing to count, what goes on and the time that has passed are shown, if wanted."""
+    for wanted in (True, False):
+        with waiting("measuring", wanted):
+            pass
+        written = capsys.readouterr()
+        assert not written.out
+        assert ("measuring" in written.err and "0:00:00" in written.err) is wanted
+
+
+def _sweep(folder: Path, **options: Any) -> object:
+    task = nh.EnsembleTask(SLEIGH, steps=20, restricted_velocity=(0.3, -1.0))
+    return nh.sweep(task, nh.Grid({"a": [0.1, 0.2]}), folder / f"{len(options)}.zarr", **options)
+
+
+def _obstruction(_: Path, **options: Any) -> object:
+    return nh.flow_obstruction(nh.discretize(nh.ChaplyginSleigh(1.0, 0.2, 1.0), 1.0), 1.125, samples=2, **options)
+
+
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+
+
+@pytest.mark.parametrize(
+    ("run", "told"),
+    [(_sweep, ("trying a member", "members", "100%")), (_obstruction, ("orbits", "100%"))],
+    ids=["sweep", "flow_obstruction"],
+)
+def test_long_work_shows_what_it_does(
+    run: Callable[..., object], told: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Sweeps, also while their first member is tried, and long questions show progress if wanted, else nothing."""
+    run(tmp_path)
+    assert capsys.readouterr().err == ""
+    run(tmp_path, progress=True)
+    written = capsys.readouterr().err
+    for word in told:
+        assert word in written, word

@@ -10,6 +10,7 @@ from typing import Any, cast
 import numpy as np
 
 from nonholo._checks import count, error
+from nonholo._progress import progress_bar
 from nonholo._types import Float
 from nonholo.analysis._equilibria import equilibria
 from nonholo.analysis._half_planes import sides_of_displacements, sides_of_momenta
@@ -40,7 +41,9 @@ class FlowObstruction:
         return float(np.ptp(self.difference))
 
 
-def flow_obstruction(discrete: Discretization, energy: Any, samples: int = 16) -> FlowObstruction:
+def flow_obstruction(
+    discrete: Discretization, energy: Any, samples: int = 16, *, progress: bool = False
+) -> FlowObstruction:
     r"""Return the periodic function that would be constant if the map were that of a smooth flow.
 
     On a half of an energy level the side $\sigma_k$ of the momentum (`half_planes`) tends to zero at both ends. There
@@ -58,6 +61,7 @@ def flow_obstruction(discrete: Discretization, energy: Any, samples: int = 16) -
         discrete: A top with n = 3 or a sleigh, discretised with "matrix" and "skew".
         energy: The energy of the level; on it orbits have to stay on their side.
         samples: Orbits, spread over one step.
+        progress: Show a progress bar on standard error.
 
     Raises:
         ValueError: Another system or discretisation, a balanced body, an energy that is not positive or so large that
@@ -77,7 +81,11 @@ def flow_obstruction(discrete: Discretization, energy: Any, samples: int = 16) -
         got = f"the balanced {checked.system!r}"
         raise error(where, "have attracting equilibria", got, "Its momenta are constant.")
     multiplier = float(spectrum.multipliers[0])
-    ends = np.array([_ends(checked, multiplier, r) for r in _one_step(checked, energy, number)])
+    ends = np.empty((number, 2))
+    with progress_bar("orbits", progress) as report:
+        for sample, r in enumerate(_one_step(checked, energy, number)):
+            ends[sample] = _ends(checked, multiplier, r)
+            report(sample + 1, number)
     order = np.argsort(ends[:, 0] % 1.0)
     difference = ends[order, 1] - ends[order, 0]
     return FlowObstruction(multiplier, ends[order, 0] % 1.0, difference - difference.mean())

@@ -6,6 +6,7 @@ from typing import Any
 
 import typer
 
+from nonholo._progress import waiting
 from nonholo.cli._errors import FAILED, USAGE, leave, scenario_errors, store_errors
 from nonholo.cli._pictures import beside, draw, warn_of_older
 from nonholo.cli._report import as_json, duration, figures, show
@@ -30,11 +31,13 @@ def simulate_and_keep(
         loaded = load_scenario(name, given + [parse_setting(text) for text in settings])
     with store_errors(USAGE):
         check_output(output, overwrite=overwrite)
-    store, ran = _run_and_keep(loaded, output, overwrite=overwrite, progress=sys.stderr.isatty() and not quiet)
+    shown = sys.stderr.isatty() and not quiet
+    store, ran = _run_and_keep(loaded, output, overwrite=overwrite, progress=shown)
     if store is None or ran.orbit is None:
         leave(f"Nothing to keep. {ran.stopped}", FAILED)
     wanted = loaded.scenario.output
-    drawn = draw(ran.orbit, beside(store, "png") if wanted.plot else None, beside(store, "gif") if wanted.gif else None)
+    paths = (beside(store, "png") if wanted.plot else None, beside(store, "gif") if wanted.gif else None)
+    drawn = draw(ran.orbit, *paths, progress=shown)
     warn_of_older(store, drawn)
     _report(loaded, ran, ran.orbit, {"store": str(store), **drawn}, json=json, quiet=quiet)
     if ran.stopped:
@@ -55,7 +58,8 @@ def _report(loaded: Loaded, ran: Ran, orbit: Orbit, paths: dict[str, str | None]
     if quiet and not json:
         typer.echo(paths["store"])
         return
-    measured = figures(orbit)
+    with waiting("measuring", sys.stderr.isatty()):
+        measured = figures(orbit)
     if is_part := orbit.time[0] > 0:  # only the last block of so large a run was loaded
         measured["steps"] = round(orbit.time[-1] / loaded.scenario.run.time_step)
     each = ran.seconds / max(1, measured["steps"])

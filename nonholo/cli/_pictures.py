@@ -2,13 +2,12 @@
 
 import contextlib
 import os
-import sys
 import uuid
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nonholo._progress import progress_bar
+from nonholo._progress import progress_bar, waiting
 from nonholo.cli._errors import warn
 
 if TYPE_CHECKING:
@@ -22,8 +21,8 @@ def beside(store: Path, suffix: str) -> Path:
     return store.with_name(f"{store.name.removesuffix('.zarr')}.{suffix}")
 
 
-def draw(orbit: "Orbit", picture: Path | None, animation: Path | None) -> dict[str, str | None]:
-    """Draw what is asked for; return the paths of what was drawn, None for the rest."""
+def draw(orbit: "Orbit", picture: Path | None, animation: Path | None, *, progress: bool) -> dict[str, str | None]:
+    """Draw what is asked for, with progress if wanted; return the paths of what was drawn, None for the rest."""
     drawn: dict[str, str | None] = {"picture": None, "animation": None}
     if picture is None and animation is None:
         return drawn
@@ -32,12 +31,12 @@ def draw(orbit: "Orbit", picture: Path | None, animation: Path | None) -> dict[s
         from nonholo import plotting
 
         if picture is not None:
-            with complete(picture) as part:
+            with complete(picture) as part, waiting("drawing", progress):
                 plotting.overview(orbit, part, flow=_flow(orbit))
             drawn["picture"] = str(picture)
         if animation is not None:
-            with complete(animation) as part, progress_bar("frames", sys.stderr.isatty()) as progress:
-                plotting.animate(orbit, part, progress=progress)
+            with complete(animation) as part, progress_bar("frames", progress) as report:
+                plotting.animate(orbit, part, progress=report)
             drawn["animation"] = str(animation)
     except Exception as failure:
         warn(f"no picture: {type(failure).__name__}: {failure}")

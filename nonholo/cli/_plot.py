@@ -1,5 +1,6 @@
 """`nonholo plot`: draw a run or a sweep that was kept."""
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -16,8 +17,11 @@ def plot(
     color: Annotated[str | None, typer.Option(metavar="NAME", help="Of a sweep: the quantity that is shown.")] = None,
     x: Annotated[str | None, typer.Option("--x", metavar="NAME", help="Of a sweep: what runs across.")] = None,
     y: Annotated[str | None, typer.Option("--y", metavar="NAME", help="Of a sweep: what runs up.")] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an older PICTURE.")] = False,
 ) -> None:
     """Draw the overview of a run, an animation of it, or the map of a sweep.
+
+    The picture beside STORE is drawn anew; one at -o is replaced only with --overwrite.
 
     nonholo plot runs/sleigh-001.zarr -o sleigh.pdf
     nonholo plot runs/sleigh-001.zarr --gif
@@ -27,9 +31,13 @@ def plot(
 
     use_cache_folders()
     from nonholo import io
+    from nonholo._progress import waiting
     from nonholo.cli._errors import FAILED, USAGE, leave, store_errors
     from nonholo.cli._pictures import beside, draw
 
+    if output is not None:
+        with store_errors(USAGE):
+            io.check_file(output, overwrite=overwrite, where="nonholo plot -o")
     path = output or beside(store, "gif" if gif else "png")
     if io.format_of(store) == io.SWEEP_FORMAT:
         from nonholo.cli._sweep_picture import draw_stored_sweep
@@ -42,9 +50,9 @@ def plot(
             leave("--color, --x and --y are for the store of a sweep.", USAGE)
         with store_errors(USAGE):
             io.read_attributes(store)
-        with store_errors(FAILED):
+        with store_errors(FAILED), waiting("reading", shown := sys.stderr.isatty()):
             orbit = io.load_orbit(store)
-        drawn = draw(orbit, None if gif else path, path if gif else None).values()
+        drawn = draw(orbit, None if gif else path, path if gif else None, progress=shown).values()
     if str(path) not in drawn:
         raise typer.Exit(FAILED)
     typer.echo(path)

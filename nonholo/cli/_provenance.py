@@ -1,11 +1,13 @@
 """What a store says about how it was made, with its invariants measured again."""
 
 import json as jsonlib
+import sys
 from pathlib import Path
 from typing import Any
 
 import typer
 
+from nonholo._progress import waiting
 from nonholo.cli._errors import FAILED, USAGE, leave, store_errors
 from nonholo.cli._report import as_json, figures, show
 from nonholo.cli._sweep_report import show_sweep, sweep_figures
@@ -21,7 +23,8 @@ _NESTED = ("parameters", "motion", "versions", "arrays", "run", "sweep")
 def show_provenance(store: Path, stored: dict[str, Any], orbit: Orbit | None, *, json: bool) -> None:
     """Print attributes and, where the orbit could be loaded, invariants, as tables or as one JSON object."""
     told = _told(stored)
-    measured = {} if orbit is None else figures(orbit)
+    with waiting("measuring", sys.stderr.isatty()):
+        measured = {} if orbit is None else figures(orbit)
     if json:
         typer.echo(as_json({"store": str(store), "provenance": told, **measured}))
         return

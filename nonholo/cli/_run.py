@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
+from nonholo._progress import waiting
 from nonholo._results import OutcomeError
 from nonholo.cli._errors import USAGE, leave
 from nonholo.cli._pictures import beside
@@ -39,7 +40,8 @@ def run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progres
 
     Compilation is over before the clock starts. What takes several blocks goes to the store as it is computed.
     """
-    scenario, (discrete, starts) = loaded.scenario, _tried(loaded)
+    with waiting("compiling", progress):
+        scenario, (discrete, starts) = loaded.scenario, _tried(loaded)
     going = functools.partial(simulate, discrete, steps=scenario.run.steps, progress=progress, **scenario.options())
     text = effective_text(scenario.in_force(discrete) if isinstance(discrete, Discretization) else scenario)
     size = size_in_blocks(discrete, scenario.run.branch, scenario.run.steps, scenario.run.save_every)

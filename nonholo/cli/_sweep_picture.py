@@ -1,10 +1,12 @@
 """The map of a sweep, drawn beside its store; a picture that fails never costs the result."""
 
 import os
+import sys
 import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from nonholo._progress import waiting
 from nonholo.cli._errors import FAILED, store_errors, warn
 from nonholo.cli._pictures import complete
 from nonholo.cli._sweep_scenario import library_name
@@ -21,7 +23,7 @@ def draw_sweep(result: "xarray.Dataset", picture: Path, color: str | None, x: st
         from nonholo import plotting
 
         figure: Any = plotting.sweep_map(result, quantity, across, up).axes.figure
-        with complete(picture) as part:
+        with complete(picture) as part, waiting("drawing", sys.stderr.isatty()):
             figure.savefig(part, dpi=150)
     except Exception as failure:
         warn(f"no picture: {type(failure).__name__}: {failure}")

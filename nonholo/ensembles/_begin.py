@@ -6,6 +6,7 @@ from typing import Any
 
 from nonholo import io
 from nonholo._checks import count, error
+from nonholo._progress import waiting
 from nonholo.ensembles._block import block_of
 from nonholo.ensembles._describe import (
     design_text,
@@ -39,10 +40,11 @@ def check_task(task: Any, design: Any) -> None:
         task.check_design([*design.axes, *design.drawn])
 
 
-def begun(task: Task, design: Design, path: Path, block: Any, scenario: str | None) -> SweepStore:
+def begun(task: Task, design: Design, path: Path, block: Any, scenario: str | None, *, progress: bool) -> SweepStore:
     """Make the store of a sweep, after its task has been tried."""
+    io.check_suffix(path, "sweep(store=...)")
     size = _block(task, design.members) if block is None else count("sweep(block=...)", block, "Pass how many members.")
-    with in_one_thread():
+    with in_one_thread(), waiting("compiling and trying a member", progress):
         returned = probed(task, lambda first, some: block_of(design, first, some), design.members)
     drawn = {name: _drawn(name, shape) for name, shape in design.drawn.items()}
     _check_names(design, drawn, returned)

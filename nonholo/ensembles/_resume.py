@@ -93,6 +93,7 @@ def _complete(work: Work, scheduler: str, workers: int | None, progress: bool) -
     store = work.store
     total, done, versions = store.design.members, 0, {attributes_of(store.path)["versions"]}
     with progress_bar("members", progress) as report:
+        report(0, total)
 
         def take(finished: Done) -> None:
             nonlocal done

@@ -51,8 +51,9 @@ def sweep(
         The result, one dimension for each axis of a grid, else `member`; read from the store as it is used.
 
     Raises:
-        ValueError: A bad argument, or a task that raises for every member tried, before anything is written; with
-            `resume` another task or design than that of the store, with the difference.
+        ValueError: A bad argument, a path with the suffix of another format, or a task that raises for every member
+            tried, before anything is written; with `resume` another task or design than that of the store, with the
+            difference.
         FileExistsError: There is something at the path.
         BlockingIOError: Another process is writing the store; the message names it.
         OSError: The disk is full, or a worker process was killed; the store stays valid, and `resume` goes on.
@@ -73,7 +74,7 @@ def sweep(
         check_same(opened, task, design)
         task = restored_task(opened, task)
     else:
-        opened = begun(task, design, Path(store), block, scenario)
+        opened = begun(task, design, Path(store), block, scenario, progress=progress)
     return go_on(Work(opened, task), name, workers, progress)
 
 

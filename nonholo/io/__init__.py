@@ -27,6 +27,7 @@ from nonholo.io._plan import Checkpoint, Plan
 from nonholo.io._pose_columns import column_names, separate_rows
 from nonholo.io._pose_variables import separate_variables
 from nonholo.io._save import (
+    check_suffix,
     check_target,
     consolidate,
     create_array,
@@ -50,6 +51,7 @@ __all__ = [
     "attributes",
     "attributes_of_text",
     "check_file",
+    "check_suffix",
     "check_target",
     "chunk_name",
     "chunk_path",

@@ -139,12 +139,12 @@ def new_file(target: str | Path | TextIO, *, overwrite: bool) -> Iterator[TextIO
         part.replace(Path(target).resolve())
 
 
-def check_file(target: str | Path | TextIO, *, overwrite: bool) -> None:
-    """Refuse a path that exists, unless it is a file that may be replaced."""
+def check_file(target: str | Path | TextIO, *, overwrite: bool, where: str = "to_csv(path=...)") -> None:
+    """Refuse, in the name of `where`, a path that exists, unless it is a file that may be replaced."""
     if not isinstance(target, str | Path):
         return
     path = Path(target)
     if path.exists() and not (overwrite and path.is_file()):
         how = "Choose another path"
         remedy = f"It is not a file. {how}." if overwrite else f"{how}, or pass overwrite=True (--overwrite)."
-        raise FileExistsError(f"`to_csv(path=...)` must be new. Got '{path}', which exists. {remedy}")
+        raise FileExistsError(f"`{where}` must be new. Got '{path}', which exists. {remedy}")

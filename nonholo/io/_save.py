@@ -16,6 +16,7 @@ import xarray
 import zarr
 from zarr.codecs import BloscCodec, Crc32cCodec
 
+from nonholo._checks import error
 from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
 from nonholo.io._dataset import CANONICAL, stored_variables
 from nonholo.io._load import format_of
@@ -23,6 +24,15 @@ from nonholo.orbit import Orbit, as_orbit
 
 _ROWS = 100_000  # states in one chunk
 _FILTERS = threading.Lock()  # warning filters belong to the whole process
+_NETCDF, _CSV = "use orbit.to_dataset().to_netcdf(path)", "use orbit.to_csv(path)"
+_OTHER_FORMATS = {
+    **dict.fromkeys((".nc", ".nc4", ".netcdf", ".h5", ".hdf5"), _NETCDF),
+    **dict.fromkeys((".csv", ".txt"), _CSV),
+    **dict.fromkeys((".parquet", ".feather", ".xlsx"), "use orbit.to_pandas()"),
+    **dict.fromkeys((".png", ".svg", ".pdf"), "use orbit.plot(path)"),
+    **dict.fromkeys((".gif", ".json", ".toml", ".npy", ".npz", ".mat", ".pkl", ".zip"), ""),
+}
+"""Suffixes that no store may have, and what writes such files."""
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -34,11 +44,12 @@ def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scena
 
     Args:
         orbit: What to save.
-        path: A new directory, usually named `*.zarr`.
+        path: A new directory, usually named `*.zarr`; suffixes of other formats, such as .nc and .csv, are refused.
         overwrite: Replace an older store of an orbit (nothing else is ever replaced).
         scenario: Text of the scenario that was run, kept with its SHA-256.
 
     Raises:
+        ValueError: The path has the suffix of another format.
         FileExistsError: The path exists, and is not to be replaced.
         OSError: The store cannot be written, for example because the disk is full.
 
@@ -86,8 +97,18 @@ def telling_how_to_go_on(store: Path, what: str, standing: Callable[[], object])
         raise OSError(failure.errno or errno.EIO, reason, str(store)) from failure
 
 
+def check_suffix(path: str | Path, where: str = "save_orbit(path=...)") -> None:
+    """Refuse, in the name of `where`, a path with the suffix of another format, which programs would take it for."""
+    suffix = Path(path).suffix.lower()
+    if suffix in _OTHER_FORMATS:
+        store, how = f"Write a store: '{Path(path).with_suffix('.zarr')}'", _OTHER_FORMATS[suffix]
+        remedy = f"{store}, or {how}." if how and where.startswith("save_orbit") else f"{store}."
+        raise error(where, "be the path of a Zarr store, usually *.zarr", f"'{path}'", remedy)
+
+
 def check_target(path: str | Path, *, overwrite: bool = False) -> None:
-    """Refuse a path that exists, unless it is a store of an orbit that may be replaced."""
+    """Refuse a path that exists, unless it is a store of an orbit that may be replaced, and one of another format."""
+    check_suffix(path)
     if not Path(path).exists():
         return
     if not overwrite:

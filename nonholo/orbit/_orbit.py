@@ -257,9 +257,9 @@ class Orbit:
         """Write the times and poses to a new CSV file; `nonholo.io.orbit_to_csv` names its columns."""
         importlib.import_module("nonholo.io").orbit_to_csv(self, path, overwrite=overwrite)
 
-    def plot(self, path: str | None = None) -> Any:
-        """Draw the overview picture of the orbit; return the matplotlib figure, saved to `path` if given."""
-        return importlib.import_module("nonholo.plotting").overview(self, path)
+    def plot(self, path: str | None = None, *, overwrite: bool = False) -> Any:
+        """Draw the overview picture of the orbit; return the matplotlib figure, saved to a new `path` if given."""
+        return importlib.import_module("nonholo.plotting").overview(self, path, overwrite=overwrite)
 
     def _posed(self) -> np.ndarray:
         if self.canonical_pose is None:

@@ -11,6 +11,7 @@ from PIL import Image
 
 from nonholo._checks import count, error, positive
 from nonholo._types import Int
+from nonholo.io import check_file
 from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
 from nonholo.plotting._sleigh_scene import sleigh_motion, sleigh_scene
@@ -31,6 +32,8 @@ def animate(
     frames: int = 120,
     fps: float = 25.0,
     progress: Callable[[int, int], None] | None = None,
+    *,
+    overwrite: bool = False,
 ) -> Path:
     """Make a GIF of the moving body: a top with its forbidden axis on the sphere, or a sleigh with its track.
 
@@ -40,15 +43,17 @@ def animate(
 
     Args:
         orbit: An orbit of a `SuslovTop` on SO(3) or of a `ChaplyginSleigh`, with poses.
-        path: Where to write; ends in .gif.
+        path: Where to write, a new file; ends in .gif.
         frames: Number of frames; fewer if the orbit has fewer states.
         fps: Frames per second.
         progress: Called with the number of finished frames and their total.
+        overwrite: Replace an older animation at the path.
 
     Returns:
         The path.
 
     Raises:
+        FileExistsError: The path exists, and is not to be replaced.
         ValueError: An orbit of another system or without poses, another suffix, a number that is not positive.
 
     Example:
@@ -60,6 +65,7 @@ def animate(
     """
     motion, scene = _scene_of(orbit)
     target = _target(path)
+    check_file(target, overwrite=overwrite, where="animate(path=...)")
     remedy = "Pass how many frames there should be."
     total = min(count("animate(frames=...)", frames, remedy), len(orbit))
     rate = float(positive("animate(fps=...)", fps, "Pass frames per second."))

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from nonholo._checks import error
+from nonholo.io import check_file
 from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
 from nonholo.plotting._head import write_head
@@ -18,7 +19,9 @@ _LARGER = 2.2  # times as high as a panel against time
 
 
 @theme.styled
-def overview(orbit: Orbit, path: str | Path | None = None, flow: Orbit | None = None) -> Figure:
+def overview(
+    orbit: Orbit, path: str | Path | None = None, flow: Orbit | None = None, *, overwrite: bool = False
+) -> Figure:
     """Draw an orbit of any system: its path in space, its momentum, its velocity and the error of its energy.
 
     The path is that of a body axis on SO(3), of the blade of a sleigh, of the reference point on SE(n); other groups,
@@ -29,10 +32,12 @@ def overview(orbit: Orbit, path: str | Path | None = None, flow: Orbit | None = 
 
     Args:
         orbit: An orbit of any system, discrete or continuous.
-        path: Where to save the figure; the suffix (.png, .svg, .pdf) chooses the format.
+        path: Where to save the figure, a new file; the suffix (.png, .svg, .pdf) chooses the format.
         flow: The continuous motion from the same initial data, drawn beside a discrete orbit.
+        overwrite: Replace an older picture at the path.
 
     Raises:
+        FileExistsError: The path exists, and is not to be replaced.
         ValueError: No orbit, one without states, or a suffix that is not a picture format.
 
     Example:
@@ -48,6 +53,7 @@ def overview(orbit: Orbit, path: str | Path | None = None, flow: Orbit | None = 
     figure = Figure(figsize=_SIZE, layout=below_title)
     if path is not None:
         check_suffix(figure, path)
+        check_file(path, overwrite=overwrite, where="overview(path=...)")
     panels = panels_of(orbit, flow)
     axes = _axes(figure, panels)
     for panel, own in zip(panels, axes, strict=True):

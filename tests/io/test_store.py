@@ -198,6 +198,25 @@ def test_overwrite_never_replaces_anything_else(content: str, tmp_path: Path) ->
     assert target.exists()
 
 
+@pytest.mark.parametrize(
+    ("name", "remedy"),
+    [
+        ("o.nc", r"'.*/o\.zarr', or use orbit.to_dataset\(\)\.to_netcdf\(path\)"),
+        ("o.H5", "to_netcdf"),
+        ("o.csv", r"or use orbit\.to_csv\(path\)"),
+        ("o.json", r"Write a store: '.*/o\.zarr'\.$"),
+    ],
+)
+def test_suffixes_of_other_formats_are_refused(name: str, remedy: str, tmp_path: Path) -> None:
+    """A store is not written under the suffix of another format, saved or run into, old or new."""
+    for write in (lambda: nh.save_orbit(_orbit(5), tmp_path / name), lambda: _orbit(5, store=tmp_path / name)):
+        with pytest.raises(ValueError, match=remedy):
+            write()
+    assert not list(tmp_path.iterdir())
+    nh.save_orbit(_orbit(5), tmp_path / "run.2")
+    assert len(nh.load_orbit(tmp_path / "run.2")) == 6
+
+
 def test_full_disk_leaves_the_old_store(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """If the disk fills up while writing, the error says so, the old store is intact, nothing is left behind."""
     write = _save._write_array

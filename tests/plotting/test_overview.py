@@ -99,6 +99,27 @@ def test_refuses_other_suffixes(sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
         nh.plot.overview(sleigh_orbit, tmp_path / "picture.zarr")
 
 
+@pytest.mark.parametrize("draw", ["plot", "overview", "animate"])
+def test_older_pictures_are_kept(draw: str, sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
+    """A picture at the path is kept unless it is to be replaced; a folder is never replaced."""
+    path = tmp_path / ("a.gif" if draw == "animate" else "a.png")
+    functions = {
+        "plot": lambda **options: sleigh_orbit.plot(str(path), **options),
+        "overview": lambda **options: nh.plot.overview(sleigh_orbit, path, **options),
+        "animate": lambda **options: nh.plot.animate(sleigh_orbit, path, frames=2, **options),
+    }
+    path.write_text("mine")
+    with pytest.raises(FileExistsError, match=r"must be new\. Got .* or pass overwrite=True"):
+        functions[draw]()
+    assert path.read_text() == "mine"
+    functions[draw](overwrite=True)
+    assert path.read_bytes() != b"mine"
+    path.unlink()
+    path.mkdir()
+    with pytest.raises(FileExistsError, match="not a file"):
+        functions[draw](overwrite=True)
+
+
 def test_global_settings_are_unchanged(sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
     """Drawing and saving leave matplotlib's settings as they were."""
     before = dict(mpl.rcParams)

@@ -1,0 +1,65 @@
+"""What commands refuse so that nothing of the user's is lost or taken for something else, with the remedy."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+import nonholo as nh
+
+Command = Callable[..., Result]
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+
+
+def _words(result: Result) -> str:
+    """Return what was printed, without the frames and line ends of boxes."""
+    return " ".join(result.output.replace("│", " ").split())
+
+
+@pytest.mark.parametrize(
+    ("kind", "told"),
+    [
+        ("top", "there is no kind 'top'. Did you mean suslov or veselova?"),
+        ("slei", "Did you mean sleigh?"),
+        ("rigid", "Did you mean rigid_body"),
+        ("zebra", "Known: suslov, sleigh, multidimensional_sleigh,"),
+    ],
+)
+def test_unknown_templates_name_the_nearest(kind: str, told: str, nonholo: Command) -> None:
+    """A kind that is none is refused in our own words, with the nearest ones."""
+    refused = nonholo("new", kind)
+    assert refused.exit_code == 2
+    assert told in _words(refused)
+    assert "Value error" not in _words(refused)
+
+
+@pytest.mark.parametrize("suffix", ["png", "gif"])
+def test_pictures_at_a_path_of_ones_own_are_kept(suffix: str, nonholo: Command) -> None:
+    """`plot -o` refuses what is there unless told to replace it; the picture beside the store is drawn anew."""
+    nh.simulate(SLEIGH, body_velocity=(0.3, -1.0, 0.0), steps=20, store="a.zarr")
+    mine = Path(f"mine.{suffix}")
+    mine.write_text("mine")
+    command = ["plot", "a.zarr", "-o", mine] + (["--gif"] if suffix == "gif" else [])
+    refused = nonholo(*command)
+    assert refused.exit_code == 2
+    assert f"must be new. Got '{mine}', which exists." in _words(refused)
+    assert "--overwrite" in _words(refused)
+    assert mine.read_text() == "mine"
+    assert nonholo(*command, "--overwrite").exit_code == 0
+    assert mine.read_bytes() != b"mine"
+    again = [argument for argument in command if argument not in ("-o", mine)]
+    assert [nonholo(*again).exit_code for _ in range(2)] == [0, 0]
+
+
+@pytest.mark.parametrize("command", ["simulate", "sweep"])
+def test_a_store_is_no_netcdf_file(command: str, nonholo: Command) -> None:
+    """A store under the suffix of another format is refused before anything is run."""
+    scenario = "sleigh"
+    if command == "sweep":
+        scenario = "my.toml"
+        Path(scenario).write_text(nonholo("new", "sweep").stdout)
+    refused = nonholo(command, scenario, "-o", "mine.nc")
+    assert refused.exit_code == 2
+    assert "must be the path of a Zarr store, usually *.zarr. Got 'mine.nc'" in _words(refused)
+    assert not Path("mine.nc").exists()
