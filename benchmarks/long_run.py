@@ -28,7 +28,7 @@ VELOCITIES = {"top": (0.4, 0.9, 0.0), "sleigh": (1.0, 0.3, 0.0)}
 KILLS = 10
 KEPT_OF_LONG = 10
 KEPT_OF_THINNED = 100
-NAMES = ("time", "reduced_momentum", "cayley", "pose")
+NAMES = ("time", "reduced_momentum", "cayley", "canonical_pose")
 
 
 def begin(body: str, steps: int, every: int, store: Path) -> nh.Orbit:

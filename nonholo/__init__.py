@@ -72,6 +72,7 @@ if TYPE_CHECKING:
     from nonholo.simulation import iterate as iterate
     from nonholo.simulation import simulate as simulate
     from nonholo.systems import ChaplyginSleigh as ChaplyginSleigh
+    from nonholo.systems import ImpossibleBodyWarning as ImpossibleBodyWarning
     from nonholo.systems import LLSystem as LLSystem
     from nonholo.systems import LRSystem as LRSystem
     from nonholo.systems import MultidimensionalSleigh as MultidimensionalSleigh
@@ -96,6 +97,7 @@ _HOMES = {
     "EventLog": "simulation",
     "Grid": "ensembles",
     "GroupLagrangeDAlembert": "lagrange_dalembert",
+    "ImpossibleBodyWarning": "systems",
     "LLSystem": "systems",
     "LRSystem": "systems",
     "LagrangeDAlembert": "lagrange_dalembert",

@@ -7,7 +7,7 @@ from typing import Any
 import typer
 
 from nonholo._progress import waiting
-from nonholo.cli._errors import FAILED, USAGE, leave, scenario_errors, store_errors
+from nonholo.cli._errors import FAILED, USAGE, leave, scenario_errors, store_errors, told_warnings
 from nonholo.cli._pictures import beside, draw, warn_of_older
 from nonholo.cli._report import as_json, duration, figures, show
 from nonholo.cli._run import Ran, check_output, run_and_keep
@@ -26,7 +26,7 @@ def simulate_and_keep(
     quiet: bool,
 ) -> None:
     """Load, run, save, draw, report; options of the command line come before the settings of `--set`."""
-    with scenario_errors():
+    with scenario_errors(), told_warnings():
         given = [Setting(f"{opt} {value}", key, value) for key, (opt, value) in chosen.items() if value is not None]
         loaded = load_scenario(name, given + [parse_setting(text) for text in settings])
     with store_errors(USAGE):

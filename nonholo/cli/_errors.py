@@ -29,6 +29,7 @@ def told_warnings() -> Iterator[None]:
     with warnings.catch_warnings():
         warnings.showwarning = lambda message, *_: warn(str(message))
         warnings.simplefilter("always", RuntimeWarning)
+        warnings.simplefilter("once", UserWarning)
         yield
 
 

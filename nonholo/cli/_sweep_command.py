@@ -10,7 +10,7 @@ from typing import Any
 import typer
 import xarray
 
-from nonholo.cli._errors import USAGE, leave, scenario_errors, store_errors
+from nonholo.cli._errors import USAGE, leave, scenario_errors, store_errors, told_warnings
 from nonholo.cli._going_on import going
 from nonholo.cli._pictures import beside
 from nonholo.cli._problems import ScenarioError, problem_of_value
@@ -35,7 +35,7 @@ def sweep_and_keep(
     quiet: bool,
 ) -> None:
     """Load, run, draw, report; options of the command line come before the settings of `--set`."""
-    with scenario_errors():
+    with scenario_errors(), told_warnings():
         given = [_setting(option, key, value) for key, (option, value) in chosen.items() if value is not None]
         loaded = load_sweep_scenario(name, given + [parse_setting(text) for text in settings])
         task = _task(loaded)

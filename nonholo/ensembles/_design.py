@@ -11,7 +11,7 @@ import numpy as np
 from nonholo._checks import array, count, error
 from nonholo._types import Float
 from nonholo.ensembles._distributions import AbstractDistribution
-from nonholo.ensembles._names import OUTCOME, array_name, component_name
+from nonholo.ensembles._names import OUTCOME, array_name, component_name, stream_name
 from nonholo.ensembles._uniform import uniform_numbers
 
 _REMEDY = "Pass a dictionary of names to"
@@ -149,7 +149,7 @@ class RandomDesign(AbstractDesign):
     def values(self, first: int, count: int) -> Values:
         """Return the values of some members in order, by name."""
         return {
-            name: value.draw(uniform_numbers(self.seed, f"design {name}", first, count, value.width))
+            name: value.draw(uniform_numbers(self.seed, f"design {stream_name(name)}", first, count, value.width))
             for name, value in self.distributions.items()
         }
 

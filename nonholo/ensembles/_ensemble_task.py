@@ -17,9 +17,9 @@ from nonholo.discrete._start import one_start
 from nonholo.discrete._structured import scalar_step
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
-from nonholo.ensembles._names import OUTCOME
+from nonholo.ensembles._names import OUTCOME, STARTS
 from nonholo.ensembles._reductions import REDUCTIONS, final_state_of_schema_1
-from nonholo.ensembles._starts import STARTS, check_starts, rows_of_starts, start_component
+from nonholo.ensembles._starts import check_starts, rows_of_starts, start_component
 from nonholo.io._descriptions import unstored
 from nonholo.simulation import Ensemble, ensemble
 from nonholo.simulation._ensemble_members import Members

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from nonholo._checks import error
 
 OUTCOME = "outcome"
+STARTS = ("body_velocity", "restricted_velocity", "momentum")
 _BRACKETS = re.compile(r"\[(\d+)\]")
 _LAST = re.compile(r"(\w+)_(\d+)")
 _TAKEN = ("run", "zarr.json")
@@ -38,6 +39,17 @@ def component_of(name: str) -> tuple[str, int] | None:
     """
     part = _LAST.fullmatch(component_name(name))
     return (part[1], int(part[2])) if part else None
+
+
+def stream_name(name: str) -> str:
+    """Return what the random numbers of a drawn value are made of: components of starts had brackets, and keep theirs.
+
+    Example:
+        >>> stream_name("momentum_0"), stream_name("momentum[0]"), stream_name("a")
+        ('momentum[0]', 'momentum[0]', 'a')
+    """
+    part = component_of(name)
+    return f"{part[0]}[{part[1]}]" if part and part[0] in STARTS else name
 
 
 def array_name(where: str, name: Any) -> str:

@@ -9,9 +9,8 @@ from nonholo._checks import error
 from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.ensembles._block import MemberBlock
-from nonholo.ensembles._names import component_of
+from nonholo.ensembles._names import STARTS, component_of
 
-STARTS = ("body_velocity", "restricted_velocity", "momentum")
 Start: TypeAlias = tuple[str, Float[np.ndarray, "n"]]
 
 

@@ -2,6 +2,7 @@
 
 from nonholo.systems._arrowhead import ArrowheadSleigh, ArrowheadTop, is_wide
 from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, AbstractSystem, Equilibria, System
+from nonholo.systems._body import ImpossibleBodyWarning
 from nonholo.systems._displacements import in_exp_d, trace_constraints
 from nonholo.systems._euler_angles import euler_angle_discrete_lagrangian
 from nonholo.systems._ll_system import LLSystem
@@ -36,6 +37,7 @@ __all__ = [
     "ArrowheadTop",
     "ChaplyginSleigh",
     "Equilibria",
+    "ImpossibleBodyWarning",
     "LLSystem",
     "LRSystem",
     "MultidimensionalSleigh",

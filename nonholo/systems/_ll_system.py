@@ -9,6 +9,7 @@ from nonholo._checks import array, error, is_traced, positive_definite, symmetri
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, Equilibria, form_along
+from nonholo.systems._body import lines_of, mass_tensor_of_body, tensors_shown
 from nonholo.systems._drift import constant_velocities
 from nonholo.systems._mass import checked_group, form_mass_tensor, group_mass_tensor, inertia_from_mass_tensor
 from nonholo.systems._subspace import subspace_and_annihilator
@@ -32,8 +33,9 @@ class LLSystem(AbstractLLSystem):
 
     Args:
         group: The configuration space.
-        mass_tensor: $\mathbb{J}$: (n, n) on SO(n), homogeneous (n + 1, n + 1) on SE(n), both symmetric;
-            (N, N) with $\mathbb{J}^* = \mathbb{J}$ on a group with a form; or else `inertia_operator`.
+        mass_tensor: $\mathbb{J} = \int r r^T dm$: (n, n) on SO(n), homogeneous (n + 1, n + 1) on SE(n), both symmetric;
+            (N, N) with $\mathbb{J}^* = \mathbb{J}$ on a group with a form; or else `inertia_operator`. It is not the
+            inertia tensor: `from_inertia` takes that one, and `repr` shows both.
         constraint_subspace: Rows span $\mathfrak{d}$; an empty (0, dim) array forbids all motion, dim rows forbid none.
         annihilator: Rows span the covectors that vanish on $\mathfrak{d}$. One of the two may be left out: it is then
             computed, as coordinate rows where the given rows are coordinate rows, orthonormal otherwise.
@@ -106,12 +108,50 @@ class LLSystem(AbstractLLSystem):
             remedy = "Every admissible velocity needs a positive kinetic energy."
             positive_definite(where, self.constrained_inertia, "the inertia along the constraint", remedy)
 
+    @classmethod
+    def from_inertia(
+        cls,
+        mass: Any,
+        inertia: Any,
+        center_of_mass: Any,
+        group: AbstractMatrixGroup,
+        constraint_subspace: Any = None,
+        *,
+        annihilator: Any = None,
+    ) -> "LLSystem":
+        """Build a system from its mass, its inertia about the center of mass, and where that is in the body.
+
+        On SO(3) the body turns about the origin of body coordinates, to which Steiner's theorem carries the inertia; on
+        SE(n) the origin is the reference point. An `ImpossibleBodyWarning` says so if no body has the inertia.
+
+        Args:
+            mass: m.
+            inertia: About the center of mass: a number in the plane, the inertia tensor (3, 3) in space (not the mass
+                tensor).
+            center_of_mass: n body coordinates, from the origin.
+            group: SO(2), SO(3), SE(2) or SE(3). In more dimensions an inertia tensor is none of a body: pass the mass
+                tensor to the class itself.
+            constraint_subspace: As for the class.
+            annihilator: As for the class.
+
+        Raises:
+            ValueError: Another group, a mass or moment that is not positive, a wrong shape; and as for the class.
+
+        Example:
+            >>> from nonholo.systems import LLSystem
+            >>> LLSystem.from_inertia(2.0, 1.0, [0.5, 0.0], nh.SE(2), annihilator=[[0.0, 0.0, 1.0]]).inertia_operator
+            array([[1.5, 0. , 1. ],
+                   [0. , 2. , 0. ],
+                   [1. , 0. , 2. ]])
+        """
+        tensor = mass_tensor_of_body("LLSystem", mass, inertia, center_of_mass, group)
+        return cls(group, tensor, constraint_subspace, annihilator=annihilator)
+
     def __repr__(self) -> str:
-        name = "inertia operator" if self.mass_tensor is None else "mass tensor J"
-        tensor = np.asarray(self.given_inertia if self.mass_tensor is None else self.mass_tensor)
-        shown = [(name, tensor), ("constraint subspace", np.asarray(self.constraint_subspace))]
-        lines = (f"{label} = {np.array2string(value, prefix=' ' * (len(label) + 5))}" for label, value in shown)
-        return f"LLSystem({self.group!r},\n  " + ",\n  ".join(lines) + ")"
+        given = {"inertia operator": np.asarray(self.given_inertia)}
+        shown = given if self.mass_tensor is None else tensors_shown(self.group, self.mass_tensor)
+        subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
+        return f"LLSystem({self.group!r},\n  {lines_of(shown | subspace)})"
 
     @property
     def homogeneous_mass_tensor(self) -> Float[Array, "N N"] | None:

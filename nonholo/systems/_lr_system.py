@@ -9,6 +9,7 @@ from nonholo._checks import positive_definite
 from nonholo._types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLRSystem
+from nonholo.systems._body import lines_of, tensors_shown
 from nonholo.systems._mass import body_tensor, checked_group, group_mass_tensor, inertia_from_mass_tensor
 from nonholo.systems._subspace import complement, plane_rows, subspace_and_annihilator
 
@@ -29,7 +30,7 @@ class LRSystem(AbstractLRSystem):
     Args:
         group: SO(n) or SE(n).
         mass_tensor: Symmetric: (n, n) on SO(n), homogeneous (n + 1, n + 1) on SE(n), with a positive definite inertia
-            operator.
+            operator. It is not the inertia tensor; `repr` shows both.
         constraint_subspace: Rows span $\mathfrak{d}$; any dimension from 0 to that of the group.
         annihilator: Rows span the covectors that vanish on $\mathfrak{d}$; one of the two may be left out.
 
@@ -61,9 +62,9 @@ class LRSystem(AbstractLRSystem):
         positive_definite(where, self.inertia_operator, "the inertia operator", _REMEDY)
 
     def __repr__(self) -> str:
-        shown = (("mass tensor J", self.mass_tensor), ("constraint subspace", self.constraint_subspace))
-        lines = (f"{name} = {np.array2string(np.asarray(m), prefix=' ' * (len(name) + 5))}" for name, m in shown)
-        return f"LRSystem({self.group!r},\n  " + ",\n  ".join(lines) + ")"
+        shown = tensors_shown(self.group, self.mass_tensor)
+        subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
+        return f"LRSystem({self.group!r},\n  {lines_of(shown | subspace)})"
 
     @property
     def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
@@ -111,7 +112,7 @@ class VeselovaTop(AbstractLRSystem):
         positive_definite(where, self.inertia_operator, "the inertia operator", _REMEDY)
 
     def __repr__(self) -> str:
-        return f"VeselovaTop(mass tensor J = {np.array2string(np.asarray(self.mass_tensor), prefix=' ' * 28)})"
+        return f"VeselovaTop({self.group!r},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
 
     @property
     def group(self) -> AbstractMatrixGroup:

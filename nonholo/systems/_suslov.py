@@ -9,6 +9,7 @@ from nonholo._checks import array, error, is_traced, positive_definite, symmetri
 from nonholo._types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, Equilibria
+from nonholo.systems._body import lines_of, possible, tensors_shown
 from nonholo.systems._mass import (
     body_tensor,
     inertia_from_mass_tensor,
@@ -72,13 +73,15 @@ class SuslovTop(AbstractLLSystem):
     def from_inertia(cls, inertia: Array, axis: Array = _E3) -> "SuslovTop":
         """Build a top (n = 3) from its inertia tensor and the forbidden body axis, all in the user's body frame.
 
+        The inertia tensor is about the fixed point. An `ImpossibleBodyWarning` says so if no body has it.
+
         Example:
             >>> SuslovTop.from_inertia(np.diag([3.0, 2.0, 1.5]), axis=(0, 1, 0)).annihilator
             array([[0., 1., 0.]])
         """
         where = "SuslovTop.from_inertia(inertia=...)"
         tensor = symmetric(where, array(where, inertia, (3, 3)), "Pass the inertia tensor about the fixed point.")
-        return cls(mass_tensor_from_inertia(tensor), axis=axis)
+        return cls(possible(where, mass_tensor_from_inertia(tensor)), axis=axis)
 
     @staticmethod
     def arrowhead(diagonal: Any, coupling: Any) -> "ArrowheadTop":
@@ -102,13 +105,8 @@ class SuslovTop(AbstractLLSystem):
         return ArrowheadTop(diagonal, coupling)
 
     def __repr__(self) -> str:
-        mass = np.array2string(np.asarray(self.mass_tensor), prefix=" " * 17)
-        if self.axis is None:
-            return f"SuslovTop(n={self.group.identity.shape[0]},\n  mass tensor J = {mass})"
-        inertia = np.array2string(np.asarray(self.inertia_operator), prefix=" " * 17)
-        return (
-            f"SuslovTop(axis={np.asarray(self.axis).tolist()},\n  mass tensor J = {mass},\n  inertia tensor  {inertia})"
-        )
+        head = f"n={self.group.size}" if self.axis is None else f"axis={np.asarray(self.axis).tolist()}"
+        return f"SuslovTop({head},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
 
     @property
     def group(self) -> AbstractMatrixGroup:

@@ -57,7 +57,7 @@ def test_random_tops_keep_their_branch_below_the_saddle(nonholo: Callable[..., R
     """No top whose energy is below its saddle loses its branch; of those above twice that, none keeps it."""
     found = _swept(nonholo, "random_tops_sweep", 100)
     tops = [nh.discretize(nh.SuslovTop(J), 1.0) for J in found["mass_tensor"].values]
-    momenta = np.stack([found["momentum[0]"], found["momentum[1]"]], axis=1)
+    momenta = np.stack([found["momentum_0"], found["momentum_1"]], axis=1)
     saddles = [nh.critical_energies(top).saddle for top in tops]
     energies = [float(top.system.constrained_energy(p)) for top, p in zip(tops, momenta, strict=True)]
     part, kept = np.array(energies) / np.array(saddles, dtype=float), found["outcome"].values == 0

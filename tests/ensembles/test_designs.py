@@ -233,3 +233,12 @@ def test_bad_designs_are_refused(make: Callable[[], Any], match: str) -> None:
     """What is no design, no distribution or no name is refused with the reason."""
     with pytest.raises(ValueError, match=match):
         make()
+
+
+def test_draws_do_not_depend_on_the_spelling_of_components() -> None:
+    """A component of a start has the random numbers that it had under its older name, with brackets."""
+    drawn = [
+        nh.RandomDesign(5, {name: nh.Uniform(0, 1)}, seed=3).values(0, 5)["momentum_1"]
+        for name in ("momentum[1]", "momentum_1")
+    ]
+    assert np.array_equal(*drawn)

@@ -96,11 +96,13 @@ def test_stopped_sweep_goes_on(given: str | None, tmp_path: Path) -> None:
 
 
 def test_finished_sweep(tmp_path: Path) -> None:
-    """A finished sweep is opened, its poses are written in the user's frame, and nothing is computed again."""
+    """A finished sweep is opened, drawn as it would be drawn now, and its poses are written in the user's frame."""
     path = _copied("random", tmp_path)
     with nh.load_sweep(path) as found:
         for name in ("final_pose", "final_momentum", "restricted_velocity[1]"):
             assert np.array_equal(found[name].values, _EXPECTED["random"][name]), name
+    drawn = nh.RandomDesign(4, {"restricted_velocity_1": nh.Uniform(0.1, 1.0)}, seed=3).values(0, 4)
+    assert drawn["restricted_velocity_1"].tolist() == _EXPECTED["random"]["restricted_velocity[1]"]
     nh.resume(path).close()
     stream = io.StringIO()
     sweep_to_csv(path, stream)

@@ -1,0 +1,161 @@
+"""Bodies by mass, centre of mass and inertia: what an engineer has, and what no body has."""
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.groups import AbstractMatrixGroup
+from nonholo.systems import ChaplyginSleigh, LLSystem, LRSystem, RigidBody, SuslovTop, VeselovaTop
+
+_RNG = np.random.default_rng(7)
+GROUPS = [nh.SO(2), nh.SO(3), nh.SE(2), nh.SE(3)]
+
+
+def _cloud(n: int, flat: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    """Return masses and places of the particles of a body; a flat one lies askew in a plane of space."""
+    points = _RNG.normal(size=(9, n)) + 0.4
+    if flat:
+        points[:, -1] = 0.0
+        points = points @ nh.SO(n).random(_RNG).T + 0.3
+    return _RNG.uniform(0.2, 1.0, size=9), points
+
+
+def _measured(masses: np.ndarray, points: np.ndarray) -> tuple[float, Any, np.ndarray]:
+    """Return mass, inertia about the centre of mass and centre of mass by their sums over particles."""
+    a = masses @ points / masses.sum()
+    r = points - a
+    if points.shape[1] == 2:
+        return masses.sum(), masses @ (r * r).sum(axis=1), a
+    each = (r * r).sum(axis=1)[:, None, None] * np.eye(3) - r[:, :, None] * r[:, None, :]
+    return masses.sum(), np.einsum("p,pij->ij", masses, each), a
+
+
+def _by_particles(group: AbstractMatrixGroup, masses: np.ndarray, points: np.ndarray) -> np.ndarray:
+    r"""Return the inertia operator by its definition, $\sum_p m_p \langle\hat x r_p, \hat y r_p\rangle$."""
+    if group.size > points.shape[1]:
+        points = np.column_stack([points, np.ones(len(points))])
+    velocities = np.einsum("xij,pj->xpi", group.basis, points)
+    return np.einsum("p,xpi,ypi->xy", masses, velocities, velocities)
+
+
+@pytest.mark.parametrize("group", GROUPS, ids=repr)
+@pytest.mark.parametrize("flat", [False, True])
+def test_the_energy_is_that_of_the_particles(group: AbstractMatrixGroup, flat: bool) -> None:
+    """The inertia operator of a body that was measured is the sum over its particles, about any origin."""
+    n = 2 if group.size == 2 or "SE(2)" in repr(group) else 3
+    masses, points = _cloud(n, flat and n == 3)
+    measured, wanted = _measured(masses, points), _by_particles(group, masses, points)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        bodies = [
+            RigidBody.from_inertia(*measured, group),
+            LLSystem.from_inertia(*measured, group, constraint_subspace=np.eye(group.dim)[:1]),
+            LLSystem.from_inertia(*measured, group, annihilator=np.eye(group.dim)[1:]),
+        ]
+    for body in bodies:
+        assert np.abs(body.inertia_operator - wanted).max() < 1e-13 * np.abs(wanted).max()
+
+
+def test_a_sleigh_is_a_measured_body() -> None:
+    """`ChaplyginSleigh` and the general system from the same numbers have one inertia operator."""
+    sleigh = ChaplyginSleigh(1.3, 0.7, 0.5, b=0.3)
+    same = LLSystem.from_inertia(1.3, 0.7, [0.5, 0.3], nh.SE(2), sleigh.constraint_subspace)
+    assert np.abs(same.inertia_operator - sleigh.inertia_operator).max() < 1e-15
+    assert np.abs(np.asarray(same.homogeneous_mass_tensor) - sleigh.homogeneous_mass_tensor).max() < 1e-15
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        lambda inertia: SuslovTop.from_inertia(inertia),
+        lambda inertia: SuslovTop.from_inertia(inertia, axis=(0.6, 0.0, 0.8)),
+        lambda inertia: RigidBody.from_inertia(1.0, inertia, np.zeros(3), nh.SO(3)),
+        lambda inertia: LLSystem.from_inertia(1.0, inertia, np.ones(3), nh.SE(3), np.eye(6)[:2]),
+    ],
+    ids=["top", "top about another axis", "body", "system"],
+)
+class TestImpossibleBodies:
+    """Inertia tensors that break the triangle inequality."""
+
+    def test_are_warned_of(self, made: Any) -> None:
+        """The warning is one of its own, names the eigenvalue and points to the line of the user."""
+        with pytest.warns(nh.ImpossibleBodyWarning, match=r"eigenvalue -1\.5\.") as told:
+            assert made(np.diag([5.0, 1.0, 1.0])) is not None
+        assert len(told) == 1
+        assert told[0].filename == __file__
+
+    def test_flat_bodies_are_possible(self, made: Any) -> None:
+        """Flat bodies, whose mass tensor has an eigenvalue 0 to rounding, are built in silence."""
+        R = nh.SO(3).random(_RNG)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            for flat in (
+                np.diag([1.0, 2.0, 3.0]),
+                R @ np.diag([0.1, 0.7, 0.8]) @ R.T,
+                np.diag([3.0, 1e-7, 3.0 - 1e-7]),
+            ):
+                made((flat + flat.T) / 2)
+
+
+def test_runs_of_an_impossible_body_do_not_warn_again() -> None:
+    """The warning comes where the body is made: not in runs, ensembles and rebuilt members."""
+    with pytest.warns(nh.ImpossibleBodyWarning):
+        top = SuslovTop.from_inertia(np.diag([5.0, 3.0, 1.5]), axis=(0, 1, 0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        discrete = nh.discretize(top, 0.1)
+        nh.simulate(discrete, restricted_velocity=(0.1, 0.2), steps=3)
+        tensors = np.asarray(top.mass_tensor) * np.array([1.0, 1.1])[:, None, None]
+        nh.ensemble(discrete, restricted_velocity=(0.1, 0.2), parameters={"mass_tensor": tensors}, steps=3).orbit(1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "match"),
+    [
+        ((1.0, 1.0, [0.0] * 4, nh.SO(4)), r"must be SO\(2\), SO\(3\), SE\(2\) or SE\(3\).*J_C \+ m a a\^T"),
+        ((1.0, 1.0, [0.0] * 4, nh.SE(4)), r"Got SE\(4\)"),
+        ((1.0, 1.0, [0.0], nh.Translations(2)), "where inertia tensors are"),
+        ((1.0, 1.0, [0.0], "SE(2)"), "must be a matrix group"),
+        ((-1.0, 1.0, [0.0, 0.0], nh.SE(2)), r"from_inertia\(mass=...\)` must be positive"),
+        ((1.0, np.eye(3), [0.0, 0.0], nh.SE(2)), r"inertia=...\)` must have shape \(\)"),
+        ((1.0, 1.0, [0.0, 0.0, 0.0], nh.SO(3)), r"inertia=...\)` must have shape \(3, 3\)"),
+        ((1.0, np.eye(3), [0.0, 0.0], nh.SO(3)), r"center_of_mass=...\)` must have shape \(3,\).*fixed point"),
+        ((1.0, 0.0, [0.0, 0.0], nh.SE(2)), r"inertia=...\)` must be positive"),
+    ],
+)
+def test_wrong_measurements_are_refused(arguments: tuple[Any, ...], match: str) -> None:
+    """What is no measurement of a body in the plane or in space is refused in the words of the door."""
+    for cls, more in ((RigidBody, {}), (LLSystem, {"annihilator": np.eye(3)[:1]})):
+        with pytest.raises(ValueError, match=match):
+            cls.from_inertia(*arguments, **more)
+
+
+def test_both_tensors_are_shown() -> None:
+    """`repr` shows the mass tensor and the inertia tensor, so that one is not given for the other."""
+    J = np.diag([1.0, 2.0, 4.5])
+    several = [
+        SuslovTop(J),
+        RigidBody(J),
+        VeselovaTop(J),
+        LLSystem(nh.SO(3), J, np.eye(3)[:2]),
+        LRSystem(nh.SO(3), J, np.eye(3)[:2]),
+    ]
+    for system in several:
+        shown = repr(system)
+        assert "mass tensor J = [[1." in shown, shown
+        assert "inertia tensor tr(J) I - J = [[6.5" in shown, shown
+    shown = repr(LLSystem(nh.SE(2), np.diag([1.0, 2.0, 2.0]), np.eye(3)[:2]))
+    for words in (
+        "homogeneous mass tensor J = [[1.",
+        "mass = 2.",
+        "center of mass = [0. 0.]",
+        "about the center of mass = 3.",
+    ):
+        assert words in shown, shown
+    shown = repr(RigidBody.from_inertia(2.0, np.diag([3.0, 2.0, 1.5]), [0.5, 0.0, 0.0], nh.SE(3)))
+    for words in ("mass = 2.", "center of mass = [0.5 0.  0. ]", "inertia about the center of mass = [[3."):
+        assert words in shown, shown
+    assert "inertia" not in repr(RigidBody(np.diag([1.0, 2.0, 3.0, 4.0])))
