@@ -46,7 +46,7 @@ def simulate_and_keep(
 
 def _run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progress: bool) -> tuple[Path | None, Ran]:
     try:
-        with store_errors(FAILED), scenario_errors():
+        with store_errors(FAILED), scenario_errors(), told_warnings():
             return run_and_keep(loaded, store, overwrite=overwrite, progress=progress)
     except KeyboardInterrupt as stop:
         leave(str(stop) or "Stopped; so short a run keeps nothing.", FAILED)

@@ -1,6 +1,7 @@
 """Errors as users of the command line see them: a sentence on standard error and an exit code, never a traceback."""
 
 import contextlib
+import functools
 import sys
 import warnings
 from collections.abc import Iterator
@@ -23,13 +24,20 @@ def warn(message: str) -> None:
     typer.secho(f"Warning: {message}", fg=typer.colors.YELLOW, file=sys.stderr)
 
 
+_warn_once = functools.cache(warn)  # of a body, which a command may make several times
+
+
 @contextlib.contextmanager
 def told_warnings() -> Iterator[None]:
-    """Print warnings of the library as they come."""
+    """Print warnings of the library as they come, those of a body once."""
+
+    def show(message: Warning | str, category: type[Warning], *_: object) -> None:
+        (warn if issubclass(category, RuntimeWarning) else _warn_once)(str(message))
+
     with warnings.catch_warnings():
-        warnings.showwarning = lambda message, *_: warn(str(message))
+        warnings.showwarning = show
         warnings.simplefilter("always", RuntimeWarning)
-        warnings.simplefilter("once", UserWarning)
+        warnings.simplefilter("always", UserWarning)
         yield
 
 
