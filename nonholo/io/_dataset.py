@@ -12,7 +12,7 @@ from nonholo.systems import AbstractLRSystem, System
 
 CANONICAL = "canonical/"
 """The group of a store that holds compact states."""
-_MOST = 1000  # components of a momentum that is put into a dataset
+_MOST = 1000  # components of a momentum, or numbers of a pose, that are told
 HEADED = ("heading", "quaternion")  # whose rows go on from the row before
 
 # name: dimensions after `step`, and what the numbers are
@@ -131,7 +131,7 @@ def _time(orbit: Orbit) -> dict[str, xarray.Variable]:
 
 
 def _posed(orbit: Orbit, before: np.ndarray | None) -> dict[str, xarray.Variable]:
-    if orbit.canonical_pose is None:
+    if orbit.canonical_pose is None or orbit.canonical_pose.shape[1] > _MOST:
         return {}
     variables = pose_variables(orbit, before).items()
     return {name: xarray.Variable(("step", *axes), values, told) for name, (axes, values, told) in variables}

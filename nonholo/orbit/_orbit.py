@@ -19,13 +19,8 @@ from nonholo.groups import SE
 from nonholo.orbit._poses import configurations, poses, unwrapped
 from nonholo.systems import AbstractLRSystem, System
 
-STATES = (
-    "time",
-    "reduced_momentum",
-    "cayley",
-    "canonical_pose",
-    "turned",
-)  # the arrays of an orbit, a row for each state
+STATES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
+"""The arrays of an orbit, a row for each state."""
 
 
 def as_orbit(where: str, value: Any, coordinates: str) -> "Orbit":

@@ -209,3 +209,13 @@ def test_own_groups_must_be_given(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"whose group holds an object of your own\. Pass load_orbit\(path, discrete="):
         nh.load_orbit(tmp_path / "o.zarr")
     assert nh.load_orbit(tmp_path / "o.zarr", discrete=own).pose.tobytes() == orbit.pose.tobytes()
+
+
+def test_large_rotations_are_kept_once(tmp_path: Path) -> None:
+    """Of a body in 40 dimensions a store has the compact poses alone; its dataset leaves the matrices out."""
+    orbit = nh.simulate(nh.discretize(nh.SuslovTop(np.diag(1 + np.arange(40.0))), 0.1), momentum=np.zeros(39), steps=2)
+    assert set(orbit.to_dataset().data_vars) == {"energy", "restricted_momentum", "body_velocity", "momentum"}
+    nh.save_orbit(orbit, tmp_path / "o.zarr")
+    with xarray.open_zarr(tmp_path / "o.zarr", chunks=None) as found:
+        assert set(found.data_vars) == {"energy", "restricted_momentum"}
+    assert nh.load_orbit(tmp_path / "o.zarr").configuration.tobytes() == orbit.configuration.tobytes()
