@@ -5,7 +5,7 @@ import numpy as np
 
 from nonholo.kernels._general import GeneralBody, Workspace, displaced, increments, see_tensor, workspace
 from nonholo.kernels._general_root import newton, solve
-from nonholo.kernels._small import assign, assign_rows, multiply
+from nonholo.kernels._small import assign, assign_rows, multiply, transpose
 
 
 @numba.njit(cache=True)
@@ -13,7 +13,10 @@ def see_pose(p: GeneralBody, w: Workspace, g: np.ndarray) -> None:
     """Let the equations of a right-invariant constraint see the mass tensor that a pose carries to space."""
     if p.spatial:
         scaled = _in_units(p, g, 1 / p.unit)
-        see_tensor(p, w, (scaled @ p.tensor) @ scaled.T.copy())
+        multiply(scaled, p.tensor, w.half)
+        transpose(scaled, w.scratch)
+        multiply(w.half, w.scratch, w.H)
+        see_tensor(p, w, w.H)
 
 
 @numba.njit(cache=True)

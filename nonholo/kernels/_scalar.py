@@ -5,8 +5,8 @@ from typing import Any
 
 from numba.extending import overload, register_jitable
 
-COMPILED: Any = {"error_model": "numpy", "fastmath": {"contract", "arcp", "nsz"}}
-"""Options of every compiled kernel: no exceptions on division, contraction but no reordering (Kahan sums survive)."""
+COMPILED: Any = {"error_model": "numpy"}
+"""Options of the scalar kernels: no exceptions on division; arithmetic is strict (docs/conventions.md, "Bits")."""
 
 scalar = register_jitable(**COMPILED)
 """Mark a scalar function: numba inlines it, plain Python and JAX call it as it is."""

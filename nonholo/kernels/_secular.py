@@ -11,18 +11,19 @@ top has q = M = 0 and minus its coupling for c.
 """
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numba
 import numpy as np
 
 from nonholo.kernels._scalar import COMPILED, scalar
 
-SUMMED = {**COMPILED, "fastmath": COMPILED["fastmath"] | {"reassoc"}}
-"""Options of sums without compensation: the order of terms is free, so that they run in vector registers."""
+Sums: TypeAlias = tuple[float, float, float, float, float, float, float]
 
 _CORRECTIONS = 12
 _CONVERGED = 1e-18  # squared correction, relative to the squared scale of the unknowns
+_LANES = 16  # partial sums of each kind
+_MANY = 24  # terms from which they are faster
 
 
 class SecularBody(NamedTuple):
@@ -74,9 +75,7 @@ def term(c: float, y: float, nu: float, tau: float, lever: float) -> float:
 
 
 @scalar
-def correction(
-    sums: tuple[float, float, float, float, float, float, float], nu: float, tau: float, q: float
-) -> tuple[float, float, float]:
+def correction(sums: Sums, nu: float, tau: float, q: float) -> tuple[float, float, float]:
     """Return the Newton corrections of nu and tau and the determinant of their equations.
 
     The sums are those of c y, y y, c y / (b + nu), c dy/dtau, y y / (b + nu), y dy/dtau, b y y.
@@ -88,28 +87,80 @@ def correction(
     return (j12 * f2 - j22 * f1) / det, (j21 * f1 - j11 * f2) / det, det
 
 
-@numba.njit(cache=True, nogil=True, **SUMMED)
-def sums_at(
-    p: SecularBody, m: np.ndarray, share: float, nu: float, tau: float
-) -> tuple[float, float, float, float, float, float, float]:
-    """Return the seven sums of `correction` for the momenta `share` times m."""
-    b, c = p.b, p.c
-    cy, yy, cyr, ce, yyr, ye, byy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(len(b)):
-        y, e, inverse = coordinate(b[i], c[i], share * m[i], nu, tau)
-        cy += c[i] * y
-        yy += y * y
-        cyr += c[i] * y * inverse
-        ce += c[i] * e
-        yyr += y * y * inverse
-        ye += y * e
-        byy += b[i] * y * y
-    return cy, yy, cyr, ce, yyr, ye, byy
+@numba.njit(cache=True, **COMPILED)
+def room_for_sums() -> np.ndarray:
+    """Return the array that `sums_at` writes to, made once for a run."""
+    return np.empty(7 * _LANES)
+
+
+@numba.njit(cache=True, forceinline=True, **COMPILED)
+def sums_at(p: SecularBody, m: np.ndarray, share: float, nu: float, tau: float, room: np.ndarray) -> Sums:
+    """Return the seven sums of `correction` for the momenta `share` times m.
+
+    Few terms are added in order. Many run in vector registers: as far as they come out even, the term i goes to the
+    partial sum i modulo `_LANES`; the partial sums are added in order, and to them the other terms.
+    """
+    if len(p.b) < _MANY:
+        return _in_order(p.b, p.c, m, share, nu, tau, 0, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    return _in_lanes(p.b, p.c, m, share, nu, tau, room)
+
+
+@numba.njit(cache=True, forceinline=True, **COMPILED)
+def _in_order(
+    b: np.ndarray, c: np.ndarray, m: np.ndarray, share: float, nu: float, tau: float, first: int, sums: Sums
+) -> Sums:
+    """Return sums to which the terms from the first one on are added."""
+    for i in range(first, len(b)):
+        k = np.uint64(i)  # a signed index would be tested for counting from the end
+        sums = _added(sums, _terms(b[k], c[k], share * m[k], nu, tau))
+    return sums
+
+
+@numba.njit(cache=True, **COMPILED)
+def _in_lanes(b: np.ndarray, c: np.ndarray, m: np.ndarray, share: float, nu: float, tau: float, s: np.ndarray) -> Sums:
+    even = len(b) - len(b) % _LANES
+    s[:] = 0.0
+    for i in range(0, even, _LANES):
+        for j in range(_LANES):
+            k = np.uint64(i + j)
+            cy, yy, cyr, ce, yyr, ye, byy = _terms(b[k], c[k], share * m[k], nu, tau)
+            s[j] += cy
+            s[_LANES + j] += yy
+            s[2 * _LANES + j] += cyr
+            s[3 * _LANES + j] += ce
+            s[4 * _LANES + j] += yyr
+            s[5 * _LANES + j] += ye
+            s[6 * _LANES + j] += byy
+    for i in range(7):
+        total = 0.0
+        for j in range(_LANES):
+            total += s[_LANES * i + j]
+        s[i] = total
+    return _in_order(b, c, m, share, nu, tau, even, (s[0], s[1], s[2], s[3], s[4], s[5], s[6]))
+
+
+@scalar
+def _terms(b: float, c: float, m: float, nu: float, tau: float) -> Sums:
+    y, e, inverse = coordinate(b, c, m, nu, tau)
+    cy, yy = c * y, y * y
+    return cy, yy, cy * inverse, c * e, yy * inverse, y * e, b * yy
+
+
+@scalar
+def _added(s: Sums, t: Sums) -> Sums:
+    return s[0] + t[0], s[1] + t[1], s[2] + t[2], s[3] + t[3], s[4] + t[4], s[5] + t[5], s[6] + t[6]
 
 
 @numba.njit(cache=True, nogil=True, **COMPILED)
 def newton(
-    p: SecularBody, m: np.ndarray, m0: float, share: float, nu: float, tau: float, any_sheet: bool
+    p: SecularBody,
+    m: np.ndarray,
+    m0: float,
+    share: float,
+    nu: float,
+    tau: float,
+    any_sheet: bool,
+    room: np.ndarray,
 ) -> tuple[bool, float, float, float]:
     """Correct nu and tau; tell whether they converged, on the sheet of the principal root if not on any.
 
@@ -117,7 +168,7 @@ def newton(
     """
     q = share * p.arm * m0 + p.mass * p.arm * p.arm
     for _ in range(_CORRECTIONS):
-        sums = sums_at(p, m, share, nu, tau)
+        sums = sums_at(p, m, share, nu, tau, room)
         d1, d2, det = correction(sums, nu, tau, q)
         nu += d1
         tau += d2

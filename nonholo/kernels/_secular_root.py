@@ -52,7 +52,7 @@ def certain_radius(p: SecularBody, level: float) -> float:
 
 
 @numba.njit(cache=True, nogil=True, **COMPILED)
-def principal(p: SecularBody, m: np.ndarray, m0: float) -> tuple[int, float, float]:
+def principal(p: SecularBody, m: np.ndarray, m0: float, room: np.ndarray) -> tuple[int, float, float]:
     """Follow the root from momentum zero along s (m, m0), 0 <= s <= 1; return the outcome, nu and tau."""
     lever = p.mass * p.arm * p.arm
     s, nu, tau, before, nu_before, tau_before = 0.0, lever, 0.0, 0.0, lever, 0.0
@@ -66,7 +66,7 @@ def principal(p: SecularBody, m: np.ndarray, m0: float) -> tuple[int, float, flo
         if s > 0:
             nu_guess += (nu - nu_before) * (ahead - s) / (s - before)
             tau_guess = max(0.0, tau + (tau - tau_before) * ((ahead / s) ** 2 - 1) / (1 - (before / s) ** 2))
-        good, nu_found, tau_found, _ = newton(p, m, m0, ahead, nu_guess, tau_guess, False)
+        good, nu_found, tau_found, _ = newton(p, m, m0, ahead, nu_guess, tau_guess, False, room)
         jump = _JUMP if s > 0 else _FIRST_JUMP
         turned = abs(math.sqrt(abs(tau_found)) - math.sqrt(tau_guess)) <= jump * (1 + tau_guess)
         good = good and turned and abs(nu_found - nu_guess) <= jump * (p.least + nu)
@@ -76,6 +76,6 @@ def principal(p: SecularBody, m: np.ndarray, m0: float) -> tuple[int, float, flo
         elif size > _SMALLEST * max(s, 1e-300):
             size /= 4
         else:
-            _, _, det = correction(sums_at(p, m, s, nu, tau), nu, tau, s * p.arm * m0 + lever)
+            _, _, det = correction(sums_at(p, m, s, nu, tau, room), nu, tau, s * p.arm * m0 + lever)
             return (1 if det < _NEAR_FOLD else 2), np.nan, np.nan
     return 0, nu, tau

@@ -10,7 +10,7 @@ import numba
 import numpy as np
 
 from nonholo.kernels._scalar import COMPILED
-from nonholo.kernels._secular import SecularBody, coordinate, newton, term
+from nonholo.kernels._secular import SecularBody, coordinate, newton, room_for_sums, term
 from nonholo.kernels._secular_root import certain_radius, level_of, principal
 from nonholo.kernels._small import assign
 
@@ -25,13 +25,15 @@ def coordinates(p: SecularBody, m: np.ndarray, nu: float, tau: float, y: np.ndar
 
 
 @numba.njit(cache=True, nogil=True, **COMPILED)
-def solve(p: SecularBody, m: np.ndarray, certain: float, nu: float, tau: float) -> tuple[int, float, float]:
+def solve(
+    p: SecularBody, m: np.ndarray, certain: float, nu: float, tau: float, room: np.ndarray
+) -> tuple[int, float, float]:
     """Correct a guess and verify that it is the principal root, or restart from momentum zero."""
     m0 = m[-1] if p.slides else 0.0
-    good, nu, tau, size = newton(p, m, m0, 1.0, nu, max(tau, 0.0), False)
+    good, nu, tau, size = newton(p, m, m0, 1.0, nu, max(tau, 0.0), False, room)
     if good and tau < 1 and 4 * (size + p.mass * p.arm * p.arm * tau) <= certain * (1 + tau) ** 2:
         return 0, nu, tau
-    return principal(p, m, m0)
+    return principal(p, m, m0, room)
 
 
 @numba.njit(cache=True, **COMPILED)
@@ -104,7 +106,7 @@ def start(p: SecularBody, m: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndar
     k = len(p.b)
     m0 = m[-1] if p.slides else 0.0
     certain = certain_radius(p, level_of(p, m[:k], m0))
-    code, nu, tau = solve(p, m, certain, p.mass * p.arm * p.arm, 0.0)
+    code, nu, tau = solve(p, m, certain, p.mass * p.arm * p.arm, 0.0, room_for_sums())
     unknowns = np.array((nu, tau, nu, tau, nu, tau, certain))
     return code, np.concatenate((m, np.zeros(len(m)), unknowns, pose))
 
@@ -145,11 +147,11 @@ def advance(
     nu, tau, nu1, tau1, nu2, tau2, certain = state[2 * size : 2 * size + 7]
     rows = state[2 * size + 7 :].copy().reshape(-1, size + 1)
     settled = _SETTLED * np.abs(m).max()
-    total, rest = np.empty_like(m), np.empty_like(m)
+    total, rest, room = np.empty_like(m), np.empty_like(m), room_for_sums()
     code, done = 0, 0
     while done < steps:
         pushed(p, m, lost, nu, tau, settled, total, rest)
-        code, nu3, tau3 = solve(p, total, certain, 3 * (nu - nu1) + nu2, 3 * (tau - tau1) + tau2)
+        code, nu3, tau3 = solve(p, total, certain, 3 * (nu - nu1) + nu2, 3 * (tau - tau1) + tau2, room)
         if code != 0:
             break
         if len(rows):
@@ -177,7 +179,7 @@ def step_each(
     The root is the principal one or else that value of the map which Newton's method reaches from the guess.
     """
     k = len(p.b)
-    lever = p.mass * p.arm * p.arm
+    lever, room = p.mass * p.arm * p.arm, room_for_sums()
     next_momenta, next_charts = np.empty_like(momenta), np.empty_like(charts)
     codes, none = np.zeros(len(momenta), dtype=np.int64), np.zeros(momenta.shape[1])
     for row in range(len(momenta)):
@@ -191,9 +193,9 @@ def step_each(
         nu = np.sum(p.c * guess) + (1 + tau) * (p.arm * m0 + lever)
         if principal_only:
             certain = certain_radius(p, level_of(p, m[:k], m0))
-            codes[row], nu, tau = solve(p, m, certain, nu, tau)
+            codes[row], nu, tau = solve(p, m, certain, nu, tau, room)
         else:
-            good, nu, tau, _ = newton(p, m, m0, 1.0, nu, tau, True)
+            good, nu, tau, _ = newton(p, m, m0, 1.0, nu, tau, True, room)
             codes[row] = 0 if good else 3
         chart_of(p, m, nu, tau, next_charts[row])
     return next_momenta, next_charts, codes

@@ -15,7 +15,7 @@ from nonholo.kernels import _general_root, _general_run, _secular_run
 from nonholo.kernels._general import GeneralBody, Workspace, increments, workspace
 from nonholo.kernels._interface import Body
 from nonholo.kernels._scalar import COMPILED
-from nonholo.kernels._secular import SecularBody, term
+from nonholo.kernels._secular import SecularBody, room_for_sums, term
 from nonholo.kernels._secular_root import certain_radius, level_of
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._small import assign
@@ -33,33 +33,33 @@ def _two_charted(p: Body, m: np.ndarray, root: np.ndarray, chart: np.ndarray) ->
 
 
 @numba.njit(cache=True, **COMPILED)
-def _secular_prepared(p: SecularBody, m: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the certain radius of each stage, and room for y."""
+def _secular_prepared(p: SecularBody, m: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the certain radius of each stage, and room for y and for sums."""
     certain, k = np.empty(len(weights)), len(p.b)
     for i in range(len(weights)):
         scaled = weights[i] * m
         certain[i] = certain_radius(p, level_of(p, scaled[:k], scaled[-1] if p.slides else 0.0))
-    return certain, np.empty(k)
+    return certain, np.empty(k), room_for_sums()
 
 
 @numba.njit(cache=True, **COMPILED)
 def _secular_solved(
     p: SecularBody,
-    w: tuple[np.ndarray, np.ndarray],
+    w: tuple[np.ndarray, np.ndarray, np.ndarray],
     stage: int,
     m: np.ndarray,
     guess: np.ndarray,
     pose: np.ndarray,
     root: np.ndarray,
 ) -> int:
-    code, root[0], root[1] = _secular_run.solve(p, m, w[0][stage], guess[0], guess[1])
+    code, root[0], root[1] = _secular_run.solve(p, m, w[0][stage], guess[0], guess[1], w[2])
     return code
 
 
 @numba.njit(cache=True, **COMPILED)
 def _secular_pushed(
     p: SecularBody,
-    w: tuple[np.ndarray, np.ndarray],
+    w: tuple[np.ndarray, np.ndarray, np.ndarray],
     m: np.ndarray,
     root: np.ndarray,
     change: np.ndarray,

@@ -1,47 +1,84 @@
-"""Real roots of a real cubic in closed form, polished by Newton's method; compiled, allocation-free."""
+"""Real roots of a real cubic by square roots and Newton's method, which give the same bits everywhere; compiled."""
 
 import math
 
 import numba
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def real_cubic_roots(a: float, b: float, c: float, d: float) -> tuple[int, float, float, float]:
     r"""Return the number of real roots of $a t^3 + b t^2 + c t + d$, $a \ne 0$, and three slots that hold them.
 
-    Trigonometric form for three real roots, Cardano's with the sign that avoids cancellation for one; each root then
-    gets two Newton corrections on the polynomial itself. A double root counts twice.
+    Newton's method comes to one root from outside; the others are those of the quadratic that is left when it is
+    divided out, from the end that does not cancel (Kahan, "To solve a real cubic equation", 1986). Each root then gets
+    two Newton corrections on the polynomial itself. A double root counts twice. Quotients of coefficients may be as
+    large as 1e100.
 
     Example:
         >>> count, *roots = real_cubic_roots(1.0, -6.0, 11.0, -6.0)
         >>> count, *sorted(round(root, 12) for root in roots)
         (3, 1.0, 2.0, 3.0)
     """
-    shift = b / (3 * a)
-    p = (3 * a * c - b * b) / (9 * a * a)
-    q = (2 * b * b * b - 9 * a * b * c + 27 * a * a * d) / (54 * a * a * a)
-    discriminant = q * q + p * p * p
-    if discriminant > 0:
-        big = -math.copysign((abs(q) + math.sqrt(discriminant)) ** (1 / 3), q)
-        root = _polish(a, b, c, d, big - p / big - shift)
+    root = _polish(a, b, c, d, _outer_root(a, b, c, d))
+    linear = a * root + b
+    constant = linear * root + c
+    if abs(a * root * root * root) > abs(d):
+        constant = -d / root
+        linear = (constant - c) / root
+    discriminant = linear * linear / 4 - a * constant
+    if not discriminant >= 0:
         return 1, root, root, root
-    radius = math.sqrt(max(-p, 0.0))
-    cube = radius * radius * radius
-    if cube == 0:  # a triple root, or closer to one than numbers can tell
-        return 3, -shift, -shift, -shift
-    angle = math.acos(max(-1.0, min(1.0, -q / cube))) / 3
-    first = 2 * radius * math.cos(angle) - shift
-    second = 2 * radius * math.cos(angle + 2 * math.pi / 3) - shift
-    third = 2 * radius * math.cos(angle - 2 * math.pi / 3) - shift
-    return 3, _polish(a, b, c, d, first), _polish(a, b, c, d, second), _polish(a, b, c, d, third)
+    far = -(linear / 2 + math.copysign(math.sqrt(discriminant), linear))
+    near = constant / far if far != 0 else 0.0
+    return 3, root, _polish(a, b, c, d, far / a), _polish(a, b, c, d, near)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _outer_root(a: float, b: float, c: float, d: float) -> float:
+    """Return the root on that side of the inflection where there is one only, or where the outermost one is simple.
+
+    From a start beyond it Newton's method comes down to it, until rounding takes it another way.
+    """
+    middle = -b / a / 3
+    value, slope = _value_and_slope(a, b, c, d, middle)
+    side = -math.copysign(1.0, value / a)
+    reach = _cube_root(abs(value / a))
+    if slope / a < 0:
+        reach = 1.3247179572447461 * max(reach, math.sqrt(-slope / a))  # the root of u^3 = u + 1
+    t = middle + side * reach
+    for _ in range(100):
+        value, slope = _value_and_slope(a, b, c, d, t)
+        further = t - value / slope
+        if not (side * middle <= side * further < side * t):
+            break
+        t = further
+    return t
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _value_and_slope(a: float, b: float, c: float, d: float, t: float) -> tuple[float, float]:
+    return ((a * t + b) * t + c) * t + d, (3 * a * t + 2 * b) * t + c
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _cube_root(x: float) -> float:
+    """Return x^(1/4 + 1/16 + 1/64 + 1/256), after three of Halley's corrections."""
+    power, root = x, 1.0
+    for _ in range(4):
+        power = math.sqrt(math.sqrt(power))
+        root *= power
+    for _ in range(3):
+        cube = root * root * root
+        root *= (cube + 2 * x) / (2 * cube + x)
+    return root if x > 0 else x
 
 
 @numba.njit(cache=True, error_model="numpy")
 def _polish(a: float, b: float, c: float, d: float, root: float) -> float:
-    value = ((a * root + b) * root + c) * root + d
+    value, slope = _value_and_slope(a, b, c, d, root)
     for _ in range(2):
-        better = root - value / ((3 * a * root + 2 * b) * root + c)
-        after = ((a * better + b) * better + c) * better + d
+        better = root - value / slope
+        after, steeper = _value_and_slope(a, b, c, d, better)
         if abs(after) < abs(value):  # not so at a multiple root, where the slope is rounding, nor for a quotient 0/0
-            root, value = better, after
+            root, value, slope = better, after, steeper
     return root
