@@ -16,7 +16,7 @@ import nonholo as nh
 
 TOP = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1)
 TOPS = nh.EnsembleTask(TOP, steps=200, reductions=["final_state", "energy_drift"])
-TOP_DESIGN = {"mass_tensor": nh.MassTensor(3, 0.5, 2.0), "restricted_velocity": nh.Direction(2)}
+TOP_DESIGN = {"mass_tensor": nh.MassTensor(3, 0.5, 2.0), "restricted_velocity": nh.Direction(2, length=2.0)}
 
 
 def noisy(block: nh.MemberBlock) -> dict[str, Any]:

@@ -26,6 +26,11 @@ RUNS: dict[str, tuple[nh.Discretization, dict[str, Any], list[nh.Event] | None]]
         {"body_velocity": (1.0, 0.3, 0.0), "steps": 300_000, "save_every": 2},
         None,
     ),
+    "tumbling body": (
+        nh.discretize(nh.RigidBody(np.diag([1.0, 1.5, 2.0, 2.5])), 0.1),
+        {"body_velocity": (1.0, -0.4, 0.9, 0.8, -0.7, 0.9), "steps": 300_000, "save_every": 2},
+        None,
+    ),
     "events": (
         nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1),
         {"body_velocity": (4.0, 1.0, 0.0), "steps": 150_000, "save_every": 5},

@@ -193,15 +193,15 @@ def test_lost_start_is_refused(tmp_path: Path) -> None:
         nh.resume(path)
 
 
-@pytest.mark.profile("faults", keep=["3"])
+@pytest.mark.profile("faults", keep=["sleigh-3"])
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills forked processes")
-@pytest.mark.parametrize("kills", [3, 20])
-def test_killed_runs_go_on(kills: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("name", "kills"), [("sleigh", 3), ("sleigh", 20), ("tumbling body", 20)])
+def test_killed_runs_go_on(name: str, kills: int, tmp_path: Path) -> None:
     """Killed at random moments and resumed each time, a run is the undisturbed one, and leaves no rubbish."""
     path = tmp_path / "run.zarr"
-    now = killed.leave_killed("sleigh", path, kills)
+    now = killed.leave_killed(name, path, kills)
     assert 0 < now.done < now.steps
-    discrete, run, _ = killed.RUNS["sleigh"]
+    discrete, run, _ = killed.RUNS[name]
     assert _same(nh.resume(path), nh.simulate(discrete, **run))
     assert not list(path.rglob("*.partial"))
 

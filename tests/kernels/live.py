@@ -1,0 +1,119 @@
+"""Live motions that reach every compiled function: a program that prints the bits of each, or what each calls.
+
+python live.py bits [NAME ...]       # a digest of the results of each run
+NUMBA_DISABLE_JIT=1 python live.py calls   # the functions that are called
+"""
+
+import hashlib
+import json
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from bodies import GENERAL, mass_tensor, random_rows
+
+import nonholo as nh
+
+Arrays: TypeAlias = list[np.ndarray]
+
+SIZE, STEP = 2.0, 0.5  # of velocities and of the time step: motions that turn far, and some that end
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
+MEMBERS, STEPS, SHARES = (40, 2, (1.0,)) if sys.argv[1:2] == ["calls"] else (4000, 100, (0.1, 0.5, 1.0))
+
+
+def members(system: Any, varied: tuple[str, ...] = ()) -> Arrays:
+    """Run an ensemble, with masses or tensors that vary."""
+    rng = np.random.default_rng(1)
+    velocities, scale = SIZE * rng.normal(size=(MEMBERS, 2)), rng.uniform(1, 2, MEMBERS)
+    own = {name: np.multiply.outer(scale, getattr(system, name)) for name in varied}
+    batch = nh.ensemble(nh.discretize(system, 1.0), restricted_velocity=velocities, steps=STEPS, parameters=own)
+    return [batch.reduced_momentum, batch.cayley, batch.pose, batch.outcome, batch.steps_done]
+
+
+def orbits(system: Any, order: int = 2, rank: int | None = None, size: float = SIZE) -> Arrays:
+    """Run single orbits from starts of several sizes, the first ones to the end, and step each state back."""
+    rng, found = np.random.default_rng(2), []
+    discrete = nh.discretize(system, STEP, order=order)
+    for share in SHARES:
+        velocity = rng.normal(size=rank or system.rank)
+        velocity *= share * size / np.linalg.norm(velocity)
+        orbit = nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS, throw=False)
+        found += [orbit.reduced_momentum, orbit.cayley, orbit.pose]
+        defect = nh.invariants(orbit).reversal_defect if len(orbit) > 1 else None
+        found += [np.array(np.nan if defect is None else defect)]
+    return found
+
+
+def body(group: Any, k: int, seed: int) -> nh.LLSystem:
+    """Return a body with a random constraint."""
+    rng = np.random.default_rng(seed)
+    return nh.LLSystem(group, mass_tensor(group, rng), random_rows(group, k, rng))
+
+
+def sleigh(n: int) -> nh.MultidimensionalSleigh:
+    """Return a sleigh in n dimensions."""
+    rng = np.random.default_rng(n)
+    return nh.MultidimensionalSleigh(1.3, 0.4 * rng.normal(size=n) / np.sqrt(n), mass_tensor(nh.SO(n), rng))
+
+
+RUNS: dict[str, Callable[[], Arrays]] = {
+    "sleighs": lambda: members(SLEIGH),
+    "own sleighs": lambda: members(SLEIGH, ("mass", "inertia")),
+    "tops": lambda: members(TOP),
+    "own tops": lambda: members(TOP, ("mass_tensor",)),
+    "top": lambda: orbits(TOP),
+    "sleigh": lambda: orbits(SLEIGH),
+    "top of order 4": lambda: orbits(TOP, 4),
+    "sleigh of order 4": lambda: orbits(SLEIGH, 4),
+    "top on SO(5)": lambda: orbits(nh.SuslovTop(mass_tensor(nh.SO(5), np.random.default_rng(5)))),
+    "top on SO(30)": lambda: orbits(nh.SuslovTop(mass_tensor(nh.SO(30), np.random.default_rng(30)))),
+    "sleigh on SE(4)": lambda: orbits(sleigh(4)),
+    "sleigh on SE(30)": lambda: orbits(sleigh(30)),
+    "top on SO(5) of order 4": lambda: orbits(nh.SuslovTop(mass_tensor(nh.SO(5), np.random.default_rng(5))), 4),
+    "sleigh on SE(4) of order 4": lambda: orbits(sleigh(4), 4),
+    "any d on SO(4)": lambda: orbits(GENERAL["any d on SO(4)"][0]),
+    "any d on SE(3)": lambda: orbits(GENERAL["any d on SE(3)"][0]),
+    "slowly on SE(3)": lambda: orbits(GENERAL["any d on SE(3)"][0], size=0.1),
+    "any d on SO(4) of order 4": lambda: orbits(GENERAL["any d on SO(4)"][0], 4),
+    "right-invariant on SE(3)": lambda: orbits(GENERAL["right-invariant on SE(3)"][0]),
+    "any d on SO(8)": lambda: orbits(body(nh.SO(8), 4, 8)),
+    "a fold on SO(4)": lambda: orbits(GENERAL["any d on SO(4)"][0], size=20.0),
+}
+
+
+def digest(arrays: Arrays) -> str:
+    """Return a digest of the bits of arrays."""
+    text = hashlib.sha256()
+    for array in arrays:
+        text.update(np.ascontiguousarray(array).tobytes())
+    return text.hexdigest()
+
+
+def called() -> list[str]:
+    """Run everything as plain Python and return the places of the functions that were called."""
+    places = set()
+
+    def note(frame: Any, event: str, _: Any) -> None:
+        if event == "call" and "nonholo" in frame.f_code.co_filename:
+            places.add(f"{frame.f_code.co_filename}:{frame.f_code.co_name}")
+
+    threading.setprofile(note)  # ensembles run in threads
+    sys.setprofile(note)
+    for run in RUNS.values():
+        run()
+    sys.setprofile(None)
+    return sorted(places)
+
+
+if __name__ == "__main__":
+    if sys.argv[1] == "calls":
+        sys.stdout.write(json.dumps(called()))
+    else:
+        names = sys.argv[2:] or RUNS
+        sys.stdout.write(json.dumps({name: digest(RUNS[name]()) for name in names}))

@@ -1,0 +1,78 @@
+"""The same bits from the process that compiles a kernel, from those that load it later, in any number of threads."""
+
+import ast
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import nonholo
+from nonholo.kernels import _scalar
+
+LIVE = Path(__file__).parent / "live.py"
+ROUNDED_BY_IEEE = {
+    "math": {"copysign", "isfinite", "nan", "sqrt"},
+    "np": {"abs", "all", "array", "concatenate", "empty", "empty_like", "int64", "isfinite", "nan", "ndarray"}
+    | {"sqrt", "sum", "uint64", "zeros", "zeros_like"},
+}
+
+
+def _printed(*arguments: str, **variables: str) -> Any:
+    command = [sys.executable, str(LIVE), *arguments]
+    environment = {**os.environ, **variables}
+    done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, check=True)  # noqa: S603
+    return json.loads(done.stdout)
+
+
+@pytest.mark.profile("routes", keep=["sleighs"])
+@pytest.mark.parametrize("names", [(), ("sleighs",)], ids=["all", "sleighs"])
+def test_bits_of_a_fresh_cache(names: tuple[str, ...], tmp_path: Path) -> None:
+    """Live motions have the same bits where kernels are compiled and where they are loaded, in 1 and in 7 threads."""
+    compiled, loaded = (
+        _printed("bits", *names, NUMBA_CACHE_DIR=str(tmp_path), NUMBA_NUM_THREADS=n, OPENBLAS_NUM_THREADS=n)
+        for n in "17"
+    )
+    assert loaded == compiled
+
+
+def _compiled_functions() -> dict[str, ast.FunctionDef]:
+    """Return the functions that numba compiles, by their places."""
+    found = {}
+    for room in ("kernels", "numerics"):
+        for file in (Path(nonholo.__file__).parent / room).glob("*.py"):
+            for node in ast.walk(ast.parse(file.read_text())):
+                marks = [ast.unparse(mark) for mark in getattr(node, "decorator_list", [])]
+                if any(mark == "scalar" or mark.startswith("numba.njit") for mark in marks):
+                    found[f"{file}:{node.name}"] = node
+    return found
+
+
+@pytest.mark.profile("routes", instead="test_bits_of_a_fresh_cache")
+def test_every_compiled_function_is_run() -> None:
+    """The live motions call each function that numba compiles: a new one needs a motion that does."""
+    assert set(_compiled_functions()) - set(_printed("calls", NUMBA_DISABLE_JIT="1")) == set()
+
+
+def _inexact(node: ast.AST) -> bool:
+    """Tell whether a piece of a function leaves its last bits to the compiler or to a library."""
+    match node:
+        case ast.Attribute(ast.Name("math" | "np" as module), name):
+            return name not in ROUNDED_BY_IEEE[module]
+        case ast.BinOp(op=ast.MatMult()) | ast.keyword("fastmath"):
+            return True
+        case ast.BinOp(op=ast.Pow(), right=exponent):
+            return ast.unparse(exponent) != "2"
+    return False
+
+
+def test_compiled_functions_round_as_ieee_says() -> None:
+    """They add, multiply, divide and take square roots, in a fixed order: no powers, angles, products by BLAS."""
+    functions = _compiled_functions()
+    assert len(functions) > 100
+    assert _scalar.COMPILED == {"error_model": "numpy"}
+    loose = {place: [ast.unparse(n) for n in ast.walk(f) if _inexact(n)] for place, f in functions.items()}
+    assert {place: pieces for place, pieces in loose.items() if pieces} == {}
