@@ -2,7 +2,8 @@
 
 A block is one array of rows of 32 numbers, one number for each member: offsets between rows are then constants, so that
 the compiler sees that rows do not overlap. Every member takes the steps that it would take alone, whatever the others
-do: its corrections end when it has converged, and a root that is not certain goes to the scalar `principal`.
+do: its corrections end when it has converged, and a root that is not certain goes to the scalar `principal`. Since
+arithmetic is strict, its bits are those that it has in `_driver`.
 """
 
 from typing import Any, NamedTuple

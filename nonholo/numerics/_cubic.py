@@ -42,7 +42,7 @@ def _outer_root(a: float, b: float, c: float, d: float) -> float:
     middle = -b / a / 3
     value, slope = _value_and_slope(a, b, c, d, middle)
     side = -math.copysign(1.0, value / a)
-    reach = _cube_root(abs(value / a))
+    reach = _above_cube_root(abs(value / a))
     if slope / a < 0:
         reach = 1.3247179572447461 * max(reach, math.sqrt(-slope / a))  # the root of u^3 = u + 1
     t = middle + side * reach
@@ -61,15 +61,12 @@ def _value_and_slope(a: float, b: float, c: float, d: float, t: float) -> tuple[
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _cube_root(x: float) -> float:
-    """Return x^(1/4 + 1/16 + 1/64 + 1/256), after three of Halley's corrections."""
-    power, root = x, 1.0
-    for _ in range(4):
-        power = math.sqrt(math.sqrt(power))
-        root *= power
-    for _ in range(3):
-        cube = root * root * root
-        root *= (cube + 2 * x) / (2 * cube + x)
+def _above_cube_root(x: float) -> float:
+    """Return a bound of x^(1/3): Newton's method, here from x^(1/4 + 1/16), comes down to it from its first step on."""
+    fourth = math.sqrt(math.sqrt(x))
+    root = fourth * math.sqrt(math.sqrt(fourth))
+    for _ in range(2):
+        root = (2 * root + x / (root * root)) / 3
     return root if x > 0 else x
 
 

@@ -39,14 +39,18 @@ def test_bits_of_a_fresh_cache(names: tuple[str, ...], tmp_path: Path) -> None:
     assert loaded == compiled
 
 
+def _compiles(mark: ast.expr) -> bool:
+    text = ast.unparse(mark)
+    return text == "scalar" or text.startswith("numba.njit")
+
+
 def _compiled_functions() -> dict[str, ast.FunctionDef]:
     """Return the functions that numba compiles, by their places."""
     found = {}
     for room in ("kernels", "numerics"):
         for file in (Path(nonholo.__file__).parent / room).glob("*.py"):
             for node in ast.walk(ast.parse(file.read_text())):
-                marks = [ast.unparse(mark) for mark in getattr(node, "decorator_list", [])]
-                if any(mark == "scalar" or mark.startswith("numba.njit") for mark in marks):
+                if isinstance(node, ast.FunctionDef) and any(map(_compiles, node.decorator_list)):
                     found[f"{file}:{node.name}"] = node
     return found
 
@@ -60,9 +64,9 @@ def test_every_compiled_function_is_run() -> None:
 def _inexact(node: ast.AST) -> bool:
     """Tell whether a piece of a function leaves its last bits to the compiler or to a library."""
     match node:
-        case ast.Attribute(ast.Name("math" | "np" as module), name):
+        case ast.Attribute(value=ast.Name(id="math" | "np" as module), attr=name):
             return name not in ROUNDED_BY_IEEE[module]
-        case ast.BinOp(op=ast.MatMult()) | ast.keyword("fastmath"):
+        case ast.BinOp(op=ast.MatMult()) | ast.keyword(arg="fastmath"):
             return True
         case ast.BinOp(op=ast.Pow(), right=exponent):
             return ast.unparse(exponent) != "2"

@@ -28,7 +28,7 @@ RUNS: dict[str, tuple[nh.Discretization, dict[str, Any], list[nh.Event] | None]]
     ),
     "tumbling body": (
         nh.discretize(nh.RigidBody(np.diag([1.0, 1.5, 2.0, 2.5])), 0.1),
-        {"body_velocity": (1.0, -0.4, 0.9, 0.8, -0.7, 0.9), "steps": 300_000, "save_every": 2},
+        {"body_velocity": (1.0, -0.4, 0.9, 0.8, -0.7, 0.9), "steps": 100_000, "save_every": 2},
         None,
     ),
     "events": (
