@@ -14,8 +14,10 @@ from typing import Any
 import numpy as np
 
 from nonholo import kernels
+from nonholo._types import Float
 from nonholo.discrete._variety import Variety, forbidden_matrices
 from nonholo.groups import AbstractMatrixGroup
+from nonholo.numerics import product_and_remainder
 from nonholo.systems import AbstractLRSystem, AbstractSystem, inertia_from_mass_tensor
 
 _SINES = np.linspace(0.0, 1.0, 401)[1:-1]  # of the largest angle in the ball
@@ -29,26 +31,34 @@ def general_body(system: AbstractSystem, variety: Variety) -> kernels.GeneralBod
     shrink = np.where(np.arange(N) < n, 1 / unit, 1.0)
     motions = np.outer(shrink, 1 / shrink)
     chart = group.hat(variety.chart) * motions
-    lengths = np.linalg.norm(chart, axis=(1, 2))
-    forbidden = np.zeros((0, group.dim)) if variety.exact else variety.annihilator
-    radius, level = (0.0, 0.0) if isinstance(system, AbstractLRSystem) else _certain_ball(system)
-    tensor = system.homogeneous_mass_tensor * np.outer(shrink, shrink)
-    matrices = _in_form(group, tensor, group.hat(system.constraint_subspace) * motions)
+    lengths = np.exp2(np.round(np.log2(np.linalg.norm(chart, axis=(1, 2)))))  # exact: the chart spans the directions
+    directions = group.hat(system.constraint_subspace) * motions
+    annihilator = np.zeros((0, group.dim)) if variety.exact else variety.annihilator
+    forbidden = forbidden_matrices(group, annihilator) / motions
+    completion = _completion(forbidden, directions)
+    tensor, directions, form, inverse_form = _in_form(
+        group, system.homogeneous_mass_tensor * np.outer(shrink, shrink), directions
+    )
+    spatial = isinstance(system, AbstractLRSystem)
+    pairings, lost = product_and_remainder(directions, tensor)
+    radius, level = (0.0, 0.0) if spatial else _certain_ball(system)
     return kernels.GeneralBody(
-        tensor=_plain(matrices[0]),
-        directions=_plain(matrices[1]),
+        tensor=_plain(tensor),
+        directions=_plain(directions),
         places=np.ascontiguousarray(np.argwhere(chart)),  # of one layout, empty or not: compiled once
         entries=_plain((chart / lengths[:, None, None])[chart != 0]),
-        forbidden=_plain(forbidden_matrices(group, forbidden) / motions),
+        forbidden=_plain(forbidden),
+        pairings=_plain(pairings),
+        remainders=_plain(np.concatenate([0 * lost if spatial else lost, completion])),
         size=n,
-        spatial=isinstance(system, AbstractLRSystem),
+        spatial=spatial,
         metric=_plain(np.linalg.inv(system.constrained_inertia) * unit**2),
         radius=radius,
         level=level,
         unit=unit,
         stretch=_plain(1 / lengths),
-        form=_plain(matrices[2]),
-        inverse_form=_plain(matrices[3]),
+        form=_plain(form),
+        inverse_form=_plain(inverse_form),
     )
 
 
@@ -58,6 +68,13 @@ def _in_form(group: AbstractMatrixGroup, tensor: Any, directions: Any) -> tuple[
         return tensor, directions, np.zeros((0, 0)), np.zeros((0, 0))
     inverse = np.linalg.inv(group.form)
     return tensor @ inverse, group.form @ directions, group.form, inverse
+
+
+def _completion(forbidden: Float[np.ndarray, "s N N"], directions: Float[np.ndarray, "k N N"]) -> np.ndarray:
+    """Return what rounded annihilators lack to vanish on the directions, as they are stored, with twice the digits."""
+    A, D = (x.reshape(len(x), directions.shape[1] ** 2) for x in (forbidden, directions))
+    high, low = product_and_remainder(A, D.T)
+    return -(np.linalg.solve(D @ D.T, (high + low).T).T @ D).reshape(forbidden.shape)
 
 
 def _plain(array: Any) -> np.ndarray:

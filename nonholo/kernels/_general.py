@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
-from nonholo.kernels._small import eliminate, multiply, paired, sandwich, transpose
+from nonholo.kernels._small import eliminate, multiply, paired, paired_twice, sandwich, transpose
 
 LOST = 1e12  # turning of a displacement of an iteration that runs away
 
@@ -34,6 +34,8 @@ class GeneralBody(NamedTuple):
         places: Index a, row and column of the entries of C_a that are not zero, (E, 3).
         entries: Their values, (E,).
         forbidden: A_j, (m - k, N, N); the pairing is the sum of products of entries.
+        pairings: D_i J, (k, N, N).
+        remainders: What rounding took off each D_i J and then each A_j, (m, N, N).
         size: n, the size of the rotations.
         spatial: Whether the constraint is right-invariant.
         metric: Inverse of the constrained inertia, (k, k).
@@ -50,6 +52,8 @@ class GeneralBody(NamedTuple):
     places: np.ndarray
     entries: np.ndarray
     forbidden: np.ndarray
+    pairings: np.ndarray
+    remainders: np.ndarray
     size: int
     spatial: bool
     metric: np.ndarray
@@ -92,19 +96,17 @@ def workspace(p: GeneralBody) -> Workspace:
     """Return a workspace for a body, with the mass tensor of the body."""
     N, m = len(p.tensor), len(p.stretch)
     many = np.zeros((6, N, N))
-    w = Workspace(
+    return Workspace(
         many[0],
         many[1],
         many[2],
         many[3],
         many[4],
         many[5],
-        np.zeros_like(p.directions),
+        p.pairings.copy(),
         np.zeros((m, m)),
         np.zeros((m, 1)),
     )
-    see_tensor(p, w, p.tensor)
-    return w
 
 
 @numba.njit(cache=True)
@@ -204,7 +206,7 @@ def equations(p: GeneralBody, w: Workspace, m: np.ndarray) -> None:
         H, A = w.H, p.forbidden
         skew_part(p, w)
         for j in range(k, unknowns):
-            residual[j, 0] = paired(A[j - k], scratch)
+            residual[j, 0] = paired(A[j - k], scratch) + paired(p.remainders[j], scratch)
         multiply(G, w.V, H)
         for j in range(k, unknowns):
             sandwich(G, A[j - k], half, scratch)
@@ -212,7 +214,7 @@ def equations(p: GeneralBody, w: Workspace, m: np.ndarray) -> None:
             sandwich(H, A[j - k], half, scratch)
             _pair_with_chart(scratch, 1.0, places, entries, slope[j])
     for i in range(k):
-        residual[i, 0] = paired(Q[i], X) - m[i]
+        residual[i, 0] = paired(Q[i], X) - m[i] + paired(p.remainders[i], X)
         sandwich(G, Q[i], half, scratch)
         _pair_with_chart(scratch, 2.0, places, entries, slope[i])
 
@@ -232,4 +234,4 @@ def increments(p: GeneralBody, w: Workspace, term: np.ndarray) -> None:
     else:
         multiply(transposed, X, square)
     for i in range(len(Q)):
-        term[i] = paired(Q[i], square)
+        term[i] = paired_twice(Q[i], p.remainders[i], square)

@@ -2,5 +2,6 @@
 
 from nonholo.numerics._cubic import real_cubic_roots
 from nonholo.numerics._even import half_cotangent, sinc, versine
+from nonholo.numerics._products import product_and_remainder
 
-__all__ = ["half_cotangent", "real_cubic_roots", "sinc", "versine"]
+__all__ = ["half_cotangent", "product_and_remainder", "real_cubic_roots", "sinc", "versine"]

@@ -1,0 +1,55 @@
+"""Products of matrices with twice the digits: the rounded product and what rounding took off."""
+
+import numpy as np
+
+from nonholo._types import Float
+
+_SPLIT = 2.0**27 + 1  # halves the digits of a 64-bit number
+
+
+def product_and_remainder(
+    A: Float[np.ndarray, "... n m"], B: Float[np.ndarray, "m p"]
+) -> tuple[Float[np.ndarray, "... n p"], Float[np.ndarray, "... n p"]]:
+    r"""Return A B rounded, and what rounding took off, as if A B had been computed with twice the digits.
+
+    Source: T. J. Dekker, A floating-point technique for extending the available precision, Numer. Math. 18 (1971);
+    T. Ogita, S. M. Rump, S. Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26 (2005).
+
+    Args:
+        A: Any matrices, entries below 1e300.
+        B: A matrix.
+
+    Returns:
+        The product and the remainder.
+
+    Example:
+        >>> from nonholo.numerics import product_and_remainder
+        >>> product, rest = product_and_remainder(np.array([[0.1, 1.0]]), np.array([[10.0], [-1.0]]))
+        >>> float(product[0, 0]), float(rest[0, 0])
+        (5.551115123125783e-17, 0.0)
+    """
+    high = low = np.zeros((*A.shape[:-1], B.shape[1]))
+    for j in range(len(B)):
+        term, lost = _product(A[..., j, None], B[j])
+        high, rounded = _sum(high, term)
+        low = low + (lost + rounded)
+    return _sum(high, low)
+
+
+def _sum(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the rounded sum and its rounding error."""
+    total = a + b
+    part = total - a
+    return total, (a - (total - part)) + (b - part)
+
+
+def _product(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the rounded product and its rounding error."""
+    total, (a1, a2), (b1, b2) = a * b, _halves(a), _halves(b)
+    return total, a2 * b2 - (((total - a1 * b1) - a2 * b1) - a1 * b2)
+
+
+def _halves(a: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    large = _SPLIT * a
+    first = large - (large - a)
+    return first, a - first
