@@ -51,7 +51,8 @@ class SecularBody(NamedTuple):
 def secular_top(b: np.ndarray, coupling: np.ndarray) -> SecularBody:
     """Pack a top: eigenvalues of B and the coupling in their axes."""
     b = np.array(b, dtype=np.float64)
-    return SecularBody(b, -np.asarray(coupling, dtype=np.float64), 1.0, 0.0, np.zeros_like(b), float(b.min()), False)
+    c = -np.asarray(coupling, dtype=np.float64)
+    return SecularBody(b, c, 1.0, 0.0, np.zeros_like(b), float(b.min()), False)
 
 
 def secular_sleigh(b: np.ndarray, coupling: np.ndarray, mass: float, arm: float, offset: np.ndarray) -> SecularBody:

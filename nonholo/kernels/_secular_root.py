@@ -1,4 +1,4 @@
-"""Which root of the secular step is principal: a ball in which it is certain, and the path from momentum zero.
+"""The ball in which a root of the secular step is certainly the principal one.
 
 Reference: docs/theory/secular-step.md.
 """
@@ -9,15 +9,10 @@ import numba
 import numpy as np
 
 from nonholo.kernels._scalar import COMPILED
-from nonholo.kernels._secular import SecularBody, correction, newton, sums_at
+from nonholo.kernels._secular import SecularBody
 
 _SINES = 200  # trial angles of the ball
 _MARGIN = 1 - 1e-9
-_FIRST = 0.125  # first step along the path, of 1
-_JUMP = 0.02  # a corrector that moves further, relative to the scale of an unknown, has left the branch
-_FIRST_JUMP = 0.25  # the same for the first step, from the identity
-_SMALLEST = 1e-9  # step along the path, relative to s, below which the branch is given up
-_NEAR_FOLD = 1e-2  # of the determinant, which is 1 at momentum zero
 
 
 @numba.njit(cache=True, nogil=True, **COMPILED)
@@ -49,33 +44,3 @@ def certain_radius(p: SecularBody, level: float) -> float:
         if room > 0 and 4 * level <= _MARGIN * room * room:
             best = least * sine * sine
     return best
-
-
-@numba.njit(cache=True, nogil=True, **COMPILED)
-def principal(p: SecularBody, m: np.ndarray, m0: float, room: np.ndarray) -> tuple[int, float, float]:
-    """Follow the root from momentum zero along s (m, m0), 0 <= s <= 1; return the outcome, nu and tau."""
-    lever = p.mass * p.arm * p.arm
-    s, nu, tau, before, nu_before, tau_before = 0.0, lever, 0.0, 0.0, lever, 0.0
-    size = _FIRST
-    if not math.isfinite(level_of(p, m, m0)):
-        return 5, np.nan, np.nan
-    while s < 1.0:
-        size = min(size, 1.0 - s)
-        ahead = 1.0 if size == 1.0 - s else s + size
-        nu_guess, tau_guess = nu, tau
-        if s > 0:
-            nu_guess += (nu - nu_before) * (ahead - s) / (s - before)
-            tau_guess = max(0.0, tau + (tau - tau_before) * ((ahead / s) ** 2 - 1) / (1 - (before / s) ** 2))
-        good, nu_found, tau_found, _ = newton(p, m, m0, ahead, nu_guess, tau_guess, False, room)
-        jump = _JUMP if s > 0 else _FIRST_JUMP
-        turned = abs(math.sqrt(abs(tau_found)) - math.sqrt(tau_guess)) <= jump * (1 + tau_guess)
-        good = good and turned and abs(nu_found - nu_guess) <= jump * (p.least + nu)
-        if good:
-            before, nu_before, tau_before = s, nu, tau
-            s, nu, tau, size = ahead, nu_found, tau_found, 2 * size
-        elif size > _SMALLEST * max(s, 1e-300):
-            size /= 4
-        else:
-            _, _, det = correction(sums_at(p, m, s, nu, tau, room), nu, tau, s * p.arm * m0 + lever)
-            return (1 if det < _NEAR_FOLD else 2), np.nan, np.nan
-    return 0, nu, tau

@@ -11,7 +11,8 @@ import numpy as np
 
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._secular import SecularBody, coordinate, newton, room_for_sums, term
-from nonholo.kernels._secular_root import certain_radius, level_of, principal
+from nonholo.kernels._secular_path import principal
+from nonholo.kernels._secular_root import certain_radius, level_of
 from nonholo.kernels._small import assign
 
 _SETTLED = 1e-150  # of the scale of the momenta; squares below it underflow
@@ -68,22 +69,41 @@ def pushed(
 
 
 @numba.njit(cache=True, nogil=True, **COMPILED)
-def slide(p: SecularBody, m0: float, tau: float, y: np.ndarray) -> float:
-    """Return the last Cayley coordinate of a sleigh, half its slide over the cosine of half its turn."""
-    across = 0.0
+def slide(p: SecularBody, m0: float, nu: float, tau: float, y: np.ndarray) -> float:
+    """Return the last Cayley coordinate of a sleigh, half its slide over the cosine of half its turn.
+
+    Beyond a right angle (1 + tau) q is taken from nu: near angle pi q is the difference of nearly equal numbers.
+    """
+    across, along = 0.0, 0.0
     for i in range(len(y)):
         across += p.offset[i] * y[i]
+        along += p.c[i] * y[i]
+    if tau > 1 and p.arm != 0:
+        return (nu - along) / (p.arm * p.mass) - p.arm - across
     return (m0 * (1 + tau) + p.mass * p.arm * tau) / p.mass - across
 
 
 @numba.njit(cache=True, nogil=True, **COMPILED)
-def move(p: SecularBody, m0: float, tau: float, y: np.ndarray, rows: np.ndarray) -> None:
+def unknowns_of(p: SecularBody, m0: float, chart: np.ndarray) -> tuple[float, float]:
+    """Return nu and tau of a displacement, by the inverse of `slide`."""
+    across, along, tau = 0.0, 0.0, 0.0
+    for i in range(len(p.b)):
+        across += p.offset[i] * chart[i]
+        along += p.c[i] * chart[i]
+        tau += chart[i] * chart[i]
+    if tau > 1 and p.arm != 0:
+        return along + p.arm * p.mass * (chart[len(p.b)] + across + p.arm), tau
+    return along + (1 + tau) * (p.arm * m0 + p.mass * p.arm * p.arm), tau
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def move(p: SecularBody, m0: float, nu: float, tau: float, y: np.ndarray, rows: np.ndarray) -> None:
     """Advance rows of a pose by the displacement, a reflection of each; keep their length."""
     k, first = len(y), 1 if p.slides else 0
     axis = 0 if p.slides else k
     z0 = 1 / math.sqrt(1 + tau)
     sign = -z0 if p.slides else z0
-    length = 2 * slide(p, m0, tau, y) * z0 if p.slides else 0.0
+    length = 2 * slide(p, m0, nu, tau, y) * z0 if p.slides else 0.0
     for row in rows:
         along, square = z0 * row[axis], 0.0
         for i in range(k):
@@ -117,7 +137,7 @@ def chart_of(p: SecularBody, m: np.ndarray, nu: float, tau: float, chart: np.nda
     k = len(p.b)
     coordinates(p, m, nu, tau, chart[:k])
     if p.slides:
-        chart[k] = slide(p, m[k], tau, chart[:k])
+        chart[k] = slide(p, m[k], nu, tau, chart[:k])
 
 
 def chart_in(p: SecularBody, state: np.ndarray) -> np.ndarray:
@@ -156,7 +176,7 @@ def advance(
             break
         if len(rows):
             coordinates(p, m, nu, tau, y)
-            move(p, m[-1], tau, y, rows)
+            move(p, m[-1], nu, tau, y, rows)
         m, total, lost, rest = total, m, rest, lost
         nu2, tau2, nu1, tau1, nu, tau = nu1, tau1, nu, tau, nu3, tau3
         done += 1
@@ -179,18 +199,15 @@ def step_each(
     The root is the principal one or else that value of the map which Newton's method reaches from the guess.
     """
     k = len(p.b)
-    lever, room = p.mass * p.arm * p.arm, room_for_sums()
+    room = room_for_sums()
     next_momenta, next_charts = np.empty_like(momenta), np.empty_like(charts)
     codes, none = np.zeros(len(momenta), dtype=np.int64), np.zeros(momenta.shape[1])
     for row in range(len(momenta)):
-        before, m, chart = momenta[row], next_momenta[row], charts[row, :k]
-        q = (p.arm * before[k] if p.slides else 0.0) + lever
-        tau = np.sum(chart * chart)
-        pushed(p, before, none, np.sum(p.c * chart) + (1 + tau) * q, tau, 0.0, m, none.copy())
+        before, m = momenta[row], next_momenta[row]
+        nu, tau = unknowns_of(p, before[k] if p.slides else 0.0, charts[row])
+        pushed(p, before, none, nu, tau, 0.0, m, none.copy())
         m0 = m[k] if p.slides else 0.0
-        guess = guesses[row, :k]
-        tau = np.sum(guess * guess)
-        nu = np.sum(p.c * guess) + (1 + tau) * (p.arm * m0 + lever)
+        nu, tau = unknowns_of(p, m0, guesses[row])
         if principal_only:
             certain = certain_radius(p, level_of(p, m[:k], m0))
             codes[row], nu, tau = solve(p, m, certain, nu, tau, room)

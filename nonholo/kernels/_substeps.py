@@ -72,7 +72,7 @@ def _secular_pushed(
     if p.slides:
         change[k] = 2 * p.mass * p.arm * tau / (1 + tau)
     if len(pose):
-        _secular_run.move(p, m[-1], tau, y, pose.reshape(-1, len(m) + 1))
+        _secular_run.move(p, m[-1], nu, tau, y, pose.reshape(-1, len(m) + 1))
 
 
 @numba.njit(cache=True, **COMPILED)

@@ -1,0 +1,173 @@
+"""The principal root of the step in O(n) against its path by arc length: through angle pi, and refused at folds."""
+
+import arcs
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.discrete._branch_equations import frame_of
+from nonholo.discrete._secular import SecularStep, secular_step
+from nonholo.discrete._structured import first_root
+from nonholo.kernels._secular_path import principal, solve_linear
+
+PAST_PI = [
+    [1.97, 2.24, -1.96, -0.56],
+    [2.24, 2.57, -2.24, -0.64],
+    [-1.96, -2.24, 1.97, 0.56],
+    [-0.56, -0.64, 0.56, 0.17],
+]
+MOMENTUM = np.array([-1.718, -1.87, 1.66])
+KINDS = ("top 4", "top 5", "top 6", "sleigh 3")
+
+
+def random_system(kind: str, rod: bool, rng: np.random.Generator) -> nh.SuslovTop | nh.MultidimensionalSleigh:
+    """Draw a body of a few mass points, or one of which all but one or two axes are nearly without inertia."""
+    name, n = kind.split()
+    points = rng.normal(size=(int(n) + 3, int(n)))
+    J = points.T @ points / len(points)
+    if rod:
+        long = rng.normal(size=(int(n), rng.integers(1, 3)))
+        J = long @ long.T + 10 ** rng.uniform(-4, -1) * J
+    if name == "top":
+        return nh.SuslovTop(J)
+    return nh.MultidimensionalSleigh(rng.uniform(0.3, 2), 10 ** rng.uniform(-1, 0.3) * rng.normal(size=int(n)), J)
+
+
+def by_arcs(system: nh.SuslovTop | nh.MultidimensionalSleigh, r: np.ndarray) -> tuple[int, np.ndarray, float]:
+    """Return how the path to the momentum r of a step of time one ends, (z0, z) there, and the least z0 on it."""
+    J = np.asarray(system.mass_tensor)
+    if isinstance(system, nh.SuslovTop):
+        B = J[:-1, :-1] + J[-1, -1] * np.eye(len(J) - 1)
+        how, point, _, least = arcs.followed(B, J[:-1, -1].copy(), r / 2, 0.0, 0.0, False)
+    else:
+        a, B = np.asarray(system.center_of_mass), J[1:, 1:] + J[0, 0] * np.eye(len(J) - 1)
+        turning = (r[:-1] - a[1:] * r[-1]) / 2
+        how, point, _, least = arcs.followed(B, -J[0, 1:], turning, system.mass * a[0] ** 2, a[0] * r[-1] / 2, True)
+    return how, point, least
+
+
+def by_path(step: SecularStep, r: np.ndarray) -> tuple[int, np.ndarray]:
+    """Return the outcome and (z0, z) up to their common sign."""
+    body, m = step.body, step.encoded(r)
+    k = len(body.b)
+    code, nu, tau = principal(body, m, m[-1] if body.slides else 0.0)
+    y = (m[:k] + tau * (m[:k] + body.c)) / (body.b + nu)
+    return code, np.append(1.0, step.turned_back(y)) / np.sqrt(1 + tau)
+
+
+def agreements(count: int, seed: int) -> tuple[int, int, int]:
+    """Compare random problems; return how many were reached, refused at a fold, and went through angle pi."""
+    rng, reached, folded, past = np.random.default_rng(seed), 0, 0, 0
+    for trial in range(count):
+        system = random_system(KINDS[trial % 4], trial % 3 == 0, rng)
+        r = system.restricted_momentum(rng.normal(size=system.rank)) * 10 ** rng.uniform(-0.7, 0.5)
+        how, point, least = by_arcs(system, r)
+        code, found = by_path(secular_step(nh.discretize(system, 1.0)), r)
+        if how == arcs.LOST:
+            continue
+        assert code == how, (trial, code, how)
+        if code == 0:
+            assert min(np.abs(found - point).max(), np.abs(found + point).max()) < 1e-9, trial
+        reached, folded, past = reached + (how == 0), folded + (how == 1), past + (least < 0)
+    assert reached + folded >= 0.999 * count
+    return reached, folded, past
+
+
+def test_random_problems() -> None:
+    """400 tops and sleighs, rods among them: the same root, or refused where the path turns back."""
+    reached, folded, _ = agreements(400, 4)
+    assert min(reached, folded) > 100
+
+
+@pytest.mark.profile("problems", instead="test_random_problems")
+def test_many_random_problems() -> None:
+    """10,000 of them, many with paths through angle pi."""
+    reached, folded, past = agreements(10_000, 5)
+    assert min(reached, folded) > 2500
+    assert past > 100
+
+
+def test_a_path_through_angle_pi() -> None:
+    """A rod on SO(4) whose principal path turns past pi steps there, to a displacement that `branches` has too."""
+    system = nh.SuslovTop(PAST_PI)
+    discrete = nh.discretize(system, 1.0)
+    how, point, least = by_arcs(system, MOMENTUM)
+    assert how == arcs.REACHED
+    assert least < 0
+    found = nh.displacements_over(discrete, MOMENTUM)
+    q = np.append(point[1:], point[0])
+    W = found.displacement[found.principal].real
+    assert np.abs(W - (np.eye(4) - 2 * np.outer(q, q)) * [1, 1, 1, -1]).max() < 1e-12
+    orbit = nh.simulate(discrete, momentum=MOMENTUM, steps=1, throw=False)
+    assert np.abs(orbit.displacement[0] - W).max() < 1e-12
+
+
+def test_a_half_turn() -> None:
+    """Where r is orthogonal to r - c the displacement is a half-turn: the path ends there, the step keeps energy."""
+    system = nh.SuslovTop(PAST_PI)
+    along = MOMENTUM / np.linalg.norm(MOMENTUM)
+    r = 2 * (along @ system.coupling) * along
+    assert by_arcs(system, r)[0] == arcs.REACHED
+    discrete = nh.discretize(system, 1.0)
+    found = nh.displacements_over(discrete, r)
+    W = found.displacement[found.principal].real
+    assert np.abs(W @ W - np.eye(4)).max() < 1e-12
+    orbit = nh.simulate(discrete, momentum=r, steps=1, throw=False)
+    assert np.abs(orbit.displacement[0] - W).max() < 1e-12
+    branch = nh.branches(discrete, displacement=W)
+    assert abs(branch.energy / found.energy - 1) < 1e-13
+
+
+@pytest.mark.parametrize("past", [0.0, 1e-9, -1e-9, 1e-3])
+def test_the_slide_of_a_sleigh_at_angle_pi(past: float) -> None:
+    """At and near angle pi, where the momentum along the blade is -2 m a / h, the slide is as accurate as elsewhere."""
+    mass, arm = 1.0, 2.0
+    system = nh.MultidimensionalSleigh(mass, [arm, 0.3, -0.2], 0.1 * np.diag([1.0, 2.0, 3.0]) + 0.01)
+    discrete = nh.discretize(system, 1.0)
+    r = np.array([18.0, 7.0, -2 * mass * arm * (1 + past)])
+    code, chart = first_root(secular_step(discrete), system, r)
+    assert code == 0
+    values, frame = nh.displacements_over(discrete, r), frame_of("test", discrete)
+    y = chart / np.linalg.norm(chart[:-1])  # without the sign and size of z0
+    missed = []
+    for W in values.displacement[values.is_real].real:
+        exact = frame.chart(frame.point(W))
+        exact /= np.linalg.norm(exact[:-1])
+        missed.append(np.abs(y - exact * np.sign(y[:-1] @ exact[:-1])).max() / np.abs(exact).max())
+    assert min(missed) < 1e-12
+    assert np.linalg.norm(chart[:-1]) > 1e2
+
+
+@pytest.mark.parametrize("along", [0.0, 0.7])
+def test_a_sleigh_without_arm_ends_at_angle_pi(along: float) -> None:
+    """With a = 0 a turn by pi slides infinitely far, unless there is no momentum along the blade."""
+    J = np.roll(np.array(PAST_PI), (1, 1), (0, 1))
+    system = nh.MultidimensionalSleigh(1.0, [0.0, 0.0, 0.0, 0.0], J * np.outer([-1, 1, 1, 1], [-1, 1, 1, 1]))
+    code, _ = by_path(secular_step(nh.discretize(system, 1.0)), np.append(MOMENTUM, along))
+    assert code == (nh.Outcome.branch_unverified if along else 0)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("equal", [False, True])
+def test_linear_equations(kind: str, equal: bool) -> None:
+    """Sums of O(n) solve what the whole matrix of derivatives does, also where one factor z0 b + mu vanishes."""
+    rng = np.random.default_rng(6)
+    body = secular_step(nh.discretize(random_system(kind, False, rng), 1.0)).body
+    k, signs = len(body.b), set()
+    if equal:
+        body = body._replace(b=np.full(k, body.b[0]))
+    for trial in range(20):
+        x, right, move = rng.normal(size=k + 2), rng.normal(size=k + 2), np.zeros(k + 2)
+        x[1] *= body.slides
+        right[1] *= body.slides
+        if trial % 2 and not equal:  # z along c makes the factor of the first one vanish
+            x[2:] -= body.c * (x[0] * body.b[0] + x[1] + body.c @ x[2:]) / (body.c @ body.c)
+        det = solve_linear(body, x, right, move)
+        whole = np.append(np.append(x[0], x[2:]), [x[1], 0.0])
+        J = arcs._equations(np.diag(body.b), -body.c, np.zeros(k), 0.0, 0.0, body.slides, whole)[1][:-1, :-1]
+        exact = np.linalg.solve(J, np.concatenate([right[2:], [2 * right[0]], [right[1]]]))
+        assert np.abs(np.append(exact[-1], exact[:-1]) - np.append(move[1], np.append(move[0], move[2:]))).max() < (
+            1e-9 * np.abs(exact).max()
+        )
+        signs.add(np.sign(det * np.linalg.det(J)))
+    assert len(signs) == 1
