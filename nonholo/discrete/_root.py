@@ -143,7 +143,8 @@ def _continue(residual: Residual, begun: tuple[Array, Array], target: Array) -> 
         lambda path: (going(path) | (~path.converged & (path.count < _LAST))) & finite, advance, begin
     )
     lost = end.s < 1
-    folded = lost & (jnp.abs(end.now) < _NEAR_FOLD * jnp.abs(end.start))
+    far = jnp.sum(end.root**2) > _FAR**2  # where the determinant vanishes without a fold
+    folded = lost & ~far & (jnp.abs(end.now) < _NEAR_FOLD * jnp.abs(end.start))
     return end, folded, lost & ~folded
 
 

@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 
 import nonholo as nh
+from nonholo import kernels
 from nonholo.discrete._branch_equations import frame_of
 from nonholo.discrete._secular import SecularStep, secular_step
-from nonholo.discrete._structured import first_root
+from nonholo.discrete._structured import first_root, matrix_step
 from nonholo.kernels._secular_path import principal, solve_linear
 
 PAST_PI = [
@@ -100,6 +101,17 @@ def test_a_path_through_angle_pi() -> None:
     assert np.abs(W - (np.eye(4) - 2 * np.outer(q, q)) * [1, 1, 1, -1]).max() < 1e-12
     orbit = nh.simulate(discrete, momentum=MOMENTUM, steps=1, throw=False)
     assert np.abs(orbit.displacement[0] - W).max() < 1e-12
+
+
+@pytest.mark.profile("routes", instead="test_a_path_through_angle_pi")
+def test_the_end_of_a_chart_is_no_fold() -> None:
+    """`step` by the definition and the general kernel follow in Cayley coordinates: beyond pi they are unsure."""
+    discrete = nh.discretize(nh.SuslovTop(PAST_PI), 1.0)
+    assert int(nh.step(discrete, MOMENTUM).outcome) == nh.Outcome.branch_unverified
+    step = matrix_step(discrete)
+    assert step is not None
+    assert kernels.start(step.body, step.scale * MOMENTUM, np.eye(4).ravel())[0] == nh.Outcome.branch_unverified
+    assert int(nh.step(discrete, 20 * MOMENTUM[::-1]).outcome) == nh.Outcome.no_real_branch
 
 
 def test_a_half_turn() -> None:
