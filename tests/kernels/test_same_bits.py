@@ -15,7 +15,7 @@ from nonholo.kernels import _scalar
 
 LIVE = Path(__file__).parent / "live.py"
 ROUNDED_BY_IEEE = {
-    "math": {"copysign", "isfinite", "nan", "sqrt"},
+    "math": {"copysign", "inf", "isfinite", "nan", "sqrt"},
     "np": {"abs", "all", "array", "concatenate", "empty", "empty_like", "int64", "isfinite", "nan", "ndarray"}
     | {"sqrt", "sum", "uint64", "zeros", "zeros_like"},
 }

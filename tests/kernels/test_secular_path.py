@@ -9,6 +9,7 @@ from nonholo import kernels
 from nonholo.discrete._branch_equations import frame_of
 from nonholo.discrete._secular import SecularStep, secular_step
 from nonholo.discrete._structured import first_root, matrix_step
+from nonholo.kernels._secular import room_for_sums
 from nonholo.kernels._secular_path import principal, solve_linear
 
 PAST_PI = [
@@ -51,7 +52,7 @@ def by_path(step: SecularStep, r: np.ndarray) -> tuple[int, np.ndarray]:
     """Return the outcome and (z0, z) up to their common sign."""
     body, m = step.body, step.encoded(r)
     k = len(body.b)
-    code, nu, tau = principal(body, m, m[-1] if body.slides else 0.0)
+    code, nu, tau = principal(body, m, m[-1] if body.slides else 0.0, room_for_sums())
     y = (m[:k] + tau * (m[:k] + body.c)) / (body.b + nu)
     return code, np.append(1.0, step.turned_back(y)) / np.sqrt(1 + tau)
 
