@@ -1,4 +1,4 @@
-r"""The principal root of the secular step by its path, on the sphere of half-angle coordinates.
+r"""The principal root of the secular step by its path: in two numbers, or on the sphere of half-angle coordinates.
 
 With $z_0 = \cos\frac\theta2$, $z = z_0y$ and $\mu = z_0\nu = c\cdot z + w$ the equations for the momenta $s\,m$ are
 
@@ -18,7 +18,7 @@ import numpy as np
 
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._secular import SecularBody, newton
-from nonholo.kernels._secular_root import level_of
+from nonholo.kernels._secular_root import followed, level_of
 from nonholo.kernels._small import eliminate
 
 _LONGEST = 0.1  # predicted move on the sphere of one step
@@ -135,9 +135,21 @@ def _corrected(p: SecularBody, m: np.ndarray, m0: float, s: float, guess: np.nda
 
 @numba.njit(cache=True, nogil=True, **COMPILED)
 def principal(p: SecularBody, m: np.ndarray, m0: float, room: np.ndarray) -> tuple[int, float, float]:
-    """Follow the root from momentum zero along s (m, m0), 0 <= s <= 1; return the outcome, nu and tau."""
+    """Follow the root from momentum zero along s (m, m0), 0 <= s <= 1; return the outcome, nu and tau.
+
+    Two numbers are quick to follow; where they fail, all unknowns are.
+    """
     if not math.isfinite(level_of(p, m, m0)):
         return 5, np.nan, np.nan
+    good, nu, tau = followed(p, m, m0, room)
+    if good:
+        return 0, nu, tau
+    return on_the_sphere(p, m, m0, room)
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def on_the_sphere(p: SecularBody, m: np.ndarray, m0: float, room: np.ndarray) -> tuple[int, float, float]:
+    """Follow all unknowns along s (m, m0), also through angle pi; return the outcome, nu and tau."""
     x, rate = np.zeros(2 + len(p.b)), np.zeros(2 + len(p.b))
     x[0], x[1] = 1.0, p.mass * p.arm * p.arm
     rate[1] = p.arm * m0

@@ -1,4 +1,4 @@
-"""The ball in which a root of the secular step is certainly the principal one.
+"""Which root of the secular step is principal: a ball in which it is certain, and a quick path outside it.
 
 Reference: docs/theory/secular-step.md.
 """
@@ -9,10 +9,14 @@ import numba
 import numpy as np
 
 from nonholo.kernels._scalar import COMPILED
-from nonholo.kernels._secular import SecularBody
+from nonholo.kernels._secular import SecularBody, newton
 
 _SINES = 200  # trial angles of the ball
 _MARGIN = 1 - 1e-9
+_FIRST = 0.125  # first step along the path, of 1
+_JUMP = 0.02  # a corrector that moves further, relative to the scale of an unknown, has left the branch
+_FIRST_JUMP = 0.25  # the same for the first step, from the identity
+_SHORTEST = 1e-9  # step along the path, relative to s, below which it is given up
 
 
 @numba.njit(cache=True, nogil=True, **COMPILED)
@@ -44,3 +48,30 @@ def certain_radius(p: SecularBody, level: float) -> float:
         if room > 0 and 4 * level <= _MARGIN * room * room:
             best = least * sine * sine
     return best
+
+
+@numba.njit(cache=True, nogil=True, **COMPILED)
+def followed(p: SecularBody, m: np.ndarray, m0: float, room: np.ndarray) -> tuple[bool, float, float]:
+    """Follow nu and tau from momentum zero along s (m, m0), 0 <= s <= 1, as far as y is finite and nu > -min b."""
+    lever = p.mass * p.arm * p.arm
+    s, nu, tau, before, nu_before, tau_before = 0.0, lever, 0.0, 0.0, lever, 0.0
+    size = _FIRST
+    while s < 1.0:
+        size = min(size, 1.0 - s)
+        ahead = 1.0 if size == 1.0 - s else s + size
+        nu_guess, tau_guess = nu, tau
+        if s > 0:
+            nu_guess += (nu - nu_before) * (ahead - s) / (s - before)
+            tau_guess = max(0.0, tau + (tau - tau_before) * ((ahead / s) ** 2 - 1) / (1 - (before / s) ** 2))
+        good, nu_found, tau_found, _ = newton(p, m, m0, ahead, nu_guess, tau_guess, False, room)
+        jump = _JUMP if s > 0 else _FIRST_JUMP
+        turned = abs(math.sqrt(abs(tau_found)) - math.sqrt(tau_guess)) <= jump * (1 + tau_guess)
+        good = good and turned and abs(nu_found - nu_guess) <= jump * (p.least + nu)
+        if good:
+            before, nu_before, tau_before = s, nu, tau
+            s, nu, tau, size = ahead, nu_found, tau_found, 2 * size
+        elif size > _SHORTEST * max(s, 1e-300):
+            size /= 4
+        else:
+            return False, nu, tau
+    return True, nu, tau

@@ -1,5 +1,7 @@
 """The principal root of the step in O(n) against its path by arc length: through angle pi, and refused at folds."""
 
+from collections.abc import Callable
+
 import arcs
 import numpy as np
 import pytest
@@ -10,7 +12,7 @@ from nonholo.discrete._branch_equations import frame_of
 from nonholo.discrete._secular import SecularStep, secular_step
 from nonholo.discrete._structured import first_root, matrix_step
 from nonholo.kernels._secular import room_for_sums
-from nonholo.kernels._secular_path import principal, solve_linear
+from nonholo.kernels._secular_path import on_the_sphere, principal, solve_linear
 
 PAST_PI = [
     [1.97, 2.24, -1.96, -0.56],
@@ -48,11 +50,11 @@ def by_arcs(system: nh.SuslovTop | nh.MultidimensionalSleigh, r: np.ndarray) -> 
     return how, point, least
 
 
-def by_path(step: SecularStep, r: np.ndarray) -> tuple[int, np.ndarray]:
+def by_path(step: SecularStep, r: np.ndarray, follow: Callable = principal) -> tuple[int, np.ndarray]:
     """Return the outcome and (z0, z) up to their common sign."""
     body, m = step.body, step.encoded(r)
     k = len(body.b)
-    code, nu, tau = principal(body, m, m[-1] if body.slides else 0.0, room_for_sums())
+    code, nu, tau = follow(body, m, m[-1] if body.slides else 0.0, room_for_sums())
     y = (m[:k] + tau * (m[:k] + body.c)) / (body.b + nu)
     return code, np.append(1.0, step.turned_back(y)) / np.sqrt(1 + tau)
 
@@ -64,12 +66,15 @@ def agreements(count: int, seed: int) -> tuple[int, int, int]:
         system = random_system(KINDS[trial % 4], trial % 3 == 0, rng)
         r = system.restricted_momentum(rng.normal(size=system.rank)) * 10 ** rng.uniform(-0.7, 0.5)
         how, point, least = by_arcs(system, r)
-        code, found = by_path(secular_step(nh.discretize(system, 1.0)), r)
+        step = secular_step(nh.discretize(system, 1.0))
+        code, found = by_path(step, r)
         if how == arcs.LOST:
             continue
         assert code == how, (trial, code, how)
-        if code == 0:
-            assert min(np.abs(found - point).max(), np.abs(found + point).max()) < 1e-9, trial
+        other, same = by_path(step, r, on_the_sphere)
+        assert code == other, (trial, code, other)
+        for end in (found, same) if code == 0 else ():
+            assert min(np.abs(end - point).max(), np.abs(end + point).max()) < 1e-9, trial
         reached, folded, past = reached + (how == 0), folded + (how == 1), past + (least < 0)
     assert reached + folded >= 0.999 * count
     return reached, folded, past
