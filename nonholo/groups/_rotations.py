@@ -5,6 +5,7 @@ import scipy.linalg
 
 from nonholo._checks import error
 from nonholo._types import Array, Float, Int
+from nonholo.numerics import _matrix_functions
 from nonholo.numerics._matrix_functions import (
     exponential_increment,
     identity_like,
@@ -14,6 +15,25 @@ from nonholo.numerics._matrix_functions import (
 )
 
 _MODERATE = -0.5  # cosine of the angle, 120 degrees, up to which tan(angle / 2) loses no digits
+
+_LARGE = 1e3  # lengths from which on it is asked whether one plane turns
+_ONE_PLANE = 4e-15  # what other planes may turn, relative to it
+
+
+def cayley_increment(X: Float[np.ndarray, "... n n"]) -> Float[np.ndarray, "... n n"]:
+    r"""Return $(I - Y)^{-1}(I + Y) - I$, $Y = X/2$, accurate up to half-turns of one plane.
+
+    There Y is large, and the linear equations lose the planes that do not turn. If only one does, $Y^3 = -\tau Y$,
+    $\tau = \frac12|Y|^2$, and the increment is $2(Y + Y^2)/(1 + \tau)$.
+    """
+    length = np.linalg.norm(X, axis=(-2, -1), keepdims=True) / np.sqrt(2)
+    if not np.any(length > _LARGE):
+        return _matrix_functions.cayley_increment(X)
+    unit, inverse = X / np.maximum(length, _LARGE), 2 / np.maximum(length, _LARGE)
+    one = np.abs(unit @ unit @ unit + unit).max(axis=(-2, -1), keepdims=True) < _ONE_PLANE
+    closed = 2 * (inverse * unit + unit @ unit) / (1 + inverse * inverse)
+    one &= length > _LARGE
+    return np.where(one, closed, _matrix_functions.cayley_increment(np.where(one, 0.0, X)))
 
 
 def planes(n: int) -> tuple[Int[np.ndarray, "dim 2"], Int[np.ndarray, "dim 2"], Float[np.ndarray, "dim 2"]]:

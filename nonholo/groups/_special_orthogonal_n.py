@@ -58,7 +58,8 @@ class SpecialOrthogonalN(AbstractMatrixGroup):
 
     def cayley_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... n n"]:
         """Return `cayley(x)` minus the identity, without cancellation."""
-        return cayley_increment(self.hat(x))
+        X = self.hat(x)
+        return _rotations.cayley_increment(X) if isinstance(X, np.ndarray) else cayley_increment(X)
 
     def dexp_inverse(self, x: Float[Array, "... dim"]) -> Float[Array, "... dim dim"]:
         r"""Return the matrix of $\mathrm{dexp}_x^{-1} = \sum_k B_k\,\mathrm{ad}_x^k/k!$."""
