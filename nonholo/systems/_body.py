@@ -22,6 +22,14 @@ class ImpossibleBodyWarning(UserWarning):
     """An inertia tensor that no distribution of mass has: one principal moment is larger than the other two together.
 
     The mass tensor has a negative eigenvalue then. The equations still hold, as long as kinetic energies are positive.
+
+    Example:
+        >>> import warnings
+        >>> with warnings.catch_warnings(record=True) as caught:
+        ...     warnings.simplefilter("always")
+        ...     top = nh.SuslovTop.from_inertia(np.diag([5.0, 1.0, 1.0]))
+        >>> caught[0].category.__name__, top.mass_tensor.diagonal()
+        ('ImpossibleBodyWarning', array([-1.5,  2.5,  2.5]))
     """
 
 

@@ -123,7 +123,7 @@ def test_bits_of_simulate(system: Any) -> None:
     batch = nh.ensemble(discrete, momentum=momenta, steps=100, save_every=1)
     for member, momentum in enumerate(momenta):
         orbit = nh.simulate(discrete, momentum=momentum, steps=100, throw=False)
-        for name in ("reduced_momentum", "cayley", "pose"):
+        for name in ("reduced_momentum", "cayley", "canonical_pose"):
             assert np.array_equal(getattr(orbit, name), getattr(batch, name)[member, : len(orbit)]), (member, name)
 
 
