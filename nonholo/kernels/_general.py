@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
-from nonholo.kernels._small import eliminate, multiply, paired, paired_twice, sandwich, transpose
+from nonholo.kernels._small import eliminate, multiply, paired_twice, sandwich, transpose
 
 LOST = 1e12  # turning of a displacement of an iteration that runs away
 
@@ -206,7 +206,7 @@ def equations(p: GeneralBody, w: Workspace, m: np.ndarray) -> None:
         H, A = w.H, p.forbidden
         skew_part(p, w)
         for j in range(k, unknowns):
-            residual[j, 0] = paired(A[j - k], scratch) + paired(p.remainders[j], scratch)
+            residual[j, 0] = paired_twice(A[j - k], p.remainders[j], scratch, 0.0)
         multiply(G, w.V, H)
         for j in range(k, unknowns):
             sandwich(G, A[j - k], half, scratch)
@@ -214,7 +214,7 @@ def equations(p: GeneralBody, w: Workspace, m: np.ndarray) -> None:
             sandwich(H, A[j - k], half, scratch)
             _pair_with_chart(scratch, 1.0, places, entries, slope[j])
     for i in range(k):
-        residual[i, 0] = paired(Q[i], X) - m[i] + paired(p.remainders[i], X)
+        residual[i, 0] = paired_twice(Q[i], p.remainders[i], X, m[i])
         sandwich(G, Q[i], half, scratch)
         _pair_with_chart(scratch, 2.0, places, entries, slope[i])
 
@@ -234,4 +234,4 @@ def increments(p: GeneralBody, w: Workspace, term: np.ndarray) -> None:
     else:
         multiply(transposed, X, square)
     for i in range(len(Q)):
-        term[i] = paired_twice(Q[i], p.remainders[i], square)
+        term[i] = paired_twice(Q[i], p.remainders[i], square, 0.0)

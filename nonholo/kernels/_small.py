@@ -110,12 +110,12 @@ def paired(A: np.ndarray, B: np.ndarray) -> float:
 
 
 @numba.njit(cache=True)
-def paired_twice(A: np.ndarray, rest: np.ndarray, B: np.ndarray) -> float:
-    """Return the sum of products of entries of A + rest with B, as if with twice the digits, rounded once.
+def paired_twice(A: np.ndarray, rest: np.ndarray, B: np.ndarray, less: float) -> float:
+    """Return the sum of products of entries of A + rest with B, less a number, as if with twice the digits.
 
     Dot2 of Ogita, Rump and Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26 (2005).
     """
-    total, lost = 0.0, 0.0
+    total, lost = -less, 0.0
     for i in range(A.shape[0]):
         for j in range(A.shape[1]):
             term, error = _product_and_error(A[i, j], B[i, j])
