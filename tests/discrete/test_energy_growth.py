@@ -49,7 +49,7 @@ def number(x: Fraction) -> mpmath.mpf:
 
 
 def test_general_rows_on_a_motion_group() -> None:
-    """The energy of a body on SE(3) with two general rows fell by 3.8e-17 at every step."""
+    """The energy of a body on SE(3) with two general rows rose by 3.8e-17 at every step."""
     rows = [[1.0, 2.0, 0.3, 0.1, 0.7, 0.2], [0.7, 1.0, 3.0, 0.4, 0.1, 0.9]]
     system = nh.LLSystem(nh.SE(3), np.diag([1.0, 2.0, 3.0, 1.0]) + 0.1, rows)
     assert growth(system, np.array([0.1, 0.05]), 10_000) <= 5e-14
