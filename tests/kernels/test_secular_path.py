@@ -185,3 +185,15 @@ def test_linear_equations(kind: str, equal: bool) -> None:
         )
         signs.add(np.sign(det * np.linalg.det(J)))
     assert len(signs) == 1
+
+
+def test_a_half_turn_among_all_values() -> None:
+    """At an exact half-turn the principal value is recognized, and is the displacement of the orbit."""
+    system = nh.SuslovTop(PAST_PI)
+    along = MOMENTUM / np.linalg.norm(MOMENTUM)
+    r, discrete = 2 * (along @ system.coupling) * along, nh.discretize(system, 1.0)
+    found = nh.displacements_over(discrete, r)
+    assert found.principal is not None
+    W = found.displacement[found.principal].real
+    assert np.abs(W @ W - np.eye(4)).max() < 1e-12
+    assert np.abs(nh.simulate(discrete, momentum=r, steps=1).displacement[0] - W).max() < 1e-12
