@@ -26,6 +26,16 @@ def error(where: str, requirement: str, got: str, remedy: str) -> ValueError:
     return ValueError(f"`{where}` must {requirement}. Got {got}. {remedy}")
 
 
+def printable(text: str) -> str:
+    """Return a text from elsewhere as one line that a terminal only shows: what controls it is replaced.
+
+    Example:
+        >>> printable("a title\\x1b]0;gone\\x07")
+        'a title\ufffd]0;gone\ufffd'
+    """
+    return "".join(letter if letter.isprintable() else "\ufffd" for letter in text)
+
+
 def is_traced(value: Any) -> bool:
     """Tell whether a value is a JAX tracer, without importing JAX."""
     jax = sys.modules.get("jax")

@@ -67,7 +67,11 @@ class OutcomeError(RuntimeError):
     def __init__(self, outcome: Outcome, where: str, orbit: object | None = None) -> None:
         super().__init__(f"{where}: {outcome.name}. {outcome.message}")
         self.outcome = outcome
+        self.where = where
         self.orbit = orbit
+
+    def __reduce__(self) -> Any:
+        return type(self), (self.outcome, self.where, self.orbit)
 
 
 def finished(orbit: Any, time_step: float, done: int, steps: int, throw: bool) -> Any:

@@ -12,7 +12,7 @@ from nonholo._results import OutcomeError
 from nonholo.cli._errors import FAILED, USAGE, leave, store_errors, told_warnings, warn
 from nonholo.cli._provenance import show_provenance
 from nonholo.cli._sweep_report import show_sweep, sweep_figures
-from nonholo.ensembles import resume, standing_of
+from nonholo.ensembles import functions_of, resume, standing_of
 from nonholo.io import read_attributes
 from nonholo.orbit import Orbit
 
@@ -34,13 +34,15 @@ def go_on_and_report(store: Path, going_on: Callable[[bool], Orbit], *, json: bo
         leave(f"Stopped early; the good steps are kept. {stopped}", FAILED)
 
 
-def go_on_with_sweep(store: Path, scheduler: str | None, workers: int | None, *, json: bool) -> None:
-    """Do what a sweep lacks, report what the store holds now."""
+def go_on_with_sweep(store: Path, scheduler: str | None, workers: int | None, *, trust: bool, json: bool) -> None:
+    """Do what a sweep lacks, report what the store holds now; name what is trusted first."""
     with store_errors(USAGE):
-        done = standing_of(store).done
+        done, imported = standing_of(store).done, functions_of(store)
+    if trust and imported:
+        warn(f"trusted, and run with your rights: {', '.join(imported)}")
     begun = time.perf_counter()
     with store_errors(USAGE), going(store):
-        result = resume(store, scheduler=scheduler, workers=workers, progress=sys.stderr.isatty())
+        result = resume(store, scheduler=scheduler, workers=workers, trust=trust, progress=sys.stderr.isatty())
     figures = sweep_figures(store, result, time.perf_counter() - begun, done)
     show_sweep(store, figures, {"title": str(store)}, {}, json=json)
 

@@ -8,14 +8,22 @@ import typer
 from nonholo.cli._sweep import Scheduler, Workers
 
 Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by sweep, or by simulate(..., store=...).")]
+Trust = Annotated[
+    bool, typer.Option("--trust", help="Import the functions that the store of a sweep names, with your rights.")
+]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of the table.")]
 
 
-def resume(store: Store, scheduler: Scheduler = None, workers: Workers = None, json: Json = False) -> None:
+def resume(
+    store: Store, scheduler: Scheduler = None, workers: Workers = None, trust: Trust = False, json: Json = False
+) -> None:
     """Go on from the last checkpoint of a run, or with the missing blocks of a sweep.
 
     Damaged blocks are named and computed again. The result has the bits of one
-    that was never stopped. --scheduler and --workers are for sweeps.
+    that was never stopped. --scheduler, --workers and --trust are for sweeps.
+
+    A sweep whose task or reductions are functions of somebody's own only names
+    them: they are imported and run with --trust alone, after their names are shown.
 
     nonholo resume run.zarr
     nonholo resume sweep.zarr --workers 4
@@ -28,7 +36,7 @@ def resume(store: Store, scheduler: Scheduler = None, workers: Workers = None, j
     from nonholo.ensembles import resume as going_on
 
     if io.format_of(store) == io.SWEEP_FORMAT:
-        go_on_with_sweep(store, scheduler, workers, json=json)
+        go_on_with_sweep(store, scheduler, workers, trust=trust, json=json)
     else:
-        options = {"scheduler": scheduler, "workers": workers}
+        options = {"scheduler": scheduler, "workers": workers, "trust": trust}
         go_on_and_report(store, lambda progress: going_on(store, progress=progress, **options), json=json)

@@ -1,5 +1,6 @@
 """Sweeps: designs of many members, tasks that run them, one store for the result; Dask is used only here."""
 
+from nonholo.ensembles._begin import functions_of
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._design import AbstractDesign, Grid, RandomDesign
 from nonholo.ensembles._distributions import (
@@ -35,6 +36,7 @@ __all__ = [
     "SweepStanding",
     "Uniform",
     "component_name",
+    "functions_of",
     "load_sweep",
     "resume",
     "standing_of",

@@ -9,6 +9,7 @@ from nonholo._checks import count, error
 from nonholo._progress import waiting
 from nonholo.ensembles._block import block_of
 from nonholo.ensembles._describe import (
+    NO_NAME,
     design_text,
     differences,
     function_from,
@@ -19,8 +20,9 @@ from nonholo.ensembles._design import Design, Grid, RandomDesign, axis_dimension
 from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
 from nonholo.ensembles._layout import layout_of
 from nonholo.ensembles._names import Axes, check_dimensions
+from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles._results import Output, Task, probed
-from nonholo.ensembles._store import SweepStore, create_store
+from nonholo.ensembles._store import SweepStore, create_store, open_store
 from nonholo.simulation import in_one_thread
 
 _BLOCK = 4096  # most members of a block of a task that does not say how many
@@ -80,12 +82,23 @@ def check_same(store: SweepStore, task: Any, design: Design) -> None:
         raise error("sweep(store=...)", "hold this sweep", f"'{store.path}', where {'; '.join(found[:5])}", remedy)
 
 
-def restored_task(store: SweepStore, task: Any) -> Task:
-    """Return the task of a store, the one that is given or one that can be made from its description."""
+def functions_of(store: str | Path) -> list[str]:
+    """Return the names of the functions that the task of a store would import: all but reductions of the library."""
+    told = open_store(store).description["task"]
+    names = told["reductions"] if told["kind"] == "EnsembleTask" else [told["name"]]
+    return [name for name in names if name not in REDUCTIONS]
+
+
+def restored_task(store: SweepStore, task: Any, *, trust: bool) -> Task:
+    """Return the task of a store: the one that is given, or one made from its description.
+
+    A function is imported by the name that the store gives only if the caller trusts it.
+    """
     if task is not None:
         check_task(task, store.design)
         check_same(store, task, store.design)
         return _as_begun(store, task)
+    _refuse_untrusted(store, functions_of(store.path), trust=trust)
     told = store.description["task"]
     try:
         made = ensemble_task_from(told) if told["kind"] == "EnsembleTask" else function_from(told["name"])
@@ -98,6 +111,16 @@ def restored_task(store: SweepStore, task: Any) -> Task:
 def _as_begun(store: SweepStore, task: Task) -> Task:
     """Return the task with the results that a store was begun with."""
     return task.as_of_schema_1() if store.schema == 1 and isinstance(task, EnsembleTask) else task
+
+
+def _refuse_untrusted(store: SweepStore, names: list[str], *, trust: bool) -> None:
+    remedy = f"Pass it: nonholo.resume('{store.path}', task=...)"
+    if NO_NAME in names:
+        raise error("resume(store=...)", "be a sweep whose task can be made again", NO_NAME, f"{remedy}.")
+    if names and not trust:
+        remedy += ", or trust=True (--trust) if you trust who made the store: what is named would run with your rights."
+        got = f"'{store.path}', which names {', '.join(names)}"
+        raise error("resume(store=...)", "name no function but the library's, unless trusted", got, remedy)
 
 
 def _described(task: Any, design: Design) -> dict[str, Any]:

@@ -13,7 +13,8 @@ from nonholo.ensembles._distributions import DISTRIBUTIONS
 from nonholo.ensembles._names import component_name
 from nonholo.io import fields_of
 
-_NO_NAME = "a function without an importable name"
+NO_NAME = "a function without an importable name"
+"""What stands in a description for a function that no other process can import."""
 
 
 def design_text(design: Design) -> dict[str, Any]:
@@ -48,13 +49,13 @@ def function_name(function: Callable[..., Any]) -> str:
     """Return the name under which any process can import a function, or that there is none."""
     module, name = getattr(function, "__module__", None), getattr(function, "__qualname__", None)
     if module in (None, "__main__") or name is None or "<" in name:
-        return _NO_NAME
+        return NO_NAME
     return f"{module}:{name}"
 
 
 def function_from(name: str) -> Callable[..., Any]:
-    """Import a function."""
-    if name == _NO_NAME:
+    """Import a function, which runs its module: only for who trusts the origin of the name."""
+    if name == NO_NAME:
         raise ImportError(name)
     module, _, path = name.partition(":")
     found: Any = importlib.import_module(module)

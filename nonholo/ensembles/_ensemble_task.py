@@ -176,7 +176,7 @@ class EnsembleTask:
 
 
 def ensemble_task_from(told: dict[str, Any]) -> EnsembleTask:
-    """Return the task of a description; refuse one of which data are not enough."""
+    """Return the task of a description, whose functions are imported; refuse one of which data are not enough."""
     missing = unstored(json.loads(told["motion"])) or unstored(json.loads(told["parameters"]))
     if missing:
         raise ValueError(f"one whose {missing}")

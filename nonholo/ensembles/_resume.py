@@ -23,6 +23,7 @@ def resume(
     discrete: Discretization | None = None,
     events: Any = None,
     task: Any = None,
+    trust: bool = False,
     scheduler: str | None = None,
     workers: int | None = None,
     throw: bool = True,
@@ -39,7 +40,9 @@ def resume(
             store cannot hold. Another one than that of the store is refused.
         events: The events of an orbit that looks for some: a store holds their names, directions and stops, but no
             functions. Others than those of the store are refused. To read a finished orbit `load_orbit` needs none.
-        task: The task of a sweep; needed only if it is, or holds, a function that cannot be imported by its name.
+        task: The task of a sweep; needed if it is, or holds, a function of your own, which a store only names.
+        trust: Import those functions by the names that the store gives. They run with your rights, whatever they are,
+            so only for a store whose maker you trust; without it nothing runs that you did not pass. An orbit names none.
         scheduler: As in `sweep`.
         workers: As in `sweep`.
         throw: Raise if an orbit cannot go on; otherwise return the good steps and the outcome.
@@ -75,7 +78,7 @@ def resume(
         return simulation.resume(store, discrete=discrete, events=events, throw=throw, progress=progress)
     name, workers = checked_scheduler(scheduler, workers)
     opened = open_store(store)
-    return go_on(Work(opened, restored_task(opened, task)), name, workers, progress)
+    return go_on(Work(opened, restored_task(opened, task, trust=trust)), name, workers, progress)
 
 
 def go_on(work: Work, scheduler: str, workers: int | None, progress: bool) -> xarray.Dataset:

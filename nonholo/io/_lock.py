@@ -1,106 +1,75 @@
-"""The lock of a store that is being written: a file that names its owner; that of a dead process does not count."""
+"""The lock of a store that is being written: the operating system's, which ends with its process; a file tells who."""
 
 import contextlib
 import datetime
 import json
 import os
 import socket
-import sys
-import uuid
 from collections.abc import Iterator
 from pathlib import Path
+
+from filelock import FileLock, Timeout
+
+from nonholo._checks import printable
+
+_PATIENCE = 0.2  # seconds to wait for who only asks whether the store is locked
 
 
 @contextlib.contextmanager
 def locked(store: Path) -> Iterator[None]:
-    """Hold the lock of a store; refuse, naming the owner, while another process holds it.
+    """Hold the lock of a store; refuse, naming the owner, while another process or thread holds it.
 
-    A lock left by a process of this host that has ended is taken over.
+    The lock is one of the operating system on the file `run/lock`, so it ends with the process that holds it, however
+    that ends, in whichever container. `run/lock.json` only tells who it is.
+
+    Raises:
+        BlockingIOError: The store is being written.
+        OSError: The file system of the store has no locks.
     """
-    path = store / "run" / "lock.json"
-    mine = json.dumps({"pid": os.getpid(), "host": socket.gethostname(), "since": _now()})
-    _acquire(path, mine)
+    lock, about = _lock(store, _PATIENCE), store / "run" / "lock.json"
     try:
+        lock.acquire()
+    except Timeout:
+        raise BlockingIOError(f"The store '{store}' is being written by {_named(about)}. Wait until it is done.") from None
+    except (OSError, NotImplementedError) as failure:
+        number = getattr(failure, "errno", None)
+        remedy = "A run that is stored needs a file system with locks: write it elsewhere, then copy it."
+        raise OSError(number, f"The store cannot be locked ({failure}). {remedy}", str(store)) from failure
+    try:
+        about.write_text(json.dumps({"pid": os.getpid(), "host": socket.gethostname(), "since": _now()}))
         yield
     finally:
-        if _text(path) == mine:
-            path.unlink(missing_ok=True)
+        if lock.is_locked:  # not in a process that was forked meanwhile
+            for file in (about, Path(lock.lock_file)):
+                with contextlib.suppress(OSError):
+                    file.unlink()
+            lock.release()
 
 
 def owner_of(store: Path) -> str | None:
     """Say who is writing a store; None if nobody is."""
-    found = _text(store / "run" / "lock.json")
-    return None if found is None or _is_stale(found) else _named(found)
-
-
-def _acquire(path: Path, mine: str) -> None:
-    """Create the lock file with its content at once, by a link, which fails if there is one."""
-    own = path.with_name(f"lock.{uuid.uuid4().hex}.claim")
-    try:
-        own.write_text(mine)
-        for _ in range(2):
-            try:
-                os.link(own, path)
-            except FileExistsError:
-                _remove_stale(path)
-                continue
-            return
-        raise _refused(path, _text(path) or "")
-    finally:
-        own.unlink(missing_ok=True)
-
-
-def _remove_stale(path: Path) -> None:
-    """Move a stale lock away; if another process was faster, what was moved is its new lock, and goes back."""
-    found = _text(path)
-    if found is None:
-        return
-    if not _is_stale(found):
-        raise _refused(path, found)
-    aside = path.with_name(f"lock.{uuid.uuid4().hex}.claim")
-    try:
-        path.rename(aside)
-    except FileNotFoundError:
-        return
-    moved = aside.read_text()
-    if moved != found:
-        with contextlib.suppress(FileExistsError):
-            os.link(aside, path)
-    aside.unlink()
-
-
-def _is_stale(content: str) -> bool:
-    """Tell whether the owner was a process of this host that has ended; an unreadable lock has an unknown owner."""
-    try:
-        owner = json.loads(content)
-        if owner["host"] != socket.gethostname() or sys.platform == "win32":  # where os.kill is no mere question
-            return False
-        os.kill(owner["pid"], 0)
-    except ProcessLookupError:
-        return True
-    except (ValueError, KeyError, TypeError, OSError):
-        return False
-    return False
-
-
-def _refused(path: Path, content: str) -> BlockingIOError:
-    remedy = f"Wait until it is done; if no such process is left, remove '{path}'."
-    return BlockingIOError(f"The store '{path.parents[1]}' is being written by {_named(content)}. {remedy}")
-
-
-def _named(content: str) -> str:
-    try:
-        owner = json.loads(content)
-        return f"process {owner['pid']} on {owner['host']} since {owner['since']}"
-    except (ValueError, KeyError, TypeError):
-        return "an unknown process"
-
-
-def _text(path: Path) -> str | None:
-    try:
-        return path.read_text()
-    except FileNotFoundError:
+    lock = _lock(store, 0)
+    if not Path(lock.lock_file).exists():
         return None
+    try:
+        with lock:
+            return None
+    except Timeout:
+        return _named(store / "run" / "lock.json")
+    except OSError:  # a store of somebody else, or on a medium that is only read
+        return None
+
+
+def _lock(store: Path, timeout: float) -> FileLock:
+    return FileLock(store / "run" / "lock", timeout=timeout, thread_local=False, fallback_to_soft=False)
+
+
+def _named(about: Path) -> str:
+    try:
+        owner = json.loads(about.read_text())
+        return printable(f"process {owner['pid']} on {owner['host']} since {owner['since']}")
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return "an unknown process"
 
 
 def _now() -> str:

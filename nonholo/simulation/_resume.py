@@ -61,6 +61,8 @@ def extend(
     *,
     discrete: Discretization | None = None,
     events: Any = None,
+    task: Any = None,
+    trust: bool = False,
     throw: bool = True,
     progress: bool = False,
 ) -> Orbit:
@@ -73,6 +75,8 @@ def extend(
         steps: How many steps more.
         discrete: As in `resume`.
         events: As in `resume`.
+        task: As in `resume`, for a sweep; the members of a sweep are not extended, so an orbit refuses one.
+        trust: As in `resume`; the store of an orbit names no functions, so nothing changes.
         throw: As in `resume`.
         progress: Show a progress bar on standard error.
 
@@ -89,6 +93,9 @@ def extend(
     Example:
         >>> orbit = nh.extend("run.zarr", 1_000_000)  # doctest: +SKIP
     """
+    del trust
+    if task is not None:
+        raise error("extend(task=...)", "come with the store of a sweep", repr(task), "Leave it out for an orbit.")
     steps = count("extend(steps=...)", steps, "Pass how many steps more.")
     stream, run, watch = _opened("extend", store, discrete, events)
     with io.locked(stream.path):
