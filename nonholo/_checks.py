@@ -14,6 +14,7 @@ import numpy as np
 from nonholo._types import Array
 
 _LEAST_RTOL = 1e-14
+_MOST = 2**53  # the integers up to it are floats too
 
 
 def error(where: str, requirement: str, got: str, remedy: str) -> ValueError:
@@ -27,13 +28,13 @@ def error(where: str, requirement: str, got: str, remedy: str) -> ValueError:
 
 
 def printable(text: str) -> str:
-    """Return a text from elsewhere as one line that a terminal only shows: what controls it is replaced.
+    r"""Return a text from elsewhere as one line that a terminal only shows: what controls it is replaced.
 
     Example:
-        >>> printable("a title\\x1b]0;gone\\x07")
-        'a title\ufffd]0;gone\ufffd'
+        >>> printable("a title\x1b]0;gone\x07")
+        'a title?]0;gone?'
     """
-    return "".join(letter if letter.isprintable() else "\ufffd" for letter in text)
+    return "".join(letter if letter.isprintable() else "?" for letter in text)
 
 
 def is_traced(value: Any) -> bool:
@@ -48,25 +49,49 @@ def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "
         if not _fits(value.shape, shape):
             raise error(where, f"have shape {_shown(shape)}", f"shape {value.shape}", remedy)
         return value
-    try:
-        raw = np.asarray(value)
-        if raw.dtype.kind == "O" and any(entry is None for entry in raw.flat):
-            raise TypeError("None would become nan")
-        if np.iscomplexobj(raw):
-            raise error(where, "be real", "complex numbers", remedy)
-        result = np.array(raw, dtype=np.float64)
-    except (TypeError, ValueError) as failure:
-        if str(failure).startswith("`"):
-            raise
-        raise error(where, "be an array of real numbers", repr(value), remedy) from None
+    raw = _numbers(where, value, remedy)
+    if raw.dtype.kind == "c":
+        raise error(where, "be real", "complex numbers", remedy)
+    result = np.array(raw, dtype=np.float64)
     if not _fits(result.shape, shape):
         raise error(where, f"have shape {_shown(shape)}", f"shape {result.shape}", remedy)
-    if not np.all(np.isfinite(result)):
-        position = tuple(int(i) for i in np.argwhere(~np.isfinite(result))[0])
-        place = f" at index {position}" if position else ""
-        raise error(where, "be finite", f"{result[position]}{place}", remedy)
+    _check_finite(where, result, remedy)
     result.setflags(write=False)
     return result
+
+
+def _numbers(where: str, value: Any, remedy: str) -> np.ndarray:
+    """Return an array of integers, floats or complex numbers; refuse all else that NumPy would turn into some.
+
+    Texts, dates, truth values, structures, None, and masked arrays, whose hidden numbers NumPy would use.
+    """
+    try:
+        raw = np.asarray(value)
+        if raw.dtype.kind == "O" and not any(isinstance(x, str | bytes | bool | np.generic) for x in raw.flat):
+            raw = np.array([float(entry) for entry in raw.flat]).reshape(raw.shape)
+    except OverflowError:
+        raise error(where, "be finite", f"an integer beyond {sys.float_info.max:.2g}", remedy) from None
+    except (TypeError, ValueError):
+        raw = np.array(None)
+    if raw.dtype.kind not in "iufc" or isinstance(value, np.ma.MaskedArray):
+        raise error(where, "be an array of real numbers", _told(value), remedy)
+    return raw
+
+
+def _told(value: Any) -> str:
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of thousands of digits
+        text = f"a {type(value).__name__} too long to be shown"
+    return text if len(text) <= 200 else f"{text[:200]}..."
+
+
+def _check_finite(where: str, value: np.ndarray, remedy: str) -> None:
+    finite = np.isfinite(value)
+    if not finite.all():
+        position = tuple(int(i) for i in np.argwhere(~finite)[0])
+        place = f" at index {position}" if position else ""
+        raise error(where, "be finite", f"{value[position]}{place}", remedy)
 
 
 def _fits(actual: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
@@ -80,8 +105,6 @@ def _shown(shape: tuple[int | None, ...]) -> str:
 
 def number(where: str, value: Any, remedy: str = "Pass one real number.") -> Array:
     """Return a finite real scalar as float64 (or the tracer)."""
-    if isinstance(value, bool):
-        raise error(where, "be a real number", repr(value), remedy)
     result = array(where, value, (), remedy)
     return result if is_traced(result) else np.float64(result)
 
@@ -94,9 +117,11 @@ def as_floats(value: Any) -> Array:
 
 def trailing(where: str, value: Any, shape: tuple[int, ...], remedy: str) -> Array:
     """Return an array (a sequence becomes float64) whose last axes have the given shape; leading axes are free."""
-    result = as_floats(value)
+    result = as_floats(value if is_traced(value) else _numbers(where, value, remedy))
     if result.shape[max(0, result.ndim - len(shape)) :] != shape:
         raise error(where, f"end in shape {_shown(shape)}", f"shape {result.shape}", remedy)
+    if isinstance(result, np.ndarray):
+        _check_finite(where, result, remedy)
     return result
 
 
@@ -112,7 +137,9 @@ def count(where: str, value: Any, remedy: str) -> int:
     """Return a strictly positive Python integer."""
     integral = isinstance(value, numbers.Integral) and not isinstance(value, bool)
     if not integral or value <= 0:
-        raise error(where, "be a positive integer", repr(value), remedy)
+        raise error(where, "be a positive integer", _told(value), remedy)
+    if value > _MOST:
+        raise error(where, f"be at most {_MOST}", _told(value), remedy)
     return int(value)
 
 

@@ -5,7 +5,8 @@ from typing import cast
 
 import numpy as np
 
-from nonholo._checks import array, count, error
+from nonholo._checks import array, error
+from nonholo._limits import bounded_count
 from nonholo._types import Array, Float
 from nonholo.analysis._variety_points import closed_form
 from nonholo.discrete import Discretization
@@ -30,7 +31,7 @@ class Deltoid:
         Raises:
             ValueError: A number of points that is not positive.
         """
-        rows = count("Deltoid.boundary(points=...)", points, "Pass the number of points.")
+        rows = bounded_count("Deltoid.boundary(points=...)", points, 100.0, "Pass the number of points.")
         return self.touching(np.linspace(0.0, 2 * np.pi, rows))
 
     def touching(self, angle: Array) -> Float[np.ndarray, "... 2"]:
@@ -60,7 +61,7 @@ class Deltoid:
         For b = 0 these are the displacements with $V_1 = 0$ but for those of angle pi.
         """
         system = cast(ChaplyginSleigh, self.discrete.system)
-        rows = count("Deltoid.resting(points=...)", points, "Pass the number of points.")
+        rows = bounded_count("Deltoid.resting(points=...)", points, 100.0, "Pass the number of points.")
         m, a, angle = float(system.mass), float(system.a), np.linspace(0.0, 2 * np.pi, rows)
         whole = float(system.inertia) + m * a * a
         reduced = np.stack([whole * np.sin(angle), -a * m * (1 - np.cos(angle))], axis=-1)

@@ -9,7 +9,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from nonholo._checks import count, error
+from nonholo._checks import error
+from nonholo._limits import bounded_count
 from nonholo._progress import progress_bar
 from nonholo._types import Float
 from nonholo.analysis._equilibria import equilibria
@@ -75,7 +76,7 @@ def flow_obstruction(
     """
     where = "flow_obstruction(discrete=...)"
     checked = closed_form(where, discrete)
-    number = count("flow_obstruction(samples=...)", samples, "Pass the number of orbits.")
+    number = bounded_count("flow_obstruction(samples=...)", samples, 100.0, "Pass the number of orbits.")
     spectrum = equilibria(checked, energy)
     if spectrum.multipliers is None or spectrum.attracting is None:
         got = f"the balanced {checked.system!r}"

@@ -5,7 +5,8 @@ from typing import cast
 
 import numpy as np
 
-from nonholo._checks import count, positive
+from nonholo._checks import positive
+from nonholo._limits import bounded_count
 from nonholo._types import Array, Float
 from nonholo.analysis._sleigh_level import SleighLevel
 from nonholo.analysis._top_level import TopLevel
@@ -85,5 +86,5 @@ def invariant_curve(discrete: Discretization, energy: Array, resolution: int = 4
     """
     checked = closed_form("invariant_curve(discrete=...)", discrete)
     level = float(positive("invariant_curve(energy=...)", energy, "An orbit has one: `orbit.energy[0]`."))
-    rows = count("invariant_curve(resolution=...)", resolution, "Pass the points of an arc.")
+    rows = bounded_count("invariant_curve(resolution=...)", resolution, 1000.0, "Pass the points of an arc.")
     return InvariantCurve(checked, level, level_of(checked, level).components(rows))

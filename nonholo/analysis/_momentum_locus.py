@@ -6,6 +6,7 @@ from typing import cast
 import numpy as np
 
 from nonholo._checks import array, count, error
+from nonholo._limits import within_memory
 from nonholo._types import Array, Float
 from nonholo.analysis._conoid import Conoid, conoid
 from nonholo.analysis._steiner import SteinerSurface, steiner_surface
@@ -101,6 +102,7 @@ def momentum_locus(discrete: Discretization, resolution: int = 80) -> MomentumLo
     """
     checked = closed_form("momentum_locus(discrete=...)", discrete)
     rows = count("momentum_locus(resolution=...)", resolution, "Pass 2 or more.")
+    within_memory("momentum_locus(resolution=...)", 1000.0 * rows**2, "Pass a lower resolution.")
     if rows < 2:
         raise error("momentum_locus(resolution=...)", "be at least 2", str(rows), "A mesh needs two rows.")
     if isinstance(checked.system, ChaplyginSleigh):

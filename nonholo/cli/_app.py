@@ -1,5 +1,7 @@
 """The command `nonholo` itself: its help, its version, its subcommands."""
 
+import contextlib
+import signal
 from typing import Annotated
 
 import typer
@@ -30,7 +32,17 @@ for _command in (simulate, sweep, new, systems, info, plot, export, resume, exte
 
 def main() -> None:
     """Run the command line."""
+    _stop_as_by_ctrl_c()
     app()
+
+
+def _stop_as_by_ctrl_c() -> None:
+    """Let whoever ends the process or closes its terminal stop a run as Ctrl-C does: at a state that can be resumed."""
+    for name in ("SIGTERM", "SIGHUP"):
+        with contextlib.suppress(AttributeError, ValueError):  # Windows; a thread that is not the main one
+            number = getattr(signal, name)
+            if signal.getsignal(number) == signal.SIG_DFL:  # nohup has it ignored
+                signal.signal(number, signal.default_int_handler)
 
 
 def _show_version(wanted: bool) -> None:

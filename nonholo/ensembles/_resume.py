@@ -42,7 +42,7 @@ def resume(
             functions. Others than those of the store are refused. To read a finished orbit `load_orbit` needs none.
         task: The task of a sweep; needed if it is, or holds, a function of your own, which a store only names.
         trust: Import those functions by the names that the store gives. They run with your rights, whatever they are,
-            so only for a store whose maker you trust; without it nothing runs that you did not pass. An orbit names none.
+            so only for a store whose maker you trust; without it nothing runs that you did not pass.
         scheduler: As in `sweep`.
         workers: As in `sweep`.
         throw: Raise if an orbit cannot go on; otherwise return the good steps and the outcome.

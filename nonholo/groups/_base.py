@@ -9,9 +9,12 @@ import abc
 import numpy as np
 
 from nonholo._checks import trailing
+from nonholo._limits import within_memory
 from nonholo._types import Array, Float, Inexact
 from nonholo.groups._coordinates import AbstractCoordinates
 from nonholo.numerics._matrix_functions import identity_like
+
+_WIDE = 1000  # from this size on it is asked whether a matrix fits into memory
 
 
 class AbstractMatrixGroup(abc.ABC):
@@ -95,6 +98,8 @@ class AbstractMatrixGroup(abc.ABC):
     @property
     def identity(self) -> Float[np.ndarray, "N N"]:
         """The identity matrix."""
+        if self.size > _WIDE:
+            within_memory(f"{self!r}.identity", 8.0 * self.size**2, "Use what needs no matrices.")
         return np.eye(self.size)
 
     def exp(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:

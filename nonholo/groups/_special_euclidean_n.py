@@ -6,6 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from nonholo._limits import within_memory
 from nonholo._types import Array, Float
 from nonholo.groups import _dexp, _rotations
 from nonholo.groups._base import AbstractMatrixGroup
@@ -56,6 +57,7 @@ class SpecialEuclideanN(AbstractMatrixGroup):
     @functools.cached_property
     def basis(self) -> np.ndarray:
         """The basis of the algebra, shape (dim, n + 1, n + 1)."""
+        within_memory(f"{self!r}.basis", 8.0 * self.dim * self.size**2, "Use what needs no basis.")
         return self.hat(np.eye(self.dim))
 
     def exp_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:

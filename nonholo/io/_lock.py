@@ -30,7 +30,9 @@ def locked(store: Path) -> Iterator[None]:
     try:
         lock.acquire()
     except Timeout:
-        raise BlockingIOError(f"The store '{store}' is being written by {_named(about)}. Wait until it is done.") from None
+        raise BlockingIOError(
+            f"The store '{store}' is being written by {_named(about)}. Wait until it is done."
+        ) from None
     except (OSError, NotImplementedError) as failure:
         number = getattr(failure, "errno", None)
         remedy = "A run that is stored needs a file system with locks: write it elsewhere, then copy it."

@@ -14,7 +14,7 @@ from nonholo.orbit import Orbit
 from nonholo.simulation._events_pieces import searched_first, stretch_of
 from nonholo.simulation._events_run import watched
 from nonholo.simulation._events_scan import Watch
-from nonholo.simulation._prepared import checked_counts, first_state
+from nonholo.simulation._prepared import checked_counts, first_state, refuse_too_long
 from nonholo.simulation._stored_run import rows_of_block
 from nonholo.simulation._stretch import CompiledRun, compiled_run, opened
 
@@ -77,6 +77,7 @@ def iterate(
     starts["restricted_velocity"] = restricted_velocity
     steps, every, rule = checked_counts(discrete, steps, save_every, branch, backend, displacement)
     run = compiled_run("iterate(discrete=...)", discrete, rule, backend, every, reconstruct)
+    refuse_too_long("iterate", discrete, steps, compiled=True)
     plan = Plan(steps, every, rows_of_block("iterate(block_steps=...)", run, steps, block_steps))
     watch = None if events is None else watched("iterate", discrete, events, rule, reconstruct)
     start = first_state(discrete, configuration, int(reconstruct), True, starts)

@@ -20,6 +20,7 @@ from nonholo.simulation._ensemble_start import checked_start, first_momenta
 from nonholo.simulation._events import Event
 from nonholo.simulation._events_ensemble import joined_blocks, watched_block
 from nonholo.simulation._events_run import watched_events
+from nonholo.simulation._prepared import refuse_too_large, refuse_too_long
 
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
 _LARGEST = 1 << 30  # numbers in all poses of a member, 8 GiB
@@ -96,6 +97,10 @@ def ensemble(
     one_start("ensemble", **starts)
     checked = checked_parameters(discrete, parameters)
     name, rows = checked_start(discrete.system, checked, **starts)
+    compiled = backend != "jax" and compiled_step(discrete) is not None
+    refuse_too_long("ensemble", discrete, steps, compiled=compiled, members=len(rows))
+    kept = states_of(steps, save_every) if reduce is None else 0
+    refuse_too_large("ensemble", discrete, kept, reconstruct, members=len(rows))
     members = Members(discrete, checked, len(rows))
     check_systems(members)
     momenta = first_momenta(members, name, rows)

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from nonholo._checks import choice, error, step_counts
+from nonholo._limits import within_a_year, within_memory
 from nonholo.discrete import Discretization, initial_state
 from nonholo.discrete._branch_rules import BranchRule, checked_rule
 from nonholo.discrete._composition import check_composed_run
@@ -12,6 +13,7 @@ from nonholo.discrete._discretization import as_discretization
 from nonholo.discrete._start import in_group
 from nonholo.discrete._structured import is_secular
 
+_COMPILED, _BY_DEFINITION = 5e-10, 1e-5  # least seconds of a step for each component of momentum; of one step
 _LARGEST = 1 << 30  # numbers in all poses of an orbit, 8 GiB
 
 
@@ -33,6 +35,19 @@ def checked_counts(
     check_composed_run(discrete, rule, displacement)
     choice("simulate(backend=...)", backend, ("auto", "numba", "jax"))
     return steps, every, rule
+
+
+def refuse_too_long(owner: str, discrete: Discretization, steps: int, *, compiled: bool, members: int = 1) -> None:
+    """Refuse more steps than a year has time for, however fast the machine is."""
+    least = _COMPILED * (discrete.system.rank + 1) if compiled else _BY_DEFINITION
+    within_a_year(f"{owner}(steps=...)", members * steps * least, "Pass fewer steps, or a larger time_step.")
+
+
+def refuse_too_large(owner: str, discrete: Discretization, states: int, reconstruct: bool, *, members: int = 1) -> None:
+    """Refuse more saved states than memory holds."""
+    size = 1 + 2 * discrete.system.rank + reconstruct * discrete.system.group.pose_size
+    remedy = "Raise save_every, or pass store=... (`simulate`) or reduce=... (`ensemble`)."
+    within_memory(f"{owner}(steps=...)", 8.0 * members * states * size, remedy)
 
 
 def first_state(

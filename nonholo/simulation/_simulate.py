@@ -15,7 +15,7 @@ from nonholo.discrete._start import check_first_state
 from nonholo.orbit import Orbit
 from nonholo.simulation._composed_run import composed_runner
 from nonholo.simulation._events_run import run_compiled, run_with_events, watched
-from nonholo.simulation._prepared import Start, checked_counts, first_state
+from nonholo.simulation._prepared import Start, checked_counts, first_state, refuse_too_large, refuse_too_long
 from nonholo.simulation._rule_run import Run, rule_runner
 from nonholo.simulation._stored_run import refuse_without_store, run_into_store
 from nonholo.simulation._stretch import CompiledRun, compiled_run
@@ -154,6 +154,8 @@ def simulate(
         return discrete.simulate(configuration=configuration, steps=steps, **starts, **options)
     steps, every, rule = checked_counts(discrete, steps, save_every, branch, backend, displacement)
     starts["restricted_velocity"] = restricted_velocity
+    closed = compiled_step(discrete) if rule == "principal" and backend != "jax" else None
+    refuse_too_long("simulate", discrete, steps, compiled=closed is not None)
     watch = None if events is None else watched("simulate", discrete, events, rule, reconstruct)
     kept = {"checkpoint_every": checkpoint_every, "scenario": scenario}
     if store is not None:
@@ -161,10 +163,10 @@ def simulate(
         start = first_state(discrete, configuration, int(reconstruct), True, starts)
         return run_into_store(stored, start, steps, store, watch, **kept, throw=throw, progress=progress)
     refuse_without_store(**kept)
-    compiled = rule == "principal" and backend != "jax"
+    refuse_too_large("simulate", discrete, 1 + steps // every, reconstruct)
     held = 1 + steps // every if reconstruct else 0
-    start = first_state(discrete, configuration, held, compiled, starts)
-    if compiled and (closed := compiled_step(discrete)) is not None:
+    start = first_state(discrete, configuration, held, closed is not None, starts)
+    if closed is not None:
         going = CompiledRun(discrete, closed, every, reconstruct)
         return run_compiled(going, start, watch, steps, throw=throw, progress=progress)
     run = _uncompiled(discrete, start, rule, backend, reconstruct)

@@ -7,6 +7,7 @@ from typing import Any
 
 from nonholo import io
 from nonholo._checks import count, error
+from nonholo._limits import within_disk, within_memory
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, finished
 from nonholo.discrete import Discretization
@@ -46,6 +47,9 @@ def run_into_store(
     opening, events = Checkpoint(0, Outcome.successful, vector), None
     if found is not None:
         opening, events = opening._replace(seen=seen_by(found, 0)), descriptions(found.events)
+    states = 1 + steps // run.every
+    remedy = "Raise save_every to keep fewer states."
+    within_disk("simulate(store=...)", 8.0 * states * (1 + sum(run.sizes)), Path(store), remedy)
     stream = io.create_stream(Path(store), first, plan, opening, events, scenario)
     with io.locked(stream.path):
         return go_on(run, stream, watch, throw=throw, progress=progress)
@@ -60,6 +64,7 @@ def rows_of_block(where: str, run: CompiledRun, steps: int, block_steps: int | N
     if asked % run.every:
         remedy = f"Pass {-(-asked // run.every) * run.every}."
         raise error(where, f"be a multiple of save_every = {run.every}", str(asked), remedy)
+    within_memory(where, 16.0 * (asked // run.every) * sum(run.sizes), "Pass fewer steps: a block is held whole.")
     return asked // run.every
 
 

@@ -379,17 +379,20 @@ def test_resume_of_a_damaged_sweep(nonholo: Command) -> None:
     assert nh.load_sweep(store).equals(before)
 
 
-def test_ctrl_c() -> None:
-    """SIGINT to the command leaves a store that can be gone on with, and exit code 1."""
+@pytest.mark.profile("faults", keep=["SIGTERM"])
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_stopping_signals(name: str) -> None:
+    """Ctrl-C, the end of a container and a closed terminal leave an unlocked store to go on with, and exit code 1."""
     text = RANDOM.replace("members = 12", "members = 2000000").replace("steps = 20", "steps = 500")
     program = f"{HEED_CTRL_C}\nfrom nonholo.cli import main; main()"
     command = [sys.executable, "-c", program, "sweep", _written(text), "-o", "s.zarr"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)  # noqa: S603
     wait_for(lambda: list(Path().glob("s.zarr/run/blocks/*.json")))
-    process.send_signal(signal.SIGINT)
+    process.send_signal(getattr(signal, name))
     told = process.communicate(timeout=120)[1]
     assert process.returncode == 1
     assert "Go on with: nonholo resume s.zarr" in told
+    assert not list(Path("s.zarr/run").glob("lock*"))
     standing = standing_of("s.zarr")
     assert 0 < standing.done < standing.members
 
