@@ -181,7 +181,7 @@ class MatrixGroup(AbstractMatrixGroup):
         if self.form is not None:
             return self._form_residual(g)
         X = _checked_logarithm(g) if isinstance(g, np.ndarray) else principal_logarithm(g, _HALVINGS)
-        gap = xp.max(abs(X - self.hat(self.vee(X))), axis=(-2, -1))
+        gap = xp.max(abs(X - self.coordinates.matrix(self.coordinates.vector(X))), axis=(-2, -1))
         return xp.where(xp.isnan(gap), xp.inf, gap)
 
     def _form_residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:

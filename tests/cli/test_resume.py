@@ -11,7 +11,7 @@ from stopping import failing_at, stopped_at
 from typer.testing import Result
 
 import nonholo as nh
-from nonholo.io import Stream
+from nonholo.io import Stream, locked
 from nonholo.simulation import _stored_run
 
 Command = Callable[..., Result]
@@ -92,11 +92,12 @@ def test_ctrl_c_does_not_hide_damage(stopped: Path, nonholo: Command, monkeypatc
 
 def test_locked_and_foreign_stores_are_refused(stopped: Path, nonholo: Command) -> None:
     """A store that another process writes and one that does not exist end in a sentence and exit code 2."""
-    (stopped / "run" / "lock.json").write_text('{"pid": 1, "host": "elsewhere", "since": "today"}')
-    refused = nonholo("resume", stopped)
-    assert refused.exit_code == 2
-    assert "process 1 on elsewhere since today" in refused.stderr
-    assert "written by process 1 on elsewhere" in nonholo("info", stopped).stdout.replace("\n", " ")
+    with locked(stopped):
+        (stopped / "run" / "lock.json").write_text('{"pid": 1, "host": "elsewhere", "since": "today"}')
+        refused = nonholo("resume", stopped)
+        assert refused.exit_code == 2
+        assert "process 1 on elsewhere since today" in refused.stderr
+        assert "written by process 1 on elsewhere" in nonholo("info", stopped).stdout.replace("\n", " ")
     assert nonholo("extend", "nothing.zarr", "--steps", 3).exit_code == 2
 
 

@@ -102,7 +102,7 @@ def test_functions_that_workers_lack_are_refused(
 
     with pytest.raises(ValueError, match=r"must be importable by the workers. Got No module named 'only_here' \(.*:\d"):
         nh.sweep(task, DESIGN, tmp_path / "a.zarr", running.address)
-    assert nh.resume(tmp_path / "a.zarr").sizes == {"member": DESIGN.members}
+    assert nh.resume(tmp_path / "a.zarr", task=task).sizes == {"member": DESIGN.members}
     assert all(process.poll() is None for process in running.workers)
 
 

@@ -15,6 +15,7 @@ from ensembles.small import DESIGN, resumed, same, simple, stop_at, swept
 
 import nonholo as nh
 from nonholo.ensembles import standing_of
+from nonholo.io import edit_attributes
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
 SLEIGHS = nh.Grid({"a": [0.1, 0.2]})
@@ -215,10 +216,36 @@ def test_tasks_without_a_name_have_to_be_passed(tmp_path: Path, monkeypatch: pyt
         assert same(nh.resume(store, task=each).load(), nh.sweep(each, design, f"{store}.whole").load())
 
 
-def test_tasks_with_a_name_are_found(tmp_path: Path) -> None:
-    """A function that any process can import, and an `EnsembleTask` of data, need not be passed."""
-    for name in ("noisy", "tops"):
-        task, design, _ = faults.SWEEPS[name]
-        whole = nh.sweep(task, design, tmp_path / name, block=design.members).load()
-        (tmp_path / name / "run" / "blocks" / "0.json").unlink()
-        assert same(nh.resume(tmp_path / name).load(), whole)
+def test_tasks_of_data_need_not_be_passed(tmp_path: Path) -> None:
+    """An `EnsembleTask` of data and the library's reductions is made again from the store."""
+    task, design, _ = faults.SWEEPS["tops"]
+    whole = nh.sweep(task, design, tmp_path / "tops", block=design.members).load()
+    (tmp_path / "tops" / "run" / "blocks" / "0.json").unlink()
+    assert same(nh.resume(tmp_path / "tops").load(), whole)
+
+
+def test_functions_run_only_if_they_are_passed_or_trusted(tmp_path: Path) -> None:
+    """A store names the functions of its task: none of them is imported unless the caller says so."""
+    task, design, _ = faults.SWEEPS["noisy"]
+    whole = nh.sweep(task, design, tmp_path / "noisy", block=design.members).load()
+    mark = tmp_path / "noisy" / "run" / "blocks" / "0.json"
+    for options in ({"task": task}, {"trust": True}):
+        mark.unlink()
+        with pytest.raises(ValueError, match=r"names ensembles.faults:noisy. Pass it: .*task=...*trust=True"):
+            nh.resume(tmp_path / "noisy")
+        assert same(nh.resume(tmp_path / "noisy", **options).load(), whole)
+
+
+@pytest.mark.parametrize("reduction", [False, True])
+def test_stores_of_strangers_run_nothing(reduction: bool, tmp_path: Path) -> None:
+    """A store that names a command of the system as its task, or a reduction, is refused before that is imported."""
+    path, design = tmp_path / "evil.zarr", nh.RandomDesign(3, {"a": nh.Uniform(0.1, 1.0)})
+    task = nh.EnsembleTask(SLEIGH, steps=3, restricted_velocity=(1.0, 0.5)) if reduction else lambda block: block["a"]
+    nh.sweep(task, design, path, "synchronous")
+    described = json.loads(json.loads((path / "zarr.json").read_text())["attributes"]["sweep"])
+    name = f"{tmp_path.name}:call"
+    described["task"] |= {"reductions": [name]} if reduction else {"name": name}
+    edit_attributes(path, {"sweep": json.dumps(described), "finished": False})
+    (path / "run" / "blocks" / "0.json").unlink()
+    with pytest.raises(ValueError, match=f"names {name}. Pass it"):  # an import would say: no such module
+        nh.resume(path, scheduler="synchronous")
