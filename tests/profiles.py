@@ -61,6 +61,11 @@ PROFILES = {
         "--jaxtyping-packages=nonholo.groups,nonholo.systems,nonholo.orbit,nonholo.discrete,nonholo.simulation,"
         "beartype.beartype",
     ),
+    "bounds": Profile(
+        "kernels with every index checked, which compiles them once more",
+        ("kernels", "numerics"),
+        f"NUMBA_BOUNDSCHECK=1 {PYTHON} -m pytest -q tests/kernels tests/numerics tests/simulation/test_ensemble.py",
+    ),
     "mutants": Profile(
         "hand-made errors in all rooms that the default run must notice", (), f"{PYTHON} tests/mutants.py"
     ),

@@ -48,6 +48,7 @@ def run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progres
     if size and starts:
         _check_room(size, RUNS if store is None else store.parent)
         if overwrite and store is not None:
+            check_target(store, overwrite=True)
             shutil.rmtree(store, ignore_errors=True)
         return at_free_path(loaded.name, store, lambda path: _ran(going, store=path, scenario=text))
     ran = _ran(going)

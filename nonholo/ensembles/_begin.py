@@ -89,7 +89,7 @@ def functions_of(store: str | Path) -> list[str]:
     return [name for name in names if name not in REDUCTIONS]
 
 
-def restored_task(store: SweepStore, task: Any, *, trust: bool) -> Task:
+def restored_task(store: SweepStore, task: Any, *, trust: bool = False) -> Task:
     """Return the task of a store: the one that is given, or one made from its description.
 
     A function is imported by the name that the store gives only if the caller trusts it.

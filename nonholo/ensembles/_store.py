@@ -95,6 +95,7 @@ class SweepStore:
 
     def write(self, piece: Piece, results: Results, mark: Mark) -> None:
         """Write the chunks of a block, then its mark."""
+        io.require_identity(self.path, self.made)
         self._mark_file(piece.number).unlink(missing_ok=True)
         for name in results.arrays:
             self._chunk_file(name, piece.number).unlink(missing_ok=True)  # zarr would read a damaged one first
@@ -161,6 +162,7 @@ class SweepStore:
 
     def finish(self) -> None:
         """Say that the sweep came to its end, and consolidate the metadata."""
+        io.require_identity(self.path, self.made)
         io.edit_attributes(self.path, {"finished": True})
         io.consolidate(self.path)
 
@@ -211,6 +213,7 @@ def create_store(
         raise _exists(path)
     told = description | {"layout": layout, "outputs": {name: dataclasses.astuple(o) for name, o in outputs.items()}}
     about = {"format": FORMAT, "schema": SCHEMA, "made": made, "finished": False, "sweep": json.dumps(told)}
+    about["checksum"] = io.checksum(about)
     with io.new_beside(path) as part:
         group = zarr.create_group(part, zarr_format=3, attributes=about | {"versions": io.versions_text()} | extra)
         _create_arrays(group, design, layout, outputs)

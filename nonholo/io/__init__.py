@@ -22,6 +22,7 @@ from nonholo.io._load import (
     read_chunk,
 )
 from nonholo.io._lock import locked, owner_of
+from nonholo.io._metadata import checksum, require_identity
 from nonholo.io._pandas import orbit_to_pandas
 from nonholo.io._plan import Checkpoint, Plan
 from nonholo.io._pose_columns import column_names, separate_rows
@@ -53,6 +54,7 @@ __all__ = [
     "check_file",
     "check_suffix",
     "check_target",
+    "checksum",
     "chunk_name",
     "chunk_path",
     "column_names",
@@ -80,6 +82,7 @@ __all__ = [
     "put_in_place",
     "read_attributes",
     "read_chunk",
+    "require_identity",
     "restore_motion",
     "save_orbit",
     "separate_rows",

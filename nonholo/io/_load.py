@@ -15,6 +15,7 @@ from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.io._attributes import FORMAT, READABLE, SWEEP_FORMAT, restore_motion
 from nonholo.io._dataset import CANONICAL
+from nonholo.io._metadata import OrbitMetadata, SweepMetadata, check_chunk, check_metadata
 from nonholo.io._plan import Plan
 from nonholo.io._stored_events import EVENTS, known, log_of
 from nonholo.orbit import STATES, EventLog, Orbit
@@ -115,6 +116,7 @@ def read_attributes(path: str | Path, expected: str = FORMAT, readable: tuple[in
             f"This version reads schemas up to {readable[-1]}: upgrade nonholo ({stored.get('versions')} wrote it)."
         )
         raise error(where, f"have a schema of {readable}", f"schema {stored.get('schema')}", remedy)
+    check_metadata(where, str(path), stored, OrbitMetadata if expected == FORMAT else SweepMetadata)
     return stored
 
 
@@ -128,7 +130,8 @@ def format_of(path: str | Path) -> str | None:
 
 def _read(root: Path, name: str, shape: tuple[int, ...], last: bool) -> Float[np.ndarray, "..."]:
     array = opened_array(root, name, shape)
-    indices = list(np.ndindex(array.cdata_shape))[-1 if last else 0 :]
+    ends = tuple(count - 1 for count in array.cdata_shape)
+    indices = (ends,) if last and min(ends, default=0) >= 0 else np.ndindex(array.cdata_shape)
     blocks = [checked_block(root, name, array, index) for index in indices]
     return np.concatenate(blocks) if blocks else np.empty(shape)
 
@@ -142,6 +145,7 @@ def opened_array(root: Path, name: str, shape: tuple[int, ...] | None) -> zarr.A
     if array.shape != (shape or array.shape) or array.dtype != np.float64:
         got = f"{array.dtype} of shape {array.shape}"
         raise error(_WHERE, f"hold the array {name} as float64 of shape {shape}", got, _AGAIN)
+    check_chunk(_WHERE, name, array.chunks)
     return array
 
 

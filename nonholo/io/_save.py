@@ -3,6 +3,7 @@
 import contextlib
 import errno
 import json
+import re
 import shutil
 import threading
 import uuid
@@ -20,6 +21,8 @@ from nonholo._checks import error
 from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
 from nonholo.io._dataset import CANONICAL, stored_variables
 from nonholo.io._load import format_of
+from nonholo.io._lock import owner_of
+from nonholo.io._metadata import checksum
 from nonholo.orbit import Orbit, as_orbit
 
 _ROWS = 100_000  # states in one chunk
@@ -33,6 +36,7 @@ _OTHER_FORMATS = {
     **dict.fromkeys((".gif", ".json", ".toml", ".npy", ".npz", ".mat", ".pkl", ".zip"), ""),
 }
 """Suffixes that no store may have, and what writes such files."""
+_OWN = re.compile(r"(?:[^/]+/)*(?:zarr\.json|c(?:/\d+)*|\.[^/]+\.partial)|run/(?:lock|lock\.json|blocks/\d+\.json)")
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -61,7 +65,7 @@ def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scena
     check_target(target, overwrite=overwrite)
     with new_beside(Path(path)) as part:
         told = attributes(orbit) | ({} if scenario is None else attributes_of_text(scenario))
-        _write(stored_variables(orbit), told, part)
+        _write(stored_variables(orbit), told | {"checksum": checksum(told)}, part)
         put_in_place(part, target, overwrite=overwrite)
 
 
@@ -115,6 +119,18 @@ def check_target(path: str | Path, *, overwrite: bool = False) -> None:
         raise _exists(path, "Choose another path, or pass overwrite=True (--overwrite) to replace it.")
     if format_of(path) != FORMAT:
         raise _exists(path, "It is not a store of an orbit, so it is not replaced. Choose another path.")
+    if foreign := _foreign_file(Path(path)):
+        raise _exists(path, f"It holds '{foreign}', which is no part of a store, so it is not replaced.")
+    if owner := owner_of(Path(path)):
+        raise BlockingIOError(
+            f"The store '{path}' is being written by {owner}, so it is not replaced. Wait, or stop it."
+        )
+
+
+def _foreign_file(store: Path) -> str | None:
+    """Return a file below a store that is none of its own."""
+    files = (file.relative_to(store).as_posix() for file in store.rglob("*") if not file.is_dir())
+    return next((name for name in files if not _OWN.fullmatch(name)), None)
 
 
 def _exists(path: str | Path, remedy: str) -> FileExistsError:
@@ -202,6 +218,7 @@ def put_in_place(part: Path, target: Path, *, overwrite: bool) -> None:
             check_target(target)
             raise
         return
+    check_target(target, overwrite=True)  # once more, after the time that writing took
     old = sibling(target, "old")
     target.rename(old)
     try:

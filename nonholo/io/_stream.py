@@ -9,6 +9,7 @@ store is unfinished it has no outcome among its attributes and no consolidated m
 import dataclasses
 import functools
 import json
+import uuid
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,6 +22,7 @@ from nonholo.io._attributes import attributes, attributes_of_text
 from nonholo.io._dataset import CANONICAL, HEADED, stored_variables
 from nonholo.io._load import chunk_name, chunk_path, read_attributes, read_chunk
 from nonholo.io._lock import owner_of
+from nonholo.io._metadata import checksum, require_identity
 from nonholo.io._plan import Checkpoint, Plan, packed_checkpoint, unpacked_checkpoint
 from nonholo.io._save import (
     check_target,
@@ -46,11 +48,13 @@ class Stream:
         path: Where it is.
         plan: How the run is cut.
         reconstruct: Whether poses are kept.
+        made: Which one it is: another store at the same path has another number.
     """
 
     path: Path
     plan: Plan
     reconstruct: bool
+    made: str | None
 
     @property
     def is_finished(self) -> bool:
@@ -59,6 +63,7 @@ class Stream:
 
     def write(self, block: int, orbit: Orbit, reached: Checkpoint) -> None:
         """Write the chunks of a block, then the checkpoint at its end."""
+        require_identity(self.path, self.made)
         self._remove(block)
         if orbit.events is not None and reached.seen is not None:
             write_crossings(self._arrays[EVENTS], orbit.events, reached.seen.chunks)
@@ -117,6 +122,7 @@ class Stream:
 
     def finish(self, end: Checkpoint) -> None:
         """Cut the arrays to the good states, add the outcome and consolidate the metadata."""
+        require_identity(self.path, self.made)
         shapes = self._fit(1 + end.done // self.plan.every)
         told: dict[str, Any] = {"outcome": end.outcome.name, "arrays": json.dumps(shapes)}
         if self.events is not None and end.seen is not None:
@@ -223,10 +229,11 @@ def create_stream(
     extra |= {} if scenario is None else attributes_of_text(scenario)
     target = path.resolve()
     check_target(target)
+    extra["made"] = uuid.uuid4().hex
     with new_beside(path) as part:
         _create(part, first, plan, opening, extra)
         put_in_place(part, target, overwrite=False)
-    return Stream(target, plan, first.canonical_pose is not None)
+    return Stream(target, plan, first.canonical_pose is not None, extra["made"])
 
 
 def open_stream(path: str | Path) -> Stream:
@@ -236,7 +243,8 @@ def open_stream(path: str | Path) -> Stream:
         remedy = "Run it again with simulate(..., store=...) to be able to go on."
         raise error("resume(store=...)", "have checkpoints", f"'{path}', which was saved whole", remedy)
     run = json.loads(stored["run"])
-    return Stream(Path(path).resolve(), Plan(run["steps"], stored["save_every"], run["rows"]), run["reconstruct"])
+    plan = Plan(run["steps"], stored["save_every"], run["rows"])
+    return Stream(Path(path).resolve(), plan, run["reconstruct"], stored.get("made"))
 
 
 def writable_array(path: Path, name: str) -> zarr.Array:
@@ -271,6 +279,7 @@ def _create(part: Path, first: Orbit, plan: Plan, opening: Checkpoint, extra: di
     run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.canonical_pose is not None}
     shapes = {name: (rows, *variable.shape[1:]) for name, variable in variables.items()}
     told |= {"run": json.dumps(run), "arrays": json.dumps(shapes), **extra}
+    told["checksum"] = checksum(told)
     group = zarr.create_group(part, zarr_format=3, attributes=told)
     group.create_group(CANONICAL.rstrip("/"))
     for name, variable in variables.items():

@@ -118,9 +118,12 @@ def _verify(p: Body, table: np.ndarray | None, s: np.ndarray) -> int:
 def _rescue(
     p: Body, table: np.ndarray | None, s: np.ndarray, first: int, good: int, every: int, rows: MemberRows
 ) -> None:
-    """Find the marked roots from momentum zero; a member without one ends after its good steps."""
-    for j in range(LANES):
-        if s[_OPEN + j] == 0.0:
+    """Find the marked roots from momentum zero; a member without one ends after its good steps.
+
+    Lanes behind the last member, and those of members that have ended, are at rest: they have no root to find.
+    """
+    for j in range(min(LANES, len(rows.codes) - first)):
+        if s[_OPEN + j] == 0.0 or rows.codes[first + j] != 0:
             continue
         code, s[_W + j], s[_W + 32 + j] = principal(member(p, table, j), s[_N + j], s[_N + 32 + j])
         if code != 0:

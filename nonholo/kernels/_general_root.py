@@ -4,6 +4,7 @@ import numba
 import numpy as np
 
 from nonholo.kernels._general import LOST, GeneralBody, Workspace, displaced, equations, skew_part
+from nonholo.kernels._scalar import PIECES
 from nonholo.kernels._small import assign, eliminate, multiply, paired
 
 _STEPS = 12  # of Newton's method
@@ -92,7 +93,7 @@ def principal(p: GeneralBody, w: Workspace, m: np.ndarray) -> tuple[int, np.ndar
         return 0, y
     start, tangent = _tangent(p, w, m, y, 0.0)
     s, size, now, peak = 0.0, _FIRST, start, abs(start)
-    while s < 1.0:
+    for _ in range(PIECES):
         size = min(size, 1.0 - s)
         ahead = 1.0 if size == 1.0 - s else s + size
         guess = y + size * tangent
@@ -107,11 +108,13 @@ def principal(p: GeneralBody, w: Workspace, m: np.ndarray) -> tuple[int, np.ndar
                 peak = max(peak, abs(det))
             if not det * start > 0:  # singular to rounding
                 return _why_it_ended(p, w, y, 0.0, peak), y
+            if s == 1.0:
+                return 0, y
         elif size > max(_SMALLEST * s, _LEAST):
             size /= 4
         else:
             return _why_it_ended(p, w, y, now, peak), y
-    return 0, y
+    return 3, y
 
 
 @numba.njit(cache=True)

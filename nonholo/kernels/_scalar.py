@@ -8,6 +8,9 @@ from numba.extending import overload, register_jitable
 COMPILED: Any = {"error_model": "numpy"}
 """Options of the scalar kernels: no exceptions on division; arithmetic is strict (docs/conventions.md, "Bits")."""
 
+PIECES = 100_000
+"""Most pieces of a path that is followed: some tens are usual, and no loop of a kernel is without end."""
+
 scalar = register_jitable(**COMPILED)
 """Mark a scalar function: numba inlines it, plain Python and JAX call it as it is."""
 

@@ -16,7 +16,7 @@ import math
 import numba
 import numpy as np
 
-from nonholo.kernels._scalar import COMPILED
+from nonholo.kernels._scalar import COMPILED, PIECES
 from nonholo.kernels._secular import SecularBody, newton
 from nonholo.kernels._secular_root import followed, level_of
 from nonholo.kernels._small import eliminate
@@ -157,20 +157,24 @@ def on_the_sphere(p: SecularBody, m: np.ndarray, m0: float, room: np.ndarray) ->
         rate[2 + i] = m[i]
     infinite = p.slides and p.arm == 0 and m0 != 0  # the slide of a displacement at angle pi
     s, size, tangent = 0.0, 1.0, np.empty_like(x)
-    while s < 1.0:
+    for _ in range(PIECES):
         solve_linear(p, x, rate, tangent)
         speed = _length(tangent)
         size = min(size, 1.0 - s, _LONGEST / speed if speed > 0 else 1.0)
+        if not size > 0:  # the squares overflow
+            return 5, np.nan, np.nan
         ahead = 1.0 if size == 1.0 - s else s + size
         good, root = _corrected(p, m, m0, ahead, x + size * tangent)
         if good and not (infinite and root[0] <= 0):
             s, x, size = ahead, root, 2 * size
+            if s == 1.0:
+                nu, tau = _in_cayley_coordinates(p, m, m0, x, room)
+                return 0, nu, tau
         elif size > _SMALLEST * max(s, 1e-300):
             size /= 4
         else:
             return (1 if speed * s > _FAST else 2), np.nan, np.nan
-    nu, tau = _in_cayley_coordinates(p, m, m0, x, room)
-    return 0, nu, tau
+    return 3, np.nan, np.nan
 
 
 @numba.njit(cache=True, nogil=True, **COMPILED)

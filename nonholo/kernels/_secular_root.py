@@ -8,7 +8,7 @@ import math
 import numba
 import numpy as np
 
-from nonholo.kernels._scalar import COMPILED
+from nonholo.kernels._scalar import COMPILED, PIECES
 from nonholo.kernels._secular import SecularBody, newton
 
 _SINES = 200  # trial angles of the ball
@@ -56,7 +56,7 @@ def followed(p: SecularBody, m: np.ndarray, m0: float, room: np.ndarray) -> tupl
     lever = p.mass * p.arm * p.arm
     s, nu, tau, before, nu_before, tau_before = 0.0, lever, 0.0, 0.0, lever, 0.0
     size = _FIRST
-    while s < 1.0:
+    for _ in range(PIECES):
         size = min(size, 1.0 - s)
         ahead = 1.0 if size == 1.0 - s else s + size
         nu_guess, tau_guess = nu, tau
@@ -70,8 +70,10 @@ def followed(p: SecularBody, m: np.ndarray, m0: float, room: np.ndarray) -> tupl
         if good:
             before, nu_before, tau_before = s, nu, tau
             s, nu, tau, size = ahead, nu_found, tau_found, 2 * size
+            if s == 1.0:
+                return True, nu, tau
         elif size > _SHORTEST * max(s, 1e-300):
             size /= 4
         else:
-            return False, nu, tau
-    return True, nu, tau
+            break
+    return False, nu, tau

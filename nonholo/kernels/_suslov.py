@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numba
 import numpy as np
 
-from nonholo.kernels._scalar import COMPILED, scalar, sqrt
+from nonholo.kernels._scalar import COMPILED, PIECES, scalar, sqrt
 
 
 class SuslovBody(NamedTuple):
@@ -124,21 +124,25 @@ def principal(p: SuslovBody, m1: float, m2: float) -> tuple[int, float, float]:
     """
     z = (1.0, 0.0, 0.0)
     s, size = 0.0, 1.0
-    while s < 1.0:
+    for _ in range(PIECES):
         d0, d1, d2, det = _tangent(p, s * m1, s * m2, z, m1, m2)
         size = min(size, 1.0 - s, _LONGEST_ARC / np.sqrt(d0 * d0 + d1 * d1 + d2 * d2))
+        if not size > 0:  # the squares overflow
+            return 5, np.nan, np.nan
         guess = (z[0] + size * d0, z[1] + size * d1, z[2] + size * d2)
         good, found = _correct(p, (s + size) * m1, (s + size) * m2, guess)
         if good:
             z, s, size = found, (1.0 if size == 1.0 - s else s + size), 2 * size
+            if s == 1.0:
+                z0 = z[0] if z[0] != 0 else 1e-75
+                return 0, z[1] / z0, z[2] / z0
         elif size > 1e-9:
             size /= 4
         elif det < 1e-2 * (p.b11 * p.b22 - p.b12 * p.b12):
             return 1, np.nan, np.nan
         else:
             return (3 if np.isfinite(det) else 5), np.nan, np.nan
-    z0 = z[0] if z[0] != 0 else 1e-75
-    return 0, z[1] / z0, z[2] / z0
+    return 3, np.nan, np.nan
 
 
 @numba.njit(cache=True, **COMPILED)

@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 from stopping import stopped_at
 
 import nonholo as nh
-from nonholo.io import locked, store_to_csv
+from nonholo.io import checksum, locked, store_to_csv
 
 EPS = np.finfo(float).eps
 SPINNING = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.3), 0.1)  # turns for ever
@@ -182,6 +182,7 @@ def test_callable_difference_is_no_obstacle(tmp_path: Path) -> None:
     document = json.loads(path.read_text())
     motion = json.loads(document["attributes"]["motion"]) | {"difference": "callable"}
     document["attributes"]["motion"] = json.dumps(motion)
+    document["attributes"]["checksum"] = checksum(document["attributes"])
     path.write_text(json.dumps(document))
     with pytest.raises(ValueError, match="difference is a callable"):
         nh.load_orbit(tmp_path / "run.zarr")

@@ -4,6 +4,7 @@ import dataclasses
 import errno
 import hashlib
 import json
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -17,7 +18,7 @@ import zarr
 from problems import PROBLEMS
 
 import nonholo as nh
-from nonholo.io import _save, orbit_to_dataset, read_attributes
+from nonholo.io import _save, checksum, locked, orbit_to_dataset, read_attributes
 from nonholo.io._dataset import stored_variables
 
 NAMES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
@@ -34,8 +35,10 @@ def _same(one: nh.Orbit, other: nh.Orbit) -> bool:
 
 
 def _edit(store: Path, **changes: Any) -> None:
+    """Change attributes as another version might have written them, with their checksum."""
     document = json.loads((store / "zarr.json").read_text())
     document["attributes"] |= changes
+    document["attributes"]["checksum"] = changes.get("checksum") or checksum(document["attributes"])
     (store / "zarr.json").write_text(json.dumps(document))
 
 
@@ -370,7 +373,7 @@ def test_unknown_system_and_lost_attributes(store: Path) -> None:
     with pytest.raises(ValueError, match=r"motion of this version\. Got 'Beam'"):
         nh.load_orbit(store)
     _edit(store, arrays="not json")
-    with pytest.raises(ValueError, match="complete attributes"):
+    with pytest.raises(ValueError, match=r"sound attributes.*arrays: Invalid JSON"):
         nh.load_orbit(store)
 
 
@@ -386,3 +389,51 @@ def test_callable_difference_must_be_given(store: Path) -> None:
     other = nh.discretize(system, 0.2, difference=lambda W: W.sum())
     with pytest.raises(ValueError, match="be the discretisation of the store"):
         nh.load_orbit(store, discrete=other)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        ("save_every", 0, "save_every: Input should be greater than 0"),
+        ("save_every", "1", "save_every: Input should be a valid integer"),
+        ("save_every", 10**400, "save_every"),
+        ("parameters", "[1]", "parameters: Input should be a valid dictionary"),
+        ("motion", "[" * 100_000, "motion"),
+        ("arrays", '{"../other.zarr/time": [21], "time": [21]}', "'../other.zarr/time' is no name of an array"),
+        ("arrays", '{"/etc/time": [21], "time": [21]}', "is no name of an array"),
+        ("arrays", '{"time": [21], "energy": [20]}', "must have one length"),
+        ("versions", "7", "versions"),
+        ("outcome", "splendid", "outcome: Input should be 'successful'"),
+        ("run", '{"steps": 1e300, "rows": 1, "reconstruct": true}', "run.steps"),
+        ("scenario", "a text that was not run", "scenario_sha256 differs"),
+    ],
+)
+def test_edited_attributes_are_refused(name: str, value: Any, told: str, store: Path) -> None:
+    """What a store says of itself is checked as data, and each problem is named."""
+    _edit(store, checksum="as before", **{name: value})
+    for opened in (nh.load_orbit, nh.resume):
+        with pytest.raises(ValueError, match=re.escape(told)):
+            opened(store)
+
+
+def test_another_body_is_noticed(store: Path) -> None:
+    """A mass that was edited belongs to no checksum: neither loading nor resuming goes on with another body."""
+    parameters = json.loads(read_attributes(store)["parameters"]) | {"mass": 7.0}
+    _edit(store, checksum=read_attributes(store)["checksum"], parameters=json.dumps(parameters))
+    for opened in (nh.load_orbit, nh.resume):
+        with pytest.raises(ValueError, match="whose checksum differs"):
+            opened(store)
+
+
+def test_only_what_is_ours_is_replaced(store: Path) -> None:
+    """A store that holds a foreign file, or that is being written, stays, whatever `overwrite` says."""
+    orbit = nh.load_orbit(store)
+    (store / "thesis.tex").write_text("years of work")
+    with pytest.raises(FileExistsError, match=r"holds 'thesis.tex', which is no part of a store"):
+        nh.save_orbit(orbit, store, overwrite=True)
+    (store / "thesis.tex").unlink()
+    (store / "run").mkdir()
+    with locked(store), pytest.raises(BlockingIOError, match=r"is being written by process \d+ .* not replaced"):
+        nh.save_orbit(orbit, store, overwrite=True)
+    nh.save_orbit(orbit, store, overwrite=True)
+    assert nh.load_orbit(store).canonical_pose.tobytes() == orbit.canonical_pose.tobytes()

@@ -366,3 +366,17 @@ def test_poses_that_fill_the_memory_are_refused() -> None:
     top = nh.SuslovTop.arrowhead(np.ones(40_000), np.zeros(39_999))
     with pytest.raises(ValueError, match=r"`ensemble\(reconstruct=.*reconstruct=False"):
         nh.ensemble(nh.discretize(top, 0.1), restricted_velocity=np.ones((2, 39_999)), steps=3)
+
+
+@pytest.mark.parametrize("size", [5e-324, 1e-200, 1e200])
+@pytest.mark.parametrize("members", [2, 32])
+def test_members_that_cannot_begin_have_no_states(size: float, members: int) -> None:
+    """Bodies whose squares under- or overflow end with no good step and NaN, and nothing is written behind them."""
+    discrete = nh.discretize(nh.SuslovTop(J), 0.5)
+    tensors = np.array([J] * (members - 1) + [np.array(J) * size])
+    with np.errstate(all="ignore"):
+        batch = nh.ensemble(discrete, restricted_velocity=(0.1, 0.2), steps=7, parameters={"mass_tensor": tensors})
+    assert batch.outcome.tolist()[:-1] == [0] * (members - 1)
+    assert batch.outcome[-1] in (nh.Outcome.not_converged, nh.Outcome.nonfinite)
+    assert batch.steps_done.tolist() == [7] * (members - 1) + [0]
+    assert np.isnan(batch.reduced_momentum[-1]).all()

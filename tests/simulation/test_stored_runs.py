@@ -352,3 +352,20 @@ def test_large_orbit_is_returned_as_its_last_block(tmp_path: Path, monkeypatch: 
     assert len(tail) == len(whole) % 20
     assert np.array_equal(tail.cayley, whole.cayley[-len(tail) :])
     assert _same(nh.load_orbit(tmp_path / "run.zarr"), whole)
+
+
+def test_a_replaced_store_is_not_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A writer whose store was taken away stops; the store that has taken its place stays as it is."""
+    path, other = tmp_path / "run.zarr", nh.simulate(SLEIGH, steps=5, **START)
+    write = Stream.write
+
+    def replaced_at_two(self: Stream, number: int, *rest: Any) -> None:
+        if number == 2:
+            path.rename(tmp_path / "aside.zarr")
+            nh.save_orbit(other, path)
+        write(self, number, *rest)
+
+    monkeypatch.setattr(Stream, "write", replaced_at_two)
+    with pytest.raises(OSError, match="Another store has taken the place"):
+        _begun(path)
+    assert _same(nh.load_orbit(path), other)
