@@ -1,0 +1,77 @@
+"""Fuzz the public API: `python tests/fuzz/api.py --trials 3000 --seed 0 --workers 2 [--json FILE]`.
+
+Each trial is done in a worker under limits. It ends *refused* by a check of ours, *accepted* (legal, finite), *silent*
+(accepted though illegal, or not finite though successful), *raw* (any other exception), *memory*, *hang* or *abort*.
+"""
+
+# ruff: noqa: E402
+import argparse
+import collections
+import json
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+import compilers
+
+compilers.use_caches()
+
+from fuzz.calls import all_calls
+from fuzz.judge import BROKEN, GOOD, Verdict
+from fuzz.trials import Trial, draw, from_text, told
+from fuzz.worker import answers
+
+
+def verdicts(trials: list[Trial], workers: int) -> list[tuple[Trial, Verdict]]:
+    """Return what came of trials."""
+    found = answers("fuzz.trials:prepared", trials, workers)
+    return [(trial, Verdict(answer) if isinstance(answer, str) else answer) for trial, answer in found]
+
+
+def figures(found: list[tuple[Trial, Verdict]]) -> dict[str, Any]:
+    """Return the counts, and of what broke the trials."""
+    counts = collections.Counter(verdict.kind for _, verdict in found)
+    broken = sorted((v.kind, told(trial), v.message) for trial, v in found if v.kind in BROKEN)
+    return {
+        "trials": len(found),
+        "call forms": len({trial[0] for trial, _ in found}),
+        "classes": {kind: counts[kind] for kind in (*GOOD, *BROKEN)},
+        "named": sum(verdict.named for _, verdict in found),
+        "broken": [{"class": kind, "trial": trial, "message": message} for kind, trial, message in broken],
+    }
+
+
+def lines(found: dict[str, Any]) -> list[str]:
+    """Return figures for people, with a line that does again what broke."""
+    refused = found["classes"]["refused"]
+    head = [f"{found['trials']} trials of {found['call forms']} call forms; {found['named']} of {refused} refusals name "]
+    head[0] += "the changed argument"
+    table = [f"{kind:10} {count:6}" for kind, count in found["classes"].items()]
+    again = "python tests/fuzz/api.py --only"
+    return head + table + [f"{x['class']}: {again} '{x['trial']}'\n    {x['message']}" for x in found["broken"]]
+
+
+def main() -> int:
+    """Draw trials or take the one that is asked for, do them, print the figures."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--trials", type=int, default=3000)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--only", help="one trial: CALL: ARGUMENT = VALUE")
+    parser.add_argument("--call", default="", help="only calls whose names begin so")
+    parser.add_argument("--json", type=Path, help="where the figures are written")
+    given = parser.parse_args()
+    begin = time.monotonic()
+    calls = {name: call for name, call in all_calls().items() if name.startswith(given.call)}
+    trials = [from_text(given.only)] if given.only else draw(calls, given.trials, given.seed)
+    found = figures(verdicts(trials, given.workers)) | {"seed": given.seed}
+    sys.stdout.write("\n".join(lines(found)) + f"\n{time.monotonic() - begin:.0f} s\n")
+    if given.json:
+        given.json.write_text(json.dumps(found, indent=1))
+    return int(bool(found["broken"]))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,76 @@
+"""Calls of questions that are asked of systems, discretisations and orbits, and of the property checks."""
+
+import numpy as np
+
+import nonholo as nh
+from fuzz.calls import Call, by_position, call
+from fuzz.calls_maps import BENT, SLEIGH, TOP
+from fuzz.kinds import anything, array, count, flag, integer, number, positive, thing
+from nonholo.analysis import deltoid
+
+
+def calls() -> list[Call]:
+    """Return the calls of this file."""
+    return [*_of_systems(), *_of_maps(), *_of_results(), *_checks()]
+
+
+def _of_systems() -> list[Call]:
+    system, orbit = SLEIGH.system, nh.simulate(SLEIGH, body_velocity=(1.0, 0.3, 0.0), steps=20)
+    return [
+        call("asymptotics", nh.asymptotics, subject=thing(system)),
+        call("asymptotics [orbit]", nh.asymptotics, subject=thing(orbit)),
+        call("conserved_momenta", nh.conserved_momenta, system=thing(system)),
+        call("equilibria", nh.equilibria, system=thing(system), energy=positive(1.0)),
+        call("equilibria [discrete]", nh.equilibria, system=thing(TOP), energy=positive(1.0)),
+        call("invariant_measure", nh.invariant_measure, motion=thing(TOP), energy=positive(1.0)),
+        call("invariants", nh.invariants, orbit=thing(orbit)),
+        call("lyapunov_function", nh.lyapunov_function, system=thing(system)),
+    ]
+
+
+def _of_maps() -> list[Call]:
+    top, sleigh, W = {"discrete": thing(TOP)}, {"discrete": thing(SLEIGH)}, nh.SO(3).exp(BENT)
+    start = {"energy": positive(0.5), "side": integer(1)}
+    return [
+        call("critical_energies", nh.critical_energies, **top),
+        call("flow_obstruction", nh.flow_obstruction, **sleigh, energy=positive(0.5), samples=count(4)),
+        call("half_planes", nh.half_planes, **top, displacement=array(W, "batch")),
+        call("half_planes [momentum]", nh.half_planes, **top, momentum=array([0.1, 0.2, 0.05], "batch")),
+        call("heteroclinic", nh.heteroclinic, **sleigh, **start, configuration=array(np.eye(3))),
+        call("heteroclinic [displacement]", nh.heteroclinic, **top, displacement=array(W)),
+        call("invariant_curve", nh.invariant_curve, **top, energy=positive(0.5), resolution=count(40)),
+        call("invariant_curve [sleigh]", nh.invariant_curve, **sleigh, energy=positive(0.5), resolution=count(40)),
+        call("momentum_locus", nh.momentum_locus, **top, resolution=count(12)),
+        call("single_valued_region", nh.single_valued_region, sleigh=thing(SLEIGH)),
+    ]
+
+
+def _of_results() -> list[Call]:
+    system = SLEIGH.system
+    locus, curve = nh.momentum_locus(TOP, 12), nh.invariant_curve(TOP, 0.5, 40)
+    region, measure = deltoid(SLEIGH), nh.invariant_measure(system)
+    momentum, restricted = array([0.1, 0.2, 0.05], "batch"), array([0.1, 0.2], "batch")
+    jacobian, W = nh.invariant_measure(SLEIGH).jacobian, array(nh.SE(2).exp(np.array([0.0, 0.4, 0.0])), "batch")
+    return [
+        call("MomentumLocus.implicit", locus.implicit, momentum=momentum),
+        call("MomentumLocus.whiskers", locus.whiskers, length=number(1.0)),
+        call("InvariantCurve.over", curve.over, direction=number(0.3)),
+        call("Deltoid.boundary", region.boundary, points=count(20)),
+        call("Deltoid.touching", region.touching, angle=array(0.3, "any")),
+        call("Deltoid.discriminant", region.discriminant, restricted_momentum=restricted),
+        call("Deltoid.real_branches", region.real_branches, restricted_momentum=restricted),
+        call("Deltoid.resting", region.resting, points=count(20)),
+        call("InvariantMeasure.density", measure.density, momentum=restricted),
+        call("InvariantMeasure.jacobian", jacobian, displacement=W),
+        call("LyapunovFunction", by_position(nh.lyapunov_function(system)), momentum=restricted),
+    ]
+
+
+def _checks() -> list[Call]:
+    rng, check = anything(None), nh.testing
+    short = {"steps": count(2), "definition": flag(False), "tolerance_factor": positive(10.0), "throw": flag(True)}
+    return [
+        call("testing.check_group", check.check_group, group=thing(nh.SO(3)), rng=rng, compiled=flag(False), slow=True),
+        call("testing.check_system", check.check_system, system=thing(TOP.system), rng=rng, slow=True),
+        call("testing.check_discretization", check.check_discretization, discrete=thing(TOP), **short, slow=True),
+    ]

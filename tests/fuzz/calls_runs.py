@@ -1,0 +1,125 @@
+"""Calls that run motions, one or many, and of what comes out of them."""
+
+import numpy as np
+
+import nonholo as nh
+from fuzz.calls import Call, by_position, call
+from fuzz.calls_maps import DISCRETE, SLEIGH, TOP
+from fuzz.calls_systems import J
+from fuzz.kinds import Argument, anything, array, count, flag, function, integer, number, path, positive, rule, text, thing
+
+_HOW: dict[str, Argument] = {
+    "branch": rule("principal"),
+    "backend": text("auto"),
+    "reconstruct": flag(True),
+    "throw": flag(True),
+    "progress": flag(False),
+}
+
+
+def moving(states: nh.Orbit) -> np.ndarray:
+    """Zero where the body does not move along its first direction."""
+    return states.restricted_momentum[:, 0]
+
+
+def calls() -> list[Call]:
+    """Return the calls of this file."""
+    return [*_runs(), *_starts(), *_flows(), *_ensembles(), *_results(), *_events()]
+
+
+def _velocity(discrete: nh.Discretization) -> np.ndarray:
+    return np.array([0.3, -0.2, 0.1, 0.1][: discrete.system.rank])
+
+
+def _runs() -> list[Call]:
+    found = []
+    for name, discrete in DISCRETE.items():
+        given = {"discrete": thing(discrete), "steps": count(5), "restricted_velocity": array(_velocity(discrete))}
+        found += [
+            call(f"simulate [{name}]", nh.simulate, **given, **_HOW, save_every=count(1)),
+            call(f"iterate [{name}]", nh.iterate, **given, block_steps=count(2, none=True)),
+            call(f"flow [{name}]", nh.flow, **_flow(discrete)),
+        ]
+    stored = {"store": path("new.zarr", none=True), "checkpoint_every": count(2, none=True), "scenario": text(None, True)}
+    given = {"discrete": thing(SLEIGH), "steps": count(5), "body_velocity": array([1.0, 0.3, 0.0])}
+    return [*found, call("simulate [stored]", nh.simulate, **given, **stored)]
+
+
+def _flow(discrete: nh.Discretization) -> dict[str, Argument]:
+    velocity, times = array(_velocity(discrete)), array([0.0, 0.1, 0.3], "any")
+    return {"system": thing(discrete.system), "restricted_velocity": velocity, "times": times}
+
+
+def _starts() -> list[Call]:
+    given, g = {"discrete": thing(TOP), "steps": count(5)}, nh.SO(3).exp(np.array([0.3, 0.2, 0.1]))
+    W = nh.simulate(TOP, restricted_velocity=(0.3, 0.2), steps=1).displacement[0]
+    P = nh.discrete_legendre(TOP, W)
+    return [
+        call("simulate [body velocity]", nh.simulate, **given, body_velocity=array([0.3, -0.2, 0.0])),
+        call("simulate [displacement]", nh.simulate, **given, displacement=array(W), configuration=array(g)),
+        call("simulate [momentum]", nh.simulate, **given, momentum=array(P)),
+        call("simulate [restricted]", nh.simulate, **given, momentum=array([0.1, 0.2]), events=anything(None)),
+    ]
+
+
+def _flows() -> list[Call]:
+    given, g = {"system": thing(SLEIGH.system), "times": array([0.0, 0.1, 0.3], "any")}, np.eye(3)
+    how = {"rtol": positive(1e-8), "atol": positive(1e-10), "method": text(None, True), "configuration": array(g)}
+    state = array([0.3, 0.4, *np.eye(3).ravel()])
+    return [
+        call("flow [options]", nh.flow, **given, **how, body_velocity=array([0.3, 0.4, 0.0])),
+        call("flow [momentum]", nh.flow, **given, momentum=array([0.3, 0.4])),
+        call("vector_field", lambda system: nh.vector_field(system), system=thing(SLEIGH.system)),
+        call("vector_field [value]", by_position(nh.vector_field(SLEIGH.system)), time=number(0.0), state=state),
+    ]
+
+
+def _ensembles() -> list[Call]:
+    starts = np.array([[0.3, -0.2], [0.1, 0.4], [0.2, 0.2]])
+    given: dict[str, Argument] = {"discrete": thing(TOP), "steps": count(5), "save_every": count(1, none=True)}
+    how = {"reconstruct": flag(True), "backend": text("auto"), "progress": flag(False), "events": anything(None)}
+    bodies, each = np.stack([J, J + 0.1 * np.eye(3), J]), nh.ensemble
+    velocity = array(starts, "rows")
+    parameters = lambda mass_tensor, **rest: each(parameters={"mass_tensor": mass_tensor}, **rest)  # noqa: E731
+    return [
+        call("ensemble", each, **given, restricted_velocity=velocity, parameters=anything(None), **how),
+        call("ensemble [momentum]", each, **given, momentum=velocity, reduce=function(None, none=True)),
+        call("ensemble [bodies]", parameters, **given, restricted_velocity=array(starts), mass_tensor=array(bodies)),
+        *(
+            call(f"ensemble [{name}]", each, **_members(discrete), save_every=count(2, none=True))
+            for name, discrete in DISCRETE.items()
+        ),
+    ]
+
+
+def _members(discrete: nh.Discretization) -> dict[str, Argument]:
+    velocity = np.stack([_velocity(discrete), 0.5 * _velocity(discrete)])
+    return {"discrete": thing(discrete), "steps": count(4), "restricted_velocity": array(velocity, "rows")}
+
+
+def _results() -> list[Call]:
+    orbit = nh.simulate(TOP, restricted_velocity=(0.3, 0.2), steps=4)
+    batch = nh.ensemble(TOP, restricted_velocity=np.array([[0.3, 0.2], [0.1, 0.1]]), steps=4, save_every=1)
+    return [
+        call("Ensemble.orbit", batch.orbit, member=integer(1)),
+        call("Orbit.chosen", orbit.chosen, states=anything(slice(2))),
+        call("Orbit.to_csv", orbit.to_csv, path=path("new.csv"), overwrite=flag(False)),
+        call("Orbit.to_dataset", lambda: orbit.to_dataset()),
+        call("Discretization.displaced", TOP.displaced, cayley=array(orbit.cayley, "any")),
+        call("OutcomeError", nh.OutcomeError, outcome=anything(nh.Outcome(1)), where=anything("here")),
+    ]
+
+
+def _events() -> list[Call]:
+    stop, orbit = anything(2), nh.simulate(TOP, restricted_velocity=(0.3, 0.2), steps=20)
+    event = nh.Event(moving)
+    crossing, sliding = nh.crossings(orbit, event), nh.simulate(SLEIGH, body_velocity=(1.0, 0.3, 0.0), steps=3)
+    with_events = {"discrete": thing(TOP), "steps": count(5), "restricted_velocity": array([0.3, -0.2])}
+    named = {"direction": integer(1), "stop": stop, "name": text("here", none=True)}
+    return [
+        call("Event", nh.Event, function=function(moving), **named),
+        call("crossings", nh.crossings, orbit=thing(orbit), event=thing(event)),
+        call("crossings [cusp]", nh.crossings, orbit=thing(sliding), event=thing(nh.cusp)),
+        call("Crossings.chosen", crossing.chosen, which=anything(np.arange(0))),
+        call("simulate [events]", nh.simulate, **with_events, events=anything([event])),
+    ]

@@ -1,0 +1,75 @@
+"""Calls that write and read stores, and of sweeps; they work in a folder with the stores of `fuzz.shelf`."""
+
+import numpy as np
+
+import nonholo as nh
+from fuzz import shelf
+from fuzz.calls import Call, by_position, call
+from fuzz.calls_maps import TOP
+from fuzz.kinds import anything, array, count, flag, function, integer, number, path, positive, text, thing
+
+
+def calls() -> list[Call]:
+    """Return the calls of this file."""
+    return [*_orbits(), *_sweeps(), *_designs(), *_blocks()]
+
+
+def _orbits() -> list[Call]:
+    store, other = path(shelf.ORBIT), {"discrete": anything(None)}
+    saved = {"path": path("new.zarr"), "overwrite": flag(False), "scenario": text("a = 1", none=True)}
+    how = {"throw": flag(True), "progress": flag(False), "trust": flag(False)}
+    orbit = nh.simulate(TOP, restricted_velocity=(0.3, 0.2), steps=4)
+    table = nh.io.store_to_csv
+    return [
+        call("save_orbit", nh.save_orbit, orbit=thing(orbit), **saved),
+        call("load_orbit", nh.load_orbit, path=store, **other, stores=True),
+        call("resume", nh.resume, store=path(shelf.UNFINISHED), **other, **how, events=anything(None), stores=True),
+        call("resume [sweep]", nh.resume, store=path(shelf.SWEEP_UNFINISHED), task=function(shelf.task), stores=True),
+        call("extend", nh.extend, store=path(shelf.RUN), steps=count(8), **other, **how, stores=True),
+        call("io.store_to_csv", by_position(table), store=store, path=path("new.csv"), stores=True),
+    ]
+
+
+def _sweeps() -> list[Call]:
+    design = shelf.DESIGN
+    where = {"store": path("new.zarr"), "scheduler": text("synchronous", none=True)}
+    how = {"workers": count(1, none=True), "block": count(2, none=True), "resume": flag(False), "progress": flag(False)}
+    task = {"discrete": thing(TOP), "steps": count(3), "restricted_velocity": array([0.3, 0.2])}
+    names = {"reductions": anything(["final_state"]), "save_every": count(1, none=True), "reconstruct": flag(True)}
+    return [
+        call("sweep", nh.sweep, task=function(shelf.task), design=thing(design), **where, **how),
+        call("load_sweep", nh.load_sweep, store=path(shelf.SWEEP), stores=True),
+        call("EnsembleTask", nh.EnsembleTask, **task, **names),
+    ]
+
+
+def _designs() -> list[Call]:
+    axis, normal = array([1.0, 2.0], "any"), {"mean": number(0.0), "deviation": positive(1.0)}
+    grid = lambda x, y, seed: nh.Grid({"x": x, "y": y}, seed)  # noqa: E731
+    uniform = thing(nh.Uniform(0.0, 1.0))
+    drawn = lambda members, x, seed: nh.RandomDesign(members, {"x": x}, seed)  # noqa: E731
+    width = {"low": positive(0.5), "high": positive(2.0)}
+    return [
+        call("Grid", grid, x=axis, y=array([[0.0, 1.0], [1.0, 2.0]], "any"), seed=integer(0)),
+        call("Grid [axes]", nh.Grid, axes=anything({"x": [1.0]}), seed=integer(0)),
+        call("RandomDesign", drawn, members=count(4), x=uniform, seed=integer(0)),
+        call("RandomDesign [distributions]", nh.RandomDesign, members=count(4), distributions=anything({"x": nh.Uniform(0.0, 1.0)})),
+        call("Uniform", nh.Uniform, low=array(0.0, "any"), high=array(1.0, "any")),
+        call("LogUniform", nh.LogUniform, low=array(0.5, "any"), high=array(1.0, "any")),
+        call("Normal", nh.Normal, **normal, size=count(2, none=True)),
+        call("Direction", nh.Direction, size=count(2), length=positive(1.0)),
+        call("MassTensor", nh.MassTensor, n=count(3), **width),
+        call("Choice", nh.Choice, values=array([1.0, 2.0, 4.0], "any")),
+    ]
+
+
+def _blocks() -> list[Call]:
+    design, arrays = nh.RandomDesign(4, {"x": nh.Uniform(0.0, 1.0)}), {"x": np.arange(3.0)}
+    block = nh.MemberBlock(0, 3, 0, arrays)
+    where = {"first": integer(0), "count": count(3), "seed": integer(0), "arrays": anything(arrays)}
+    return [
+        call("MemberBlock", nh.MemberBlock, **where),
+        call("MemberBlock.random", block.random, width=count(2), stream=text("")),
+        call("MemberBlock.part", block.part, begin=integer(0), end=integer(2)),
+        call("RandomDesign.values", design.values, first=integer(0), count=count(3)),
+    ]

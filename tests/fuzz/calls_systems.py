@@ -1,0 +1,132 @@
+"""Calls that make systems, ready ones of the literature included, and methods of systems."""
+
+from typing import Any
+
+import numpy as np
+
+import nonholo as nh
+from fuzz.calls import Call, call
+from fuzz.kinds import Argument, array, count, function, number, positive, text, thing
+
+J = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+ROWS = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
+HOMOGENEOUS = np.diag([0.5, 0.7, 0.4, 1.3])
+FLAT_ROWS = np.array([[0.0, 0, -1, 0, 0, 0], [0, 1.0, 0, 0, 0, 0], [0, 0, 0, 1.0, 0, 0]])
+
+
+def _kinetic(q: Any, v: Any) -> Any:
+    return v @ v / 2
+
+
+def calls() -> list[Call]:
+    """Return the calls of this file."""
+    return [*_tops(), *_sleighs(), *_general(), *_methods(), *_in_coordinates(), *_examples()]
+
+
+def _tops() -> list[Call]:
+    from_inertia, arrowhead = nh.SuslovTop.from_inertia, nh.SuslovTop.arrowhead
+    inertia, diagonal = np.diag([3.0, 2.0, 2.5]), [1.0, 2.0, 3.0, 2.0]
+    return [
+        call("SuslovTop", nh.SuslovTop, mass_tensor=array(J, "any"), axis=array([0, 0, 1.0], none=True)),
+        call("SuslovTop.from_inertia", from_inertia, inertia=array(inertia), axis=array([0.6, 0.0, 0.8])),
+        call("SuslovTop.arrowhead", arrowhead, diagonal=array(diagonal, "any"), coupling=array([0.1] * 3, "any")),
+        call("RigidBody", nh.RigidBody, mass_tensor=array(J, "any"), group=thing(nh.SO(3), none=True)),
+        call("VeselovaTop", nh.VeselovaTop, mass_tensor=array(J, "any")),
+    ]
+
+
+def _sleighs() -> list[Call]:
+    body = {"mass": positive(1.3), "center_of_mass": array([0.3, 0.2, -0.1], "any")}
+    arrow = {"diagonal": array([0.5, 0.7, 0.4], "any"), "coupling": array([0.1, 0.1], "any")}
+    plane = {"mass": positive(1.0), "inertia": positive(1.0), "a": number(0.5), "b": number(0.3)}
+    return [
+        call("ChaplyginSleigh", nh.ChaplyginSleigh, **plane),
+        call("MultidimensionalSleigh", nh.MultidimensionalSleigh, **body, mass_tensor=array(np.eye(3), "any")),
+        call("MultidimensionalSleigh.arrowhead", nh.MultidimensionalSleigh.arrowhead, **body, **arrow),
+    ]
+
+
+def _general() -> list[Call]:
+    group, rows, annihilator = thing(nh.SO(3)), array(ROWS, "rows"), array([[0, 0, 1.0]], "rows")
+    tensor, operator = array(J), array(np.diag([1.0, 2.0, 2.5]))
+    return [
+        call("LLSystem", nh.LLSystem, group=group, mass_tensor=tensor, constraint_subspace=rows),
+        call("LLSystem [annihilator]", nh.LLSystem, group=group, mass_tensor=tensor, annihilator=annihilator),
+        call("LLSystem [operator]", nh.LLSystem, group=group, inertia_operator=operator, constraint_subspace=rows),
+        call("LRSystem", nh.LRSystem, group=group, mass_tensor=tensor, constraint_subspace=rows),
+        call("LRSystem [annihilator]", nh.LRSystem, group=group, mass_tensor=tensor, annihilator=annihilator),
+        call("is_symmetric_pair", nh.is_symmetric_pair, group=group, constraint_subspace=rows),
+        call("reference_point_subspace", nh.reference_point_subspace, n=count(3), plane=array(np.eye(3)[:2], "rows")),
+    ]
+
+
+def _methods() -> list[Call]:
+    found = []
+    flat = nh.LLSystem(nh.SE(3), HOMOGENEOUS, FLAT_ROWS)
+    for name, system in (("top", nh.SuslovTop(J)), ("sleigh", nh.ChaplyginSleigh(1.0, 1.0, 0.5)), ("flat", flat)):
+        r, p = array([0.2, -0.3, 0.1][: system.rank], "batch"), array(0.1 + np.arange(system.group.dim), "batch")
+        found += [
+            call(f"{name}.{method}", getattr(system, method), **{argument: value})
+            for method, argument, value in (
+                ("constrained_energy", "momentum", r),
+                ("restrict", "momentum", p),
+                ("restricted_momentum", "restricted_velocity", r),
+                ("restricted_velocity", "restricted_momentum", r),
+                ("to_canonical", "restricted_momentum", r),
+                ("from_canonical", "reduced_momentum", r),
+            )
+        ]
+    return found
+
+
+def _in_coordinates() -> list[Call]:
+    make, action = nh.GroupLagrangeDAlembert, nh.mass_tensor_lagrangian(nh.SE(2), np.eye(3))
+    free, spring = nh.LagrangeDAlembert(_kinetic, None, dimension=2), {"configuration": array([0.1, 0.2])}
+    moving: dict[str, Argument] = {"body_velocity": array([0.5, 1.0])}
+    given: dict[str, Argument] = {"lagrangian": function(_kinetic), "constraint_forms": function(None, none=True)}
+    times = array([0.0, 0.1, 0.2], "any")
+    tolerances = {"rtol": positive(1e-8), "atol": positive(1e-10)}
+    pair = {"q": array([0.0, 0.0]), "q_next": array([1.0, 2.0]), "time_step": positive(0.5)}
+    discrete = free.discretize(0.1)
+    return [
+        call("LagrangeDAlembert", nh.LagrangeDAlembert, **given, dimension=count(2), rule=text("midpoint"), slow=True),
+        call("LagrangeDAlembert.regularity", free.regularity, **pair, slow=True),
+        call("LagrangeDAlembert.discretize", free.discretize, time_step=positive(0.1), slow=True),
+        call("LagrangeDAlembert.flow", free.flow, **spring, **moving, times=times, **tolerances, slow=True),
+        call("LagrangeDAlembert.simulate", discrete.simulate, **spring, **moving, steps=count(3), slow=True),
+        call(
+            "GroupLagrangeDAlembert",
+            make,
+            group=thing(nh.SE(2)),
+            discrete_lagrangian=function(action),
+            constraint_forms=function(None, none=True),
+            slow=True,
+        ),
+        call(
+            "mass_tensor_lagrangian",
+            nh.mass_tensor_lagrangian,
+            group=thing(nh.SE(2)),
+            mass_tensor=array(np.eye(3)),
+            slow=True,
+        ),
+    ]
+
+
+def _examples() -> list[Call]:
+    made = nh.examples
+    common: dict[str, Argument] = {"mass": positive(1.0), "inertia": positive(1.0), "speed": number(0.5)}
+    disk = {"radius": positive(1.0), "rolling_inertia": positive(0.5), "rates": array([1.0, 0.5])}
+    board = {"half_length": positive(1.0), "rotor_inertia": positive(0.5), "wheel_rate": number(0.05)}
+    robot = {"offset": number(0.3), "wheel_radius": positive(0.25), "wheel_inertia": positive(0.01)}
+    place, upright = array([0.0, 0.0, 0.0]), array([0.0, 0.0, 0.0, 0.0])
+    odd = {"asymmetry": number(0.5), "turning": number(2.6)}
+    velocity = array([1.0, 1.0])
+    return [
+        call("examples.chaotic_quartic_oscillator", made.chaotic_quartic_oscillator, pairs=count(3), slow=True),
+        call("examples.knife_edge_on_incline", made.knife_edge_on_incline, **common, configuration=place, slow=True),
+        call("examples.non_reversible", made.non_reversible, **odd, slow=True),
+        call("examples.particle", made.particle, configuration=place, planar_velocity=velocity, slow=True),
+        call("examples.rolling_disk", made.rolling_disk, **disk, configuration=upright, slow=True),
+        call("examples.snakeboard", made.snakeboard, mass=positive(1.0), **board, slow=True),
+        call("examples.two_wheeled_robot", made.two_wheeled_robot, **common, **robot, slow=True),
+    ]

@@ -1,0 +1,94 @@
+"""Classes of what comes of a trial: what may be, and what may not."""
+
+import dataclasses
+import linecache
+import types
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+GOOD = ("refused", "accepted")
+BROKEN = ("raw", "silent", "memory", "hang", "abort")
+_OWN_FILES = "/nonholo/"
+_DEPTH = 4
+
+
+@dataclasses.dataclass(frozen=True)
+class Verdict:
+    """The class of a trial, and what was said."""
+
+    kind: str
+    message: str = ""
+    named: bool = False
+
+
+def of_exception(failure: BaseException, names: list[str]) -> Verdict:
+    """Tell an error that our checks raise from what slipped through them; `named`: it names a changed argument."""
+    message = f"{type(failure).__name__}: {failure}"[:300]
+    if isinstance(failure, MemoryError):
+        return Verdict("memory", message)
+    if not _is_ours(failure):
+        return Verdict("raw", f"{message} [{_place(failure)}]")
+    return Verdict("refused", message, any(f"{name}=" in str(failure) for name in names))
+
+
+def _is_ours(failure: BaseException) -> bool:
+    """Our errors name their owner between backticks; those of files and of outcomes are raised by name in our files."""
+    if isinstance(failure, ValueError | TypeError) and str(failure).startswith("`"):
+        return True
+    return isinstance(failure, OSError | RuntimeError | ImportError) and _raised_by_us(failure)
+
+
+def _raised_by_us(failure: BaseException) -> bool:
+    frame = _innermost(failure)
+    if frame is None or _OWN_FILES not in frame.tb_frame.f_code.co_filename:
+        return False
+    return linecache.getline(frame.tb_frame.f_code.co_filename, frame.tb_lineno).strip().startswith("raise")
+
+
+def _innermost(failure: BaseException) -> types.TracebackType | None:
+    frame = failure.__traceback__
+    while frame is not None and frame.tb_next is not None:
+        frame = frame.tb_next
+    return frame
+
+
+def _place(failure: BaseException) -> str:
+    """Return the last line of ours on the way to a failure."""
+    frame, place = failure.__traceback__, ""
+    while frame is not None:
+        file = frame.tb_frame.f_code.co_filename
+        if _OWN_FILES in file:
+            place = f"{file.rpartition(_OWN_FILES)[2]}:{frame.tb_lineno}"
+        frame = frame.tb_next
+    return place
+
+
+def nonfinite(result: Any) -> set[str]:
+    """Return the names of numbers of a result that are not finite; of nothing if it says itself that it failed."""
+    outcome = getattr(result, "outcome", 0)
+    if np.any(np.asarray(outcome) != 0):
+        return set()
+    return set(_nonfinite("", result, 0))
+
+
+def _nonfinite(name: str, value: Any, depth: int) -> Iterator[str]:
+    if isinstance(value, float | complex | np.ndarray | np.inexact):
+        array = np.asarray(value)
+        if array.dtype.kind in "fc" and not np.isfinite(array).all():
+            yield name
+    elif depth < _DEPTH:
+        for key, part in _parts(value):
+            yield from _nonfinite(f"{name}.{key}", part, depth + 1)
+
+
+def _parts(value: Any) -> Iterator[tuple[str, Any]]:
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        yield from ((field.name, getattr(value, field.name)) for field in dataclasses.fields(value))
+    elif isinstance(value, dict):
+        yield from ((str(key), part) for key, part in value.items())
+    elif isinstance(value, list | tuple):
+        yield from (("*", part) for part in value)
+    elif hasattr(value, "data_vars"):
+        yield from ((str(key), part.values) for key, part in value.data_vars.items())

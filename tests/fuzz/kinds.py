@@ -1,0 +1,148 @@
+"""What an argument of a public call is: its kind, a value that works, and which other values are legal."""
+
+import dataclasses
+import numbers
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+
+@dataclasses.dataclass(frozen=True)
+class Argument:
+    """An argument of a call.
+
+    Attributes:
+        kind: "number", "positive", "count", "integer", "array", "path", "text", "flag", "function", "rule" (the name of
+            a rule, or a function), "thing" (an object of the library, or one of a few names) or "anything".
+        value: One that works.
+        none: Whether None is legal.
+        shape: For arrays, which shapes are legal: the "same", a "batch" before it, any number of "rows", or "any".
+    """
+
+    kind: str
+    value: Any
+    none: bool = False
+    shape: str = "same"
+
+
+def number(value: Any) -> Argument:
+    """Return a finite real number."""
+    return Argument("number", value)
+
+
+def positive(value: Any) -> Argument:
+    """Return a positive number."""
+    return Argument("positive", value)
+
+
+def count(value: int, none: bool = False) -> Argument:
+    """Return a positive integer."""
+    return Argument("count", value, none)
+
+
+def integer(value: Any) -> Argument:
+    """Return an integer."""
+    return Argument("integer", value)
+
+
+def array(value: Any, shape: str = "same", none: bool = False) -> Argument:
+    """Return an array of finite real numbers."""
+    return Argument("array", np.asarray(value, dtype=np.float64), none, shape)
+
+
+def path(value: str, none: bool = False) -> Argument:
+    """Return a path; trials have a folder of their own."""
+    return Argument("path", value, none)
+
+
+def text(value: str | None, none: bool = False) -> Argument:
+    """Return a text."""
+    return Argument("text", value, none)
+
+
+def flag(value: bool) -> Argument:
+    """Return a truth value."""
+    return Argument("flag", value)
+
+
+def function(value: Callable[..., Any], none: bool = False) -> Argument:
+    """Return a function."""
+    return Argument("function", value, none)
+
+
+def rule(value: str) -> Argument:
+    """Return the name of a rule, in whose place a function may stand."""
+    return Argument("rule", value)
+
+
+def thing(value: Any, none: bool = False) -> Argument:
+    """Return an object of the library, or one of a few names."""
+    return Argument("thing", value, none)
+
+
+def anything(value: Any) -> Argument:
+    """Return what has no rule of its own here: that nothing else than our errors comes is all that is asked."""
+    return Argument("anything", value, none=True)
+
+
+def legal(argument: Argument, value: Any) -> bool:
+    """Tell whether a value may be accepted; whatever may not, has to be refused."""
+    if value is None or value is argument.value:
+        return argument.none or value is argument.value
+    return _LEGAL[argument.kind](argument, value)
+
+
+def real_array(value: Any) -> np.ndarray | None:
+    """Return finite real numbers as float64, None for what is something else, masks and truth values included."""
+    try:
+        raw = np.asarray(value)
+        if raw.dtype.kind == "O":
+            if not all(isinstance(x, numbers.Real) and not isinstance(x, bool | np.generic) for x in raw.flat):
+                return None
+            raw = np.array([float(x) for x in raw.flat]).reshape(raw.shape)
+    except (TypeError, ValueError, OverflowError, RecursionError, MemoryError):
+        return None
+    if raw.dtype.kind not in "iuf" or raw.size > 10**7 or isinstance(value, np.ma.MaskedArray):
+        return None
+    with np.errstate(over="ignore"):
+        result = raw.astype(np.float64)
+    return result if np.isfinite(result).all() else None
+
+
+def _is_number(argument: Argument, value: Any) -> bool:
+    found = real_array(value)
+    return found is not None and found.shape == () and (argument.kind == "number" or bool(found > 0))
+
+
+def _is_integer(argument: Argument, value: Any) -> bool:
+    integral = isinstance(value, numbers.Integral) and not isinstance(value, bool)
+    return integral and (argument.kind == "integer" or bool(value > 0))
+
+
+def _is_array(argument: Argument, value: Any) -> bool:
+    found, wanted = real_array(value), argument.value.shape
+    if found is None:
+        return False
+    if argument.shape == "batch":
+        return found.shape[max(0, found.ndim - len(wanted)) :] == wanted
+    if argument.shape == "rows":
+        return found.ndim == len(wanted) and found.shape[1:] == wanted[1:]
+    return argument.shape == "any" or found.shape == wanted
+
+
+_LEGAL: dict[str, Callable[[Argument, Any], bool]] = {
+    "number": _is_number,
+    "positive": _is_number,
+    "count": _is_integer,
+    "integer": _is_integer,
+    "array": _is_array,
+    "path": lambda _, value: isinstance(value, str | Path),
+    "text": lambda _, value: isinstance(value, str),
+    "flag": lambda _, value: isinstance(value, bool | np.bool_),
+    "function": lambda _, value: callable(value),
+    "rule": lambda argument, value: callable(value) or value == argument.value,
+    "thing": lambda _argument, _value: False,
+    "anything": lambda _argument, _value: True,
+}

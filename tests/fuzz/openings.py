@@ -1,0 +1,138 @@
+"""One trial of a store: it is damaged or edited, then opened, shown, resumed, extended or exported in a worker."""
+
+import contextlib
+import hashlib
+import os
+import random
+import shutil
+import tempfile
+import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import nonholo as nh
+from fuzz import shelf
+from fuzz.damage import damage_file, edit_json
+from fuzz.judge import Verdict, of_exception
+from nonholo.ensembles import sweep_to_csv
+
+KINDS = {"damage": damage_file, "edit": edit_json}
+FAMILIES = {"orbit": (shelf.ORBIT, shelf.RUN, shelf.UNFINISHED), "sweep": (shelf.SWEEP, shelf.SWEEP_UNFINISHED)}
+
+
+class Trial(NamedTuple):
+    """What is done to which store, by which draw, and how it is opened then; "none" leaves the store alone."""
+
+    family: str
+    store: str
+    kind: str
+    seed: int
+    opening: str
+
+
+def trials(family: str, kind: str, count: int, seed: int) -> list[Trial]:
+    """Return the trials of so many damaged stores: each is opened in every way."""
+    stores = FAMILIES[family]
+    return [
+        Trial(family, stores[i % len(stores)], kind, seed + i, opening)
+        for i in range(count)
+        for opening in _OPENINGS[family]
+    ]
+
+
+def _info(store: Path) -> dict[str, bytes]:
+    """Show the store by the command; its text may differ, but must not control a terminal."""
+    from typer.testing import CliRunner
+
+    from nonholo.cli._app import app
+
+    done = CliRunner().invoke(app, ["info", str(store)])
+    if done.exception is not None and not isinstance(done.exception, SystemExit):
+        raise done.exception
+    return {"control": str("\x1b]" in done.output).encode()}
+
+
+def _csv(write: Callable[[Any, Any], Any]) -> Callable[[Path], dict[str, bytes]]:
+    def exported(store: Path) -> dict[str, bytes]:
+        write(store, Path("exported.csv"))
+        return {"table": Path("exported.csv").read_bytes()}
+
+    return exported
+
+
+_OPENINGS: dict[str, dict[str, Callable[[Path], dict[str, bytes]]]] = {
+    "orbit": {
+        "load": lambda store: shelf.numbers_of(nh.load_orbit(store)),
+        "info": _info,
+        "resume": lambda store: shelf.numbers_of(nh.resume(store)),
+        "extend": lambda store: shelf.numbers_of(nh.extend(store, 90)),
+        "export": _csv(nh.io.store_to_csv),
+    },
+    "sweep": {
+        "load": lambda store: shelf.numbers_of(nh.load_sweep(store)),
+        "info": _info,
+        "resume": lambda store: shelf.numbers_of(nh.resume(store, task=shelf.task, scheduler="synchronous")),
+        "export": _csv(sweep_to_csv),
+    },
+}
+
+
+def prepared() -> Callable[[Trial], tuple[str, Verdict]]:
+    """Return what does trials; it holds whole stores, and what opening them gives."""
+    home = Path(tempfile.mkdtemp(prefix="fuzz-"))
+    shelf.fill(home)
+    expected: dict[tuple[str, str], dict[str, bytes] | Verdict] = {}
+
+    def do(trial: Trial) -> tuple[str, Verdict]:
+        key = trial.store, trial.opening
+        if key not in expected:
+            expected[key] = _tried(trial._replace(kind="none"), home)[1]
+        said, found = _tried(trial, home)
+        return said, found if isinstance(found, Verdict) else _compared(found, expected[key])
+
+    return do
+
+
+def _tried(trial: Trial, home: Path) -> tuple[str, dict[str, bytes] | Verdict]:
+    with _beside_others(home, trial.store) as store:
+        said = KINDS[trial.kind](store, random.Random(trial.seed)) if trial.kind != "none" else ""  # noqa: S311
+        before = _prints(store.parent)
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                found: dict[str, bytes] | Verdict = _OPENINGS[trial.family][trial.opening](store)
+        except Exception as failure:  # noqa: BLE001  # whatever comes is classified
+            found = of_exception(failure, [])
+        if Path("PWNED").exists():
+            found = Verdict("ran", "code of the store's choice ran")
+        elif before != _prints(store.parent):
+            found = Verdict("outside", "another store was changed")
+        return said, found
+
+
+def _compared(found: dict[str, bytes], expected: dict[str, bytes] | Verdict) -> Verdict:
+    if isinstance(expected, Verdict):
+        return Verdict("silent", "accepted, though the whole store is refused")
+    other = sorted(name for name in found.keys() | expected.keys() if found.get(name) != expected.get(name))
+    return Verdict("silent", f"other numbers: {', '.join(other)[:200]}") if other else Verdict("same")
+
+
+@contextlib.contextmanager
+def _beside_others(home: Path, name: str) -> Iterator[Path]:
+    """Work in a folder with a copy of a store, and of another one beside it."""
+    before = Path.cwd()
+    with tempfile.TemporaryDirectory(prefix="fuzz-") as folder:
+        shutil.copytree(home / name, Path(folder) / name)
+        shutil.copytree(home / shelf.RUN, Path(folder) / "victim.zarr")
+        os.chdir(folder)
+        try:
+            yield Path(folder) / name
+        finally:
+            os.chdir(before)
+
+
+def _prints(folder: Path) -> dict[str, str]:
+    """Return a hash of each file of the store that nobody has opened."""
+    files = (path for path in (folder / "victim.zarr").rglob("*") if path.is_file())
+    return {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(files)}

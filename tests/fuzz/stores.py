@@ -1,0 +1,73 @@
+"""Fuzz stores: `python tests/fuzz/stores.py --trials 200 --seed 0 --workers 2 [--json FILE]`.
+
+So many stores of orbits, and of sweeps, have a file damaged, as many have their JSON edited. Each is then loaded, shown,
+resumed, extended and exported. Right are the numbers of the whole store, to the bit, and refusals of ours.
+"""
+
+# ruff: noqa: E402
+import argparse
+import collections
+import json
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+import compilers
+
+compilers.use_caches()
+
+from fuzz.judge import BROKEN, Verdict
+from fuzz.openings import FAMILIES, KINDS, Trial, trials
+from fuzz.worker import answers
+
+RIGHT, WRONG = ("same", "refused"), (*BROKEN, "outside", "ran")
+
+
+def figures(chosen: list[Trial], workers: int) -> dict[str, Any]:
+    """Do trials; return the counts of each family and kind of damage, and what went wrong."""
+    counts: dict[str, collections.Counter[str]] = collections.defaultdict(collections.Counter)
+    wrong = []
+    for trial, answer in answers("fuzz.openings:prepared", chosen, workers, addresses=8 * 2**30):
+        said, verdict = ("", Verdict(answer)) if isinstance(answer, str) else answer
+        counts[f"{trial.family}, {trial.kind}"][verdict.kind] += 1
+        if verdict.kind in WRONG:
+            row = {"class": verdict.kind, "trial": ":".join(map(str, trial)), "what": said, "message": verdict.message}
+            wrong.append(row)
+    rows = {name: {kind: found[kind] for kind in (*RIGHT, *WRONG)} for name, found in sorted(counts.items())}
+    return {"openings": len(chosen), "classes": rows, "broken": sorted(wrong, key=lambda row: list(row.values()))}
+
+
+def lines(found: dict[str, Any]) -> list[str]:
+    """Return figures for people, with a line that does again what went wrong."""
+    table = [f"{name}: " + ", ".join(f"{count} {kind}" for kind, count in row.items()) for name, row in found["classes"].items()]
+    again = "python tests/fuzz/stores.py --only"
+    broken = [f"{x['class']}: {again} '{x['trial']}'\n    {x['what']}\n    {x['message']}" for x in found["broken"]]
+    return [f"{found['openings']} openings", *table, *broken]
+
+
+def main() -> int:
+    """Draw trials or take the one that is asked for, do them, print the figures."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--trials", type=int, default=200, help="of each family and kind")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--only", help="one trial: FAMILY:STORE:KIND:SEED:OPENING")
+    parser.add_argument("--json", type=Path, help="where the figures are written")
+    given = parser.parse_args()
+    begin = time.monotonic()
+    if given.only:
+        family, store, kind, seed, opening = given.only.split(":")
+        chosen = [Trial(family, store, kind, int(seed), opening)]
+    else:
+        chosen = [t for family in FAMILIES for kind in KINDS for t in trials(family, kind, given.trials, given.seed)]
+    found = figures(chosen, given.workers) | {"seed": given.seed}
+    sys.stdout.write("\n".join(lines(found)) + f"\n{time.monotonic() - begin:.0f} s\n")
+    if given.json:
+        given.json.write_text(json.dumps(found, indent=1))
+    return int(bool(found["broken"]))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
