@@ -73,7 +73,7 @@ class Ensemble:
         kept = slice(0, int(np.isfinite(self.reduced_momentum[member, :, 0]).sum()))
         return self._orbit(member, kept)
 
-    def _orbit(self, member: int, kept: slice) -> Orbit:
+    def _orbit(self, member: int, kept: slice | np.ndarray) -> Orbit:
         pose = None if self.canonical_pose is None else self.canonical_pose[member, kept]
         return Orbit(
             self.members.of(member),
@@ -144,7 +144,9 @@ class Ensemble:
         frames = group.matrix_from_pose(scalar_members(self.members).pose)[:, None]
         if np.array_equal(frames, np.broadcast_to(group.identity, frames.shape)):
             return self.canonical_pose
-        return group.pose_from_matrix(group.matrix_from_pose(self.canonical_pose) @ group.inverse(frames))
+        sound = np.isfinite(self.canonical_pose).all(-1)
+        moved = group.matrix_from_pose(self.canonical_pose) @ group.inverse(frames)
+        return _spread(group.pose_from_matrix(moved[sound]), sound)
 
     @property
     def position(self) -> Float[np.ndarray, "M K n"]:
@@ -168,14 +170,14 @@ class Ensemble:
         return importlib.import_module("nonholo.simulation._ensemble_dataset").ensemble_to_dataset(self)
 
     def _decoded(self, name: str) -> np.ndarray:
-        """Return a quantity of orbits: in one go where it is the same function of the state for all members."""
-        count, states = self.cayley.shape[:2]
+        """Return a quantity of orbits, NaN after a member's end; in one go where it is the same function for all."""
+        sound = np.isfinite(self.reduced_momentum).all(-1) & np.isfinite(self.cayley).all(-1)
         if self._is_shared(name):
-            momenta, charts = (a.reshape(count * states, -1) for a in (self.reduced_momentum, self.cayley))
-            pose = None if self.canonical_pose is None else self.canonical_pose.reshape(count * states, -1)
-            found = getattr(Orbit(self.members.discrete, np.zeros(count * states), momenta, charts, pose), name)
-            return found.reshape(count, states, *found.shape[1:])
-        return np.stack([getattr(self._orbit(member, slice(None)), name) for member in range(count)])
+            pose = None if self.canonical_pose is None else self.canonical_pose[sound]
+            states = np.zeros(sound.sum()), self.reduced_momentum[sound], self.cayley[sound], pose
+            return _spread(getattr(Orbit(self.members.discrete, *states), name), sound)
+        each = (getattr(self._orbit(member, sound[member]), name) for member in range(len(self)))
+        return np.stack([_spread(found, rows) for found, rows in zip(each, sound, strict=True)])
 
     def _is_shared(self, name: str) -> bool:
         """Tell whether a quantity is the same function of the state for all members."""
@@ -185,6 +187,13 @@ class Ensemble:
         if name in _OF_FRAME and not composed:
             same |= _KEEPS_FRAME.get(type(discrete.system), set())
         return self.members.parameters.keys() <= same
+
+
+def _spread(found: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Return what belongs to some of the rows in its place among all of them, NaN in the others."""
+    whole = np.full((*rows.shape, *found.shape[1:]), np.nan)
+    whole[rows] = found
+    return whole
 
 
 def _first_energy(system: System, reduced: np.ndarray) -> float:

@@ -1,0 +1,188 @@
+"""Kill runs and sweeps at random times: `python tests/fuzz/kills.py --trials 20 --restarts 10 [--json FILE]`.
+
+So many runs of orbits and of sweeps are killed by SIGKILL, two in five again in the resume, and resumed; others run in a
+process namespace of their own, as in a container, which ends with them, and are resumed in another one. The numbers must
+be those of a run that nobody disturbed, to the bit, no file may be left behind, and no lock held.
+"""
+
+# ruff: noqa: E402
+import argparse
+import hashlib
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+import compilers
+
+compilers.use_caches()
+
+from ensembles import faults
+from simulation import killed
+
+import numpy as np
+
+import nonholo as nh
+from nonholo.io import owner_of
+
+SWEEPS: dict[str, Any] = {
+    "noisy": (faults.noisy, nh.Grid({"x": np.arange(20.0), "y": np.arange(20.0)}, seed=3), 8),
+    "tops": (faults.TOPS, nh.RandomDesign(20_000, faults.TOP_DESIGN, seed=4), 500),
+}
+FAMILIES = {"orbit": ("sleigh", "events"), "sweep": tuple(SWEEPS)}
+_SHORTER = 5  # so many times shorter than the runs of the tests of kills at chosen blocks
+_AGAIN = 0.4
+_RESTARTS = ("unshare", "--pid", "--fork", "--kill-child", "--mount-proc")
+
+
+def go_on(family: str, name: str, store: Path) -> None:
+    """Begin a run or a sweep, or go on with it."""
+    if family == "sweep":
+        task, design, block = SWEEPS[name]
+        nh.sweep(task, design, store, "threads", block=block, workers=2, resume=True)
+        return
+    discrete, run, events = killed.RUNS[name]
+    if store.exists():
+        nh.resume(store, events=events)
+    else:
+        shorter = run | {"steps": run["steps"] // _SHORTER}
+        nh.simulate(discrete, **shorter, events=events, store=store, checkpoint_every=500 * run["save_every"])
+
+
+def print_of(family: str, store: Path) -> str:
+    """Return a hash of all numbers of a finished store."""
+    data = nh.load_sweep(store).load() if family == "sweep" else nh.load_orbit(store).to_dataset()
+    parts = (str(name).encode() + data[name].values.tobytes() for name in sorted(data.variables, key=str))
+    return hashlib.sha256(b"".join(parts)).hexdigest()
+
+
+def left_behind(folder: Path) -> list[str]:
+    """Return what a run that is over must not leave: its lock, and files that were being written."""
+    locks = [str(store) for store in folder.glob("*.zarr") if owner_of(store) is not None]
+    return locks + [str(path) for pattern in ("*.partial*", "lock*") for path in folder.rglob(pattern)]
+
+
+def in_a_child(do: Callable[..., Any], *given: Any) -> str:
+    """Return the text that a function returns in a forked child, which may start threads."""
+    read, write = os.pipe()
+    child = os.fork()
+    if child == 0:
+        os.write(write, str(do(*given)).encode())
+        os._exit(0)
+    os.close(write)
+    with os.fdopen(read) as told:
+        text = told.read()
+    if os.waitpid(child, 0)[1] != 0:
+        raise RuntimeError(f"{do.__name__}{given} failed")
+    return text
+
+
+def kill_in_forks(family: str, name: str, store: Path, chance: random.Random, seconds: float) -> int:
+    """Kill a run, perhaps its resume too; return how many were killed before they were over."""
+    kills = 0
+    for _ in range(2 if chance.random() < _AGAIN else 1):
+        child = os.fork()
+        if child == 0:
+            os.setsid()
+            go_on(family, name, store)
+            os._exit(0)
+        time.sleep(chance.uniform(0.0, 0.8 * seconds))
+        os.kill(child, signal.SIGKILL)
+        kills += os.WIFSIGNALED(os.waitpid(child, 0)[1])
+    in_a_child(go_on, family, name, store)
+    return kills
+
+
+def kill_by_restart(family: str, name: str, store: Path, chance: random.Random, seconds: float) -> int:
+    """Kill the namespace of a run once it has begun, and go on in another one; return 1 if that was before its end."""
+    command = [*_RESTARTS, sys.executable, __file__, "--go-on", family, name, str(store)]
+    running = subprocess.Popen(command)  # noqa: S603
+    while not store.exists() and running.poll() is None:
+        time.sleep(0.01)
+    time.sleep(chance.uniform(0.0, 0.8 * seconds))
+    running.kill()
+    was = running.wait() == -signal.SIGKILL
+    subprocess.run(command, check=True)  # noqa: S603
+    return int(was)
+
+
+def can_restart() -> bool:
+    """Tell whether process namespaces may be made here."""
+    if shutil.which("unshare") is None:
+        return False
+    return subprocess.run([*_RESTARTS, "true"], capture_output=True, check=False).returncode == 0
+
+
+def figures(family: str, count: int, seed: int, restarts: bool = False, names: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Kill so many runs of a family; return how many were, and what of them is wrong."""
+    chance, wrong, kills = random.Random(seed), [], 0  # noqa: S311
+    kill = kill_by_restart if restarts else kill_in_forks
+    with tempfile.TemporaryDirectory(prefix="fuzz-") as home:
+        undisturbed = {name: _undisturbed(family, name, Path(home)) for name in names or FAMILIES[family]}
+        for i in range(count):
+            name = list(undisturbed)[i % len(undisturbed)]
+            expected, seconds = undisturbed[name]
+            folder = Path(home) / f"trial {i}"
+            folder.mkdir()
+            kills += kill(family, name, folder / "run.zarr", chance, seconds)
+            same = in_a_child(print_of, family, folder / "run.zarr") == expected
+            rest = left_behind(folder)
+            if not same or rest:
+                wrong.append({"run": f"{family}, {name}, {i}", "same": same, "left": rest})
+            shutil.rmtree(folder)
+    return {"runs": count, "kills": kills, "wrong": wrong}
+
+
+def _undisturbed(family: str, name: str, home: Path) -> tuple[str, float]:
+    """Return the hash of a run that nobody disturbs, and the seconds that it takes once all is compiled."""
+    in_a_child(go_on, family, name, home / f"first {name}.zarr")
+    begin = time.monotonic()
+    in_a_child(go_on, family, name, home / f"{name}.zarr")
+    seconds = time.monotonic() - begin
+    return in_a_child(print_of, family, home / f"{name}.zarr"), seconds
+
+
+def all_figures(trials: int, restarts: int, seed: int) -> dict[str, Any]:
+    """Return the figures of all kinds of kills."""
+    found = {family: figures(family, trials, seed) for family in FAMILIES}
+    if not restarts:
+        return found
+    if not can_restart():
+        return {**found, "restarts": "skipped: process namespaces may not be made here"}
+    halves = (restarts + 1) // 2, restarts // 2
+    restarted = {f"{family}, restarted": figures(family, half, seed, True) for family, half in zip(FAMILIES, halves, strict=True)}
+    return found | restarted
+
+
+def main() -> int:
+    """Kill, go on, compare, print the figures."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--trials", type=int, default=20, help="of orbits, and of sweeps")
+    parser.add_argument("--restarts", type=int, default=10, help="in namespaces that end")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--json", type=Path, help="where the figures are written")
+    parser.add_argument("--go-on", nargs=3, metavar=("FAMILY", "NAME", "STORE"), help="what is killed")
+    given = parser.parse_args()
+    if given.go_on:
+        family, name, store = given.go_on
+        go_on(family, name, Path(store))
+        return 0
+    found = all_figures(given.trials, given.restarts, given.seed)
+    for name, row in found.items():
+        sys.stdout.write(f"{name}: {row}\n")
+    if given.json:
+        given.json.write_text(json.dumps(found, indent=1))
+    return int(any(isinstance(row, dict) and row["wrong"] for row in found.values()))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
