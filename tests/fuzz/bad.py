@@ -162,7 +162,7 @@ DERIVED: dict[str, Callable[[np.ndarray], Any]] = {
     "as a list": lambda v: v.tolist(),
     "as a tuple": lambda v: tuple(v) if v.ndim else (v,),
     "as a memory view": lambda v: memoryview(v),
-    "as a matrix": lambda v: np.asmatrix(v) if v.ndim == 2 else v,
+    "as a matrix": lambda v: v.view(np.matrix) if v.ndim == 2 else v,
     "masked in part": lambda v: np.ma.array(v, mask=np.arange(v.size).reshape(v.shape) == 0),
     "masked nowhere": lambda v: np.ma.array(v),
     "as a structure": _structured,

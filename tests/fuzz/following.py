@@ -35,8 +35,7 @@ class Equations:
         """Return the momenta along d of displacements, or what they leave for the next ones."""
         scaled = self.tensor @ np.swapaxes(W - np.eye(W.shape[-1]), -1, -2)
         pushed = W @ scaled if side == "left" else scaled @ W
-        # tr(X W S) and tr(W X S) = tr(X S W): pushed is what X is paired with
-        return np.einsum("aij,...ji->...a", self.basis, pushed if side == "left" else pushed) @ self.rows.T
+        return np.einsum("aij,...ji->...a", self.basis, pushed) @ self.rows.T  # tr(W X S) = tr(X S W)
 
     def scale(self, W: np.ndarray) -> np.ndarray:
         """Return the sizes of what is summed in momenta."""
@@ -90,7 +89,8 @@ def followed(equations: Equations, r: np.ndarray, rounds: int = 250) -> Path:
     """Follow the root of zero momentum along s r, each path with steps of its own."""
     y, s, size = np.zeros((len(r), len(equations.basis))), np.zeros(len(r)), np.full(len(r), 0.05)
     before, gone = y, np.full(len(r), np.inf)
-    zero = det = np.linalg.det(equations.system(y, 0 * r)[1])
+    zero = np.linalg.det(equations.system(y, 0 * r)[1])
+    det = zero.copy()
     for _ in range(rounds):
         at = np.flatnonzero((s < 1.0) & (size > _SMALLEST))
         if not len(at):

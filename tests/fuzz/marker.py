@@ -1,5 +1,8 @@
-"""What runs only if a store makes the library run code: it leaves a file behind."""
+"""Functions for others to call: one that a store may name, which leaves a file behind, one that hangs and dies."""
 
+import os
+import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -8,3 +11,16 @@ def touch(*_: Any, **__: Any) -> dict[str, Any]:
     """Leave the file PWNED."""
     Path("PWNED").touch()
     return {}
+
+
+def answering() -> Callable[[str], str]:
+    """Return what hangs, dies or answers, as it is told."""
+
+    def do(job: str) -> str:
+        if job == "die":
+            os.abort()
+        if job == "hang":
+            time.sleep(600)
+        return "said"
+
+    return do

@@ -97,7 +97,7 @@ def prepared() -> Callable[[Trial], tuple[str, Verdict]]:
 def _tried(trial: Trial, home: Path) -> tuple[str, dict[str, bytes] | Verdict]:
     with _beside_others(home, trial.store) as store:
         said = KINDS[trial.kind](store, random.Random(trial.seed)) if trial.kind != "none" else ""  # noqa: S311
-        before = _prints(store.parent)
+        before = prints_of(_victim(store))
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
@@ -106,9 +106,13 @@ def _tried(trial: Trial, home: Path) -> tuple[str, dict[str, bytes] | Verdict]:
             found = of_exception(failure, [])
         if Path("PWNED").exists():
             found = Verdict("ran", "code of the store's choice ran")
-        elif before != _prints(store.parent):
+        elif before != prints_of(_victim(store)):
             found = Verdict("outside", "another store was changed")
         return said, found
+
+
+def _victim(store: Path) -> Path:
+    return store.parent / "victim.zarr"
 
 
 def _compared(found: dict[str, bytes], expected: dict[str, bytes] | Verdict) -> Verdict:
@@ -132,7 +136,7 @@ def _beside_others(home: Path, name: str) -> Iterator[Path]:
             os.chdir(before)
 
 
-def _prints(folder: Path) -> dict[str, str]:
-    """Return a hash of each file of the store that nobody has opened."""
-    files = (path for path in (folder / "victim.zarr").rglob("*") if path.is_file())
-    return {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(files)}
+def prints_of(folder: Path) -> dict[str, str]:
+    """Return a hash of each file below a folder."""
+    files = sorted(path for path in folder.rglob("*") if path.is_file())
+    return {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files}

@@ -1,0 +1,128 @@
+"""A short share of each fuzzer; the long ones run by `python tests/fuzz`."""
+
+import dataclasses
+import random
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fuzz import api, judge, kills, openings, shelf, steps, stores
+from fuzz.calls import Call, all_calls
+from fuzz.damage import damage_file, edit_json
+from fuzz.following import followed
+from fuzz.kinds import array, number
+from fuzz.trials import draw, from_text, told, verdict
+from fuzz.worker import Worker
+
+import nonholo as nh
+
+
+def test_calls_with_bad_values_are_refused() -> None:
+    """A few trials of each seed: none is raw, silent, hangs or aborts."""
+    calls = {name: call for name, call in all_calls().items() if not (call.slow or call.stores)}
+    found = api.figures(api.verdicts(draw(calls, 60, seed=5), workers=1))
+    assert not found["broken"], api.lines(found)
+
+
+def test_damaged_stores_are_refused_or_right() -> None:
+    """Cut, changed and missing files of an unfinished run and of a sweep."""
+    chosen = [*openings.trials("orbit", "damage", 3, seed=2)[10:], *openings.trials("sweep", "damage", 1, seed=0)]
+    do = openings.prepared()
+    found = [(trial, *do(trial)) for trial in chosen]
+    assert not [row for row in found if row[-1].kind not in stores.RIGHT]
+
+
+def test_a_killed_run_goes_on() -> None:
+    """One SIGKILL at a random time: the bits are those of a run that nobody disturbed, and nothing is left."""
+    found = kills.figures("orbit", 1, seed=0, names=("sleigh",))
+    assert found["killed"] == 1
+    assert not found["wrong"]
+
+
+def test_random_steps_are_right() -> None:
+    """Steps of a top and of a sleigh of any size solve their equation; sampled ones are on the principal branch."""
+    found = steps.figures(2000, seed=1, families=("top 3", "sleigh"))
+    assert not [name for name in found["all"] if name.startswith(("wrong", "not finite")) and found["all"][name]]
+    assert found["all"]["solve the equation"] == found["all"]["steps"] >= 2000
+    assert found["all"]["the root of the continuation"] > 50
+
+
+@dataclasses.dataclass
+class _Found:
+    value: float
+    outcome: int = 0
+
+
+@pytest.mark.parametrize(
+    ("function", "value", "expected"),
+    [
+        (lambda x: x, "nan", "silent"),
+        (lambda x: x, "0.5", "accepted"),
+        (lambda x: _Found(x / 0.0 if x else x), "0", "accepted"),
+        (lambda x: _Found(np.inf * x), "0.5", "silent"),
+        (lambda x: _Found(np.inf * x, 2), "0.5", "accepted"),
+        (lambda x: 1 / x, "0", "raw"),
+        (lambda x: float(x), "text", "raw"),
+        (lambda x: np.zeros((int(x), 10**4)), "10**12", "memory"),
+        (lambda x: nh.ChaplyginSleigh(x, 1.0, 0.5), "nan", "refused"),
+        (lambda x: nh.load_orbit("nowhere.zarr"), "0", "refused"),  # noqa: ARG005
+    ],
+)
+def test_the_judge_tells_classes_apart(function: object, value: str, expected: str) -> None:
+    """A function that accepts NaN is silent, one that divides by zero is raw, one that refuses is not."""
+    call = Call("x", function, {"x": number(1.0)})
+    assert verdict(call, {"x": value}, set()).kind == expected
+
+
+def test_workers_survive() -> None:
+    """A job that hangs and one that ends the process are noted, and the next one is done."""
+    with Worker("fuzz.marker:answering", seconds=0.3) as worker:
+        answers = [worker.answer(job) for job in ("hang", "die", "say")]
+    assert answers == ["hang", "abort", "said"]
+
+
+def test_trials_have_names() -> None:
+    """A trial is done again from the line that is printed."""
+    calls = {"f [x]": Call("f [x]", print, {"x": array(np.eye(2)), "y": number(1.0)})}
+    for trial in draw(calls, 50, seed=0):
+        assert from_text(told(trial)) == trial
+
+
+def test_damage_is_damage(tmp_path: Path) -> None:
+    """Most damage changes a file, every edit leaves JSON that differs."""
+    run = {"restricted_velocity": (0.3, 0.2), "steps": 20, "checkpoint_every": 10}
+    nh.simulate(shelf.DISCRETE, **run, store=tmp_path / "run.zarr")
+    before = openings.prints_of(tmp_path)
+    for seed in range(5):
+        edit_json(tmp_path / "run.zarr", random.Random(seed))  # noqa: S311
+    edited = openings.prints_of(tmp_path)
+    damage_file(tmp_path / "run.zarr", random.Random(1))  # noqa: S311
+    assert before != edited != openings.prints_of(tmp_path)
+
+
+def test_numbers_that_are_not_finite_are_seen() -> None:
+    """In arrays, in fields and below them; a result that says that it failed may have them."""
+    assert judge.nonfinite([np.array([1.0, np.nan])]) == {".*"}
+    assert judge.nonfinite(_Found(np.inf)) == {".value"}
+    assert judge.nonfinite(_Found(np.inf, 1)) == judge.nonfinite(_Found(1.0)) == set()
+
+
+@pytest.mark.parametrize("family", ["top 3", "sleigh", "any d on SE(3)"])
+def test_the_continuation_is_that_of_the_definition(family: str) -> None:
+    """Its momenta are those of the library, its root has the momentum that was asked for and lies on the variety."""
+    system = steps.FAMILIES[family](np.random.default_rng(2))
+    equations, size = steps.equations_of(system)
+    orbit = nh.simulate(nh.discretize(system, 0.1), restricted_velocity=np.full(system.rank, 0.2), steps=3)
+    r = 0.1 * system.restrict(orbit.momentum) / size
+    np.testing.assert_allclose(equations.momentum(orbit.displacement), r, rtol=0, atol=1e-14)
+    path = followed(equations, r)
+    assert path.whole.all()
+    np.testing.assert_allclose(path.unknowns, equations.unknowns(orbit.displacement), rtol=0, atol=1e-12)
+
+
+def test_the_continuation_meets_folds() -> None:
+    """Momenta without bound lead over a fold, at which the determinant vanishes."""
+    system = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+    path = followed(steps.equations_of(system)[0], np.array([[5.0, 5.0], [1e-3, 1e-3]]))
+    assert path.folded.tolist() == [True, False]
+    assert path.whole.tolist() == [False, True]
