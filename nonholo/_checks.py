@@ -4,9 +4,13 @@ Concrete values are checked and copied into read-only float64 arrays; traced val
 are checked for shape alone, since their values are not known yet.
 """
 
+import contextlib
 import math
 import numbers
+import os
 import sys
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +19,7 @@ from nonholo._types import Array
 
 _LEAST_RTOL = 1e-14
 _MOST = 2**53  # the integers up to it are floats too
+_LONGEST_NAME = 255  # bytes; more is more than any file system has
 
 
 def error(where: str, requirement: str, got: str, remedy: str) -> ValueError:
@@ -52,10 +57,11 @@ def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "
     raw = _numbers(where, value, remedy)
     if raw.dtype.kind == "c":
         raise error(where, "be real", "complex numbers", remedy)
-    result = np.array(raw, dtype=np.float64)
-    if not _fits(result.shape, shape):
-        raise error(where, f"have shape {_shown(shape)}", f"shape {result.shape}", remedy)
-    _check_finite(where, result, remedy)
+    if not _fits(raw.shape, shape):
+        raise error(where, f"have shape {_shown(shape)}", f"shape {raw.shape}", remedy)
+    with _in_memory(where, raw, remedy), np.errstate(over="ignore"):
+        result = np.array(raw, dtype=np.float64)
+        _check_finite(where, result, remedy)
     result.setflags(write=False)
     return result
 
@@ -71,7 +77,7 @@ def _numbers(where: str, value: Any, remedy: str) -> np.ndarray:
             raw = np.array([float(entry) for entry in raw.flat]).reshape(raw.shape)
     except OverflowError:
         raise error(where, "be finite", f"an integer beyond {sys.float_info.max:.2g}", remedy) from None
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, ArithmeticError, RecursionError):
         raw = np.array(None)
     if raw.dtype.kind not in "iufc" or isinstance(value, np.ma.MaskedArray):
         raise error(where, "be an array of real numbers", _told(value), remedy)
@@ -81,9 +87,18 @@ def _numbers(where: str, value: Any, remedy: str) -> np.ndarray:
 def _told(value: Any) -> str:
     try:
         text = repr(value)
-    except ValueError:  # an integer of thousands of digits
-        text = f"a {type(value).__name__} too long to be shown"
+    except Exception:  # an integer of thousands of digits, nested lists, whatever it is made of
+        text = f"a {type(value).__name__} that cannot be shown"
     return text if len(text) <= 200 else f"{text[:200]}..."
+
+
+@contextlib.contextmanager
+def _in_memory(where: str, value: np.ndarray, remedy: str) -> Iterator[None]:
+    """Refuse numbers of which there are too many to look at, such as one that is repeated without end."""
+    try:
+        yield
+    except MemoryError:
+        raise error(where, "fit into memory", f"shape {value.shape}", remedy) from None
 
 
 def _check_finite(where: str, value: np.ndarray, remedy: str) -> None:
@@ -110,19 +125,38 @@ def number(where: str, value: Any, remedy: str = "Pass one real number.") -> Arr
 
 
 def as_floats(value: Any) -> Array:
-    """Return an array as it is (integers as float64), a sequence as a float64 array."""
+    """Return an array as it is (integers and longer floats as float64), a sequence as a float64 array."""
     result = value if hasattr(value, "__array_namespace__") else np.asarray(value, dtype=np.float64)
-    return result.astype(np.float64) if result.dtype.kind in "biu" else result
+    if result.dtype.kind not in "biu" and result.dtype not in (np.longdouble, np.clongdouble):
+        return result
+    with np.errstate(over="ignore"):
+        return result.astype(np.complex128 if result.dtype.kind == "c" else np.float64)
 
 
-def trailing(where: str, value: Any, shape: tuple[int, ...], remedy: str) -> Array:
-    """Return an array (a sequence becomes float64) whose last axes have the given shape; leading axes are free."""
-    result = as_floats(value if is_traced(value) else _numbers(where, value, remedy))
-    if result.shape[max(0, result.ndim - len(shape)) :] != shape:
-        raise error(where, f"end in shape {_shown(shape)}", f"shape {result.shape}", remedy)
-    if isinstance(result, np.ndarray):
-        _check_finite(where, result, remedy)
+def trailing(where: str, value: Any, shape: tuple[int, ...], remedy: str, *, real: bool = False) -> Array:
+    """Return an array (a sequence becomes float64) whose last axes have the given shape; leading axes are free.
+
+    One element has to be finite. In a stack NaN stays NaN: it marks what has no value, such as a member that has ended.
+    """
+    raw = value if is_traced(value) else _numbers(where, value, remedy)
+    if raw.shape[max(0, raw.ndim - len(shape)) :] != shape:
+        raise error(where, f"end in shape {_shown(shape)}", f"shape {raw.shape}", remedy)
+    if is_traced(raw):
+        return as_floats(raw)
+    if real and raw.dtype.kind == "c":
+        raise error(where, "be real", "complex numbers", remedy)
+    with _in_memory(where, raw, remedy):
+        result = as_floats(raw)
+        _check_finite(where, result if result.ndim == len(shape) else np.where(np.isnan(result), 0, result), remedy)
     return result
+
+
+def last_length(value: Any) -> int | None:
+    """Return the length of the last axis; None of what has none."""
+    try:
+        return np.shape(value)[-1]
+    except (IndexError, TypeError, ValueError, RecursionError):
+        return None
 
 
 def positive(where: str, value: Any, remedy: str) -> Array:
@@ -135,9 +169,18 @@ def positive(where: str, value: Any, remedy: str) -> Array:
 
 def count(where: str, value: Any, remedy: str) -> int:
     """Return a strictly positive Python integer."""
-    integral = isinstance(value, numbers.Integral) and not isinstance(value, bool)
-    if not integral or value <= 0:
-        raise error(where, "be a positive integer", _told(value), remedy)
+    return _integer(where, value, 1, "be a positive integer", remedy)
+
+
+def natural(where: str, value: Any, remedy: str) -> int:
+    """Return a Python integer that is not negative."""
+    return _integer(where, value, 0, "be a natural number", remedy)
+
+
+def _integer(where: str, value: Any, least: int, requirement: str, remedy: str) -> int:
+    """Return an integer; NumPy takes a span of time for one."""
+    if not isinstance(value, numbers.Integral) or isinstance(value, bool | np.timedelta64) or value < least:
+        raise error(where, requirement, _told(value), remedy)
     if value > _MOST:
         raise error(where, f"be at most {_MOST}", _told(value), remedy)
     return int(value)
@@ -152,7 +195,52 @@ def step_counts(steps: Any, save_every: Any) -> tuple[int, int]:
 def choice(where: str, value: Any, allowed: tuple[Any, ...], remedy: str = "Choose one of them.") -> Any:
     """Return `value` if it is one of the allowed ones."""
     if not any(value is a or value == a for a in allowed if isinstance(value, type(a))):
-        raise error(where, "be one of " + ", ".join(repr(a) for a in allowed), repr(value), remedy)
+        raise error(where, "be one of " + ", ".join(repr(a) for a in allowed), _told(value), remedy)
+    return value
+
+
+def flag(where: str, value: Any) -> bool:
+    """Return True or False; what Python only takes for one of them, a text among it, is refused."""
+    if not isinstance(value, bool | np.bool_):
+        raise error(where, "be True or False", _told(value), "Pass one of them.")
+    return bool(value)
+
+
+def flags(owner: str, **values: Any) -> None:
+    """Refuse arguments of an owner that are neither True nor False."""
+    for name, value in values.items():
+        flag(f"{owner}({name}=...)", value)
+
+
+def path(where: str, value: Any) -> Path:
+    """Return a path that a file system can have.
+
+    Example:
+        >>> path("load_orbit(path=...)", 5)
+        Traceback (most recent call last):
+        ...
+        ValueError: `load_orbit(path=...)` must be a path. Got 5. Pass a text or a pathlib.Path.
+    """
+    if not isinstance(value, str | os.PathLike) or not isinstance(text := os.fspath(value), str):
+        raise error(where, "be a path", _told(value), "Pass a text or a pathlib.Path.")
+    longest = max((len(part.encode(errors="surrogatepass")) for part in Path(text).parts), default=0)
+    if "\0" in text or longest > _LONGEST_NAME:
+        raise error(where, "be a name that files can have", _told(value), "Pass a shorter one, without the letter NUL.")
+    return Path(text)
+
+
+def selection(where: str, value: Any) -> slice | np.ndarray:
+    """Return which rows are meant: a slice, a mask, or numbers of rows."""
+    rows = value if isinstance(value, slice | np.ndarray) else np.array(None)
+    if isinstance(rows, np.ndarray) and (rows.ndim != 1 or rows.dtype.kind not in "bi"):
+        raise error(where, "be a slice, a mask or an array of integers", _told(value), "Pass one of them.")
+    return rows
+
+
+def generator(where: str, value: Any) -> np.random.Generator:
+    """Return a random generator."""
+    if not isinstance(value, np.random.Generator):
+        raise error(where, "be a numpy.random.Generator", _told(value), "Pass np.random.default_rng(seed).")
     return value
 
 

@@ -56,7 +56,7 @@ PROFILES = {
     ),
     "shapes": Profile(
         "annotations of shapes and types, checked at run time by jaxtyping and beartype",
-        (*_MECHANICS, "orbit", "simulation", "_types", "_checks"),
+        (*_MECHANICS, "orbit", "simulation", "_types", "_checks", "_limits"),
         f"{PYTHON} -m pytest -q tests/groups tests/systems tests/discrete tests/simulation -k 'not refused' "
         "--jaxtyping-packages=nonholo.groups,nonholo.systems,nonholo.orbit,nonholo.discrete,nonholo.simulation,"
         "beartype.beartype",
@@ -65,6 +65,11 @@ PROFILES = {
         "kernels with every index checked, which compiles them once more",
         ("kernels", "numerics"),
         f"NUMBA_BOUNDSCHECK=1 {PYTHON} -m pytest -q tests/kernels tests/numerics tests/simulation/test_ensemble.py",
+    ),
+    "fuzz": Profile(
+        "calls with values that nobody expects, damaged stores, kills at random times, random steps; prints figures",
+        (),
+        f"{PYTHON} tests/fuzz",
     ),
     "mutants": Profile(
         "hand-made errors in all rooms that the default run must notice", (), f"{PYTHON} tests/mutants.py"
@@ -139,7 +144,7 @@ def _git(*arguments: str) -> str:
 
 
 def touched(files: list[str] | None) -> list[str]:
-    """Return the profiles whose rooms files lie in; all but the mutants when in doubt."""
+    """Return the profiles whose rooms files lie in; all but the fuzzers and the mutants when in doubt."""
     every = [name for name, profile in PROFILES.items() if profile.rooms]
     rooms = {_room(file) for file in files or []}
     if files is None or None in rooms:

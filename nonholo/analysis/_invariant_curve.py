@@ -5,7 +5,7 @@ from typing import cast
 
 import numpy as np
 
-from nonholo._checks import positive
+from nonholo._checks import number, positive
 from nonholo._limits import bounded_count
 from nonholo._types import Array, Float
 from nonholo.analysis._sleigh_level import SleighLevel
@@ -44,7 +44,8 @@ class InvariantCurve:
 
     def over(self, direction: float) -> Float[np.ndarray, "m c"]:
         """Return the points, two at most, with a direction of z (tops, z_0 >= 0) or with a step angle (sleighs)."""
-        return level_of(self.discrete, self.energy).over(direction)
+        angle = float(number("InvariantCurve.over(direction=...)", direction))
+        return level_of(self.discrete, self.energy).over(angle)
 
 
 def level_of(discrete: Discretization, energy: float) -> TopLevel | SleighLevel:

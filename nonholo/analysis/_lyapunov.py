@@ -7,7 +7,7 @@ import dataclasses
 
 import numpy as np
 
-from nonholo._checks import as_floats, error, trailing
+from nonholo._checks import error, last_length, trailing
 from nonholo._types import Array, Float
 from nonholo.systems import AbstractLLSystem
 
@@ -26,9 +26,9 @@ class LyapunovFunction:
 
     def __call__(self, momentum: Float[Array, "... dim"] | Float[Array, "... k"]) -> Float[Array, "..."]:
         """Return the value at momenta, or at their components along the rows of the constraint subspace."""
-        value, (k, dim) = as_floats(momentum), self.subspace.shape
-        size = k if value.shape[-1:] == (k,) else dim
-        p = trailing("LyapunovFunction(momentum=...)", value, (size,), f"Pass {dim} or {k} components.")
+        (k, dim), where = self.subspace.shape, "LyapunovFunction(momentum=...)"
+        size = k if last_length(momentum) == k else dim
+        p = trailing(where, momentum, (size,), f"Pass {dim} or {k} components.")
         return -p @ (self.attracting if size == dim else self.attracting @ np.linalg.pinv(self.subspace))
 
 

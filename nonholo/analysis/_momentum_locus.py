@@ -5,7 +5,7 @@ from typing import cast
 
 import numpy as np
 
-from nonholo._checks import array, count, error
+from nonholo._checks import count, error, number, trailing
 from nonholo._limits import within_memory
 from nonholo._types import Array, Float
 from nonholo.analysis._conoid import Conoid, conoid
@@ -52,8 +52,7 @@ class MomentumLocus:
         Besides the locus it vanishes on the `whiskers`.
         """
         where = "MomentumLocus.implicit(momentum=...)"
-        leading = (None,) * (np.ndim(momentum) - 1)
-        p = array(where, momentum, (*leading, 3), "Pass full body momenta.")
+        p = trailing(where, momentum, (3,), "Pass full body momenta.", real=True)
         return surface_of(self.discrete).implicit(p)
 
     def whiskers(self, length: float = 1.0) -> Float[np.ndarray, "V 2 3"]:
@@ -61,6 +60,7 @@ class MomentumLocus:
 
         There the polynomial vanishes, but the two displacements are complex.
         """
+        length = float(number("MomentumLocus.whiskers(length=...)", length))
         first, last = self.double_lines[:, 0], self.double_lines[:, 1]
         outwards = length * (last - first)
         before, after = np.stack([first, first - outwards], axis=1), np.stack([last, last + outwards], axis=1)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error
+from nonholo._checks import array, error, flags
 from nonholo._types import Array, Float
 from nonholo.discrete._branch_equations import Frame, frame_of
 from nonholo.discrete._branch_values import SAME, Branches, point_over, values_over
@@ -58,6 +58,7 @@ def displacements_over(discrete: Discretization, restricted_momentum: Any, certi
     """
     where = "displacements_over"
     frame = _checked(where, discrete)
+    flags(where, certify=certify)
     r = _restricted(f"{where}(restricted_momentum=...)", discrete, restricted_momentum)
     return certified_over(where, discrete, frame, r) if certify else values_over(discrete, frame, r)
 
@@ -90,6 +91,7 @@ def branches(
         True
     """
     frame = _checked("branches", discrete)
+    flags("branches", certify=certify)
     if (momentum is None) == (displacement is None):
         got = "none" if momentum is None else "both"
         raise error("branches(...)", "be given momentum or displacement", got, "Choose one.")

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from nonholo._checks import count, error, natural
 from nonholo._types import Float
 from nonholo.ensembles._design import AbstractDesign
 from nonholo.ensembles._names import component_name
@@ -55,10 +56,15 @@ class MemberBlock(Mapping[str, Any]):
 
     def random(self, width: int, stream: str = "") -> Float[np.ndarray, "count width"]:
         """Return uniform numbers in [0, 1), so many of each member, the same in any block; streams are independent."""
+        width = count("MemberBlock.random(width=...)", width, "Pass how many numbers each member needs.")
+        if not isinstance(stream, str):
+            got = f"a {type(stream).__name__}"
+            raise error("MemberBlock.random(stream=...)", "be a text", got, "Pass a name for these numbers.")
         return uniform_numbers(self.seed, f"task {stream}", self.first, self.count, width)
 
     def part(self, begin: int, end: int) -> "MemberBlock":
         """Return some of the members, counted from the first one here."""
+        begin, end = (natural("MemberBlock.part(...)", x, "Pass numbers of members here.") for x in (begin, end))
         arrays = {name: values[begin:end] for name, values in self.arrays.items()}
         return MemberBlock(self.first + begin, end - begin, self.seed, arrays)
 

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo._checks import array, count, error
+from nonholo._checks import array, count, error, natural
 from nonholo._types import Float
 from nonholo.ensembles._distributions import AbstractDistribution
 from nonholo.ensembles._names import OUTCOME, array_name, component_name, stream_name
@@ -98,6 +98,7 @@ class Grid(AbstractDesign):
 
     def values(self, first: int, count: int) -> Values:
         """Return the values of some members in order, by name."""
+        first, count = _some("Grid", first, count)
         places = np.unravel_index(np.arange(first, first + count), tuple(self.sizes.values()))
         return {name: values[at] for (name, values), at in zip(self.values_along.items(), places, strict=True)}
 
@@ -148,10 +149,17 @@ class RandomDesign(AbstractDesign):
 
     def values(self, first: int, count: int) -> Values:
         """Return the values of some members in order, by name."""
+        first, count = _some("RandomDesign", first, count)
         return {
             name: value.draw(uniform_numbers(self.seed, f"design {stream_name(name)}", first, count, value.width))
             for name, value in self.distributions.items()
         }
+
+
+def _some(owner: str, first: Any, count: Any) -> tuple[int, int]:
+    """Return which members are meant."""
+    first = natural(f"{owner}.values(first=...)", first, "Pass the number of the first member, from 0.")
+    return first, natural(f"{owner}.values(count=...)", count, "Pass how many members.")
 
 
 Design: TypeAlias = Grid | RandomDesign

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from nonholo import io
-from nonholo._checks import array, count, error
+from nonholo._checks import array, count, error, flag
 from nonholo.discrete import Discretization
 from nonholo.discrete._discretization import as_discretization
 from nonholo.discrete._start import one_start
@@ -95,7 +95,7 @@ class EnsembleTask:
             "start": given[0] if given else None,
             "reductions": _checked_reductions(reductions),
             "save_every": save_every,
-            "reconstruct": bool(reconstruct),
+            "reconstruct": flag("EnsembleTask(reconstruct=...)", reconstruct),
         }
         for name, value in kept.items():
             object.__setattr__(self, name, value)

@@ -8,7 +8,7 @@ from typing import TextIO
 import numpy as np
 
 from nonholo import io
-from nonholo._checks import error
+from nonholo._checks import error, path
 from nonholo.ensembles._block import MemberBlock, block_of
 from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
 from nonholo.ensembles._standing import standing_of
@@ -39,7 +39,7 @@ def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: b
     Example:
         >>> sweep_to_csv("sweep.zarr", "poses.csv")  # doctest: +SKIP
     """
-    opened = open_store(store)
+    opened = open_store(path("sweep_to_csv(store=...)", store))
     task = _task(opened)
     io.check_file(target, overwrite=overwrite)
     blocks = [block for block in range(opened.layout.blocks) if isinstance(opened.mark(block), Mark)]

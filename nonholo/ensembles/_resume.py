@@ -7,7 +7,7 @@ from typing import Any
 import xarray
 
 from nonholo import io, simulation
-from nonholo._checks import error
+from nonholo._checks import error, flags, path
 from nonholo._progress import progress_bar
 from nonholo.discrete import Discretization
 from nonholo.ensembles._begin import restored_task
@@ -62,8 +62,10 @@ def resume(
     Example:
         >>> orbit = nh.resume("run.zarr")  # doctest: +SKIP
     """
+    flags("resume", trust=trust, throw=throw, progress=progress)
+    store = path("resume(store=...)", store)
     stored = io.format_of(store)
-    if stored is None and Path(store).exists():
+    if stored is None and store.exists():
         got, remedy = f"'{store}', of which zarr.json does not say that", "Check the path, or run it again."
         raise error("resume(store=...)", "be a store of a run or a sweep", got, remedy)
     if stored == io.SWEEP_FORMAT:

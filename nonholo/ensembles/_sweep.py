@@ -5,7 +5,7 @@ from typing import Any
 
 import xarray
 
-from nonholo._checks import error
+from nonholo._checks import error, flags, path
 from nonholo.ensembles._begin import begun, check_same, check_task, restored_task
 from nonholo.ensembles._blocks import Work
 from nonholo.ensembles._design import Design
@@ -68,13 +68,15 @@ def sweep(
         array([12., 22., 32.])
     """
     name, workers = checked_scheduler(scheduler, workers)
+    flags("sweep", resume=resume, progress=progress)
+    store = path("sweep(store=...)", store)
     check_task(task, design)
-    if resume and Path(store).exists():
+    if resume and store.exists():
         opened = open_store(store)
         check_same(opened, task, design)
         task = restored_task(opened, task)
     else:
-        opened = begun(task, design, Path(store), block, scenario, progress=progress)
+        opened = begun(task, design, store, block, scenario, progress=progress)
     return go_on(Work(opened, task), name, workers, progress)
 
 
@@ -92,7 +94,8 @@ def load_sweep(store: str | Path) -> xarray.Dataset:
     Example:
         >>> found = nh.load_sweep("sweep.zarr")  # doctest: +SKIP
     """
-    opened, where = open_store(store), "load_sweep(store=...)"
+    where = "load_sweep(store=...)"
+    opened = open_store(path(where, store))
     if not opened.is_finished:
         got, remedy = f"'{store}', at {standing_of(store)}", f"Go on with nonholo.resume('{store}')."
         raise error(where, "be a finished sweep", got, remedy)

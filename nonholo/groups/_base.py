@@ -5,10 +5,11 @@ All functions broadcast over leading axes.
 """
 
 import abc
+from typing import Any
 
 import numpy as np
 
-from nonholo._checks import trailing
+from nonholo._checks import generator, trailing
 from nonholo._limits import within_memory
 from nonholo._types import Array, Float, Inexact
 from nonholo.groups._coordinates import AbstractCoordinates
@@ -174,7 +175,16 @@ class AbstractMatrixGroup(abc.ABC):
 
     def _vector(self, x: Array) -> Array:
         where = f"{self!r} (coordinates)"
-        return trailing(where, x, (self.dim,), "Use `vee` to turn a matrix into coordinates.")
+        return trailing(where, x, (self.dim,), "Use `vee` to turn a matrix into coordinates.", real=True)
+
+    def _pose(self, pose: Array) -> Array:
+        where = f"{self!r} (pose)"
+        return trailing(
+            where, pose, (self.pose_size,), "Use `pose_from_matrix` to turn a matrix into a pose.", real=True
+        )
+
+    def _generator(self, rng: Any) -> np.random.Generator:
+        return generator(f"{self!r}.random(rng=...)", rng)
 
     def _matrix(self, g: Array) -> Array:
         where = f"{self!r} (element)"

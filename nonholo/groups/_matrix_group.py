@@ -201,22 +201,26 @@ class MatrixGroup(AbstractMatrixGroup):
 
     def random(self, rng: np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw the exponential of standard normal coordinates."""
+        rng = self._generator(rng)
         return self.exp(rng.normal(size=self.dim))
 
     def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... N N"]:
         """Return the matrix with these rows."""
+        pose = self._pose(pose)
         return pose.reshape(*pose.shape[:-1], self.size, self.size)
 
     def pose_from_matrix(self, g: Float[Array, "... N N"]) -> Float[Array, "... size"]:
         """Return the entries row by row."""
+        g = self._matrix(g)
         return g.reshape(*g.shape[:-2], self.pose_size)
 
     def normalize_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... size"]:
         """Return the pose as it is: nothing is known about the nearest element."""
-        return pose
+        return self._pose(pose)
 
     def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:
         """Return the entries of g hat(x)."""
+        pose, x = self._pose(pose), self._vector(x)
         return self.pose_from_matrix(self.matrix_from_pose(pose) @ self.hat(x))
 
 

@@ -112,6 +112,7 @@ class ProductGroup(AbstractMatrixGroup):
 
     def random(self, rng: np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw every factor."""
+        rng = self._generator(rng)
         return block_diagonal([factor.random(rng) for factor in self.factors])
 
     def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... N N"]:
@@ -139,6 +140,7 @@ class ProductGroup(AbstractMatrixGroup):
         return x.__array_namespace__().split(x, self._cuts("dim"), axis=-1)
 
     def _poses(self, pose: Array) -> list[Array]:
+        pose = self._pose(pose)
         return pose.__array_namespace__().split(pose, self._cuts("pose_size"), axis=-1)
 
     def _blocks(self, g: Array) -> list[Array]:

@@ -70,15 +70,18 @@ class SpecialEuclidean2(AbstractMatrixGroup):
 
     def angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
         """Return the angle through which `exp(x)` turns."""
+        x = self._vector(x)
         return abs(x[..., 0])
 
     def random(self, rng: np.random.Generator) -> Float[np.ndarray, "3 3"]:
         """Draw a uniform heading and a standard normal position."""
+        rng = self._generator(rng)
         angle = rng.uniform(-np.pi, np.pi)
         return self.matrix_from_pose(np.array([np.cos(angle), np.sin(angle), *rng.normal(size=2)]))
 
     def matrix_from_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:
         """Return the matrix of (cos, sin, x, y); the heading is normalised first."""
+        pose = self._pose(pose)
         xp = pose.__array_namespace__()
         unit = self.normalize_pose(pose)
         cos, sin, x, y = (unit[..., i] for i in range(4))
@@ -88,17 +91,20 @@ class SpecialEuclidean2(AbstractMatrixGroup):
 
     def pose_from_matrix(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 4"]:
         """Return (cos, sin, x, y)."""
+        g = self._matrix(g)
         xp = g.__array_namespace__()
         return xp.stack([g[..., 0, 0], g[..., 1, 0], g[..., 0, 2], g[..., 1, 2]], axis=-1)
 
     def normalize_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return the pose with cos^2 + sin^2 = 1."""
+        pose = self._pose(pose)
         xp = pose.__array_namespace__()
         length = xp.sqrt(pose[..., :1] * pose[..., :1] + pose[..., 1:2] * pose[..., 1:2])
         return xp.concatenate([pose[..., :2] / length, pose[..., 2:]], axis=-1)
 
     def pose_rate(self, pose: Float[Array, "... 4"], x: Float[Array, "... 3"]) -> Float[Array, "... 4"]:
         """Return the rates of (cos, sin, x, y): the body velocity turned by the heading."""
+        pose, x = self._pose(pose), self._vector(x)
         xp = x.__array_namespace__()
         cos, sin = pose[..., 0], pose[..., 1]
         omega, v1, v2 = (x[..., i] for i in range(3))

@@ -103,12 +103,14 @@ class SpecialEuclideanN(AbstractMatrixGroup):
 
     def random(self, rng: np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw a uniformly distributed rotation and a standard normal position."""
+        rng = self._generator(rng)
         g = self.identity
         g[: self.n, : self.n], g[: self.n, self.n] = _rotations.random(self.n, rng), rng.normal(size=self.n)
         return g
 
     def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... N N"]:
         """Return the matrix of a rotation and a position; the rotation is made the nearest one first."""
+        pose = self._pose(pose)
         xp = pose.__array_namespace__()
         R, position = self._parts(pose)
         motion = self._assembled(_rotations.nearest(R), position)
@@ -116,6 +118,7 @@ class SpecialEuclideanN(AbstractMatrixGroup):
 
     def pose_from_matrix(self, g: Float[Array, "... N N"]) -> Float[Array, "... size"]:
         """Return the rotation row by row, then the position."""
+        g = self._matrix(g)
         rotation = g[..., : self.n, : self.n].reshape(*g.shape[:-2], self.n * self.n)
         return g.__array_namespace__().concatenate([rotation, g[..., : self.n, self.n]], axis=-1)
 
@@ -125,6 +128,7 @@ class SpecialEuclideanN(AbstractMatrixGroup):
 
     def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:
         """Return the entries of R hat(x) and the body velocity turned to space."""
+        pose, x = self._pose(pose), self._vector(x)
         upper = self._parts(pose)[0] @ self.hat(x)[..., : self.n, :]
         return self.pose_from_matrix(self._assembled(upper[..., : self.n], upper[..., self.n :]))
 

@@ -69,26 +69,32 @@ class SpecialOrthogonal3(AbstractMatrixGroup):
 
     def angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
         """Return the angle through which `exp(x)` turns."""
+        x = self._vector(x)
         return x.__array_namespace__().sqrt((x * x).sum(axis=-1))
 
     def random(self, rng: np.random.Generator) -> Float[np.ndarray, "3 3"]:
         """Draw a uniformly distributed rotation."""
+        rng = self._generator(rng)
         return matrix_from_quaternion(rng.normal(size=4))
 
     def matrix_from_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:
         """Return the rotation matrix of a quaternion, scalar first."""
+        pose = self._pose(pose)
         return matrix_from_quaternion(pose)
 
     def pose_from_matrix(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 4"]:
         """Return the unit quaternion, scalar first and non-negative."""
+        g = self._matrix(g)
         return quaternion_from_matrix(g)
 
     def normalize_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return the unit quaternion."""
+        pose = self._pose(pose)
         return normalized(pose)
 
     def pose_rate(self, pose: Float[Array, "... 4"], x: Float[Array, "... 3"]) -> Float[Array, "... 4"]:
         """Return half the Hamilton product of the quaternion with the angular velocity."""
+        pose, x = self._pose(pose), self._vector(x)
         xp = x.__array_namespace__()
         (q0, q1, q2, q3), (a, b, c) = (tuple(v[..., i] for i in range(v.shape[-1])) for v in (pose, x))
         rows = (-q1 * a - q2 * b - q3 * c, q0 * a + q2 * c - q3 * b, q0 * b + q3 * a - q1 * c, q0 * c + q1 * b - q2 * a)

@@ -83,14 +83,17 @@ class SpecialOrthogonalN(AbstractMatrixGroup):
 
     def random(self, rng: np.random.Generator) -> Float[np.ndarray, "n n"]:
         """Draw a uniformly distributed rotation."""
+        rng = self._generator(rng)
         return _rotations.random(self.n, rng)
 
     def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... n n"]:
         """Return the rotation nearest to the matrix with these rows."""
+        pose = self._pose(pose)
         return _rotations.nearest(pose.reshape(*pose.shape[:-1], self.n, self.n))
 
     def pose_from_matrix(self, g: Float[Array, "... n n"]) -> Float[Array, "... size"]:
         """Return the entries row by row."""
+        g = self._matrix(g)
         return g.reshape(*g.shape[:-2], self.pose_size)
 
     def normalize_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... size"]:
@@ -99,5 +102,6 @@ class SpecialOrthogonalN(AbstractMatrixGroup):
 
     def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:
         """Return the entries of R hat(x)."""
+        pose, x = self._pose(pose), self._vector(x)
         rows = pose.reshape(*pose.shape[:-1], self.n, self.n)
         return self.pose_from_matrix(rows @ self.hat(x))

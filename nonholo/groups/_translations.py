@@ -101,6 +101,7 @@ class Translations(AbstractMatrixGroup):
 
     def random(self, rng: np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw a standard normal vector."""
+        rng = self._generator(rng)
         return self.exp(rng.normal(size=self.m))
 
     def matrix_from_pose(self, pose: Float[Array, "... m"]) -> Float[Array, "... N N"]:
@@ -113,9 +114,9 @@ class Translations(AbstractMatrixGroup):
 
     def normalize_pose(self, pose: Float[Array, "... m"]) -> Float[Array, "... m"]:
         """Return the vector as it is."""
-        return pose
+        return self._pose(pose)
 
     def pose_rate(self, pose: Float[Array, "... m"], x: Float[Array, "... m"]) -> Float[Array, "... m"]:
         """Return the velocity."""
-        del pose
-        return x
+        self._pose(pose)
+        return self._vector(x)

@@ -7,7 +7,8 @@ from typing import TextIO
 
 import numpy as np
 
-from nonholo._checks import count, error
+from nonholo._checks import count, error, flags
+from nonholo._checks import path as checked_path
 from nonholo._progress import progress_bar
 from nonholo._types import Float
 from nonholo.io._pose_columns import Stretch, column_names, rows_of
@@ -54,7 +55,8 @@ def orbit_to_csv(orbit: Orbit, path: str | Path, *, overwrite: bool = False) -> 
         remedy = "Run with reconstruct=True."
         raise error("Orbit.to_csv(...)", "be asked of an orbit with poses", "reconstruct=False", remedy)
     whole = Stretch(orbit.time, orbit.canonical_pose, orbit.turned)
-    with new_file(Path(path), overwrite=overwrite) as file:
+    flags("Orbit.to_csv", overwrite=overwrite)
+    with new_file(checked_path("Orbit.to_csv(path=...)", path), overwrite=overwrite) as file:
         file.writelines(_lines(orbit.system, [whole], 1))
 
 
@@ -88,7 +90,8 @@ def store_to_csv(
     """
     every = count("store_to_csv(every=...)", every, "Pass 1 for every saved state.")
     check_file(target, overwrite=overwrite)
-    poses = open_poses(Path(store))
+    flags("store_to_csv", overwrite=overwrite, progress=progress)
+    poses = open_poses(checked_path("store_to_csv(store=...)", store))
     poses.check()
     with new_file(target, overwrite=overwrite) as file, progress_bar("states", progress) as report:
         stretches = _reported(poses.stretches(), lambda done: report(done, poses.rows))
@@ -141,9 +144,9 @@ def new_file(target: str | Path | TextIO, *, overwrite: bool) -> Iterator[TextIO
 
 def check_file(target: str | Path | TextIO, *, overwrite: bool, where: str = "to_csv(path=...)") -> None:
     """Refuse, in the name of `where`, a path that exists, unless it is a file that may be replaced."""
-    if not isinstance(target, str | Path):
+    if hasattr(target, "writelines"):
         return
-    path = Path(target)
+    path = checked_path(where, target)
     if path.exists() and not (overwrite and path.is_file()):
         how = "Choose another path"
         remedy = f"It is not a file. {how}." if overwrite else f"{how}, or pass overwrite=True (--overwrite)."

@@ -10,6 +10,7 @@ import numpy as np
 import zarr
 
 from nonholo._checks import error
+from nonholo._checks import path as checked_path
 from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.discrete import Discretization
@@ -42,7 +43,12 @@ def load_orbit(path: str | Path, *, discrete: Discretization | None = None) -> O
     Example:
         >>> orbit = load_orbit("orbit.zarr")  # doctest: +SKIP
     """
-    return _loaded(Path(path), discrete, last=False)
+    if discrete is not None and not isinstance(discrete, Discretization):
+        got = f"a {type(discrete).__name__}"
+        raise error(
+            "load_orbit(discrete=...)", "be a discretisation", got, "Pass the one that made the store, or None."
+        )
+    return _loaded(checked_path(_WHERE, path), discrete, last=False)
 
 
 def load_last_block(path: Path, discrete: Discretization) -> Orbit:

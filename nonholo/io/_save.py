@@ -17,7 +17,8 @@ import xarray
 import zarr
 from zarr.codecs import BloscCodec, Crc32cCodec
 
-from nonholo._checks import error
+from nonholo._checks import error, flags
+from nonholo._checks import path as checked_path
 from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
 from nonholo.io._dataset import CANONICAL, stored_variables
 from nonholo.io._load import format_of
@@ -61,9 +62,11 @@ def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scena
         >>> save_orbit(orbit, "orbit.zarr")  # doctest: +SKIP
     """
     as_orbit("save_orbit(orbit=...)", orbit, "for one in coordinates use orbit.to_dataset().to_zarr(path).")
-    target = Path(path).resolve()
+    flags("save_orbit", overwrite=overwrite)
+    path = checked_path("save_orbit(path=...)", path)
+    target = path.resolve()
     check_target(target, overwrite=overwrite)
-    with new_beside(Path(path)) as part:
+    with new_beside(path) as part:
         told = attributes(orbit) | ({} if scenario is None else attributes_of_text(scenario))
         _write(stored_variables(orbit), told | {"checksum": checksum(told)}, part)
         put_in_place(part, target, overwrite=overwrite)

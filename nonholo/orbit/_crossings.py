@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from nonholo._checks import selection
 from nonholo._types import Float, Int
 from nonholo.orbit._orbit import STATES, Orbit
 
@@ -45,6 +46,7 @@ class Crossings:
 
     def chosen(self, which: np.ndarray) -> "Crossings":
         """Return some of the crossings."""
+        which = selection("Crossings.chosen(which=...)", which)
         return Crossings(self.step[which], self.fraction[which], self.direction[which], self.states.chosen(which))
 
 

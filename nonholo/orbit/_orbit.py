@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, selection
 from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.groups import SE
@@ -118,6 +118,7 @@ class Orbit:
 
     def chosen(self, states: slice | np.ndarray) -> "Orbit":
         """Return some of the states, by a slice or a mask, each with the same `save_every` as before."""
+        states = selection("Orbit.chosen(states=...)", states)
         kept = {name: None if (rows := getattr(self, name)) is None else rows[states] for name in STATES}
         return dataclasses.replace(self, **kept)
 

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from nonholo._checks import count, error, positive
+from nonholo._checks import path as checked_path
 from nonholo._types import Int
 from nonholo.io import check_file
 from nonholo.orbit import Orbit
@@ -97,7 +98,7 @@ def _scene_of(orbit: Orbit) -> tuple[Callable[[Orbit], float], Callable[..., tup
 
 
 def _target(path: str | Path) -> Path:
-    target = Path(path)
+    target = checked_path("animate(path=...)", path)
     if target.suffix.lower() != ".gif":
         raise error("animate(path=...)", "end in .gif", repr(str(path)), "Use `overview` for a still picture.")
     return target

@@ -92,8 +92,8 @@ def _energies(discrete: Discretization, energies: Any) -> Float[np.ndarray, "L"]
     if energies is not None:
         where, remedy = "plot.invariant_curves(energies=...)", "Pass a list of positive energies."
         levels = array(where, energies, (None,), remedy)
-        if not np.all(levels > 0):
-            raise error(where, "be positive", f"{levels.min():g}", remedy)
+        if not levels.size or not np.all(levels > 0):
+            raise error(where, "be positive", f"{levels.min():g}" if levels.size else "none", remedy)
         return levels
     system, h = discrete.system, float(discrete.time_step)
     if isinstance(system, ChaplyginSleigh):  # in units of the energy of a quarter-turn on the spot

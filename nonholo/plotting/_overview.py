@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from nonholo._checks import error
+from nonholo._checks import path as checked_path
 from nonholo.io import check_file
 from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
@@ -70,7 +71,7 @@ def overview(
 def check_suffix(figure: Figure, path: str | Path) -> None:
     """Refuse a path whose suffix is no picture format."""
     known = figure.canvas.get_supported_filetypes()
-    if Path(path).suffix[1:].lower() not in known:
+    if checked_path("overview(path=...)", path).suffix[1:].lower() not in known:
         remedy = "Use a path that ends in .png, .svg or .pdf."
         raise error("overview(path=...)", "end in a picture format", f"{str(path)!r}", remedy)
 

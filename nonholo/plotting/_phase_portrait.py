@@ -128,8 +128,8 @@ def _energies(system: AbstractLLSystem, orbit: Orbit | None, energies: Any) -> F
     if energies is not None:
         where, remedy = "phase_portrait(energies=...)", "Pass a list of positive energies."
         levels = array(where, energies, (None,), remedy)
-        if not np.all(levels > 0):
-            raise error(where, "be positive", f"{levels.min():g}", remedy)
+        if not levels.size or not np.all(levels > 0):
+            raise error(where, "be positive", f"{levels.min():g}" if levels.size else "none", remedy)
         return levels
     own = 0.0 if orbit is None else float(orbit[:1].energy[0])
     # at rest, or without an orbit, the ellipse of unit velocities sets the size

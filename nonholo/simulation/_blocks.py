@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from nonholo._checks import flags
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, OutcomeError
 from nonholo.discrete import Discretization
@@ -73,6 +74,7 @@ def iterate(
         >>> [len(block) for block in nh.iterate(sleigh, body_velocity=(1, 0, 0), steps=1000, block_steps=400)]
         [400, 400, 201]
     """
+    flags("iterate", reconstruct=reconstruct, throw=throw, progress=progress)
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
     starts["restricted_velocity"] = restricted_velocity
     steps, every, rule = checked_counts(discrete, steps, save_every, branch, backend, displacement)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import choice, count, error
+from nonholo._checks import choice, count, error, flags
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
@@ -92,7 +92,10 @@ def ensemble(
     if save_every is not None:
         save_every = count("ensemble(save_every=...)", save_every, "Pass the steps between saved states, or None.")
     _check_backend(discrete, backend)
+    flags("ensemble", reconstruct=reconstruct, progress=progress)
     _check_poses(discrete, states_of(steps, save_every) if reconstruct else 0)
+    if reduce is not None and not callable(reduce):
+        raise error("ensemble(reduce=...)", "be a function", f"a {type(reduce).__name__}", "Pass a function, or None.")
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
     one_start("ensemble", **starts)
     checked = checked_parameters(discrete, parameters)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, natural
 from nonholo._results import Outcome
 from nonholo._types import Float, Int
 from nonholo.groups import SE
@@ -70,6 +70,9 @@ class Ensemble:
 
     def orbit(self, member: int) -> Orbit:
         """Return the good states of one member as an orbit."""
+        member = natural("Ensemble.orbit(member=...)", member, "Pass the number of a member, from 0.")
+        if member >= len(self):
+            raise error("Ensemble.orbit(member=...)", f"be below {len(self)}", str(member), "Members count from 0.")
         kept = slice(0, int(np.isfinite(self.reduced_momentum[member, :, 0]).sum()))
         return self._orbit(member, kept)
 
@@ -197,7 +200,9 @@ def _spread(found: np.ndarray, rows: np.ndarray) -> np.ndarray:
 
 
 def _first_energy(system: System, reduced: np.ndarray) -> float:
-    """Return the energy of a canonical momentum at the identity."""
+    """Return the energy of a canonical momentum at the identity; NaN of a member that has none."""
+    if not np.isfinite(reduced).all():
+        return np.nan
     if isinstance(system, AbstractLRSystem):
         return float(system.constrained_energy(reduced, system.group.identity))
     return float(system.canonical.constrained_energy(reduced))

@@ -49,6 +49,8 @@ class Event:
         if not callable(self.function):
             raise error("Event(function=...)", "be a function of an orbit", repr(self.function), "Pass a function.")
         choice("Event(direction=...)", self.direction, (-1, 0, 1), "1 is from below, -1 from above, 0 both.")
+        if self.name is not None and not isinstance(self.name, str):
+            raise error("Event(name=...)", "be a text", f"a {type(self.name).__name__}", "Pass a name, or None.")
         if not isinstance(self.stop, numbers.Integral) or self.stop < 0:
             remedy = "Pass True for the first one, or which one."
             raise error("Event(stop=...)", "be True, False or a number of crossings", repr(self.stop), remedy)

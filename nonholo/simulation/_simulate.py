@@ -6,7 +6,7 @@ from typing import Any, overload
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, flags, path
 from nonholo._results import finished
 from nonholo.discrete import Discretization
 from nonholo.discrete._branch_rules import BranchRule
@@ -137,6 +137,7 @@ def simulate(
         >>> float(np.ptp(orbit.energy)) < 1e-14
         True
     """
+    flags("simulate", reconstruct=reconstruct, throw=throw, progress=progress)
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
     if isinstance(discrete, AbstractCoordinateDiscretization):
         refuse_in_coordinates(
@@ -159,6 +160,7 @@ def simulate(
     watch = None if events is None else watched("simulate", discrete, events, rule, reconstruct)
     kept = {"checkpoint_every": checkpoint_every, "scenario": scenario}
     if store is not None:
+        store = path("simulate(store=...)", store)
         stored = compiled_run("simulate(store=...)", discrete, rule, backend, every, reconstruct)
         start = first_state(discrete, configuration, int(reconstruct), True, starts)
         return run_into_store(stored, start, steps, store, watch, **kept, throw=throw, progress=progress)

@@ -11,7 +11,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import as_floats
+from nonholo._checks import last_length, trailing
 from nonholo._types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._mass import inertia_form
@@ -85,13 +85,15 @@ class AbstractSystem(abc.ABC):
 
     def to_canonical(self, restricted_momentum: Inexact[Array, "... k"]) -> Inexact[Array, "... k"]:
         """Return momenta along the canonical rows from those along the rows of the constraint subspace."""
-        return restricted_momentum if self.canonical is self else restricted_momentum @ self.frame_map.T
+        restricted = self._along("restricted_momentum", restricted_momentum)
+        return restricted if self.canonical is self else restricted @ self.frame_map.T
 
     def from_canonical(self, reduced_momentum: Float[Array, "... k"]) -> Float[Array, "... k"]:
         """Return momenta along the rows of the constraint subspace from those along the canonical ones."""
+        reduced = self._along("reduced_momentum", reduced_momentum)
         if self.canonical is self:
-            return reduced_momentum
-        return np.linalg.solve(self.frame_map, reduced_momentum[..., None])[..., 0]
+            return reduced
+        return np.linalg.solve(self.frame_map, reduced[..., None])[..., 0]
 
     @property
     @abc.abstractmethod
@@ -112,12 +114,20 @@ class AbstractSystem(abc.ABC):
 
     def restricted_momentum(self, restricted_velocity: Float[Array, "... k"]) -> Float[Array, "... k"]:
         """Return the momenta along the constraint subspace of velocities in its rows, of a body at the identity."""
-        velocity, inertia = as_floats(restricted_velocity), self.inertia_along
+        velocity, inertia = self._along("restricted_velocity", restricted_velocity), self.inertia_along
         return inertia.momenta(velocity) if isinstance(inertia, WideInertia) else velocity @ inertia
 
     def restrict(self, momentum: Inexact[Array, "... dim"]) -> Inexact[Array, "... k"]:
         """Return the components of a momentum along the rows of the constraint subspace."""
-        return as_floats(momentum) @ self.constraint_subspace.T
+        where, remedy = f"{type(self).__name__}.restrict(momentum=...)", "Pass a full momentum."
+        return trailing(where, momentum, (self.group.dim,), remedy) @ self.constraint_subspace.T
+
+    def _along(self, name: str, value: Array) -> Array:
+        where, remedy = (
+            f"{type(self).__name__} ({name}=...)",
+            "Pass one number for each row of the constraint subspace.",
+        )
+        return trailing(where, value, (self.rank,), remedy)
 
 
 class AbstractLLSystem(AbstractSystem):
@@ -145,13 +155,13 @@ class AbstractLLSystem(AbstractSystem):
             >>> ChaplyginSleigh(mass=2.0, inertia=1.0, a=0.5).constrained_energy([0.0, 2.0, 0.0])
             np.float64(1.0)
         """
-        momentum = as_floats(momentum)
-        restricted = momentum if momentum.shape[-1] == self.rank else self.restrict(momentum)
+        restricted = momentum if last_length(momentum) == self.rank else self.restrict(momentum)
+        restricted = self._along("momentum", restricted)
         return (restricted * self.restricted_velocity(restricted)).sum(axis=-1) / 2
 
     def restricted_velocity(self, restricted_momentum: Float[Array, "... k"]) -> Float[Array, "... k"]:
         """Return the velocity, in rows of the constraint subspace, that has these momenta along it."""
-        return _solve(self.inertia_along, restricted_momentum)
+        return _solve(self.inertia_along, self._along("restricted_momentum", restricted_momentum))
 
 
 class AbstractLRSystem(AbstractSystem):
@@ -196,25 +206,29 @@ class AbstractLRSystem(AbstractSystem):
             array([[4., 0.],
                    [0., 5.]])
         """
-        g = as_floats(configuration)
+        g = self._at(configuration)
         xp, rows, mass_tensor = g.__array_namespace__(), self.constraint_subspace, self.homogeneous_mass_tensor
         if mass_tensor is not None:
             return inertia_form(self.group, self.group.hat(rows), g @ mass_tensor @ xp.swapaxes(g, -1, -2))
         images = rows @ xp.swapaxes(self.group.adjoint(self.group.inverse(g)), -1, -2)
         return images @ self.inertia_operator @ xp.swapaxes(images, -1, -2)
 
+    def _at(self, configuration: Array) -> Array:
+        where, size = f"{type(self).__name__} (configuration=...)", self.group.size
+        return trailing(where, configuration, (size, size), "Pass the matrix of a pose.")
+
     def restrict_in_space(
         self, momentum: Float[Array, "... dim"], configuration: Float[Array, "... N N"]
     ) -> Float[Array, "... k"]:
         r"""Return the components $S\,\mathrm{Ad}^*_{g^{-1}}p$ of the spatial momentum of a body momentum."""
-        g = as_floats(configuration)
+        g = self._at(configuration)
         return self.restrict(self.group.coadjoint(self.group.inverse(g), momentum))
 
     def restricted_velocity(
         self, restricted_momentum: Float[Array, "... k"], configuration: Float[Array, "... N N"]
     ) -> Float[Array, "... k"]:
         """Return the spatial velocity, in rows of the constraint subspace, that has these spatial momenta along it."""
-        return _solve(self.spatial_inertia(configuration), restricted_momentum)
+        return _solve(self.spatial_inertia(configuration), self._along("restricted_momentum", restricted_momentum))
 
     def constrained_energy(
         self, momentum: Float[Array, "... dim"] | Float[Array, "... k"], configuration: Float[Array, "... N N"]
@@ -231,9 +245,8 @@ class AbstractLRSystem(AbstractSystem):
             >>> VeselovaTop(np.diag([1.0, 2.0, 3.0])).constrained_energy([4.0, 0.0], np.eye(3))
             np.float64(2.0)
         """
-        r = as_floats(momentum)
-        if r.shape[-1] != self.rank:
-            r = self.restrict_in_space(r, configuration)
+        r = momentum if last_length(momentum) == self.rank else self.restrict_in_space(momentum, configuration)
+        r = self._along("momentum", r)
         return (r * self.restricted_velocity(r, configuration)).sum(axis=-1) / 2
 
 
@@ -250,7 +263,6 @@ def form_along(system: AbstractSystem) -> Float[Array, "k k"]:
 
 
 def _solve(matrix: Float[Array, "... k k"] | WideInertia, vector: Float[Array, "... k"]) -> Float[Array, "... k"]:
-    vector = as_floats(vector)
     if isinstance(matrix, WideInertia):
         return matrix.velocities(vector)
     xp = (matrix @ vector[..., None]).__array_namespace__()  # either may be traced

@@ -5,7 +5,7 @@ The variety of a general system, with its charts, belongs to the discrete map.
 
 import numpy as np
 
-from nonholo._checks import as_floats, error, trailing
+from nonholo._checks import error, last_length, positive, trailing
 from nonholo._types import Array, Bool, Float
 
 
@@ -32,9 +32,8 @@ def trace_constraints(
         >>> trace_constraints(np.eye(3), nh.SO(3).exp([0.3, -0.2, 0.0]))
         array([0.])
     """
-    R = as_floats(configuration)
-    n = R.shape[-1] if R.ndim >= 2 else 0
-    R = trailing("trace_constraints(configuration=...)", R, (n, n), "Pass a matrix of SO(n).")
+    n = last_length(configuration) or 0
+    R = trailing("trace_constraints(configuration=...)", configuration, (n, n), "Pass a matrix of SO(n).")
     where, remedy = "trace_constraints(configuration_next=...)", "Pass a matrix of the same SO(n)."
     R_next = trailing(where, configuration_next, (n, n), remedy)
     W = R.__array_namespace__().swapaxes(R, -1, -2) @ R_next
@@ -65,10 +64,11 @@ def in_exp_d(displacement: Float[np.ndarray, "... n n"], tolerance: float = 1e-9
         >>> in_exp_d(nh.SO(3).exp([0.3, -0.2, 0.0])), in_exp_d(np.diag([-1.0, -1.0, 1.0]))
         (np.True_, np.False_)
     """
-    W = as_floats(displacement)
-    n = W.shape[-1] if W.ndim >= 2 else 0
-    if n < 2 or W.shape[-2] != n:
-        raise error("in_exp_d(displacement=...)", "be a square matrix", f"shape {W.shape}", "Pass W of SO(n).")
+    where, n = "in_exp_d(displacement=...)", last_length(displacement) or 0
+    if n < 2 or np.shape(displacement)[-2:] != (n, n):
+        raise error(where, "be a square matrix", f"shape {np.shape(displacement)}", "Pass W of SO(n).")
+    W = trailing(where, displacement, (n, n), "Pass W of SO(n).")
+    tolerance = positive("in_exp_d(tolerance=...)", tolerance, "Pass a positive error.")
     reflected = np.append(np.ones(n - 1), -1.0)[:, None] * W
     turned = np.swapaxes(reflected, -1, -2)
     asymmetry = np.abs(reflected - turned).max(axis=(-2, -1))

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from nonholo._checks import count, error
+from nonholo._checks import count, error, flags
 from nonholo.discrete import Discretization
 from nonholo.discrete._composition import refuse_composition
 from nonholo.testing import _discrete_motion as measure
@@ -103,6 +103,7 @@ def check_discretization(
         requirement = "be a discretisation of a system on a group"
         raise error("check_discretization(discrete=...)", requirement, type(discrete).__name__, remedy)
     refuse_composition("check_discretization(discrete=...)", discrete, "Check the discretisation of order 2.")
+    flags("check_discretization", definition=definition, throw=throw)
     number = count("check_discretization(steps=...)", steps, "Pass the length of the orbit.")
     samples = OrbitSamples(discrete, seeded(rng), max(number, 4))
     checks = (*_CHECKS, *_conserved(discrete), *((_DEFINITION,) if definition else ()))

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from nonholo._checks import error
+from nonholo._checks import error, flags
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.testing._group_algebra import ALGEBRA
 from nonholo.testing._group_maps import COMPILED, MAPS
@@ -51,6 +51,7 @@ def check_group(
     if not isinstance(group, AbstractMatrixGroup):
         remedy = "Pass SO(n), a MatrixGroup or a class of your own that implements AbstractMatrixGroup."
         raise error("check_group(group=...)", "be a group", type(group).__name__, remedy)
+    flags("check_group", compiled=compiled, throw=throw)
     samples = GroupSamples(group, seeded(rng))
     checks = (*ALGEBRA, *MAPS, *((COMPILED,) if compiled else ()))
     return run_checks(f"check_group({group!r})", checks, samples, tolerance_factor, throw)

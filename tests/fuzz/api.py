@@ -1,7 +1,8 @@
 """Fuzz the public API: `python tests/fuzz/api.py --trials 3000 --seed 0 --workers 2 [--json FILE]`.
 
-Each trial is done in a worker under limits. It ends *refused* by a check of ours, *accepted* (legal, finite), *silent*
-(accepted though illegal, or not finite though successful), *raw* (any other exception), *memory*, *hang* or *abort*.
+Each trial is done in a worker under limits. It ends *refused* by a check of ours, *accepted* (legal, finite), *warned*
+(legal, not finite, and a RuntimeWarning says so), *silent* (accepted though illegal, or not finite though successful),
+*raw* (any other exception), *memory*, *hang* or *abort*.
 """
 
 # ruff: noqa: E402
@@ -46,7 +47,9 @@ def figures(found: list[tuple[Trial, Verdict]]) -> dict[str, Any]:
 def lines(found: dict[str, Any]) -> list[str]:
     """Return figures for people, with a line that does again what broke."""
     refused = found["classes"]["refused"]
-    head = [f"{found['trials']} trials of {found['call forms']} call forms; {found['named']} of {refused} refusals name "]
+    head = [
+        f"{found['trials']} trials of {found['call forms']} call forms; {found['named']} of {refused} refusals name "
+    ]
     head[0] += "the changed argument"
     table = [f"{kind:10} {count:6}" for kind, count in found["classes"].items()]
     again = "python tests/fuzz/api.py --only"

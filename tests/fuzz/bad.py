@@ -192,7 +192,7 @@ DERIVED: dict[str, Callable[[np.ndarray], Any]] = {
     "one entry more": lambda v: np.concatenate([v, v[..., :1]], axis=-1) if v.ndim else v,
     "one row less": lambda v: v[:-1] if v.ndim else v,
     "none of them": lambda v: v[:0] if v.ndim else v,
-    "very many of them": lambda v: np.broadcast_to(v, (10**9, *v.shape)),
+    "very many of them": lambda v: np.broadcast_to(v, (10**12, *v.shape)),
 }
 
 

@@ -4,8 +4,9 @@ import dataclasses
 from collections.abc import Callable
 from typing import Any
 
-import nonholo as nh
 from fuzz.kinds import Argument
+
+import nonholo as nh
 
 
 @dataclasses.dataclass(frozen=True)
@@ -46,6 +47,9 @@ def by_position(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 NOT_CALLED = {
+    "Discretization": "made by `discretize`, which checks; a pytree, whose leaves may be anything",
+    "MemberBlock": "made by sweeps; its methods are called",
+    "OutcomeError": "raised by runs",
     "Crossings": "made by runs; its methods are called",
     "Ensemble": "made by `ensemble`; its methods are called",
     "EventLog": "made by runs",

@@ -1,11 +1,11 @@
 """Calls of questions that are asked of systems, discretisations and orbits, and of the property checks."""
 
 import numpy as np
-
-import nonholo as nh
 from fuzz.calls import Call, by_position, call
 from fuzz.calls_maps import BENT, SLEIGH, TOP
 from fuzz.kinds import anything, array, count, flag, integer, number, positive, thing
+
+import nonholo as nh
 from nonholo.analysis import deltoid
 
 

@@ -1,10 +1,10 @@
 """Calls of groups and of their methods."""
 
 import numpy as np
-
-import nonholo as nh
 from fuzz.calls import Call, by_position, call
 from fuzz.kinds import anything, array, count, thing
+
+import nonholo as nh
 
 _SL2 = np.array([[[1.0, 0], [0, -1]], [[0, 1.0], [0, 0]], [[0, 0], [1.0, 0]]])
 _OF_VECTORS = ("hat", "exp", "cayley", "retract", "ad", "angle", "exp_increment", "cayley_increment")

@@ -1,11 +1,11 @@
 """Calls of the discrete map, of its branches and of its definition."""
 
 import numpy as np
-
-import nonholo as nh
 from fuzz.calls import Call, call
 from fuzz.calls_systems import FLAT_ROWS, HOMOGENEOUS, J
-from fuzz.kinds import Argument, anything, array, count, flag, positive, rule, text, thing
+from fuzz.kinds import Argument, anything, array, count, flag, integer, positive, rule, text, thing
+
+import nonholo as nh
 
 TOP = nh.discretize(nh.SuslovTop(J), 0.2)
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
@@ -23,7 +23,6 @@ def calls() -> list[Call]:
     W = nh.SO(3).exp(BENT)
     return [
         call("discretize", nh.discretize, system=thing(TOP.system), time_step=positive(0.2), **options),
-        call("Discretization", nh.Discretization, system=thing(TOP.system), time_step=positive(0.2), **options),
         *(_inverse(name, DISCRETE[name]) for name in ("top", "sleigh", "top 4")),
         *_branches(),
         call("discrete_legendre", nh.discrete_legendre, discrete=thing(TOP), displacement=array(W), side=text("left")),
@@ -50,12 +49,15 @@ def _inverse(name: str, discrete: nh.Discretization) -> Call:
 def _branches() -> list[Call]:
     found = []
     for name, discrete, r in (("top", TOP, [0.1, 0.2]), ("sleigh", SLEIGH, [0.3, 0.4]), ("top 4", TOP_4, [0.1] * 3)):
-        given, W = {"discrete": thing(discrete)}, discrete.system.group.exp(0.3 * discrete.system.constraint_subspace[0])
+        given, W = (
+            {"discrete": thing(discrete)},
+            discrete.system.group.exp(0.3 * discrete.system.constraint_subspace[0]),
+        )
         found += [
             call(f"branches [{name}]", nh.branches, **given, displacement=array(W)),
             call(f"displacements_over [{name}]", nh.displacements_over, **given, restricted_momentum=array(r)),
             call(f"fold_distance [{name}]", nh.fold_distance, **given, displacement=array(W)),
-            call(f"branch_tree [{name}]", nh.branch_tree, **given, displacement=array(W), depth=count(2)),
+            call(f"branch_tree [{name}]", nh.branch_tree, **given, displacement=array(W), depth=integer(2)),
         ]
     certified = {"discrete": thing(SLEIGH), "momentum": array([0.3, 0.4]), "certify": flag(True)}
     return [*found, call("branches [certified]", nh.branches, **certified)]

@@ -6,13 +6,13 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
-
-import nonholo as nh
 from fuzz import shelf
 from fuzz.calls import Call, call
 from fuzz.calls_maps import DISCRETE, SLEIGH, TOP
 from fuzz.calls_runs import moving
 from fuzz.kinds import Argument, anything, array, count, flag, function, number, path, positive, text, thing
+
+import nonholo as nh
 
 mpl.use("agg")
 
@@ -28,7 +28,7 @@ def calls() -> list[Call]:
 
 
 def _drawn(name: str, **arguments: Argument) -> Call:
-    draw: Callable[..., Any] = getattr(nh.plot, name.split(" ")[0])
+    draw: Callable[..., Any] = getattr(nh.plot, name.split(" ", maxsplit=1)[0])
 
     def and_closed(**given: Any) -> None:
         import matplotlib.pyplot as plt

@@ -1,12 +1,26 @@
 """Calls that run motions, one or many, and of what comes out of them."""
 
 import numpy as np
-
-import nonholo as nh
 from fuzz.calls import Call, by_position, call
 from fuzz.calls_maps import DISCRETE, SLEIGH, TOP
 from fuzz.calls_systems import J
-from fuzz.kinds import Argument, anything, array, count, flag, function, integer, number, path, positive, rule, text, thing
+from fuzz.kinds import (
+    Argument,
+    anything,
+    array,
+    count,
+    flag,
+    function,
+    integer,
+    number,
+    path,
+    positive,
+    rule,
+    text,
+    thing,
+)
+
+import nonholo as nh
 
 _HOW: dict[str, Argument] = {
     "branch": rule("principal"),
@@ -40,7 +54,11 @@ def _runs() -> list[Call]:
             call(f"iterate [{name}]", nh.iterate, **given, block_steps=count(2, none=True)),
             call(f"flow [{name}]", nh.flow, **_flow(discrete)),
         ]
-    stored = {"store": path("new.zarr", none=True), "checkpoint_every": count(2, none=True), "scenario": text(None, True)}
+    stored = {
+        "store": path("new.zarr", none=True),
+        "checkpoint_every": count(2, none=True),
+        "scenario": text(None, True),
+    }
     given = {"discrete": thing(SLEIGH), "steps": count(5), "body_velocity": array([1.0, 0.3, 0.0])}
     return [*found, call("simulate [stored]", nh.simulate, **given, **stored)]
 
@@ -106,7 +124,6 @@ def _results() -> list[Call]:
         call("Orbit.to_csv", orbit.to_csv, path=path("new.csv"), overwrite=flag(False)),
         call("Orbit.to_dataset", lambda: orbit.to_dataset()),
         call("Discretization.displaced", TOP.displaced, cayley=array(orbit.cayley, "any")),
-        call("OutcomeError", nh.OutcomeError, outcome=anything(nh.Outcome(1)), where=anything("here")),
     ]
 
 

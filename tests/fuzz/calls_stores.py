@@ -1,12 +1,12 @@
 """Calls that write and read stores, and of sweeps; they work in a folder with the stores of `fuzz.shelf`."""
 
 import numpy as np
-
-import nonholo as nh
 from fuzz import shelf
 from fuzz.calls import Call, by_position, call
 from fuzz.calls_maps import TOP
 from fuzz.kinds import anything, array, count, flag, function, integer, number, path, positive, text, thing
+
+import nonholo as nh
 
 
 def calls() -> list[Call]:
@@ -53,7 +53,12 @@ def _designs() -> list[Call]:
         call("Grid", grid, x=axis, y=array([[0.0, 1.0], [1.0, 2.0]], "any"), seed=integer(0)),
         call("Grid [axes]", nh.Grid, axes=anything({"x": [1.0]}), seed=integer(0)),
         call("RandomDesign", drawn, members=count(4), x=uniform, seed=integer(0)),
-        call("RandomDesign [distributions]", nh.RandomDesign, members=count(4), distributions=anything({"x": nh.Uniform(0.0, 1.0)})),
+        call(
+            "RandomDesign [distributions]",
+            nh.RandomDesign,
+            members=count(4),
+            distributions=anything({"x": nh.Uniform(0.0, 1.0)}),
+        ),
         call("Uniform", nh.Uniform, low=array(0.0, "any"), high=array(1.0, "any")),
         call("LogUniform", nh.LogUniform, low=array(0.5, "any"), high=array(1.0, "any")),
         call("Normal", nh.Normal, **normal, size=count(2, none=True)),
@@ -64,11 +69,9 @@ def _designs() -> list[Call]:
 
 
 def _blocks() -> list[Call]:
-    design, arrays = nh.RandomDesign(4, {"x": nh.Uniform(0.0, 1.0)}), {"x": np.arange(3.0)}
-    block = nh.MemberBlock(0, 3, 0, arrays)
-    where = {"first": integer(0), "count": count(3), "seed": integer(0), "arrays": anything(arrays)}
+    design = nh.RandomDesign(4, {"x": nh.Uniform(0.0, 1.0)})
+    block = nh.MemberBlock(0, 3, 0, {"x": np.arange(3.0)})
     return [
-        call("MemberBlock", nh.MemberBlock, **where),
         call("MemberBlock.random", block.random, width=count(2), stream=text("")),
         call("MemberBlock.part", block.part, begin=integer(0), end=integer(2)),
         call("RandomDesign.values", design.values, first=integer(0), count=count(3)),

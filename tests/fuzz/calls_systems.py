@@ -3,10 +3,10 @@
 from typing import Any
 
 import numpy as np
-
-import nonholo as nh
 from fuzz.calls import Call, call
 from fuzz.kinds import Argument, array, count, function, number, positive, text, thing
+
+import nonholo as nh
 
 J = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 ROWS = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
@@ -14,7 +14,7 @@ HOMOGENEOUS = np.diag([0.5, 0.7, 0.4, 1.3])
 FLAT_ROWS = np.array([[0.0, 0, -1, 0, 0, 0], [0, 1.0, 0, 0, 0, 0], [0, 0, 0, 1.0, 0, 0]])
 
 
-def _kinetic(q: Any, v: Any) -> Any:
+def _kinetic(_: Any, v: Any) -> Any:
     return v @ v / 2
 
 

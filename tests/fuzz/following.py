@@ -14,6 +14,7 @@ import numpy as np
 
 _NEWTON = 10
 _JUMP = 0.1  # a root that moves further in one step of the continuation, relative to 1 + |y|, was not followed
+_BENT = 0.2  # nor one that misses its tangent by more of its way
 _FAR = 1e8
 _SMALLEST = 1e-11
 _FOLD = 1e-3  # relative size of the determinant where the smallest step fails: there the square root of 1e-11 is 3e-6
@@ -21,7 +22,7 @@ _FOLD = 1e-3  # relative size of the determinant where the smallest step fails: 
 
 @dataclasses.dataclass(frozen=True)
 class Equations:
-    """The equations of one body: basis (dim, N, N), tensor (N, N), rows (k, dim) that span d, and those that vanish on it.
+    """The equations of one body: basis (dim, N, N), tensor (N, N), rows (k, dim) that span d, and its annihilator.
 
     Momenta are multiplied by the time step and divided by the size of the tensor.
     """
@@ -68,16 +69,20 @@ class Equations:
     def _coordinates(self, X: np.ndarray, transposed: bool = False) -> np.ndarray:
         X = np.swapaxes(X, -1, -2) if transposed else X
         flat = self.basis.reshape(len(self.basis), -1)
-        return X.reshape(*X.shape[:-2], -1) @ np.linalg.pinv(flat)
+        return X.reshape(*X.shape[:-2], flat.shape[1]) @ np.linalg.pinv(flat)
 
 
 @dataclasses.dataclass(frozen=True)
 class Path:
-    """Where continuation along s r has come: the last root, s, and whether a fold ended it."""
+    """Where continuation along s r has come: the last root, s, whether a fold ended it, how far it is from one.
+
+    `slopes` are determinants relative to those at rest: they vanish at a fold.
+    """
 
     unknowns: np.ndarray
     s: np.ndarray
     folded: np.ndarray
+    slopes: np.ndarray
 
     @property
     def whole(self) -> np.ndarray:
@@ -85,30 +90,41 @@ class Path:
         return self.s >= 1.0
 
 
-def followed(equations: Equations, r: np.ndarray, rounds: int = 250) -> Path:
-    """Follow the root of zero momentum along s r, each path with steps of its own."""
+def followed(equations: Equations, r: np.ndarray, rounds: int = 400) -> Path:
+    """Follow the root of zero momentum along s r, each path with steps of its own, as long as its tangent foretells."""
     y, s, size = np.zeros((len(r), len(equations.basis))), np.zeros(len(r)), np.full(len(r), 0.05)
-    before, gone = y, np.full(len(r), np.inf)
-    zero = np.linalg.det(equations.system(y, 0 * r)[1])
+    rates, zero = _rates(equations, y, 0 * r, r)
     det = zero.copy()
     for _ in range(rounds):
         at = np.flatnonzero((s < 1.0) & (size > _SMALLEST))
         if not len(at):
             break
         ahead = np.minimum(s[at] + size[at], 1.0)
-        guess = y[at] + (y[at] - before[at]) * ((ahead - s[at]) / gone[at])[:, None]
-        found, good, slope = _newton(equations, guess, ahead[:, None] * r[at])
-        near = np.abs(found - y[at]).max(1) <= _JUMP * (1 + np.abs(y[at]).max(1))
-        good &= near & (slope * zero[at] > 0)
+        moved = rates[at] * (ahead - s[at])[:, None]
+        found, good, _ = newton(equations, y[at] + moved, ahead[:, None] * r[at])
+        missed, way = np.abs(found - y[at] - moved).max(1), np.abs(moved).max(1)
+        onwards, slope = _rates(equations, found, ahead[:, None] * r[at], r[at])
+        good &= (missed <= _BENT * way) & (way <= _JUMP * (1 + np.abs(y[at]).max(1))) & (slope * zero[at] > 0)
         on = at[good]
-        before[on], gone[on] = y[on], (ahead - s[at])[good]
-        y, before = y.copy(), before.copy()
-        y[on], s[on], det[on] = found[good], ahead[good], slope[good]
+        y[on], s[on], det[on], rates[on] = found[good], ahead[good], slope[good], onwards[good]
         size[at] = np.where(good, 1.5 * size[at], size[at] / 2)
-    return Path(y, s, (s < 1.0) & (size <= _SMALLEST) & (np.abs(det) < _FOLD * np.abs(zero)))
+    with np.errstate(invalid="ignore"):
+        slopes = np.abs(det / zero)
+    return Path(y, s, (s < 1.0) & (size <= _SMALLEST) & (slopes < _FOLD), slopes)
 
 
-def _newton(equations: Equations, y: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _rates(equations: Equations, y: np.ndarray, r: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the velocities of roots as momenta grow, and the determinants of the derivative."""
+    y = np.where((np.abs(y).max(1) < _FAR)[:, None], y, 0.0)
+    slopes = equations.system(y, r)[1]
+    determinant = np.linalg.det(slopes)
+    slopes[determinant == 0] = np.eye(y.shape[1])
+    growth = np.zeros_like(y)
+    growth[:, y.shape[1] - r.shape[1] :] = direction
+    return np.linalg.solve(slopes, growth[..., None])[..., 0], determinant
+
+
+def newton(equations: Equations, y: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return roots next to guesses, which of them converged, and the determinants of the derivative."""
     sound = np.ones(len(y), dtype=bool)
     for _ in range(_NEWTON):

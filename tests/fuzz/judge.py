@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-GOOD = ("refused", "accepted")
+GOOD = ("refused", "accepted", "warned")
 BROKEN = ("raw", "silent", "memory", "hang", "abort")
 _OWN_FILES = "/nonholo/"
 _DEPTH = 4

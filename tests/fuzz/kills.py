@@ -1,8 +1,8 @@
 """Kill runs and sweeps at random times: `python tests/fuzz/kills.py --trials 20 --restarts 10 [--json FILE]`.
 
-So many runs of orbits and of sweeps are killed by SIGKILL, two in five again in the resume, and resumed; others run in a
-process namespace of their own, as in a container, which ends with them, and are resumed in another one. The numbers must
-be those of a run that nobody disturbed, to the bit, no file may be left behind, and no lock held.
+So many runs of orbits and of sweeps are killed by SIGKILL, two in five again in the resume, and resumed; others run in
+a process namespace of their own, as in a container, which ends with them, and are resumed in another one. The numbers
+must be those of a run that nobody disturbed, to the bit, no file may be left behind, and no lock held.
 """
 
 # ruff: noqa: E402
@@ -26,10 +26,9 @@ import compilers
 
 compilers.use_caches()
 
+import numpy as np
 from ensembles import faults
 from simulation import killed
-
-import numpy as np
 
 import nonholo as nh
 from nonholo.io import owner_of
@@ -88,7 +87,9 @@ def in_a_child(do: Callable[..., Any], *given: Any) -> str:
 
 def kill_in_forks(family: str, name: str, store: Path, chance: random.Random, seconds: float) -> int:
     """Kill a run, perhaps its resume too; return how many were killed before they were over."""
-    kills = sum(_killed(family, name, store, chance.uniform(0.0, seconds)) for _ in range(1 + (chance.random() < _AGAIN)))
+    kills = sum(
+        _killed(family, name, store, chance.uniform(0.0, seconds)) for _ in range(1 + (chance.random() < _AGAIN))
+    )
     in_a_child(go_on, family, name, store)
     return kills
 
@@ -122,7 +123,7 @@ def can_restart() -> bool:
     """Tell whether process namespaces may be made here."""
     if shutil.which("unshare") is None:
         return False
-    return subprocess.run([*_RESTARTS, "true"], capture_output=True, check=False).returncode == 0
+    return subprocess.run([*_RESTARTS, "true"], capture_output=True, check=False).returncode == 0  # noqa: S603
 
 
 def figures(family: str, count: int, seed: int, restarts: bool = False, names: tuple[str, ...] = ()) -> dict[str, Any]:
@@ -165,15 +166,18 @@ def _compile(family: str, name: str) -> None:
         faults.TOPS(nh.MemberBlock(0, 1, 0, SWEEPS[name][1].values(0, 1)))
 
 
-def all_figures(trials: int, restarts: int, seed: int) -> dict[str, Any]:
+def all_figures(trials: int, restarts: int, seed: int, only: str | None = None) -> dict[str, Any]:
     """Return the figures of all kinds of kills."""
-    found = {family: figures(family, trials, seed) for family in FAMILIES}
+    chosen = {family: tuple(x for x in names if only in (None, x)) for family, names in FAMILIES.items()}
+    found = {family: figures(family, trials, seed, names=names) for family, names in chosen.items() if names}
     if not restarts:
         return found
     if not can_restart():
         return {**found, "restarts": "skipped: process namespaces may not be made here"}
     halves = (restarts + 1) // 2, restarts // 2
-    restarted = {f"{family}, restarted": figures(family, half, seed, True) for family, half in zip(FAMILIES, halves, strict=True)}
+    restarted = {
+        f"{family}, restarted": figures(family, half, seed, True) for family, half in zip(FAMILIES, halves, strict=True)
+    }
     return found | restarted
 
 
@@ -183,6 +187,7 @@ def main() -> int:
     parser.add_argument("--trials", type=int, default=20, help="of orbits, and of sweeps")
     parser.add_argument("--restarts", type=int, default=10, help="in namespaces that end")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--only", help="the name of one run or sweep")
     parser.add_argument("--json", type=Path, help="where the figures are written")
     parser.add_argument("--go-on", nargs=3, metavar=("FAMILY", "NAME", "STORE"), help="what is killed")
     given = parser.parse_args()
@@ -190,7 +195,7 @@ def main() -> int:
         family, name, store = given.go_on
         go_on(family, name, Path(store))
         return 0
-    found = all_figures(given.trials, given.restarts, given.seed)
+    found = all_figures(given.trials, given.restarts, given.seed, given.only)
     for name, row in found.items():
         sys.stdout.write(f"{name}: {row}\n")
     if given.json:

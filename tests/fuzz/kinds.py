@@ -1,6 +1,7 @@
 """What an argument of a public call is: its kind, a value that works, and which other values are legal."""
 
 import dataclasses
+import decimal
 import numbers
 from collections.abc import Callable
 from pathlib import Path
@@ -94,12 +95,14 @@ def legal(argument: Argument, value: Any) -> bool:
     return _LEGAL[argument.kind](argument, value)
 
 
-def real_array(value: Any) -> np.ndarray | None:
+def real_array(value: Any, nan: bool = False) -> np.ndarray | None:
     """Return finite real numbers as float64, None for what is something else, masks and truth values included."""
     try:
         raw = np.asarray(value)
         if raw.dtype.kind == "O":
-            if not all(isinstance(x, numbers.Real) and not isinstance(x, bool | np.generic) for x in raw.flat):
+            if not all(
+                isinstance(x, numbers.Real | decimal.Decimal) and not isinstance(x, bool | np.generic) for x in raw.flat
+            ):
                 return None
             raw = np.array([float(x) for x in raw.flat]).reshape(raw.shape)
     except (TypeError, ValueError, OverflowError, RecursionError, MemoryError):
@@ -108,7 +111,7 @@ def real_array(value: Any) -> np.ndarray | None:
         return None
     with np.errstate(over="ignore"):
         result = raw.astype(np.float64)
-    return result if np.isfinite(result).all() else None
+    return result if np.isfinite(result[~np.isnan(result)] if nan else result).all() else None
 
 
 def _is_number(argument: Argument, value: Any) -> bool:
@@ -117,14 +120,15 @@ def _is_number(argument: Argument, value: Any) -> bool:
 
 
 def _is_integer(argument: Argument, value: Any) -> bool:
-    integral = isinstance(value, numbers.Integral) and not isinstance(value, bool)
+    integral = isinstance(value, numbers.Integral) and not isinstance(value, bool | np.timedelta64)
     return integral and (argument.kind == "integer" or bool(value > 0))
 
 
 def _is_array(argument: Argument, value: Any) -> bool:
-    found, wanted = real_array(value), argument.value.shape
-    if found is None:
-        return False
+    wanted = argument.value.shape
+    found = real_array(value, nan=argument.shape == "batch")
+    if found is None or (found.ndim == len(wanted) and np.isnan(found).any()):
+        return False  # in a stack NaN marks what has no value
     if argument.shape == "batch":
         return found.shape[max(0, found.ndim - len(wanted)) :] == wanted
     if argument.shape == "rows":
@@ -142,7 +146,7 @@ _LEGAL: dict[str, Callable[[Argument, Any], bool]] = {
     "text": lambda _, value: isinstance(value, str),
     "flag": lambda _, value: isinstance(value, bool | np.bool_),
     "function": lambda _, value: callable(value),
-    "rule": lambda argument, value: callable(value) or value == argument.value,
+    "rule": lambda argument, value: callable(value) or (isinstance(value, str) and value == argument.value),
     "thing": lambda _argument, _value: False,
     "anything": lambda _argument, _value: True,
 }

@@ -1,7 +1,7 @@
 """Fuzz stores: `python tests/fuzz/stores.py --trials 200 --seed 0 --workers 2 [--json FILE]`.
 
-So many stores of orbits, and of sweeps, have a file damaged, as many have their JSON edited. Each is then loaded, shown,
-resumed, extended and exported. Right are the numbers of the whole store, to the bit, and refusals of ours.
+So many stores of orbits, and of sweeps, have a file damaged, as many have their JSON edited. Each is then loaded,
+shown, resumed, extended and exported. Right are the numbers of the whole store, to the bit, and refusals of ours.
 """
 
 # ruff: noqa: E402
@@ -41,7 +41,10 @@ def figures(chosen: list[Trial], workers: int) -> dict[str, Any]:
 
 def lines(found: dict[str, Any]) -> list[str]:
     """Return figures for people, with a line that does again what went wrong."""
-    table = [f"{name}: " + ", ".join(f"{count} {kind}" for kind, count in row.items()) for name, row in found["classes"].items()]
+    table = [
+        f"{name}: " + ", ".join(f"{count} {kind}" for kind, count in row.items())
+        for name, row in found["classes"].items()
+    ]
     again = "python tests/fuzz/stores.py --only"
     broken = [f"{x['class']}: {again} '{x['trial']}'\n    {x['what']}\n    {x['message']}" for x in found["broken"]]
     return [f"{found['openings']} openings", *table, *broken]

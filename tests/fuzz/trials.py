@@ -10,11 +10,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeAlias
 
+import numpy as np
 from fuzz import shelf
 from fuzz.bad import bad_value, names
 from fuzz.calls import Call, all_calls
 from fuzz.judge import Verdict, nonfinite, of_exception
-from fuzz.kinds import legal
+from fuzz.kinds import legal, real_array
 
 Trial: TypeAlias = tuple[str, tuple[tuple[str, str], ...]]
 """The name of a call, and the names of changed arguments with those of the values in their place."""
@@ -82,16 +83,24 @@ def _folder(shelf_: Path | None) -> contextlib.AbstractContextManager[None]:
             os.chdir(before)
 
 
+def _has_nan(value: object) -> bool:
+    found = real_array(value, nan=True)
+    return found is not None and bool(np.isnan(found).any())
+
+
 def verdict(call: Call, changes: dict[str, str], usual: set[str]) -> Verdict:
     """Do a trial and classify what comes of it."""
     changed = {name: bad_value(value, call.arguments[name].value) for name, value in changes.items()}
     illegal = [name for name, value in changed.items() if not legal(call.arguments[name], value)]
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
             strange = nonfinite(call(**changed)) - usual
-    except Exception as failure:  # noqa: BLE001  # whatever comes is classified
+    except Exception as failure:  # whatever comes is classified
         return of_exception(failure, list(changes))
     if illegal:
         return Verdict("silent", f"accepted, though {illegal[0]} is not legal")
-    return Verdict("silent", f"not finite, though successful: {sorted(strange)}"[:300]) if strange else Verdict("accepted")
+    if not strange or any(map(_has_nan, changed.values())):
+        return Verdict("accepted")
+    warned = any(issubclass(warning.category, RuntimeWarning) for warning in said)
+    return Verdict("warned" if warned else "silent", f"not finite, though successful: {sorted(strange)}"[:300])

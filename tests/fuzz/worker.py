@@ -106,5 +106,5 @@ def _feed(target: str, limits: dict[str, Any], waiting: Any, done: Any) -> None:
                 done.put((job, worker.answer(job)))
     except queue.Empty:
         pass
-    except BaseException as failure:  # noqa: BLE001  # it is raised where the answers are awaited
+    except BaseException as failure:  # it is raised where the answers are awaited
         done.put(failure)
