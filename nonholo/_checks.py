@@ -19,6 +19,7 @@ from nonholo._types import Array
 
 _LEAST_RTOL = 1e-14
 _MOST = 2**53  # the integers up to it are floats too
+_MOST_INDEX = 2**63 - 1
 _LONGEST_NAME = 255  # bytes; more is more than any file system has
 
 
@@ -79,12 +80,13 @@ def _numbers(where: str, value: Any, remedy: str) -> np.ndarray:
         raise error(where, "be finite", f"an integer beyond {sys.float_info.max:.2g}", remedy) from None
     except (TypeError, ValueError, ArithmeticError, RecursionError):
         raw = np.array(None)
-    if raw.dtype.kind not in "iufc" or isinstance(value, np.ma.MaskedArray):
-        raise error(where, "be an array of real numbers", _told(value), remedy)
+    if raw.dtype.kind not in "iufc" or np.ma.is_masked(value):
+        raise error(where, "be an array of real numbers", shown(value), remedy)
     return raw
 
 
-def _told(value: Any) -> str:
+def shown(value: Any) -> str:
+    """Return what was got as a text of bearable length, whatever it is."""
     try:
         text = repr(value)
     except Exception:  # an integer of thousands of digits, nested lists, whatever it is made of
@@ -127,7 +129,7 @@ def number(where: str, value: Any, remedy: str = "Pass one real number.") -> Arr
 def as_floats(value: Any) -> Array:
     """Return an array as it is (integers and longer floats as float64), a sequence as a float64 array."""
     result = value if hasattr(value, "__array_namespace__") else np.asarray(value, dtype=np.float64)
-    if result.dtype.kind not in "biu" and result.dtype not in (np.longdouble, np.clongdouble):
+    if result.dtype.kind not in "biu" and result.dtype.char not in "egG":  # half and long floats, long complex ones
         return result
     with np.errstate(over="ignore"):
         return result.astype(np.complex128 if result.dtype.kind == "c" else np.float64)
@@ -169,21 +171,22 @@ def positive(where: str, value: Any, remedy: str) -> Array:
 
 def count(where: str, value: Any, remedy: str) -> int:
     """Return a strictly positive Python integer."""
-    return _integer(where, value, 1, "be a positive integer", remedy)
+    return _integer(where, value, (1, _MOST), "be a positive integer", remedy)
 
 
 def natural(where: str, value: Any, remedy: str) -> int:
     """Return a Python integer that is not negative."""
-    return _integer(where, value, 0, "be a natural number", remedy)
+    return _integer(where, value, (0, _MOST_INDEX), "be a natural number", remedy)
 
 
-def _integer(where: str, value: Any, least: int, requirement: str, remedy: str) -> int:
+def _integer(where: str, value: Any, bounds: tuple[int, int], requirement: str, remedy: str) -> int:
     """Return an integer; NumPy takes a span of time for one."""
-    if not isinstance(value, numbers.Integral) or isinstance(value, bool | np.timedelta64) or value < least:
-        raise error(where, requirement, _told(value), remedy)
-    if value > _MOST:
-        raise error(where, f"be at most {_MOST}", _told(value), remedy)
-    return int(value)
+    integral = isinstance(value, numbers.Integral) and not isinstance(value, bool | np.timedelta64)
+    if not integral or (number := int(value)) < bounds[0]:
+        raise error(where, requirement, shown(value), remedy)
+    if number > bounds[1]:
+        raise error(where, f"be at most {bounds[1]}", shown(value), remedy)
+    return number
 
 
 def step_counts(steps: Any, save_every: Any) -> tuple[int, int]:
@@ -195,15 +198,35 @@ def step_counts(steps: Any, save_every: Any) -> tuple[int, int]:
 def choice(where: str, value: Any, allowed: tuple[Any, ...], remedy: str = "Choose one of them.") -> Any:
     """Return `value` if it is one of the allowed ones."""
     if not any(value is a or value == a for a in allowed if isinstance(value, type(a))):
-        raise error(where, "be one of " + ", ".join(repr(a) for a in allowed), _told(value), remedy)
+        raise error(where, "be one of " + ", ".join(repr(a) for a in allowed), shown(value), remedy)
     return value
 
 
 def flag(where: str, value: Any) -> bool:
     """Return True or False; what Python only takes for one of them, a text among it, is refused."""
     if not isinstance(value, bool | np.bool_):
-        raise error(where, "be True or False", _told(value), "Pass one of them.")
+        raise error(where, "be True or False", shown(value), "Pass one of them.")
     return bool(value)
+
+
+def function(where: str, value: Any) -> None:
+    """Refuse what cannot be called."""
+    if not callable(value):
+        raise error(where, "be a function", shown(value), "Pass a function.")
+
+
+def text(where: str, value: Any) -> str:
+    """Return a text."""
+    if not isinstance(value, str):
+        raise error(where, "be a text", shown(value), "Pass a text.")
+    return value
+
+
+def pair(where: str, value: Any) -> tuple[Any, Any]:
+    """Return the two parts of a pair."""
+    if not isinstance(value, tuple | list | np.ndarray) or len(value) != 2:
+        raise error(where, "be a pair", shown(value), "Pass two of them.")
+    return value[0], value[1]
 
 
 def flags(owner: str, **values: Any) -> None:
@@ -222,10 +245,10 @@ def path(where: str, value: Any) -> Path:
         ValueError: `load_orbit(path=...)` must be a path. Got 5. Pass a text or a pathlib.Path.
     """
     if not isinstance(value, str | os.PathLike) or not isinstance(text := os.fspath(value), str):
-        raise error(where, "be a path", _told(value), "Pass a text or a pathlib.Path.")
+        raise error(where, "be a path", shown(value), "Pass a text or a pathlib.Path.")
     longest = max((len(part.encode(errors="surrogatepass")) for part in Path(text).parts), default=0)
     if "\0" in text or longest > _LONGEST_NAME:
-        raise error(where, "be a name that files can have", _told(value), "Pass a shorter one, without the letter NUL.")
+        raise error(where, "be a name that files can have", shown(value), "Pass a shorter one, without the letter NUL.")
     return Path(text)
 
 
@@ -233,14 +256,14 @@ def selection(where: str, value: Any) -> slice | np.ndarray:
     """Return which rows are meant: a slice, a mask, or numbers of rows."""
     rows = value if isinstance(value, slice | np.ndarray) else np.array(None)
     if isinstance(rows, np.ndarray) and (rows.ndim != 1 or rows.dtype.kind not in "bi"):
-        raise error(where, "be a slice, a mask or an array of integers", _told(value), "Pass one of them.")
+        raise error(where, "be a slice, a mask or an array of integers", shown(value), "Pass one of them.")
     return rows
 
 
 def generator(where: str, value: Any) -> np.random.Generator:
     """Return a random generator."""
     if not isinstance(value, np.random.Generator):
-        raise error(where, "be a numpy.random.Generator", _told(value), "Pass np.random.default_rng(seed).")
+        raise error(where, "be a numpy.random.Generator", shown(value), "Pass np.random.default_rng(seed).")
     return value
 
 

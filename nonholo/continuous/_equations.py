@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, number, trailing
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractMotion, Orbit
@@ -150,7 +150,9 @@ def vector_field(system: AbstractSystem) -> Callable[[Array, Float[Array, "size"
     body = None if isinstance(system, AbstractLRSystem) else body_of(system)
 
     def derivative(time: Array, state: Float[Array, "size"]) -> Float[Array, "size"]:
-        del time
+        number("vector_field(...)(time=...)", time)
+        where, size = "vector_field(...)(state=...)", k + shape[0] * shape[1]
+        state = trailing(where, state, (size,), "Pass momenta along the subspace, then the pose row by row.", real=True)
         xp = state.__array_namespace__()
         r, g = state[..., :k], xp.reshape(state[..., k:], (*state.shape[:-1], *shape))
         if body is None:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, function
 from nonholo._types import Array
 from nonholo.discrete._discretization import Discretization, as_discretization
 
@@ -44,6 +44,7 @@ def consistency_defect(discrete: Discretization, discretization_map: Callable[[A
     where = "consistency_defect(discretization_map=...)"
     own = {"matrix": lambda W: group.vee(W - group.identity), "logarithmic": group.log}
     if discretization_map is not None:
+        function(where, discretization_map)
         velocities = map_each(discretization_map, sample_displacements(discrete, _SAMPLES))
     elif callable(discrete.difference):
         got = "none, with a callable difference"

@@ -6,7 +6,7 @@ from typing import Any, overload
 
 import numpy as np
 
-from nonholo._checks import choice, error, positive
+from nonholo._checks import choice, error, positive, shown, trailing
 from nonholo._types import Array, Float
 from nonholo.discrete._composition import checked_order, first_substep, refuse_composition, whole_displacements
 from nonholo.discrete._legendre import legendre, legendre_of_chart
@@ -77,8 +77,9 @@ class Discretization(AbstractMotion):
 
     def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Return the elements of the variety, in the user's frame, with canonical chart coordinates."""
-        frame = self.system.frame
-        return frame @ self.variety.displaced(cayley) @ self.system.group.inverse(frame)
+        where, size = "Discretization.displaced(cayley=...)", len(self.variety.chart)
+        y, frame = trailing(where, cayley, (size,), f"Pass {size} chart coordinates.", real=True), self.system.frame
+        return frame @ self.variety.displaced(y) @ self.system.group.inverse(frame)
 
     def displacements(self, states: Orbit) -> Float[np.ndarray, "K N N"]:
         """Return the displacements of whole steps; spatial ones for a right-invariant constraint."""
@@ -132,7 +133,7 @@ def _in_body(discrete: Discretization, cayley: np.ndarray, g: np.ndarray, side: 
 def as_discretization(where: str, value: Any, *, composed: bool = False) -> Discretization:
     """Refuse what is not a discretised system on a group, and compositions unless they are welcome."""
     if not isinstance(value, Discretization):
-        raise error(where, "be a discretised system on a group", repr(value), "Pass what `discretize` returned.")
+        raise error(where, "be a discretised system on a group", shown(value), "Pass what `discretize` returned.")
     if not composed:
         refuse_composition(where, value, "Pass the discretisation of order 2 that is composed.")
     return value

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo._checks import array, count, error, natural
+from nonholo._checks import array, count, error, natural, shown
 from nonholo._types import Float
 from nonholo.ensembles._distributions import AbstractDistribution
 from nonholo.ensembles._names import OUTCOME, array_name, component_name, stream_name
@@ -120,7 +120,7 @@ class RandomDesign(AbstractDesign):
 
     def __init__(self, members: int, distributions: Any, seed: int = 0) -> None:
         if not isinstance(distributions, Mapping) or not distributions:
-            got = repr(distributions)
+            got = shown(distributions)
             raise error("RandomDesign(distributions=...)", "be a mapping", got, f"{_REMEDY} distributions.")
         named = _named("RandomDesign(distributions=...)", distributions)
         for name, value in distributions.items():

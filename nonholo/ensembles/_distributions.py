@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.special import ndtri
 
-from nonholo._checks import array, count, error, number, positive
+from nonholo._checks import array, count, error, number, positive, trailing
 from nonholo._types import Float
 
 _LEAST = 2.0**-54  # instead of a uniform number zero, where its logarithm is needed
@@ -228,8 +228,11 @@ DISTRIBUTIONS = {kind.__name__: kind for kind in (Uniform, LogUniform, Normal, D
 
 def _bounds(owner: Any, name: str) -> None:
     """Check and keep two bounds of one shape as plain numbers, which are written to stores exactly."""
-    low, high = np.broadcast_arrays(np.asarray(owner.low), np.asarray(owner.high))
     remedy = "Pass numbers, or vectors of one length."
+    low, high = (trailing(f"{name}({side}=...)", getattr(owner, side), (), remedy) for side in ("low", "high"))
+    if 1 not in (low.size, high.size) and low.shape != high.shape:
+        raise error(f"{name}(high=...)", "have the shape of `low`", f"{high.shape} and {low.shape}", remedy)
+    low, high = np.broadcast_arrays(low, high)
     low, high = (array(f"{name}({side}=...)", x, low.shape, remedy) for side, x in (("low", low), ("high", high)))
     if not np.all(low <= high):
         raise error(f"{name}(high=...)", "not be below `low`", f"{high} for low {low}", "Exchange the two.")

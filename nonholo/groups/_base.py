@@ -125,7 +125,7 @@ class AbstractMatrixGroup(abc.ABC):
 
     def vee(self, X: Inexact[Array, "... N N"]) -> Inexact[Array, "... dim"]:
         """Return the coordinates of a matrix of the algebra (of its orthogonal projection, if it lies outside)."""
-        return self.coordinates.vector(self._matrix(X))
+        return self.coordinates.vector(self._matrix(X, real=False))
 
     def form_adjoint(self, X: Inexact[Array, "... N N"]) -> Inexact[Array, "... N N"]:
         r"""Return $X^* = G^{-1}X^TG$, the adjoint of a matrix in the form of the group; $X^T$ where there is none."""
@@ -186,9 +186,9 @@ class AbstractMatrixGroup(abc.ABC):
     def _generator(self, rng: Any) -> np.random.Generator:
         return generator(f"{self!r}.random(rng=...)", rng)
 
-    def _matrix(self, g: Array) -> Array:
-        where = f"{self!r} (element)"
-        return trailing(where, g, (self.size, self.size), "Use `hat`, `exp` or `cayley` to make a matrix.")
+    def _matrix(self, g: Array, real: bool = True) -> Array:
+        where, shape = f"{self!r} (element)", (self.size, self.size)
+        return trailing(where, g, shape, "Use `hat`, `exp` or `cayley` to make a matrix.", real=real)
 
 
 def _from_identity(increment: Array) -> Array:

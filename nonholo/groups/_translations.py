@@ -118,5 +118,5 @@ class Translations(AbstractMatrixGroup):
 
     def pose_rate(self, pose: Float[Array, "... m"], x: Float[Array, "... m"]) -> Float[Array, "... m"]:
         """Return the velocity."""
-        self._pose(pose)
-        return self._vector(x)
+        x, pose = self._vector(x), self._pose(pose)
+        return x.__array_namespace__().broadcast_to(x, np.broadcast_shapes(x.shape, pose.shape))

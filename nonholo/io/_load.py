@@ -43,11 +43,6 @@ def load_orbit(path: str | Path, *, discrete: Discretization | None = None) -> O
     Example:
         >>> orbit = load_orbit("orbit.zarr")  # doctest: +SKIP
     """
-    if discrete is not None and not isinstance(discrete, Discretization):
-        got = f"a {type(discrete).__name__}"
-        raise error(
-            "load_orbit(discrete=...)", "be a discretisation", got, "Pass the one that made the store, or None."
-        )
     return _loaded(checked_path(_WHERE, path), discrete, last=False)
 
 

@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo._checks import step_counts
+from nonholo._limits import within_a_year
 from nonholo._results import Outcome, finished
 from nonholo._types import Array
 from nonholo.lagrange_dalembert import _start
@@ -17,6 +18,8 @@ from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+
+_LEAST = 1e-6  # seconds of a step, at least
 
 
 def simulate(
@@ -31,6 +34,7 @@ def simulate(
 ) -> CoordinateOrbit:
     """Check a start, run the map and return its orbit."""
     steps, every = step_counts(steps, save_every)
+    within_a_year("simulate(steps=...)", _LEAST * steps, "Pass fewer steps, or a larger time_step.")
     q = _start.point("simulate", system, configuration)
     _start.consistent(system, q, np.float64(h))
     start = _first(system, np.float64(h), q, starts)

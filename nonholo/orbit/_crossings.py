@@ -46,8 +46,8 @@ class Crossings:
 
     def chosen(self, which: np.ndarray) -> "Crossings":
         """Return some of the crossings."""
-        which = selection("Crossings.chosen(which=...)", which)
-        return Crossings(self.step[which], self.fraction[which], self.direction[which], self.states.chosen(which))
+        at = selection("Crossings.chosen(which=...)", which)
+        return Crossings(self.step[at], self.fraction[at], self.direction[at], self.states.chosen(at))
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)

@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 from PIL import Image
 
-from nonholo._checks import count, error, positive
+from nonholo._checks import count, error, function, positive
 from nonholo._checks import path as checked_path
 from nonholo._types import Int
 from nonholo.io import check_file
@@ -69,6 +69,8 @@ def animate(
     check_file(target, overwrite=overwrite, where="animate(path=...)")
     remedy = "Pass how many frames there should be."
     total = min(count("animate(frames=...)", frames, remedy), len(orbit))
+    if progress is not None:
+        function("animate(progress=...)", progress)
     rate = float(positive("animate(fps=...)", fps, "Pass frames per second."))
     shown = _shown_states(orbit, motion(orbit), total)
     figure, show = scene(orbit, shown)

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.lines import Line2D
 
+from nonholo._checks import flags
 from nonholo._types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
@@ -73,6 +74,7 @@ def blade_track(orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = Non
         >>> len(track.track.get_offsets()), len(track.cusps.get_offsets())
         (121, 1)
     """
+    flags("blade_track", enlarge=enlarge)
     system_of("blade_track(orbit=...)", orbit, ChaplyginSleigh, _REMEDY)
     if flow is not None:
         system_of("blade_track(flow=...)", flow, ChaplyginSleigh, _REMEDY)

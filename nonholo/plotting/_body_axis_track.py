@@ -16,7 +16,7 @@ from nonholo._types import Float
 from nonholo.groups import SO
 from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
-from nonholo.plotting._sphere import View, best_view, draw_curve, draw_globe
+from nonholo.plotting._sphere import View, best_view, draw_curve, draw_globe, given_view
 from nonholo.plotting._sphere_path import draw_named_axes, draw_path, mark_ends
 from nonholo.plotting._subject import known_equilibria, permanent_velocity, posed, same_group
 from nonholo.plotting._thinning import turn_per_state, window
@@ -98,7 +98,11 @@ def body_axis_track(
     points = shown.configuration @ gamma
     before, after = rotation_axes(orbit)
     fixed = _fixed_axis(orbit)
-    eye = best_view(points, known_axes(before, after, fixed)) if view is None else View(*view)
+    eye = (
+        best_view(points, known_axes(before, after, fixed))
+        if view is None
+        else given_view("body_axis_track(view=...)", view)
+    )
     draw_globe(axes, eye)
     curve = None if flow is None else _flow(axes, eye, flow, gamma)
     path, dots = draw_path(axes, eye, shown, points, orbit)

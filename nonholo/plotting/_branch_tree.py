@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, NullLocator
 
-from nonholo._checks import error
+from nonholo._checks import error, pair
 from nonholo._types import Float
 from nonholo.discrete import BranchTree, Discretization
 from nonholo.discrete._discretization import as_discretization
@@ -72,7 +72,7 @@ def branch_tree(discrete: Discretization, tree: BranchTree, axes: tuple[Axes, Ax
         array([ 1,  3,  9, 27, 81])
     """
     system = _checked(discrete, tree)
-    plane, growth = _new_axes() if axes is None else axes
+    plane, growth = _new_axes() if axes is None else map(theme.axes_or_new, pair("plot.branch_tree(axes=...)", axes))
     momentum = reduced(system, system.restrict(tree.momentum.real))
     if momentum.shape[1] == 2:
         level = ellipse(system, float(system.canonical.constrained_energy(momentum[0])))

@@ -9,7 +9,7 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3D, Path3DCollection, Poly3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
-from nonholo._checks import error
+from nonholo._checks import error, pair, shown
 from nonholo._types import Float
 from nonholo.analysis import InvariantCurve, MomentumLocus
 from nonholo.orbit import Orbit
@@ -92,6 +92,8 @@ def momentum_locus(
     own_orbit(f"{where}(orbit=...)", orbit, locus.discrete)
     space: Any = _new_axes() if axes is None else axes
     drawn = _drawn(locus.discrete.system)
+    if curve is not None and not isinstance(curve, InvariantCurve):
+        raise error("plot.momentum_locus(curve=...)", "be an invariant curve", shown(curve), "Pass `invariant_curve`.")
     surface = draw_surface(space, locus.momentum @ drawn)
     doubles = tuple(_segment(space, ends @ drawn, linewidth=2.6) for ends in locus.double_lines)
     whiskers = tuple(_segment(space, ends @ drawn, linewidth=1.6, dashes=(3, 2)) for ends in locus.whiskers(_WHISKER))
@@ -178,7 +180,7 @@ def _dress(axes: Any, locus: MomentumLocus, view: tuple[float, float] | None) ->
     span = spans(locus.momentum)[2]
     if not is_sleigh and np.ptp(locus.momentum[..., 2]) < span:
         axes.set_zlim(-span / 4, span / 4)
-    axes.view_init(*(best_view(locus) if view is None else view))
+    axes.view_init(*(best_view(locus) if view is None else pair("plot.momentum_locus(view=...)", view)))
     axes.set_box_aspect((1.0, 1.0, 0.85), zoom=1.0)
     axes.computed_zorder = False
     axes.grid(False)

@@ -10,7 +10,7 @@ from nonholo._checks import error
 from nonholo._types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
-from nonholo.plotting._sphere import View, best_view, draw_globe, opacity
+from nonholo.plotting._sphere import View, best_view, draw_globe, given_view, opacity
 from nonholo.plotting._sphere_path import draw_path, mark_ends, name_beside
 from nonholo.plotting._subject import drawable, known_equilibria
 from nonholo.plotting._thinning import window
@@ -76,7 +76,7 @@ def momentum_sphere(orbit: Orbit, axes: Axes | None = None, view: tuple[float, f
     shown = orbit[part]
     points = shown.reduced_momentum @ to_sphere / size
     attracting = _attracting(system, to_sphere)
-    eye = best_view(points, attracting) if view is None else View(*view)
+    eye = best_view(points, attracting) if view is None else given_view("momentum_sphere(view=...)", view)
     axes = theme.axes_or_new(axes, (6.0, 6.0))
     draw_globe(axes, eye)
     path, dots = draw_path(axes, eye, shown, points, orbit)

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 
-from nonholo._checks import error
+from nonholo._checks import error, function, pair, text
 from nonholo._types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
@@ -66,11 +66,14 @@ def section(
     if not isinstance(crossings, Crossings) or not len(crossings):
         remedy = "Pass `orbit.events[...]` of a run that crosses."
         raise error("section(crossings=...)", "hold crossings of an event", repr(crossings), remedy)
+    function("section(across=...)", across)
+    function("section(up=...)", up)
+    across_label, up_label = (text("section(labels=...)", label) for label in pair("section(labels=...)", labels))
     points = np.stack([_values("across", across, crossings), _values("up", up, crossings)], axis=1)
     axes = theme.axes_or_new(axes, (6.0, 5.0))
     area = _LARGE if len(points) <= _FEW else _SMALL
     dots = axes.scatter(*points.T, c=crossings.time, cmap=theme.TIME, s=area, linewidths=0)
-    axes.set(xlabel=labels[0], ylabel=labels[1])
+    axes.set(xlabel=across_label, ylabel=up_label)
     axes.margins(0.06)
     axes.set_title(f"{len(points)} crossings")
     return Section(axes, points, dots)

@@ -9,6 +9,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 from matplotlib.patches import Circle
 
+from nonholo._checks import number, pair
 from nonholo._types import Float
 from nonholo.plotting import _theme as theme
 
@@ -40,6 +41,12 @@ class View:
         """Return the flat points and their distances towards the eye."""
         seen = points @ self.frame.T
         return seen[..., :2], seen[..., 2]
+
+
+def given_view(where: str, value: Any) -> View:
+    """Return the view that a caller asks for."""
+    azimuth, elevation = (float(number(where, angle)) for angle in pair(where, value))
+    return View(azimuth, elevation)
 
 
 def best_view(points: Float[np.ndarray, "K 3"], axes: Float[np.ndarray, "A 3"]) -> View:

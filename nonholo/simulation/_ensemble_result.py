@@ -174,7 +174,7 @@ class Ensemble:
 
     def _decoded(self, name: str) -> np.ndarray:
         """Return a quantity of orbits, NaN after a member's end; in one go where it is the same function for all."""
-        sound = np.isfinite(self.reduced_momentum).all(-1) & np.isfinite(self.cayley).all(-1)
+        sound = np.asarray(np.isfinite(self.reduced_momentum).all(-1) & np.isfinite(self.cayley).all(-1))
         if self._is_shared(name):
             pose = None if self.canonical_pose is None else self.canonical_pose[sound]
             states = np.zeros(sound.sum()), self.reduced_momentum[sound], self.cayley[sound], pose

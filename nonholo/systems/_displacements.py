@@ -64,10 +64,11 @@ def in_exp_d(displacement: Float[np.ndarray, "... n n"], tolerance: float = 1e-9
         >>> in_exp_d(nh.SO(3).exp([0.3, -0.2, 0.0])), in_exp_d(np.diag([-1.0, -1.0, 1.0]))
         (np.True_, np.False_)
     """
-    where, n = "in_exp_d(displacement=...)", last_length(displacement) or 0
-    if n < 2 or np.shape(displacement)[-2:] != (n, n):
-        raise error(where, "be a square matrix", f"shape {np.shape(displacement)}", "Pass W of SO(n).")
-    W = trailing(where, displacement, (n, n), "Pass W of SO(n).")
+    where = "in_exp_d(displacement=...)"
+    W = trailing(where, displacement, (), "Pass W of SO(n).", real=True)
+    n = W.shape[-1] if W.ndim >= 2 else 0
+    if n < 2 or W.shape[-2] != n:
+        raise error(where, "be a square matrix", f"shape {W.shape}", "Pass W of SO(n).")
     tolerance = positive("in_exp_d(tolerance=...)", tolerance, "Pass a positive error.")
     reflected = np.append(np.ones(n - 1), -1.0)[:, None] * W
     turned = np.swapaxes(reflected, -1, -2)

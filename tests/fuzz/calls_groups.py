@@ -39,7 +39,7 @@ def _methods(name: str, group: nh.groups.AbstractMatrixGroup) -> list[Call]:
     found += [call(f"{name}.{method}", getattr(group, method), g=g) for method in _OF_MATRICES]
     return [
         *found,
-        call(f"{name}.vee", group.vee, X=array(group.hat(x.value), "batch")),
+        call(f"{name}.vee", group.vee, X=array(group.hat(x.value), "batch", complex=True)),
         call(f"{name}.bracket", group.bracket, x=x, y=x),
         call(f"{name}.coad", group.coad, x=x, p=x),
         call(f"{name}.coadjoint", group.coadjoint, g=g, p=x),

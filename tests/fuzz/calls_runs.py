@@ -83,7 +83,7 @@ def _starts() -> list[Call]:
 def _flows() -> list[Call]:
     given, g = {"system": thing(SLEIGH.system), "times": array([0.0, 0.1, 0.3], "any")}, np.eye(3)
     how = {"rtol": positive(1e-8), "atol": positive(1e-10), "method": text(None, True), "configuration": array(g)}
-    state = array([0.3, 0.4, *np.eye(3).ravel()])
+    state = array([0.3, 0.4, *np.eye(3).ravel()], "batch")
     return [
         call("flow [options]", nh.flow, **given, **how, body_velocity=array([0.3, 0.4, 0.0])),
         call("flow [momentum]", nh.flow, **given, momentum=array([0.3, 0.4])),

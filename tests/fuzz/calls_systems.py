@@ -64,11 +64,13 @@ def _methods() -> list[Call]:
     found = []
     flat = nh.LLSystem(nh.SE(3), HOMOGENEOUS, FLAT_ROWS)
     for name, system in (("top", nh.SuslovTop(J)), ("sleigh", nh.ChaplyginSleigh(1.0, 1.0, 0.5)), ("flat", flat)):
-        r, p = array([0.2, -0.3, 0.1][: system.rank], "batch"), array(0.1 + np.arange(system.group.dim), "batch")
+        r = array([0.2, -0.3, 0.1][: system.rank], "batch", complex=True)
+        p = array(0.1 + np.arange(system.group.dim), "batch", complex=True)
+        either = array(r.value, "any", complex=True)  # r and p are told apart by their length
         found += [
             call(f"{name}.{method}", getattr(system, method), **{argument: value})
             for method, argument, value in (
-                ("constrained_energy", "momentum", r),
+                ("constrained_energy", "momentum", either),
                 ("restrict", "momentum", p),
                 ("restricted_momentum", "restricted_velocity", r),
                 ("restricted_velocity", "restricted_momentum", r),

@@ -20,12 +20,14 @@ class Argument:
         value: One that works.
         none: Whether None is legal.
         shape: For arrays, which shapes are legal: the "same", a "batch" before it, any number of "rows", or "any".
+        complex: Whether complex numbers are legal.
     """
 
     kind: str
     value: Any
     none: bool = False
     shape: str = "same"
+    complex: bool = False
 
 
 def number(value: Any) -> Argument:
@@ -48,9 +50,9 @@ def integer(value: Any) -> Argument:
     return Argument("integer", value)
 
 
-def array(value: Any, shape: str = "same", none: bool = False) -> Argument:
-    """Return an array of finite real numbers."""
-    return Argument("array", np.asarray(value, dtype=np.float64), none, shape)
+def array(value: Any, shape: str = "same", none: bool = False, complex: bool = False) -> Argument:  # noqa: A002
+    """Return an array of finite numbers."""
+    return Argument("array", np.asarray(value, dtype=np.float64), none, shape, complex)
 
 
 def path(value: str, none: bool = False) -> Argument:
@@ -107,7 +109,7 @@ def real_array(value: Any, nan: bool = False) -> np.ndarray | None:
             raw = np.array([float(x) for x in raw.flat]).reshape(raw.shape)
     except (TypeError, ValueError, OverflowError, RecursionError, MemoryError):
         return None
-    if raw.dtype.kind not in "iuf" or raw.size > 10**7 or isinstance(value, np.ma.MaskedArray):
+    if raw.dtype.kind not in "iuf" or raw.size > 10**7 or np.ma.is_masked(value):
         return None
     with np.errstate(over="ignore"):
         result = raw.astype(np.float64)
@@ -126,6 +128,8 @@ def _is_integer(argument: Argument, value: Any) -> bool:
 
 def _is_array(argument: Argument, value: Any) -> bool:
     wanted = argument.value.shape
+    if argument.complex and isinstance(value, np.ndarray) and value.dtype.kind == "c":
+        value = value.view(type=np.ndarray).real + value.imag
     found = real_array(value, nan=argument.shape == "batch")
     if found is None or (found.ndim == len(wanted) and np.isnan(found).any()):
         return False  # in a stack NaN marks what has no value

@@ -60,7 +60,7 @@ def _kinds_of(call: Call) -> set[str]:
         (kinds.count(1), "True", False),
         (kinds.count(1), "2.0", False),
         (kinds.count(1), "np.int8", True),
-        (kinds.array(np.eye(3)), "masked nowhere", False),
+        (kinds.array(np.eye(3)), "masked in part", False),
         (kinds.array(np.eye(3)), "as integers", True),
         (kinds.array(np.eye(3)), "three of them", False),
         (kinds.array(np.eye(3), "batch"), "three of them", True),
