@@ -129,6 +129,7 @@ class AbstractMatrixGroup(abc.ABC):
 
     def form_adjoint(self, X: Inexact[Array, "... N N"]) -> Inexact[Array, "... N N"]:
         r"""Return $X^* = G^{-1}X^TG$, the adjoint of a matrix in the form of the group; $X^T$ where there is none."""
+        X = self._matrix(X, real=False)
         xp = X.__array_namespace__()
         turned = xp.swapaxes(X, -1, -2)
         if self.form is None:

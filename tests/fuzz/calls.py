@@ -50,6 +50,7 @@ NOT_CALLED = {
     "Discretization": "made by `discretize`, which checks; a pytree, whose leaves may be anything",
     "MemberBlock": "made by sweeps; its methods are called",
     "OutcomeError": "raised by runs",
+    "ImpossibleBodyWarning": "a warning of `from_inertia`, which is called",
     "Crossings": "made by runs; its methods are called",
     "Ensemble": "made by `ensemble`; its methods are called",
     "EventLog": "made by runs",

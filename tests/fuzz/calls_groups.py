@@ -40,6 +40,7 @@ def _methods(name: str, group: nh.groups.AbstractMatrixGroup) -> list[Call]:
     return [
         *found,
         call(f"{name}.vee", group.vee, X=array(group.hat(x.value), "batch", complex=True)),
+        call(f"{name}.form_adjoint", group.form_adjoint, X=array(g.value, "batch", complex=True)),
         call(f"{name}.bracket", group.bracket, x=x, y=x),
         call(f"{name}.coad", group.coad, x=x, p=x),
         call(f"{name}.coadjoint", group.coadjoint, g=g, p=x),
