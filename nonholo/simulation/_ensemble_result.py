@@ -147,7 +147,7 @@ class Ensemble:
         frames = group.matrix_from_pose(scalar_members(self.members).pose)[:, None]
         if np.array_equal(frames, np.broadcast_to(group.identity, frames.shape)):
             return self.canonical_pose
-        sound = np.isfinite(self.canonical_pose).all(-1)
+        sound = np.asarray(np.isfinite(self.canonical_pose).all(-1))
         moved = group.matrix_from_pose(self.canonical_pose) @ group.inverse(frames)
         return _spread(group.pose_from_matrix(moved[sound]), sound)
 
