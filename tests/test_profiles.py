@@ -79,7 +79,7 @@ def _complete(request: pytest.FixtureRequest) -> bool:
         (["docs/house.md", "README.md", "benchmarks/gpu.py"], set()),
         (["nonholo/cli/_plot.py"], {"faults"}),
         (["tests/plotting/test_section.py", "docs/paper.md"], {"paper"}),
-        (["nonholo/kernels/_sleigh.py"], {"routes", "faults", "problems", "shapes"}),
+        (["nonholo/kernels/_sleigh.py"], {"routes", "faults", "problems", "shapes", "bounds"}),
         (["nonholo/_checks.py"], {"shapes"}),
         (["pyproject.toml"], set(PROFILES) - {"fuzz", "mutants"}),
         (["tests/bodies.py"], set(PROFILES) - {"fuzz", "mutants"}),

@@ -165,7 +165,8 @@ def simulate(
         start = first_state(discrete, configuration, int(reconstruct), True, starts)
         return run_into_store(stored, start, steps, store, watch, **kept, throw=throw, progress=progress)
     refuse_without_store(**kept)
-    refuse_too_large("simulate", discrete, 1 + steps // every, reconstruct)
+    if watch is None:  # an event may stop it long before
+        refuse_too_large("simulate", discrete, 1 + steps // every, reconstruct)
     held = 1 + steps // every if reconstruct else 0
     start = first_state(discrete, configuration, held, closed is not None, starts)
     if closed is not None:

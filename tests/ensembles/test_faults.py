@@ -55,7 +55,7 @@ def test_killed_sweeps_go_on(name: str, scheduler: str, tmp_path: Path, capsys: 
         )
     assert ended == len(victims)
     assert 0 < faults.done(path) < blocks, "the last kill has to come before the end: the sweep has to be longer"
-    found = nh.resume(path).load()
+    found = nh.resume(path, task=task).load()
     assert same(found, nh.sweep(task, design, tmp_path / "whole.zarr", block=design.members).load())
     assert not list(path.rglob("*.partial"))
     assert standing_of(path).owner is None
@@ -146,7 +146,7 @@ except OSError as failure:
     assert told.startswith(f"{errno.EFBIG} ")
     assert "File too large. The sweep stands at 0 of 2400 members, 0 of them failed. Free space, then call" in told
     task, design, _ = faults.SWEEPS["noisy"]
-    assert same(nh.resume(path).load(), nh.sweep(task, design, tmp_path / "whole.zarr", block=2400).load())
+    assert same(nh.resume(path, task=task).load(), nh.sweep(task, design, tmp_path / "whole.zarr", block=2400).load())
 
 
 def test_no_room_for_a_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 import nonholo as nh
 from nonholo.cli._app import app
 from nonholo.ensembles import sweep_to_csv
+from nonholo.io import checksum
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5, b=0.2), time_step=0.1)
 TOP = nh.discretize(nh.SuslovTop.from_inertia(np.diag([1.0, 2.0, 2.5]), axis=(0.6, 0, 0.8)), time_step=0.1)
@@ -83,6 +84,7 @@ def test_refused_without_the_system(tmp_path: Path) -> None:
     told = json.loads(document["attributes"]["sweep"])
     told["task"]["motion"] = json.dumps(json.loads(told["task"]["motion"]) | {"difference": "callable"})
     document["attributes"]["sweep"] = json.dumps(told)
+    document["attributes"]["checksum"] = checksum(document["attributes"])
     (tmp_path / "s.zarr" / "zarr.json").write_text(json.dumps(document))
     with pytest.raises(ValueError, match=r"hold its system as data\. Got .*one whose difference is a callable\."):
         sweep_to_csv(tmp_path / "s.zarr", tmp_path / "poses.csv")

@@ -15,7 +15,8 @@ from ensembles.small import DESIGN, resumed, same, simple, stop_at, swept
 
 import nonholo as nh
 from nonholo.ensembles import standing_of
-from nonholo.io import edit_attributes
+from nonholo.ensembles._store import attributes_of
+from nonholo.io import checksum, edit_attributes
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
 SLEIGHS = nh.Grid({"a": [0.1, 0.2]})
@@ -245,7 +246,8 @@ def test_stores_of_strangers_run_nothing(reduction: bool, tmp_path: Path) -> Non
     described = json.loads(json.loads((path / "zarr.json").read_text())["attributes"]["sweep"])
     name = f"{tmp_path.name}:call"
     described["task"] |= {"reductions": [name]} if reduction else {"name": name}
-    edit_attributes(path, {"sweep": json.dumps(described), "finished": False})
+    edited = attributes_of(path) | {"sweep": json.dumps(described), "finished": False}
+    edit_attributes(path, edited | {"checksum": checksum(edited)})
     (path / "run" / "blocks" / "0.json").unlink()
     with pytest.raises(ValueError, match=f"names {name}. Pass it"):  # an import would say: no such module
         nh.resume(path, scheduler="synchronous")
