@@ -82,7 +82,7 @@ _DAMAGES: dict[str, Callable[[Path, random.Random], Any]] = {
 
 def edit_json(store: Path, chance: random.Random) -> str:
     """Remove, replace or add one entry of one JSON file of a store; say what was done."""
-    files = sorted(path for path in store.rglob("*.json") if path.is_file())
+    files = [path for path in sorted(store.rglob("*.json")) if _has_entries(path)]
     main = store / "zarr.json"
     file = main if chance.random() < 0.6 else chance.choice(files)
     data = json.loads(file.read_text())
@@ -98,6 +98,14 @@ def edit_json(store: Path, chance: random.Random) -> str:
     parent[place[-1]] = value = _other(parent[place[-1]], chance)
     _write(file, data)
     return f"set {where} = {str(value)[:40]!r}"
+
+
+def _has_entries(file: Path) -> bool:
+    """Tell whether a file is JSON with entries; marks of blocks have a sum before it."""
+    try:
+        return isinstance(json.loads(file.read_text()), dict)
+    except ValueError:
+        return False
 
 
 def _other(value: Any, chance: random.Random) -> Any:

@@ -5,6 +5,7 @@ import json
 import random
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -27,9 +28,10 @@ def test_calls_with_bad_values_are_refused() -> None:
     assert not found["broken"], api.lines(found)
 
 
-def test_damaged_stores_are_refused_or_right() -> None:
+def test_damaged_stores_are_refused_or_right(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut, changed and missing files of an unfinished run and of a sweep."""
     chosen = [*openings.trials("orbit", "damage", 3, seed=2)[10:], *openings.trials("sweep", "damage", 1, seed=0)]
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     do = openings.prepared()
     found = [(trial, *do(trial)) for trial in chosen]
     assert not [row for row in found if row[-1].kind not in stores.RIGHT]

@@ -7,6 +7,7 @@ import multiprocessing.connection
 import os
 import queue
 import resource
+import tempfile
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
@@ -31,10 +32,12 @@ class Worker:
         self._process: multiprocessing.process.BaseProcess | None = None
 
     def __enter__(self) -> "Worker":
+        self._folder = tempfile.TemporaryDirectory(prefix="fuzz-")  # what a killed process leaves is in it
         return self
 
     def __exit__(self, *_: object) -> None:
         self._end()
+        self._folder.cleanup()
 
     def answer(self, job: Any) -> Any:
         """Return the answer to a job, "hang" if it takes too long, "abort" if the process dies of it."""
@@ -57,7 +60,8 @@ class Worker:
     def _start(self) -> None:
         context = multiprocessing.get_context("spawn")
         self._pipe, theirs = context.Pipe()
-        self._process = context.Process(target=_work, args=(self.target, theirs, self.addresses), daemon=True)
+        given = (self.target, theirs, self.addresses, self._folder.name)
+        self._process = context.Process(target=_work, args=given, daemon=True)
         self._process.start()
         theirs.close()
         if not self._pipe.poll(600.0) or self._pipe.recv() != "ready":
@@ -70,8 +74,9 @@ class Worker:
             self._process = None
 
 
-def _work(target: str, pipe: multiprocessing.connection.Connection, addresses: int) -> None:
+def _work(target: str, pipe: multiprocessing.connection.Connection, addresses: int, folder: str) -> None:
     module, _, name = target.partition(":")
+    tempfile.tempdir = folder
     os.environ.setdefault("JAX_PLATFORMS", "cpu")
     with open(os.devnull, "w") as nowhere, contextlib.redirect_stdout(nowhere), contextlib.redirect_stderr(nowhere):
         answer: Callable[[Any], Any] = getattr(importlib.import_module(module), name)()
@@ -89,13 +94,17 @@ def answers(target: str, jobs: Iterable[Any], workers: int = 1, **limits: Any) -
     for job in jobs:
         waiting.put(job)
     total = waiting.qsize()
-    for _ in range(workers):
-        threading.Thread(target=_feed, args=(target, limits, waiting, done), daemon=True).start()
+    given = (target, limits, waiting, done)
+    feeders = [threading.Thread(target=_feed, args=given, daemon=True) for _ in range(workers)]
+    for feeder in feeders:
+        feeder.start()
     for _ in range(total):
         answered = done.get()
         if isinstance(answered, BaseException):
             raise answered
         yield answered
+    for feeder in feeders:
+        feeder.join()
 
 
 def _feed(target: str, limits: dict[str, Any], waiting: Any, done: Any) -> None:
