@@ -66,6 +66,10 @@ PROFILES = {
         ("kernels", "numerics"),
         f"NUMBA_BOUNDSCHECK=1 {PYTHON} -m pytest -q tests/kernels tests/numerics tests/simulation/test_ensemble.py",
     ),
+    "long": Profile(
+        "the same problems in thousands, and a hundred bodies for 100,000 steps: half an hour",
+        (),
+    ),
     "fuzz": Profile(
         "calls with values that nobody expects, damaged stores, kills at random times, random steps; prints figures",
         (),

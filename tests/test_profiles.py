@@ -81,9 +81,9 @@ def _complete(request: pytest.FixtureRequest) -> bool:
         (["tests/plotting/test_section.py", "docs/paper.md"], {"paper"}),
         (["nonholo/kernels/_sleigh.py"], {"routes", "faults", "problems", "shapes", "bounds"}),
         (["nonholo/_checks.py"], {"shapes"}),
-        (["pyproject.toml"], set(PROFILES) - {"fuzz", "mutants"}),
-        (["tests/bodies.py"], set(PROFILES) - {"fuzz", "mutants"}),
-        (None, set(PROFILES) - {"fuzz", "mutants"}),
+        (["pyproject.toml"], set(PROFILES) - {"fuzz", "long", "mutants"}),
+        (["tests/bodies.py"], set(PROFILES) - {"fuzz", "long", "mutants"}),
+        (None, set(PROFILES) - {"fuzz", "long", "mutants"}),
     ],
 )
 def test_touched_profiles(files: list[str] | None, expected: set[str]) -> None:

@@ -166,7 +166,7 @@ FAMILIES = [("top", 2), ("top", 3), ("top", 4), ("top", 5), ("sleigh", 1), ("sle
 NAMES = [f"{kind} {'SE' if kind == 'sleigh' else 'SO'}({k + 1})" for kind, k in FAMILIES]
 
 
-@pytest.mark.profile("problems", cases=["1500-*"])
+@pytest.mark.profile("long", cases=["1500-*"])
 @pytest.mark.parametrize(("kind", "k"), FAMILIES, ids=NAMES)
 @pytest.mark.parametrize("count", [30, 1500])
 def test_random_branches_tend_to_the_attracting_momentum(kind: str, k: int, count: int) -> None:

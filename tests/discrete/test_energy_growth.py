@@ -61,7 +61,7 @@ def test_a_few_bodies(seed: int) -> None:
     assert growth(*random_case(seed), 10_000) <= ALLOWED * 10_000
 
 
-@pytest.mark.profile("problems", instead="test_a_few_bodies")
+@pytest.mark.profile("long", instead="test_a_few_bodies")
 @pytest.mark.parametrize("seed", range(100))
 def test_a_hundred_bodies(seed: int) -> None:
     """Of any dimension, on rotations and motions, over 100,000 steps."""

@@ -86,7 +86,7 @@ def test_random_problems() -> None:
     assert min(reached, folded) > 100
 
 
-@pytest.mark.profile("problems", instead="test_random_problems")
+@pytest.mark.profile("long", instead="test_random_problems")
 def test_many_random_problems() -> None:
     """10,000 of them, many with paths through angle pi."""
     reached, folded, past = agreements(10_000, 5)
