@@ -50,6 +50,19 @@ def orbits(system: Any, order: int = 2, rank: int | None = None, size: float = S
     return found
 
 
+def past_pi() -> Arrays:
+    """Return a step whose principal path passes angle pi, where all unknowns are followed."""
+    tensor = [
+        [1.97, 2.24, -1.96, -0.56],
+        [2.24, 2.57, -2.24, -0.64],
+        [-1.96, -2.24, 1.97, 0.56],
+        [-0.56, -0.64, 0.56, 0.17],
+    ]
+    discrete = nh.discretize(nh.SuslovTop(tensor), 1.0)
+    orbit = nh.simulate(discrete, momentum=(-1.718, -1.87, 1.66), steps=1, throw=False)
+    return [orbit.reduced_momentum, orbit.cayley]
+
+
 def body(group: Any, k: int, seed: int) -> nh.LLSystem:
     """Return a body with a random constraint."""
     rng = np.random.default_rng(seed)
@@ -83,6 +96,7 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     "any d on SO(4) of order 4": lambda: orbits(GENERAL["any d on SO(4)"][0], 4),
     "right-invariant on SE(3)": lambda: orbits(GENERAL["right-invariant on SE(3)"][0]),
     "any d on SO(8)": lambda: orbits(body(nh.SO(8), 4, 8)),
+    "a top past angle pi": lambda: past_pi(),
     "a fold on SO(4)": lambda: orbits(GENERAL["any d on SO(4)"][0], size=20.0),
 }
 
