@@ -292,6 +292,15 @@ def positive_definite(where: str, matrix: Array, what: str, remedy: str) -> None
         raise error(where, f"make {what} positive definite", got, remedy)
 
 
+def energies(where: str, value: Any) -> Array:
+    """Return positive energies, at least one."""
+    remedy = "Pass a list of positive energies."
+    levels = array(where, value, (None,), remedy)
+    if not levels.size or not np.all(levels > 0):
+        raise error(where, "be positive", f"{levels.min():g}" if levels.size else "none", remedy)
+    return levels
+
+
 def flow_times(value: Any) -> Array:
     """Return the times of a flow: at least one, in strict order, in either direction."""
     where, remedy = "flow(times=...)", "Sort the times; the start is at the first."

@@ -5,12 +5,12 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from nonholo._checks import error
+from nonholo.io import TAKEN, is_array_name
 
 OUTCOME = "outcome"
 STARTS = ("body_velocity", "restricted_velocity", "momentum")
 _BRACKETS = re.compile(r"\[(\d+)\]")
 _LAST = re.compile(r"(\w+)_(\d+)")
-_TAKEN = ("run", "zarr.json")
 
 
 class Axes(NamedTuple):
@@ -54,10 +54,9 @@ def stream_name(name: str) -> str:
 
 def array_name(where: str, name: Any) -> str:
     """Return the name of an array, refused if no file or no attribute can be called so."""
-    if not isinstance(name, str) or not name or set("/\\") & set(name) or name.startswith((".", "_")):
-        raise error(where, "have names without slashes that begin with a letter", repr(name), "Rename it.")
-    if name in _TAKEN:
-        raise error(where, f"leave the names {', '.join(_TAKEN)} to the store", repr(name), "Rename it.")
+    if not isinstance(name, str) or not is_array_name(name):
+        requirement = f"have names without slashes that begin with a letter, and not {' or '.join(TAKEN)}"
+        raise error(where, requirement, repr(name), "Rename it.")
     return name
 
 

@@ -22,7 +22,7 @@ from nonholo.io._load import (
     read_chunk,
 )
 from nonholo.io._lock import locked, owner_of
-from nonholo.io._metadata import checksum, require_identity
+from nonholo.io._metadata import TAKEN, checksum, is_array_name, require_identity
 from nonholo.io._pandas import orbit_to_pandas
 from nonholo.io._plan import Checkpoint, Plan
 from nonholo.io._pose_columns import column_names, separate_rows
@@ -44,6 +44,7 @@ from nonholo.io._stream import Standing, Stream, create_stream, open_stream, sta
 
 __all__ = [
     "SWEEP_FORMAT",
+    "TAKEN",
     "Checkpoint",
     "Plan",
     "Seen",
@@ -66,6 +67,7 @@ __all__ = [
     "fields_of",
     "format_of",
     "identity_of",
+    "is_array_name",
     "is_known",
     "labels_of",
     "load_last_block",

@@ -24,16 +24,21 @@ from nonholo._results import Outcome
 
 _DESCRIBED = ("system", "parameters", "motion", "save_every", "branch", "precision", "events", "sweep")
 _MOST = 2**53
-_TAKEN = ("run", "zarr.json")
+TAKEN = ("run", "zarr.json")
+"""Names in a store that no array has."""
 
 Positive = Annotated[int, Field(gt=0, le=_MOST, strict=True)]
 Text = Annotated[str, AfterValidator(printable)]
 
 
+def is_array_name(name: str) -> bool:
+    """Tell whether an array of a store can be called so: by a file in it, and by none that has another use."""
+    return bool(name) and not set("/\\\0") & set(name) and not name.startswith((".", "_")) and name not in TAKEN
+
+
 def _name(text: str) -> str:
     """Return the name of an array: one that no file outside the store has."""
-    inner = text.removeprefix("canonical/")
-    if not inner or set("/\\\0") & set(inner) or inner.startswith((".", "_")) or inner in _TAKEN:
+    if not is_array_name(text.removeprefix("canonical/")):
         raise ValueError(f"{text!r} is no name of an array")
     return text
 

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
 
-from nonholo._checks import array, error
+from nonholo._checks import energies as checked_energies
 from nonholo._types import Float
 from nonholo.analysis import InvariantCurve, invariant_curve
 from nonholo.analysis._variety_points import closed_form, points_of
@@ -90,11 +90,7 @@ def invariant_curves(
 
 def _energies(discrete: Discretization, energies: Any) -> Float[np.ndarray, "L"]:
     if energies is not None:
-        where, remedy = "plot.invariant_curves(energies=...)", "Pass a list of positive energies."
-        levels = array(where, energies, (None,), remedy)
-        if not levels.size or not np.all(levels > 0):
-            raise error(where, "be positive", f"{levels.min():g}" if levels.size else "none", remedy)
-        return levels
+        return checked_energies("plot.invariant_curves(energies=...)", energies)
     system, h = discrete.system, float(discrete.time_step)
     if isinstance(system, ChaplyginSleigh):  # in units of the energy of a quarter-turn on the spot
         return float(system.inertia + system.mass * system.a**2) / h**2 * (np.arange(1, _LEVELS + 1) / 5) ** 2

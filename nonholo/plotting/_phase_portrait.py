@@ -12,7 +12,8 @@ from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch
 
-from nonholo._checks import array, error
+from nonholo._checks import energies as checked_energies
+from nonholo._checks import error
 from nonholo._types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import _theme as theme
@@ -126,11 +127,7 @@ def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
 
 def _energies(system: AbstractLLSystem, orbit: Orbit | None, energies: Any) -> Float[np.ndarray, "L"]:
     if energies is not None:
-        where, remedy = "phase_portrait(energies=...)", "Pass a list of positive energies."
-        levels = array(where, energies, (None,), remedy)
-        if not levels.size or not np.all(levels > 0):
-            raise error(where, "be positive", f"{levels.min():g}" if levels.size else "none", remedy)
-        return levels
+        return checked_energies("phase_portrait(energies=...)", energies)
     own = 0.0 if orbit is None else float(orbit[:1].energy[0])
     # at rest, or without an orbit, the ellipse of unit velocities sets the size
     scale = own if own > 0 else float(np.trace(system.canonical.constrained_inertia)) / 4

@@ -203,7 +203,7 @@ def test_killed_clients_go_on(running: Cluster, trial: int, tmp_path: Path, undi
     client.kill()
     client.wait()
     assert len(done(store)) < BLOCKS
-    assert same(nh.resume(store), undisturbed)
+    assert same(nh.resume(store, trust=True), undisturbed)
 
 
 def _kill_scheduler(made: Cluster) -> None:
@@ -225,7 +225,7 @@ def test_a_killed_cluster_is_told(
             OSError, match=r"to the scheduler at tcp.* was lost. The sweep stands at \d+ of 240 members"
         ):
             swept.result(timeout=120)
-    assert same(nh.resume(tmp_path / "a.zarr"), undisturbed)
+    assert same(nh.resume(tmp_path / "a.zarr", trust=True), undisturbed)
 
 
 def test_a_cluster_without_workers_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

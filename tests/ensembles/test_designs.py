@@ -213,7 +213,7 @@ def test_blocks_are_not_small(block: int) -> None:
         (lambda: nh.Grid({"a": ["one"]}), "array of real numbers"),
         (lambda: nh.Grid({"a/b": [1.0]}), "names without slashes"),
         (lambda: nh.Grid({"_a": [1.0]}), "names without slashes"),
-        (lambda: nh.Grid({"run": [1.0]}), "leave the names run, "),
+        (lambda: nh.Grid({"run": [1.0]}), "not run or zarr.json"),
         (lambda: nh.Grid({"outcome": [1.0]}), "leave the name outcome"),
         (lambda: nh.Grid({"a": [[1.0, 2.0]], "a_number": [1.0]}), "other names than its vectors"),
         (lambda: nh.Grid({"a": [1.0]}, seed=-1), "between 0 and 2"),
