@@ -6,10 +6,7 @@ from pathlib import Path
 
 import jinja2
 
-from nonholo.reproduction._checklist import Section, sections
-from nonholo.reproduction._finding import Finding
-from nonholo.reproduction._registry import Entry, entries
-from nonholo.reproduction._verdict import Verdict
+from nonholo_paper import Entry, Finding, Section, Verdict, entries, sections
 
 DOCS = Path(__file__).parent
 NAMES = ("paper.md", "errata.md")

@@ -322,3 +322,29 @@ def flow_tolerances(rtol: Any, atol: Any) -> tuple[float, float]:
     if relative < _LEAST_RTOL:
         raise error("flow(rtol=...)", "be at least 1e-14", f"{relative:g}", "Rounding errors are as large as that.")
     return relative, float(positive("flow(atol=...)", atol, "Pass a positive absolute error."))
+
+
+class MissingExtraError(ModuleNotFoundError, ValueError):
+    """A door was asked for what an extra holds that is not installed."""
+
+
+@contextlib.contextmanager
+def needs(extra: str, where: str) -> Iterator[None]:
+    """Import in its body what an extra holds; where that is missing, say how to install it.
+
+    Raises:
+        MissingExtraError: If a library of the extra is not installed.
+
+    Example:
+        >>> with needs("certify", "branches(certify=...)"):
+        ...     raise ModuleNotFoundError("No module named 'flint'", name="flint")
+        Traceback (most recent call last):
+        nonholo._checks.MissingExtraError: `branches(certify=...)` must have the extra `certify`. Got no module 'flint'.
+        Install the extra `certify`: pip install 'nonholo[certify]'.
+    """
+    try:
+        yield
+    except ModuleNotFoundError as missing:
+        remedy = f"Install the extra `{extra}`: pip install 'nonholo[{extra}]'."
+        message = str(error(where, f"have the extra `{extra}`", f"no module {missing.name!r}", remedy))
+        raise MissingExtraError(message, name=missing.name) from None

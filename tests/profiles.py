@@ -52,7 +52,7 @@ PROFILES = {
     ),
     "paper": Profile(
         "changed formulas of the paper that findings must notice, and the pages of the docs, executed",
-        ("reproduction", "plotting", "analysis", "examples"),
+        ("paper", "plotting", "analysis", "examples"),
     ),
     "shapes": Profile(
         "annotations of shapes and types, checked at run time by jaxtyping and beartype",
@@ -150,15 +150,15 @@ def _git(*arguments: str) -> str:
 def touched(files: list[str] | None) -> list[str]:
     """Return the profiles whose rooms files lie in; all but the fuzzers and the mutants when in doubt."""
     every = [name for name, profile in PROFILES.items() if profile.rooms]
-    rooms = {_room(file) for file in files or []}
+    rooms = {room_of(file) for file in files or []}
     if files is None or None in rooms:
         return every
     return [name for name in every if rooms & set(PROFILES[name].rooms)]
 
 
-def _room(file: str) -> str | None:
+def room_of(file: str) -> str | None:
     """Return the room of a file, "" where only the default run is concerned, None where that is in doubt."""
-    parts = Path(file).parts
+    parts = Path(file.replace("nonholo_paper/", "nonholo/paper/", 1)).parts
     if parts[0] in ("nonholo", "tests") and len(parts) > 1:
         return parts[1].removesuffix(".py") if len(parts) > 2 or parts[1].startswith("_") else None
     return "" if parts[0] in ("docs", "benchmarks", "examples") or file.endswith(".md") else None

@@ -28,7 +28,7 @@ from matplotlib.figure import Figure
 import nonholo as nh
 from nonholo.examples import Example
 from nonholo.lagrange_dalembert import CoordinateOrbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 
 STEPS = {0.2: "#9ecae1", 0.1: theme.DISCRETE}
 """Time steps, and the colour of their energy."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from nonholo.reproduction._run import Result
+    from nonholo_paper import Result
 
 
 def paper(
@@ -30,13 +30,13 @@ def paper(
     use_cache_folders()
     import sys
 
+    from nonholo._checks import needs
     from nonholo._progress import progress_bar
     from nonholo.cli._errors import FAILED, USAGE, leave, store_errors
-    from nonholo.reproduction._folder import check_folder, write_folder
-    from nonholo.reproduction._registry import entries, select
-    from nonholo.reproduction._run import evaluate_all
 
-    with store_errors(USAGE):
+    with store_errors(USAGE), needs("paper", "nonholo paper"):
+        from nonholo_paper import check_folder, entries, evaluate_all, select, write_folder
+
         check_folder(output)
         chosen = select(only) if only else entries()
     with progress_bar("findings", sys.stderr.isatty()) as report:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import needs
 from nonholo._types import Float
 from nonholo.discrete._branch_equations import Frame
 from nonholo.discrete._branch_roots import Root, place
@@ -35,9 +35,6 @@ def certified_over(owner: str, discrete: Discretization, frame: Frame, r: Float[
 
 def _enclosures(owner: str) -> Callable[..., Any]:
     """Import the certificate, or name the extra that it needs."""
-    try:
+    with needs("certify", f"{owner}(certify=...)"):
         from nonholo.discrete._certificate import enclosures
-    except ModuleNotFoundError:
-        remedy = "Install the extra `certify`: pip install 'nonholo[certify]'."
-        raise error(f"{owner}(certify=...)", "be False without python-flint", "True", remedy) from None
     return enclosures

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from typing import Any
 
-from nonholo._checks import error
+from nonholo._checks import error, needs
 from nonholo.ensembles._blocks import Done, Work, do_block
 from nonholo.ensembles._store import attributes_of
 
@@ -125,9 +125,6 @@ def _no_scheduler(got: str) -> ValueError:
 
 
 def _distributed() -> Any:
-    try:
+    with needs("cluster", _WHERE):
         import distributed
-    except ModuleNotFoundError:
-        remedy = "Install the extra `cluster`: pip install 'nonholo[cluster]'."
-        raise error(_WHERE, "be local without distributed", "the address of a cluster", remedy) from None
     return distributed

@@ -14,7 +14,7 @@ from nonholo._checks import path as checked_path
 from nonholo._types import Int
 from nonholo.io import check_file
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._sleigh_scene import sleigh_motion, sleigh_scene
 from nonholo.plotting._subject import drawable
 from nonholo.plotting._thinning import transition

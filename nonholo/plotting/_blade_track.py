@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from nonholo._checks import flags
 from nonholo._types import Float
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._enlargement import Square, corner_axes, detail, square_about
 from nonholo.plotting._subject import is_discrete, system_of
 from nonholo.plotting._thinning import evenly_spread

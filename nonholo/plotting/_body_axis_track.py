@@ -15,7 +15,7 @@ from nonholo._checks import array, error
 from nonholo._types import Float
 from nonholo.groups import SO
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._sphere import View, best_view, draw_curve, draw_globe, given_view
 from nonholo.plotting._sphere_path import draw_named_axes, draw_path, mark_ends
 from nonholo.plotting._subject import known_equilibria, permanent_velocity, posed, same_group

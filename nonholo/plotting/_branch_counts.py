@@ -11,7 +11,7 @@ from matplotlib.patches import Polygon
 from nonholo.analysis import deltoid
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._deltoid_plane import draw_deltoid, dress, name_inside
 from nonholo.plotting._momentum_locus import own_orbit
 from nonholo.plotting._momentum_plane import ellipse, reduced

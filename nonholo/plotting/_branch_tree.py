@@ -14,7 +14,7 @@ from nonholo._checks import error, pair
 from nonholo._types import Float
 from nonholo.discrete import BranchTree, Discretization
 from nonholo.discrete._discretization import as_discretization
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._momentum_plane import ellipse, name_axes, reduced
 
 _EARLY, _LATE = 0.05, 0.9  # ends of the shades of the generations

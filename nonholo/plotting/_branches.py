@@ -15,8 +15,8 @@ from nonholo.analysis import deltoid, invariant_curve
 from nonholo.analysis._variety_points import closed_form, points_of
 from nonholo.discrete import Branches, Discretization, discrete_legendre, displacements_over, inverse_discrete_legendre
 from nonholo.discrete import branches as values_of
-from nonholo.plotting import _theme as theme
 from nonholo.plotting import _variety_plane as variety
+from nonholo.plotting import theme
 from nonholo.plotting._deltoid_plane import draw_deltoid, name_inside
 from nonholo.plotting._deltoid_plane import dress as dress_momenta
 from nonholo.plotting._momentum_plane import reduced

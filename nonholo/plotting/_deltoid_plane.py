@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
 from nonholo.analysis import Deltoid
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._momentum_plane import reduced
 
 INSIDE = "#dbe9f3"

@@ -13,7 +13,7 @@ from matplotlib.text import Text
 from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._subject import drawable, is_discrete, is_steered_in_space, posed
 from nonholo.plotting._thinning import evenly_in_box
 

@@ -13,7 +13,7 @@ from nonholo.analysis import InvariantCurve, invariant_curve
 from nonholo.analysis._variety_points import closed_form, points_of
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._momentum_locus import own_orbit
 from nonholo.plotting._thinning import evenly_in_box
 from nonholo.plotting._variety_plane import disc, draw_level, dress, flat

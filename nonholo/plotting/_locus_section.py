@@ -11,7 +11,7 @@ from matplotlib.contour import QuadContourSet
 from nonholo._checks import array, error
 from nonholo._types import Array, Float
 from nonholo.analysis import MomentumLocus
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.systems import ChaplyginSleigh
 
 _GRID = 501

@@ -13,10 +13,11 @@ from nonholo._checks import error, pair, shown
 from nonholo._types import Float
 from nonholo.analysis import InvariantCurve, MomentumLocus
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
-from nonholo.plotting._locus_surface import best_view, draw_surface, spans
+from nonholo.plotting import theme
+from nonholo.plotting._locus_view import best_view
 from nonholo.plotting._subject import drawable
 from nonholo.plotting._thinning import evenly_in_box
+from nonholo.plotting.elements import draw_surface, spans
 from nonholo.systems import ChaplyginSleigh
 
 _MOST_DOTS = 600

@@ -9,7 +9,7 @@ from matplotlib.collections import LineCollection, PathCollection
 from nonholo._checks import error
 from nonholo._types import Float
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._sphere import View, best_view, draw_globe, given_view, opacity
 from nonholo.plotting._sphere_path import draw_path, mark_ends, name_beside
 from nonholo.plotting._subject import drawable, known_equilibria

@@ -9,7 +9,7 @@ from matplotlib.collections import LineCollection, PathCollection
 from nonholo._checks import choice, error
 from nonholo.discrete import BranchTree, Discretization, branch_tree
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._momentum_plane import reduced
 from nonholo.plotting._thinning import evenly_in_box
 

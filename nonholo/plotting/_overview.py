@@ -10,7 +10,7 @@ from nonholo._checks import error
 from nonholo._checks import path as checked_path
 from nonholo.io import check_file
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._head import write_head
 from nonholo.plotting._panels import Panel, panels_of
 from nonholo.plotting._subject import drawable

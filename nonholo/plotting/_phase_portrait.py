@@ -16,7 +16,7 @@ from nonholo._checks import energies as checked_energies
 from nonholo._checks import error
 from nonholo._types import Float
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._momentum_plane import ellipse, half_axes, name_axes
 from nonholo.plotting._other_images import draw_images, trees_of
 from nonholo.plotting._subject import drawable, is_discrete, known_equilibria

@@ -14,7 +14,7 @@ from nonholo._checks import error
 from nonholo._types import Float
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._enlargement import square_about
 from nonholo.plotting._subject import is_discrete, posed, same_group
 from nonholo.plotting._thinning import evenly_spread

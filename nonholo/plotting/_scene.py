@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from nonholo._types import Int
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 
 _SIZE = 4.8  # inches; 480 pixels
 

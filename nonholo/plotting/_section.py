@@ -10,7 +10,7 @@ from matplotlib.collections import PathCollection
 from nonholo._checks import error, function, pair, text
 from nonholo._types import Float
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.simulation import Crossings
 
 _FEW, _LARGE, _SMALL = 500, 14.0, 4.0  # up to so many dots are large; areas of dots

@@ -12,7 +12,7 @@ from matplotlib.patches import Polygon
 
 from nonholo._types import Float, Int
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._enlargement import square_about
 from nonholo.plotting._scene import stage
 from nonholo.plotting._thinning import evenly_spread, some_states, turn_per_state

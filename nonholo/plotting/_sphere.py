@@ -11,7 +11,7 @@ from matplotlib.patches import Circle
 
 from nonholo._checks import number, pair
 from nonholo._types import Float
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 
 _SHADES = 256
 _BEHIND = 0.22  # opacity of what lies behind the sphere

@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgb
 
 from nonholo._types import Float
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._sphere import View, arcs, draw_curve, great_circle, opacity
 from nonholo.plotting._subject import is_discrete
 

@@ -13,7 +13,7 @@ from matplotlib.colors import BoundaryNorm, LogNorm, Normalize
 
 from nonholo._checks import error
 from nonholo._types import Float
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 
 OUTCOME, DRAWN = "outcome", "value of the design"
 _SUCCESSFUL = "successful"

@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from nonholo._checks import error
 from nonholo._types import Float
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._sweep_axes import (
     OUTCOME,
     Subject,

@@ -11,7 +11,7 @@ from matplotlib.colorbar import Colorbar
 from matplotlib.colors import ListedColormap
 
 from nonholo._checks import error
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._sweep_axes import (
     OUTCOME,
     Subject,

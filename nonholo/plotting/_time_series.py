@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from nonholo._types import Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._subject import is_steered_in_space
 from nonholo.plotting._thinning import evenly_in_box
 

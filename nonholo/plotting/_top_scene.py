@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from nonholo._types import Float, Int
 from nonholo.orbit import Orbit
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
 from nonholo.plotting._body_axis_track import known_axes, rotation_axes
 from nonholo.plotting._scene import stage
 from nonholo.plotting._sphere import View, arcs, best_view, draw_globe, set_curve

@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.patches import Circle, FancyArrowPatch
+from matplotlib.patches import FancyArrowPatch
 
 from nonholo._types import Float
 from nonholo.analysis import InvariantCurve
 from nonholo.discrete import Discretization
-from nonholo.plotting import _theme as theme
+from nonholo.plotting import theme
+from nonholo.plotting.elements import draw_rim
 from nonholo.systems import ChaplyginSleigh
 
 _TALLEST = 4.0  # height of the strip in translations without turning
-_PAIRS = "abcd"  # names of pairs of opposite points of the rim that are one
 
 
 def flat(discrete: Discretization, points: Float[np.ndarray, "K c"]) -> Float[np.ndarray, "K 2"]:
@@ -78,17 +78,6 @@ def dress(axes: Axes, discrete: Discretization, curves: list[InvariantCurve], ti
         theme.legend_above(axes)
     else:
         _dress_disc(axes)
-
-
-def draw_rim(axes: Axes) -> None:
-    """Draw the half-turns around a disc; points with the same letter are the same one."""
-    axes.add_patch(Circle((0, 0), 1.0, facecolor="none", edgecolor=theme.MUTED, linewidth=1.2, zorder=2))
-    for index, letter in enumerate(_PAIRS):
-        angle = np.pi * (index + 0.5) / len(_PAIRS)
-        for sign in (1, -1):
-            x, y = sign * np.cos(angle), sign * np.sin(angle)
-            axes.plot(x, y, "o", color=theme.MUTED, markersize=4, zorder=4)
-            axes.text(1.07 * x, 1.07 * y, letter, color=theme.INK, ha="center", va="center", style="italic")
 
 
 def _dress_disc(axes: Axes) -> None:

@@ -9,11 +9,8 @@ from pathlib import Path
 import pytest
 from typer.testing import Result as Ended
 
-from nonholo.reproduction import _registry, _run
-from nonholo.reproduction._checklist import sections
-from nonholo.reproduction._finding import Measured, finding
-from nonholo.reproduction._registry import Entry
-from nonholo.reproduction._verdict import Verdict
+import nonholo_paper
+from nonholo_paper import Entry, Measured, Verdict, _registry, _run, finding, sections
 
 Command = Callable[..., Ended]
 
@@ -42,7 +39,8 @@ def wrong() -> Measured:
 @pytest.fixture(autouse=True)
 def _two_findings(monkeypatch: pytest.MonkeyPatch) -> None:
     found = (Entry(right, sections()[3]), Entry(wrong, sections()[3]))
-    monkeypatch.setattr(_registry, "entries", lambda: found)
+    for module in (nonholo_paper, _registry):
+        monkeypatch.setattr(module, "entries", lambda: found)
 
 
 def labels(folder: str) -> list[str]:
@@ -106,3 +104,11 @@ def test_help_loads_nothing_heavy() -> None:
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)  # noqa: S603
     assert ended.returncode == 0, ended.stderr
     assert "--only" in ended.stdout
+
+
+def test_without_the_extra_the_command_names_it(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What `nonholo paper` needs beyond the core is an extra, and the command says which."""
+    monkeypatch.setitem(sys.modules, "nonholo_paper", None)
+    ended = nonholo("paper")
+    assert ended.exit_code == 2
+    assert "pip install 'nonholo[paper]'" in ended.stderr

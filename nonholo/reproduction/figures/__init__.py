@@ -1,9 +1,0 @@
-"""The figures of the paper, drawn anew, and pictures of what it describes in words; one module for each.
-
-A module has a `FIGURE`. Orbits and surfaces are computed by the library, in double precision.
-"""
-
-from nonholo.reproduction.figures._all import figures
-from nonholo.reproduction.figures._figure import Figure
-
-__all__ = ["Figure", "figures"]

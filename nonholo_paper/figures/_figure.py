@@ -1,0 +1,27 @@
+"""A figure: a picture of the paper, drawn anew, and the number that says whether it shows what it should."""
+
+import dataclasses
+from collections.abc import Callable
+
+from matplotlib.figure import Figure as MatplotlibFigure
+
+from nonholo_paper._finding import Finding
+
+
+@dataclasses.dataclass(frozen=True)
+class Figure:
+    """A picture with its caption and its finding.
+
+    Attributes:
+        name: Name of its files, the label of the paper without its ending: "st" for st.fig.
+        labels: Labels of the paper that it illustrates, its own first.
+        caption: What is drawn, with all parameters; formulas between dollar signs.
+        draw: Draws it.
+        finding: Measures what it shows.
+    """
+
+    name: str
+    labels: tuple[str, ...]
+    caption: str
+    draw: Callable[[], MatplotlibFigure]
+    finding: Finding

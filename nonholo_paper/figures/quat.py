@@ -1,0 +1,137 @@
+"""Figure quat: invariant curves and the line of equilibria on the projective plane."""
+
+import dataclasses
+import functools
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.figure import Figure as MatplotlibFigure
+from matplotlib.lines import Line2D
+
+import nonholo as nh
+from nonholo.plotting import theme
+from nonholo.plotting.elements import draw_rim
+from nonholo_paper._finding import Measured, finding
+from nonholo_paper._suslov_twin import BODIES
+from nonholo_paper.figures._figure import Figure
+from nonholo_paper.figures._plane import draw_curve, project
+from nonholo_paper.figures.st import TOP
+from nonholo_paper.formulas import suslov_integrals as formulas
+from nonholo_paper.formulas import suslov_momenta
+
+J = np.array(BODIES["generic"])
+ENERGIES = [0.02, 0.1, 0.2, 0.3, 0.45, 0.6, 0.75, 0.87, 0.98, 1.06, 1.15, 1.22]
+
+
+@dataclasses.dataclass(frozen=True)
+class Foliation:
+    """What `picture` drew.
+
+    Attributes:
+        axes: The axes.
+        curves: The invariant curves of the energies and of the saddles.
+        line: The line of equilibria.
+        saddles: The saddle points.
+        centres: The centres.
+    """
+
+    axes: Axes
+    curves: tuple[LineCollection, ...]
+    line: Line2D
+    saddles: PathCollection
+    centres: PathCollection
+
+
+@functools.cache
+@theme.styled
+def picture() -> Foliation:
+    """Draw it."""
+    axes = MatplotlibFigure(figsize=(7.6, 6.0), layout="constrained").add_subplot()
+    found = nh.critical_energies(TOP)
+    curves = [
+        draw_curve(axes, nh.invariant_curve(TOP, energy), color=theme.MUTED, linewidth=0.9) for energy in ENERGIES
+    ]
+    saddle, equatorial = float(found.saddle or 0), float(found.equatorial_saddle or 0)
+    for energy, colour in ((saddle, theme.DISCRETE), (equatorial, theme.COMPONENTS[2])):
+        curves.append(draw_curve(axes, nh.invariant_curve(TOP, energy, 1200), color=colour, linewidth=1.9, zorder=3))
+    axes.plot([], [], color=theme.DISCRETE, label=f"$h^*$: energy {saddle:.3f}")
+    axes.plot([], [], color=theme.COMPONENTS[2], label=f"$h_e$: energy {equatorial:.3f}")
+    across = np.array([-J[1, 2], J[0, 2]]) / np.hypot(J[0, 2], J[1, 2])
+    line = axes.plot(*np.outer(across, [-1, 1]), color=theme.INK, linewidth=2.2, zorder=4, label="equilibria")[0]
+    dots: Any = {"s": 52, "zorder": 6, "linewidths": 1.5, "edgecolors": theme.UNSTABLE}
+    saddles = axes.scatter(*critical("saddle").T, marker="X", facecolors="white", label="saddles", **dots)
+    centres = axes.scatter(*critical("maximum").T, facecolors=theme.UNSTABLE, label="centres", **dots)
+    draw_rim(axes)
+    axes.set(
+        xlabel="$q_1$", ylabel="$q_2$", title="Invariant curves", xlim=(-1.14, 1.14), ylim=(-1.14, 1.14), aspect="equal"
+    )
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    return Foliation(axes, tuple(curves), line, saddles, centres)
+
+
+def critical(kind: str) -> Float[np.ndarray, "L 2"]:
+    """Return the critical points of a kind, both of two opposite ones."""
+    points = [p for p in nh.critical_energies(TOP).points if p.kind == kind]
+    z = np.array(
+        [[np.sqrt(max(0.0, 1 - p.half_turn_vector @ p.half_turn_vector)), *p.half_turn_vector] for p in points]
+    )
+    return np.concatenate([project(z), -project(z)])
+
+
+def draw() -> Any:
+    """Return the figure."""
+    return picture().axes.figure
+
+
+def sphere(q: Float[np.ndarray, "L 2"]) -> Any:
+    """Return q0, q1, q2."""
+    return np.stack([np.sqrt(np.maximum(0.0, 1 - np.sum(q * q, axis=1))), *q.T])
+
+
+@finding(
+    "quat.fig",
+    "figure",
+    "Section 6, figure of the invariant curves",
+    "The invariant curves are ovals about the origin and outer ones. They meet at two opposite saddles and shrink to "
+    "two opposite centres. A straight segment is the line of equilibria.",
+    tolerance=1e-6,
+)
+def foliation() -> Measured:
+    """Put drawn curves into the quartic integral, and the drawn points into its derivatives, and count them."""
+    drawn = picture()
+    gaps = []
+    for curve in drawn.curves:
+        points = np.concatenate([np.asarray(path.vertices) for path in curve.get_paths()])
+        values = formulas.quartic(J, sphere(points))
+        gaps.append(np.ptp(values) / values.max())
+    saddles, centres = (np.asarray(dots.get_offsets()) for dots in (drawn.saddles, drawn.centres))
+    gaps += [_slope(point) for point in (*saddles, *centres)]
+    ends = np.asarray(drawn.line.get_xydata())
+    gaps.append(np.abs(suslov_momenta.slope(J, sphere(ends))).max())
+    gaps.append(float(len(centres) != 2))
+    gaps.append(float(np.sum(np.linalg.norm(saddles, axis=1) < 0.99) != 2))
+    return Measured(float(max(gaps)), note="14 curves; two saddles and two centres inside, one more saddle on the rim")
+
+
+def _slope(point: Float[np.ndarray, "2"]) -> float:
+    """Return the derivative of the quartic integral along the sphere, by central differences."""
+    q, small = np.asarray(sphere(point[None]))[:, 0], 1e-6
+    rows = np.linalg.svd(q[None])[2][1:]
+    forth, back = ([formulas.quartic(J, (q + s * row) / np.hypot(1, s)) for row in rows] for s in (small, -small))
+    return float(np.abs(np.subtract(forth, back)).max() / (2 * small))
+
+
+FIGURE = Figure(
+    "quat",
+    ("quat.fig", "quatern_int"),
+    r"Curves $H = \mathrm{const}$ on $\mathbb{RP}^2$ for $J_{11} = 1.4$, $J_{22} = 1$, $J_{33} = 0.9$, $J_{12} = 0.2$, "
+    r"$J_{13} = 0.5$, $J_{23} = -0.3$, time step 1, at energies from 0.02 to 1.22; the energy is $2H/D$, $D = 4.33$. "
+    r"The upper hemisphere is seen from above; opposite points of the rim, half-turns, are one and have the same "
+    r"letter. Blue: the separatrix $h^*$ of the paper, through the saddles. Green: one that it does not mention, "
+    "$h_e$, through a saddle on the rim, where the ovals about a half-turn merge into a curve along the rim.",
+    draw,
+    foliation,
+)

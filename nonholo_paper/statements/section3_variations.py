@@ -1,0 +1,188 @@
+"""Section 3, the variational principle on a group: variations, four equivalent forms of the equations."""
+
+import itertools
+from collections.abc import Callable
+
+from nonholo_paper import _sequences as sequences
+from nonholo_paper import _twin as twin
+from nonholo_paper._bodies import ANY_4, SLEIGH, SMALL, TOP, TOP_4, Body, slopes
+from nonholo_paper._finding import Measured, finding
+from nonholo_paper._twin import Matrix, Number, ctx
+from nonholo_paper._verdict import Verdict
+from nonholo_paper.formulas import general
+
+
+def _variations(body: Body, seed: int) -> list[Matrix]:
+    """Return variations g_k^-1 delta g_k of all poses, zero at both ends, not restricted by the constraint."""
+    inner = [twin.hat(body.group, twin.numbers(seed + k, body.group.dim)) for k in range(sequences.STEPS - 1)]
+    nothing = ctx.zeros(body.group.size)
+    return [nothing, *inner, nothing]
+
+
+def _action_rate(body: Body, variations: list[Matrix]) -> Number:
+    """Return the derivative of the action sum along variations of the poses, by its definition."""
+    poses = sequences.poses(body)
+
+    def action(t: Number) -> Number:
+        moved = [g * twin.exp(t * eta) for g, eta in zip(poses, variations, strict=True)]
+        return ctx.fsum(body.lagrangian(g**-1 * g_next) for g, g_next in itertools.pairwise(moved))
+
+    return twin.rate(action)
+
+
+@finding(
+    "**",
+    "equation",
+    "Section 3, equation (**)",
+    r"Admissible variations satisfy $\langle a^j, g_k^{-1}\delta g_k\rangle = 0$.",
+    tolerance=1e-45,
+)
+def admissible_variations() -> Measured:
+    """Differentiate curves g exp(t eta), eta in d, and move them by a group element."""
+    defects = []
+    for body in (*SMALL, TOP_4, ANY_4):
+        for g in sequences.poses(body):
+            eta = twin.hat(body.group, body.velocity(twin.numbers(4, len(body.subspace))))
+            variation = twin.rate(lambda t, g=g, eta=eta: g * twin.exp(t * eta))
+            x = twin.column(twin.vee(body.group, general.body_velocity(g, variation)))
+            defects += [*(twin.dot(a, x) for a in body.forms), *(general.body_velocity(g, variation) - eta)]
+    return Measured(twin.worst(defects), note="5 bodies, 5 poses each")
+
+
+@finding(
+    "S12",
+    "remark",
+    "Section 3, action sums and constraint functions",
+    r"“the reduced action sum $s_d : G^{N-1} \to \mathbb{R}$” and “$\mathcal{F}_j(q_k, q_{k+1}) = f_j(W_k)$”",
+    verdict=Verdict.MISPRINT,
+    corrected=r"It is a function on $G^N$, of $W_0, \dots, W_{N-1}$; the arguments of $\mathcal{F}_j$ are $g_k, "
+    r"g_{k+1}$.",
+    errata=("S12",),
+    tolerance=1e-45,
+)
+def action_sums() -> Measured:
+    """Count the displacements of N + 1 poses, and compare both sums."""
+    right, wrong = [], []
+    for body in SMALL:
+        poses = sequences.poses(body)
+        found = [g**-1 * g_next for g, g_next in itertools.pairwise(poses)]
+        pairs = zip(found, sequences.displacements(body), strict=True)
+        right += [body.lagrangian(W) - body.lagrangian(V) for W, V in pairs]
+        right.append(len(found) - (len(poses) - 1))
+        wrong.append(len(found) - (len(poses) - 2))
+    return Measured(twin.worst(right), float(min(wrong)), "a count: N + 1 poses have N displacements")
+
+
+@finding(
+    "discrete_EPS",
+    "theorem",
+    "Section 3, theorem (discrete_EPS)",
+    r"Equivalent are: (i) the action sum is stationary under constrained variations, (ii) the equations with "
+    r"multipliers (dis_LA_1.eqn), (iii) the reduced action sum is stationary under the variations (var_W), (iv) "
+    r"equation (discEP.eqn).",
+    tolerance=1e-45,
+)
+def equivalence() -> Measured:
+    """Compare first variations in the forms (i), (iii), (iv) for arbitrary sequences and variations."""
+    defects = []
+    for body in (*SMALL, TOP_4):
+        found = sequences.displacements(body)
+        gradients = [sequences.slope(body, W) for W in found]
+        for seed in (40, 50):
+            eta = _variations(body, seed)
+            by_definition = _action_rate(body, eta)
+            reduced = ctx.fsum(
+                twin.inner(slope, general.displacement_variation(W, *ends))
+                for slope, W, ends in zip(gradients, found, itertools.pairwise(eta), strict=True)
+            )
+            balances = ctx.fsum(
+                general.balance(gradients[k - 1 : k + 1], found[k - 1 : k + 1], eta[k])
+                for k in range(1, sequences.STEPS)
+            )
+            defects += [by_definition - reduced, by_definition - balances]
+    orbits = [_stationarity(body) for body in (TOP, SLEIGH, TOP_4, ANY_4)]
+    return Measured(
+        twin.both(twin.worst(defects), max(orbits)), note="4 bodies, any sequences; 4 orbits of the library"
+    )
+
+
+def _stationarity(body: Body) -> float:
+    """Return the largest value on d of the equations (iv) along an orbit of the library."""
+    found = [sequences.exactly(W) for W in sequences.orbit(body).displacement]
+    balances = []
+    for pair in itertools.pairwise(found):
+        gradients = [sequences.slope(body, W) for W in pair]
+        balances += [general.balance(gradients, pair, twin.hat(body.group, e)) for e in body.directions]
+    return twin.worst(balances)
+
+
+@finding(
+    "dis_LA_1.eqn",
+    "equation",
+    "Section 3, equation (dis_LA_1.eqn)",
+    r"$D_1L_d(g_k, g_{k+1}) + D_2L_d(g_{k-1}, g_k) = \sum_j\lambda_k^jA_j(g_k)$.",
+    tolerance=1e-45,
+)
+def equations_on_group() -> Measured:
+    """Differentiate by the common pose: the slopes sum to minus the jump of momentum, for orbits a force."""
+    defects, orbits = [], []
+    for body in (TOP, SLEIGH, TOP_4):
+        poses = sequences.poses(body)
+        for before, g, after in zip(poses, poses[1:], poses[2:], strict=False):
+            balance = general.coordinate_balance(*_slopes_at(body, before, g, after))
+            jump = general.momentum_jump(body.momentum(g**-1 * after), body.arriving(before**-1 * g))
+            defects.append(balance + jump)
+        orbit = sequences.orbit(body)
+        for k in range(sequences.STEPS):
+            W, W_next = (sequences.exactly(orbit.displacement[i]) for i in (k, k + 1))
+            balance = general.coordinate_balance(*_slopes_at(body, W**-1, ctx.eye(W.rows), W_next))
+            orbits.append(twin.worst(balance - general.reaction((-orbit.multipliers[k]).tolist(), body.forms)))
+    return Measured(twin.both(twin.worst(*defects), max(orbits)), note="tops n = 3, 4 and a sleigh, and their orbits")
+
+
+def _slopes_at(body: Body, before: Matrix, g: Matrix, after: Matrix) -> tuple[Matrix, Matrix]:
+    """Return D1 L_d(g, after) and D2 L_d(before, g), both pulled back by the pose g."""
+    first = slopes(lambda nudge: body.lagrangian((g * nudge) ** -1 * after), body.group)
+    return first, slopes(lambda nudge: body.lagrangian(before**-1 * (g * nudge)), body.group)
+
+
+@finding(
+    "var_W",
+    "equation",
+    "Section 3, equation (var_W)",
+    r"$\delta W_k = W_k[g_{k+1}^{-1}\delta g_{k+1} - \mathrm{Ad}_{W_k^{-1}}g_k^{-1}\delta g_k]$.",
+    tolerance=1e-45,
+)
+def induced_variation() -> Measured:
+    """Differentiate the displacement between two moving poses."""
+    defects = []
+    for body in (*SMALL, TOP_4):
+        start, end = (twin.hat(body.group, twin.numbers(seed, body.group.dim, -2, 2)) for seed in (60, 61))
+        for g, g_next in itertools.pairwise(sequences.poses(body)):
+            moving = _moving(g, g_next, start, end)
+            defects.append(twin.rate(moving) - general.displacement_variation(g**-1 * g_next, start, end))
+    return Measured(twin.worst(*defects), note="4 bodies, 4 displacements each")
+
+
+def _moving(g: Matrix, g_next: Matrix, start: Matrix, end: Matrix) -> Callable[[Number], Matrix]:
+    """Return the displacement between two poses that move in their own directions."""
+    return lambda t: (g * twin.exp(t * start)) ** -1 * (g_next * twin.exp(t * end))
+
+
+@finding(
+    "discEP.eqn",
+    "equation",
+    "Section 3, equation (discEP.eqn)",
+    r"$l_d'(W_{k-1})TL_{W_{k-1}} - l_d'(W_k)TL_{W_k}\mathrm{Ad}_{W_k^{-1}} = \sum_j\lambda_k^ja_j$.",
+    tolerance=1e-45,
+)
+def reduced_equations() -> Measured:
+    """Compare the left-hand side with momenta by definition, and on d with orbits of the library."""
+    defects = []
+    for body in (TOP, SLEIGH, TOP_4):
+        for before, after in itertools.pairwise(sequences.displacements(body)):
+            pair = [sequences.slope(body, before), sequences.slope(body, after)]
+            left = [general.balance(pair, [before, after], E) for E in twin.basis(body.group)]
+            defects.append(twin.column(left) - (body.arriving(before) - body.momentum(after)))
+    orbits = [_stationarity(body) for body in (TOP, SLEIGH, TOP_4, ANY_4)]
+    return Measured(twin.both(twin.worst(*defects), max(orbits)), note="tops n = 3, 4 and a sleigh; 4 orbits")

@@ -1,0 +1,216 @@
+"""Section 5: the equations of the body momentum of the sleigh, their integral and their phase portrait."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+import nonholo as nh
+from nonholo.groups import SO
+from nonholo_paper import _twin as twin
+from nonholo_paper._finding import Measured, finding
+from nonholo_paper._sleigh_twin import ALONG, BODIES, PLANE, UNBALANCED, Body, points, rates, velocity_of
+from nonholo_paper._sleigh_twin import momenta as momenta_at
+from nonholo_paper._twin import Matrix, Number, ctx, worst
+from nonholo_paper._verdict import Verdict
+from nonholo_paper.formulas import sleigh_continuous as formulas
+
+MOMENTA = [twin.numbers(531 + k, 2, -2, 2) for k in range(3)] + [
+    [ctx.mpf(v) for v in e] for e in ((0, 1), (1, 0), (7, -9))
+]
+EVERY = ([1, 0, 0], [0, 1, 0], [0, 0, 1])
+
+
+def _velocity(body: Body, p: list) -> Matrix:
+    return velocity_of(PLANE, points(body), ALONG, p)
+
+
+def _rates(body: Body, p: list) -> list:
+    """Return the derivatives of p_theta and p_1 from the equations themselves."""
+    return rates(PLANE, points(body), ALONG, _velocity(body, p))
+
+
+def _turning_rate(body: Body, turning: Number, p_1: Number) -> Number:
+    """Return the derivative of p_theta + b p_1."""
+    rate = _rates(body, [turning - body.b * p_1, p_1])
+    return rate[0] + body.b * rate[1]
+
+
+def _gaps(left: Iterable, right: Iterable) -> list:
+    return [x - y for x, y in zip(left, right, strict=True)]
+
+
+@finding(
+    "EPS.se2.eqn",
+    "equation",
+    "Section 5, equation (EPS.se2.eqn)",
+    r"$\dot p_\theta = p_1v_2 - p_2v_1$, $\dot p_1 = p_2\omega$, $\dot p_2 = -p_1\omega + \lambda$, with $v_2 = 0$.",
+    tolerance=1e-45,
+)
+def eps_se2() -> Measured:
+    """Compare with the pairing of the momentum with the brackets of the velocity and the basis, on and off v2 = 0."""
+    gaps = []
+    for k, body in enumerate(BODIES):
+        for v in ([*twin.numbers(541 + k, 3, -3, 3)], [*twin.numbers(551 + k, 2, -3, 3), ctx.zero]):
+            velocity = twin.hat(PLANE, v)
+            defined = rates(PLANE, points(body), EVERY, velocity)
+            gaps += _gaps(formulas.momentum_rates(momenta_at(PLANE, points(body), velocity), v), defined)
+    return Measured(worst(gaps), note="8 bodies, 16 velocities")
+
+
+@finding(
+    "ch_sl_1.eqn",
+    "equation",
+    "Section 5, equation (ch_sl_1.eqn)",
+    r"$\dot p_\theta = -\frac{a}{(J + ma^2)^2}(p_\theta + bp_1)(mb\,p_\theta + (J + m(a^2 + b^2))p_1)$, "
+    r"$\dot p_1 = \frac{ma}{(J + ma^2)^2}(p_\theta + bp_1)^2$.",
+    tolerance=1e-45,
+)
+def ch_sl_1() -> Measured:
+    """Compare with the equations at the admissible velocity that has these momenta."""
+    gaps = [_gaps(formulas.momentum_equation(body, *p), _rates(body, p)) for body in BODIES for p in MOMENTA]
+    return Measured(max(map(worst, gaps)), note="8 bodies, 6 momenta")
+
+
+@finding(
+    "cont_sl_int",
+    "equation",
+    "Section 5, equation (cont_sl_int)",
+    r"$mp_\theta^2 + 2bm\,p_\theta p_1 + (J + m(a^2 + b^2))p_1^2$ is an integral, the constrained energy.",
+    tolerance=1e-45,
+)
+def cont_sl_int() -> Measured:
+    """Take its derivative along the equations, and compare it with 2 m (J + m a^2) times the kinetic energy."""
+    gaps, library = [], []
+    for body in BODIES:
+        system = nh.ChaplyginSleigh(*map(float, body))
+        scale = 2 * body.m * (body.J + body.m * body.a**2)
+        for p in MOMENTA:
+            rate, value = _rates(body, p), formulas.energy_integral(body, *p)
+            ahead = formulas.energy_integral(body, p[0] + rate[0], p[1] + rate[1])
+            gaps.append((ahead - value - formulas.energy_integral(body, *rate)) / (1 + abs(ahead)))
+            velocity = twin.vee(PLANE, _velocity(body, p))
+            gaps.append((scale * formulas.lagrangian(body, velocity) - value) / (1 + value))
+            energy = system.constrained_energy(np.array([*map(float, p), 0.0]))
+            library.append((energy * float(scale) - float(value)) / (1 + float(value)))
+    return Measured(twin.both(worst(gaps), worst(library)), note="8 bodies, 6 momenta")
+
+
+@finding(
+    "sleqns",
+    "equation",
+    "Section 5, equation (sleqns)",
+    r"For $b = 0$: $\dot p_\theta = -\frac{a\,p_\theta p_1}{J + ma^2}$, $\dot p_1 = \frac{ma\,p_\theta^2}{(J + "
+    r"ma^2)^2}$.",
+    tolerance=1e-45,
+)
+def sleqns() -> Measured:
+    """Compare with the equations of bodies whose centre of mass is on the axis of the blade."""
+    centred = [body._replace(b=ctx.zero) for body in BODIES]
+    gaps = [_gaps(formulas.momentum_equation_centred(body, *p), _rates(body, p)) for body in centred for p in MOMENTA]
+    return Measured(max(map(worst, gaps)), note="8 bodies, 6 momenta")
+
+
+@finding(
+    "b-irrelevant",
+    "remark",
+    "Section 5, the position of the centre of mass",
+    r"$a$ is crucial to the behaviour of the sleigh, $b$ is irrelevant.",
+    tolerance=1e-45,
+)
+def b_irrelevant() -> Measured:
+    """Compare the rates of p_theta + b p_1 and p_1 with those of the body with b = 0."""
+    gaps = []
+    for body in BODIES:
+        for turning, p_1 in MOMENTA:
+            rate = _rates(body, [turning - body.b * p_1, p_1])
+            centred = _rates(body._replace(b=ctx.zero), [turning, p_1])
+            gaps += _gaps([rate[0] + body.b * rate[1], rate[1]], centred)
+    return Measured(worst(gaps), note="8 bodies, 6 momenta")
+
+
+@finding(
+    "suslov-portrait",
+    "remark",
+    "Section 5, after equation (sleqns)",
+    r"The phase portrait is identical to that of the Suslov problem.",
+    tolerance=1e-45,
+)
+def suslov_portrait() -> Measured:
+    """Compare the rates with those of the top with I_11 = J + m a^2, I_22 = m, I_13 = m a, I_12 = I_23 = 0."""
+    group, gaps = SO(3), []
+    brackets = [twin.hat(group, row) for row in EVERY[:2]]
+    for body in BODIES:
+        m, J, a, b = body
+        inertia = ctx.matrix([[J + m * a**2, 0, m * a], [0, m, 0], [m * a, 0, 50]])
+        tensor = twin.trace(inertia) / 2 * ctx.eye(3) - inertia
+        for turning, p_1 in MOMENTA:
+            omega = twin.hat(group, [turning / inertia[0, 0], p_1 / m, 0])
+            top = [twin.inner(omega * tensor, omega * E - E * omega) for E in brackets]
+            rate = _rates(body, [turning - b * p_1, p_1])
+            gaps += _gaps([rate[0] + b * rate[1], rate[1]], top)
+    return Measured(worst(gaps), note="8 bodies and their tops, 6 momenta: the same equations")
+
+
+@finding(
+    "noncompact-limit",
+    "remark",
+    "Section 5, before the paragraph on more dimensions",
+    r"$SE(2)$ is a non-compact version of $SO(3)$, and the sleigh a limit of the Suslov problem.",
+    tolerance=1e-45,
+)
+def noncompact_limit() -> Measured:
+    r"""Turn by small angles e v about axes in the plane and stretch the third coordinate by 1/e, with e = 1e-30."""
+    group, small, gaps = SO(3), ctx.mpf("1e-30"), []
+    with ctx.workdps(130):
+        stretch = ctx.diag([1, 1, small])
+        for omega, v1, v2 in ((0.7, 0.4, -0.9), (3.1, 1, 0), (0, 2, 1)):
+            turn = twin.exp(twin.hat(group, [-small * v2, small * v1, ctx.mpf(omega)]))
+            plane = twin.exp(twin.hat(PLANE, [omega, v1, v2]))
+            gaps.append(worst(stretch * turn * stretch**-1 - plane))
+    return Measured(max(gaps), note="3 displacements, e = 1e-30")
+
+
+@finding(
+    "footnote-4",
+    "footnote",
+    "Section 5, footnote to the trajectories",
+    r"For $a \neq 0$ the trajectories are equilibria on the line $p_\theta + bp_1 = 0$, or elliptic arches: the "
+    r"energy is a positive definite quadratic form.",
+    tolerance=1e-45,
+)
+def footnote_arches() -> Measured:
+    """Look for rates on the line, for rest off it, and for a minor of the form that is not positive."""
+    gaps, failures = [], 0
+    for body in UNBALANCED:
+        gaps += [worst(_rates(body, [-body.b * p_1, p_1])) for _, p_1 in MOMENTA]
+        moving = [worst(_rates(body, p)) for p in MOMENTA if p[0] + body.b * p[1] != 0]
+        first, last = formulas.energy_integral(body, 1, 0), formulas.energy_integral(body, 0, 1)
+        mixed = (formulas.energy_integral(body, 1, 1) - first - last) / 2
+        failures += (min(moving) < 1e-9) + (first <= 0) + (first * last <= mixed**2)
+    return Measured(max(worst(gaps), failures), note="7 bodies, 6 momenta")
+
+
+@finding(
+    "C8",
+    "remark",
+    "Section 5, stability of the equilibria",
+    "“The equilibria located in the upper half plane are asymptotically stable ... whereas the equilibria in the "
+    "lower half plane are unstable”",
+    verdict=Verdict.EXCEPTIONS,
+    corrected="For $a > 0$, as in the figure. For $a < 0$ it is the other way round: those with $ap_1 > 0$ "
+    "attract, inside their level of energy, with the rate $-ap_1/(J + ma^2)$.",
+    errata=("C8",),
+    tolerance=1e-45,
+)
+def stability() -> Measured:
+    """Linearise across the line of equilibria; as printed, rates of upper equilibria would be negative."""
+    gaps, library, printed = [], [], []
+    for body in UNBALANCED:
+        m, J, a, _ = body
+        rate = ctx.diff(lambda turning, body=body: _turning_rate(body, turning, 1), 0)
+        gaps.append(rate + a / (J + m * a**2))
+        found = nh.equilibria(nh.ChaplyginSleigh(*map(float, body)))
+        library.append(np.array(found.rates)[0] / np.array(found.velocity)[1] / float(m) - float(rate))
+        library.append(np.array(found.attracting)[1] - float(ctx.sign(a)))
+        printed.append(max(rate, 0))
+    return Measured(twin.both(worst(gaps), worst(library)), worst(printed), "7 bodies, one with a < 0")

@@ -1,0 +1,232 @@
+"""Section 6: the momentum locus of the top of three dimensions."""
+
+import numpy as np
+
+import nonholo as nh
+from nonholo_paper import _suslov_twin as data
+from nonholo_paper import _twin as twin
+from nonholo_paper._finding import Measured, finding
+from nonholo_paper._twin import Vector, ctx
+from nonholo_paper._verdict import Verdict
+from nonholo_paper.formulas import suslov_momenta as formulas
+
+NOTE = "8 bodies, balanced, tilted, with J1 = J2 among them; 12 displacements, half-turns among them"
+FLAT = [1.25, 1.25, 0.5]
+PRIME = 2**61 - 1
+
+
+def _masses() -> list[Vector]:
+    return [[ctx.mpf(x) for x in masses] for masses in data.MASSES]
+
+
+@finding(
+    "diagonal-momentum",
+    "equation",
+    "Section 6, momentum locus",
+    r"Where $J$ is diagonal, $M = 2((J_2 + J_3)q_0q_1, (J_1 + J_3)q_0q_2, (J_1 - J_2)q_1q_2)$ with "
+    r"$M = (-M_{23}, M_{13}, -M_{12})$.",
+    tolerance=1e-45,
+)
+def diagonal_momentum() -> Measured:
+    """Compare with the product of matrices."""
+    missed = []
+    for masses in [*_masses(), FLAT]:
+        for q, W in data.turns():
+            X = W * ctx.diag(masses) - ctx.diag(masses) * W.T
+            vector = [-X[1, 2], X[0, 2], -X[0, 1]]
+            missed += data.differences(vector, formulas.diagonal_momentum(masses, q))
+    return Measured(twin.worst(missed), note="4 diagonal bodies, 12 displacements")
+
+
+@finding(
+    "diagonal-tensor",
+    "equation",
+    "Section 6, momentum locus",
+    r"“the tensor $J$ is diagonal, $J = \mathrm{diag}(J_1, J_2, J_3)^T$”",
+    verdict=Verdict.REMARK,
+    corrected="The transposed matrix is the same.",
+    tolerance=1e-45,
+)
+def superfluous_transposition() -> Measured:
+    """Count the transpositions printed that change nothing, if the diagonal matrix is its own transpose."""
+    same = [ctx.diag(masses) - ctx.diag(masses).T for masses in _masses()]
+    return Measured(twin.worst(*same), float(twin.worst(*same) == 0), "printed: transpositions that are not needed")
+
+
+@finding(
+    "Steiner",
+    "equation",
+    "Section 6, equation (Steiner)",
+    r"“$\mathcal{U}$ coincides with the Steiner Roman surface in $\mathbb{R}^3$ given by the quartic equation” "
+    r"(Steiner)",
+    verdict=Verdict.REMARK,
+    corrected=r"The equation divides by $J_1 - J_2$, so $J_1 \neq J_2$. For $J_1 = J_2$ the locus is the flat disc "
+    r"$M_3 = 0$, $M_1^2/(J_2 + J_3)^2 + M_2^2/(J_1 + J_3)^2 \leq 1$.",
+    tolerance=1e-45,
+)
+def steiner() -> Measured:
+    """Evaluate the quartic at momenta of matrices, the library's too; printed: dimensions that a flat locus lacks."""
+    exact, library, disc = [], [], []
+    for masses in _masses():
+        J = ctx.diag(masses)
+        momenta = [data.momentum(J, W) for _, W in data.turns()]
+        exact += [formulas.steiner(masses, M) for M in momenta]
+        if min(masses) > 0:
+            library += list(nh.momentum_locus(data.discrete(J), 4).implicit(data.array(ctx.matrix(momenta))))
+    for q, W in data.turns():
+        M = data.momentum(ctx.diag(FLAT), W)
+        disc += [M[2], formulas.elliptic_disc(FLAT, M) - 4 * q[0] ** 2 * (1 - q[0] ** 2)]
+    flat = [data.momentum(ctx.diag(FLAT), W) for _, W in data.turns()[:6]]
+    missing = 3 - sum(twin.worst([M[i] for M in flat]) > 1e-3 for i in range(3))
+    return Measured(twin.both(twin.worst(exact, disc), twin.worst(library)), missing, "3 bodies; one with J1 = J2")
+
+
+@finding(
+    "full",
+    "equation",
+    "Section 6, equation (full)",
+    r"In general the momentum has the printed components, quadratic in $(q_0, q_1, q_2)$.",
+    tolerance=1e-45,
+)
+def full() -> Measured:
+    """Compare with the product of matrices and with the library's Legendre transformation."""
+    exact, library = [], []
+    for J, q, W in data.samples():
+        M = formulas.momentum(J, q)
+        exact += data.differences(data.momentum(J, W), M)
+        library += list(nh.discrete_legendre(data.discrete(J), data.array(W)) - [float(x) for x in M])
+    return Measured(twin.both(twin.worst(exact), twin.worst(library)), note=NOTE)
+
+
+@finding(
+    "locus-of-degree-4",
+    "remark",
+    "Section 6, after equation (full)",
+    r"The momenta satisfy an equation of degree 4, a generalisation of (Steiner), and none of smaller degree; they "
+    r"fill no linear subspace.",
+    tolerance=1e-45,
+)
+def degree() -> Measured:
+    """Count relations between monomials at 45 random points of the sphere: ranks of integers modulo a prime."""
+    J = [[3, 1, 2], [1, 5, -1], [2, -1, 4]]
+    entries = {(i, j): J[i][j] for i in range(3) for j in range(3)}
+    rows = []
+    for seed in range(45):
+        q = [int(1e6 * x) for x in twin.numbers(seed, 3)]
+        inverse = pow(sum(x * x for x in q), -1, PRIME)
+        rows.append([int(value) * inverse % PRIME for value in formulas.momentum(entries, q)])
+    relations = [_monomials(degree) - _rank([_powers(row, degree) for row in rows]) for degree in (1, 2, 3, 4)]
+    return Measured(float(max(*relations[:3], abs(relations[3] - 1))), note="one body with integer entries")
+
+
+def _monomials(degree: int) -> int:
+    return len(_powers([1, 1, 1], degree))
+
+
+def _powers(values: list[int], degree: int) -> list[int]:
+    """Return all monomials up to a degree modulo the prime."""
+    x, y, z = values
+    total = range(degree + 1)
+    powers = [(i, j, k) for i in total for j in total for k in total if i + j + k <= degree]
+    return [pow(x, i, PRIME) * pow(y, j, PRIME) * pow(z, k, PRIME) % PRIME for i, j, k in powers]
+
+
+def _rank(rows: list[list[int]]) -> int:
+    """Return the rank modulo the prime."""
+    rank = 0
+    for column in range(len(rows[0])):
+        pivot = next((i for i in range(rank, len(rows)) if rows[i][column]), None)
+        if pivot is None:
+            continue
+        rows[rank], rows[pivot] = rows[pivot], rows[rank]
+        inverse = pow(rows[rank][column], -1, PRIME)
+        for i in range(rank + 1, len(rows)):
+            factor = rows[i][column] * inverse % PRIME
+            rows[i] = [(a - factor * b) % PRIME for a, b in zip(rows[i], rows[rank], strict=True)]
+        rank += 1
+    return rank
+
+
+@finding(
+    "locus-singularities",
+    "remark",
+    "Section 6, after equation (full)",
+    r"The surface of the momenta has pinch points and self-intersections.",
+    tolerance=1e-45,
+)
+def singularities() -> Measured:
+    """Exchange two coordinates where the third is zero: the same momentum; where they are equal the rank is one."""
+    exact, library = [], []
+    for masses in _masses()[:2]:
+        J, root = ctx.diag(masses), ctx.sqrt(ctx.mpf(1) / 2)
+        inertia = twin.trace(J) * ctx.eye(3) - J
+        for i, j in ((0, 1), (0, 2), (1, 2)):
+            first, second, pinch, across = ([ctx.mpf(0)] * 3 for _ in range(4))
+            first[i], first[j], second[i], second[j] = ctx.mpf("0.6"), ctx.mpf("0.8"), ctx.mpf("0.8"), ctx.mpf("0.6")
+            pinch[i], pinch[j], across[i], across[j] = root, root, root, -root
+            exact += data.differences(formulas.momentum(J, first), formulas.momentum(J, second))
+            turned = data.slope(lambda e, p=pinch, d=across, J=J: ctx.matrix(_along(J, p, d, e)))
+            exact += list(turned)
+            library.append(_distances(J, formulas.momentum(J, pinch)).min())
+        exact.append(formulas.momentum(J, [root, root, 0])[0] - inertia[0, 0])
+    return Measured(
+        twin.both(twin.worst(exact), twin.worst(library)), note="two diagonal bodies, all three double lines"
+    )
+
+
+def _along(J: twin.Matrix, point: Vector, direction: Vector, e: twin.Number) -> Vector:
+    return formulas.momentum(J, [ctx.cos(e) * p + ctx.sin(e) * d for p, d in zip(point, direction, strict=True)])
+
+
+def _distances(J: twin.Matrix, M: Vector) -> np.ndarray:
+    """Return the largest differences of a momentum from the pinch points that the library finds."""
+    found = nh.momentum_locus(data.discrete(J), 4).pinch_points
+    return abs(found - data.array(ctx.matrix(M)).ravel()).max(axis=1)
+
+
+@finding(
+    "S30",
+    "remark",
+    "Section 6, after equation (full) and step 2 of the map",
+    r"“if the quadratic form $(J_{22} + J_{33})q_1^2 - 2J_{12}q_1q_2 + (J_{33} + J_{11})q_2^2$ is "
+    r"positive-definite, then any pair $(M_1, M_2)$ has at most two real inverse images on $\mathcal{U}$”",
+    verdict=Verdict.FALSE,
+    corrected=r"Four occur: $J$ with diagonal $(\frac54, 1, \frac54)$, $J_{12} = 0$, $J_{13} = -\frac12$, $J_{23} = "
+    r"-\frac34$ and $y = (-\frac14, -\frac38)$, $(-\frac{16}{13}, -\frac{24}{13})$, and near $(-3.8131, -0.5088)$, "
+    r"$(7.6026, -8.9649)$; $q_1 = -q_0y_2$, $q_2 = q_0y_1$.",
+    errata=("S30",),
+    tolerance=1e-45,
+)
+def four_images() -> Measured:
+    """Refine the library's values to 50 digits: four different real ones; two are the rational ones given."""
+    name, y = data.STEPS[2]
+    J, found = data.body(name), data.successors(name, y)
+    target = data.momentum(J, data.cayley(y))
+    rational = [[ctx.mpf(-1) / 4, ctx.mpf(-3) / 8], [ctx.mpf(-16) / 13, ctx.mpf(-24) / 13]]
+    momenta = [formulas.momentum(J, data.point_of(v)) for v in found + rational]
+    missed = [x for M in momenta for x in data.differences(M[:2], target[:2])]
+    B = (twin.trace(J) * ctx.eye(3) - J)[:2, :2]
+    different = all(twin.worst([a[i] - b[i] for i in (0, 1)]) > 0.1 for k, a in enumerate(found) for b in found[:k])
+    real = sum(ctx.im(v[0]) == 0 and ctx.im(v[1]) == 0 for v in found)
+    lacking = data.lacking(different, real == 4, B[0, 0] > 0, ctx.det(B) > 0)
+    return Measured(max(twin.worst(missed), lacking), real - 2, "printed: real images above two")
+
+
+@finding(
+    "constrained-legendre",
+    "remark",
+    "Section 6, remark on the free top",
+    r"Without constraints $M = \Omega J - J\Omega^T$ has several solutions $\Omega$; with them one, except on the "
+    r"double lines: the values over one $(M_1, M_2)$ differ in $M_3$.",
+    tolerance=1e-45,
+)
+def legendre() -> Measured:
+    """Take four rotations with momentum zero, and compare the last momenta of the values over a pair."""
+    J = ctx.diag(data.MASSES[0])
+    diagonal = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    free = [x for signs in diagonal for x in data.momentum(J, ctx.diag(signs))]
+    apart = []
+    for name, y in data.STEPS[1:]:
+        last = [formulas.momentum(data.body(name), data.point_of(v))[2] for v in data.successors(name, y)]
+        apart += [abs(a - b) > 1e-3 for k, a in enumerate(last) for b in last[:k]]
+    return Measured(max(twin.worst(free), data.lacking(*apart)), note="4 free rotations; 4 values over 2 pairs")

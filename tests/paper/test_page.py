@@ -1,0 +1,232 @@
+"""The page of findings: what it says, that it needs nothing else, whose folder it overwrites."""
+
+import html
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure as MatplotlibFigure
+
+from nonholo_paper._checklist import sections
+from nonholo_paper._finding import Measured, finding
+from nonholo_paper._folder import check_folder, write_folder
+from nonholo_paper._formulas import to_html
+from nonholo_paper._page import page
+from nonholo_paper._registry import Entry, entries
+from nonholo_paper._run import Result, evaluate, evaluate_all
+from nonholo_paper._verdict import Verdict
+from nonholo_paper.figures import Figure
+
+VOID = {"meta", "img", "input", "link", "br"}
+
+
+@finding("plus", "equation", "Section 4, equation (plus)", r"$1 + 1 = 2$", tolerance=1e-12)
+def plus() -> Measured:
+    """Add, and return a number of NumPy."""
+    return Measured(np.float64(1e-16), note="one sum")
+
+
+@finding(
+    "minus",
+    "lemma",
+    "Section 4, a < b",
+    "\u201cIt is wrong.\u201d",
+    verdict=Verdict.FALSE,
+    corrected="right",
+    tolerance=1.0,
+    errata=("S1",),
+)
+def minus() -> Measured:
+    """Give an infinite defect of what is printed."""
+    return Measured(0.0, float("inf"))
+
+
+@finding("raises", "remark", "Section 4, remark", "Nothing.", tolerance=1.0)
+def raises() -> Measured:
+    """Raise."""
+    raise ZeroDivisionError("no <number>")
+
+
+def drawn() -> MatplotlibFigure:
+    """Draw a line."""
+    figure = MatplotlibFigure()
+    figure.add_subplot().plot([0, 1])
+    return figure
+
+
+def results(*chosen: str) -> list[Result]:
+    """Evaluate findings of this file; `plus` has a picture."""
+    own = {"plus": plus, "minus": minus, "raises": raises}
+    picture = Figure(name="line", labels=("plus",), caption="A line, $a = 1$.", draw=drawn, finding=plus)
+    return [evaluate(Entry(own[name], sections()[3], picture if name == "plus" else None)) for name in chosen]
+
+
+class Reader(HTMLParser):
+    """Collects the addresses of a page and the tags that are not closed in order."""
+
+    def __init__(self) -> None:
+        HTMLParser.__init__(self)
+        self.open: list[str] = []
+        self.anchors: list[str] = []
+        self.sources: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Note a tag and its addresses."""
+        if tag not in VOID:
+            self.open.append(tag)
+        for name, value in attrs:
+            if name == "id":
+                self.anchors.append(str(value))
+            if name in ("src", "href"):
+                self.sources.append(str(value))
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Pass over a tag that closes itself."""
+
+    def handle_endtag(self, tag: str) -> None:
+        """Close the last tag."""
+        assert self.open.pop() == tag
+
+
+def read(text: str) -> Reader:
+    """Read a page to its end."""
+    reader = Reader()
+    reader.feed(text)
+    assert not reader.open
+    return reader
+
+
+def test_what_raises_fails() -> None:
+    """A finding that raises has failed, and says why."""
+    (result,) = results("raises")
+    assert not result.holds
+    assert result.failure == "ZeroDivisionError: no <number>"
+
+
+def test_a_picture_that_cannot_be_drawn_fails() -> None:
+    """A finding whose picture raises has failed even though its number is right."""
+    broken = Figure(name="line", labels=("plus",), caption="", draw=raises.measure, finding=plus)
+    assert not evaluate(Entry(plus, sections()[3], broken)).holds
+
+
+def test_an_infinite_defect_of_what_is_printed_holds() -> None:
+    """The printed statement of `minus` fails by more than 1000 tolerances, so the finding holds."""
+    assert results("minus")[0].holds
+
+
+def test_progress_is_reported() -> None:
+    """The report hears of every finding before it is measured."""
+    heard: list[tuple[int, int]] = []
+    evaluate_all([Entry(plus, sections()[3]), Entry(minus, sections()[3])], lambda done, of: heard.append((done, of)))
+    assert heard == [(0, 2), (1, 2)]
+
+
+def test_page_is_well_formed_and_alone() -> None:
+    """Tags close in order, addresses are on the page, in its folder or embedded, none occurs twice."""
+    reader = read(page(results("plus", "minus", "minus", "raises")))
+    assert len(set(reader.anchors)) == len(reader.anchors)
+    for source in reader.sources:
+        inside = source.startswith("#") and source[1:] in reader.anchors
+        assert inside or source.startswith(("data:image/", "figures/line.")) or source == "findings.json", source
+
+
+def test_page_says_what_was_found() -> None:
+    """Claim, verdict, correction, numbers and failure stand on the page."""
+    text = page(results("plus", "minus", "raises"), "Only a part.")
+    for words in (
+        "1 of 3 fail",
+        "correction holds",
+        "It is wrong.",
+        "Right:</strong> right",
+        Verdict.FALSE.meaning,
+        "1.0e-16",
+        "1.0e-12",
+        "inf",
+    ):
+        assert words in text, words
+    for words in ("Only a part.", "a &lt; b", "no &lt;number&gt;", "S1", "one sum", "A line, <math"):
+        assert words in text, words
+
+
+def test_page_has_no_script_and_no_network() -> None:
+    """Nothing is loaded, and no script runs."""
+    text = page(results("plus", "minus"))
+    assert "<script" not in text
+    links = re.findall(r"https?://[^\s\"'<]+", text)
+    assert set(links) <= {"http://www.w3.org/1998/Math/MathML"}
+
+
+def test_letters_of_a_style_are_characters() -> None:
+    """Double-struck, fraktur, script and bold letters do not rely on an attribute that browsers have dropped."""
+    text = html.unescape(to_html(r"$\mathbb R\mathfrak d\mathcal{U}\mathbf M\mathfrak{C}$"))
+    assert "mathvariant" not in text
+    for character in ("\u211d", "\U0001d521", "\U0001d4b0", "\U0001d40c", "\u212d"):
+        assert character in text
+
+
+def test_names_of_functions_stand_apart() -> None:
+    """A thin space follows the name of a function, but not before a bracket."""
+    assert to_html(r"$\dim\mathfrak g$").count("<mspace") == 1
+    assert to_html(r"$\exp(x)$").count("<mspace") == 0
+
+
+@pytest.mark.parametrize("text", ["costs 5 $", r"$\foo x$"])
+def test_what_is_no_formula_is_refused(text: str) -> None:
+    """A lone dollar sign and an unknown command are refused."""
+    with pytest.raises(ValueError, match="formula"):
+        to_html(text)
+
+
+@pytest.mark.parametrize("entry", entries(), ids=lambda entry: entry.finding.label)
+def test_formulas_are_known(entry: Entry) -> None:
+    """The texts of every finding can be shown, and have neither an em dash nor an empty claim."""
+    finding = entry.finding
+    texts = [finding.claim, finding.source, finding.corrected or "", entry.figure.caption if entry.figure else ""]
+    assert finding.claim
+    for text in texts:
+        assert "\u2014" not in text
+        to_html(text)
+
+
+def test_folder(tmp_path: Path) -> None:
+    """The page, the findings as data and the pictures are written; a second run writes over them."""
+    folder = tmp_path / "new" / "page"
+    for _ in range(2):
+        check_folder(folder)
+        write_folder(folder, results("plus", "minus", "raises"))
+    files = sorted(str(path.relative_to(folder)) for path in folder.rglob("*.*"))
+    assert files == ["figures/line.pdf", "figures/line.png", "figures/line.svg", "findings.json", "index.html"]
+    told = json.loads((folder / "findings.json").read_text())
+    assert [row["label"] for row in told] == ["plus", "minus", "raises"]
+    assert [row["holds"] for row in told] == [True, True, False]
+    assert [row["verdict"] for row in told] == ["right as printed", "false", "right as printed"]
+    assert (told[0]["measured"], told[1]["printed_measured"], told[2]["measured"]) == (1e-16, "inf", None)
+    keys = {"kind", "claim", "verdict", "corrected", "tolerance", "seconds", "source", "errata", "note", "figure"}
+    assert keys <= set(told[0])
+
+
+def test_foreign_files_stay(tmp_path: Path) -> None:
+    """What the user adds to the folder of a page is not touched."""
+    write_folder(tmp_path, results("minus"))
+    (tmp_path / "notes.txt").write_text("mine")
+    check_folder(tmp_path)
+    write_folder(tmp_path, results("minus"))
+    assert (tmp_path / "notes.txt").read_text() == "mine"
+
+
+@pytest.mark.parametrize("name", ["index.html", "thesis.tex"])
+def test_foreign_folder_is_refused(name: str, tmp_path: Path) -> None:
+    """A folder with other files is refused, also if one of them is called like the page."""
+    (tmp_path / name).write_text("<html>mine</html>")
+    with pytest.raises(FileExistsError, match="Choose an empty or a new one with -o"):
+        check_folder(tmp_path)
+
+
+def test_a_file_as_folder_is_refused(tmp_path: Path) -> None:
+    """A path that is a file is refused."""
+    (tmp_path / "paper").write_text("")
+    with pytest.raises(NotADirectoryError, match="Choose another one with -o"):
+        check_folder(tmp_path / "paper")
