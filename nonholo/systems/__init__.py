@@ -9,6 +9,7 @@ from nonholo.systems._ll_system import LLSystem
 from nonholo.systems._lr_system import LRSystem, VeselovaTop
 from nonholo.systems._mass import inertia_from_mass_tensor, inertia_tensor, mass_tensor_from_inertia
 from nonholo.systems._multidimensional_sleigh import MultidimensionalSleigh
+from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._rigid_body import RigidBody
 from nonholo.systems._sleigh import ChaplyginSleigh
 from nonholo.systems._subspace import reference_point_subspace
@@ -41,6 +42,7 @@ __all__ = [
     "LLSystem",
     "LRSystem",
     "MultidimensionalSleigh",
+    "NormalForm",
     "RigidBody",
     "SuslovTop",
     "System",

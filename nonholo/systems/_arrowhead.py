@@ -5,6 +5,7 @@ of size n x n is ever made.
 """
 
 import dataclasses
+import functools
 from typing import ClassVar
 
 import numpy as np
@@ -15,6 +16,7 @@ from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, AbstractSystem, Equilibria
 from nonholo.systems._mass import inertia_from_mass_tensor
 from nonholo.systems._multidimensional_sleigh import MultidimensionalSleigh
+from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._suslov import SuslovTop
 from nonholo.systems._wide import WideInertia, narrow
 
@@ -102,6 +104,11 @@ class ArrowheadTop(AbstractLLSystem):
     def frame(self) -> Float[np.ndarray, "n n"]:
         """The identity."""
         return self.group.identity
+
+    @functools.cached_property
+    def normal_form(self) -> NormalForm:
+        """The diagonal of B, and c."""
+        return NormalForm(self.inertia_along.turning, self.coupling)
 
     def equilibria(self) -> Equilibria:
         """Return the permanent rotations, as those of `SuslovTop`."""
@@ -197,6 +204,12 @@ class ArrowheadSleigh(AbstractLLSystem):
     def frame(self) -> Float[np.ndarray, "N N"]:
         """The identity."""
         return self.group.identity
+
+    @functools.cached_property
+    def normal_form(self) -> NormalForm:
+        """The numbers of the equations of motion, c with the other sign."""
+        d, a = self.diagonal, self.center_of_mass
+        return NormalForm(d[1:] + d[0], -self.coupling, self.mass, a[0], a[1:])
 
     def equilibria(self) -> Equilibria:
         """Return the velocities that stay constant, as those of `MultidimensionalSleigh`."""

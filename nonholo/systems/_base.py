@@ -7,6 +7,7 @@ $\mathrm{Ad}_g\omega \in \mathfrak{d}$ (LR systems). Time steps and solvers live
 
 import abc
 import dataclasses
+import functools
 from typing import ClassVar
 
 import numpy as np
@@ -15,6 +16,7 @@ from nonholo._checks import last_length, trailing
 from nonholo._types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._mass import inertia_form
+from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._wide import WideInertia
 
 
@@ -99,6 +101,11 @@ class AbstractSystem(abc.ABC):
     @abc.abstractmethod
     def inertia_along(self) -> Float[Array, "k k"] | WideInertia:
         """The inertia along the rows of the constraint subspace, where it is not too large as a matrix."""
+
+    @functools.cached_property
+    def normal_form(self) -> NormalForm | None:
+        """The top or sleigh that the system is, in the axes of its constraint; None if it is neither."""
+        return None
 
     @property
     def rank(self) -> int:

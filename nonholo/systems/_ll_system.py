@@ -1,6 +1,7 @@
 """Any left-invariant system: a group, a kinetic energy and a subspace of body velocities."""
 
 import dataclasses
+import functools
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,6 +13,7 @@ from nonholo.systems._base import AbstractLLSystem, Equilibria, form_along
 from nonholo.systems._body import lines_of, mass_tensor_of_body, tensors_shown
 from nonholo.systems._drift import constant_velocities
 from nonholo.systems._mass import checked_group, form_mass_tensor, group_mass_tensor, inertia_from_mass_tensor
+from nonholo.systems._normal_form import NormalForm, recognized_form
 from nonholo.systems._subspace import subspace_and_annihilator
 
 _SINGULAR = 1e-13  # relative to the terms of the inertia
@@ -179,6 +181,11 @@ class LLSystem(AbstractLLSystem):
     def frame(self) -> Float[np.ndarray, "N N"]:
         """The identity."""
         return self.group.identity
+
+    @functools.cached_property
+    def normal_form(self) -> NormalForm | None:
+        """The top or sleigh that the system is; None if it is neither, or has no mass tensor."""
+        return recognized_form(self)
 
     def equilibria(self) -> Equilibria:
         """Return all of the constraint subspace if every admissible velocity stays constant.

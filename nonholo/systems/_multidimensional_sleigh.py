@@ -1,6 +1,7 @@
 """The Chaplygin sleigh in n dimensions: its contact point moves along one body axis, about which alone it turns."""
 
 import dataclasses
+import functools
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -10,6 +11,7 @@ from nonholo._types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, Equilibria
 from nonholo.systems._mass import inertia_from_mass_tensor
+from nonholo.systems._normal_form import NormalForm, sleigh_form
 from nonholo.systems._subspace import complement, plane_rows
 
 if TYPE_CHECKING:
@@ -146,6 +148,11 @@ class MultidimensionalSleigh(AbstractLLSystem):
     def frame(self) -> Float[np.ndarray, "N N"]:
         """The identity."""
         return self.group.identity
+
+    @functools.cached_property
+    def normal_form(self) -> NormalForm:
+        """The numbers of the equations of motion, c with the other sign."""
+        return sleigh_form(self.mass, self.center_of_mass, self.mass_tensor)
 
     def equilibria(self) -> Equilibria:
         r"""Return the velocities that stay constant.

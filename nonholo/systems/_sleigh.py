@@ -1,6 +1,7 @@
 """The Chaplygin sleigh: a rigid body in the plane on a blade that cannot slip sideways."""
 
 import dataclasses
+import functools
 from typing import ClassVar
 
 import numpy as np
@@ -10,6 +11,7 @@ from nonholo._types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, Equilibria, form_along
 from nonholo.systems._mass import inertia_from_mass_tensor
+from nonholo.systems._normal_form import NormalForm
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -97,6 +99,13 @@ class ChaplyginSleigh(AbstractLLSystem):
     def canonical(self) -> "ChaplyginSleigh":
         """The same sleigh with b = 0: the offset across the blade does not enter the reduced motion."""
         return ChaplyginSleigh(self.mass, self.inertia, self.a)
+
+    @functools.cached_property
+    def normal_form(self) -> NormalForm:
+        r"""J, m and a; the plane $e_1\wedge e_2$ turns against $\omega$."""
+        xp = (self.inertia * self.mass * self.a).__array_namespace__()
+        stiffness = xp.reshape(xp.asarray(self.inertia), (1, 1))
+        return NormalForm(stiffness, np.zeros(1), self.mass, self.a, np.zeros(1), frame_map=np.diag([-1.0, 1.0]))
 
     def equilibria(self) -> Equilibria:
         """Return the straight motions, with the half that attracts; every admissible velocity if a = 0.

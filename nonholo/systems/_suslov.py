@@ -1,6 +1,7 @@
 """The Suslov top: a rigid body about a fixed point that may only turn in planes containing one of its own axes."""
 
 import dataclasses
+import functools
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -17,6 +18,7 @@ from nonholo.systems._mass import (
     mass_tensor_from_inertia,
     rotation_to,
 )
+from nonholo.systems._normal_form import NormalForm, top_form
 from nonholo.systems._subspace import complement, plane_rows
 
 if TYPE_CHECKING:
@@ -128,9 +130,7 @@ class SuslovTop(AbstractLLSystem):
     @property
     def inertia_along(self) -> Float[Array, "k k"]:
         r"""The matrix $B = A + d\,\mathrm{Id}$; for n = 3 in the rows of the constraint subspace."""
-        J = self.canonical.mass_tensor
-        xp = J.__array_namespace__()
-        return J[:-1, :-1] + J[-1, -1] * xp.eye(J.shape[-1] - 1, dtype=J.dtype)
+        return self.normal_form.stiffness
 
     @property
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
@@ -160,7 +160,12 @@ class SuslovTop(AbstractLLSystem):
     @property
     def coupling(self) -> Float[Array, "k"]:
         """The vector c of the mass tensor in the canonical frame; zero for a balanced top."""
-        return self.canonical.mass_tensor[:-1, -1]
+        return self.normal_form.coupling
+
+    @functools.cached_property
+    def normal_form(self) -> NormalForm:
+        """B and c."""
+        return top_form(self.canonical.mass_tensor)
 
     def equilibria(self) -> Equilibria:
         """Return the permanent rotations: the line spanned by c, its negative half attracting; all of d if c = 0.

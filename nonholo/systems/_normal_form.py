@@ -1,0 +1,178 @@
+r"""What tops and sleighs are, whatever class they were given as: five numbers in the axes of their constraint.
+
+A top on SO(n) turns in the planes $e_i\wedge e_n$ with velocities w; a sleigh on SE(n) in the planes $e_1\wedge e_j$,
+while its center of mass advances along $e_1$ with the velocity $u = v_1 + \alpha\cdot w$:
+
+$$ (B + ma_1^2)\,\dot w = (c\cdot w)\,w - |w|^2c - ma_1u\,w, \qquad \dot u = a_1|w|^2 \qquad
+   (m = a_1 = 0\ \text{for a top}). $$
+"""
+
+import dataclasses
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nonholo._checks import is_traced
+from nonholo._types import Array, Float
+from nonholo.groups import SE, SO
+from nonholo.systems._subspace import plane_rows
+
+if TYPE_CHECKING:
+    from nonholo.systems._base import AbstractLLSystem
+
+_ROUNDING = 1e-13  # relative; what is left of a subspace that is spanned by planes through one axis
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class NormalForm:
+    r"""A top or a sleigh in the axes of its constraint.
+
+    The rows of the form are $e_i\wedge e_n$ for a top, $e_1\wedge e_j$ and then the velocity along $e_1$ for a sleigh.
+
+    Attributes:
+        stiffness: B, shape (k, k), or its diagonal (k,); of a sleigh about the center of mass.
+        coupling: c, shape (k,): the mass tensor between the planes and the axis, for a sleigh with the other sign.
+        mass: m; None for a top.
+        arm: $a_1$, the coordinate of the center of mass along $e_1$; 0 for a top.
+        offset: $\alpha$, its coordinates across, shape (k,); empty for a top.
+        frame: These axes as seen from the canonical frame of the system; None where they are the same.
+        frame_map: C with r = C r_canonical for momenta along the rows, and y_canonical = y C for charts; None where the
+            rows are the same.
+
+    Example:
+        >>> sleigh = nh.ChaplyginSleigh(mass=2.0, inertia=1.5, a=0.5).normal_form
+        >>> sleigh.stiffness, sleigh.arm, sleigh.is_sleigh, sleigh.is_planar
+        (array([[1.5]]), np.float64(0.5), True, True)
+        >>> tensor = [[1.0, 0.0, 0.3], [0.0, 2.0, 0.1], [0.3, 0.1, 4.0]]
+        >>> nh.LLSystem(nh.SO(3), tensor, annihilator=[[0.0, 0.0, 1.0]]).normal_form.coupling
+        array([0.3, 0.1])
+        >>> nh.LLSystem(nh.SO(3), tensor, annihilator=np.eye(3)[:2]).normal_form is None
+        True
+    """
+
+    stiffness: Float[Array, "k k"] | Float[Array, "k"]
+    coupling: Float[Array, "k"]
+    mass: Array | None = None
+    arm: Array = 0.0
+    offset: Float[Array, "j"] = dataclasses.field(default_factory=lambda: np.zeros(0))
+    frame: Float[np.ndarray, "N N"] | None = None
+    frame_map: Float[np.ndarray, "m m"] | None = None
+
+    @property
+    def is_sleigh(self) -> bool:
+        """Whether the body slides along an axis; otherwise it is a top."""
+        return self.mass is not None
+
+    @property
+    def is_planar(self) -> bool:
+        """Whether two directions are admissible: tops in space and sleighs in the plane, known in closed form."""
+        return len(self.coupling) == (1 if self.is_sleigh else 2)
+
+    @property
+    def is_diagonal(self) -> bool:
+        """Whether the axes are principal axes of B, which is given by its diagonal."""
+        return self.stiffness.ndim == 1
+
+    @property
+    def turning(self) -> Float[Array, "k k"] | Float[Array, "k"]:
+        """The inertia of turning alone, $B + ma_1^2$, as a matrix or a diagonal."""
+        if not self.is_sleigh:
+            return self.stiffness
+        more = self.mass * self.arm**2
+        return self.stiffness + (more if self.is_diagonal else more * np.eye(len(self.coupling)))
+
+
+def top_form(mass_tensor: Float[Array, "n n"]) -> NormalForm:
+    """Return the form of a top whose axis is the last one."""
+    xp = mass_tensor.__array_namespace__()
+    unit = xp.eye(mass_tensor.shape[-1] - 1, dtype=mass_tensor.dtype)
+    return NormalForm(mass_tensor[:-1, :-1] + mass_tensor[-1, -1] * unit, mass_tensor[:-1, -1])
+
+
+def sleigh_form(mass: Array, center_of_mass: Float[Array, "n"], mass_tensor: Float[Array, "n n"]) -> NormalForm:
+    """Return the form of a sleigh that slides along the first axis, from its mass tensor about the center of mass."""
+    J, a = np.asarray(mass_tensor), np.asarray(center_of_mass)
+    return NormalForm(J[1:, 1:] + J[0, 0] * np.eye(len(J) - 1), -J[0, 1:], mass, a[0], a[1:])
+
+
+def recognized_form(system: "AbstractLLSystem") -> NormalForm | None:
+    """Return the form of a system with a mass tensor, in whatever axes it is given; None if it has none."""
+    tensor, group = system.homogeneous_mass_tensor, system.group
+    if tensor is None or is_traced(tensor):
+        return None
+    if group.is_rigid and group == SO(group.size) and group.size > 2:
+        return _recognized_top(system, np.asarray(tensor))
+    if group.is_rigid and group.size > 2 and group == SE(group.size - 1):
+        return _recognized_sleigh(system, np.asarray(tensor))
+    return None
+
+
+def _recognized_top(system: "AbstractLLSystem", tensor: np.ndarray) -> NormalForm | None:
+    n, rows = len(tensor), system.constraint_subspace
+    if len(rows) != n - 1:
+        return None
+    planes = system.group.hat(np.linalg.qr(rows.T)[0].T)
+    axis = np.linalg.eigh(np.einsum("kia,kib->ab", planes, planes))[1][:, -1]
+    if not _pass_through(planes, axis):
+        return None
+    turn = _rotation(np.eye(n)[-1], axis)
+    seen = turn.T @ tensor @ turn
+    form = top_form((seen + seen.T) / 2)
+    return _seen_from(system, form, turn, plane_rows(system.group, [(i, n - 1) for i in range(n - 1)]))
+
+
+def _recognized_sleigh(system: "AbstractLLSystem", tensor: np.ndarray) -> NormalForm | None:
+    n, rows = len(tensor) - 1, system.constraint_subspace
+    if len(rows) != n:
+        return None
+    velocities = system.group.hat(rows)
+    spins = velocities[:, :n, :n].reshape(n, -1)
+    left, sizes, _ = np.linalg.svd(spins)
+    if sizes[-1] > _ROUNDING * sizes[0] or sizes[-2] <= _ROUNDING * sizes[0]:
+        return None
+    along = left[:, -1] @ velocities[:, :n, n]  # the one velocity without rotation
+    axis = along / np.linalg.norm(along)
+    turning = np.einsum("ki,kab->iab", left[:, :-1] / sizes[:-1], velocities)
+    across = -axis @ turning[:, :n, :n]  # x_j of the planes x_j ^ axis
+    sideways = turning[:, :n, n] - np.outer(turning[:, :n, n] @ axis, axis)
+    shift = float(np.sum(sideways * across) / np.sum(across * across))
+    if not _pass_through(turning[:, :n, :n], axis) or np.abs(sideways - shift * across).max() > _ROUNDING * (
+        np.abs(sideways).max() + abs(shift)
+    ):
+        return None
+    frame = np.eye(n + 1)
+    frame[:n, :n] = _rotation(np.eye(n)[0], axis)
+    frame[:n, n] = -shift * axis
+    back = system.group.inverse(frame)
+    seen = back @ tensor @ back.T
+    mass, a = seen[-1, -1], seen[:-1, -1] / seen[-1, -1]
+    if abs(a[0]) <= _ROUNDING * (np.linalg.norm(a) + abs(shift)):
+        a[0] = 0.0
+    form = sleigh_form(mass, a, seen[:-1, :-1] - mass * np.outer(a, a))
+    if n == 2:  # in the plane the moment of inertia is all that counts
+        form = dataclasses.replace(form, coupling=np.zeros(1))
+    slide = np.zeros((1, system.group.dim))
+    slide[0, -n] = 1.0
+    rows = np.concatenate([plane_rows(system.group, [(0, j) for j in range(1, n)]), slide])
+    return _seen_from(system, form, frame, rows)
+
+
+def _pass_through(planes: Float[np.ndarray, "k n n"], axis: Float[np.ndarray, "n"]) -> bool:
+    """Tell whether bivectors are planes that contain an axis."""
+    across = np.eye(len(axis)) - np.outer(axis, axis)
+    return bool(np.abs(across @ planes @ across).max() <= _ROUNDING * np.abs(planes).max())
+
+
+def _rotation(start: Float[np.ndarray, "n"], axis: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n n"]:
+    """Return the shortest rotation that takes a unit vector to an axis, or to its opposite where that is nearer."""
+    end = axis if start @ axis >= 0 else -axis
+    middle = start + end
+    return np.eye(len(start)) - np.outer(middle, middle) / (1 + start @ end) + 2 * np.outer(end, start)
+
+
+def _seen_from(
+    system: "AbstractLLSystem", form: NormalForm, frame: Float[np.ndarray, "N N"], rows: Float[np.ndarray, "m dim"]
+) -> NormalForm:
+    """Return a form with its frame, and the map of momenta to its rows, as seen from the system."""
+    images = rows @ system.group.adjoint(frame).T
+    return dataclasses.replace(form, frame=frame, frame_map=images @ np.linalg.pinv(system.constraint_subspace))
