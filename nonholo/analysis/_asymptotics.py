@@ -4,7 +4,7 @@ Theory: docs/theory/critical-energies-and-limits.md. Orbits are followed to thei
 """
 
 import dataclasses
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from nonholo.analysis._followed import Approach, Ends, approach, followed, kept_
 from nonholo.analysis._single_valued_region import single_valued_region
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
-from nonholo.systems import AbstractLLSystem, ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
+from nonholo.systems import AbstractLLSystem, AbstractSystem, NormalForm
 
 _SAME = 1e-6  # relative distance of displacements beyond which two orbits are on different branches
 
@@ -82,14 +82,15 @@ def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
         array([-0., -1., -0.])
     """
     system = subject.system if isinstance(subject, Orbit) else subject
-    if not isinstance(system, SuslovTop | ChaplyginSleigh | MultidimensionalSleigh):
+    form = system.normal_form if isinstance(system, AbstractSystem) else None
+    if form is None:
         remedy = "Pass a SuslovTop, a sleigh, or an orbit of one."
         raise error("asymptotics(subject=...)", "be a top or a sleigh, or its orbit", type(subject).__name__, remedy)
     if not isinstance(subject, Orbit):
-        return _of_system(system)
+        return _of_system(cast("AbstractLLSystem", system), form)
     if len(subject) == 0:
         raise error("asymptotics(subject=...)", "have at least one state", "none", "See the orbit's outcome.")
-    return _of_orbit(system, subject)
+    return _of_orbit(form, subject)
 
 
 def turn_of_flow(mass: Any, inertia: Any, a: Any) -> Any:
@@ -97,37 +98,41 @@ def turn_of_flow(mass: Any, inertia: Any, a: Any) -> Any:
     return np.pi * np.sqrt(1 + inertia / mass / a / a)
 
 
-def _of_system(system: AbstractLLSystem) -> Asymptotics:
-    attracting, turn = system.equilibria().attracting, None
+def _of_system(system: AbstractLLSystem, form: NormalForm) -> Asymptotics:
+    attracting = system.equilibria().attracting
     if attracting is None:
         return Asymptotics()
-    if isinstance(system, ChaplyginSleigh):
-        turn = float(turn_of_flow(system.mass, system.inertia, system.a))
+    if form.is_sleigh and form.is_planar:
+        turn = _turn_of_flow(form)
         return Asymptotics(heading_turn=turn, motion_turn=turn - np.pi)
-    return Asymptotics(axis_before=_axis(system, -attracting), axis_after=_axis(system, attracting))
+    return Asymptotics(axis_before=_axis(form, -attracting), axis_after=_axis(form, attracting))
 
 
-def _axis(system: AbstractLLSystem, velocity: Float[np.ndarray, "dim"]) -> Float[np.ndarray, "3"] | None:
+def _turn_of_flow(form: NormalForm) -> float:
+    return float(turn_of_flow(form.mass, form.stiffness[0, 0], form.arm))
+
+
+def _axis(form: NormalForm, velocity: Float[np.ndarray, "dim"]) -> Float[np.ndarray, "3"] | None:
     """Return the unit vector of a velocity on SO(3); None at rest and in other groups."""
     size = float(np.linalg.norm(velocity))
-    return velocity / size if isinstance(system, SuslovTop) and len(velocity) == 3 and size > 0 else None
+    return velocity / size if form.is_planar and not form.is_sleigh and size > 0 else None
 
 
-def _of_orbit(system: AbstractLLSystem, orbit: Orbit) -> Asymptotics:
+def _of_orbit(form: NormalForm, orbit: Orbit) -> Asymptotics:
     if _is_bound_to_end(orbit):
         return Asymptotics(persists=False)
     velocity, found = orbit.body_velocity[0], approach(orbit)
     if found is None:
-        return _resting(system, orbit, velocity)
+        return _resting(form, orbit, velocity)
     along, spectrum, energy = found.kept, found.spectrum, found.energy
     change = np.zeros_like(along) if spectrum.velocity is None else spectrum.velocity
-    persists = _known_to_persist(orbit, energy)
+    persists = _known_to_persist(form, orbit, energy)
     before, after = along - change, along + change
-    if isinstance(system, ChaplyginSleigh):
-        turn = _heading_turn(system, orbit, found)
+    if form.is_sleigh and form.is_planar:
+        turn = _heading_turn(form, orbit, found)
         forwards = None if turn is None else turn - float(np.copysign(np.pi, velocity[0]))
         return Asymptotics(before, after, heading_turn=turn, motion_turn=forwards, persists=persists)
-    axes = _axis(system, before), _axis(system, after)
+    axes = _axis(form, before), _axis(form, after)
     in_space = _in_space(orbit, axes, found)
     return Asymptotics(before, after, *axes, *in_space, persists=persists)
 
@@ -140,11 +145,11 @@ def _in_space(orbit: Orbit, axes: tuple, found: Approach) -> tuple:
     return ends.first.configuration[-1] @ axes[0], ends.last.configuration[-1] @ axes[1]
 
 
-def _resting(system: AbstractLLSystem, orbit: Orbit, velocity: Float[np.ndarray, "dim"]) -> Asymptotics:
+def _resting(form: NormalForm, orbit: Orbit, velocity: Float[np.ndarray, "dim"]) -> Asymptotics:
     """Return the limits of a motion with constant velocity: the heading of a balanced sleigh turns for ever."""
-    axis = _axis(system, velocity)
+    axis = _axis(form, velocity)
     in_space = None if axis is None or orbit.canonical_pose is None else orbit.configuration[0] @ axis
-    straight = isinstance(system, ChaplyginSleigh) and system.a != 0
+    straight = form.is_sleigh and form.is_planar and form.arm != 0
     turn = 0.0 if straight else None
     return Asymptotics(velocity, velocity, axis, axis, in_space, in_space, turn, turn)
 
@@ -157,13 +162,13 @@ def _is_bound_to_end(orbit: Orbit) -> bool:
     return highest is not None and kept_velocity(orbit)[1] > highest
 
 
-def _known_to_persist(orbit: Orbit, energy: float) -> bool:
+def _known_to_persist(form: NormalForm, orbit: Orbit, energy: float) -> bool:
     discrete = orbit.motion
     if not isinstance(discrete, Discretization):
         return True
-    if orbit.branch != "principal" or discrete.order > 2 or discrete.system.group.dim != 3:
+    if orbit.branch != "principal" or discrete.order > 2 or not form.is_planar:
         return False
-    if isinstance(discrete.system, ChaplyginSleigh):
+    if form.is_sleigh:
         return energy < single_valued_region(discrete).principal_energy
     return energy < critical_energies(discrete).fold
 
@@ -184,10 +189,10 @@ def _is_start_of(principal: Orbit, orbit: Orbit) -> bool:
     return bool(np.abs(again[:both] - mine[:both]).max() <= _SAME * np.abs(mine).max())
 
 
-def _heading_turn(system: ChaplyginSleigh, orbit: Orbit, found: Approach) -> float | None:
+def _heading_turn(form: NormalForm, orbit: Orbit, found: Approach) -> float | None:
     """Return the signed turn: in closed form for a flow, summed over all steps for a discrete orbit."""
     if not isinstance(orbit.motion, Discretization):
-        return float(np.copysign(_of_system(system).heading_turn or 0.0, orbit.body_velocity[0, 0]))
+        return float(np.copysign(_turn_of_flow(form), orbit.body_velocity[0, 0]))
     ends = _ends(orbit, found)
     if ends is None:
         return None

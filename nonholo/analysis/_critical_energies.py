@@ -16,7 +16,7 @@ from nonholo.analysis._fold_energy import fold_energy
 from nonholo.discrete import Discretization
 from nonholo.discrete._composition import refuse_composition
 from nonholo.discrete._regions import Landscape, landscape
-from nonholo.systems import ChaplyginSleigh, SuslovTop
+from nonholo.systems import NormalForm
 
 _COINCIDENT = 1e-14  # relative distance of two energies below which a curve of critical points is assumed
 _AT_SADDLE = 1e-12  # relative distance below which a fold is the saddle, through which a line of folds passes
@@ -97,8 +97,8 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
         >>> found.regular, found.fold == found.saddle, round(found.line, 6)
         (True, True, 1.008824)
     """
-    top = _checked("critical_energies(discrete=...)", discrete)
-    land = landscape(top)
+    form = _checked("critical_energies(discrete=...)", discrete)
+    land = landscape(form)
     unit = 2 / float(discrete.time_step) ** 2
     off = _off_equator(land, unit)
     points = _on_equator(land, unit) if land.sharpness > 0 else []
@@ -110,34 +110,34 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
         saddle=by_kind.get("saddle"),
         centre=by_kind.get("maximum"),
         equatorial_saddle=max(saddles, default=None),
-        fold=_fold(top, land, unit, by_kind.get("saddle")),
+        fold=_fold(form, land, unit, by_kind.get("saddle")),
         line=highest_energy(discrete),
         regular=land.is_regular,
         points=(CriticalPoint(0.0, "minimum", False, True, np.zeros(2)), *sorted(points, key=lambda p: p.energy)),
     )
 
 
-def _checked(where: str, discrete: Any) -> SuslovTop:
+def _checked(where: str, discrete: Any) -> NormalForm:
     remedy = "Pass `discretize(SuslovTop(J), time_step)` with n = 3."
     if not isinstance(discrete, Discretization):
         raise error(where, "be a discretised Suslov top", repr(discrete), remedy)
-    system = discrete.system.canonical
-    if isinstance(system, ChaplyginSleigh):
-        remedy = "Its level curves are ellipses; `single_valued_region` gives the energy where branches merge."
-    if not isinstance(system, SuslovTop) or system.group.dim != 3:
-        raise error(where, "be a discretised Suslov top with n = 3", f"{type(system).__name__}", remedy)
+    form = discrete.system.normal_form
+    if form is None or form.is_sleigh or not form.is_planar:
+        if form is not None and form.is_sleigh:
+            remedy = "Its level curves are ellipses; `single_valued_region` gives the energy where branches merge."
+        raise error(where, "be a discretised Suslov top with n = 3", f"{type(discrete.system).__name__}", remedy)
     refuse_composition(where, discrete, "Pass the discretisation of order 2 that is composed.")
     if not discrete.conserves_energy:
         got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
         raise error(where, "conserve the energy", got, "Use the defaults of `discretize`.")
-    return system
+    return form
 
 
-def _fold(top: SuslovTop, land: Landscape, unit: float, saddle: float | None) -> float:
+def _fold(form: NormalForm, land: Landscape, unit: float, saddle: float | None) -> float:
     r"""Return $h_f$: the saddle where $D \ge 3|c|^2$, by theorem, otherwise found by a search."""
     if saddle is not None and 3 * land.sharpness <= 1:
         return saddle
-    fold = unit * fold_energy(np.asarray(top.constrained_inertia), np.asarray(top.coupling))
+    fold = unit * fold_energy(form.stiffness_matrix, np.asarray(form.coupling))
     if saddle is None or not land.is_regular:
         return fold
     return fold if fold < (1 - _AT_SADDLE) * saddle else saddle

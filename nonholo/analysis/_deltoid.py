@@ -8,9 +8,8 @@ import numpy as np
 from nonholo._checks import array, error
 from nonholo._limits import bounded_count
 from nonholo._types import Array, Float
-from nonholo.analysis._variety_points import closed_form
+from nonholo.analysis.planar import Strip, planar_map
 from nonholo.discrete import Discretization
-from nonholo.systems import ChaplyginSleigh
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -60,12 +59,11 @@ class Deltoid:
 
         For b = 0 these are the displacements with $V_1 = 0$ but for those of angle pi.
         """
-        system = cast(ChaplyginSleigh, self.discrete.system)
+        strip = _strip(self.discrete)
         rows = bounded_count("Deltoid.resting(points=...)", points, 100.0, "Pass the number of points.")
-        m, a, angle = float(system.mass), float(system.a), np.linspace(0.0, 2 * np.pi, rows)
-        whole = float(system.inertia) + m * a * a
-        reduced = np.stack([whole * np.sin(angle), -a * m * (1 - np.cos(angle))], axis=-1)
-        return system.from_canonical(reduced) / float(self.discrete.time_step)
+        m, a, angle = strip.mass, strip.arm, np.linspace(0.0, 2 * np.pi, rows)
+        canonical = np.stack([(strip.inertia + m * a * a) * np.sin(angle), -a * m * (1 - np.cos(angle))], axis=-1)
+        return strip.restricted_momenta(canonical) / float(self.discrete.time_step)
 
     def _plane(self, method: str, value: Array) -> Float[np.ndarray, "... 2"]:
         leading = (None,) * (np.ndim(value) - 1)
@@ -100,27 +98,31 @@ def deltoid(discrete: Discretization) -> Deltoid:
         >>> found.real_branches([[0.0, -2.5], [0.0, 0.0]]).tolist()
         [3, 1]
     """
-    checked = closed_form("deltoid(discrete=...)", discrete)
-    if not isinstance(checked.system, ChaplyginSleigh):
+    checked, variety = planar_map("deltoid(discrete=...)", discrete)
+    if not variety.form.is_sleigh:
         raise error("deltoid(discrete=...)", "be of a sleigh", repr(checked.system), "Tops have no deltoid.")
-    if checked.system.a == 0:
+    if variety.form.arm == 0:
         remedy = "A balanced sleigh has two real values if h |pi| < J, none beyond."
         raise error("deltoid(discrete=...)", "have a != 0", repr(checked.system), remedy)
     return Deltoid(checked, _restricted(checked, 3 * np.exp(2j * np.pi * np.array([0.0, 1.0, -1.0]) / 3)))
 
 
+def _strip(discrete: Discretization) -> Strip:
+    return cast(Strip, planar_map("Deltoid", discrete)[1])
+
+
 def _trace(discrete: Discretization, restricted: Float[np.ndarray, "... 2"]) -> np.ndarray:
     """Return kappa of restricted momenta."""
-    system = cast(ChaplyginSleigh, discrete.system)
-    pi, p1 = np.moveaxis(system.to_canonical(restricted) * float(discrete.time_step), -1, 0)
-    phat = system.a * p1 + 2 * system.mass * system.a**2
-    return (-(2 * phat + system.inertia) + 2j * pi) / system.inertia
+    strip = _strip(discrete)
+    pi, p1 = np.moveaxis(strip.canonical_momenta(restricted) * float(discrete.time_step), -1, 0)
+    phat = strip.arm * p1 + 2 * strip.mass * strip.arm**2
+    return (-(2 * phat + strip.inertia) + 2j * pi) / strip.inertia
 
 
 def _restricted(discrete: Discretization, trace: np.ndarray) -> Float[np.ndarray, "... 2"]:
     """Return the restricted momenta of kappa."""
-    system = cast(ChaplyginSleigh, discrete.system)
-    phat = -(np.real(trace) + 1) * system.inertia / 2
-    p1 = (phat - 2 * system.mass * system.a**2) / system.a
-    reduced = np.stack([np.imag(trace) * system.inertia / 2, p1], axis=-1)
-    return system.from_canonical(reduced) / float(discrete.time_step)
+    strip = _strip(discrete)
+    phat = -(np.real(trace) + 1) * strip.inertia / 2
+    p1 = (phat - 2 * strip.mass * strip.arm**2) / strip.arm
+    canonical = np.stack([np.imag(trace) * strip.inertia / 2, p1], axis=-1)
+    return strip.restricted_momenta(canonical) / float(discrete.time_step)

@@ -12,8 +12,7 @@ from nonholo._checks import error, positive
 from nonholo._types import Array, Float
 from nonholo.discrete import Discretization
 from nonholo.discrete._composition import weights
-from nonholo.systems import ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
-from nonholo.systems._base import AbstractLLSystem
+from nonholo.systems import AbstractLLSystem
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -76,7 +75,7 @@ def equilibria(system: AbstractLLSystem | Discretization, energy: Array = 1.0) -
         return EquilibriumSpectrum(known.subspace, None, None, nothing, None if step is None else nothing)
     momentum = known.attracting @ np.asarray(body.inertia_operator)
     velocity = known.attracting * np.sqrt(level / float(body.constrained_energy(momentum)))
-    rates = np.sort(_rates(body.canonical, velocity @ np.linalg.pinv(body.constraint_subspace)))
+    rates = np.sort(_rates(body, velocity @ np.linalg.pinv(body.constraint_subspace)))
     if step is None:
         return EquilibriumSpectrum(known.subspace, known.attracting, velocity, rates, None)
     multipliers, highest = _multipliers(body, velocity, rates, step), _highest_energy(body, step)
@@ -117,18 +116,14 @@ def _checked(where: str, value: Any) -> tuple[AbstractLLSystem, Float[np.ndarray
 
 def _rates(body: AbstractLLSystem, w: Float[np.ndarray, "k"]) -> Float[np.ndarray, "j"]:
     """Return the transverse rates at the equilibrium with this velocity in the rows of the constraint subspace."""
-    if isinstance(body, ChaplyginSleigh):
-        return np.array([-float(body.mass * body.a * w[1] / (body.inertia + body.mass * body.a**2))])
-    if isinstance(body, SuslovTop):
-        return _turning(np.asarray(body.constrained_inertia), np.asarray(body.coupling), w)
-    if not isinstance(body, MultidimensionalSleigh):
+    form = body.normal_form
+    if form is None:
         raise error("equilibria(system=...)", "be a top or a sleigh", type(body).__name__, "Pass one.")
-    J, a1 = np.asarray(body.mass_tensor), float(body.center_of_mass[0])
-    B = J[1:, 1:] + J[0, 0] * np.eye(len(J) - 1)
-    if a1 == 0:
-        return _turning(B, J[0, 1:], w[:-1])
-    m = float(body.mass)
-    return -m * a1 * w[-1] / np.linalg.eigvalsh(B + m * a1**2 * np.eye(len(B)))
+    w = np.linalg.solve(body.form_map.T, w)
+    if not form.is_sleigh or form.arm == 0:
+        return _turning(form.stiffness_matrix, form.coupling, w[: len(form.coupling)])
+    turning = np.sort(form.turning) if form.is_diagonal else np.linalg.eigvalsh(form.turning)
+    return -form.mass * form.arm * w[-1] / turning
 
 
 def _turning(B: Float[np.ndarray, "k k"], c: Float[np.ndarray, "k"], w: Float[np.ndarray, "k"]) -> np.ndarray:

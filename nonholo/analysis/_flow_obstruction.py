@@ -14,9 +14,8 @@ from nonholo._limits import bounded_count
 from nonholo._progress import progress_bar
 from nonholo._types import Float
 from nonholo.analysis._equilibria import equilibria
-from nonholo.analysis._half_planes import sides_of_displacements, sides_of_momenta
 from nonholo.analysis._heteroclinic import both_ways, middle
-from nonholo.analysis._variety_points import closed_form
+from nonholo.analysis.planar import planar_map
 from nonholo.discrete import Discretization
 from nonholo.simulation import simulate
 from nonholo.systems import AbstractLLSystem
@@ -75,7 +74,7 @@ def flow_obstruction(
         4.5e-03
     """
     where = "flow_obstruction(discrete=...)"
-    checked = closed_form(where, discrete)
+    checked = planar_map(where, discrete)[0]
     number = bounded_count("flow_obstruction(samples=...)", samples, 100.0, "Pass the number of orbits.")
     spectrum = equilibria(checked, energy)
     if spectrum.multipliers is None or spectrum.attracting is None:
@@ -108,14 +107,14 @@ def _one_step(discrete: Discretization, energy: Any, number: int) -> Float[np.nd
 def _ends(discrete: Discretization, multiplier: float, r: Float[np.ndarray, "2"]) -> tuple[float, float]:
     """Return the linearising coordinates of a momentum at the repelling and at the attracting end."""
     point = simulate(discrete, momentum=r, steps=1)[:1]
-    orbit = both_ways("flow_obstruction(...)", point)
-    (_, forward), weight = sides_of_displacements(discrete, orbit.displacement)
+    orbit, variety = both_ways("flow_obstruction(...)", point), planar_map("flow_obstruction(...)", discrete)[1]
+    (_, forward), weight = variety.sides(variety.points(orbit.displacement))
     ratio = (weight - forward) / (weight + forward)
     if multiplier <= 0 or ratio.min() <= 0:
         remedy = "Take a smaller energy or time step."
         got = f"a step that multiplies the side by {ratio.min():.3g}"
         raise error("flow_obstruction(energy=...)", "keep orbits on their side", got, remedy)
-    here, rate = math.log(abs(float(sides_of_momenta(discrete.system, r).side))), math.log(multiplier)
+    here, rate = math.log(abs(float(variety.sides_of_momenta(r).side))), math.log(multiplier)
     factors, now = np.log(ratio), int(np.flatnonzero(orbit.time == 0)[0])
     after = here + math.fsum(factors[now:] - rate)
     before = here - math.fsum(factors[:now] + rate)

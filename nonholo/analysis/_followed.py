@@ -10,7 +10,7 @@ from nonholo.analysis._equilibria import EquilibriumSpectrum, equilibria
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.simulation import flow, simulate
-from nonholo.systems import AbstractLLSystem, MultidimensionalSleigh
+from nonholo.systems import AbstractLLSystem
 
 _ROUNDING = 8 * np.finfo(np.float64).eps
 _SETTLED = 34.0  # natural logarithm of the factor by which the distance from the equilibria has fallen: 6e14
@@ -62,10 +62,12 @@ def kept_velocity(orbit: Orbit) -> tuple[Float[np.ndarray, "dim"], float]:
 
 def _kept(system: AbstractLLSystem, velocity: Float[np.ndarray, "dim"]) -> Float[np.ndarray, "dim"]:
     """Return the part of the velocity that never changes: the advance u of a sleigh with a_1 = 0."""
-    if not isinstance(system, MultidimensionalSleigh) or system.center_of_mass[0] != 0:
+    form = system.normal_form
+    if form is None or not form.is_sleigh or form.arm != 0:
         return np.zeros_like(velocity)
-    rows, w = system.constraint_subspace, velocity @ np.linalg.pinv(system.constraint_subspace)
-    return (w[-1] + system.center_of_mass[1:] @ w[:-1]) * rows[-1]
+    rows = system.form_map @ system.constraint_subspace
+    w = velocity @ np.linalg.pinv(rows)
+    return (w[-1] + form.offset @ w[:-1]) * rows[-1]
 
 
 def followed(orbit: Orbit, found: Approach, where: str = "asymptotics(subject=...)") -> Ends:

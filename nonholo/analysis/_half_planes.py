@@ -3,27 +3,13 @@ r"""On which side of the line of equilibria a motion runs, and which half of the
 Tops with n = 3 and sleighs in the plane. Theory: docs/theory/invariant-measure.md.
 """
 
-from typing import Any, NamedTuple, cast
+from typing import Any
 
 import numpy as np
 
 from nonholo._checks import error, trailing
-from nonholo._types import Array, Float
-from nonholo.analysis._variety_points import closed_form, points_of
+from nonholo.analysis.planar import HalfPlanes, planar_map
 from nonholo.discrete import Discretization
-from nonholo.systems import AbstractSystem, ChaplyginSleigh, SuslovTop
-
-
-class HalfPlanes(NamedTuple):
-    r"""Numbers whose signs tell half-planes; they are zero for every motion of a balanced body.
-
-    Attributes:
-        side: Positive in $\Delta_+$, negative in $\Delta_-$, zero on the line of equilibria.
-        forward: Positive in $\Theta_+$, which contains the attracting equilibria, negative in $\Theta_-$.
-    """
-
-    side: Float[Array, "..."]
-    forward: Float[Array, "..."]
 
 
 def half_planes(discrete: Discretization, *, displacement: Any = None, momentum: Any = None) -> HalfPlanes:
@@ -56,7 +42,7 @@ def half_planes(discrete: Discretization, *, displacement: Any = None, momentum:
         >>> bool(np.all(side < 0)), bool(forward[0] < 0 < forward[-1])
         (True, True)
     """
-    checked = closed_form("half_planes(discrete=...)", discrete)
+    checked, variety = planar_map("half_planes(discrete=...)", discrete)
     if (displacement is None) == (momentum is None):
         got = "none" if momentum is None else "both"
         raise error("half_planes(...)", "be given displacement or momentum", got, "Choose one.")
@@ -64,45 +50,9 @@ def half_planes(discrete: Discretization, *, displacement: Any = None, momentum:
     if displacement is not None:
         shape = system.group.identity.shape
         W = trailing("half_planes(displacement=...)", displacement, shape, "Pass `orbit.displacement`.")
-        return sides_of_displacements(checked, W)[0]
+        return variety.sides(variety.points(W))[0]
     k, dim = system.constraint_subspace.shape
     size = k if np.shape(momentum)[-1:] == (k,) else dim
     p = trailing("half_planes(momentum=...)", momentum, (size,), f"Pass {dim} body momenta or {k} along d.")
     r = p if size == k else system.restrict(p)
-    return sides_of_momenta(system, float(checked.time_step) * r)
-
-
-def sides_of_displacements(
-    discrete: Discretization, W: Float[np.ndarray, "... 3 3"]
-) -> tuple[HalfPlanes, Float[Array, "..."]]:
-    r"""Return the half-planes of displacements, and the weight $\Lambda$: $Dz_0$ or $2I\cos\tfrac\Delta2$.
-
-    The side of the momentum is $s\,(\Lambda + Q)$ before the step and $s\,(\Lambda - Q)$ after it, times 2 for a top.
-    """
-    body, points = _body(discrete.system), points_of(discrete, W)
-    if isinstance(body, ChaplyginSleigh):
-        angle, along = points[..., 0], points[..., 1]
-        lever = float(body.a * body.mass)
-        whole = float(body.inertia) + lever * float(body.a)
-        return HalfPlanes(np.sin(angle / 2), lever * along), 2 * whole * np.cos(angle / 2)
-    points = np.where(points[..., :1] < 0, -points, points)
-    z0, z = points[..., 0], points[..., 1:]
-    B, c = np.asarray(body.constrained_inertia), np.asarray(body.coupling)
-    return HalfPlanes(_quarter_turned(z) @ c, -z @ (B @ c)), np.linalg.det(B) * z0
-
-
-def sides_of_momenta(system: AbstractSystem, r: Float[np.ndarray, "... 2"]) -> HalfPlanes:
-    """Return the half-planes of momenta along the constraint subspace of a top or a sleigh."""
-    body, canonical = _body(system), system.to_canonical(r)
-    if isinstance(body, ChaplyginSleigh):
-        return HalfPlanes(canonical[..., 0], float(body.a) * canonical[..., 1])
-    B, c = np.asarray(body.constrained_inertia), np.asarray(body.coupling)
-    return HalfPlanes(_quarter_turned(canonical) @ (B @ c), -canonical @ c)
-
-
-def _body(system: AbstractSystem) -> SuslovTop | ChaplyginSleigh:
-    return cast("SuslovTop | ChaplyginSleigh", system.canonical)
-
-
-def _quarter_turned(z: Float[np.ndarray, "... 2"]) -> Float[np.ndarray, "... 2"]:
-    return np.stack([-z[..., 1], z[..., 0]], axis=-1)
+    return variety.sides_of_momenta(float(checked.time_step) * r)

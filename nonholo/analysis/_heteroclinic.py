@@ -5,7 +5,7 @@ The map is reversible: the past of a displacement W is the future of its inverse
 """
 
 import dataclasses
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -13,13 +13,12 @@ from nonholo._checks import choice, error, positive
 from nonholo._types import Float
 from nonholo.analysis._asymptotics import Asymptotics, asymptotics
 from nonholo.analysis._followed import approach, followed
-from nonholo.analysis._half_planes import sides_of_momenta
-from nonholo.discrete import Discretization
-from nonholo.discrete._discretization import as_discretization
+from nonholo.analysis.planar import planar_variety
+from nonholo.discrete import Discretization, as_discretization
 from nonholo.discrete._start import one_start
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
-from nonholo.systems import AbstractLLSystem, ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
+from nonholo.systems import AbstractLLSystem
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -94,8 +93,8 @@ def both_ways(where: str, point: Orbit) -> Orbit:
 
 
 def _checked(where: str, discrete: Discretization) -> AbstractLLSystem:
-    system = discrete.system
-    if not isinstance(system, SuslovTop | ChaplyginSleigh | MultidimensionalSleigh) or not discrete.conserves_energy:
+    system = cast("AbstractLLSystem", discrete.system)
+    if system.normal_form is None or not discrete.conserves_energy:
         remedy = "Discretise a SuslovTop or a sleigh with the defaults."
         raise error(where, "be a top or a sleigh whose map keeps energy", repr(discrete), remedy)
     if system.equilibria().attracting is None:
@@ -107,12 +106,13 @@ def middle(system: AbstractLLSystem, energy: Any, side: int) -> Float[np.ndarray
     """Return the restricted momentum of an energy half way between the equilibria, where the Lyapunov function is 0."""
     level = float(positive("heteroclinic(energy=...)", energy, "Pass the energy of the orbit."))
     attracting = np.linalg.pinv(system.constraint_subspace).T @ np.asarray(system.equilibria().attracting)
-    if attracting.shape != (2,):
+    variety = planar_variety(system)
+    if variety is None:
         got = f"{len(attracting)} admissible directions, where many orbits have one energy"
         raise error("heteroclinic(energy=...)", "determine the orbit", got, "Pass a momentum or a displacement.")
     r = np.array([-attracting[1], attracting[0]])
     r = r * np.sqrt(level / float(system.constrained_energy(r)))
-    return side * np.sign(sides_of_momenta(system, r).side) * r
+    return side * np.sign(variety.sides_of_momenta(r).side) * r
 
 
 def _joined(past: Orbit, future: Orbit) -> Orbit:

@@ -1,18 +1,14 @@
 """The curve of all displacements of one energy, on which orbits run."""
 
 import dataclasses
-from typing import cast
 
 import numpy as np
 
 from nonholo._checks import number, positive
 from nonholo._limits import bounded_count
 from nonholo._types import Array, Float
-from nonholo.analysis._sleigh_level import SleighLevel
-from nonholo.analysis._top_level import TopLevel
-from nonholo.analysis._variety_points import closed_form, displacement_at, momentum_at
+from nonholo.analysis.planar import momenta_at, planar_map
 from nonholo.discrete import Discretization
-from nonholo.systems import ChaplyginSleigh, SuslovTop
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -35,25 +31,20 @@ class InvariantCurve:
     @property
     def displacement(self) -> tuple[Float[np.ndarray, "K N N"], ...]:
         """The displacements, for each component."""
-        return tuple(displacement_at(self.discrete, points) for points in self.components)
+        variety = planar_map("InvariantCurve", self.discrete)[1]
+        return tuple(variety.displacement(points) for points in self.components)
 
     @property
     def momentum(self) -> tuple[Float[np.ndarray, "K 3"], ...]:
         """The body momenta, a curve on the momentum locus for each component."""
-        return tuple(momentum_at(self.discrete, points) for points in self.components)
+        discrete, variety = planar_map("InvariantCurve", self.discrete)
+        return tuple(momenta_at(discrete, variety, points) for points in self.components)
 
     def over(self, direction: float) -> Float[np.ndarray, "m c"]:
         """Return the points, two at most, with a direction of z (tops, z_0 >= 0) or with a step angle (sleighs)."""
         angle = float(number("InvariantCurve.over(direction=...)", direction))
-        return level_of(self.discrete, self.energy).over(angle)
-
-
-def level_of(discrete: Discretization, energy: float) -> TopLevel | SleighLevel:
-    """Return the equation of the level."""
-    system, time_step = discrete.system, float(discrete.time_step)
-    if isinstance(system, ChaplyginSleigh):
-        return SleighLevel.of(system, energy * time_step**2)
-    return TopLevel.of(cast(SuslovTop, system), energy * time_step**2)
+        variety = planar_map("InvariantCurve", self.discrete)[1]
+        return variety.level(self.energy * float(self.discrete.time_step) ** 2).over(angle)
 
 
 def invariant_curve(discrete: Discretization, energy: Array, resolution: int = 400) -> InvariantCurve:
@@ -85,7 +76,8 @@ def invariant_curve(discrete: Discretization, energy: Array, resolution: int = 4
         >>> bool(np.ptp(top.system.constrained_energy(top.system.restrict(curve.momentum[1]))) < 1e-14)
         True
     """
-    checked = closed_form("invariant_curve(discrete=...)", discrete)
+    checked, variety = planar_map("invariant_curve(discrete=...)", discrete)
     level = float(positive("invariant_curve(energy=...)", energy, "An orbit has one: `orbit.energy[0]`."))
     rows = bounded_count("invariant_curve(resolution=...)", resolution, 1000.0, "Pass the points of an arc.")
-    return InvariantCurve(checked, level, level_of(checked, level).components(rows))
+    curves = variety.level(level * float(checked.time_step) ** 2).components(rows)
+    return InvariantCurve(checked, level, curves)

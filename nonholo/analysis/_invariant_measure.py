@@ -11,11 +11,11 @@ import numpy as np
 from nonholo._checks import array, error, trailing
 from nonholo._types import Array, Float
 from nonholo.analysis._equilibria import equilibria
-from nonholo.analysis._half_planes import sides_of_momenta
 from nonholo.analysis._step_jacobian import step_determinants
+from nonholo.analysis.planar import planar_variety
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
-from nonholo.systems import AbstractLLSystem, ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
+from nonholo.systems import AbstractLLSystem, AbstractSystem
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -64,11 +64,12 @@ class InvariantMeasure:
         if isinstance(self.motion, Discretization):
             got = "a discrete map, whose densities are singular at equilibria, not unique and in no known closed form"
             raise error(where, "belong to a flow or a balanced body", got, "Pass the system to `invariant_measure`.")
-        if k != 2:
+        variety = planar_variety(system)
+        if variety is None:
             got = f"{k} admissible directions"
             raise error(where, "be of a top with n = 3 or a sleigh in the plane", got, "Use `witness`.")
         with np.errstate(divide="ignore"):
-            return 1 / np.abs(sides_of_momenta(system, r).side)
+            return 1 / np.abs(variety.sides_of_momenta(r).side)
 
     def jacobian(self, displacement: Any) -> Float[Array, "..."]:
         r"""Return the determinant of one step of the map $r_k \mapsto r_{k+1}$, from displacements.
@@ -148,7 +149,7 @@ def invariant_measure(motion: AbstractLLSystem | Discretization, energy: Array =
         True
     """
     system = motion.system if isinstance(motion, Discretization) else motion
-    if not isinstance(system, SuslovTop | ChaplyginSleigh | MultidimensionalSleigh):
+    if not isinstance(system, AbstractSystem) or system.normal_form is None:
         remedy = "Pass a SuslovTop, a sleigh, or a discretisation of one."
         raise error("invariant_measure(motion=...)", "be a top or a sleigh", type(motion).__name__, remedy)
     spectrum = equilibria(motion, energy)

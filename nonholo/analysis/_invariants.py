@@ -1,6 +1,7 @@
 """What an orbit should keep, measured: energy, constraint, group, reversibility."""
 
 import dataclasses
+from typing import cast
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from nonholo.discrete import Discretization
 from nonholo.discrete._composition import composed_reversal_defects
 from nonholo.discrete._structured import reversal_defects, structured
 from nonholo.orbit import Orbit, as_orbit
-from nonholo.systems import ArrowheadSleigh, is_wide
+from nonholo.systems import NormalForm, is_wide
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
 _SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
@@ -76,8 +77,8 @@ def invariants(orbit: Orbit) -> Invariants:
 def _largest_angle(orbit: Orbit) -> float:
     group = orbit.system.group
     if is_wide(orbit.system):
-        slides = int(isinstance(orbit.system, ArrowheadSleigh))
-        y = orbit.canonical_chart[:, : orbit.system.rank - slides]  # tan of half the angle, in planes through one axis
+        turning = len(cast(NormalForm, orbit.system.normal_form).coupling)
+        y = orbit.canonical_chart[:, :turning]  # tan of half the angle, in planes through one axis
         return float(np.degrees(2 * np.arctan(np.linalg.norm(y, axis=1)).max()))
     return float(np.degrees(group.angle(group.log(orbit.displacement)).max()))
 

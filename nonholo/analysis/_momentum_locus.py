@@ -1,18 +1,14 @@
 """The surface of all discrete momenta: its mesh, its equation, its singular points."""
 
 import dataclasses
-from typing import cast
 
 import numpy as np
 
 from nonholo._checks import count, error, number, trailing
 from nonholo._limits import within_memory
 from nonholo._types import Array, Float
-from nonholo.analysis._conoid import Conoid, conoid
-from nonholo.analysis._steiner import SteinerSurface, steiner_surface
-from nonholo.analysis._variety_points import closed_form, displacement_at, momentum_at
+from nonholo.analysis.planar import momenta_at, planar_map
 from nonholo.discrete import Discretization
-from nonholo.systems import ChaplyginSleigh, SuslovTop
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -39,7 +35,7 @@ class MomentumLocus:
     @property
     def displacement(self) -> Float[np.ndarray, "R C N N"]:
         """The displacements of the mesh."""
-        return displacement_at(self.discrete, self.points)
+        return planar_map("MomentumLocus", self.discrete)[1].displacement(self.points)
 
     @property
     def pinch_points(self) -> Float[np.ndarray, "Q 3"]:
@@ -53,7 +49,8 @@ class MomentumLocus:
         """
         where = "MomentumLocus.implicit(momentum=...)"
         p = trailing(where, momentum, (3,), "Pass full body momenta.", real=True)
-        return surface_of(self.discrete).implicit(p)
+        variety = planar_map("MomentumLocus", self.discrete)[1]
+        return variety.surface(float(self.discrete.time_step)).implicit(p)
 
     def whiskers(self, length: float = 1.0) -> Float[np.ndarray, "V 2 3"]:
         """Return pieces of the double lines that are not on the locus, as long as `length` times the segment.
@@ -65,14 +62,6 @@ class MomentumLocus:
         outwards = length * (last - first)
         before, after = np.stack([first, first - outwards], axis=1), np.stack([last, last + outwards], axis=1)
         return np.concatenate([before, after])
-
-
-def surface_of(discrete: Discretization) -> SteinerSurface | Conoid:
-    """Return the algebra of the surface."""
-    system, time_step = discrete.system, float(discrete.time_step)
-    if isinstance(system, ChaplyginSleigh):
-        return conoid(system, time_step)
-    return steiner_surface(cast(SuslovTop, system), time_step)
 
 
 def momentum_locus(discrete: Discretization, resolution: int = 80) -> MomentumLocus:
@@ -100,30 +89,11 @@ def momentum_locus(discrete: Discretization, resolution: int = 80) -> MomentumLo
         >>> bool(abs(locus.implicit(locus.momentum)).max() < 1e-13)
         True
     """
-    checked = closed_form("momentum_locus(discrete=...)", discrete)
+    checked, variety = planar_map("momentum_locus(discrete=...)", discrete)
     rows = count("momentum_locus(resolution=...)", resolution, "Pass 2 or more.")
     within_memory("momentum_locus(resolution=...)", 1000.0 * rows**2, "Pass a lower resolution.")
     if rows < 2:
         raise error("momentum_locus(resolution=...)", "be at least 2", str(rows), "A mesh needs two rows.")
-    if isinstance(checked.system, ChaplyginSleigh):
-        parameters = points = _sleigh_mesh(checked.system, rows)
-    else:
-        parameters, points = _top_mesh(rows)
-    surface = surface_of(checked)
-    triple = surface.triple_point() if isinstance(surface, SteinerSurface) else None
-    return MomentumLocus(checked, parameters, points, momentum_at(checked, points), surface.double_lines(), triple)
-
-
-def _top_mesh(rows: int) -> tuple[np.ndarray, np.ndarray]:
-    angle, direction = np.meshgrid(np.linspace(0, np.pi, rows), np.linspace(0, 2 * np.pi, 2 * rows + 1), indexing="ij")
-    z0, size = np.cos(angle / 2), np.sin(angle / 2)
-    points = np.stack([z0, size * np.cos(direction), size * np.sin(direction)], axis=-1)
-    return np.stack([angle, direction], axis=-1), points
-
-
-def _sleigh_mesh(system: ChaplyginSleigh, rows: int) -> np.ndarray:
-    """Return angles and translations of pieces of the rulings whose middles are on the axis."""
-    m, J, a = float(system.mass), float(system.inertia), float(system.a)
-    reach = (2 * J + 2 * m * a * a) / (m * abs(a)) if a else 2 * np.sqrt(J / m)
-    along, angle = np.meshgrid(np.linspace(-1, 1, rows), np.linspace(-np.pi, np.pi, 2 * rows + 1), indexing="ij")
-    return np.stack([angle, reach * along - 2 * a * np.cos(angle / 2)], axis=-1)
+    parameters, points = variety.mesh(rows)
+    surface, momentum = variety.surface(float(checked.time_step)), momenta_at(checked, variety, points)
+    return MomentumLocus(checked, parameters, points, momentum, surface.double_lines(), surface.triple_point())

@@ -11,9 +11,9 @@ import numpy as np
 
 from nonholo._checks import error
 from nonholo._types import Float
+from nonholo.analysis.planar import Strip, planar_variety
 from nonholo.discrete import Discretization
 from nonholo.discrete._composition import refuse_composition
-from nonholo.systems import ChaplyginSleigh
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -65,8 +65,8 @@ def single_valued_region(sleigh: Discretization) -> SingleValuedRegion:
         >>> print(f"{found.energy:.10f} {found.principal_energy:.10f} {found.bound_of_the_paper:.10f}")
         50.0000000000 78.1250000000 12.5000000000
     """
-    system, h = _checked("single_valued_region(sleigh=...)", sleigh)
-    J, M, a = float(system.inertia), float(system.mass * system.a**2), float(system.a)
+    strip, h = _checked("single_valued_region(sleigh=...)", sleigh)
+    J, M = strip.inertia, strip.mass * strip.arm**2
     cusp_at = 3 * np.sqrt(3) / 4 * J, J / 4
     cusps = np.array([[0.0, -2 * J], [-cusp_at[0], cusp_at[1]], cusp_at])
     ratio = J / M  # the two entries divided by 4 M^2; Python numbers do not overflow where a tends to zero
@@ -76,26 +76,27 @@ def single_valued_region(sleigh: Discretization) -> SingleValuedRegion:
         energy=float(2 * M / h**2 * min(1.0, at_cusp)),
         principal_energy=float(2 * M / h**2 * at_cusp if ratio <= 2 else (J + M) ** 2 / (2 * J * h**2)),
         bound_of_the_paper=float(M / (2 * h**2)),
-        contact=_momenta(np.array(touching), M, a, h, float(system.b)),
-        cusps=_momenta(cusps, M, a, h, float(system.b)),
+        contact=_momenta(np.array(touching), M, strip, h),
+        cusps=_momenta(cusps, M, strip, h),
     )
 
 
-def _checked(where: str, discrete: Any) -> tuple[ChaplyginSleigh, float]:
+def _checked(where: str, discrete: Any) -> tuple[Strip, float]:
     remedy = "Pass `discretize(ChaplyginSleigh(...), time_step)`."
-    if not isinstance(discrete, Discretization) or not isinstance(discrete.system, ChaplyginSleigh):
+    variety = planar_variety(discrete.system) if isinstance(discrete, Discretization) else None
+    if not isinstance(variety, Strip):
         raise error(where, "be a discretised Chaplygin sleigh", repr(discrete), remedy)
     refuse_composition(where, discrete, "Pass the discretisation of order 2 that is composed.")
     if not discrete.conserves_energy:
         got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
         raise error(where, "be the map with three branches", got, "Use the defaults of `discretize`.")
-    if discrete.system.a == 0:
+    if variety.arm == 0:
         remedy = "A balanced sleigh has two real branches, with angles D and pi - D, at every |p_theta + b p_1| < J/h."
         raise error(where, "have its centre of mass off the blade's normal", "a = 0", remedy)
-    return discrete.system, float(discrete.time_step)
+    return variety, float(discrete.time_step)
 
 
-def _momenta(plane: Float[np.ndarray, "j 2"], M: float, a: float, h: float, b: float) -> Float[np.ndarray, "j 2"]:
-    r"""Return $(p_\theta, p_1)$ of scaled points $(\pi, \hat p)$, $\hat p = ap_1 + 2M$."""
-    p1 = (plane[:, 1] - 2 * M) / (a * h)
-    return np.stack([plane[:, 0] / h - b * p1, p1], axis=1)
+def _momenta(plane: Float[np.ndarray, "j 2"], M: float, strip: Strip, h: float) -> Float[np.ndarray, "j 2"]:
+    r"""Return restricted momenta of scaled points $(\pi, \hat p)$, $\hat p = ap_1 + 2M$."""
+    p1 = (plane[:, 1] - 2 * M) / strip.arm
+    return strip.restricted_momenta(np.stack([plane[:, 0], p1], axis=1)) / h

@@ -4,8 +4,8 @@ from nonholo.discrete._branch_tree import BranchTree, branch_tree
 from nonholo.discrete._branch_values import Branches
 from nonholo.discrete._branches import branches, displacements_over, fold_distance, inverse_discrete_legendre
 from nonholo.discrete._consistency import consistency_defect
-from nonholo.discrete._discretization import Discretization, discretize
-from nonholo.discrete._legendre import discrete_legendre
+from nonholo.discrete._discretization import Discretization, as_discretization, discretize
+from nonholo.discrete._legendre import discrete_legendre, legendre
 from nonholo.discrete._moser_veselov import moser_veselov_displacement
 from nonholo.discrete._start import initial_state
 
@@ -13,6 +13,7 @@ __all__ = [
     "BranchTree",
     "Branches",
     "Discretization",
+    "as_discretization",
     "branch_tree",
     "branches",
     "consistency_defect",
@@ -22,5 +23,6 @@ __all__ = [
     "fold_distance",
     "initial_state",
     "inverse_discrete_legendre",
+    "legendre",
     "moser_veselov_displacement",
 ]

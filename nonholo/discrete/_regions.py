@@ -11,7 +11,7 @@ import scipy.linalg
 
 from nonholo._types import Float, Inexact
 from nonholo.discrete._discretization import Discretization
-from nonholo.systems import SuslovTop
+from nonholo.systems import NormalForm
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -39,12 +39,12 @@ class Landscape:
         return bool(2 * self.sharpness < 1)
 
 
-def landscape(top: SuslovTop) -> Landscape:
-    """Return the energy landscape of a top with n = 3 in its canonical frame."""
-    c, balanced = np.asarray(top.coupling), top.equilibria().attracting is None
+def landscape(form: NormalForm) -> Landscape:
+    """Return the energy landscape of a top with n = 3."""
+    c, balanced = np.asarray(form.coupling), not form.is_coupled
     along = np.array([1.0, 0.0]) if balanced else c / np.hypot(*c)
     axes = np.stack([along, [-along[1], along[0]]], axis=1)
-    inertia = axes.T @ np.asarray(top.constrained_inertia) @ axes
+    inertia = axes.T @ form.stiffness_matrix @ axes
     sharpness = 0.0 if balanced else float(c @ c / np.linalg.det(inertia))
     inverses, vectors = scipy.linalg.eigh(np.diag([1.0, 1.0 - sharpness]), inertia)
     return Landscape(axes, inertia, sharpness, inverses, vectors)
@@ -65,9 +65,9 @@ def regions(discrete: Discretization, displacement: Inexact[np.ndarray, "B N N"]
     land = _regular_landscape(discrete)
     if land is None:
         return np.full(len(displacement), "", dtype="<U7")
-    system = discrete.system
-    canonical = system.group.inverse(system.frame) @ np.real(displacement) @ system.frame
-    square = land.axes.T @ (np.eye(2) - canonical[:, :2, :2]) @ land.axes / 2  # z z^T
+    frame = discrete.system.form_frame
+    seen = frame.T @ np.real(displacement) @ frame
+    square = land.axes.T @ (np.eye(2) - seen[:, :2, :2]) @ land.axes / 2  # z z^T
     height = np.einsum("bij,ij->b", square, land.inertia)
     ascent = np.einsum("bii->b", square) - land.sharpness * square[:, 1, 1]  # kappa rho, one half on the ridge
     energy, (centre, saddle) = height * (1 - ascent), 1 / (4 * land.inverses)
@@ -77,8 +77,8 @@ def regions(discrete: Discretization, displacement: Inexact[np.ndarray, "B N N"]
 
 
 def _regular_landscape(discrete: Discretization) -> Landscape | None:
-    top = discrete.system.canonical if isinstance(discrete.system, SuslovTop) else None
-    if top is None or top.group.dim != 3 or not discrete.conserves_energy:
+    form = discrete.system.normal_form
+    if form is None or form.is_sleigh or not form.is_planar or not discrete.conserves_energy:
         return None
-    land = landscape(top)
+    land = landscape(form)
     return land if land.is_regular else None

@@ -12,7 +12,7 @@ from matplotlib.text import Annotation
 from nonholo._checks import error
 from nonholo._types import Float
 from nonholo.analysis import deltoid, invariant_curve
-from nonholo.analysis._variety_points import closed_form, points_of
+from nonholo.analysis.planar import planar_map
 from nonholo.discrete import Branches, Discretization, discrete_legendre, displacements_over, inverse_discrete_legendre
 from nonholo.discrete import branches as values_of
 from nonholo.plotting import _variety_plane as variety
@@ -92,7 +92,7 @@ def branches(
         (3, '0: 49°')
     """
     where = "plot.branches"
-    checked = closed_form(f"{where}(discrete=...)", discrete)
+    checked = planar_map(f"{where}(discrete=...)", discrete)[0]
     on_momenta = _chosen(checked, plane)
     found = values_of(checked, momentum=momentum, displacement=displacement)
     W = _present(checked, momentum) if displacement is None else np.asarray(displacement, dtype=float)
@@ -128,8 +128,8 @@ def _on_displacements(axes: Axes, discrete: Discretization, found: Branches, W: 
         look = {"color": theme.DISCRETE, "linewidth": 1.5, "zorder": 2}
         level = variety.draw_level(axes, curves[0], label="its energy", **look)
     real = np.flatnonzero(found.is_real)
-    places = variety.flat(discrete, points_of(discrete, found.displacement[real].real))
-    here = variety.flat(discrete, points_of(discrete, W[None]))
+    places = variety.flat(discrete, planar_map("plot", discrete)[1].points(found.displacement[real].real))
+    here = variety.flat(discrete, planar_map("plot", discrete)[1].points(W[None]))
     dots = _dots(axes, found, places, here)
     is_strip = isinstance(discrete.system, ChaplyginSleigh)
     labels = _labels(axes, discrete, found, places, places * _inwards(places, is_strip))
@@ -165,7 +165,7 @@ def _over_momenta(axes: Axes, discrete: Discretization, found: Branches, W: np.n
 
 def _angle(discrete: Discretization, found: Branches) -> Float[np.ndarray, "B"]:
     """Return the step angles of a sleigh, or of a top with the direction left out."""
-    points = points_of(discrete, found.displacement.real)
+    points = planar_map("plot", discrete)[1].points(found.displacement.real)
     if isinstance(discrete.system, ChaplyginSleigh):
         return points[:, 0]
     return 2 * np.arctan2(np.linalg.norm(points[:, 1:], axis=1), np.abs(points[:, 0]))

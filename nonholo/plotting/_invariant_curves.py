@@ -10,7 +10,7 @@ from matplotlib.collections import LineCollection, PathCollection
 from nonholo._checks import energies as checked_energies
 from nonholo._types import Float
 from nonholo.analysis import InvariantCurve, invariant_curve
-from nonholo.analysis._variety_points import closed_form, points_of
+from nonholo.analysis.planar import planar_map
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
@@ -72,7 +72,7 @@ def invariant_curves(
         (2, 2)
     """
     where = "plot.invariant_curves"
-    checked = closed_form(f"{where}(discrete=...)", discrete)
+    checked = planar_map(f"{where}(discrete=...)", discrete)[0]
     own_orbit(f"{where}(orbit=...)", orbit, checked)
     axes = theme.axes_or_new(axes, (6.2, 6.0))
     curves = [invariant_curve(checked, energy, _POINTS) for energy in _energies(checked, energies)]
@@ -100,7 +100,7 @@ def _energies(discrete: Discretization, energies: Any) -> Float[np.ndarray, "L"]
 
 
 def _orbit(axes: Axes, discrete: Discretization, orbit: Orbit) -> PathCollection:
-    x, y = flat(discrete, points_of(discrete, orbit.displacement)).T
+    x, y = flat(discrete, planar_map("plot", discrete)[1].points(orbit.displacement)).T
     chosen = evenly_in_box(np.stack([x, y], axis=1), _MOST_DOTS)
     return axes.scatter(
         x[chosen],

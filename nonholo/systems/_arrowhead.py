@@ -13,7 +13,7 @@ import numpy as np
 from nonholo._checks import array, error, positive
 from nonholo._types import Array, Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem, AbstractSystem, Equilibria
+from nonholo.systems._base import AbstractLLSystem, AbstractSystem
 from nonholo.systems._mass import inertia_from_mass_tensor
 from nonholo.systems._multidimensional_sleigh import MultidimensionalSleigh
 from nonholo.systems._normal_form import NormalForm
@@ -109,10 +109,6 @@ class ArrowheadTop(AbstractLLSystem):
     def normal_form(self) -> NormalForm:
         """The diagonal of B, and c."""
         return NormalForm(self.inertia_along.turning, self.coupling)
-
-    def equilibria(self) -> Equilibria:
-        """Return the permanent rotations, as those of `SuslovTop`."""
-        return self.dense.equilibria()
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
@@ -210,10 +206,6 @@ class ArrowheadSleigh(AbstractLLSystem):
         """The numbers of the equations of motion, c with the other sign."""
         d, a = self.diagonal, self.center_of_mass
         return NormalForm(d[1:] + d[0], -self.coupling, self.mass, a[0], a[1:])
-
-    def equilibria(self) -> Equilibria:
-        """Return the velocities that stay constant, as those of `MultidimensionalSleigh`."""
-        return self.dense.equilibria()
 
 
 def _arrow(owner: str, diagonal: object, coupling: object) -> tuple[np.ndarray, np.ndarray]:

@@ -6,7 +6,6 @@ $\mathrm{Ad}_g\omega \in \mathfrak{d}$ (LR systems). Time steps and solvers live
 """
 
 import abc
-import dataclasses
 import functools
 from typing import ClassVar
 
@@ -15,23 +14,10 @@ import numpy as np
 from nonholo._checks import last_length, trailing
 from nonholo._types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
+from nonholo.systems._equilibria import Equilibria, equilibria_of
 from nonholo.systems._mass import inertia_form
 from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._wide import WideInertia
-
-
-@dataclasses.dataclass(frozen=True)
-class Equilibria:
-    """The body velocities that stay constant: a linear space, and the half of it that attracts.
-
-    Attributes:
-        subspace: Rows span the equilibria, shape (m, dim).
-        attracting: A body velocity whose positive multiples attract within their energy level and whose negative
-            multiples repel; None when no equilibrium attracts.
-    """
-
-    subspace: Float[np.ndarray, "m dim"]
-    attracting: Float[np.ndarray, "dim"] | None
 
 
 class AbstractSystem(abc.ABC):
@@ -108,6 +94,18 @@ class AbstractSystem(abc.ABC):
         return None
 
     @property
+    def form_frame(self) -> Float[Array, "N N"]:
+        """The axes of the normal form as seen from the user's frame."""
+        form = self.normal_form
+        return self.frame if form is None or form.frame is None else self.frame @ form.frame
+
+    @property
+    def form_map(self) -> Float[np.ndarray, "k k"]:
+        """C with r_form = C r for momenta along the constraint subspace; of systems with a normal form."""
+        form = self.normal_form
+        return self.frame_map if form is None or form.frame_map is None else form.frame_map @ self.frame_map
+
+    @property
     def rank(self) -> int:
         """The number k of rows of the constraint subspace."""
         inertia = self.inertia_along
@@ -145,9 +143,23 @@ class AbstractLLSystem(AbstractSystem):
     def canonical(self) -> "AbstractLLSystem":
         """The same body in the canonical frame; the system itself where no frame is better than the user's."""
 
-    @abc.abstractmethod
     def equilibria(self) -> Equilibria:
-        """Return the constant body velocities and the attracting half."""
+        r"""Return the body velocities that stay constant, and the half of them that attracts.
+
+        Of a top the permanent rotations: the line spanned by c, its negative half attracting. Of a sleigh the straight
+        motions, those in the direction of its center of mass attracting; where that lies beside the blade
+        ($a_1 = 0$), the turns along c about it, and the straight motions. Every admissible velocity if c = 0 too.
+
+        Raises:
+            ValueError: Velocities change, and the system is neither a top nor a sleigh.
+
+        Example:
+            >>> nh.SuslovTop([[1.0, 0.0, 0.5], [0.0, 1.0, 0.0], [0.5, 0.0, 1.0]]).equilibria().attracting
+            array([-0. , -0.5, -0. ])
+            >>> nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=-0.5).equilibria().attracting
+            array([-0., -1., -0.])
+        """
+        return equilibria_of(self)
 
     def constrained_energy(self, momentum: Float[Array, "... dim"] | Float[Array, "... k"]) -> Float[Array, "..."]:
         r"""Return the reduced constrained energy $\tfrac12\,r\cdot(\mathbb{I}|_\mathfrak{d})^{-1}\,r$ of a momentum.

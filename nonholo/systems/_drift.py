@@ -6,11 +6,7 @@ Where this form vanishes a momentum is conserved; where it vanishes for every x 
 
 import numpy as np
 
-from nonholo._checks import error
 from nonholo._types import Float
-from nonholo.systems._base import AbstractLLSystem, Equilibria
-
-_ROUNDING = 1e-12  # of the largest term before it cancels
 
 
 def gyroscopic_form(
@@ -25,17 +21,3 @@ def gyroscopic_form(
     """
     form = np.einsum("ad,bmd->abm", rows @ inertia, brackets)
     return (form + form.transpose(1, 0, 2)) / 2
-
-
-def constant_velocities(system: AbstractLLSystem, owner: str) -> Equilibria:
-    """Return every admissible velocity as an equilibrium if all of them stay constant; refuse otherwise."""
-    rows, inertia = system.constraint_subspace, np.asarray(system.inertia_operator)
-    brackets = system.group.bracket(rows[:, None, :], rows[None, :, :])
-    form = gyroscopic_form(inertia, brackets, rows)
-    scale = np.max(np.abs(rows @ inertia) @ np.abs(rows).T, initial=0.0) * np.max(np.abs(rows), initial=0.0)
-    if np.max(np.abs(form), initial=0.0) > _ROUNDING * scale:
-        requirement = "have equilibria that form a linear space"
-        got = f"a drift of {np.abs(form).max():.3g} along the constraint subspace"
-        remedy = "Those of a general system solve quadratic equations, and are not computed by this version."
-        raise error(f"{owner}.equilibria()", requirement, got, remedy)
-    return Equilibria(rows, None)

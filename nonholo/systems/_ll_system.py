@@ -9,9 +9,8 @@ import numpy as np
 from nonholo._checks import array, error, is_traced, positive_definite, symmetric
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem, Equilibria, form_along
+from nonholo.systems._base import AbstractLLSystem, form_along
 from nonholo.systems._body import lines_of, mass_tensor_of_body, tensors_shown
-from nonholo.systems._drift import constant_velocities
 from nonholo.systems._mass import checked_group, form_mass_tensor, group_mass_tensor, inertia_from_mass_tensor
 from nonholo.systems._normal_form import NormalForm, recognized_form
 from nonholo.systems._subspace import subspace_and_annihilator
@@ -186,14 +185,6 @@ class LLSystem(AbstractLLSystem):
     def normal_form(self) -> NormalForm | None:
         """The top or sleigh that the system is; None if it is neither, or has no mass tensor."""
         return recognized_form(self)
-
-    def equilibria(self) -> Equilibria:
-        """Return all of the constraint subspace if every admissible velocity stays constant.
-
-        Raises:
-            ValueError: Velocities change: the equilibria of a general system are not linear spaces.
-        """
-        return constant_velocities(self, "LLSystem")
 
 
 def _tensor(where: str, group: AbstractMatrixGroup, value: Any) -> Array:

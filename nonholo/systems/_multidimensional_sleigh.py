@@ -9,7 +9,7 @@ import numpy as np
 from nonholo._checks import array, error, positive, positive_definite, symmetric
 from nonholo._types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem, Equilibria
+from nonholo.systems._base import AbstractLLSystem
 from nonholo.systems._mass import inertia_from_mass_tensor
 from nonholo.systems._normal_form import NormalForm, sleigh_form
 from nonholo.systems._subspace import complement, plane_rows
@@ -153,23 +153,3 @@ class MultidimensionalSleigh(AbstractLLSystem):
     def normal_form(self) -> NormalForm:
         """The numbers of the equations of motion, c with the other sign."""
         return sleigh_form(self.mass, self.center_of_mass, self.mass_tensor)
-
-    def equilibria(self) -> Equilibria:
-        r"""Return the velocities that stay constant.
-
-        If $a_1 \ne 0$ the motions along axis 1, the direction of $a_1$ attracting. If $a_1 = 0$ the motions with $w$
-        parallel to $c$, the half of $c$ attracting; all of d if c = 0 too.
-
-        Example:
-            >>> sleigh = MultidimensionalSleigh(1.0, [-0.5, 0.0, 0.0], np.eye(3))
-            >>> sleigh.equilibria().attracting
-            array([-0., -0., -0., -1., -0., -0.])
-        """
-        rows, c = self.constraint_subspace, np.asarray(self.mass_tensor)[0, 1:]
-        along = rows[-1]
-        if self.center_of_mass[0] != 0:
-            return Equilibria(along[None, :], np.copysign(1.0, self.center_of_mass[0]) * along)
-        if np.linalg.norm(c) <= 8 * np.finfo(np.float64).eps * np.abs(self.mass_tensor).max():
-            return Equilibria(rows, None)
-        turn = c @ rows[:-1] - (self.center_of_mass[1:] @ c) * along  # u = 0: the centre of mass does not advance
-        return Equilibria(np.stack([turn, along]), turn)

@@ -52,7 +52,7 @@ class NormalForm:
 
     stiffness: Float[Array, "k k"] | Float[Array, "k"]
     coupling: Float[Array, "k"]
-    mass: Array | None = None
+    mass: Array = None
     arm: Array = 0.0
     offset: Float[Array, "j"] = dataclasses.field(default_factory=lambda: np.zeros(0))
     frame: Float[np.ndarray, "N N"] | None = None
@@ -72,6 +72,16 @@ class NormalForm:
     def is_diagonal(self) -> bool:
         """Whether the axes are principal axes of B, which is given by its diagonal."""
         return self.stiffness.ndim == 1
+
+    @property
+    def stiffness_matrix(self) -> Float[np.ndarray, "k k"]:
+        """The matrix B, whether it is given by its diagonal or not."""
+        return np.diag(self.stiffness) if self.is_diagonal else np.asarray(self.stiffness)
+
+    @property
+    def is_coupled(self) -> bool:
+        """Whether c is more than rounding."""
+        return bool(np.linalg.norm(self.coupling) > 8 * np.finfo(np.float64).eps * np.abs(self.stiffness).max())
 
     @property
     def turning(self) -> Float[Array, "k k"] | Float[Array, "k"]:
@@ -136,19 +146,18 @@ def _recognized_sleigh(system: "AbstractLLSystem", tensor: np.ndarray) -> Normal
     across = -axis @ turning[:, :n, :n]  # x_j of the planes x_j ^ axis
     sideways = turning[:, :n, n] - np.outer(turning[:, :n, n] @ axis, axis)
     shift = float(np.sum(sideways * across) / np.sum(across * across))
-    if not _pass_through(turning[:, :n, :n], axis) or np.abs(sideways - shift * across).max() > _ROUNDING * (
-        np.abs(sideways).max() + abs(shift)
-    ):
+    size = np.abs(sideways).max() + abs(shift)
+    if not _pass_through(turning[:, :n, :n], axis) or np.abs(sideways - shift * across).max() > _ROUNDING * size:
         return None
+    mass, center = tensor[-1, -1], tensor[:-1, -1] / tensor[-1, -1]
+    arm = float(axis @ center + shift)
+    if abs(arm) <= _ROUNDING * (np.linalg.norm(center) + abs(shift)):
+        arm = 0.0
     frame = np.eye(n + 1)
-    frame[:n, :n] = _rotation(np.eye(n)[0], axis)
-    frame[:n, n] = -shift * axis
-    back = system.group.inverse(frame)
-    seen = back @ tensor @ back.T
-    mass, a = seen[-1, -1], seen[:-1, -1] / seen[-1, -1]
-    if abs(a[0]) <= _ROUNDING * (np.linalg.norm(a) + abs(shift)):
-        a[0] = 0.0
-    form = sleigh_form(mass, a, seen[:-1, :-1] - mass * np.outer(a, a))
+    frame[:n, :n] = turn = _rotation(np.eye(n)[0], axis)
+    frame[:n, n] = center - arm * axis  # the contact point beside the center of mass
+    about = turn.T @ (tensor[:-1, :-1] - mass * np.outer(center, center)) @ turn
+    form = sleigh_form(mass, turn.T @ axis * arm, (about + about.T) / 2)
     if n == 2:  # in the plane the moment of inertia is all that counts
         form = dataclasses.replace(form, coupling=np.zeros(1))
     slide = np.zeros((1, system.group.dim))

@@ -8,9 +8,8 @@ import numpy as np
 from nonholo._checks import positive_definite
 from nonholo._types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem, Equilibria, form_along
+from nonholo.systems._base import AbstractLLSystem, form_along
 from nonholo.systems._body import lines_of, mass_tensor_of_body, tensors_shown
-from nonholo.systems._drift import constant_velocities
 from nonholo.systems._mass import body_tensor, checked_group, group_mass_tensor, inertia_from_mass_tensor
 
 
@@ -125,11 +124,3 @@ class RigidBody(AbstractLLSystem):
     def frame(self) -> Float[np.ndarray, "N N"]:
         """The identity."""
         return self.group.identity
-
-    def equilibria(self) -> Equilibria:
-        """Return all velocities if every one stays constant, as for a spherical top.
-
-        Raises:
-            ValueError: Velocities change: the permanent rotations of a body are several lines, not one linear space.
-        """
-        return constant_velocities(self, "RigidBody")

@@ -9,7 +9,7 @@ import numpy as np
 from nonholo._checks import number, positive
 from nonholo._types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem, Equilibria, form_along
+from nonholo.systems._base import AbstractLLSystem, form_along
 from nonholo.systems._mass import inertia_from_mass_tensor
 from nonholo.systems._normal_form import NormalForm
 
@@ -106,15 +106,3 @@ class ChaplyginSleigh(AbstractLLSystem):
         xp = (self.inertia * self.mass * self.a).__array_namespace__()
         stiffness = xp.reshape(xp.asarray(self.inertia), (1, 1))
         return NormalForm(stiffness, np.zeros(1), self.mass, self.a, np.zeros(1), frame_map=np.diag([-1.0, 1.0]))
-
-    def equilibria(self) -> Equilibria:
-        """Return the straight motions, with the half that attracts; every admissible velocity if a = 0.
-
-        Example:
-            >>> ChaplyginSleigh(mass=1.0, inertia=1.0, a=-0.5).equilibria().attracting
-            array([-0., -1., -0.])
-        """
-        if self.a == 0:
-            return Equilibria(self.constraint_subspace, None)
-        forward = np.array([0.0, 1.0, 0.0])
-        return Equilibria(forward[None, :], np.copysign(1.0, self.a) * forward)

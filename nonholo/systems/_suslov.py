@@ -9,7 +9,7 @@ import numpy as np
 from nonholo._checks import array, error, is_traced, positive_definite, symmetric
 from nonholo._types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem, Equilibria
+from nonholo.systems._base import AbstractLLSystem
 from nonholo.systems._body import lines_of, possible, tensors_shown
 from nonholo.systems._mass import (
     body_tensor,
@@ -166,18 +166,6 @@ class SuslovTop(AbstractLLSystem):
     def normal_form(self) -> NormalForm:
         """B and c."""
         return top_form(self.canonical.mass_tensor)
-
-    def equilibria(self) -> Equilibria:
-        """Return the permanent rotations: the line spanned by c, its negative half attracting; all of d if c = 0.
-
-        Example:
-            >>> SuslovTop([[1.0, 0.0, 0.5], [0.0, 1.0, 0.0], [0.5, 0.0, 1.0]]).equilibria().attracting
-            array([-0. , -0.5, -0. ])
-        """
-        if np.linalg.norm(self.coupling) <= 8 * np.finfo(np.float64).eps * np.abs(self.mass_tensor).max():
-            return Equilibria(self.constraint_subspace, None)
-        line = self.coupling @ self.constraint_subspace
-        return Equilibria(line[None, :], -line)
 
 
 def _forbidden_axis(where: str, value: Array, n: int) -> Array:

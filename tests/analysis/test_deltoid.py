@@ -5,7 +5,7 @@ import pytest
 
 import nonholo as nh
 from nonholo.analysis import deltoid
-from nonholo.analysis._variety_points import displacement_at
+from nonholo.analysis.planar import planar_variety
 
 SLEIGHS = {
     "sleigh": nh.ChaplyginSleigh(1.3, 0.7, 0.5, 0.3),
@@ -72,7 +72,7 @@ def test_resting_ellipse_has_no_translation(sleigh: nh.ChaplyginSleigh) -> None:
     """It is the momentum of turns about the foot of the centre of mass, by the definition; V_1 = 0 there if b = 0."""
     discrete = nh.discretize(sleigh, 0.4)
     angle = np.linspace(0.0, 2 * np.pi, 13)
-    W = displacement_at(discrete, np.stack([angle, 0 * angle], axis=1))
+    W = planar_variety(discrete.system).displacement(np.stack([angle, 0 * angle], axis=1))
     expected = sleigh.restrict(nh.discrete_legendre(discrete, W))
     assert np.allclose(deltoid(discrete).resting(13), expected, atol=1e-13)
 

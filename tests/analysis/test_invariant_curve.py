@@ -5,7 +5,7 @@ import pytest
 from bodies import mass_tensor
 
 import nonholo as nh
-from nonholo.analysis._variety_points import points_of
+from nonholo.analysis.planar import planar_variety
 
 TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.5)
 TILTED = nh.discretize(nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 1.5]), axis=np.array([2.0, 1.0, 2.0]) / 3), 0.3)
@@ -108,7 +108,7 @@ def test_orbits_run_on_their_curve(discrete: nh.Discretization) -> None:
     """Every displacement of an orbit is one of the two points of its curve over its direction, to 1e-10."""
     orbit = nh.simulate(discrete, restricted_velocity=(0.5, -0.9), steps=80)
     curve = nh.invariant_curve(discrete, orbit.energy[0])
-    for point in points_of(discrete, orbit.displacement):
+    for point in planar_variety(discrete.system).points(orbit.displacement):
         if isinstance(discrete.system, nh.SuslovTop):
             upper = point * (1.0 if point[0] >= 0 else -1.0)
             found = curve.over(np.arctan2(upper[2], upper[1]))

@@ -7,7 +7,8 @@ import pytest
 from bodies import mass_tensor
 
 import nonholo as nh
-from nonholo.analysis._step_jacobian import area_factor, momentum_slope, step_determinants
+from nonholo.analysis._step_jacobian import momentum_slope, step_determinants
+from nonholo.analysis.planar import planar_variety
 from nonholo.systems import AbstractLLSystem
 
 RNG = np.random.default_rng(7)
@@ -58,7 +59,8 @@ def test_closed_forms_are_the_definition(name: str) -> None:
     group, rows = discrete.system.group, discrete.system.constraint_subspace
     u = rng.normal(size=(200, 2))
     W = group.exp(u / np.linalg.norm(u, axis=1, keepdims=True) * rng.uniform(0.1, 2.9, size=(200, 1)) @ rows)
-    even, odd = area_factor(discrete, W)
+    variety = planar_variety(discrete.system)
+    even, odd = variety.area_factor(variety.points(W))
     slopes = [np.linalg.det(momentum_slope(discrete, V)) for V in (W, group.inverse(W))]
     clear = np.abs(even + odd) > 1e-3 * np.abs(even + odd).max()  # at a fold both vanish
     assert clear.sum() > 190

@@ -5,7 +5,7 @@ import pytest
 from bodies import mass_tensor
 
 import nonholo as nh
-from nonholo.analysis._variety_points import displacement_at, momentum_at, points_of
+from nonholo.analysis.planar import momenta_at, planar_variety
 
 TOPS = {
     "generic": nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]),
@@ -39,7 +39,7 @@ def along(segments: np.ndarray, parts: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("discrete", [*SYSTEMS.values(), FLAT], ids=[*SYSTEMS, "flat"])
 def test_equation_holds_on_the_locus(discrete: nh.Discretization) -> None:
     """At 1e4 momenta of random displacements the polynomial is 1e-12 of its size in the box around them."""
-    p = nh.discrete_legendre(discrete, displacement_at(discrete, random_points(discrete, 10_000)))
+    p = nh.discrete_legendre(discrete, planar_variety(discrete.system).displacement(random_points(discrete, 10_000)))
     implicit = nh.momentum_locus(discrete, 3).implicit
     box = p[np.random.default_rng(1).permuted(np.tile(np.arange(10_000)[:, None], 3), axis=0), np.arange(3)]
     size = 1.0 if discrete is FLAT else np.abs(implicit(box)).max()
@@ -50,7 +50,7 @@ def test_equation_holds_on_the_locus(discrete: nh.Discretization) -> None:
 def test_equation_fails_beside_the_locus(discrete: nh.Discretization) -> None:
     """A momentum moved off the surface along its normal by 1e-3 of its size has a value far above rounding."""
     rng, implicit = np.random.default_rng(2), nh.momentum_locus(discrete, 3).implicit
-    p = momentum_at(discrete, random_points(discrete, 200))
+    p = momenta_at(discrete, planar_variety(discrete.system), random_points(discrete, 200))
     moved = p + 1e-3 * np.abs(p).max() * rng.choice([-1, 1], size=p.shape)
     assert np.median(np.abs(implicit(moved))) > 1e6 * np.abs(implicit(p)).max()
 
@@ -107,7 +107,11 @@ def test_triple_point_has_three_displacements() -> None:
     """Eigenvectors v of J diag(1, 1, -1), real for any body, give z = (v_3, v_1, v_2) over the triple point."""
     locus = nh.momentum_locus(SYSTEMS["generic"], 3)
     vectors = np.linalg.eig(TOPS["generic"].mass_tensor @ np.diag([1.0, 1.0, -1.0]))[1].T
-    assert np.allclose(momentum_at(locus.discrete, vectors[:, [2, 0, 1]]), locus.triple_point, atol=1e-13)
+    assert np.allclose(
+        momenta_at(locus.discrete, planar_variety(locus.discrete.system), vectors[:, [2, 0, 1]]),
+        locus.triple_point,
+        atol=1e-13,
+    )
 
 
 def test_balanced_quartic_is_the_classical_one() -> None:
@@ -150,8 +154,9 @@ def test_points_and_displacements_are_inverse(discrete: nh.Discretization) -> No
     points = random_points(discrete, 50)
     points[0, 0] = 0.0 if isinstance(discrete.system, nh.SuslovTop) else np.pi
     points[0] /= np.linalg.norm(points[0]) if isinstance(discrete.system, nh.SuslovTop) else 1.0
-    W = displacement_at(discrete, points)
-    assert np.allclose(displacement_at(discrete, points_of(discrete, W)), W, atol=1e-14)
+    variety = planar_variety(discrete.system)
+    W = variety.displacement(points)
+    assert np.allclose(variety.displacement(variety.points(W)), W, atol=1e-14)
 
 
 def test_refuses_what_has_no_closed_form() -> None:

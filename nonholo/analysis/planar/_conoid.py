@@ -11,7 +11,7 @@ import dataclasses
 import numpy as np
 
 from nonholo._types import Float
-from nonholo.systems import ChaplyginSleigh
+from nonholo.groups import SE
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -36,11 +36,14 @@ class Conoid:
         ends = np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]) - self.offset
         return np.linalg.solve(self.matrix, ends.T).T[None]
 
+    def triple_point(self) -> None:
+        """Return None: the rulings meet one axis."""
 
-def conoid(system: ChaplyginSleigh, time_step: float) -> Conoid:
+
+def conoid(mass: float, inertia: float, a: float, frame: Float[np.ndarray, "3 3"], time_step: float) -> Conoid:
     """Return the conoid of a sleigh."""
-    m, J, a = float(system.mass), float(system.inertia), float(system.a)
+    m, J = mass, inertia
     arm = a or np.sqrt(J / m)  # a length for the balanced sleigh, where any serves
     rows = np.array([[0.0, arm, 0.0], [0.0, 0.0, arm], [1.0, 0.0, -a]])
-    to_canonical = np.asarray(system.group.coadjoint(np.asarray(system.frame), np.eye(3))).T
+    to_canonical = SE(2).coadjoint(frame, np.eye(3)).T
     return Conoid(rows @ to_canonical * (time_step / J), np.array([2 * m * a * a / J, 0.0, 0.0]))

@@ -10,23 +10,16 @@ import itertools
 import numpy as np
 
 from nonholo._types import Float
-from nonholo.analysis._level_arcs import EQUATOR, FOLD, Arc, closed_curves
-from nonholo.systems import SuslovTop
+from nonholo.analysis.planar._level_arcs import EQUATOR, FOLD, Arc, closed_curves
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class TopLevel:
+class DiscLevel:
     """The level e of a top with restricted inertia B and coupling c."""
 
     B: Float[np.ndarray, "2 2"]
     c: Float[np.ndarray, "2"]
     e: float
-
-    @classmethod
-    def of(cls, system: SuslovTop, energy: float) -> "TopLevel":
-        """Return the level of an energy times the square of the time step."""
-        canonical = system.canonical
-        return cls(np.asarray(canonical.constrained_inertia), np.asarray(canonical.coupling), energy / 2)
 
     def over(self, direction: float) -> Float[np.ndarray, "m 3"]:
         """Return the points over a direction, the inner one first."""

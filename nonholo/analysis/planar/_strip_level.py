@@ -11,26 +11,19 @@ import dataclasses
 import numpy as np
 
 from nonholo._types import Float
-from nonholo.analysis._level_arcs import FOLD, Arc
-from nonholo.systems import ChaplyginSleigh
+from nonholo.analysis.planar._level_arcs import FOLD, Arc
 
 _NEAR_HALF_TURN = 0.04  # balanced sleighs: the level goes to infinity at the angle pi; it is cut so far from there
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class SleighLevel:
+class StripLevel:
     """The level 2 E h^2 of a sleigh; `whole` is I = J + m a^2."""
 
     mass: float
     inertia: float
     whole: float
     e: float
-
-    @classmethod
-    def of(cls, system: ChaplyginSleigh, energy: float) -> "SleighLevel":
-        """Return the level of an energy times the square of the time step."""
-        mass, inertia = float(system.mass), float(system.inertia)
-        return cls(mass, inertia, inertia + mass * float(system.a) ** 2, 2 * energy)
 
     def over(self, direction: float) -> Float[np.ndarray, "m 2"]:
         """Return the points over an angle."""

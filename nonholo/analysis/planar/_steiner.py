@@ -11,7 +11,6 @@ import dataclasses
 import numpy as np
 
 from nonholo._types import Float
-from nonholo.systems import SuslovTop
 
 _FLAT = 1e-10  # singular value of the four forms below which they are dependent
 _REAL = 1e-7  # imaginary part below which a root of the cubic of the pencil is a real one, perhaps double
@@ -92,11 +91,15 @@ class SteinerSurface:
         return np.linalg.svd(np.stack([_vector(square) for square in squares], axis=-1))[0][:, 3:].T
 
 
-def steiner_surface(system: SuslovTop, time_step: float) -> SteinerSurface:
+def steiner_surface(
+    inertia: Float[np.ndarray, "2 2"],
+    coupling: Float[np.ndarray, "2"],
+    frame: Float[np.ndarray, "3 3"],
+    time_step: float,
+) -> SteinerSurface:
     r"""Return the surface of the forms $z_0Bz + sz^\perp$ and $z_0s - z^\perp\cdot Bz$, $s = c\cdot z^\perp$."""
-    canonical = system.canonical
-    (b11, b12), (_, b22) = np.asarray(canonical.constrained_inertia)
-    c1, c2 = np.asarray(canonical.coupling)
+    (b11, b12), (_, b22) = inertia
+    c1, c2 = coupling
     forms = np.array(
         [
             [[0, b11, b12], [b11, 0, -c2], [b12, -c2, 2 * c1]],
@@ -105,7 +108,7 @@ def steiner_surface(system: SuslovTop, time_step: float) -> SteinerSurface:
         ]
     )
     size = np.linalg.norm(forms, 2, axis=(1, 2)).max() / 2
-    unscaled = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]) @ np.asarray(system.frame).T
+    unscaled = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]) @ frame.T
     return SteinerSurface(forms / (2 * size), _pencil(forms / (2 * size)), unscaled * time_step / (2 * size))
 
 

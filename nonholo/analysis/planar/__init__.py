@@ -1,0 +1,48 @@
+"""Bodies with two admissible directions, tops in space and sleighs in the plane, of which all is known.
+
+What differs between the two is in `_disc` and `_strip`, two files of one interface. Theory:
+docs/theory/momentum-locus.md.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from nonholo._checks import error
+from nonholo._types import Float
+from nonholo.analysis.planar._base import AbstractPlanarVariety, HalfPlanes
+from nonholo.analysis.planar._disc import Disc
+from nonholo.analysis.planar._strip import Strip
+from nonholo.discrete import Discretization, as_discretization, legendre
+from nonholo.systems import AbstractSystem
+
+__all__ = ["AbstractPlanarVariety", "Disc", "HalfPlanes", "Strip", "momenta_at", "planar_map", "planar_variety"]
+
+
+def planar_variety(system: AbstractSystem) -> AbstractPlanarVariety | None:
+    """Return the displacements of a top in space or a sleigh in the plane; None for another system."""
+    form = system.normal_form
+    if form is None or not form.is_planar:
+        return None
+    kind = Strip if form.is_sleigh else Disc
+    return kind(form, np.asarray(system.form_frame), np.asarray(system.form_map))
+
+
+def planar_map(where: str, value: Any) -> tuple[Discretization, AbstractPlanarVariety]:
+    """Return the discretization of a planar body that conserves energy, with its displacements, or refuse it."""
+    discrete = as_discretization(where, value)
+    variety = planar_variety(discrete.system)
+    if variety is None:
+        remedy = "For others sample `discrete_legendre`."
+        raise error(where, "be of a top with n = 3 or of a sleigh", repr(discrete.system), remedy)
+    if not discrete.conserves_energy:
+        got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
+        raise error(where, "keep energy", got, "Use difference='matrix' and constraint='skew'.")
+    return discrete, variety
+
+
+def momenta_at(
+    discrete: Discretization, variety: AbstractPlanarVariety, points: Float[np.ndarray, "... c"]
+) -> Float[np.ndarray, "... 3"]:
+    """Return the momenta, physical and in the user's frame, of the displacements with these coordinates."""
+    return legendre(discrete, variety.displacement(points) - discrete.system.group.identity, "left")
