@@ -91,7 +91,7 @@ def disagreement(certified: Branches, found: Branches) -> str:
 
 def count(discrete: Discretization, canonical: np.ndarray) -> list[Located]:
     """Count the values over canonical restricted momenta."""
-    return located(problem_of(discrete.system.canonical, float(discrete.time_step), canonical))
+    return located(problem_of(discrete.system.canonical.normal_form, float(discrete.time_step), canonical))
 
 
 def miscounted(found: list[Located]) -> bool:

@@ -14,7 +14,7 @@ import numpy as np
 
 from nonholo._checks import error
 from nonholo._types import Array, Float, Inexact
-from nonholo.systems import ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
+from nonholo.systems import NormalForm
 
 if TYPE_CHECKING:
     from nonholo.discrete._discretization import Discretization
@@ -124,6 +124,8 @@ class Frame:
         length: The unit of length; None for a top.
         lever: a_1 over `length`; None for a top.
         offset: The centre of mass across axis 1; empty for a top.
+        turn: The axes of the normal form as seen from the canonical frame; None where they are the same.
+        rows: Takes canonical momenta to those along the rows of the normal form; None where they are the same.
     """
 
     axes: Float[np.ndarray, "k k"]
@@ -133,35 +135,41 @@ class Frame:
     length: float | None
     lever: float | None
     offset: Float[np.ndarray, "j"]
+    turn: Float[np.ndarray, "N N"] | None = None
+    rows: Float[np.ndarray, "m m"] | None = None
 
     def equations(self, momentum: Inexact[np.ndarray, "m"]) -> Equations:
         """Return the equations for canonical restricted momenta, multiplied by the time step."""
+        momentum = momentum if self.rows is None else self.rows @ momentum
         if self.length is None:
             return Equations(self.stiffness, self.coupling, self.axes.T @ momentum / (2 * self.inertia))
-        along, k = momentum[-1], len(self.stiffness)
-        turning = momentum[:-1] if k > 1 else -momentum[:-1]  # on SE(2) the plane e_1^e_2 turns against omega
-        r = self.axes.T @ (turning - self.offset * along) / (2 * self.inertia)
+        along = momentum[-1]
+        r = self.axes.T @ (momentum[:-1] - self.offset * along) / (2 * self.inertia)
         return Equations(self.stiffness, self.coupling, r, self.lever, along * self.length / self.inertia)
 
     def momentum(self, target: Inexact[Array, "k"], push: Array) -> Inexact[Array, "m"]:
         """Return the momenta, multiplied by the time step, that `equations` brings to a target and a push."""
         turning = 2 * self.inertia * (self.axes @ target)
-        if self.length is None:
-            return turning
-        along, sign = push * self.inertia / self.length, 1.0 if len(turning) > 1 else -1.0
-        return np.append(sign * (turning + self.offset * along), along)
+        if self.length is not None:
+            along = push * self.inertia / self.length
+            turning = np.append(turning + self.offset * along, along)
+        return turning if self.rows is None else np.linalg.solve(self.rows, turning)
 
     def chart(self, x: Float[np.ndarray, "m"]) -> Float[np.ndarray, "k"]:
         """Return the canonical Cayley coordinates of a displacement; huge at angle pi."""
         k, z0 = len(self.stiffness), x[0] if x[0] != 0 else _AT_PI
         y = (self.axes @ x[1 : k + 1]) / z0
-        if self.length is None:
-            return y
-        nu = self.length * x[-1] - 2 * self.offset @ (y * z0)
-        return np.append(y if k > 1 else -y, nu / (2 * z0))
+        if self.length is not None:
+            nu = self.length * x[-1] - 2 * self.offset @ (y * z0)
+            y = np.append(y, nu / (2 * z0))
+        return y if self.rows is None else y @ self.rows
 
     def increment(self, x: Inexact[Array, "m"]) -> Inexact[Array, "N N"]:
         """Return the canonical displacement minus the identity, without cancellation."""
+        X = self._own_increment(x)
+        return X if self.turn is None else self.turn @ X @ np.linalg.inv(self.turn)
+
+    def _own_increment(self, x: Inexact[Array, "m"]) -> Inexact[Array, "N N"]:
         k = len(self.stiffness)
         z0, z = x[0], self.axes @ x[1 : k + 1]
         if self.length is None:
@@ -178,6 +186,8 @@ class Frame:
 
     def point(self, W: Inexact[np.ndarray, "N N"]) -> Inexact[np.ndarray, "m"]:
         """Return the point over a canonical displacement of the variety, real or complex."""
+        if self.turn is not None:
+            W = np.linalg.inv(self.turn) @ W @ self.turn
         n = len(self.stiffness) + 1
         sign = -np.ones(n)
         sign[-1 if self.length is None else 0] = 1.0
@@ -193,7 +203,7 @@ class Frame:
 
 def has_frame(discrete: "Discretization") -> bool:
     """Tell whether all branches of a discretisation are known."""
-    known = isinstance(discrete.system, SuslovTop | ChaplyginSleigh | MultidimensionalSleigh)
+    known = discrete.system.normal_form is not None
     return known and discrete.difference == "matrix" and discrete.constraint in ("skew", "exponential")
 
 
@@ -205,23 +215,15 @@ def frame_of(where: str, discrete: "Discretization") -> Frame:
         got = f"{name}, difference {discrete.difference!r}, constraint {discrete.constraint!r}"
         remedy = "Discretise one of them with constraint 'skew' or 'exponential'; of others only the principal "
         raise error(where, requirement, got, remedy + "branch is computed (`step`, `simulate`).")
-    system = discrete.system.canonical if isinstance(discrete.system, SuslovTop | ChaplyginSleigh) else discrete.system
-    if isinstance(system, SuslovTop):
-        return _frame(system.constrained_inertia, system.coupling, None, 0.0, np.zeros(0))
-    if isinstance(system, ChaplyginSleigh):
-        inertia = np.array([[system.inertia]])
-        return _frame(inertia, np.zeros(1), system.mass, system.a, np.zeros(1))
-    system = cast(MultidimensionalSleigh, system)
-    J, a = np.asarray(system.mass_tensor), np.asarray(system.center_of_mass)
-    return _frame(J[1:, 1:] + J[0, 0] * np.eye(len(J) - 1), -J[0, 1:], system.mass, a[0], a[1:])
+    return _frame(cast(NormalForm, discrete.system.normal_form))
 
 
-def _frame(B: np.ndarray, c: np.ndarray, mass: float | None, a: float, offset: np.ndarray) -> Frame:
-    eigenvalues, axes = np.linalg.eigh(B)
-    unit = float(eigenvalues[-1] + (0.0 if mass is None else mass * a * a))
-    length = None if mass is None else float(np.sqrt(unit / mass))
-    coupling = axes.T @ c / unit
+def _frame(form: NormalForm) -> Frame:
+    eigenvalues, axes = np.linalg.eigh(form.stiffness_matrix)
+    unit = float(eigenvalues[-1] + (form.mass * form.arm**2 if form.is_sleigh else 0.0))
+    length = float(np.sqrt(unit / form.mass)) if form.is_sleigh else None
+    coupling = axes.T @ form.coupling / unit
     if np.linalg.norm(coupling) <= _BALANCED:
         coupling = np.zeros_like(coupling)
-    lever = None if length is None else float(a / length)
-    return Frame(axes, eigenvalues / unit, coupling, unit, length, lever, offset)
+    lever = None if length is None else float(form.arm / length)
+    return Frame(axes, eigenvalues / unit, coupling, unit, length, lever, form.offset, form.frame, form.frame_map)

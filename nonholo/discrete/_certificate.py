@@ -12,9 +12,10 @@ import numpy as np
 from flint import acb, acb_poly, ctx, fmpz_poly
 
 from nonholo.discrete._certificate_families import Family, UncertainError, families
-from nonholo.discrete._certificate_problem import Body, Lever, Problem, problem_of
+from nonholo.discrete._certificate_problem import Lever, Problem, problem_of
 from nonholo.discrete._certificate_roots import PRECISIONS, isolated, sharpened
 from nonholo.discrete._discretization import Discretization
+from nonholo.systems import NormalForm
 
 _SHARP = 2.0**-48  # relative radius that ends the search for more digits
 _ROUNDING = 2.0**-51  # of a sum rounded to doubles and of the radii themselves, relative and generous
@@ -40,7 +41,10 @@ class Located(NamedTuple):
 
 def enclosures(discrete: Discretization, canonical: np.ndarray) -> Enclosures | str:
     """Enclose all isolated displacements over canonical restricted momenta, or say what is not decided."""
-    problem = problem_of(cast(Body, discrete.system.canonical), float(discrete.time_step), canonical)
+    form = cast(NormalForm, discrete.system.canonical.normal_form)
+    if form.frame is not None:
+        return "the axes of the constraint are not those of the body, whose doubles would be rounded"
+    problem = problem_of(form, float(discrete.time_step), canonical)
     try:
         found = located(problem)
     except UncertainError as reason:

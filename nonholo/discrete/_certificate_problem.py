@@ -6,16 +6,14 @@ of the body: nothing is diagonalised.
 Reference: docs/theory/branches.md, "Certificates".
 """
 
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 from flint import fmpq, fmpq_mat, fmpz, fmpz_mat
 
-from nonholo.systems import ChaplyginSleigh, MultidimensionalSleigh, SuslovTop
+from nonholo.systems import NormalForm
 
 _ZERO = fmpq(0)
-
-Body: TypeAlias = SuslovTop | ChaplyginSleigh | MultidimensionalSleigh
 
 
 class Lever(NamedTuple):
@@ -37,21 +35,15 @@ class Problem(NamedTuple):
     lever: Lever | None
 
 
-def problem_of(system: Body, time_step: float, momentum: np.ndarray) -> Problem:
-    """Return the exact problem of a canonical body for canonical restricted momenta."""
+def problem_of(form: NormalForm, time_step: float, momentum: np.ndarray) -> Problem:
+    """Return the exact problem of a body, in its own doubles, for canonical restricted momenta."""
     h = _exact(time_step)
-    p = [h * _exact(x) for x in momentum.tolist()]
-    if isinstance(system, SuslovTop):
-        J = _rows(system.mass_tensor)
-        return _problem(_stiffness(J[:-1], J[-1][-1], 0), [row[-1] for row in J[:-1]], [x / 2 for x in p])
-    if isinstance(system, ChaplyginSleigh):
-        body, turning = ([[_exact(system.inertia)]], [fmpq(0)], [_exact(system.a), fmpq(0)]), [-p[0]]
-    else:
-        J = _rows(system.mass_tensor)
-        body = _stiffness(J[1:], J[0][0], 1), [-x for x in J[0][1:]], [_exact(x) for x in system.center_of_mass]
-        turning = p[:-1]
-    B, c, (a, *offset) = body
-    m, r = _exact(system.mass), [(x - o * p[-1]) / 2 for x, o in zip(turning, offset, strict=True)]
+    p = [h * _exact(x) for x in (momentum if form.frame_map is None else form.frame_map @ momentum).tolist()]
+    B, c = _stiffness(_rows(form.across), _exact(form.along)), [_exact(x) for x in form.coupling]
+    if not form.is_sleigh:
+        return _problem(B, c, [x / 2 for x in p])
+    a, m, offset = _exact(form.arm), _exact(form.mass), [_exact(x) for x in form.offset]
+    r = [(x - o * p[-1]) / 2 for x, o in zip(p[:-1], offset, strict=True)]
     return _problem(B, c, r, a * p[-1] / 2 + m * a * a, (a, p[-1] / m, offset, m * a))
 
 
@@ -70,9 +62,8 @@ def _problem(B: list, c: list, r: list, half: fmpq = _ZERO, lever: tuple | None 
     return Problem(whole_B * (unit // denominator), [whole(x) for x in c], [whole(x) for x in d], whole(half), exact)
 
 
-def _stiffness(rows: list[list[fmpq]], diagonal: fmpq, first: int) -> list[list[fmpq]]:
-    square = (row[first : first + len(rows)] for row in rows)
-    return [[x + diagonal if i == j else x for j, x in enumerate(row)] for i, row in enumerate(square)]
+def _stiffness(rows: list[list[fmpq]], diagonal: fmpq) -> list[list[fmpq]]:
+    return [[x + diagonal if i == j else x for j, x in enumerate(row)] for i, row in enumerate(rows)]
 
 
 def _rows(matrix: np.ndarray) -> list[list[fmpq]]:

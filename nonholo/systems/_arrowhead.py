@@ -108,7 +108,7 @@ class ArrowheadTop(AbstractLLSystem):
     @functools.cached_property
     def normal_form(self) -> NormalForm:
         """The diagonal of B, and c."""
-        return NormalForm(self.inertia_along.turning, self.coupling)
+        return NormalForm(self.diagonal[:-1], self.diagonal[-1], self.coupling)
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
@@ -205,7 +205,7 @@ class ArrowheadSleigh(AbstractLLSystem):
     def normal_form(self) -> NormalForm:
         """The numbers of the equations of motion, c with the other sign."""
         d, a = self.diagonal, self.center_of_mass
-        return NormalForm(d[1:] + d[0], -self.coupling, self.mass, a[0], a[1:])
+        return NormalForm(d[1:], d[0], -self.coupling, self.mass, a[0], a[1:])
 
 
 def _arrow(owner: str, diagonal: object, coupling: object) -> tuple[np.ndarray, np.ndarray]:

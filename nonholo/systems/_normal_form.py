@@ -8,6 +8,7 @@ $$ (B + ma_1^2)\,\dot w = (c\cdot w)\,w - |w|^2c - ma_1u\,w, \qquad \dot u = a_1
 """
 
 import dataclasses
+import functools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,7 +31,9 @@ class NormalForm:
     The rows of the form are $e_i\wedge e_n$ for a top, $e_1\wedge e_j$ and then the velocity along $e_1$ for a sleigh.
 
     Attributes:
-        stiffness: B, shape (k, k), or its diagonal (k,); of a sleigh about the center of mass.
+        across: The mass tensor across the axis, shape (k, k), or its diagonal (k,); of a sleigh about the center of
+            mass.
+        along: The mass tensor along the axis; together they make the stiffness B.
         coupling: c, shape (k,): the mass tensor between the planes and the axis, for a sleigh with the other sign.
         mass: m; None for a top.
         arm: $a_1$, the coordinate of the center of mass along $e_1$; 0 for a top.
@@ -50,13 +53,22 @@ class NormalForm:
         True
     """
 
-    stiffness: Float[Array, "k k"] | Float[Array, "k"]
+    across: Float[Array, "k k"] | Float[Array, "k"]
+    along: Array
     coupling: Float[Array, "k"]
     mass: Array = None
     arm: Array = 0.0
     offset: Float[Array, "j"] = dataclasses.field(default_factory=lambda: np.zeros(0))
     frame: Float[np.ndarray, "N N"] | None = None
     frame_map: Float[np.ndarray, "m m"] | None = None
+
+    @functools.cached_property
+    def stiffness(self) -> Float[Array, "k k"] | Float[Array, "k"]:
+        r"""B, the mass tensor across the axis plus that along it times Id; its diagonal where that is all there is."""
+        if self.is_diagonal:
+            return self.across + self.along
+        xp = self.across.__array_namespace__()
+        return self.across + self.along * xp.eye(self.across.shape[-1], dtype=self.across.dtype)
 
     @property
     def is_sleigh(self) -> bool:
@@ -71,7 +83,7 @@ class NormalForm:
     @property
     def is_diagonal(self) -> bool:
         """Whether the axes are principal axes of B, which is given by its diagonal."""
-        return self.stiffness.ndim == 1
+        return self.across.ndim == 1
 
     @property
     def stiffness_matrix(self) -> Float[np.ndarray, "k k"]:
@@ -94,15 +106,13 @@ class NormalForm:
 
 def top_form(mass_tensor: Float[Array, "n n"]) -> NormalForm:
     """Return the form of a top whose axis is the last one."""
-    xp = mass_tensor.__array_namespace__()
-    unit = xp.eye(mass_tensor.shape[-1] - 1, dtype=mass_tensor.dtype)
-    return NormalForm(mass_tensor[:-1, :-1] + mass_tensor[-1, -1] * unit, mass_tensor[:-1, -1])
+    return NormalForm(mass_tensor[:-1, :-1], mass_tensor[-1, -1], mass_tensor[:-1, -1])
 
 
 def sleigh_form(mass: Array, center_of_mass: Float[Array, "n"], mass_tensor: Float[Array, "n n"]) -> NormalForm:
     """Return the form of a sleigh that slides along the first axis, from its mass tensor about the center of mass."""
     J, a = np.asarray(mass_tensor), np.asarray(center_of_mass)
-    return NormalForm(J[1:, 1:] + J[0, 0] * np.eye(len(J) - 1), -J[0, 1:], mass, a[0], a[1:])
+    return NormalForm(J[1:, 1:], J[0, 0], -J[0, 1:], mass, a[0], a[1:])
 
 
 def recognized_form(system: "AbstractLLSystem") -> NormalForm | None:
@@ -183,5 +193,7 @@ def _seen_from(
     system: "AbstractLLSystem", form: NormalForm, frame: Float[np.ndarray, "N N"], rows: Float[np.ndarray, "m dim"]
 ) -> NormalForm:
     """Return a form with its frame, and the map of momenta to its rows, as seen from the system."""
+    if np.array_equal(frame, system.group.identity) and np.array_equal(rows, system.constraint_subspace):
+        return form
     images = rows @ system.group.adjoint(frame).T
     return dataclasses.replace(form, frame=frame, frame_map=images @ np.linalg.pinv(system.constraint_subspace))

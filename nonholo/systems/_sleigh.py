@@ -104,5 +104,5 @@ class ChaplyginSleigh(AbstractLLSystem):
     def normal_form(self) -> NormalForm:
         r"""J, m and a; the plane $e_1\wedge e_2$ turns against $\omega$."""
         xp = (self.inertia * self.mass * self.a).__array_namespace__()
-        stiffness = xp.reshape(xp.asarray(self.inertia), (1, 1))
-        return NormalForm(stiffness, np.zeros(1), self.mass, self.a, np.zeros(1), frame_map=np.diag([-1.0, 1.0]))
+        inertia = xp.reshape(xp.asarray(self.inertia), (1, 1))
+        return NormalForm(inertia, 0.0, np.zeros(1), self.mass, self.a, np.zeros(1), frame_map=np.diag([-1.0, 1.0]))

@@ -134,7 +134,8 @@ _SPECIAL = {
 
 
 def _problem(discrete: Discretization, r: list[float]) -> Problem:
-    return problem_of(discrete.system.canonical, float(discrete.time_step), discrete.system.to_canonical(np.array(r)))
+    canonical = discrete.system.to_canonical(np.array(r))
+    return problem_of(discrete.system.canonical.normal_form, float(discrete.time_step), canonical)
 
 
 @pytest.mark.parametrize(("discrete", "r", "multiplicity"), _SPECIAL.values(), ids=_SPECIAL)
