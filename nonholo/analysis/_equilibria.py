@@ -88,10 +88,10 @@ def highest_energy(discrete: Discretization) -> float | None:
 
 
 def _highest_energy(body: AbstractLLSystem, steps: Float[np.ndarray, "S"]) -> float | None:
-    velocity = body.equilibria().attracting
-    turn = 0.0 if velocity is None else np.abs(steps).max() * float(body.group.angle(velocity))
-    if turn == 0:
+    velocity, form = body.equilibria().attracting, body.normal_form
+    if velocity is None or form is None or (form.is_sleigh and form.arm != 0):
         return None
+    turn = np.abs(steps).max() * float(body.group.angle(velocity))
     return float(body.constrained_energy(velocity @ np.asarray(body.inertia_operator)) / turn**2)
 
 

@@ -210,7 +210,7 @@ def has_frame(discrete: "Discretization") -> bool:
 def frame_of(where: str, discrete: "Discretization") -> Frame:
     """Return the frame of a system whose branches are known, or refuse it."""
     if not has_frame(discrete):
-        requirement = "be a SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference 'matrix'"
+        requirement = "be a top or a sleigh with difference 'matrix'"
         name = type(discrete.system).__name__
         got = f"{name}, difference {discrete.difference!r}, constraint {discrete.constraint!r}"
         remedy = "Discretise one of them with constraint 'skew' or 'exponential'; of others only the principal "

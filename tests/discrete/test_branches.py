@@ -343,7 +343,7 @@ _REFUSED = {
 @pytest.mark.parametrize("discrete", _REFUSED.values(), ids=_REFUSED)
 def test_other_systems_are_refused(discrete: Discretization) -> None:
     """Where not all values are known the error says for which systems they are."""
-    with pytest.raises(ValueError, match="must be a SuslovTop, ChaplyginSleigh or MultidimensionalSleigh"):
+    with pytest.raises(ValueError, match="must be a top or a sleigh with difference"):
         nh.displacements_over(discrete, [0.1, 0.2])
 
 

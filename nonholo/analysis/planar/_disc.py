@@ -17,7 +17,7 @@ class Disc(AbstractPlanarVariety):
     @property
     def inertia(self) -> Float[np.ndarray, "2 2"]:
         """B."""
-        return np.asarray(self.form.stiffness)
+        return self.form.stiffness_matrix
 
     @property
     def coupling(self) -> Float[np.ndarray, "2"]:

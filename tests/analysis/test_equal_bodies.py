@@ -1,0 +1,115 @@
+"""One body as a top or a sleigh, as an arrowhead, and as an `LLSystem` in its own or in other axes: equal answers."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.analysis import deltoid
+
+TENSOR = np.array([[1.4, 0.0, 0.5], [0.0, 1.0, -0.3], [0.5, -0.3, 0.9]])
+WIDE = np.diag([1.0, 2.0, 3.0, 4.0]) + 0.2 * (np.eye(4)[-1:] * [[1.0], [0.5], [-1.0], [0.0]])
+WIDE = (WIDE + WIDE.T) / 2
+TURN = nh.SO(3).exp(np.array([0.4, -0.9, 0.3]))
+MOVE = nh.SE(2).exp(np.array([0.7, 0.4, -0.3]))
+NAMED = {
+    "top": nh.SuslovTop(TENSOR),
+    "sleigh": nh.ChaplyginSleigh(1.2, 0.75, 0.5, 0.2),
+    "top 4": nh.SuslovTop(WIDE),
+    "sleigh SE(3)": nh.MultidimensionalSleigh(2.0, [0.3, 0.1, -0.2], TENSOR),
+}
+
+
+def _general(body: Any, g: np.ndarray | None = None) -> nh.LLSystem:
+    g = body.group.identity if g is None else g
+    rows = body.constraint_subspace @ body.group.adjoint(g).T
+    return nh.LLSystem(body.group, g @ body.homogeneous_mass_tensor @ g.T, rows)
+
+
+CASES: dict[str, tuple[Any, Any, np.ndarray]] = {
+    "arrowhead top": (NAMED["top"], nh.SuslovTop.arrowhead(np.diag(TENSOR), TENSOR[-1, :-1]), np.eye(3)),
+    "arrowhead top 4": (NAMED["top 4"], nh.SuslovTop.arrowhead(np.diag(WIDE), WIDE[-1, :-1]), np.eye(4)),
+    **{f"general {name}": (body, _general(body), body.group.identity) for name, body in NAMED.items()},
+    "turned top": (NAMED["top"], _general(NAMED["top"], TURN), TURN),
+    "moved sleigh": (NAMED["sleigh"], _general(NAMED["sleigh"], MOVE), MOVE),
+}
+PLANAR = {name: case for name, case in CASES.items() if len(case[0].constraint_subspace) == 2}
+equal = pytest.mark.parametrize(("body", "same", "axes"), CASES.values(), ids=CASES)
+planar = pytest.mark.parametrize(("body", "same", "axes"), PLANAR.values(), ids=PLANAR)
+
+
+def _seen(body: Any, axes: np.ndarray, vector: Any) -> Any:
+    """Return a velocity of the body in the axes of the other one."""
+    return None if vector is None else body.group.adjoint(axes) @ vector
+
+
+@equal
+def test_equilibria_and_limits(body: Any, same: Any, axes: np.ndarray) -> None:
+    """Equilibria, their spectra for flow and map, limits and witnesses are those of the named class."""
+    known, other = nh.equilibria(nh.discretize(body, 0.3), 0.4), nh.equilibria(nh.discretize(same, 0.3), 0.4)
+    assert np.allclose(_seen(body, axes, known.velocity), other.velocity, atol=1e-13)
+    for name in ("rates", "multipliers"):
+        assert np.allclose(getattr(known, name), getattr(other, name), rtol=1e-12)
+    assert (known.highest_energy is None) == (other.highest_energy is None)
+    assert np.isclose(known.highest_energy or 0.0, other.highest_energy or 0.0, rtol=1e-12)
+    assert np.isclose(nh.invariant_measure(body).witness, nh.invariant_measure(same).witness, rtol=1e-12)
+    limits, others = nh.asymptotics(body), nh.asymptotics(same)
+    for name in ("heading_turn", "motion_turn"):
+        assert (getattr(limits, name) is None) == (getattr(others, name) is None)
+        assert np.isclose(getattr(limits, name) or 0.0, getattr(others, name) or 0.0, rtol=1e-12)
+    assert (limits.axis_after is None) == (others.axis_after is None)
+    if limits.axis_after is not None:
+        assert np.allclose(axes @ limits.axis_after, others.axis_after, atol=1e-13)
+
+
+@equal
+def test_values_of_the_map(body: Any, same: Any, axes: np.ndarray) -> None:
+    """All displacements over a momentum, their momenta and distances from folds are those of the named class."""
+    one, two = nh.discretize(body, 0.8), nh.discretize(same, 0.8)
+    back = body.group.inverse(axes)
+    p = body.inertia_operator @ (np.linspace(0.9, 0.4, len(body.constraint_subspace)) @ body.constraint_subspace)
+    seen = body.group.adjoint(back).T @ p
+    known, other = nh.displacements_over(one, body.restrict(p)), nh.displacements_over(two, same.restrict(seen))
+    assert len(known) == len(other)
+    assert np.isclose(known.energy, other.energy, rtol=1e-12)
+    assert known.principal == other.principal
+    real = known.is_real
+    assert np.allclose(axes @ known.displacement[real] @ back, other.displacement[other.is_real], atol=1e-10)
+    assert np.allclose(known.fold_distance, other.fold_distance, rtol=1e-6, atol=1e-9)
+
+
+@planar
+def test_planar_geometry(body: Any, same: Any, axes: np.ndarray) -> None:
+    """Level curves, momentum locus, half-planes and critical energies are those of the named class."""
+    one, two = nh.discretize(body, 0.5), nh.discretize(same, 0.5)
+    back = body.group.inverse(axes)
+    curve, other = nh.invariant_curve(one, 0.3, 40), nh.invariant_curve(two, 0.3, 40)
+    assert len(curve.components) == len(other.components)
+    level = same.constrained_energy(same.restrict(other.momentum[0]))
+    assert np.allclose(level, 0.3, rtol=1e-11)
+    p = nh.momentum_locus(one, 8).momentum
+    size = np.abs(nh.momentum_locus(one, 8).implicit(2 * p)).max()
+    assert np.abs(nh.momentum_locus(two, 8).implicit(p @ body.group.adjoint(back))).max() < 1e-11 * size
+    W = curve.displacement[0]
+    sides, others = nh.half_planes(one, displacement=W), nh.half_planes(two, displacement=axes @ W @ back)
+    assert np.allclose(sides.side * np.sign(sides.side[3]), others.side * np.sign(others.side[3]), atol=1e-12)
+    assert np.allclose(sides.forward, others.forward, atol=1e-12)
+    if not body.normal_form.is_sleigh:
+        for name in ("saddle", "centre", "equatorial_saddle", "fold", "line"):
+            values = getattr(nh.critical_energies(one), name), getattr(nh.critical_energies(two), name)
+            assert np.isclose(*values, rtol=1e-12)
+    else:
+        known, found = nh.single_valued_region(one), nh.single_valued_region(two)
+        assert np.allclose([known.energy, known.principal_energy], [found.energy, found.principal_energy], rtol=1e-12)
+        inside = (found.cusps + found.cusps.mean(axis=0)) / 2
+        assert deltoid(two).real_branches(inside).tolist() == [3, 3, 3]
+
+
+@planar
+def test_orbits_between_the_equilibria(body: Any, same: Any, axes: np.ndarray) -> None:
+    """The orbit half way between the equilibria is that of the named class, seen from the other axes."""
+    known = nh.heteroclinic(nh.discretize(body, 0.5), energy=0.3)
+    other = nh.heteroclinic(nh.discretize(same, 0.5), energy=0.3, side=1)
+    expected = known.orbit.body_velocity[[0, -1]] @ body.group.adjoint(axes).T
+    assert np.allclose(expected, other.orbit.body_velocity[[0, -1]], atol=1e-10)
