@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.analysis._equilibria import highest_energy
 from nonholo.analysis._fold_energy import fold_energy
@@ -120,7 +120,7 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
 def _checked(where: str, discrete: Any) -> SuslovTop:
     remedy = "Pass `discretize(SuslovTop(J), time_step)` with n = 3."
     if not isinstance(discrete, Discretization):
-        raise error(where, "be a discretised Suslov top", repr(discrete), remedy)
+        raise error(where, "be a discretised Suslov top", shown(discrete), remedy)
     system = discrete.system.canonical
     if isinstance(system, ChaplyginSleigh):
         remedy = "Its level curves are ellipses; `single_valued_region` gives the energy where branches merge."

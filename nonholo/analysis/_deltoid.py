@@ -5,7 +5,7 @@ from typing import cast
 
 import numpy as np
 
-from nonholo._checks import array, error
+from nonholo._checks import array, error, shape_of, shown
 from nonholo._limits import bounded_count
 from nonholo._types import Array, Float
 from nonholo.analysis._variety_points import closed_form
@@ -41,7 +41,7 @@ class Deltoid:
         momentum are the tangents through it.
         """
         where, remedy = "Deltoid.touching(angle=...)", "Pass step angles."
-        turn = np.exp(1j * array(where, angle, (None,) * np.ndim(angle), remedy))
+        turn = np.exp(1j * array(where, angle, (None,) * len(shape_of(angle)), remedy))
         return _restricted(self.discrete, 2 * turn + turn**-2)
 
     def discriminant(self, restricted_momentum: Array) -> Float[np.ndarray, "..."]:
@@ -68,7 +68,7 @@ class Deltoid:
         return system.from_canonical(reduced) / float(self.discrete.time_step)
 
     def _plane(self, method: str, value: Array) -> Float[np.ndarray, "... 2"]:
-        leading = (None,) * (np.ndim(value) - 1)
+        leading = (None,) * (len(shape_of(value)) - 1)
         where = f"Deltoid.{method}(restricted_momentum=...)"
         return array(where, value, (*leading, 2), "Pass the two components (p_theta, p_1).")
 
@@ -102,10 +102,10 @@ def deltoid(discrete: Discretization) -> Deltoid:
     """
     checked = closed_form("deltoid(discrete=...)", discrete)
     if not isinstance(checked.system, ChaplyginSleigh):
-        raise error("deltoid(discrete=...)", "be of a sleigh", repr(checked.system), "Tops have no deltoid.")
+        raise error("deltoid(discrete=...)", "be of a sleigh", shown(checked.system), "Tops have no deltoid.")
     if checked.system.a == 0:
         remedy = "A balanced sleigh has two real values if h |pi| < J, none beyond."
-        raise error("deltoid(discrete=...)", "have a != 0", repr(checked.system), remedy)
+        raise error("deltoid(discrete=...)", "have a != 0", shown(checked.system), remedy)
     return Deltoid(checked, _restricted(checked, 3 * np.exp(2j * np.pi * np.array([0.0, 1.0, -1.0]) / 3)))
 
 

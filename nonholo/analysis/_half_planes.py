@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from nonholo._checks import error, trailing
+from nonholo._checks import error, shape_of, trailing
 from nonholo._types import Array, Float
 from nonholo.analysis._variety_points import closed_form, points_of
 from nonholo.discrete import Discretization
@@ -63,11 +63,11 @@ def half_planes(discrete: Discretization, *, displacement: Any = None, momentum:
     system = checked.system
     if displacement is not None:
         shape = system.group.identity.shape
-        W = trailing("half_planes(displacement=...)", displacement, shape, "Pass `orbit.displacement`.")
+        W = trailing("half_planes(displacement=...)", displacement, shape, "Pass `orbit.displacement`.", real=True)
         return sides_of_displacements(checked, W)[0]
     k, dim = system.constraint_subspace.shape
-    size = k if np.shape(momentum)[-1:] == (k,) else dim
-    p = trailing("half_planes(momentum=...)", momentum, (size,), f"Pass {dim} body momenta or {k} along d.")
+    size = k if shape_of(momentum)[-1:] == (k,) else dim
+    p = trailing("half_planes(momentum=...)", momentum, (size,), f"Pass {dim} body momenta or {k} along d.", real=True)
     r = p if size == k else system.restrict(p)
     return sides_of_momenta(system, float(checked.time_step) * r)
 

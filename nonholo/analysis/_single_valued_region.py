@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.discrete._composition import refuse_composition
@@ -84,7 +84,7 @@ def single_valued_region(sleigh: Discretization) -> SingleValuedRegion:
 def _checked(where: str, discrete: Any) -> tuple[ChaplyginSleigh, float]:
     remedy = "Pass `discretize(ChaplyginSleigh(...), time_step)`."
     if not isinstance(discrete, Discretization) or not isinstance(discrete.system, ChaplyginSleigh):
-        raise error(where, "be a discretised Chaplygin sleigh", repr(discrete), remedy)
+        raise error(where, "be a discretised Chaplygin sleigh", shown(discrete), remedy)
     refuse_composition(where, discrete, "Pass the discretisation of order 2 that is composed.")
     if not discrete.conserves_energy:
         got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"

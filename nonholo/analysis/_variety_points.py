@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.discrete._discretization import as_discretization
@@ -24,7 +24,7 @@ def closed_form(where: str, value: Any) -> Discretization:
     known = isinstance(system, ChaplyginSleigh) or (isinstance(system, SuslovTop) and system.axis is not None)
     if not known:
         raise error(
-            where, "be of a top with n = 3 or of a sleigh", repr(system), "For others sample `discrete_legendre`."
+            where, "be of a top with n = 3 or of a sleigh", shown(system), "For others sample `discrete_legendre`."
         )
     if not discrete.conserves_energy:
         got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"

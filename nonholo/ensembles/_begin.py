@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from nonholo import io
-from nonholo._checks import count, error
+from nonholo._checks import count, error, shown
 from nonholo._progress import waiting
 from nonholo.ensembles._block import block_of
 from nonholo.ensembles._describe import (
@@ -34,10 +34,10 @@ def check_task(task: Any, design: Any) -> None:
     """Refuse what is no task and no design, or a design that the task does not know."""
     if not callable(task):
         remedy = "Pass an EnsembleTask, or a function of a MemberBlock."
-        raise error("sweep(task=...)", "be callable", repr(task), remedy)
+        raise error("sweep(task=...)", "be callable", shown(task), remedy)
     if not isinstance(design, Grid | RandomDesign):
         remedy = "Pass nh.Grid({...}) or nh.RandomDesign(members, {...})."
-        raise error("sweep(design=...)", "be a design", repr(design), remedy)
+        raise error("sweep(design=...)", "be a design", shown(design), remedy)
     if isinstance(task, EnsembleTask):
         task.check_design([*design.axes, *design.drawn])
 
@@ -64,7 +64,7 @@ def _check_names(design: Design, drawn: dict[str, Output], returned: dict[str, O
     """Refuse names that stand for two things, before anything is computed that nobody could open."""
     for name in returned:
         if name in drawn:
-            raise error("sweep(task=...)", "return names that the design does not have", repr(name), "Rename it.")
+            raise error("sweep(task=...)", "return names that the design does not have", shown(name), "Rename it.")
     members, lengths = tuple(design.sizes), tuple(design.sizes.values())
     coordinates = {name: Axes(axis_dimensions(name, x), x.shape) for name, x in design.axes.items()}
     outputs = (drawn | returned).items()

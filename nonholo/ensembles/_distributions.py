@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.special import ndtri
 
-from nonholo._checks import array, count, error, number, positive, trailing
+from nonholo._checks import array, count, error, number, positive, shape_of, trailing
 from nonholo._types import Float
 
 _LEAST = 2.0**-54  # instead of a uniform number zero, where its logarithm is needed
@@ -204,8 +204,8 @@ class Choice(AbstractDistribution):
     values: Any
 
     def __post_init__(self) -> None:
-        values = np.asarray(self.values)
-        checked = array("Choice(values=...)", values, (None,) * max(1, values.ndim), "Pass a list of values.")
+        shape = (None,) * max(1, len(shape_of(self.values)))
+        checked = array("Choice(values=...)", self.values, shape, "Pass a list of values.")
         if not len(checked):
             raise error("Choice(values=...)", "hold at least one value", "none", "Pass a list of values.")
         object.__setattr__(self, "values", checked.tolist())

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import jax
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert._room import room
@@ -75,7 +75,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     def __post_init__(self) -> None:
         if not isinstance(self.group, AbstractMatrixGroup):
             where, remedy = "GroupLagrangeDAlembert(group=...)", "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
-            raise error(where, "be a matrix group", repr(self.group), remedy)
+            raise error(where, "be a matrix group", shown(self.group), remedy)
         with jax.enable_x64(True):
             g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
             w, h = jax.ShapeDtypeStruct((self.group.dim,), float), jax.ShapeDtypeStruct((), float)

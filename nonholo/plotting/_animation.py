@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 from PIL import Image
 
-from nonholo._checks import count, error, function, positive
+from nonholo._checks import count, error, function, positive, shown
 from nonholo._checks import path as checked_path
 from nonholo._types import Int
 from nonholo.io import check_file
@@ -102,7 +102,7 @@ def _scene_of(orbit: Orbit) -> tuple[Callable[[Orbit], float], Callable[..., tup
 def _target(path: str | Path) -> Path:
     target = checked_path("animate(path=...)", path)
     if target.suffix.lower() != ".gif":
-        raise error("animate(path=...)", "end in .gif", repr(str(path)), "Use `overview` for a still picture.")
+        raise error("animate(path=...)", "end in .gif", shown(str(path)), "Use `overview` for a still picture.")
     return target
 
 

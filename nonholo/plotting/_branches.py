@@ -9,7 +9,7 @@ from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.analysis import deltoid, invariant_curve
 from nonholo.analysis._variety_points import closed_form, points_of
@@ -107,9 +107,9 @@ def _chosen(discrete: Discretization, plane: str | None) -> bool:
         return has_deltoid
     where = "plot.branches(plane=...)"
     if plane not in ("displacements", "momenta"):
-        raise error(where, "be 'displacements' or 'momenta'", repr(plane), "Leave it out for the usual one.")
+        raise error(where, "be 'displacements' or 'momenta'", shown(plane), "Leave it out for the usual one.")
     if plane == "momenta" and not has_deltoid:
-        raise error(where, "be 'displacements' where there is no deltoid", repr(discrete.system), "Leave it out.")
+        raise error(where, "be 'displacements' where there is no deltoid", shown(discrete.system), "Leave it out.")
     return plane == "momenta"
 
 

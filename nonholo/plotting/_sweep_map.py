@@ -10,7 +10,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import ListedColormap
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo.plotting import _theme as theme
 from nonholo.plotting._sweep_axes import (
     OUTCOME,
@@ -92,7 +92,7 @@ def _along(values: xarray.DataArray, x: str | None, y: str | None) -> list[str]:
     known = [str(name) for name in values.dims]
     for argument, name in (("x", x), ("y", y)):
         if name is not None and name not in known:
-            got = repr(name)
+            got = shown(name)
             raise error(f"plot.sweep_map({argument}=...)", f"be one of {', '.join(known)}", got, "Choose one of them.")
     if not known or (x is not None and x == y):
         got, remedy = ("one member" if not known else f"{x!r} twice"), "Pass more of the result, or name two axes."

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import choice, count, error, flags
+from nonholo._checks import choice, count, error, flags, shown
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
@@ -124,7 +124,7 @@ def _check_backend(discrete: Discretization, backend: str) -> None:
     choice("ensemble(backend=...)", backend, ("auto", "numba", "jax"))
     if backend == "numba" and compiled_step(discrete) is None:
         remedy = "Pass backend='jax', or difference='matrix'."
-        raise error("ensemble(backend=...)", "have a closed form of the step", repr(discrete.difference), remedy)
+        raise error("ensemble(backend=...)", "have a closed form of the step", shown(discrete.difference), remedy)
 
 
 def _check_poses(discrete: Discretization, states: int) -> None:

@@ -5,7 +5,7 @@ from typing import Any, overload
 
 import numpy as np
 
-from nonholo._checks import choice, error, flow_times, flow_tolerances
+from nonholo._checks import choice, error, flow_times, flow_tolerances, shown
 from nonholo._results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, closed_form
 from nonholo.discrete._start import in_group, initial_momentum, one_start
@@ -114,7 +114,7 @@ def flow(
             atol=atol,
         )
     if not isinstance(system, AbstractSystem):
-        raise error("flow(system=...)", "be a system", repr(system), "Pass a SuslovTop or an LLSystem.")
+        raise error("flow(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
     choice("flow(method=...)", method, (None, "closed_form"))
     time, tolerances = flow_times(times), flow_tolerances(rtol, atol)
     group, motion = system.group, ContinuousFlow(system)

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from nonholo import io
-from nonholo._checks import count, error, flags, path
+from nonholo._checks import count, error, flags, path, shown
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.io import Stream
@@ -96,7 +96,7 @@ def extend(
     flags("extend", trust=trust, throw=throw, progress=progress)
     store = path("extend(store=...)", store)
     if task is not None:
-        raise error("extend(task=...)", "come with the store of a sweep", repr(task), "Leave it out for an orbit.")
+        raise error("extend(task=...)", "come with the store of a sweep", shown(task), "Leave it out for an orbit.")
     steps = count("extend(steps=...)", steps, "Pass how many steps more.")
     stream, run, watch = _opened("extend", store, discrete, events)
     with io.locked(stream.path):

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from nonholo import kernels
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._results import Outcome, finished
 from nonholo.discrete import Discretization
 from nonholo.discrete._composition import compiled_step
@@ -104,7 +104,7 @@ def compiled_run(where: str, discrete: Discretization, rule: Any, backend: str, 
     """Return the run in blocks of a discretisation; only compiled runs have a state that can be kept."""
     closed = compiled_step(discrete)
     if closed is None or rule != "principal" or backend == "jax":
-        got = f"backend {backend!r}, branch {rule!r}, difference {discrete.difference!r}"
+        got = f"backend {shown(backend)}, branch {shown(rule)}, difference {discrete.difference!r}"
         remedy = "Use branch='principal', difference='matrix' and backend='auto', or simulate without it."
         raise error(where, "have a compiled run", got, remedy)
     return CompiledRun(discrete, closed, every, posed)

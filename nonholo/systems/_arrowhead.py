@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import array, error, positive
+from nonholo._checks import array, error, scale
 from nonholo._types import Array, Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, AbstractSystem, Equilibria
@@ -138,7 +138,7 @@ class ArrowheadSleigh(AbstractLLSystem):
 
     def __post_init__(self) -> None:
         owner = "MultidimensionalSleigh.arrowhead"
-        mass = positive(f"{owner}(mass=...)", self.mass, "Pass the mass of the body.")
+        mass = scale(f"{owner}(mass=...)", self.mass, "Pass the mass of the body.")
         diagonal, coupling = _arrow(owner, self.diagonal, self.coupling)
         where = f"{owner}(center_of_mass=...)"
         centre = array(where, self.center_of_mass, diagonal.shape, "Pass n body coordinates.")

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error, is_traced, symmetric
+from nonholo._checks import array, error, is_traced, shown, symmetric
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._wide import narrow
@@ -77,7 +77,7 @@ def body_tensor(where: str, value: Array, remedy: str) -> Array:
 def checked_group(where: str, group: Any) -> AbstractMatrixGroup:
     """Refuse what is not a matrix group."""
     if not isinstance(group, AbstractMatrixGroup):
-        raise error(where, "be a matrix group", repr(group), "Pass SO(n), SE(n), or MatrixGroup(basis).")
+        raise error(where, "be a matrix group", shown(group), "Pass SO(n), SE(n), or MatrixGroup(basis).")
     return group
 
 

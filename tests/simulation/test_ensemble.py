@@ -322,7 +322,10 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "wrong width": ({"body_velocity": np.ones((2, 4))}, r"must have shape \(any, 3\)"),
     "nan": ({"restricted_velocity": [[0.1, np.nan]]}, "must be finite"),
     "forbidden velocity": ({"body_velocity": [[1, 1, 0], [1, 0, 1]]}, "satisfy the constraint.*This is member 1"),
-    "infinite energy": ({"restricted_velocity": [[1, 1], [1e200, 0]]}, "finite energy.*This is member 1"),
+    "infinite energy": (
+        {"restricted_velocity": [[1, 1], [1e150, 0]], "parameters": {"mass": [1, 1e100], "inertia": [1, 1e100]}},
+        "finite energy.*This is member 1",
+    ),
     "lengths of parameters": ({**ONE, "parameters": {"a": [1, 2], "b": [1]}}, "one length. Got 2 of a, 1 of b"),
     "lengths of starts": ({"momentum": [[1, 0]], "parameters": {"a": [1, 2]}}, "Got 2 values for 1 rows of momentum"),
     "unknown parameter": ({**ONE, "parameters": {"c": [1, 2]}}, "has mass, inertia, a, b, time_step"),
