@@ -183,11 +183,11 @@ def positive(where: str, value: Any, remedy: str) -> Array:
 def scale(where: str, value: Any, remedy: str) -> Array:
     """Return a positive scalar that sets a scale, such as a mass, a length or a time."""
     result = positive(where, value, remedy)
-    _check_scale(where, result)
+    check_scale(where, result)
     return result
 
 
-def _check_scale(where: str, value: Array) -> None:
+def check_scale(where: str, value: Array) -> None:
     """Refuse what sets a scale if its squares underflow; zeros set none."""
     if not is_traced(value) and 0 < (most := np.abs(value).max(initial=0.0)) < _SMALLEST:
         raise error(where, f"not lie below {_SMALLEST:g}", f"{most:g}", "Use other units.")
@@ -308,7 +308,7 @@ def symmetric(where: str, value: Array, remedy: str) -> Array:
     """Return a tensor of inertia, refused with the worst pair of entries if it is not symmetric to rounding."""
     if is_traced(value):
         return value
-    _check_scale(where, value)
+    check_scale(where, value)
     gap = np.abs(value - value.T)
     if gap.max() > 8 * np.finfo(np.float64).eps * np.abs(value).max():
         i, j = (int(k) for k in np.unravel_index(gap.argmax(), gap.shape))

@@ -42,6 +42,9 @@ def suslov_table(B: np.ndarray, c: np.ndarray) -> np.ndarray:
 
 
 def _certain_radius(B: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Return the radius of the disc that no fold reaches, in a unit of mass in which no square over- or underflows."""
+    unit = np.exp2(np.floor(np.log2(np.abs(B).max(axis=(-2, -1)))))[..., None]
+    B, c = B / unit[..., None], c / unit
     low, high = np.moveaxis(np.linalg.eigvalsh(B), -1, 0)
     length, pull = np.linalg.norm(c, axis=-1), np.linalg.norm((B @ c[..., None])[..., 0], axis=-1)
     with np.errstate(divide="ignore"):

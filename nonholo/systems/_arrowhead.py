@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import array, error, scale
+from nonholo._checks import array, check_scale, error, scale
 from nonholo._types import Array, Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, AbstractSystem, Equilibria
@@ -208,6 +208,7 @@ def _arrow(owner: str, diagonal: object, coupling: object) -> tuple[np.ndarray, 
     d = array(where, diagonal, (None,), "Pass the n entries of the diagonal.")
     if len(d) < 3:
         raise error(where, "have at least 3 entries", f"{len(d)}", "In the plane use `ChaplyginSleigh`.")
+    check_scale(where, d)
     c = array(f"{owner}(coupling=...)", coupling, (len(d) - 1,), f"Pass the {len(d) - 1} entries beside the corner.")
     return d, c
 
