@@ -10,7 +10,8 @@ where $\mathrm{tr}(D X J X^T) = 0$ since $XJX^T$ is symmetric and has no homogen
 $2GC_aG$, $G = (I - Y)^{-1}$. Here $D_i$ is a basis of $\mathfrak{d}$, momenta are in units of displacements,
 $m = h r/(\mu\ell^2)$, all lengths in units of a length $\ell$ and masses of a mass $\mu$ of the body, so that
 translations, rotations and momenta are numbers of one size. Where $\exp\mathfrak{d}$ solves the constraint, the $C_a$
-are the $D_i$ and there is no second kind; otherwise the $C_a$ span the algebra. With `spatial` the constraint is right-invariant: the pose carries J to
+are the $D_i$ and there is no second kind; otherwise the $C_a$ span the algebra. With `spatial` the constraint is
+right-invariant: the pose carries J to
 space, and m is constant. On the group of a form G the transpose is $X^* = G^{-1}X^TG$: the kernel is given $GD_i$ and
 $JG^{-1}$, so that $Q_i = GD_iJG^{-1}$ has the same pairings.
 """

@@ -1,5 +1,6 @@
 """Moving pictures of orbits, as GIF files."""
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from PIL import Image
 
 from nonholo._checks import count, error, function, positive, shown
 from nonholo._checks import path as checked_path
+from nonholo._limits import within_memory
 from nonholo._types import Int
 from nonholo.io import check_file
 from nonholo.orbit import Orbit
@@ -75,6 +77,7 @@ def animate(
     shown = _shown_states(orbit, motion(orbit), total)
     figure, show = scene(orbit, shown)
     canvas = FigureCanvasAgg(figure)
+    within_memory("animate(frames=...)", float(len(shown)) * math.prod(canvas.get_width_height()), "Ask for fewer.")
     palette = _palette([_photograph(canvas, show, frame) for frame in _sampled(len(shown))])
     pictures = []
     for frame in range(len(shown)):

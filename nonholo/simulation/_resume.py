@@ -12,7 +12,7 @@ from nonholo.orbit import Orbit
 from nonholo.simulation._events_scan import Watch
 from nonholo.simulation._given_events import watch_of_store
 from nonholo.simulation._stored_run import go_on
-from nonholo.simulation._stretch import CompiledRun, compiled_run
+from nonholo.simulation._stretch import CompiledRun, closed_step, compiled_run
 
 
 def resume(
@@ -121,5 +121,5 @@ def _opened(
 ) -> tuple[Stream, CompiledRun, Watch | None]:
     stream = io.open_stream(store)
     motion = cast(Discretization, io.restore_motion(io.read_attributes(store), discrete))
-    run = compiled_run("resume(store=...)", motion, "principal", "auto", stream.plan.every, stream.reconstruct)
+    run = compiled_run("resume(store=...)", motion, closed_step(motion), stream.plan.every, stream.reconstruct)
     return stream, run, watch_of_store(owner, stream, run, events)

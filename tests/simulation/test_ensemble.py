@@ -373,8 +373,13 @@ def test_poses_that_fill_the_memory_are_refused() -> None:
 
 @pytest.mark.parametrize("size", [5e-324, 1e-200, 1e200])
 @pytest.mark.parametrize("members", [2, 32])
-def test_members_that_cannot_begin_have_no_states(size: float, members: int) -> None:
-    """Bodies whose squares under- or overflow end with no good step and NaN, and nothing is written behind them."""
+def test_members_that_cannot_begin_have_no_states(size: float, members: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the check of sizes bodies whose squares under- or overflow end with no good step and NaN.
+
+    Nothing is written behind them.
+    """
+    monkeypatch.setattr("nonholo._checks.LARGEST", np.inf)
+    monkeypatch.setattr("nonholo._checks._SMALLEST", 0.0)
     discrete = nh.discretize(nh.SuslovTop(J), 0.5)
     tensors = np.array([J] * (members - 1) + [np.array(J) * size])
     with np.errstate(all="ignore"):
