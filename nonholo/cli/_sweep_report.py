@@ -11,6 +11,7 @@ import typer
 import xarray
 
 from nonholo._limits import size_text
+from nonholo.cli._errors import FAILED, leave
 from nonholo.cli._report import as_json, duration, show
 from nonholo.ensembles import SweepStanding, standing_of
 from nonholo.ensembles._store import attributes_of
@@ -63,6 +64,13 @@ def show_sweep(
     for kind, path in {"store": str(store), **more}.items():
         if isinstance(path, str):
             typer.echo(f"{kind:<9} {path}")
+
+
+def leave_if_all_raised(figures: dict[str, Any]) -> None:
+    """End the command with a failure if not one member has a result."""
+    if figures["outcomes"].get("raised") == figures["members"]:
+        told = f": {figures['messages'][0][1]}" if figures["messages"] else ""
+        leave(f"Every member raised{told}", FAILED)
 
 
 def _state(standing: SweepStanding) -> str:
