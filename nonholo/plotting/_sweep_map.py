@@ -91,7 +91,7 @@ def _along(values: xarray.DataArray, x: str | None, y: str | None) -> list[str]:
     """Return the axes of the picture; others may only have one value."""
     known = [str(name) for name in values.dims]
     for argument, name in (("x", x), ("y", y)):
-        if name is not None and name not in known:
+        if name is not None and (not isinstance(name, str) or name not in known):
             got = shown(name)
             raise error(f"plot.sweep_map({argument}=...)", f"be one of {', '.join(known)}", got, "Choose one of them.")
     if not known or (x is not None and x == y):
