@@ -62,7 +62,7 @@ def _of_results() -> list[Call]:
         call("Deltoid.resting", region.resting, points=count(20)),
         call("InvariantMeasure.density", measure.density, momentum=restricted, infinite=True),
         call("InvariantMeasure.jacobian", jacobian, displacement=W, infinite=True),
-        call("LyapunovFunction", by_position(nh.lyapunov_function(system)), momentum=restricted),
+        call("LyapunovFunction", by_position(nh.lyapunov_function(system)), momentum=array(restricted.value, "any")),
     ]
 
 
