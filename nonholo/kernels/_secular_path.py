@@ -22,7 +22,8 @@ from nonholo.kernels._secular_root import followed, level_of
 from nonholo.kernels._small import eliminate
 
 _LONGEST = 0.1  # predicted move on the sphere of one step
-_CLOSE = 0.02  # a corrector that moves further has left the branch
+_CLOSE = 0.02  # a corrector that moves further has left the branch,
+_BENT = 0.2  # and one that moves further than this share of the predicted move: folds of uneven bodies are tiny
 _SMALLEST = 1e-9  # step along the path, relative to s, below which the branch is given up
 _FAST = 20.0  # move on the sphere, per relative step, of a path that is about to end in a fold
 _CORRECTIONS = 8
@@ -118,15 +119,17 @@ def _length(move: np.ndarray) -> float:
 
 
 @njit(nogil=True, **COMPILED)
-def _corrected(p: SecularBody, m: np.ndarray, m0: float, s: float, guess: np.ndarray) -> tuple[bool, np.ndarray]:
-    """Correct a guess at fixed s; tell whether it converged to the branch next to it."""
+def _corrected(
+    p: SecularBody, m: np.ndarray, m0: float, s: float, guess: np.ndarray, close: float
+) -> tuple[bool, np.ndarray]:
+    """Correct a guess at fixed s; tell whether it converged to a root so close."""
     x, right, move = guess.copy(), np.empty_like(guess), np.empty_like(guess)
     for _ in range(_CORRECTIONS):
         _missed(p, m, m0, s, x, right)
         det = solve_linear(p, x, right, move)
         for i in range(len(x)):
             x[i] += move[i]
-        if not (det > 0 and _length(x - guess) < _CLOSE):
+        if not (det > 0 and _length(x - guess) <= close):
             return False, x
         if _length(move) < _CONVERGED:
             return True, x
@@ -164,7 +167,7 @@ def on_the_sphere(p: SecularBody, m: np.ndarray, m0: float, room: np.ndarray) ->
         if not size > 0:  # the squares overflow
             return 5, np.nan, np.nan
         ahead = 1.0 if size == 1.0 - s else s + size
-        good, root = _corrected(p, m, m0, ahead, x + size * tangent)
+        good, root = _corrected(p, m, m0, ahead, x + size * tangent, min(_CLOSE, _BENT * size * speed))
         if good and not (infinite and root[0] <= 0):
             s, x, size = ahead, root, 2 * size
             if s == 1.0:
