@@ -18,6 +18,8 @@ import numpy as np
 from nonholo._types import Array
 
 _LEAST_RTOL = 1e-14
+LARGEST = 1e150  # what a number may be; squares of larger ones overflow
+_SMALLEST = 1 / LARGEST  # mass, inertia and time step, so that squares do not underflow
 _MOST = 2**53  # the integers up to it are floats too
 _MOST_INDEX = 2**63 - 1
 _LONGEST_NAME = 255  # bytes; more is more than any file system has
@@ -63,6 +65,7 @@ def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "
     with _in_memory(where, raw, remedy), np.errstate(over="ignore"):
         result = np.array(raw, dtype=np.float64)
         _check_finite(where, result, remedy)
+        _check_size(where, result)
     result.setflags(write=False)
     return result
 
@@ -111,6 +114,12 @@ def _check_finite(where: str, value: np.ndarray, remedy: str) -> None:
         raise error(where, "be finite", f"{value[position]}{place}", remedy)
 
 
+def _check_size(where: str, value: np.ndarray) -> None:
+    """Refuse numbers whose squares overflow."""
+    if value.size and (most := np.abs(value).max()) > LARGEST:
+        raise error(where, f"have no number beyond {LARGEST:g}", f"{most:g}", "Use other units.")
+
+
 def _fits(actual: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
     return len(actual) == len(wanted) and all(w is None or a == w for a, w in zip(actual, wanted, strict=True))
 
@@ -153,12 +162,14 @@ def trailing(where: str, value: Any, shape: tuple[int, ...], remedy: str, *, rea
     return result
 
 
-def last_length(value: Any) -> int | None:
-    """Return the length of the last axis; None of what has none."""
+def shape_of(value: Any) -> tuple[int, ...]:
+    """Return the shape of an argument that is not checked yet; of what is no array that of one number."""
+    if is_traced(value):
+        return value.shape
     try:
-        return np.shape(value)[-1]
-    except (IndexError, TypeError, ValueError, RecursionError):
-        return None
+        return np.asarray(value).shape
+    except Exception:  # NumPy runs whatever code the argument brings; the check that follows refuses it
+        return ()
 
 
 def positive(where: str, value: Any, remedy: str) -> Array:
@@ -169,9 +180,31 @@ def positive(where: str, value: Any, remedy: str) -> Array:
     return result
 
 
+def scale(where: str, value: Any, remedy: str) -> Array:
+    """Return a positive scalar that sets a scale, such as a mass, a length or a time."""
+    result = positive(where, value, remedy)
+    check_scale(where, result)
+    return result
+
+
+def check_scale(where: str, value: Array) -> None:
+    """Refuse what sets a scale if its squares underflow; zeros set none."""
+    if not is_traced(value) and 0 < (most := np.abs(value).max(initial=0.0)) < _SMALLEST:
+        raise error(where, f"not lie below {_SMALLEST:g}", f"{most:g}", "Use other units.")
+
+
 def count(where: str, value: Any, remedy: str) -> int:
     """Return a strictly positive Python integer."""
     return _integer(where, value, (1, _MOST), "be a positive integer", remedy)
+
+
+def dimension(where: str, value: Any) -> int:
+    """Return the dimension of a space in which bodies turn."""
+    remedy = "Pass the dimension of the space, 2 or more."
+    n = count(where, value, remedy)
+    if n < 2:
+        raise error(where, "be at least 2", str(n), remedy)
+    return n
 
 
 def natural(where: str, value: Any, remedy: str) -> int:
@@ -179,10 +212,14 @@ def natural(where: str, value: Any, remedy: str) -> int:
     return _integer(where, value, (0, _MOST_INDEX), "be a natural number", remedy)
 
 
+def is_integer(value: Any) -> bool:
+    """Tell whether a value is an integer; truth values are none, nor spans of time, which NumPy takes for some."""
+    return isinstance(value, numbers.Integral) and not isinstance(value, bool | np.timedelta64)
+
+
 def _integer(where: str, value: Any, bounds: tuple[int, int], requirement: str, remedy: str) -> int:
-    """Return an integer; NumPy takes a span of time for one."""
-    integral = isinstance(value, numbers.Integral) and not isinstance(value, bool | np.timedelta64)
-    if not integral or (number := int(value)) < bounds[0]:
+    """Return an integer between two bounds."""
+    if not is_integer(value) or (number := int(value)) < bounds[0]:
         raise error(where, requirement, shown(value), remedy)
     if number > bounds[1]:
         raise error(where, f"be at most {bounds[1]}", shown(value), remedy)
@@ -268,9 +305,10 @@ def generator(where: str, value: Any) -> np.random.Generator:
 
 
 def symmetric(where: str, value: Array, remedy: str) -> Array:
-    """Return a square matrix, refused with the worst pair of entries if it is not symmetric to rounding."""
+    """Return a tensor of inertia, refused with the worst pair of entries if it is not symmetric to rounding."""
     if is_traced(value):
         return value
+    check_scale(where, value)
     gap = np.abs(value - value.T)
     if gap.max() > 8 * np.finfo(np.float64).eps * np.abs(value).max():
         i, j = (int(k) for k in np.unravel_index(gap.argmax(), gap.shape))

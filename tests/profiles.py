@@ -63,7 +63,7 @@ PROFILES = {
     ),
     "bounds": Profile(
         "kernels with every index checked, which compiles them once more",
-        ("kernels", "numerics"),
+        ("kernels", "numerics", "_compiled"),
         f"NUMBA_BOUNDSCHECK=1 {PYTHON} -m pytest -q tests/kernels tests/numerics tests/simulation/test_ensemble.py",
     ),
     "long": Profile(

@@ -12,7 +12,18 @@ import nonholo as nh
 
 TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.1)
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+WIDE = nh.discretize(nh.SuslovTop.arrowhead(np.arange(1.0, 101.0), np.full(99, 0.1)), 0.1)
 START: dict[str, Any] = {"restricted_velocity": (0.1, 0.2)}
+
+
+def _sums(block: nh.MemberBlock) -> dict[str, np.ndarray]:
+    return {"twice": 2 * block["x"]}
+
+
+def _random(members: int) -> nh.RandomDesign:
+    return nh.RandomDesign(members, {"x": nh.Uniform(0.0, 1.0)})
+
+
 TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
     "states": (lambda: nh.simulate(TOP, steps=10**12, **START), "fit into memory. Got about 72 TB of"),
     "steps": (lambda: nh.simulate(TOP, steps=10**30, **START), "be at most 9007199254740992"),
@@ -21,6 +32,37 @@ TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: nh.simulate(TOP, steps=10**15, store="a.zarr", **START),
         "fit on the disk. Got about 72 PB",
     ),
+    "members of a sweep": (lambda: nh.sweep(_sums, _random(10**15), "a.zarr"), "fit on the disk. Got about 21 PB"),
+    "members of a sweep, years": (
+        lambda: nh.sweep(_sums, _random(9 * 10**15), "a.zarr"),
+        "sweep(design=...)` must be done within a year",
+    ),
+    "steps of a sweep": (
+        lambda: nh.sweep(nh.EnsembleTask(SLEIGH, steps=10**13, **START), nh.Grid({"a": np.ones(10**5)}), "a.zarr"),
+        "EnsembleTask(steps=...)` must be done within a year",
+    ),
+    "block of a sweep": (
+        lambda: nh.sweep(_sums, _random(10**12), "a.zarr", block=10**12),
+        "sweep(block=...)` must fit into memory",
+    ),
+    "files of a sweep": (lambda: nh.sweep(_sums, _random(10**11), "a.zarr", block=1), "fit on the disk"),
+    "poses": (
+        lambda: nh.simulate(WIDE, steps=10**7, restricted_velocity=np.full(99, 0.01)),
+        "simulate(reconstruct=...)` must fit into memory",
+    ),
+    "poses of members that are reduced": (
+        lambda: nh.ensemble(
+            WIDE, steps=10**9, save_every=1, restricted_velocity=np.full((2, 99), 0.01), reduce=lambda _: {}
+        ),
+        "ensemble(reconstruct=...)` must fit into memory",
+    ),
+    "direction": (lambda: nh.Direction(10**14), "Direction(size=...)` must fit into memory"),
+    "mass tensor": (lambda: nh.MassTensor(10**7, 1.0, 2.0), "MassTensor(n=...)` must fit into memory"),
+    "plane": (
+        lambda: nh.reference_point_subspace(10**3, np.eye(10**3)[:1]),
+        "reference_point_subspace(n=...)` must fit into memory",
+    ),
+    "depth": (lambda: nh.branch_tree(SLEIGH, np.eye(3), 10**12), "branch_tree(depth=...)"),
     "checkpoint": (
         lambda: nh.simulate(TOP, steps=10**6, store="a.zarr", checkpoint_every=10**14, **START),
         "checkpoint_every=...)` must fit into memory",
@@ -52,3 +94,19 @@ def test_a_run_that_an_event_stops_may_be_long() -> None:
     """How many states a run keeps that an event stops is not known before."""
     event = nh.Event(lambda orbit: orbit.time - 0.55, stop=True)
     assert len(nh.simulate(TOP, steps=10**12, events=[event], **START)) == 6
+
+
+def test_frames_that_fill_the_memory_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Frames are held until the last one is drawn."""
+    orbit = nh.simulate(SLEIGH, steps=50, **START)
+    monkeypatch.setattr("nonholo._limits.memory_limit", lambda: 1e6)
+    with pytest.raises(ValueError, match=r"animate\(frames=...\)` must fit into memory. Got about .* MB of 1 MB"):
+        nh.plot.animate(orbit, tmp_path / "a.gif", frames=40)
+    assert not list(tmp_path.iterdir())
+
+
+def test_times_that_fill_the_memory_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A flow holds its states."""
+    monkeypatch.setattr("nonholo._limits.memory_limit", lambda: 1e6)
+    with pytest.raises(ValueError, match=r"flow\(times=...\)` must fit into memory"):
+        nh.flow(SLEIGH.system, times=np.arange(10.0**5), **START)

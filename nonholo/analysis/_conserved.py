@@ -7,7 +7,7 @@ import dataclasses
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractLLSystem, AbstractLRSystem, AbstractSystem
@@ -70,7 +70,7 @@ def conserved_momenta(system: AbstractSystem) -> ConservedMomenta:
         return _left(system)
     if isinstance(system, AbstractLRSystem):
         return _right(system)
-    raise error("conserved_momenta(system=...)", "be a system", repr(system), "Pass a SuslovTop, an LLSystem, ...")
+    raise error("conserved_momenta(system=...)", "be a system", shown(system), "Pass a SuslovTop, an LLSystem, ...")
 
 
 def _left(system: AbstractLLSystem) -> ConservedMomenta:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.analysis._equilibria import highest_energy
 from nonholo.analysis._fold_energy import fold_energy
@@ -120,7 +120,7 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
 def _checked(where: str, discrete: Any) -> NormalForm:
     remedy = "Pass `discretize(SuslovTop(J), time_step)` with n = 3."
     if not isinstance(discrete, Discretization):
-        raise error(where, "be a discretised Suslov top", repr(discrete), remedy)
+        raise error(where, "be a discretised Suslov top", shown(discrete), remedy)
     form = discrete.system.normal_form
     if form is None or form.is_sleigh or not form.is_planar:
         if form is not None and form.is_sleigh:

@@ -5,7 +5,7 @@ from typing import cast
 
 import numpy as np
 
-from nonholo._checks import array, error
+from nonholo._checks import array, error, shape_of, shown
 from nonholo._limits import bounded_count
 from nonholo._types import Array, Float
 from nonholo.analysis.planar import Strip, planar_map
@@ -40,7 +40,7 @@ class Deltoid:
         momentum are the tangents through it.
         """
         where, remedy = "Deltoid.touching(angle=...)", "Pass step angles."
-        turn = np.exp(1j * array(where, angle, (None,) * np.ndim(angle), remedy))
+        turn = np.exp(1j * array(where, angle, (None,) * len(shape_of(angle)), remedy))
         return _restricted(self.discrete, 2 * turn + turn**-2)
 
     def discriminant(self, restricted_momentum: Array) -> Float[np.ndarray, "..."]:
@@ -66,7 +66,7 @@ class Deltoid:
         return strip.restricted_momenta(canonical) / float(self.discrete.time_step)
 
     def _plane(self, method: str, value: Array) -> Float[np.ndarray, "... 2"]:
-        leading = (None,) * (np.ndim(value) - 1)
+        leading = (None,) * (len(shape_of(value)) - 1)
         where = f"Deltoid.{method}(restricted_momentum=...)"
         return array(where, value, (*leading, 2), "Pass the two components (p_theta, p_1).")
 
@@ -100,10 +100,10 @@ def deltoid(discrete: Discretization) -> Deltoid:
     """
     checked, variety = planar_map("deltoid(discrete=...)", discrete)
     if not variety.form.is_sleigh:
-        raise error("deltoid(discrete=...)", "be of a sleigh", repr(checked.system), "Tops have no deltoid.")
+        raise error("deltoid(discrete=...)", "be of a sleigh", shown(checked.system), "Tops have no deltoid.")
     if variety.form.arm == 0:
         remedy = "A balanced sleigh has two real values if h |pi| < J, none beyond."
-        raise error("deltoid(discrete=...)", "have a != 0", repr(checked.system), remedy)
+        raise error("deltoid(discrete=...)", "have a != 0", shown(checked.system), remedy)
     return Deltoid(checked, _restricted(checked, 3 * np.exp(2j * np.pi * np.array([0.0, 1.0, -1.0]) / 3)))
 
 

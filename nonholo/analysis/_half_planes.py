@@ -5,9 +5,7 @@ Tops with n = 3 and sleighs in the plane. Theory: docs/theory/invariant-measure.
 
 from typing import Any
 
-import numpy as np
-
-from nonholo._checks import error, trailing
+from nonholo._checks import error, shape_of, trailing
 from nonholo.analysis.planar import HalfPlanes, planar_map
 from nonholo.discrete import Discretization
 
@@ -49,10 +47,10 @@ def half_planes(discrete: Discretization, *, displacement: Any = None, momentum:
     system = checked.system
     if displacement is not None:
         shape = system.group.identity.shape
-        W = trailing("half_planes(displacement=...)", displacement, shape, "Pass `orbit.displacement`.")
+        W = trailing("half_planes(displacement=...)", displacement, shape, "Pass `orbit.displacement`.", real=True)
         return variety.sides(variety.points(W))[0]
     k, dim = system.constraint_subspace.shape
-    size = k if np.shape(momentum)[-1:] == (k,) else dim
-    p = trailing("half_planes(momentum=...)", momentum, (size,), f"Pass {dim} body momenta or {k} along d.")
+    size = k if shape_of(momentum)[-1:] == (k,) else dim
+    p = trailing("half_planes(momentum=...)", momentum, (size,), f"Pass {dim} body momenta or {k} along d.", real=True)
     r = p if size == k else system.restrict(p)
     return variety.sides_of_momenta(float(checked.time_step) * r)

@@ -9,7 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from nonholo._checks import choice, error, positive
+from nonholo._checks import choice, error, positive, shown
 from nonholo._types import Float
 from nonholo.analysis._asymptotics import Asymptotics, asymptotics
 from nonholo.analysis._followed import approach, followed
@@ -96,7 +96,7 @@ def _checked(where: str, discrete: Discretization) -> AbstractLLSystem:
     system = cast("AbstractLLSystem", discrete.system)
     if system.normal_form is None or not discrete.conserves_energy:
         remedy = "Discretise a SuslovTop or a sleigh with the defaults."
-        raise error(where, "be a top or a sleigh whose map keeps energy", repr(discrete), remedy)
+        raise error(where, "be a top or a sleigh whose map keeps energy", shown(discrete), remedy)
     if system.equilibria().attracting is None:
         raise error(where, "have attracting equilibria", f"the balanced {system!r}", "Its velocity is constant.")
     return system

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error, trailing
+from nonholo._checks import array, error, shape_of, shown, trailing
 from nonholo._types import Array, Float
 from nonholo.analysis._equilibria import equilibria
 from nonholo.analysis._step_jacobian import step_determinants
@@ -56,8 +56,8 @@ class InvariantMeasure:
         where = "InvariantMeasure.density(momentum=...)"
         system = self.motion.system if isinstance(self.motion, Discretization) else self.motion
         k, dim = system.constraint_subspace.shape
-        size = k if np.shape(momentum)[-1:] == (k,) else dim
-        p = trailing(where, momentum, (size,), f"Pass {dim} body momenta or {k} along the constraint subspace.")
+        size = k if shape_of(momentum)[-1:] == (k,) else dim
+        p = trailing(where, momentum, (size,), f"Pass {dim} body momenta or {k} along the constraint.", real=True)
         r = p if size == k else system.restrict(p)
         if self.every_density:
             return np.ones(r.shape[:-1])
@@ -93,7 +93,7 @@ class InvariantMeasure:
         where = "InvariantMeasure.jacobian(displacement=...)"
         discrete = self._discrete(where)
         shape = discrete.system.group.identity.shape
-        leading = (None,) * (np.ndim(displacement) - 2)
+        leading = (None,) * (len(shape_of(displacement)) - 2)
         W = array(where, displacement, leading + shape, "Pass `orbit.displacement`.")
         return step_determinants(discrete, W)
 
@@ -107,7 +107,7 @@ class InvariantMeasure:
         discrete = self._discrete(where)
         if not isinstance(orbit, Orbit) or orbit.motion is not discrete:
             remedy = "Pass an orbit of the same discretisation to the measure of `orbit.motion`."
-            raise error(where, "be an orbit of the measure's motion", repr(orbit), remedy)
+            raise error(where, "be an orbit of the measure's motion", shown(orbit), remedy)
         if orbit.save_every != 1:
             got = f"save_every={orbit.save_every}"
             raise error(where, "hold every step", got, "Run it with save_every=1.")
@@ -116,7 +116,7 @@ class InvariantMeasure:
 
     def _discrete(self, where: str) -> Discretization:
         if not isinstance(self.motion, Discretization):
-            raise error(where, "belong to a discrete map", repr(self.motion), "Pass what `discretize` returned.")
+            raise error(where, "belong to a discrete map", shown(self.motion), "Pass what `discretize` returned.")
         return self.motion
 
 

@@ -7,7 +7,7 @@ import dataclasses
 
 import numpy as np
 
-from nonholo._checks import error, last_length, trailing
+from nonholo._checks import error, shape_of, trailing
 from nonholo._types import Array, Float
 from nonholo.systems import AbstractLLSystem
 
@@ -27,8 +27,8 @@ class LyapunovFunction:
     def __call__(self, momentum: Float[Array, "... dim"] | Float[Array, "... k"]) -> Float[Array, "..."]:
         """Return the value at momenta, or at their components along the rows of the constraint subspace."""
         (k, dim), where = self.subspace.shape, "LyapunovFunction(momentum=...)"
-        size = k if last_length(momentum) == k else dim
-        p = trailing(where, momentum, (size,), f"Pass {dim} or {k} components.")
+        size = k if shape_of(momentum)[-1:] == (k,) else dim
+        p = trailing(where, momentum, (size,), f"Pass {dim} or {k} components.", real=True)
         return -p @ (self.attracting if size == dim else self.attracting @ np.linalg.pinv(self.subspace))
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.analysis.planar import Strip, planar_variety
 from nonholo.discrete import Discretization
@@ -85,7 +85,7 @@ def _checked(where: str, discrete: Any) -> tuple[Strip, float]:
     remedy = "Pass `discretize(ChaplyginSleigh(...), time_step)`."
     variety = planar_variety(discrete.system) if isinstance(discrete, Discretization) else None
     if not isinstance(variety, Strip):
-        raise error(where, "be a discretised Chaplygin sleigh", repr(discrete), remedy)
+        raise error(where, "be a discretised Chaplygin sleigh", shown(discrete), remedy)
     refuse_composition(where, discrete, "Pass the discretisation of order 2 that is composed.")
     if not discrete.conserves_energy:
         got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"

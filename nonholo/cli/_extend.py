@@ -16,9 +16,9 @@ def extend(
 
     nonholo extend run.zarr --steps 1000000
     """
-    from nonholo.cli._caches import use_cache_folders
+    from nonholo.cli._caches import use_cache_folder
 
-    use_cache_folders()
+    use_cache_folder()
     from nonholo import io
     from nonholo.cli._errors import USAGE, leave
     from nonholo.cli._going_on import go_on_and_report

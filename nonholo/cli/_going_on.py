@@ -11,7 +11,7 @@ from typing import cast
 from nonholo._results import OutcomeError
 from nonholo.cli._errors import FAILED, USAGE, leave, store_errors, told_warnings, warn
 from nonholo.cli._provenance import show_provenance
-from nonholo.cli._sweep_report import show_sweep, sweep_figures
+from nonholo.cli._sweep_report import leave_if_all_raised, show_sweep, sweep_figures
 from nonholo.ensembles import functions_of, resume, standing_of
 from nonholo.io import read_attributes
 from nonholo.orbit import Orbit
@@ -45,6 +45,7 @@ def go_on_with_sweep(store: Path, scheduler: str | None, workers: int | None, *,
         result = resume(store, scheduler=scheduler, workers=workers, trust=trust, progress=sys.stderr.isatty())
     figures = sweep_figures(store, result, time.perf_counter() - begun, done)
     show_sweep(store, figures, {"title": str(store)}, {}, json=json)
+    leave_if_all_raised(figures)
 
 
 @contextlib.contextmanager

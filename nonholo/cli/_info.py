@@ -18,9 +18,9 @@ def info(
     nonholo info runs/suslov-001.zarr
     nonholo info runs/suslov-001.zarr --scenario > again.toml
     """
-    from nonholo.cli._caches import use_cache_folders
+    from nonholo.cli._caches import use_cache_folder
 
-    use_cache_folders()
+    use_cache_folder()
     from nonholo.cli._errors import FAILED, USAGE, leave, store_errors
     from nonholo.cli._provenance import show_provenance, show_standing, show_sweep_standing
     from nonholo.ensembles._store import attributes_of

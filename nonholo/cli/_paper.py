@@ -25,9 +25,9 @@ def paper(
     nonholo paper
     nonholo paper -o part --only sus_int --only st
     """
-    from nonholo.cli._caches import use_cache_folders
+    from nonholo.cli._caches import use_cache_folder
 
-    use_cache_folders()
+    use_cache_folder()
     import sys
 
     from nonholo._checks import needs

@@ -27,9 +27,9 @@ def plot(
     nonholo plot runs/sleigh-001.zarr --gif
     nonholo plot sweep.zarr --color outcome --x body.a --y run.time_step
     """
-    from nonholo.cli._caches import use_cache_folders
+    from nonholo.cli._caches import use_cache_folder
 
-    use_cache_folders()
+    use_cache_folder()
     from nonholo import io
     from nonholo._progress import waiting
     from nonholo.cli._errors import FAILED, USAGE, leave, store_errors

@@ -28,9 +28,9 @@ def resume(
     nonholo resume run.zarr
     nonholo resume sweep.zarr --workers 4
     """
-    from nonholo.cli._caches import use_cache_folders
+    from nonholo.cli._caches import use_cache_folder
 
-    use_cache_folders()
+    use_cache_folder()
     from nonholo import io
     from nonholo.cli._going_on import go_on_and_report, go_on_with_sweep
     from nonholo.ensembles import resume as going_on

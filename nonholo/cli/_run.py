@@ -11,9 +11,10 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
+from nonholo._limits import within_disk
 from nonholo._progress import waiting
 from nonholo._results import OutcomeError
-from nonholo.cli._errors import USAGE, leave
+from nonholo.cli._errors import USAGE, store_errors
 from nonholo.cli._pictures import beside
 from nonholo.cli._problems import ScenarioError, problem_of_value
 from nonholo.cli._scenario_file import Loaded, effective_text
@@ -46,7 +47,10 @@ def run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progres
     text = effective_text(scenario.in_force(discrete) if isinstance(discrete, Discretization) else scenario)
     size = size_in_blocks(discrete, scenario.run.branch, scenario.run.steps, scenario.run.save_every)
     if size and starts:
-        _check_room(size, RUNS if store is None else store.parent)
+        with store_errors(USAGE):
+            within_disk(
+                "run.save_every", size, RUNS if store is None else store.parent, "Raise it to keep fewer states."
+            )
         if overwrite and store is not None:
             check_target(store, overwrite=True)
             shutil.rmtree(store, ignore_errors=True)
@@ -57,13 +61,6 @@ def run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progres
     orbit, replace = ran.orbit, overwrite and store is not None  # what has a number is never replaced
     path, _ = at_free_path(loaded.name, store, lambda at: save_orbit(orbit, at, overwrite=replace, scenario=text))
     return path, ran
-
-
-def _check_room(size: int, folder: Path) -> None:
-    free = shutil.disk_usage(folder).free
-    if size > free:
-        told = f"So many states are {size / 1e9:.3g} GB before compression, of which {free / 1e9:.3g} are free"
-        leave(f"{told} in '{folder}'. Keep fewer of them: raise run.save_every.", USAGE)
 
 
 def _tried(loaded: Loaded) -> tuple[Discretization, bool]:

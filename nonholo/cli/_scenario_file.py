@@ -2,7 +2,6 @@
 
 import json
 import re
-import tomllib
 from importlib import resources
 from pathlib import Path
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -12,6 +11,7 @@ from pydantic import ValidationError
 from nonholo.cli._problems import Problem, ScenarioError, problems_of, suggestion
 from nonholo.cli._scenario import Scenario
 from nonholo.cli._sections import Section
+from nonholo.cli._toml import parsed, read_text
 
 Model = TypeVar("Model", bound=Section)
 
@@ -47,8 +47,8 @@ def read_document(name: str, own: dict[str, str]) -> tuple[str, dict[str, Any]]:
     """Return how the scenario of a file or a built-in name is called in messages, and what it says."""
     source, text = _text_of(name, own)
     try:
-        return source, tomllib.loads(text)
-    except tomllib.TOMLDecodeError as failure:
+        return source, parsed(text)
+    except ValueError as failure:
         raise ScenarioError([Problem(source, "", f"is not valid TOML: {failure}")]) from None
 
 
@@ -76,13 +76,13 @@ def parse_setting(text: str) -> Setting:
     if not equals or not all(key.split(".")):
         raise ScenarioError([Problem(option, "", "must be KEY=VALUE, for example --set body.a=0.3")])
     try:
-        parsed = tomllib.loads(f"value = {value}")
-    except tomllib.TOMLDecodeError:
-        parsed = {}
-    if set(parsed) != {"value"}:
+        found = parsed(f"value = {value}")
+    except ValueError:
+        found = {}
+    if set(found) != {"value"}:
         remedy = f"a number, true, [1, 2] or a quoted string: --set '{key}=\"{value}\"'"
         raise ScenarioError([Problem(option, "", f"must have a TOML value: {remedy}")])
-    return Setting(option, key, parsed["value"])
+    return Setting(option, key, found["value"])
 
 
 def built_in(kind: str = "") -> dict[str, str]:
@@ -121,7 +121,7 @@ def _text_of(name: str, own: dict[str, str]) -> tuple[str, str]:
     if name in own:
         return f"{name} (built in)", own[name]
     try:
-        return name, Path(name).read_text("utf-8-sig")
+        return name, read_text(Path(name))
     except FileNotFoundError:
         text = f"there is no such file, and no built-in scenario of this name. {suggestion(name, list(own))}"
     except (OSError, UnicodeDecodeError) as failure:

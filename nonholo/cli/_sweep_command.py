@@ -18,7 +18,7 @@ from nonholo.cli._run import at_free_path, check_output
 from nonholo.cli._scenario_file import Loaded, Setting, parse_setting
 from nonholo.cli._sweep_file import load_sweep_scenario, sweep_text
 from nonholo.cli._sweep_picture import draw_sweep
-from nonholo.cli._sweep_report import show_sweep, sweep_figures
+from nonholo.cli._sweep_report import leave_if_all_raised, show_sweep, sweep_figures
 from nonholo.cli._sweep_scenario import SweepScenario
 from nonholo.ensembles import EnsembleTask, sweep
 
@@ -51,11 +51,12 @@ def sweep_and_keep(
     seconds = time.perf_counter() - begun
     wanted = loaded.scenario.output
     picture = draw_sweep(result, beside(store, "png"), wanted.color, wanted.x, wanted.y) if wanted.plot else None
+    figures = sweep_figures(store, result, seconds)
     if quiet and not json:
         typer.echo(store)
-        return
-    heading = {"title": loaded.scenario.title or loaded.name}
-    show_sweep(store, sweep_figures(store, result, seconds), heading, {"picture": picture}, json=json)
+    else:
+        show_sweep(store, figures, {"title": loaded.scenario.title or loaded.name}, {"picture": picture}, json=json)
+    leave_if_all_raised(figures)
 
 
 def _setting(option: str, key: str, value: Any) -> Setting:

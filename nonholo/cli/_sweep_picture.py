@@ -2,7 +2,6 @@
 
 import os
 import sys
-import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +9,7 @@ from nonholo._progress import waiting
 from nonholo.cli._errors import FAILED, store_errors, warn
 from nonholo.cli._pictures import complete
 from nonholo.cli._sweep_scenario import library_name
+from nonholo.cli._toml import parsed
 
 if TYPE_CHECKING:
     import xarray
@@ -47,6 +47,15 @@ def draw_stored_sweep(store: Path, picture: Path, color: str | None, x: str | No
     with store_errors(FAILED):
         result = load_sweep(store)
     if not (color or x or y):
-        shown = tomllib.loads(attributes_of(store).get("scenario", "")).get("output", {})
+        shown = _output_of(attributes_of(store).get("scenario", ""))
         color, x, y = (shown.get(name) for name in ("color", "x", "y"))
     return (draw_sweep(result, picture, color, x, y),)
+
+
+def _output_of(scenario: str) -> dict[str, Any]:
+    """Return the table [output] of a scenario; of a text that is none, which a store may keep too, an empty one."""
+    try:
+        output = parsed(scenario).get("output")
+    except ValueError:
+        return {}
+    return output if isinstance(output, dict) else {}

@@ -10,6 +10,8 @@ import numpy as np
 import typer
 import xarray
 
+from nonholo._limits import size_text
+from nonholo.cli._errors import FAILED, leave
 from nonholo.cli._report import as_json, duration, show
 from nonholo.ensembles import SweepStanding, standing_of
 from nonholo.ensembles._store import attributes_of
@@ -64,6 +66,13 @@ def show_sweep(
             typer.echo(f"{kind:<9} {path}")
 
 
+def leave_if_all_raised(figures: dict[str, Any]) -> None:
+    """End the command with a failure if not one member has a result."""
+    if figures["outcomes"].get("raised") == figures["members"]:
+        told = f": {figures['messages'][0][1]}" if figures["messages"] else ""
+        leave(f"Every member raised{told}", FAILED)
+
+
 def _state(standing: SweepStanding) -> str:
     if standing.finished:
         return "finished"
@@ -83,7 +92,7 @@ def _rows(store: Path, figures: dict[str, Any]) -> dict[str, str]:
         rows[f"  {name}"] = f"{count:,}  ({100 * count / done:.3g} %)"
     for name, (least, most, meaning) in figures["ranges"].items():
         rows[name] = f"{least:.6g} to {most:.6g}  {meaning}"
-    return rows | time | {"one worker": ", ".join(told) or "unknown", "size on disk": _size(figures["bytes"])}
+    return rows | time | {"one worker": ", ".join(told) or "unknown", "size on disk": size_text(figures["bytes"])}
 
 
 def _ranges(result: xarray.Dataset) -> dict[str, tuple[float, float, str]]:
@@ -109,8 +118,3 @@ def _slabs(result: xarray.Dataset) -> Iterator[xarray.Dataset]:
     rows = max(1, _SLAB // math.prod(result.sizes[name] for name in others))
     for begin in range(0, result.sizes[first], rows):
         yield result.isel({first: slice(begin, begin + rows)})
-
-
-def _size(count: int) -> str:
-    exponent = min(4, int(math.log(max(1, count), 1024)))
-    return f"{count / 1024**exponent:.3g} {('bytes', 'KiB', 'MiB', 'GiB', 'TiB')[exponent]}"

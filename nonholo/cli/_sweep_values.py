@@ -6,6 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 from pydantic import AfterValidator
 
+from nonholo._checks import is_integer, shown
+from nonholo._limits import bounded_count
+
 if TYPE_CHECKING:
     import numpy as np
 
@@ -61,8 +64,12 @@ def _range(given: dict[str, Any]) -> "np.ndarray":
     begin, end, count, spacing = given["from"], given["to"], given["count"], given.get("spacing", "linear")
     if isinstance(begin, list) or isinstance(end, list) or not _are_numbers([begin, end]):
         raise ValueError(f"must have numbers at from and to. Got {begin!r} and {end!r}")
-    if not isinstance(count, int) or isinstance(count, bool) or count < 1:
-        raise ValueError(f"must have a positive integer as count. Got {count!r}")
+    if not is_integer(count) or count < 1:
+        raise ValueError(f"must have a positive integer as count. Got {shown(count)}")
+    try:
+        count = bounded_count("count", count, 64.0, "Pass how many values.")
+    except ValueError as failure:
+        raise ValueError(f"must have a count that is possible: {failure}") from None
     if spacing not in _SPACINGS:
         raise ValueError(f'must have spacing "linear" or "logarithmic". Got {spacing!r}')
     if spacing == "logarithmic" and not (begin > 0 and end > 0):

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nonholo._checks import error, number, trailing
+from nonholo._checks import error, number, shown, trailing
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractMotion, Orbit
@@ -144,7 +144,7 @@ def vector_field(system: AbstractSystem) -> Callable[[Array, Float[Array, "size"
         True
     """
     if not isinstance(system, AbstractSystem):
-        raise error("vector_field(system=...)", "be a system", repr(system), "Pass a SuslovTop or an LLSystem.")
+        raise error("vector_field(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
     group, S = system.group, system.constraint_subspace
     k, shape = len(S), group.identity.shape
     body = None if isinstance(system, AbstractLRSystem) else body_of(system)

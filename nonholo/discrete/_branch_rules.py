@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo._checks import choice, error
+from nonholo._checks import choice, error, is_integer, shown
 from nonholo._results import Outcome
 from nonholo.discrete._branch_equations import has_frame
 from nonholo.discrete._branch_values import Branches
@@ -36,14 +36,18 @@ def checked_rule(owner: str, discrete: Discretization, branch: Any) -> Any:
 
 def _check_known(where: str, discrete: Discretization, branch: Any) -> None:
     if isinstance(discrete.system, AbstractLRSystem):
-        got = f"{branch!r} for a right-invariant constraint, whose equations change with the pose from step to step"
+        got = (
+            f"{shown(branch)} for a right-invariant constraint, whose equations change with the pose from step to step"
+        )
         raise error(where, "be 'principal'", got, "Leave it out.")
     if branch != "nearest" and not has_frame(discrete):
-        got = f"{branch!r} for {type(discrete.system).__name__}, of whose values not all are known"
+        got = f"{shown(branch)} for {type(discrete.system).__name__}, of whose values not all are known"
         remedy = "All are known of a SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference 'matrix'."
         raise error(where, "be 'principal' or 'nearest'", got, remedy)
     if branch in _OF_REGIONS and not is_regular(discrete):
-        got = f"{branch!r} for {type(discrete.system).__name__}, whose invariant curves have no inner and outer part"
+        got = (
+            f"{shown(branch)} for {type(discrete.system).__name__}, whose invariant curves have no inner and outer part"
+        )
         remedy = "Pass 'nearest'. Only a SuslovTop with n = 3 and det B > 2|c|^2 has regions."
         raise error(where, "be a rule without regions", got, remedy)
 
@@ -51,7 +55,9 @@ def _check_known(where: str, discrete: Discretization, branch: Any) -> None:
 def check_regions(owner: str, discrete: Discretization, branch: BranchRule, displacement: np.ndarray) -> None:
     """Refuse "inner" and "outer" for a start whose energy level is connected."""
     if branch in _OF_REGIONS and regions(discrete, displacement[None])[0] not in _OF_REGIONS:
-        got = f"{branch!r} and an energy from the saddle's on, where both parts of the invariant curve are connected"
+        got = (
+            f"{shown(branch)} and an energy from the saddle's on, where both parts of the invariant curve are connected"
+        )
         remedy = "Pass 'nearest', or start slower (`critical_energies` has the saddle's energy)."
         raise error(f"{owner}(branch=...)", "have a start in the inner or the outer region", got, remedy)
 
@@ -95,8 +101,7 @@ def _by_user(rule: Chooser, found: Branches, present: np.ndarray) -> list[int]:
     index = rule(found, present)
     if index is None:
         return []
-    integral = isinstance(index, int | np.integer) and not isinstance(index, bool)
-    if not integral or not 0 <= index < len(found) or not found.is_real[index]:
+    if not is_integer(index) or not 0 <= index < len(found) or not found.is_real[index]:
         remedy = "Choose among np.flatnonzero(found.is_real), or return None."
-        raise error("branch(found, present)", "return the index of a real branch or None", repr(index), remedy)
+        raise error("branch(found, present)", "return the index of a real branch or None", shown(index), remedy)
     return [int(index)]

@@ -4,12 +4,11 @@ Reference: docs/theory/branches.md. The values over one momentum come from `_bra
 """
 
 import dataclasses
-import numbers
 from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error
+from nonholo._checks import array, error, natural
 from nonholo._types import Array, Bool, Int
 from nonholo.discrete._branch_equations import Frame, frame_of
 from nonholo.discrete._branch_values import point_over, roots_over
@@ -105,14 +104,13 @@ def branch_tree(discrete: Discretization, displacement: Any, depth: int) -> Bran
 
 def _checked_depth(discrete: Discretization, frame: Frame, depth: Any) -> int:
     where = "branch_tree(depth=...)"
-    if isinstance(depth, bool) or not isinstance(depth, numbers.Integral) or depth < 0:
-        raise error(where, "be a natural number", repr(depth), "Pass the number of generations, 0 for the root alone.")
+    depth = natural(where, depth, "Pass the number of generations, 0 for the root alone.")
     images = frame.equations(np.zeros(len(discrete.system.constraint_subspace))).count
-    if images ** int(depth) > _MOST:
+    if depth > _MOST or images**depth > _MOST:
         deepest = int(np.log(_MOST) / np.log(images))
         got = f"{depth}, with {images}^{depth} images"
         raise error(where, f"keep the tree below {_MOST} images", got, f"Pass depth={deepest} or less.")
-    return int(depth)
+    return depth
 
 
 def _next_generation(

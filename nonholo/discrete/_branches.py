@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error, flags
+from nonholo._checks import array, error, flags, shape_of
 from nonholo._types import Array, Float
 from nonholo.discrete._branch_equations import Frame, frame_of
 from nonholo.discrete._branch_values import SAME, Branches, point_over, values_over
@@ -170,7 +170,7 @@ def _restricted(where: str, discrete: Discretization, momentum: Any) -> Float[np
 
 def _before(where: str, discrete: Discretization, frame: Frame, momentum: Any) -> Float[np.ndarray, "N N"]:
     """Return the displacement minus the identity that a full or restricted momentum belongs to."""
-    if np.shape(momentum) != (len(discrete.system.constraint_subspace),):
+    if shape_of(momentum) != (len(discrete.system.constraint_subspace),):
         return _inverse(where, discrete, frame, momentum)
     found = values_over(discrete, frame, _restricted(where, discrete, momentum))
     if found.principal is None:

@@ -6,7 +6,7 @@ from typing import Any, overload
 
 import numpy as np
 
-from nonholo._checks import choice, error, positive, shown, trailing
+from nonholo._checks import choice, error, scale, shown, trailing
 from nonholo._types import Array, Float
 from nonholo.discrete._composition import checked_order, first_substep, refuse_composition, whole_displacements
 from nonholo.discrete._legendre import legendre, legendre_of_chart
@@ -199,8 +199,8 @@ def discretize(
         )
         return system.discretize(time_step)
     if not isinstance(system, AbstractSystem):
-        raise error("discretize(system=...)", "be a system", repr(system), "Pass a SuslovTop or an LLSystem.")
-    step = positive("discretize(time_step=...)", time_step, "Pass a positive real time step.")
+        raise error("discretize(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
+    step = scale("discretize(time_step=...)", time_step, "Pass a positive real time step.")
     chosen = _difference(system, difference)
     variety = _constraint(system, constraint)
     return Discretization(system, step, chosen, variety, checked_order(order, chosen, variety))

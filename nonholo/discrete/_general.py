@@ -22,10 +22,11 @@ from nonholo.systems import AbstractLRSystem, AbstractSystem, inertia_from_mass_
 
 _SINES = np.linspace(0.0, 1.0, 401)[1:-1]  # of the largest angle in the ball
 _MARGIN = 1 - 1e-9
+_BITS = 32  # of the steps between units of mass
 
 
-def general_body(system: AbstractSystem, variety: Variety) -> kernels.GeneralBody:
-    """Return the body of the general kernel, in its own unit of length."""
+def general_body(system: AbstractSystem, variety: Variety) -> tuple[kernels.GeneralBody, float]:
+    """Return the body of the general kernel in its own units of length and mass, and the unit of its momenta / h."""
     group, unit = system.group, _length_unit(system)
     N, n = group.identity.shape[0], _size_of_rotations(system)
     shrink = np.where(np.arange(N) < n, 1 / unit, 1.0)
@@ -36,13 +37,13 @@ def general_body(system: AbstractSystem, variety: Variety) -> kernels.GeneralBod
     annihilator = np.zeros((0, group.dim)) if variety.exact else variety.annihilator
     forbidden = forbidden_matrices(group, annihilator) / motions
     completion = _completion(forbidden, directions)
-    tensor, directions, form, inverse_form = _in_form(
-        group, system.homogeneous_mass_tensor * np.outer(shrink, shrink), directions
-    )
+    tensor = system.homogeneous_mass_tensor * np.outer(shrink, shrink)
+    mass = _mass_unit(tensor)
+    tensor, directions, form, inverse_form = _in_form(group, tensor / mass, directions)
     spatial = isinstance(system, AbstractLRSystem)
     pairings, lost = product_and_remainder(directions, tensor)
-    radius, level = (0.0, 0.0) if spatial else _certain_ball(system)
-    return kernels.GeneralBody(
+    radius, level = (0.0, 0.0) if spatial else _certain_ball(system, mass)
+    body = kernels.GeneralBody(
         tensor=_plain(tensor),
         directions=_plain(directions),
         places=np.ascontiguousarray(np.argwhere(chart)),  # of one layout, empty or not: compiled once
@@ -52,7 +53,7 @@ def general_body(system: AbstractSystem, variety: Variety) -> kernels.GeneralBod
         remainders=_plain(np.concatenate([0 * lost if spatial else lost, completion])),
         size=n,
         spatial=spatial,
-        metric=_plain(np.linalg.inv(system.constrained_inertia) * unit**2),
+        metric=_plain(np.linalg.inv(system.constrained_inertia / mass) * unit**2),
         radius=radius,
         level=level,
         unit=unit,
@@ -60,6 +61,7 @@ def general_body(system: AbstractSystem, variety: Variety) -> kernels.GeneralBod
         form=_plain(form),
         inverse_form=_plain(inverse_form),
     )
+    return body, mass * unit**2
 
 
 def _in_form(group: AbstractMatrixGroup, tensor: Any, directions: Any) -> tuple[Any, ...]:
@@ -91,11 +93,11 @@ def _size_of_rotations(system: AbstractSystem) -> int:
     return basis.shape[1] if form is not None or np.any(basis[:, -1]) else basis.shape[1] - 1
 
 
-def _certain_ball(system: AbstractSystem) -> tuple[float, float]:
+def _certain_ball(system: AbstractSystem, mass: float) -> tuple[float, float]:
     """Return the squared radius of the ball and the largest squared momentum for which it certifies.
 
-    In the unit of length of the body. Zeros if there is no ball; no momentum at all on a group with a form, where the
-    energy need not be definite: there every root is followed from momentum zero.
+    In the units of length and mass of the body. Zeros if there is no ball; no momentum at all on a group with a form,
+    where the energy need not be definite: there every root is followed from momentum zero.
     """
     if system.group.form is not None:
         return 0.0, -np.inf
@@ -104,7 +106,7 @@ def _certain_ball(system: AbstractSystem) -> tuple[float, float]:
     lipschitz = slope(_SINES, cosine)
     reach = np.where(lipschitz < 1, (1 - lipschitz) * _SINES, 0.0)
     best = int(np.argmax(reach))
-    size = least * _MARGIN
+    size = least / mass * _MARGIN
     return float(_SINES[best] ** 2 * size), float(reach[best] ** 2 * size)
 
 
@@ -116,6 +118,15 @@ def _length_unit(system: AbstractSystem) -> float:
     if tensor[n, n] <= 0 or np.trace(tensor[:n, :n]) <= 0:  # no length is distinguished
         return 1.0
     return float(np.sqrt(np.trace(tensor[:n, :n]) / tensor[n, n]))
+
+
+def _mass_unit(tensor: np.ndarray) -> float:
+    """Return the mass that makes a tensor comparable with the constraint; one for a body of ordinary mass.
+
+    A power of 2 changes no digit, and one of 2^32 no pivot for a body of ordinary mass, whose bits stay.
+    """
+    exponent = np.log2(np.abs(tensor).max(initial=1e-300))
+    return float(np.exp2(_BITS * np.round(exponent / _BITS)))
 
 
 def _stiffness(system: AbstractSystem, unit: float) -> tuple[Callable[[np.ndarray, np.ndarray], np.ndarray], float]:

@@ -6,9 +6,7 @@ for every other discrete Lagrangian they are derivatives taken by JAX (`_definit
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from nonholo._checks import array, choice
+from nonholo._checks import array, choice, shape_of
 from nonholo._types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 
@@ -45,7 +43,7 @@ def discrete_legendre(
 
     group = as_discretization("discrete_legendre(discrete=...)", discrete).system.group
     where, shape = "discrete_legendre(displacement=...)", group.identity.shape
-    leading = (None,) * (np.ndim(displacement) - 2)
+    leading = (None,) * (len(shape_of(displacement)) - 2)
     W = array(where, displacement, leading + shape, f"Pass an element of {group} as a matrix.")
     return legendre(discrete, W - group.identity, choice("discrete_legendre(side=...)", side, ("left", "right")))
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
-from nonholo._checks import array, error, positive, symmetric
+from nonholo._checks import array, error, scale, shape_of, symmetric
 from nonholo._types import Array, Float
 from nonholo.groups import SO
 
@@ -36,16 +36,19 @@ def moser_veselov_displacement(mass_tensor: Any, momentum: Any, time_step: Array
     """
     owner = "moser_veselov_displacement"
     where, remedy = f"{owner}(mass_tensor=...)", "Pass the mass tensor J."
-    J = symmetric(where, array(where, mass_tensor, (None, np.shape(mass_tensor)[-1]), remedy), remedy)
+    n = max((2, *shape_of(mass_tensor)[-1:]))
+    J = symmetric(where, array(where, mass_tensor, (n, n), remedy), remedy)
     if np.linalg.eigvalsh(J)[0] <= 0:
         got = f"an eigenvalue {np.linalg.eigvalsh(J)[0]:.3g}"
         raise error(where, "be positive definite", got, "Flat bodies have no Riccati equation: use `simulate`.")
     group = SO(len(J))
     P = array(f"{owner}(momentum=...)", momentum, (group.dim,), f"Pass {group.dim} coordinates of so(n)*.")
-    M = positive(f"{owner}(time_step=...)", time_step, "Pass a positive time step.") * group.hat(P)
+    h = scale(f"{owner}(time_step=...)", time_step, "Pass a positive time step.")
+    unit = np.exp2(np.floor(np.log2(np.abs(J).max())))  # of mass: exact
+    J, M = J / unit, h * group.hat(P / unit)
     try:
-        S = scipy.linalg.solve_continuous_are(-M / 2, np.eye(len(J)), M @ M / 4 + J @ J, np.eye(len(J)))
-    except np.linalg.LinAlgError as failure:
+        S = scipy.linalg.solve_continuous_are(-M / 2, np.eye(n), M @ M / 4 + J @ J, np.eye(n))
+    except (np.linalg.LinAlgError, ValueError) as failure:  # what is not finite is a ValueError
         raise error(
             f"{owner}(momentum=...)", "lie on the branch of small steps", f"{failure}", "Take smaller steps."
         ) from None

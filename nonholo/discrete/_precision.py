@@ -10,6 +10,7 @@ import numpy as np
 
 from nonholo._checks import is_traced
 from nonholo.discrete import _pytrees
+from nonholo.numerics import double_precision
 
 _float32 = contextvars.ContextVar("float32_allowed", default=False)
 _pytrees.register()
@@ -34,7 +35,7 @@ def in_double(function: Callable[..., Any], *arguments: Any) -> Any:
     """Call a JAX function: eagerly in a 64-bit scope with NumPy results, or as it is on traced 64-bit input."""
     traced = [x for x in jax.tree.leaves(arguments) if is_traced(x)]
     if not traced:
-        with jax.enable_x64(True):
+        with double_precision():
             return jax.tree.map(np.asarray, function(*arguments))
     if not _float32.get() and any(x.dtype == np.float32 for x in traced):
         raise TypeError(

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error
+from nonholo._checks import array, error, shape_of
 from nonholo._results import Outcome, OutcomeError
 from nonholo._types import Float
 from nonholo.discrete._discretization import Discretization
@@ -29,7 +29,7 @@ def initial_momentum(
     k, dim = system.rank, system.group.dim
     if momentum is not None:
         where = f"{owner}(momentum=...)"
-        size = k if np.shape(momentum) == (k,) else dim
+        size = k if shape_of(momentum) == (k,) else dim
         value = array(where, momentum, (size,), f"Pass {dim} body momenta or the {k} along the constraint subspace.")
         return _of_finite_energy(owner, system, g, value if size == k else _restricted(system, value, g))
     if body_velocity is not None:
@@ -99,7 +99,7 @@ def initial_state(
         found = legendre(discrete, W - system.group.identity, "left")
         return initial_momentum("simulate", system, g, momentum=_restricted(system, found, g)), W
     momentum, k = starts.get("momentum"), system.rank
-    full = momentum is not None and np.shape(momentum) != (k,)
+    full = momentum is not None and shape_of(momentum) != (k,)
     return initial_momentum("simulate", system, g, **starts), np.asarray(momentum, dtype=np.float64) if full else None
 
 

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo import kernels
-from nonholo._checks import array, error, is_traced
+from nonholo._checks import array, error, is_traced, shape_of, shown
 from nonholo._results import Outcome
 from nonholo._types import Array, Float
 from nonholo.discrete._branch_equations import frame_of, has_frame
@@ -78,12 +78,12 @@ def step(discrete: Discretization, momentum: Any, branch: BranchRule = "principa
         got = f"{type(discrete.system).__name__}, whose step depends on the configuration"
         raise error("step(discrete=...)", "have a left-invariant constraint", got, "Use simulate(..., steps=1).")
     k, dim = discrete.system.constraint_subspace.shape
-    size = k if np.shape(momentum) == (k,) else dim
+    size = k if shape_of(momentum) == (k,) else dim
     where = "step(momentum=...)"
     value = array(where, momentum, (size,), f"Pass {dim} body momenta or the {k} along the constraint subspace.")
     traced = any(is_traced(x) for x in jax.tree.leaves((discrete, value)))
     if traced and branch not in ("principal", "nearest"):
-        got = f"{branch!r} under a JAX transformation"
+        got = f"{shown(branch)} under a JAX transformation"
         raise error("step(branch=...)", "be 'principal' or 'nearest'", got, "Take this step outside of it.")
     rule = checked_rule("step", discrete, branch)
     if rule == "principal" or traced or not has_frame(discrete):

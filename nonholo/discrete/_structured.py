@@ -62,8 +62,8 @@ def matrix_step(discrete: "Discretization") -> MatrixStep | None:
     variety = discrete.variety
     if variety.exponential or discrete.constraint not in ("skew", "exponential"):
         return None
-    body = general_body(discrete.system, variety)
-    return MatrixStep(body, discrete.time_step / body.unit**2)
+    body, unit = general_body(discrete.system, variety)
+    return MatrixStep(body, discrete.time_step / unit)
 
 
 def encoded(step: Structured, momenta: np.ndarray) -> np.ndarray:

@@ -1,11 +1,15 @@
 """What a sweep checks and makes before any work: the task, the design, one member tried, an empty store."""
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from nonholo import io
-from nonholo._checks import count, error
+from nonholo._checks import count, error, shown
+from nonholo._limits import within_a_year, within_disk, within_memory
 from nonholo._progress import waiting
 from nonholo.ensembles._block import block_of
 from nonholo.ensembles._describe import (
@@ -18,15 +22,17 @@ from nonholo.ensembles._describe import (
 )
 from nonholo.ensembles._design import Design, Grid, RandomDesign, axis_dimensions
 from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
-from nonholo.ensembles._layout import layout_of
+from nonholo.ensembles._layout import Layout, layout_of
 from nonholo.ensembles._names import Axes, check_dimensions
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles._results import Output, Task, probed
 from nonholo.ensembles._store import SweepStore, create_store, open_store
-from nonholo.simulation import in_one_thread
+from nonholo.simulation import closed_step, in_one_thread, refuse_too_long
 
 _BLOCK = 4096  # most members of a block of a task that does not say how many
 _PIECES = 32  # blocks of a small sweep, so that all cores have work to the end
+_LEAST = 1e-8  # seconds of a member of any task
+_FILE = 4096  # bytes that a file takes at least, on most file systems
 _LANES = 32  # members that a compiled loop takes at once
 
 
@@ -34,10 +40,10 @@ def check_task(task: Any, design: Any) -> None:
     """Refuse what is no task and no design, or a design that the task does not know."""
     if not callable(task):
         remedy = "Pass an EnsembleTask, or a function of a MemberBlock."
-        raise error("sweep(task=...)", "be callable", repr(task), remedy)
+        raise error("sweep(task=...)", "be callable", shown(task), remedy)
     if not isinstance(design, Grid | RandomDesign):
         remedy = "Pass nh.Grid({...}) or nh.RandomDesign(members, {...})."
-        raise error("sweep(design=...)", "be a design", repr(design), remedy)
+        raise error("sweep(design=...)", "be a design", shown(design), remedy)
     if isinstance(task, EnsembleTask):
         task.check_design([*design.axes, *design.drawn])
 
@@ -46,11 +52,13 @@ def begun(task: Task, design: Design, path: Path, block: Any, scenario: str | No
     """Make the store of a sweep, after its task has been tried."""
     io.check_suffix(path, "sweep(store=...)")
     size = _block(task, design.members) if block is None else count("sweep(block=...)", block, "Pass how many members.")
+    _refuse_too_long(task, design.members)
     with in_one_thread(), waiting("compiling and trying a member", progress):
         returned = probed(task, lambda first, some: block_of(design, first, some), design.members)
     drawn = {name: _drawn(name, shape) for name, shape in design.drawn.items()}
     _check_names(design, drawn, returned)
     layout = layout_of(tuple(design.sizes.values()), size)
+    _refuse_too_large(layout, drawn | returned, path)
     extra = {} if scenario is None else io.attributes_of_text(scenario)
     return create_store(path, _described(task, design), design, layout, drawn | returned, extra)
 
@@ -60,11 +68,30 @@ def _block(task: Task, members: int) -> int:
     return min(most, max(least, -(-members // _PIECES)))
 
 
+def _refuse_too_long(task: Task, members: int) -> None:
+    """Refuse more members than a year has time for, however fast the machine is."""
+    if isinstance(task, EnsembleTask):
+        compiled = closed_step(task.discrete) is not None
+        refuse_too_long("EnsembleTask", task.discrete, task.steps, compiled=compiled, members=members)
+    within_a_year("sweep(design=...)", _LEAST * members, "Ask for fewer members.")
+
+
+def _refuse_too_large(layout: Layout, outputs: dict[str, Output], path: Path) -> None:
+    """Refuse blocks that memory does not hold, and results that the disk does not: numbers, and files of each block."""
+    each = sum(math.prod(o.shape) * np.dtype(o.dtype).itemsize for o in outputs.values())
+    within_memory(
+        "sweep(block=...)", 2.0 * each * math.prod(layout.chunk), "Pass fewer members: a block is held whole."
+    )
+    files = layout.blocks * (1 + len(outputs))
+    needed = float(each) * math.prod(layout.sizes) + _FILE * files
+    within_disk("sweep(design=...)", needed, path, "Ask for fewer members, or for less of each.")
+
+
 def _check_names(design: Design, drawn: dict[str, Output], returned: dict[str, Output]) -> None:
     """Refuse names that stand for two things, before anything is computed that nobody could open."""
     for name in returned:
         if name in drawn:
-            raise error("sweep(task=...)", "return names that the design does not have", repr(name), "Rename it.")
+            raise error("sweep(task=...)", "return names that the design does not have", shown(name), "Rename it.")
     members, lengths = tuple(design.sizes), tuple(design.sizes.values())
     coordinates = {name: Axes(axis_dimensions(name, x), x.shape) for name, x in design.axes.items()}
     outputs = (drawn | returned).items()

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo._checks import array, count, error, natural, shown
+from nonholo._checks import array, count, error, natural, shape_of, shown
 from nonholo._types import Float
 from nonholo.ensembles._distributions import AbstractDistribution
 from nonholo.ensembles._names import OUTCOME, array_name, component_name, stream_name
@@ -72,7 +72,7 @@ class Grid(AbstractDesign):
 
     def __init__(self, axes: Any, seed: int = 0) -> None:
         if not isinstance(axes, Mapping) or not axes:
-            raise error("Grid(axes=...)", "be a mapping of names to values", repr(axes), f"{_REMEDY} values.")
+            raise error("Grid(axes=...)", "be a mapping of names to values", shown(axes), f"{_REMEDY} values.")
         kept = {name: _along(name, axes[given]) for name, given in _named("Grid(axes=...)", axes).items()}
         if len({axis_dimension(name, values) for name, values in kept.items()}) < len(kept):
             raise error(
@@ -126,7 +126,7 @@ class RandomDesign(AbstractDesign):
         for name, value in distributions.items():
             if not isinstance(value, AbstractDistribution):
                 remedy = "Pass nh.Uniform(low, high), ...; what all members share belongs to the task."
-                raise error(f"RandomDesign({{{name!r}: ...}})", "be a distribution", repr(value), remedy)
+                raise error(f"RandomDesign({{{name!r}: ...}})", "be a distribution", shown(value), remedy)
         object.__setattr__(self, "count", count("RandomDesign(members=...)", members, "Pass how many."))
         object.__setattr__(self, "distributions", {name: distributions[given] for name, given in named.items()})
         object.__setattr__(self, "seed", _seed("RandomDesign(seed=...)", seed))
@@ -176,8 +176,8 @@ def axis_dimensions(name: str, values: Float[np.ndarray, "count ..."]) -> tuple[
 
 
 def _along(name: str, values: Any) -> np.ndarray:
-    where, raw = f"Grid({{{name!r}: ...}})", np.asarray(values)
-    checked = array(where, raw, (None,) * max(1, raw.ndim), "Pass a list of values.")
+    where = f"Grid({{{name!r}: ...}})"
+    checked = array(where, values, (None,) * max(1, len(shape_of(values))), "Pass a list of values.")
     if not len(checked):
         raise error(where, "hold at least one value", "none", "Pass a list of values.")
     return checked
@@ -187,17 +187,14 @@ def _named(where: str, given: Mapping[Any, Any]) -> dict[str, str]:
     """Return the given names by those of the result, refused if two are one."""
     named = {component_name(array_name(where, name)): name for name in given}
     if OUTCOME in named:
-        raise error(where, f"leave the name {OUTCOME} to the result", repr(OUTCOME), "Rename it.")
+        raise error(where, f"leave the name {OUTCOME} to the result", shown(OUTCOME), "Rename it.")
     if len(named) < len(given):
         raise error(where, "name each value once", ", ".join(given), "Leave one out.")
     return named
 
 
 def _seed(where: str, seed: Any) -> int:
-    integral = isinstance(seed, int | np.integer) and not isinstance(seed, bool)
-    if not integral or not 0 <= seed < 2**63:
-        raise error(where, "be an integer between 0 and 2^63", repr(seed), "Pass 0, 1, 2, ...")
-    return int(seed)
+    return natural(where, seed, "Pass 0, 1, 2, ...")
 
 
 def _times(sizes: dict[str, int]) -> str:

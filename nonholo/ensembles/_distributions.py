@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from scipy.special import ndtri
 
-from nonholo._checks import array, count, error, number, positive, trailing
+from nonholo._checks import array, count, error, number, positive, shape_of, trailing
+from nonholo._limits import bounded_count, within_memory
 from nonholo._types import Float
 
 _LEAST = 2.0**-54  # instead of a uniform number zero, where its logarithm is needed
@@ -109,7 +110,7 @@ class Normal(AbstractDistribution):
         spread = positive("Normal(deviation=...)", self.deviation, "Pass a positive standard deviation.")
         object.__setattr__(self, "deviation", float(spread))
         if self.size is not None:
-            count("Normal(size=...)", self.size, "Pass the length of the vectors.")
+            bounded_count("Normal(size=...)", self.size, 8.0, "Pass the length of the vectors.")
 
     @property
     def width(self) -> int:
@@ -137,7 +138,7 @@ class Direction(AbstractDistribution):
     length: Any = 1.0
 
     def __post_init__(self) -> None:
-        count("Direction(size=...)", self.size, "Pass the length of the vectors.")
+        bounded_count("Direction(size=...)", self.size, 8.0, "Pass the length of the vectors.")
         object.__setattr__(self, "length", float(positive("Direction(length=...)", self.length, "Pass their norm.")))
 
     @property
@@ -169,7 +170,8 @@ class MassTensor(AbstractDistribution):
     high: Any
 
     def __post_init__(self) -> None:
-        count("MassTensor(n=...)", self.n, "Pass the dimension of the body.")
+        n = count("MassTensor(n=...)", self.n, "Pass the dimension of the body.")
+        within_memory("MassTensor(n=...)", 24.0 * n * n, "Pass a smaller n.")
         _bounds(self, "MassTensor")
         if np.ndim(self.low) or not self.low > 0:
             raise error("MassTensor(low=...)", "be one positive number", f"{self.low}", "Pass the least eigenvalue.")
@@ -204,8 +206,8 @@ class Choice(AbstractDistribution):
     values: Any
 
     def __post_init__(self) -> None:
-        values = np.asarray(self.values)
-        checked = array("Choice(values=...)", values, (None,) * max(1, values.ndim), "Pass a list of values.")
+        shape = (None,) * max(1, len(shape_of(self.values)))
+        checked = array("Choice(values=...)", self.values, shape, "Pass a list of values.")
         if not len(checked):
             raise error("Choice(values=...)", "hold at least one value", "none", "Pass a list of values.")
         object.__setattr__(self, "values", checked.tolist())

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from nonholo import io
-from nonholo._checks import array, count, error, flag
+from nonholo._checks import array, count, error, flag, shown
 from nonholo.discrete import Discretization
 from nonholo.discrete._discretization import as_discretization
 from nonholo.discrete._start import one_start
@@ -139,7 +139,7 @@ class EnsembleTask:
             if name not in self._fields and name not in STARTS and start_component(name) is None:
                 kind, known = type(self.discrete.system).__name__, ", ".join(self._fields)
                 remedy = f"{kind} has {known}; starts are {', '.join(STARTS)}."
-                raise error("sweep(design=...)", "name parameters of the system or starts", repr(name), remedy)
+                raise error("sweep(design=...)", "name parameters of the system or starts", shown(name), remedy)
 
     def as_of_schema_1(self) -> "EnsembleTask":
         """Return the task with the results of stores of schema 1."""
@@ -197,7 +197,7 @@ def _checked_reductions(reductions: Any) -> tuple[Any, ...]:
     for reduction in several:
         if not (callable(reduction) or (isinstance(reduction, str) and reduction in REDUCTIONS)):
             remedy = f"Choose among {', '.join(REDUCTIONS)}, or pass a function of an Ensemble."
-            raise error("EnsembleTask(reductions=...)", "be names or functions", repr(reduction), remedy)
+            raise error("EnsembleTask(reductions=...)", "be names or functions", shown(reduction), remedy)
     return several
 
 
@@ -206,5 +206,5 @@ def _add(found: dict[str, Any], more: Any) -> None:
     named = more if isinstance(more, Mapping) else {"result": more}
     for name in named:
         if name in found:
-            raise error("EnsembleTask(reductions=...)", "return each name once", repr(name), "Rename one.")
+            raise error("EnsembleTask(reductions=...)", "return each name once", shown(name), "Rename one.")
     found |= named

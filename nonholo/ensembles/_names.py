@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo.io import TAKEN, is_array_name
 
 OUTCOME = "outcome"
@@ -56,7 +56,7 @@ def array_name(where: str, name: Any) -> str:
     """Return the name of an array, refused if no file or no attribute can be called so."""
     if not isinstance(name, str) or not is_array_name(name):
         requirement = f"have names without slashes that begin with a letter, and not {' or '.join(TAKEN)}"
-        raise error(where, requirement, repr(name), "Rename it.")
+        raise error(where, requirement, shown(name), "Rename it.")
     return name
 
 
@@ -66,7 +66,7 @@ def check_dimensions(arrays: Mapping[str, Axes], coordinates: Mapping[str, Axes]
     for name, (dimensions, shape) in [*coordinates.items(), *arrays.items()]:
         where = f"task(...)[{name!r}]"
         if len(set(dimensions)) < len(dimensions):
-            raise error(where, "name each axis otherwise", repr(dimensions), "Name them apart.")
+            raise error(where, "name each axis otherwise", shown(dimensions), "Name them apart.")
         for dimension, length in zip(dimensions, shape, strict=True):
             if lengths.setdefault(dimension, length) != length:
                 got = f"{length} where it was {lengths[dimension]}"
@@ -74,4 +74,4 @@ def check_dimensions(arrays: Mapping[str, Axes], coordinates: Mapping[str, Axes]
     for name in arrays:
         if name in lengths or name in coordinates:
             where = f"task(...)[{name!r}]"
-            raise error(where, "have a name that the design and dimensions do not have", repr(name), "Rename it.")
+            raise error(where, "have a name that the design and dimensions do not have", shown(name), "Rename it.")

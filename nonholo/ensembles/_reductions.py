@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.analysis import step_jacobians
@@ -57,7 +57,7 @@ def _energy_drift(batch: Ensemble) -> Reduced:
 
 def _limit_angle(batch: Ensemble) -> Reduced:
     if not have_kernel(batch.members):
-        got, remedy = repr(batch.members.discrete), "Write a reduction of your own."
+        got, remedy = shown(batch.members.discrete), "Write a reduction of your own."
         raise error("reduction 'limit_angle'", "have a plane sleigh or a top with n = 3", got, remedy)
     if isinstance(batch.members.discrete.system, ChaplyginSleigh):
         return {"heading_turn": ((), _heading_turn(batch), _told("total turn of the heading", "rad"))}
@@ -75,7 +75,7 @@ def _heading_turn(batch: Ensemble) -> Float[np.ndarray, "M"]:
 def _turning_deviation(batch: Ensemble) -> Reduced:
     """Compare the turn of sleighs with that of the flow, to which it tends from below as the time step tends to 0."""
     if not isinstance(batch.members.discrete.system, ChaplyginSleigh) or not have_kernel(batch.members):
-        got, remedy = repr(batch.members.discrete), "Keep another reduction."
+        got, remedy = shown(batch.members.discrete), "Keep another reduction."
         raise error("reduction 'turning_deviation'", "have a plane sleigh", got, remedy)
     mass, inertia, a = (batch.members.values(name) for name in ("mass", "inertia", "a"))
     with np.errstate(divide="ignore", invalid="ignore"):  # a balanced sleigh turns for ever
@@ -108,7 +108,7 @@ def _lyapunov(batch: Ensemble) -> Reduced:
     discrete = batch.members.discrete
     if discrete.order != 2 or not has_frame(discrete):
         requirement = "have a top or a sleigh with difference 'matrix' and order 2"
-        raise error("reduction 'lyapunov'", requirement, repr(discrete), "Write a reduction of your own.")
+        raise error("reduction 'lyapunov'", requirement, shown(discrete), "Write a reduction of your own.")
     slopes = np.stack([_jacobians(batch, member) for member in range(len(batch))])
     product, growth = np.broadcast_to(np.eye(slopes.shape[-1]), slopes[:, 0].shape), np.zeros(len(batch))
     for step in range(slopes.shape[1]):

@@ -7,7 +7,7 @@ from typing import Any
 import xarray
 
 from nonholo import io, simulation
-from nonholo._checks import error, flags, path
+from nonholo._checks import error, flags, path, shown
 from nonholo._progress import progress_bar
 from nonholo.discrete import Discretization
 from nonholo.ensembles._begin import restored_task
@@ -75,7 +75,9 @@ def resume(
         remedy = "Leave it out for an orbit."
     for name, value in given.items():
         if value is not None:
-            raise error(f"resume({name}=...)", f"come with the store of {owner}", f"{value!r} for '{store}'", remedy)
+            raise error(
+                f"resume({name}=...)", f"come with the store of {owner}", f"{shown(value)} for '{store}'", remedy
+            )
     if stored != io.SWEEP_FORMAT:
         return simulation.resume(store, discrete=discrete, events=events, throw=throw, progress=progress)
     name, workers = checked_scheduler(scheduler, workers)

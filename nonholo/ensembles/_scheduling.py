@@ -11,7 +11,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
-from nonholo._checks import count, error
+from nonholo._checks import count, error, shown
 from nonholo.ensembles._blocks import Done, Work, do_block
 from nonholo.ensembles._cluster import check_cluster, do_on_cluster
 
@@ -27,11 +27,11 @@ def checked_scheduler(scheduler: Any, workers: Any) -> tuple[str, int | None]:
     name = "threads" if scheduler is None else scheduler
     if not isinstance(name, str) or not (name in _LOCAL or "://" in name):
         remedy = "Choose one of them, or leave it out for threads."
-        raise error(where, f"be one of {', '.join(_LOCAL)} or an address tcp://host:port", repr(scheduler), remedy)
+        raise error(where, f"be one of {', '.join(_LOCAL)} or an address tcp://host:port", shown(scheduler), remedy)
     if "://" in name:
         if workers is not None:
             remedy = "Leave it out: a cluster has the workers that were started for it."
-            raise error("sweep(workers=...)", "come with threads or processes", f"{workers!r} for {name}", remedy)
+            raise error("sweep(workers=...)", "come with threads or processes", f"{shown(workers)} for {name}", remedy)
         check_cluster(name)
     return name, None if workers is None else count("sweep(workers=...)", workers, "Pass how many work at a time.")
 

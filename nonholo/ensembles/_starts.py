@@ -5,7 +5,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.ensembles._block import MemberBlock
@@ -26,7 +26,7 @@ def check_starts(discrete: Discretization, start: Start | None, names: Sequence[
     for name, (owner, component) in varied.items():
         if whole or start is None or start[0] != owner:
             remedy = f"Pass EnsembleTask(..., {owner}=...) with what the other components are, or vary each of them."
-            raise error("sweep(design=...)", "vary components of the start of the task", repr(name), remedy)
+            raise error("sweep(design=...)", "vary components of the start of the task", shown(name), remedy)
         if component >= len(start[1]):
             got = f"{name!r} of a start with {len(start[1])}"
             raise error("sweep(design=...)", "vary components that there are", got, "They are counted from 0.")

@@ -5,7 +5,7 @@ import functools
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import error, number, positive
+from nonholo._checks import error, number, scale
 from nonholo._types import Array
 from nonholo.examples._example import Example, numbers, rate
 from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -56,8 +56,8 @@ def knife_edge_on_incline(
         0.125
     """
     where = "examples.knife_edge_on_incline"
-    m = float(positive(f"{where}(mass=...)", mass, "Pass the mass."))
-    J = float(positive(f"{where}(inertia=...)", inertia, "Pass the moment of inertia."))
+    m = float(scale(f"{where}(mass=...)", mass, "Pass the mass."))
+    J = float(scale(f"{where}(inertia=...)", inertia, "Pass the moment of inertia."))
     G = float(number(f"{where}(slope_acceleration=...)", slope_acceleration))
     u0, omega = float(number(f"{where}(speed=...)", speed)), float(number(f"{where}(turning=...)", turning))
     if omega == 0:

@@ -5,7 +5,8 @@ import functools
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import count, number
+from nonholo._checks import number
+from nonholo._limits import bounded_count
 from nonholo._types import Array
 from nonholo.examples._example import Example
 from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -32,7 +33,7 @@ def chaotic_quartic_oscillator(*, pairs: int = 3) -> Example:
         >>> nh.examples.chaotic_quartic_oscillator().coordinates
         ('x', 'y1', 'y2', 'y3', 'z1', 'z2', 'z3')
     """
-    n = count("examples.chaotic_quartic_oscillator(pairs=...)", pairs, "Pass the number of pairs.")
+    n = bounded_count("examples.chaotic_quartic_oscillator(pairs=...)", pairs, 64.0, "Pass the number of pairs.")
     index = np.arange(1, n + 1)
     y, z = 0.6 / index, 0.4 + 0.2 * index
     turned = 1.0 / index

@@ -5,7 +5,7 @@ import functools
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import positive
+from nonholo._checks import scale
 from nonholo._types import Array
 from nonholo.examples._example import Example, numbers, rate
 from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -43,7 +43,7 @@ def particle(
         >>> bool(np.allclose(orbit.configuration, ready.exact(orbit.time), rtol=0, atol=1e-9))
         True
     """
-    m = float(positive("examples.particle(mass=...)", mass, "Pass the mass."))
+    m = float(scale("examples.particle(mass=...)", mass, "Pass the mass."))
     q = numbers("particle", "configuration", configuration, 3, "x, y and z")
     a, b = numbers("particle", "planar_velocity", planar_velocity, 2, "x' and y'")
     y0 = q[1]

@@ -5,7 +5,7 @@ import functools
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import number, positive
+from nonholo._checks import number, scale
 from nonholo._types import Array
 from nonholo.examples._example import Example, numbers
 from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -75,7 +75,7 @@ def two_wheeled_robot(
         "wheel_radius": wheel_radius,
         "wheel_inertia": wheel_inertia,
     }
-    m, J, c, R, Jw = (float(positive(f"{where}({name}=...)", value, remedy)) for name, value in given.items())
+    m, J, c, R, Jw = (float(scale(f"{where}({name}=...)", value, remedy)) for name, value in given.items())
     given = {"offset": offset, "speed": speed, "turning": turning}
     ell, u, omega = (float(number(f"{where}({name}=...)", value)) for name, value in given.items())
     q = numbers("two_wheeled_robot", "configuration", configuration, 5, "x, y, theta, right and left")

@@ -5,7 +5,7 @@ import functools
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import positive
+from nonholo._checks import scale
 from nonholo._types import Array
 from nonholo.examples._example import Example, numbers, rate
 from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -50,7 +50,7 @@ def rolling_disk(
     """
     remedy = "Pass a positive number."
     given = {"mass": mass, "radius": radius, "rolling_inertia": rolling_inertia, "turning_inertia": turning_inertia}
-    body = [float(positive(f"examples.rolling_disk({name}=...)", value, remedy)) for name, value in given.items()]
+    body = [float(scale(f"examples.rolling_disk({name}=...)", value, remedy)) for name, value in given.items()]
     R = body[1]
     q = numbers("rolling_disk", "configuration", configuration, 4, "x, y, theta and phi")
     roll, turn = numbers("rolling_disk", "rates", rates, 2, "theta' and phi'")

@@ -5,7 +5,7 @@ import functools
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import error, positive
+from nonholo._checks import error, scale
 from nonholo._types import Array
 from nonholo.examples._example import Example, numbers, rate
 from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -60,7 +60,7 @@ def snakeboard(
     """
     where, remedy = "examples.snakeboard", "Pass a positive number."
     given = {"mass": mass, "half_length": half_length, "rotor_inertia": rotor_inertia, "wheel_inertia": wheel_inertia}
-    m, r, J0, J1 = (float(positive(f"{where}({name}=...)", value, remedy)) for name, value in given.items())
+    m, r, J0, J1 = (float(scale(f"{where}({name}=...)", value, remedy)) for name, value in given.items())
     if m * r * r <= J0:
         raise error(f"{where}(rotor_inertia=...)", f"be less than m r^2 = {m * r * r:g}", f"{J0:g}", "Lighten it.")
     q = numbers("snakeboard", "configuration", configuration, 5, "x, y, theta, psi and phi")

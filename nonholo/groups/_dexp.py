@@ -1,9 +1,9 @@
 """The inverse of the derivative of the exponential from its definition, for any Lie algebra."""
 
 from nonholo._types import Array, Float
-from nonholo.numerics._matrix_functions import integrated_exponential
+from nonholo.numerics._matrix_functions import integrated_exponential, inverted
 
 
 def dexp_inverse(ad: Float[Array, "... dim dim"]) -> Float[Array, "... dim dim"]:
     r"""Return $\varphi_1(\mathrm{ad})^{-1}$, which is $\sum_k B_k\,\mathrm{ad}^k/k!$ where that converges."""
-    return ad.__array_namespace__().linalg.inv(integrated_exponential(ad))
+    return inverted(integrated_exponential(ad))

@@ -1,6 +1,6 @@
 """The rotation groups and the groups of rigid motions by dimension: closed forms for SO(3) and SE(2)."""
 
-from nonholo._checks import count, error
+from nonholo._checks import dimension
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._special_euclidean import SpecialEuclidean2
 from nonholo.groups._special_euclidean_n import SpecialEuclideanN
@@ -28,7 +28,7 @@ def SO(n: int) -> AbstractMatrixGroup:
                [-2., -4.,  0.,  6.],
                [-3., -5., -6.,  0.]])
     """
-    n = _at_least_two("SO(n=...)", n)
+    n = dimension("SO(n=...)", n)
     return SpecialOrthogonal3() if n == 3 else SpecialOrthogonalN(n)
 
 
@@ -48,13 +48,5 @@ def SE(n: int) -> AbstractMatrixGroup:
         >>> SE(3).dim, SE(3).hat(np.arange(1.0, 7.0))[:3].tolist()
         (6, [[0.0, -3.0, 2.0, 4.0], [3.0, 0.0, -1.0, 5.0], [-2.0, 1.0, 0.0, 6.0]])
     """
-    n = _at_least_two("SE(n=...)", n)
+    n = dimension("SE(n=...)", n)
     return SpecialEuclidean2() if n == 2 else SpecialEuclideanN(n)
-
-
-def _at_least_two(where: str, n: int) -> int:
-    remedy = "Pass the dimension of the space, 2 or more."
-    n = count(where, n, remedy)
-    if n < 2:
-        raise error(where, "be at least 2", str(n), remedy)
-    return n

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Array, Float
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
@@ -43,7 +43,7 @@ class ProductGroup(AbstractMatrixGroup):
     def __init__(self, *factors: AbstractMatrixGroup) -> None:
         wrong = [factor for factor in factors if not isinstance(factor, AbstractMatrixGroup)]
         if wrong or not factors:
-            got = repr(wrong[0]) if wrong else "no factor"
+            got = shown(wrong[0]) if wrong else "no factor"
             raise error("ProductGroup(*factors)", "be given groups", got, "Pass groups such as SE(2), Translations(2).")
         object.__setattr__(self, "factors", factors)
 

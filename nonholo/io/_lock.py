@@ -2,8 +2,10 @@
 
 import contextlib
 import datetime
+import glob
 import json
 import os
+import shutil
 import socket
 from collections.abc import Iterator
 from pathlib import Path
@@ -46,6 +48,35 @@ def locked(store: Path) -> Iterator[None]:
                 with contextlib.suppress(OSError):
                     file.unlink()
             lock.release()
+
+
+@contextlib.contextmanager
+def being_made(part: Path) -> Iterator[None]:
+    """Hold a lock beside what is being made, if the file system has locks: whoever is killed leaves both, unlocked."""
+    lock = FileLock(part.with_suffix(".lock"), timeout=0, thread_local=False, fallback_to_soft=False)
+    with contextlib.suppress(OSError, NotImplementedError):
+        lock.acquire()
+    try:
+        yield
+    finally:
+        _remove(part)
+        if lock.is_locked:
+            Path(lock.lock_file).unlink(missing_ok=True)
+            lock.release()
+
+
+def remove_remains(target: Path) -> None:
+    """Remove what processes that were killed have left beside a path, which they were making."""
+    for file in target.parent.glob(f".{glob.escape(target.name)}.*.lock"):
+        with contextlib.suppress(OSError, Timeout), FileLock(file, timeout=0, fallback_to_soft=False):
+            _remove(file.with_suffix(".partial"))
+            file.unlink()
+
+
+def _remove(part: Path) -> None:
+    shutil.rmtree(part, ignore_errors=True)
+    with contextlib.suppress(OSError):  # where it is a file
+        part.unlink()
 
 
 def owner_of(store: Path) -> str | None:

@@ -22,7 +22,7 @@ from nonholo._checks import path as checked_path
 from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
 from nonholo.io._dataset import CANONICAL, stored_variables
 from nonholo.io._load import format_of
-from nonholo.io._lock import owner_of
+from nonholo.io._lock import being_made, owner_of, remove_remains
 from nonholo.io._metadata import checksum
 from nonholo.orbit import Orbit, as_orbit
 
@@ -75,19 +75,18 @@ def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scena
 @contextlib.contextmanager
 def new_beside(path: Path) -> Iterator[Path]:
     """Give a hidden new name beside a path; what is left of it is removed, and a failure names the path."""
-    part = sibling(path.resolve(), "partial")
+    target = path.resolve()
+    part = sibling(target, "partial")
     try:
         part.parent.mkdir(parents=True, exist_ok=True)
-        yield part
+        remove_remains(target)
+        with being_made(part):
+            yield part
     except OSError as failure:
         if failure.errno is None:  # a refusal of ours, which says it all
             raise
         reason = f"{failure.strerror}. Nothing at this path was changed. Free space, or choose another path"
         raise OSError(failure.errno, reason, str(path)) from failure
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
-        with contextlib.suppress(OSError):  # where it is a file
-            part.unlink()
 
 
 @contextlib.contextmanager

@@ -8,9 +8,9 @@ pose, then momenta (k), compensations (k) and pose after the step, then the last
 
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 
+from nonholo._compiled import njit
 from nonholo.kernels._driver import _compensated, _solve
 from nonholo.kernels._general import GeneralBody
 from nonholo.kernels._interface import Body, increment, move
@@ -34,7 +34,7 @@ class ComposedBody(NamedTuple):
     weights: np.ndarray
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _swept(
     p: Any,
     w: Any,
@@ -66,7 +66,7 @@ def _swept(
     return 0
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _two_swept(
     p: Body,
     w: np.ndarray,
@@ -100,13 +100,13 @@ def _two_swept(
 _sweep = chosen(_swept, _swept, _two_swept)
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _room(momenta: int, unknowns: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the arrays that a sweep writes to: momenta and their changes in a substep, and a guess."""
     return np.empty(momenta), np.empty(momenta), np.empty(unknowns)
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _advance(
     p: Any,
     weights: np.ndarray,
@@ -145,7 +145,7 @@ def _advance(
     return done, code
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _each(
     p: Any, weights: np.ndarray, momenta: np.ndarray, poses: np.ndarray, rest: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

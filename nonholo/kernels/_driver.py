@@ -4,9 +4,9 @@ The state is one array, so that a run can stop after any step and go on with the
 momentum (2), its compensation (2), the last three Cayley coordinates (6), pose (4).
 """
 
-import numba
 import numpy as np
 
+from nonholo._compiled import njit
 from nonholo.kernels._interface import Body, certified, correction, increment, move, principal
 from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import assign
@@ -16,7 +16,7 @@ _SETTLED = 1e-150  # of one momentum to the other; squares below it underflow
 CORRECTIONS = 8  # of a guess, before the root is followed from momentum zero
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def start(p: Body, momentum: np.ndarray, pose: np.ndarray, state: np.ndarray) -> int:
     """Fill the state of a run that begins with scaled momenta and a pose; return the outcome of the first root."""
     code, y1, y2 = _solve(p, momentum[0], momentum[1], 0.0, 0.0)
@@ -28,7 +28,7 @@ def start(p: Body, momentum: np.ndarray, pose: np.ndarray, state: np.ndarray) ->
     return code
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def advance(
     p: Body, state: np.ndarray, steps: int, every: int, momenta: np.ndarray, charts: np.ndarray, poses: np.ndarray
 ) -> tuple[int, int]:
@@ -58,12 +58,12 @@ def advance(
     return done, code
 
 
-@numba.njit(cache=True, inline="always", **COMPILED)
+@njit(inline="always", **COMPILED)
 def _unpack(s: np.ndarray):  # noqa: ANN202
     return s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8], s[9], s[10], s[11], s[12], s[13]
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _compensated(total: float, lost: float, term: float, settled: float) -> tuple[float, float]:
     """Add by Kahan's summation; return the sum and the rounding it lost.
 
@@ -76,7 +76,7 @@ def _compensated(total: float, lost: float, term: float, settled: float) -> tupl
     return result, (result - total) - term
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _solve(p: Body, m1: float, m2: float, y1: float, y2: float) -> tuple[int, float, float]:
     """Correct a guess and verify that it is the principal root, or restart from momentum zero."""
     good, y1, y2 = _newton(p, m1, m2, y1, y2)
@@ -85,7 +85,7 @@ def _solve(p: Body, m1: float, m2: float, y1: float, y2: float) -> tuple[int, fl
     return principal(p, m1, m2)
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _newton(p: Body, m1: float, m2: float, y1: float, y2: float) -> tuple[bool, float, float]:
     """Correct a guess until the next correction would be below rounding."""
     for _ in range(CORRECTIONS):
@@ -103,7 +103,7 @@ def converged(d1: float, d2: float, y1: float, y2: float) -> bool:
     return d1 * d1 + d2 * d2 <= 1e-18 * (1 + y1 * y1 + y2 * y2)
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def step_each(
     p: Body, momenta: np.ndarray, charts: np.ndarray, guesses: np.ndarray, principal_only: bool
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -12,6 +12,7 @@ import numba
 import numpy as np
 from numba.extending import overload
 
+from nonholo._compiled import njit
 from nonholo.kernels import _driver
 from nonholo.kernels._interface import Body, certified, correction, increment, move, principal
 from nonholo.kernels._scalar import COMPILED
@@ -82,7 +83,7 @@ def _compiled_table_of(tables: Any, block: Any) -> Any:
     return none if isinstance(tables, numba.types.NoneType) else row
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _correct(p: Body, table: np.ndarray | None, s: np.ndarray) -> None:
     """Correct the guesses of the members that have not converged, until there are none or it takes too long."""
     s[_OPEN:] = 1.0
@@ -102,7 +103,7 @@ def _correct(p: Body, table: np.ndarray | None, s: np.ndarray) -> None:
             break
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _verify(p: Body, table: np.ndarray | None, s: np.ndarray) -> int:
     """Mark the members whose root is not certain, and return their number."""
     left = 0
@@ -114,7 +115,7 @@ def _verify(p: Body, table: np.ndarray | None, s: np.ndarray) -> int:
     return left
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _rescue(
     p: Body, table: np.ndarray | None, s: np.ndarray, first: int, good: int, every: int, rows: MemberRows
 ) -> None:
@@ -133,7 +134,7 @@ def _rescue(
             s[j::LANES] = 0.0  # at rest, so that what is left of the member costs no corrections
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _predict(p: Body, table: np.ndarray | None, s: np.ndarray) -> None:
     """Write the next momenta and guess the next charts."""
     for j in range(LANES):
@@ -145,7 +146,7 @@ def _predict(p: Body, table: np.ndarray | None, s: np.ndarray) -> None:
         s[_W + j] = 3 * (s[_Y + j] - s[_U + j]) + s[_V + j]
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _accept(p: Body, table: np.ndarray | None, s: np.ndarray, posed: bool) -> None:
     """Move on to the next momenta and charts, and with them the poses."""
     if posed:
@@ -164,7 +165,7 @@ def _accept(p: Body, table: np.ndarray | None, s: np.ndarray, posed: bool) -> No
         s[_V + j], s[_U + j], s[_Y + j] = s[_U + j], s[_Y + j], s[_W + j]
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _save(s: np.ndarray, j: int, rows: MemberRows, i: int, state: int) -> None:
     """Write the state of a member of the block to a member of the rows."""
     rows.momenta[i, state, 0], rows.momenta[i, state, 1] = s[_M + j], s[_M + 32 + j]
@@ -174,7 +175,7 @@ def _save(s: np.ndarray, j: int, rows: MemberRows, i: int, state: int) -> None:
             rows.poses[i, state, q] = s[_Q + 32 * q + j]
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _save_good(s: np.ndarray, rows: MemberRows, first: int, state: int) -> None:
     """Write the states of the members of the block that have not failed."""
     for j in range(min(LANES, len(rows.codes) - first)):
@@ -182,7 +183,7 @@ def _save_good(s: np.ndarray, rows: MemberRows, first: int, state: int) -> None:
             _save(s, j, rows, first + j, state)
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _begin(p: Body, table: np.ndarray | None, momenta: np.ndarray, poses: np.ndarray, s: np.ndarray) -> int:
     """Fill a block, at rest where there are no members, and correct the first roots; return how many are uncertain."""
     s[:] = 0.0
@@ -194,7 +195,7 @@ def _begin(p: Body, table: np.ndarray | None, momenta: np.ndarray, poses: np.nda
     return _verify(p, table, s)
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _run_block(
     p: Body, table: np.ndarray | None, s: np.ndarray, first: int, steps: int, every: int, rows: MemberRows
 ) -> None:
@@ -219,7 +220,7 @@ def _run_block(
             rows.done[i] = steps
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def advance_members(
     p: Body,
     tables: np.ndarray | None,

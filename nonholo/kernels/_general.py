@@ -8,18 +8,19 @@ $$ \mathrm{tr}(D_i W J X^T) = \mathrm{tr}(D_i J X^T) = m_i \ (i \le k), \qquad
 
 where $\mathrm{tr}(D X J X^T) = 0$ since $XJX^T$ is symmetric and has no homogeneous part. The derivatives of X are
 $2GC_aG$, $G = (I - Y)^{-1}$. Here $D_i$ is a basis of $\mathfrak{d}$, momenta are in units of displacements,
-$m = h r/\ell^2$, and all lengths in units of a length $\ell$ of the body, so that translations and rotations are
-numbers of one size. Where $\exp\mathfrak{d}$ solves the constraint, the $C_a$ are the $D_i$ and there is no second
-kind; otherwise the $C_a$ span the algebra. With `spatial` the constraint is right-invariant: the pose carries J to
+$m = h r/(\mu\ell^2)$, all lengths in units of a length $\ell$ and masses of a mass $\mu$ of the body, so that
+translations, rotations and momenta are numbers of one size. Where $\exp\mathfrak{d}$ solves the constraint, the $C_a$
+are the $D_i$ and there is no second kind; otherwise the $C_a$ span the algebra. With `spatial` the constraint is
+right-invariant: the pose carries J to
 space, and m is constant. On the group of a form G the transpose is $X^* = G^{-1}X^TG$: the kernel is given $GD_i$ and
 $JG^{-1}$, so that $Q_i = GD_iJG^{-1}$ has the same pairings.
 """
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
+from nonholo._compiled import njit
 from nonholo.kernels._small import eliminate, multiply, paired, paired_twice, sandwich, transpose
 
 LOST = 1e12  # turning of a displacement of an iteration that runs away
@@ -91,7 +92,7 @@ class Workspace(NamedTuple):
     residual: np.ndarray
 
 
-@numba.njit(cache=True)
+@njit()
 def workspace(p: GeneralBody) -> Workspace:
     """Return a workspace for a body, with the mass tensor of the body."""
     N, m = len(p.tensor), len(p.stretch)
@@ -109,14 +110,14 @@ def workspace(p: GeneralBody) -> Workspace:
     )
 
 
-@numba.njit(cache=True)
+@njit()
 def see_tensor(p: GeneralBody, w: Workspace, J: np.ndarray) -> None:
     """Let the equations see a mass tensor."""
     for i in range(len(p.directions)):
         multiply(p.directions[i], J, w.Q[i])
 
 
-@numba.njit(cache=True)
+@njit()
 def displaced(p: GeneralBody, w: Workspace, y: np.ndarray) -> float:
     """Compute X = 2 (I - Y)^{-1} Y and G = I + X / 2; return how far it turns, the sum of tan^2(angle / 2).
 
@@ -126,7 +127,7 @@ def displaced(p: GeneralBody, w: Workspace, y: np.ndarray) -> float:
     return _displaced(p.places, p.entries, p.size, y, w.X, w.G, w.scratch)
 
 
-@numba.njit(cache=True)
+@njit()
 def _displaced(
     places: np.ndarray, entries: np.ndarray, n: int, y: np.ndarray, X: np.ndarray, G: np.ndarray, scratch: np.ndarray
 ) -> float:
@@ -151,7 +152,7 @@ def _displaced(
     return turning
 
 
-@numba.njit(cache=True)
+@njit()
 def _adjoint(p: GeneralBody, X: np.ndarray, half: np.ndarray, out: np.ndarray) -> None:
     """Write X* = G^{-1} X^T G, the transpose where there is no form."""
     transpose(X, out)
@@ -160,7 +161,7 @@ def _adjoint(p: GeneralBody, X: np.ndarray, half: np.ndarray, out: np.ndarray) -
         multiply(half, p.form, out)
 
 
-@numba.njit(cache=True)
+@njit()
 def _invert(p: GeneralBody, X: np.ndarray, half: np.ndarray, V: np.ndarray) -> None:
     """Write the inverse of the group element I + X."""
     n = p.size
@@ -175,7 +176,7 @@ def _invert(p: GeneralBody, X: np.ndarray, half: np.ndarray, V: np.ndarray) -> N
                 V[i, n] -= X[j, i] * X[j, n]
 
 
-@numba.njit(cache=True)
+@njit()
 def skew_part(p: GeneralBody, w: Workspace) -> None:
     """Write K = (W - W^{-1})/2 to the scratch matrix, and W^{-1} to V."""
     X, V, K = w.X, w.V, w.scratch
@@ -186,14 +187,14 @@ def skew_part(p: GeneralBody, w: Workspace) -> None:
         K[i, i] += 0.5
 
 
-@numba.njit(cache=True)
+@njit()
 def _pair_with_chart(S: np.ndarray, factor: float, places: np.ndarray, entries: np.ndarray, row: np.ndarray) -> None:
     """Add the pairings of a matrix with each C_a, times a factor, to a row."""
     for e in range(len(entries)):
         row[places[e, 0]] += factor * S[places[e, 1], places[e, 2]] * entries[e]
 
 
-@numba.njit(cache=True)
+@njit()
 def equations(p: GeneralBody, w: Workspace, m: np.ndarray) -> None:
     """Compute the residual and its Jacobian at the displacement in the workspace.
 
@@ -219,7 +220,7 @@ def equations(p: GeneralBody, w: Workspace, m: np.ndarray) -> None:
         _pair_with_chart(scratch, 2.0, places, entries, slope[i])
 
 
-@numba.njit(cache=True)
+@njit()
 def increments(p: GeneralBody, w: Workspace, term: np.ndarray) -> None:
     r"""Compute the change of the scaled momenta in one step, $\mathrm{tr}(X D_i J X^*) = \langle Q_i, X^*X\rangle$.
 

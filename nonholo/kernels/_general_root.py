@@ -1,8 +1,8 @@
 """The principal root of the general step: Newton's method, its certificate, and continuation where there is none."""
 
-import numba
 import numpy as np
 
+from nonholo._compiled import njit
 from nonholo.kernels._general import LOST, GeneralBody, Workspace, displaced, equations, skew_part
 from nonholo.kernels._scalar import PIECES
 from nonholo.kernels._small import assign, eliminate, multiply, paired
@@ -14,7 +14,7 @@ _LEAST = 1e-300  # and the absolute one: a momentum may be any number of times t
 _FAR = 1e4  # turning of a displacement beyond which the Cayley chart ends: an angle of 179 degrees
 
 
-@numba.njit(cache=True)
+@njit()
 def newton(p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray) -> tuple[bool, float]:
     """Correct a guess until the next correction would be below rounding; return the Jacobian determinant at the end."""
     det = 1.0
@@ -36,7 +36,7 @@ def newton(p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray) -> tuple[
     return len(y) == 0, det
 
 
-@numba.njit(cache=True)
+@njit()
 def certified(p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray) -> bool:
     """Tell whether a root is certainly the principal one: it lies in the ball where there is only one.
 
@@ -53,7 +53,7 @@ def certified(p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray) -> boo
     return paired(carried, K) <= p.radius
 
 
-@numba.njit(cache=True)
+@njit()
 def _rotational(X: np.ndarray, n: int) -> float:
     """Return the sum of the squares of the first n rows and columns."""
     total = 0.0
@@ -63,7 +63,7 @@ def _rotational(X: np.ndarray, n: int) -> float:
     return total
 
 
-@numba.njit(cache=True)
+@njit()
 def _energy(metric: np.ndarray, m: np.ndarray) -> float:
     total = 0.0
     for i in range(len(m)):
@@ -72,7 +72,7 @@ def _energy(metric: np.ndarray, m: np.ndarray) -> float:
     return total
 
 
-@numba.njit(cache=True)
+@njit()
 def _tangent(p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray, s: float) -> tuple[float, np.ndarray]:
     """Return the determinant of the Jacobian at a root and the derivative of the root with respect to s."""
     displaced(p, w, y)
@@ -83,7 +83,7 @@ def _tangent(p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray, s: floa
     return det, w.residual[:, 0].copy()
 
 
-@numba.njit(cache=True)
+@njit()
 def principal(p: GeneralBody, w: Workspace, m: np.ndarray) -> tuple[int, np.ndarray]:
     """Follow the root from momentum zero along s m, 0 <= s <= 1; return the outcome and y."""
     y = np.zeros(len(p.stretch))
@@ -117,7 +117,7 @@ def principal(p: GeneralBody, w: Workspace, m: np.ndarray) -> tuple[int, np.ndar
     return 3, y
 
 
-@numba.njit(cache=True)
+@njit()
 def _why_it_ended(p: GeneralBody, w: Workspace, y: np.ndarray, det: float, peak: float) -> int:
     """Tell a fold (1) from the end of the chart or of all displacements (2) and from a failure to converge (3)."""
     if displaced(p, w, y) > _FAR or (len(p.form) > 0 and paired(w.X, w.X) > _FAR**2):
@@ -125,7 +125,7 @@ def _why_it_ended(p: GeneralBody, w: Workspace, y: np.ndarray, det: float, peak:
     return 1 if abs(det) < 1e-2 * peak else 3
 
 
-@numba.njit(cache=True)
+@njit()
 def solve(p: GeneralBody, w: Workspace, m: np.ndarray, guess: np.ndarray) -> tuple[int, np.ndarray]:
     """Correct a guess and verify that it is the principal root, or follow it from momentum zero.
 

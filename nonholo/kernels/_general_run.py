@@ -1,14 +1,14 @@
 """Runs of the general step: the pose, the loop over steps, and one step from each of many states."""
 
-import numba
 import numpy as np
 
+from nonholo._compiled import njit
 from nonholo.kernels._general import GeneralBody, Workspace, displaced, increments, see_tensor, workspace
 from nonholo.kernels._general_root import newton, solve
 from nonholo.kernels._small import assign, assign_rows, multiply, transpose
 
 
-@numba.njit(cache=True)
+@njit()
 def see_pose(p: GeneralBody, w: Workspace, g: np.ndarray) -> None:
     """Let the equations of a right-invariant constraint see the mass tensor that a pose carries to space."""
     if p.spatial:
@@ -19,7 +19,7 @@ def see_pose(p: GeneralBody, w: Workspace, g: np.ndarray) -> None:
         see_tensor(p, w, w.H)
 
 
-@numba.njit(cache=True)
+@njit()
 def _in_units(p: GeneralBody, g: np.ndarray, factor: float) -> np.ndarray:
     """Return a motion with its translation multiplied by a factor."""
     scaled = g.copy()
@@ -29,7 +29,7 @@ def _in_units(p: GeneralBody, g: np.ndarray, factor: float) -> np.ndarray:
     return scaled
 
 
-@numba.njit(cache=True)
+@njit()
 def move(p: GeneralBody, w: Workspace, g: np.ndarray) -> None:
     """Advance a pose by the displacement; bring its rotation back to the group by one Newton-Schulz step.
 
@@ -53,13 +53,13 @@ def move(p: GeneralBody, w: Workspace, g: np.ndarray) -> None:
         _rectify(moved, n, w.scratch, g)
 
 
-@numba.njit(cache=True)
+@njit()
 def overflowed(p: GeneralBody, g: np.ndarray) -> bool:
     """Tell whether a pose of a group with a form, which may grow without bound, is no longer finite."""
     return len(p.form) > 0 and not np.all(np.isfinite(g))
 
 
-@numba.njit(cache=True)
+@njit()
 def _rectify(moved: np.ndarray, n: int, scratch: np.ndarray, g: np.ndarray) -> None:
     """Write a pose with its rotation R replaced by R (3 I - R^T R) / 2."""
     for i in range(n):
@@ -77,7 +77,7 @@ def _rectify(moved: np.ndarray, n: int, scratch: np.ndarray, g: np.ndarray) -> N
                 g[i, j] += moved[i, k] * scratch[k, j]
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(nogil=True)
 def advance(
     p: GeneralBody,
     state: np.ndarray,
@@ -124,7 +124,7 @@ def advance(
     return done, code
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(nogil=True)
 def start(p: GeneralBody, m: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
     """Return the outcome of the first root and the state of a run that begins with scaled momenta and a pose."""
     w, N = workspace(p), len(p.tensor)
@@ -133,7 +133,7 @@ def start(p: GeneralBody, m: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndar
     return code, np.concatenate((m, np.zeros(len(p.directions)), y, y, y, pose))
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(nogil=True)
 def step_each(
     p: GeneralBody,
     momenta: np.ndarray,

@@ -13,9 +13,9 @@ top has q = M = 0 and minus its coupling for c.
 import math
 from typing import NamedTuple, TypeAlias
 
-import numba
 import numpy as np
 
+from nonholo._compiled import njit
 from nonholo.kernels._scalar import COMPILED, scalar
 
 Sums: TypeAlias = tuple[float, float, float, float, float, float, float]
@@ -88,13 +88,13 @@ def correction(sums: Sums, nu: float, tau: float, q: float) -> tuple[float, floa
     return (j12 * f2 - j22 * f1) / det, (j21 * f1 - j11 * f2) / det, det
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def room_for_sums() -> np.ndarray:
     """Return the array that `sums_at` writes to, made once for a run."""
     return np.empty(7 * _LANES)
 
 
-@numba.njit(cache=True, forceinline=True, **COMPILED)
+@njit(forceinline=True, **COMPILED)
 def sums_at(p: SecularBody, m: np.ndarray, share: float, nu: float, tau: float, room: np.ndarray) -> Sums:
     """Return the seven sums of `correction` for the momenta `share` times m.
 
@@ -106,7 +106,7 @@ def sums_at(p: SecularBody, m: np.ndarray, share: float, nu: float, tau: float, 
     return _in_lanes(p.b, p.c, m, share, nu, tau, room)
 
 
-@numba.njit(cache=True, forceinline=True, **COMPILED)
+@njit(forceinline=True, **COMPILED)
 def _in_order(
     b: np.ndarray, c: np.ndarray, m: np.ndarray, share: float, nu: float, tau: float, first: int, sums: Sums
 ) -> Sums:
@@ -117,7 +117,7 @@ def _in_order(
     return sums
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _in_lanes(b: np.ndarray, c: np.ndarray, m: np.ndarray, share: float, nu: float, tau: float, s: np.ndarray) -> Sums:
     even = len(b) - len(b) % _LANES
     s[:] = 0.0
@@ -152,7 +152,7 @@ def _added(s: Sums, t: Sums) -> Sums:
     return s[0] + t[0], s[1] + t[1], s[2] + t[2], s[3] + t[3], s[4] + t[4], s[5] + t[5], s[6] + t[6]
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def newton(
     p: SecularBody,
     m: np.ndarray,

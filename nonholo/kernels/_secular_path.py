@@ -13,16 +13,17 @@ Reference: docs/theory/secular-step.md, "A path".
 
 import math
 
-import numba
 import numpy as np
 
+from nonholo._compiled import njit
 from nonholo.kernels._scalar import COMPILED, PIECES
 from nonholo.kernels._secular import SecularBody, newton
 from nonholo.kernels._secular_root import followed, level_of
 from nonholo.kernels._small import eliminate
 
 _LONGEST = 0.1  # predicted move on the sphere of one step
-_CLOSE = 0.02  # a corrector that moves further has left the branch
+_CLOSE = 0.02  # a corrector that moves further has left the branch,
+_BENT = 0.2  # and one that moves further than this share of the predicted move: folds of uneven bodies are tiny
 _SMALLEST = 1e-9  # step along the path, relative to s, below which the branch is given up
 _FAST = 20.0  # move on the sphere, per relative step, of a path that is about to end in a fold
 _CORRECTIONS = 8
@@ -30,7 +31,7 @@ _CONVERGED = 1e-12  # correction on the sphere, after which the next one is belo
 _AT_PI = 1e-75  # stands for z0 = 0, which y cannot be divided by
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _least(p: SecularBody, z0: float, mu: float) -> tuple[int, bool]:
     """Return where |z0 b + mu| is least, and whether an odd number of the others are negative."""
     pivot, least, odd = 0, math.inf, False
@@ -42,7 +43,7 @@ def _least(p: SecularBody, z0: float, mu: float) -> tuple[int, bool]:
     return pivot, odd != (z0 * p.b[pivot] + mu < 0)
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _sums(
     p: SecularBody, x: np.ndarray, mu: float, right: np.ndarray, rho: float, pivot: int
 ) -> tuple[float, float, float, float, float, float]:
@@ -62,7 +63,7 @@ def _sums(
     return zR, zg, zz, cR, cg, cz
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def solve_linear(p: SecularBody, x: np.ndarray, right: np.ndarray, move: np.ndarray) -> float:
     """Write the move of (z0, w, z) that changes sphere, w z0 and momenta by `right`; return the determinant.
 
@@ -95,7 +96,7 @@ def solve_linear(p: SecularBody, x: np.ndarray, right: np.ndarray, move: np.ndar
     return -det if odd else det
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _missed(p: SecularBody, m: np.ndarray, m0: float, s: float, x: np.ndarray, right: np.ndarray) -> None:
     """Write by how much the equations are missed."""
     z0, w, square, mu = x[0], x[1], 0.0, x[1]
@@ -108,7 +109,7 @@ def _missed(p: SecularBody, m: np.ndarray, m0: float, s: float, x: np.ndarray, r
         right[2 + i] = s * m[i] + square * p.c[i] - (z0 * p.b[i] + mu) * x[2 + i]
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _length(move: np.ndarray) -> float:
     """Return the length of a move on the sphere."""
     total = move[0] * move[0]
@@ -117,23 +118,25 @@ def _length(move: np.ndarray) -> float:
     return math.sqrt(total)
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
-def _corrected(p: SecularBody, m: np.ndarray, m0: float, s: float, guess: np.ndarray) -> tuple[bool, np.ndarray]:
-    """Correct a guess at fixed s; tell whether it converged to the branch next to it."""
+@njit(nogil=True, **COMPILED)
+def _corrected(
+    p: SecularBody, m: np.ndarray, m0: float, s: float, guess: np.ndarray, close: float
+) -> tuple[bool, np.ndarray]:
+    """Correct a guess at fixed s; tell whether it converged to a root so close."""
     x, right, move = guess.copy(), np.empty_like(guess), np.empty_like(guess)
     for _ in range(_CORRECTIONS):
         _missed(p, m, m0, s, x, right)
         det = solve_linear(p, x, right, move)
         for i in range(len(x)):
             x[i] += move[i]
-        if not (det > 0 and _length(x - guess) < _CLOSE):
+        if not (det > 0 and _length(x - guess) <= close):
             return False, x
         if _length(move) < _CONVERGED:
             return True, x
     return False, x
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def principal(p: SecularBody, m: np.ndarray, m0: float, room: np.ndarray) -> tuple[int, float, float]:
     """Follow the root from momentum zero along s (m, m0), 0 <= s <= 1; return the outcome, nu and tau.
 
@@ -147,7 +150,7 @@ def principal(p: SecularBody, m: np.ndarray, m0: float, room: np.ndarray) -> tup
     return on_the_sphere(p, m, m0, room)
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def on_the_sphere(p: SecularBody, m: np.ndarray, m0: float, room: np.ndarray) -> tuple[int, float, float]:
     """Follow all unknowns along s (m, m0), also through angle pi; return the outcome, nu and tau."""
     x, rate = np.zeros(2 + len(p.b)), np.zeros(2 + len(p.b))
@@ -164,7 +167,7 @@ def on_the_sphere(p: SecularBody, m: np.ndarray, m0: float, room: np.ndarray) ->
         if not size > 0:  # the squares overflow
             return 5, np.nan, np.nan
         ahead = 1.0 if size == 1.0 - s else s + size
-        good, root = _corrected(p, m, m0, ahead, x + size * tangent)
+        good, root = _corrected(p, m, m0, ahead, x + size * tangent, min(_CLOSE, _BENT * size * speed))
         if good and not (infinite and root[0] <= 0):
             s, x, size = ahead, root, 2 * size
             if s == 1.0:
@@ -177,7 +180,7 @@ def on_the_sphere(p: SecularBody, m: np.ndarray, m0: float, room: np.ndarray) ->
     return 3, np.nan, np.nan
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def _in_cayley_coordinates(
     p: SecularBody, m: np.ndarray, m0: float, x: np.ndarray, room: np.ndarray
 ) -> tuple[float, float]:

@@ -5,9 +5,9 @@ Reference: docs/theory/secular-step.md.
 
 import math
 
-import numba
 import numpy as np
 
+from nonholo._compiled import njit
 from nonholo.kernels._scalar import COMPILED, PIECES
 from nonholo.kernels._secular import SecularBody, newton
 
@@ -19,7 +19,7 @@ _FIRST_JUMP = 0.25  # the same for the first step, from the identity
 _SHORTEST = 1e-9  # step along the path, relative to s, below which it is given up
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def level_of(p: SecularBody, m: np.ndarray, m0: float) -> float:
     """Return the energy in the units of the kernel, which every step keeps."""
     lever, total = p.mass * p.arm * p.arm, m0 * m0 / p.mass
@@ -28,7 +28,7 @@ def level_of(p: SecularBody, m: np.ndarray, m0: float) -> float:
     return total
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def certain_radius(p: SecularBody, level: float) -> float:
     r"""Return the squared radius of the ball in which a root of that energy is certainly principal, or zero.
 
@@ -50,7 +50,7 @@ def certain_radius(p: SecularBody, level: float) -> float:
     return best
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def followed(p: SecularBody, m: np.ndarray, m0: float, room: np.ndarray) -> tuple[bool, float, float]:
     """Follow nu and tau from momentum zero along s (m, m0), 0 <= s <= 1, as far as y is finite and nu > -min b."""
     lever = p.mass * p.arm * p.arm

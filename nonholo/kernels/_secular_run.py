@@ -6,9 +6,9 @@ compensations (k), the last three pairs of unknowns (6), the certain radius, the
 
 import math
 
-import numba
 import numpy as np
 
+from nonholo._compiled import njit
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._secular import SecularBody, coordinate, newton, room_for_sums, term
 from nonholo.kernels._secular_path import principal
@@ -18,14 +18,14 @@ from nonholo.kernels._small import assign
 _SETTLED = 1e-150  # of the scale of the momenta; squares below it underflow
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def coordinates(p: SecularBody, m: np.ndarray, nu: float, tau: float, y: np.ndarray) -> None:
     """Write y."""
     for i in range(len(p.b)):
         y[i], _, _ = coordinate(p.b[i], p.c[i], m[i], nu, tau)
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def solve(
     p: SecularBody, m: np.ndarray, certain: float, nu: float, tau: float, room: np.ndarray
 ) -> tuple[int, float, float]:
@@ -37,7 +37,7 @@ def solve(
     return principal(p, m, m0, room)
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _compensated(total: float, lost: float, change: float, settled: float) -> tuple[float, float]:
     """Add by Kahan's summation; a sum that has decayed below `settled` is put on the equilibrium."""
     change = change - lost
@@ -47,7 +47,7 @@ def _compensated(total: float, lost: float, change: float, settled: float) -> tu
     return result, (result - total) - change
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def pushed(
     p: SecularBody,
     m: np.ndarray,
@@ -68,7 +68,7 @@ def pushed(
         total[-1], rest[-1] = _compensated(m[-1], lost[-1], change, settled)
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def slide(p: SecularBody, m0: float, nu: float, tau: float, y: np.ndarray) -> float:
     """Return the last Cayley coordinate of a sleigh, half its slide over the cosine of half its turn.
 
@@ -83,7 +83,7 @@ def slide(p: SecularBody, m0: float, nu: float, tau: float, y: np.ndarray) -> fl
     return (m0 * (1 + tau) + p.mass * p.arm * tau) / p.mass - across
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def unknowns_of(p: SecularBody, m0: float, chart: np.ndarray) -> tuple[float, float]:
     """Return nu and tau of a displacement, by the inverse of `slide`."""
     across, along, tau = 0.0, 0.0, 0.0
@@ -96,7 +96,7 @@ def unknowns_of(p: SecularBody, m0: float, chart: np.ndarray) -> tuple[float, fl
     return along + (1 + tau) * (p.arm * m0 + p.mass * p.arm * p.arm), tau
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def move(p: SecularBody, m0: float, nu: float, tau: float, y: np.ndarray, rows: np.ndarray) -> None:
     """Advance rows of a pose by the displacement, a reflection of each; keep their length."""
     k, first = len(y), 1 if p.slides else 0
@@ -120,7 +120,7 @@ def move(p: SecularBody, m0: float, nu: float, tau: float, y: np.ndarray, rows: 
             row[k + 1] += length * along
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def start(p: SecularBody, m: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
     """Return the outcome of the first root and the state of a run that begins with momenta and rows of a pose."""
     k = len(p.b)
@@ -131,7 +131,7 @@ def start(p: SecularBody, m: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndar
     return code, np.concatenate((m, np.zeros(len(m)), unknowns, pose))
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def chart_of(p: SecularBody, m: np.ndarray, nu: float, tau: float, chart: np.ndarray) -> None:
     """Write the chart coordinates of the displacement."""
     k = len(p.b)
@@ -148,7 +148,7 @@ def chart_in(p: SecularBody, state: np.ndarray) -> np.ndarray:
     return chart
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def advance(
     p: SecularBody,
     state: np.ndarray,
@@ -190,7 +190,7 @@ def advance(
     return done, code
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def step_each(
     p: SecularBody, momenta: np.ndarray, charts: np.ndarray, guesses: np.ndarray, principal_only: bool
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -11,8 +11,7 @@ and the second is $y_2 = (p_1(1+t^2) + 2am\,t^2)/2m$, half the slide along the c
 import math
 from typing import NamedTuple
 
-import numba
-
+from nonholo._compiled import njit
 from nonholo.kernels._scalar import COMPILED, scalar, sqrt
 from nonholo.numerics import real_cubic_roots
 
@@ -86,7 +85,7 @@ def move(
     return r0 * unit, r1 * unit, x, y
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def principal(p: SleighBody, m1: float, m2: float) -> tuple[int, float, float]:
     """Return the outcome and the root that momentum zero reaches along s m, 0 <= s <= 1.
 
@@ -104,7 +103,7 @@ def principal(p: SleighBody, m1: float, m2: float) -> tuple[int, float, float]:
     return (2 if m1 == 0 else 1), math.nan, math.nan
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _half_angle_roots(p: SleighBody, m1: float, hat: float) -> tuple[int, float, float, float]:
     """Return the finite real roots of the half-angle cubic, solving for 1/t where that has the larger leading term."""
     middle = 2 * p.inertia + hat

@@ -4,14 +4,15 @@ Libraries may cut a product otherwise in other numbers of threads. Every sum her
 the order of the loops.
 """
 
-import numba
 import numpy as np
+
+from nonholo._compiled import njit
 
 _WIDE = 8  # rows from which a sandwich is made of two products
 _SPLIT = 2.0**27 + 1  # halves the digits of a number
 
 
-@numba.njit(cache=True)
+@njit()
 def multiply(A: np.ndarray, B: np.ndarray, out: np.ndarray) -> None:
     """Write A B, for square matrices."""
     if len(A) == 4:  # a constant bound lets the compiler unroll: three times as fast
@@ -20,7 +21,7 @@ def multiply(A: np.ndarray, B: np.ndarray, out: np.ndarray) -> None:
         _wide_product(A, B, out, len(A))
 
 
-@numba.njit(inline="always")
+@njit(inline="always")
 def _product(A: np.ndarray, B: np.ndarray, out: np.ndarray, n: int) -> None:
     for i in range(n):
         for j in range(n):
@@ -30,7 +31,7 @@ def _product(A: np.ndarray, B: np.ndarray, out: np.ndarray, n: int) -> None:
             out[i, j] = total
 
 
-@numba.njit(inline="always")
+@njit(inline="always")
 def _wide_product(A: np.ndarray, B: np.ndarray, out: np.ndarray, n: int) -> None:
     """Write A B row by row, which runs in vector registers; four terms at a time spare the memory."""
     fours = n - n % 4
@@ -46,7 +47,7 @@ def _wide_product(A: np.ndarray, B: np.ndarray, out: np.ndarray, n: int) -> None
                 out[i, j] += A[i, k] * B[k, j]
 
 
-@numba.njit(cache=True)
+@njit()
 def sandwich(G: np.ndarray, Q: np.ndarray, half: np.ndarray, out: np.ndarray) -> None:
     """Write G^T Q G^T; `half` is scratch."""
     n = len(G)
@@ -60,7 +61,7 @@ def sandwich(G: np.ndarray, Q: np.ndarray, half: np.ndarray, out: np.ndarray) ->
         _wide_product(G.T, half, out, n)
 
 
-@numba.njit(inline="always")
+@njit(inline="always")
 def _sandwich(G: np.ndarray, Q: np.ndarray, half: np.ndarray, out: np.ndarray, n: int) -> None:
     for i in range(n):
         for j in range(n):
@@ -76,14 +77,14 @@ def _sandwich(G: np.ndarray, Q: np.ndarray, half: np.ndarray, out: np.ndarray, n
             out[i, j] = total
 
 
-@numba.njit(cache=True)
+@njit()
 def assign(target: np.ndarray, source: np.ndarray) -> None:
     """Write the numbers of a row to another one; numba compiles `target[:] = source` for seconds."""
     for i in range(len(source)):
         target[i] = source[i]
 
 
-@numba.njit(cache=True)
+@njit()
 def assign_rows(target: np.ndarray, source: np.ndarray) -> None:
     """Write the numbers of a matrix to another one."""
     for i in range(source.shape[0]):
@@ -91,7 +92,7 @@ def assign_rows(target: np.ndarray, source: np.ndarray) -> None:
             target[i, j] = source[i, j]
 
 
-@numba.njit(cache=True)
+@njit()
 def transpose(A: np.ndarray, out: np.ndarray) -> None:
     """Write the transpose of a square matrix."""
     for i in range(len(A)):
@@ -99,7 +100,7 @@ def transpose(A: np.ndarray, out: np.ndarray) -> None:
             out[i, j] = A[j, i]
 
 
-@numba.njit(cache=True)
+@njit()
 def paired(A: np.ndarray, B: np.ndarray) -> float:
     """Return the sum of products of entries."""
     total = 0.0
@@ -109,7 +110,7 @@ def paired(A: np.ndarray, B: np.ndarray) -> float:
     return total
 
 
-@numba.njit(cache=True)
+@njit()
 def paired_twice(A: np.ndarray, rest: np.ndarray, B: np.ndarray, less: float) -> float:
     """Return the sum of products of entries of A + rest with B, less a number, as if with twice the digits.
 
@@ -126,7 +127,7 @@ def paired_twice(A: np.ndarray, rest: np.ndarray, B: np.ndarray, less: float) ->
     return total + lost
 
 
-@numba.njit(inline="always")
+@njit(inline="always")
 def _product_and_error(a: float, b: float) -> tuple[float, float]:
     """Return the rounded product and its rounding error, by Dekker's halves."""
     large_a, large_b, product = _SPLIT * a, _SPLIT * b, a * b
@@ -135,7 +136,7 @@ def _product_and_error(a: float, b: float) -> tuple[float, float]:
     return product, a2 * b2 - (((product - a1 * b1) - a2 * b1) - a1 * b2)
 
 
-@numba.njit(cache=True)
+@njit()
 def eliminate(A: np.ndarray, B: np.ndarray) -> float:
     """Replace B by the solution of A X = B and return the determinant of A, zero or NaN if there is none.
 
@@ -158,7 +159,7 @@ def eliminate(A: np.ndarray, B: np.ndarray) -> float:
     return det
 
 
-@numba.njit(inline="always")
+@njit(inline="always")
 def _swap(A: np.ndarray, B: np.ndarray, k: int) -> float:
     """Bring the largest entry of column k to row k; return the sign of the exchange."""
     pivot = k
@@ -174,7 +175,7 @@ def _swap(A: np.ndarray, B: np.ndarray, k: int) -> float:
     return -1.0
 
 
-@numba.njit(inline="always")
+@njit(inline="always")
 def _subtract(A: np.ndarray, row: int, factor: float, other: int, begin: int) -> None:
     """Subtract a multiple of another row, from a column on."""
     for j in range(begin, A.shape[1]):

@@ -7,10 +7,10 @@ plane have a loop of their own, in `_composition`.
 from collections.abc import Callable
 from typing import Any
 
-import numba
 import numpy as np
 from numba.extending import overload
 
+from nonholo._compiled import njit
 from nonholo.kernels import _general_root, _general_run, _secular_run
 from nonholo.kernels._general import GeneralBody, Workspace, increments, workspace
 from nonholo.kernels._interface import Body
@@ -22,17 +22,17 @@ from nonholo.kernels._small import assign
 from nonholo.kernels._suslov import SuslovBody
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _two_prepared(p: Body, m: np.ndarray, weights: np.ndarray) -> np.ndarray:
     return np.empty(0)
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _two_charted(p: Body, m: np.ndarray, root: np.ndarray, chart: np.ndarray) -> None:
     assign(chart, root)
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _secular_prepared(p: SecularBody, m: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the certain radius of each stage, and room for y and for sums."""
     certain, k = np.empty(len(weights)), len(p.b)
@@ -42,7 +42,7 @@ def _secular_prepared(p: SecularBody, m: np.ndarray, weights: np.ndarray) -> tup
     return certain, np.empty(k), room_for_sums()
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _secular_solved(
     p: SecularBody,
     w: tuple[np.ndarray, np.ndarray, np.ndarray],
@@ -56,7 +56,7 @@ def _secular_solved(
     return code
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _secular_pushed(
     p: SecularBody,
     w: tuple[np.ndarray, np.ndarray, np.ndarray],
@@ -75,17 +75,17 @@ def _secular_pushed(
         _secular_run.move(p, m[-1], nu, tau, y, pose.reshape(-1, len(m) + 1))
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _secular_charted(p: SecularBody, m: np.ndarray, root: np.ndarray, chart: np.ndarray) -> None:
     _secular_run.chart_of(p, m, root[0], root[1], chart)
 
 
-@numba.njit(cache=True)
+@njit()
 def _general_prepared(p: GeneralBody, m: np.ndarray, weights: np.ndarray) -> Workspace:
     return workspace(p)
 
 
-@numba.njit(cache=True)
+@njit()
 def _general_solved(
     p: GeneralBody, w: Workspace, stage: int, m: np.ndarray, guess: np.ndarray, pose: np.ndarray, root: np.ndarray
 ) -> int:
@@ -95,7 +95,7 @@ def _general_solved(
     return 5 if _general_run.overflowed(p, pose) else code
 
 
-@numba.njit(cache=True)
+@njit()
 def _general_pushed(
     p: GeneralBody, w: Workspace, m: np.ndarray, root: np.ndarray, change: np.ndarray, pose: np.ndarray
 ) -> None:
@@ -106,7 +106,7 @@ def _general_pushed(
     _general_run.move(p, w, pose.reshape(w.X.shape))
 
 
-@numba.njit(cache=True)
+@njit()
 def _general_charted(p: GeneralBody, m: np.ndarray, root: np.ndarray, chart: np.ndarray) -> None:
     assign(chart, root * p.stretch)
 

@@ -10,9 +10,9 @@ and $m' = m - 2\,(c\cdot y^\perp)\,y^\perp / (1 + |y|^2)$. The fold curve is whe
 
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 
+from nonholo._compiled import njit
 from nonholo.kernels._scalar import COMPILED, PIECES, scalar, sqrt
 
 
@@ -42,6 +42,9 @@ def suslov_table(B: np.ndarray, c: np.ndarray) -> np.ndarray:
 
 
 def _certain_radius(B: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Return the radius of the disc that no fold reaches, in a unit of mass in which no square over- or underflows."""
+    unit = np.exp2(np.floor(np.log2(np.abs(B).max(axis=(-2, -1)))))[..., None]
+    B, c = B / unit[..., None], c / unit
     low, high = np.moveaxis(np.linalg.eigvalsh(B), -1, 0)
     length, pull = np.linalg.norm(c, axis=-1), np.linalg.norm((B @ c[..., None])[..., 0], axis=-1)
     with np.errstate(divide="ignore"):
@@ -116,7 +119,7 @@ _LONGEST_ARC = 0.1  # radians of the half-turn sphere per continuation step
 _CLOSE = 0.02  # a corrector that moves further has left the branch
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def principal(p: SuslovBody, m1: float, m2: float) -> tuple[int, float, float]:
     """Follow the root from momentum zero along s m, 0 <= s <= 1; return the outcome and y.
 
@@ -145,7 +148,7 @@ def principal(p: SuslovBody, m1: float, m2: float) -> tuple[int, float, float]:
     return 3, np.nan, np.nan
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _correct(p, m1, m2, guess):  # noqa: ANN001, ANN202
     z = guess
     for _ in range(6):
@@ -160,7 +163,7 @@ def _correct(p, m1, m2, guess):  # noqa: ANN001, ANN202
     return False, z
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _tangent(p, m1, m2, z, r1, r2):  # noqa: ANN001, ANN202
     weight = z[0] * z[0] + z[1] * z[1] + z[2] * z[2]
     return _solve(p, m1, m2, z, r1 * weight, r2 * weight, 0.0)

@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import jax
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert._room import room
 from nonholo.lagrange_dalembert._tracing import traced_shape
+from nonholo.numerics import double_precision
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem
 from nonholo.systems._mass import checked_group, group_mass_tensor, inertia_form
 
@@ -75,8 +76,8 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     def __post_init__(self) -> None:
         if not isinstance(self.group, AbstractMatrixGroup):
             where, remedy = "GroupLagrangeDAlembert(group=...)", "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
-            raise error(where, "be a matrix group", repr(self.group), remedy)
-        with jax.enable_x64(True):
+            raise error(where, "be a matrix group", shown(self.group), remedy)
+        with double_precision():
             g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
             w, h = jax.ShapeDtypeStruct((self.group.dim,), float), jax.ShapeDtypeStruct((), float)
             self._check("discrete_lagrangian", (), g, h)
@@ -110,7 +111,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
         """The number s of constraints."""
         if self.constraint_forms is None:
             return 0
-        with jax.enable_x64(True):
+        with double_precision():
             g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
             return jax.eval_shape(self.constraint_forms, g).shape[0]
 

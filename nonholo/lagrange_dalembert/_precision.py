@@ -6,8 +6,10 @@ from typing import Any
 import jax
 import numpy as np
 
+from nonholo.numerics import double_precision
+
 
 def in_double(function: Callable[..., Any], *arguments: Any) -> Any:
     """Call a JAX function with 64-bit numbers; return NumPy arrays."""
-    with jax.enable_x64(True):
+    with double_precision():
         return jax.tree.map(np.asarray, function(*arguments))

@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import array, error, is_traced, positive
+from nonholo._checks import array, error, is_traced, scale
 from nonholo._types import Array, Float
 from nonholo.lagrange_dalembert._equations import acceleration_matrix, discrete_constraints, forms
 from nonholo.lagrange_dalembert._newton import orientation
@@ -25,7 +25,7 @@ def fixed_time_step(value: Any) -> float:
     if is_traced(value):
         remedy = "Runs in coordinates are compiled by themselves: call them outside jax.jit and jax.grad."
         raise error(where, "be a number", "a traced value", remedy)
-    return float(positive(where, value, "Pass a positive real time step."))
+    return float(scale(where, value, "Pass a positive real time step."))
 
 
 def chosen(owner: str, starts: dict[str, Any]) -> str:
@@ -134,7 +134,7 @@ def velocity_of_displacement(system: LagrangeDAlembert, q: np.ndarray, given: An
 def regularity(system: LagrangeDAlembert, q: Any, q_next: Any, time_step: Any) -> float:
     """Return the least singular value of the scaled regularity matrix of a step."""
     owner, n = "regularity", system.dimension
-    h = positive(f"{owner}(time_step=...)", time_step, "Pass a positive time step.")
+    h = scale(f"{owner}(time_step=...)", time_step, "Pass a positive time step.")
     first = array(f"{owner}(q=...)", q, (n,), f"Pass the {n} coordinates.")
     second = array(f"{owner}(q_next=...)", q_next, (n,), f"Pass the {n} coordinates.")
     return float(in_double(_orientation, system, first, (second - first) / h, h)[1])

@@ -10,6 +10,7 @@ from nonholo._checks import choice, count, error
 from nonholo._types import Array
 from nonholo.lagrange_dalembert._room import room
 from nonholo.lagrange_dalembert._tracing import traced_shape, with_time_step
+from nonholo.numerics import double_precision
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         choice("LagrangeDAlembert(rule=...)", self.rule, ("midpoint", "trapezoidal"))
         object.__setattr__(self, "discrete_lagrangian", with_time_step(self.discrete_lagrangian))
         object.__setattr__(self, "discrete_constraints", with_time_step(self.discrete_constraints))
-        with jax.enable_x64(True):
+        with double_precision():
             q, h = jax.ShapeDtypeStruct((self.dimension,), float), jax.ShapeDtypeStruct((), float)
             self._check("lagrangian", (), q, q)
             if self.constraint_forms is not None:
@@ -105,7 +106,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         """The number s of constraints."""
         if self.constraint_forms is None:
             return 0
-        with jax.enable_x64(True):
+        with double_precision():
             return jax.eval_shape(self.constraint_forms, jax.ShapeDtypeStruct((self.dimension,), float)).shape[0]
 
     def regularity(self, q: Any, q_next: Any, *, time_step: float = 1.0) -> float:

@@ -8,14 +8,14 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Array
 
 
 def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str) -> tuple[int, ...]:
     """Return the shape of a function's value; `of` says in words what it is called with."""
     if not callable(function):
-        raise error(where, "be a function", repr(function), "Pass a function of jax.numpy arrays.")
+        raise error(where, "be a function", shown(function), "Pass a function of jax.numpy arrays.")
     try:
         traced = jax.make_jaxpr(lambda *x: _array(function(*x)))(*arguments)
     except Exception as failure:

@@ -2,10 +2,10 @@
 
 import math
 
-import numba
+from nonholo._compiled import njit
 
 
-@numba.njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def real_cubic_roots(a: float, b: float, c: float, d: float) -> tuple[int, float, float, float]:
     r"""Return the number of real roots of $a t^3 + b t^2 + c t + d$, $a \ne 0$, and three slots that hold them.
 
@@ -33,7 +33,7 @@ def real_cubic_roots(a: float, b: float, c: float, d: float) -> tuple[int, float
     return 3, root, _polish(a, b, c, d, far / a), _polish(a, b, c, d, near)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _outer_root(a: float, b: float, c: float, d: float) -> float:
     """Return the root on that side of the inflection where there is one only, or where the outermost one is simple.
 
@@ -55,12 +55,12 @@ def _outer_root(a: float, b: float, c: float, d: float) -> float:
     return t
 
 
-@numba.njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _value_and_slope(a: float, b: float, c: float, d: float, t: float) -> tuple[float, float]:
     return ((a * t + b) * t + c) * t + d, (3 * a * t + 2 * b) * t + c
 
 
-@numba.njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _above_cube_root(x: float) -> float:
     """Return a bound of x^(1/3): Newton's method, here from x^(1/4 + 1/16), comes down to it from its first step on."""
     fourth = math.sqrt(math.sqrt(x))
@@ -70,7 +70,7 @@ def _above_cube_root(x: float) -> float:
     return root if x > 0 else x
 
 
-@numba.njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _polish(a: float, b: float, c: float, d: float, root: float) -> float:
     value, slope = _value_and_slope(a, b, c, d, root)
     for _ in range(2):

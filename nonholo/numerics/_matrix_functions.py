@@ -45,7 +45,7 @@ def _by_doubling(X: np.ndarray) -> np.ndarray:
     """Halve until the norm is below 1/2; then phi(2 Y) = phi(Y) (I + E / 2), E = phi(Y) Y, and E(2 Y) = E (2 I + E)."""
     norm = np.max(np.abs(X).sum(axis=-1), initial=0.0)
     doublings = max(0, math.frexp(norm)[1] + 1) if math.isfinite(norm) else 0
-    Y, eye = X / 2.0**doublings, identity_like(X)
+    Y, eye = np.ldexp(X, -doublings), identity_like(X)
     phi = eye + Y / _TERMS
     for k in range(_TERMS - 1, 1, -1):
         phi = eye + Y @ phi / k
@@ -72,15 +72,41 @@ def _by_doubling_in_loops(X: Array) -> Array:
     return jnp.where(doublings > _DOUBLINGS, jnp.nan, fori_loop(0, _DOUBLINGS, doubled, (phi, phi @ Y))[0])
 
 
+def solved(A: Float[Array, "... N N"], B: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
+    r"""Return $A^{-1}B$ of matrices or stacks of one shape; NaN where A is singular, as JAX has it.
+
+    In NumPy a result that is not finite though the matrices are comes with the RuntimeWarning of 0/0.
+
+    Example:
+        >>> with np.errstate(invalid="ignore"):
+        ...     solved(np.array([[[2.0]], [[0.0]]]), np.ones((2, 1, 1))).ravel()
+        array([0.5, nan])
+    """
+    if not isinstance(A, np.ndarray):
+        return A.__array_namespace__().linalg.solve(A, B)
+    try:
+        X = np.linalg.solve(A, B)
+    except np.linalg.LinAlgError:  # one singular matrix spoils the whole stack
+        return np.stack([solved(*each) for each in zip(A, B, strict=True)]) if A.ndim > 2 else B * np.divide(0.0, 0.0)
+    if not np.isfinite(X).all() and np.isfinite(A).all() and np.isfinite(B).all():
+        np.divide(0.0, 0.0)
+    return X
+
+
+def inverted(A: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
+    """Return the inverse, as `solved`."""
+    return solved(A, A.__array_namespace__().broadcast_to(identity_like(A), A.shape))
+
+
 def cayley_increment(X: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
     r"""Return $(I - X/2)^{-1}(I + X/2) - I = (I - X/2)^{-1}X$ without the subtraction."""
-    return X.__array_namespace__().linalg.solve(identity_like(X) - X / 2, X)
+    return solved(identity_like(X) - X / 2, X)
 
 
 def inverse_cayley(W: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
     r"""Return $K = (W + I)^{-1}(W - I)$, the matrix with $W = (I - K)^{-1}(I + K)$."""
     eye = identity_like(W)
-    return W.__array_namespace__().linalg.solve(W + eye, W - eye)
+    return solved(W + eye, W - eye)
 
 
 def principal_logarithm(W: Float[Array, "... N N"], halvings: int) -> Float[Array, "... N N"]:
@@ -92,20 +118,20 @@ def principal_logarithm(W: Float[Array, "... N N"], halvings: int) -> Float[Arra
     for twice that logarithm. Nothing is checked: compare the exponential of the result.
     """
     xp, eye = W.__array_namespace__(), identity_like(W)
-    K = _repeated(lambda K: xp.linalg.solve(eye + _square_root(eye - K @ K), K), halvings, inverse_cayley(W))
+    K = _repeated(lambda K: solved(eye + _square_root(eye - K @ K), K), halvings, inverse_cayley(W))
     nodes, weights = xp.asarray(_NODES, dtype=W.dtype), xp.asarray(_WEIGHTS, dtype=W.dtype)
     squares = (nodes * nodes)[:, None, None] * (K @ K)[..., None, :, :]
-    terms = xp.linalg.solve(eye - squares, xp.broadcast_to(K[..., None, :, :], squares.shape))
+    terms = solved(eye - squares, xp.broadcast_to(K[..., None, :, :], squares.shape))
     return 2.0 ** (halvings + 1) * xp.sum(weights[:, None, None] * terms, axis=-3)
 
 
 def _square_root(A: Array) -> Array:
     """The iteration of Denman and Beavers in product form, whose rounding errors do not grow."""
-    eye, invert = identity_like(A), A.__array_namespace__().linalg.inv
+    eye = identity_like(A)
 
     def improved(state: tuple[Array, Array]) -> tuple[Array, Array]:
         root, product = state
-        inverse = invert(product)
+        inverse = inverted(product)
         return root @ (eye + inverse) / 2, eye / 2 + (product + inverse) / 4
 
     return _repeated(improved, _ROOT_ITERATIONS, (A, A))[0]

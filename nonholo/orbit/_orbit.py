@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error, selection
+from nonholo._checks import error, selection, shown
 from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.groups import SE
@@ -27,7 +27,7 @@ def as_orbit(where: str, value: Any, coordinates: str) -> "Orbit":
     """Refuse what is not an orbit on a group; `coordinates` says what to do with an orbit in coordinates."""
     if not isinstance(value, Orbit):
         remedy = f"Pass what `simulate` or `flow` returned; {coordinates}"
-        raise error(where, "be an orbit of a system on a group", repr(value), remedy)
+        raise error(where, "be an orbit of a system on a group", shown(value), remedy)
     return value
 
 

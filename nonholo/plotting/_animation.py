@@ -1,5 +1,6 @@
 """Moving pictures of orbits, as GIF files."""
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,8 +10,9 @@ from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 from PIL import Image
 
-from nonholo._checks import count, error, function, positive
+from nonholo._checks import count, error, function, positive, shown
 from nonholo._checks import path as checked_path
+from nonholo._limits import within_memory
 from nonholo._types import Int
 from nonholo.io import check_file
 from nonholo.orbit import Orbit
@@ -75,6 +77,7 @@ def animate(
     shown = _shown_states(orbit, motion(orbit), total)
     figure, show = scene(orbit, shown)
     canvas = FigureCanvasAgg(figure)
+    within_memory("animate(frames=...)", float(len(shown)) * math.prod(canvas.get_width_height()), "Ask for fewer.")
     palette = _palette([_photograph(canvas, show, frame) for frame in _sampled(len(shown))])
     pictures = []
     for frame in range(len(shown)):
@@ -102,7 +105,7 @@ def _scene_of(orbit: Orbit) -> tuple[Callable[[Orbit], float], Callable[..., tup
 def _target(path: str | Path) -> Path:
     target = checked_path("animate(path=...)", path)
     if target.suffix.lower() != ".gif":
-        raise error("animate(path=...)", "end in .gif", repr(str(path)), "Use `overview` for a still picture.")
+        raise error("animate(path=...)", "end in .gif", shown(str(path)), "Use `overview` for a still picture.")
     return target
 
 

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.colors import to_rgb
 
-from nonholo._checks import array, error
+from nonholo._checks import array, error, shown
 from nonholo._types import Float
 from nonholo.groups import SO
 from nonholo.orbit import Orbit
@@ -117,7 +117,7 @@ def body_axis_track(
 def _check(orbit: Orbit, flow: Orbit | None) -> None:
     where = "body_axis_track(orbit=...)"
     if posed(where, orbit).system.group != SO(3):
-        raise error(where, "be an orbit on SO(3)", repr(orbit), _REMEDY)
+        raise error(where, "be an orbit on SO(3)", shown(orbit), _REMEDY)
     if flow is not None:
         same_group("body_axis_track(flow=...)", flow, orbit)
 

@@ -9,7 +9,7 @@ from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
 
-from nonholo._checks import error
+from nonholo._checks import error, shape_of, shown
 from nonholo._types import Float
 from nonholo.analysis import deltoid, invariant_curve
 from nonholo.analysis.planar import planar_map
@@ -106,16 +106,16 @@ def _chosen(discrete: Discretization, plane: str | None) -> bool:
     if plane is None:
         return has_deltoid
     where = "plot.branches(plane=...)"
-    if plane not in ("displacements", "momenta"):
-        raise error(where, "be 'displacements' or 'momenta'", repr(plane), "Leave it out for the usual one.")
+    if not isinstance(plane, str) or plane not in ("displacements", "momenta"):
+        raise error(where, "be 'displacements' or 'momenta'", shown(plane), "Leave it out for the usual one.")
     if plane == "momenta" and not has_deltoid:
-        raise error(where, "be 'displacements' where there is no deltoid", repr(discrete.system), "Leave it out.")
+        raise error(where, "be 'displacements' where there is no deltoid", shown(discrete.system), "Leave it out.")
     return plane == "momenta"
 
 
 def _present(discrete: Discretization, momentum: Any) -> Float[np.ndarray, "N N"]:
     """Return the displacement of a momentum that has one."""
-    if np.shape(momentum) == (discrete.system.group.dim,):
+    if shape_of(momentum) == (discrete.system.group.dim,):
         return inverse_discrete_legendre(discrete, momentum)
     found = displacements_over(discrete, momentum)
     return found.displacement[found.principal].real

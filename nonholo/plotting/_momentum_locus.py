@@ -89,7 +89,7 @@ def momentum_locus(
     """
     where = "plot.momentum_locus"
     if not isinstance(locus, MomentumLocus):
-        raise error(f"{where}(locus=...)", "be a locus", repr(locus), "Pass what `nh.momentum_locus` returned.")
+        raise error(f"{where}(locus=...)", "be a locus", shown(locus), "Pass what `nh.momentum_locus` returned.")
     own_orbit(f"{where}(orbit=...)", orbit, locus.discrete)
     space: Any = _new_axes() if axes is None else axes
     drawn = _drawn(locus.discrete.system)
@@ -118,7 +118,7 @@ def own_orbit(where: str, orbit: Any, discrete: Any) -> None:
     motion = drawable(where, orbit).motion
     mine, theirs = ((repr(d.system), getattr(d, "time_step", None)) for d in (discrete, motion))
     if mine != theirs:
-        raise error(where, "be an orbit of the same discretised system", repr(orbit), "Run `nh.simulate` with it.")
+        raise error(where, "be an orbit of the same discretised system", shown(orbit), "Run `nh.simulate` with it.")
 
 
 def _new_axes() -> Any:

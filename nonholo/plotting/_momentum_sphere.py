@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
@@ -103,7 +103,7 @@ def _check(orbit: Orbit) -> AbstractLLSystem:
     system = drawable(where, orbit).system
     if not isinstance(system, AbstractLLSystem):
         remedy = "Its momenta along the constraint are conserved: draw `overview` instead."
-        raise error(where, "have a left-invariant constraint", repr(orbit), remedy)
+        raise error(where, "have a left-invariant constraint", shown(orbit), remedy)
     if len(system.constraint_subspace) != 3:
         got = f"dimension {len(system.constraint_subspace)}"
         remedy = "Use `phase_portrait` in two dimensions, `overview` in others."

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
 
-from nonholo._checks import choice, error
+from nonholo._checks import choice, error, shown
 from nonholo.discrete import BranchTree, Discretization, branch_tree
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
@@ -25,7 +25,7 @@ def trees_of(orbit: Orbit | None, branches: str) -> list[BranchTree]:
     if choice(where, branches, ("principal", "all")) == "principal":
         return []
     if orbit is None or not isinstance(orbit.motion, Discretization):
-        got = "a system alone" if orbit is None else repr(orbit)
+        got = "a system alone" if orbit is None else shown(orbit)
         raise error(where, "be 'principal' without a discrete orbit", got, "Pass what `nh.simulate` returned.")
     chosen = evenly_in_box(orbit.reduced_momentum, _SEEDS + 1)[:_SEEDS]
     return [branch_tree(orbit.motion, W, _GENERATIONS) for W in orbit.displacement[chosen]]

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch
 
 from nonholo._checks import energies as checked_energies
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
@@ -116,13 +116,13 @@ def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
     if not isinstance(system, AbstractLLSystem):
         if isinstance(system, AbstractSystem):
             remedy = "Its momenta along the constraint are conserved: draw `overview` instead."
-            raise error(where, "have a left-invariant constraint", repr(system), remedy)
-        raise error(where, "be a system", repr(system), "Pass `orbit.system` first, then the orbit.")
+            raise error(where, "have a left-invariant constraint", shown(system), remedy)
+        raise error(where, "be a system", shown(system), "Pass `orbit.system` first, then the orbit.")
     if len(system.constraint_subspace) != 2:
         got = f"dimension {len(system.constraint_subspace)}"
         raise error(where, "have a two-dimensional constraint subspace", got, "Plot `orbit.restricted_momentum`.")
     if orbit is not None and type(drawable("phase_portrait(orbit=...)", orbit).system) is not type(system):
-        raise error("phase_portrait(orbit=...)", "be an orbit of the system", repr(orbit), "Pass `orbit.system`.")
+        raise error("phase_portrait(orbit=...)", "be an orbit of the system", shown(orbit), "Pass `orbit.system`.")
 
 
 def _energies(system: AbstractLLSystem, orbit: Orbit | None, energies: Any) -> Float[np.ndarray, "L"]:

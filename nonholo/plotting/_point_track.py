@@ -10,7 +10,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
@@ -93,7 +93,7 @@ def _axes(axes: Any, dimension: int) -> Any:
         return figure.add_subplot(projection="3d" if dimension == 3 else None)
     if not isinstance(axes, Axes) or hasattr(axes, "get_zlim") != (dimension == 3):
         remedy = 'Make them with projection="3d".' if dimension == 3 else "Make them without a projection."
-        raise error("point_track(axes=...)", f"be axes of dimension {dimension}", repr(axes), remedy)
+        raise error("point_track(axes=...)", f"be axes of dimension {dimension}", shown(axes), remedy)
     return axes
 
 

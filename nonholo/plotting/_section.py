@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 
-from nonholo._checks import error, function, pair, text
+from nonholo._checks import error, function, pair, shown, text
 from nonholo._types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
@@ -65,7 +65,7 @@ def section(
     """
     if not isinstance(crossings, Crossings) or not len(crossings):
         remedy = "Pass `orbit.events[...]` of a run that crosses."
-        raise error("section(crossings=...)", "hold crossings of an event", repr(crossings), remedy)
+        raise error("section(crossings=...)", "hold crossings of an event", shown(crossings), remedy)
     function("section(across=...)", across)
     function("section(up=...)", up)
     across_label, up_label = (text("section(labels=...)", label) for label in pair("section(labels=...)", labels))

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit, as_orbit
@@ -36,7 +36,7 @@ def system_of(where: str, orbit: Any, kind: type[_System], remedy: str) -> _Syst
     """Return the system of an orbit that has poses and is of one kind."""
     system = drawable(where, orbit).system
     if not isinstance(system, kind):
-        raise error(where, f"be an orbit of a {kind.__name__}", repr(orbit), remedy)
+        raise error(where, f"be an orbit of a {kind.__name__}", shown(orbit), remedy)
     posed(where, orbit)
     return system
 

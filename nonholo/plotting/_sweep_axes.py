@@ -11,7 +11,7 @@ from matplotlib.collections import PathCollection
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import BoundaryNorm, LogNorm, Normalize
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.plotting import theme
 
@@ -64,8 +64,8 @@ def subject_of(result: Any, quantity: str | None) -> Subject:
     if quantity is None:
         own = [name for name in known if result[name].attrs.get("long_name") != DRAWN and name != OUTCOME]
         quantity = next((name for name in own if result[name].dims == codes.dims), OUTCOME)
-    if quantity not in known:
-        raise error(f"{where}(quantity=...)", f"be one of {', '.join(known)}", repr(quantity), "Choose one of them.")
+    if not isinstance(quantity, str) or quantity not in known:
+        raise error(f"{where}(quantity=...)", f"be one of {', '.join(known)}", shown(quantity), "Choose one of them.")
     values = result[quantity]
     more = [str(name) for name in values.dims if name not in codes.dims]
     if more:

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.colorbar import Colorbar
 from matplotlib.ticker import MaxNLocator
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.plotting import theme
 from nonholo.plotting._sweep_axes import (
@@ -33,7 +33,7 @@ Drawn = tuple[Any, tuple[Any, ...], Colorbar | None]
 def draw_draws(axes: Axes, result: xarray.Dataset, subject: Subject, x: str | None, y: str | None) -> Drawn:
     """Draw the members of a random design."""
     if y is not None and x is None:
-        raise error("plot.sweep_map(y=...)", "come with x", repr(y), "Pass x, or x and y.")
+        raise error("plot.sweep_map(y=...)", "come with x", shown(y), "Pass x, or x and y.")
     if x is not None and y is not None:
         drawn = _coloured_dots(axes, subject, _number(result, "x", x), _number(result, "y", y))
     elif subject.values.name == OUTCOME:
@@ -52,7 +52,7 @@ def _number(result: xarray.Dataset, argument: str, name: str) -> xarray.DataArra
     if name not in numbers:
         known = ", ".join(numbers)
         where = f"plot.sweep_map({argument}=...)"
-        raise error(where, "be one number of each member", repr(name), f"Choose among {known}.")
+        raise error(where, "be one number of each member", shown(name), f"Choose among {known}.")
     return result[name]
 
 

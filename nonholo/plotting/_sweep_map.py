@@ -10,7 +10,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import ListedColormap
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo.plotting import theme
 from nonholo.plotting._sweep_axes import (
     OUTCOME,
@@ -91,8 +91,8 @@ def _along(values: xarray.DataArray, x: str | None, y: str | None) -> list[str]:
     """Return the axes of the picture; others may only have one value."""
     known = [str(name) for name in values.dims]
     for argument, name in (("x", x), ("y", y)):
-        if name is not None and name not in known:
-            got = repr(name)
+        if name is not None and (not isinstance(name, str) or name not in known):
+            got = shown(name)
             raise error(f"plot.sweep_map({argument}=...)", f"be one of {', '.join(known)}", got, "Choose one of them.")
     if not known or (x is not None and x == y):
         got, remedy = ("one member" if not known else f"{x!r} twice"), "Pass more of the result, or name two axes."

@@ -15,9 +15,9 @@ from nonholo.orbit import Orbit
 from nonholo.simulation._events_pieces import searched_first, stretch_of
 from nonholo.simulation._events_run import watched
 from nonholo.simulation._events_scan import Watch
-from nonholo.simulation._prepared import checked_counts, first_state, refuse_too_long
+from nonholo.simulation._prepared import checked_counts, first_state, refuse_too_large, refuse_too_long
 from nonholo.simulation._stored_run import rows_of_block
-from nonholo.simulation._stretch import CompiledRun, compiled_run, opened
+from nonholo.simulation._stretch import CompiledRun, closed_step, compiled_run, opened
 
 
 def iterate(
@@ -78,7 +78,8 @@ def iterate(
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
     starts["restricted_velocity"] = restricted_velocity
     steps, every, rule = checked_counts(discrete, steps, save_every, branch, backend, displacement)
-    run = compiled_run("iterate(discrete=...)", discrete, rule, backend, every, reconstruct)
+    run = compiled_run("iterate(discrete=...)", discrete, closed_step(discrete, rule, backend), every, reconstruct)
+    refuse_too_large("iterate", discrete, 1, reconstruct)
     refuse_too_long("iterate", discrete, steps, compiled=True)
     plan = Plan(steps, every, rows_of_block("iterate(block_steps=...)", run, steps, block_steps))
     watch = None if events is None else watched("iterate", discrete, events, rule, reconstruct)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import choice, count, error, flags
+from nonholo._checks import choice, count, error, flags, shown
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
@@ -23,7 +23,6 @@ from nonholo.simulation._events_run import watched_events
 from nonholo.simulation._prepared import refuse_too_large, refuse_too_long
 
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
-_LARGEST = 1 << 30  # numbers in all poses of a member, 8 GiB
 _BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
 
 
@@ -93,7 +92,6 @@ def ensemble(
         save_every = count("ensemble(save_every=...)", save_every, "Pass the steps between saved states, or None.")
     _check_backend(discrete, backend)
     flags("ensemble", reconstruct=reconstruct, progress=progress)
-    _check_poses(discrete, states_of(steps, save_every) if reconstruct else 0)
     if reduce is not None and not callable(reduce):
         raise error("ensemble(reduce=...)", "be a function", f"a {type(reduce).__name__}", "Pass a function, or None.")
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
@@ -102,8 +100,8 @@ def ensemble(
     name, rows = checked_start(discrete.system, checked, **starts)
     compiled = backend != "jax" and compiled_step(discrete) is not None
     refuse_too_long("ensemble", discrete, steps, compiled=compiled, members=len(rows))
-    kept = states_of(steps, save_every) if reduce is None else 0
-    refuse_too_large("ensemble", discrete, kept, reconstruct, members=len(rows))
+    held = len(rows) if reduce is None else 1
+    refuse_too_large("ensemble", discrete, states_of(steps, save_every), reconstruct, members=held)
     members = Members(discrete, checked, len(rows))
     check_systems(members)
     momenta = first_momenta(members, name, rows)
@@ -124,16 +122,7 @@ def _check_backend(discrete: Discretization, backend: str) -> None:
     choice("ensemble(backend=...)", backend, ("auto", "numba", "jax"))
     if backend == "numba" and compiled_step(discrete) is None:
         remedy = "Pass backend='jax', or difference='matrix'."
-        raise error("ensemble(backend=...)", "have a closed form of the step", repr(discrete.difference), remedy)
-
-
-def _check_poses(discrete: Discretization, states: int) -> None:
-    """Refuse poses of one member that would fill the memory."""
-    size = discrete.system.group.size
-    if states * size * size > _LARGEST:
-        got = f"{states} of {size}^2 numbers for each member"
-        remedy = "Pass reconstruct=False or a larger save_every."
-        raise error("ensemble(reconstruct=...)", f"make poses of at most {_LARGEST} numbers", got, remedy)
+        raise error("ensemble(backend=...)", "have a closed form of the step", shown(discrete.difference), remedy)
 
 
 def _counting(show: Callable[[int, int], None], total: int) -> Report:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error
+from nonholo._checks import array, error, shown
 from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.systems import ChaplyginSleigh
@@ -69,14 +69,14 @@ def checked_parameters(discrete: Discretization, parameters: Any) -> dict[str, A
         return {}
     system = discrete.system
     if not isinstance(parameters, Mapping):
-        raise error("ensemble(parameters=...)", "be a mapping of names to arrays", repr(parameters), "Pass a dict.")
+        raise error("ensemble(parameters=...)", "be a mapping of names to arrays", shown(parameters), "Pass a dict.")
     fields = [name for name in system.leaves if getattr(system, name) is not None]
     known = [*(_ARGUMENTS.get(name, name) for name in fields), _STEP]
     checked = {}
     for name, value in parameters.items():
         if name not in known:
             remedy = f"{type(system).__name__} has {', '.join(known)}."
-            raise error("ensemble(parameters=...)", "name fields of the system", repr(name), remedy)
+            raise error("ensemble(parameters=...)", "name fields of the system", shown(name), remedy)
         shape = () if name == _STEP else np.shape(getattr(system, name))
         where = f"ensemble(parameters={{{name!r}: ...}})"
         checked[name] = array(where, value, (None, *shape), "Pass one value for each member.")

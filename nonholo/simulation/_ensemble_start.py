@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from nonholo import kernels
-from nonholo._checks import array, error
+from nonholo._checks import array, error, shape_of
 from nonholo._types import Float
 from nonholo.discrete._start import initial_momentum
 from nonholo.discrete._structured import scalar_step
@@ -78,8 +78,9 @@ def checked_start(system: System, parameters: dict[str, np.ndarray], **starts: A
     ((name, value),) = ((name, value) for name, value in starts.items() if value is not None)
     where, k, dim = f"ensemble({name}=...)", system.rank, system.group.dim
     lengths = {"body_velocity": (dim,), "restricted_velocity": (k,), "momentum": (k, dim)}[name]
-    size = np.shape(value)[-1] if np.ndim(value) and np.shape(value)[-1] in lengths else lengths[-1]
-    if np.ndim(value) == 1 and parameters:
+    shape = shape_of(value)
+    size = shape[-1] if shape and shape[-1] in lengths else lengths[-1]
+    if len(shape) == 1 and parameters:
         count = len(next(iter(parameters.values())))
         return name, np.broadcast_to(array(where, value, (size,)), (count, size))
     rows = array(where, value, (None, size), "Pass one row for each member; `simulate` runs a single one.")

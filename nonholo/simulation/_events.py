@@ -2,13 +2,12 @@
 
 import dataclasses
 import math
-import numbers
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from nonholo._checks import choice, error
+from nonholo._checks import choice, error, natural, shown
 from nonholo._types import Float
 from nonholo.orbit import Orbit
 
@@ -47,13 +46,12 @@ class Event:
 
     def __post_init__(self) -> None:
         if not callable(self.function):
-            raise error("Event(function=...)", "be a function of an orbit", repr(self.function), "Pass a function.")
+            raise error("Event(function=...)", "be a function of an orbit", shown(self.function), "Pass a function.")
         choice("Event(direction=...)", self.direction, (-1, 0, 1), "1 is from below, -1 from above, 0 both.")
         if self.name is not None and not isinstance(self.name, str):
             raise error("Event(name=...)", "be a text", f"a {type(self.name).__name__}", "Pass a name, or None.")
-        if not isinstance(self.stop, numbers.Integral) or self.stop < 0:
-            remedy = "Pass True for the first one, or which one."
-            raise error("Event(stop=...)", "be True, False or a number of crossings", repr(self.stop), remedy)
+        if not isinstance(self.stop, bool):
+            natural("Event(stop=...)", self.stop, "Pass True for the first crossing, or which one.")
 
     @property
     def last(self) -> float:
@@ -65,7 +63,7 @@ def checked_events(owner: str, events: Any) -> dict[str, Event]:
     """Return events by name; a function is an event with the defaults."""
     where = f"{owner}(events=...)"
     if not isinstance(events, Sequence) or isinstance(events, str):
-        raise error(where, "be a list of events or functions", repr(events), "Pass a list, also of a single one.")
+        raise error(where, "be a list of events or functions", shown(events), "Pass a list, also of a single one.")
     named: dict[str, Event] = {}
     for position, given in enumerate(events):
         event = given if isinstance(given, Event) else Event(given)

@@ -4,7 +4,7 @@ import dataclasses
 from collections.abc import Callable
 from typing import Any
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, finished
 from nonholo.discrete import Discretization
@@ -34,7 +34,9 @@ def watched_events(
     named, where = checked_events(owner, events), f"{owner}(events=...)"
     if rule != "principal":
         remedy = "Run with branch='principal', or look for changes of sign in the states yourself."
-        raise error(where, "have the principal branch, where parts of a step are defined", f"branch {rule!r}", remedy)
+        raise error(
+            where, "have the principal branch, where parts of a step are defined", f"branch {shown(rule)}", remedy
+        )
     if isinstance(discrete.system, AbstractLRSystem) and not reconstruct:
         got = "reconstruct=False with a right-invariant constraint, whose step depends on the pose"
         raise error(where, "have poses", got, "Run with reconstruct=True.")

@@ -5,7 +5,8 @@ from typing import Any, overload
 
 import numpy as np
 
-from nonholo._checks import choice, error, flow_times, flow_tolerances
+from nonholo._checks import choice, error, flow_times, flow_tolerances, shown
+from nonholo._limits import within_memory
 from nonholo._results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, closed_form
 from nonholo.discrete._start import in_group, initial_momentum, one_start
@@ -114,10 +115,11 @@ def flow(
             atol=atol,
         )
     if not isinstance(system, AbstractSystem):
-        raise error("flow(system=...)", "be a system", repr(system), "Pass a SuslovTop or an LLSystem.")
+        raise error("flow(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
     choice("flow(method=...)", method, (None, "closed_form"))
     time, tolerances = flow_times(times), flow_tolerances(rtol, atol)
     group, motion = system.group, ContinuousFlow(system)
+    within_memory("flow(times=...)", 32.0 * len(time) * (system.rank + group.pose_size), "Ask for fewer times.")
     g = group.identity if configuration is None else in_group("flow(configuration=...)", group, configuration)
     pose = group.pose_from_matrix(g @ system.frame)
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}

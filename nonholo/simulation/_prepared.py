@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo._checks import choice, error, step_counts
+from nonholo._checks import choice, step_counts
 from nonholo._limits import within_a_year, within_memory
 from nonholo.discrete import Discretization, initial_state
 from nonholo.discrete._branch_rules import BranchRule, checked_rule
@@ -14,7 +14,6 @@ from nonholo.discrete._start import in_group
 from nonholo.discrete._structured import is_secular
 
 _COMPILED, _BY_DEFINITION = 5e-10, 1e-5  # least seconds of a step for each component of momentum; of one step
-_LARGEST = 1 << 30  # numbers in all poses of an orbit, 8 GiB
 
 
 class Start(NamedTuple):
@@ -44,10 +43,11 @@ def refuse_too_long(owner: str, discrete: Discretization, steps: int, *, compile
 
 
 def refuse_too_large(owner: str, discrete: Discretization, states: int, reconstruct: bool, *, members: int = 1) -> None:
-    """Refuse more saved states than memory holds."""
-    size = 1 + 2 * discrete.system.rank + reconstruct * discrete.system.group.pose_size
-    remedy = "Raise save_every, or pass store=... (`simulate`) or reduce=... (`ensemble`)."
-    within_memory(f"{owner}(steps=...)", 8.0 * members * states * size, remedy)
+    """Refuse more saved states, or larger poses, than memory holds."""
+    size, pose = 1 + 2 * discrete.system.rank, reconstruct * discrete.system.group.pose_size
+    what, remedy = ("reconstruct", "Pass reconstruct=False, raise") if pose > size else ("steps", "Raise")
+    remedy += " save_every, or pass store=... (`simulate`) or reduce=... (`ensemble`)."
+    within_memory(f"{owner}({what}=...)", 8.0 * members * states * (size + pose), remedy)
 
 
 def first_state(
@@ -63,10 +63,6 @@ def first_state(
 def first_pose(discrete: Discretization, configuration: Any, saved: int, compiled: bool) -> np.ndarray | None:
     """Return the first pose; None where neither the step nor the result needs one."""
     group = discrete.system.group
-    if is_secular(discrete) and saved * group.size**2 > _LARGEST:
-        got = f"{saved} of {group.size}^2 numbers each"
-        remedy = "Pass reconstruct=False or a larger save_every."
-        raise error("simulate(reconstruct=...)", f"make poses of at most {_LARGEST} numbers", got, remedy)
     needless = saved == 0 and compiled and is_secular(discrete)
     if configuration is None:
         return None if needless else group.identity

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from nonholo import io
-from nonholo._checks import count, error, flags, path
+from nonholo._checks import count, error, flags, path, shown
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.io import Stream
@@ -12,7 +12,7 @@ from nonholo.orbit import Orbit
 from nonholo.simulation._events_scan import Watch
 from nonholo.simulation._given_events import watch_of_store
 from nonholo.simulation._stored_run import go_on
-from nonholo.simulation._stretch import CompiledRun, compiled_run
+from nonholo.simulation._stretch import CompiledRun, closed_step, compiled_run
 
 
 def resume(
@@ -96,7 +96,7 @@ def extend(
     flags("extend", trust=trust, throw=throw, progress=progress)
     store = path("extend(store=...)", store)
     if task is not None:
-        raise error("extend(task=...)", "come with the store of a sweep", repr(task), "Leave it out for an orbit.")
+        raise error("extend(task=...)", "come with the store of a sweep", shown(task), "Leave it out for an orbit.")
     steps = count("extend(steps=...)", steps, "Pass how many steps more.")
     stream, run, watch = _opened("extend", store, discrete, events)
     with io.locked(stream.path):
@@ -121,5 +121,5 @@ def _opened(
 ) -> tuple[Stream, CompiledRun, Watch | None]:
     stream = io.open_stream(store)
     motion = cast(Discretization, io.restore_motion(io.read_attributes(store), discrete))
-    run = compiled_run("resume(store=...)", motion, "principal", "auto", stream.plan.every, stream.reconstruct)
+    run = compiled_run("resume(store=...)", motion, closed_step(motion), stream.plan.every, stream.reconstruct)
     return stream, run, watch_of_store(owner, stream, run, events)

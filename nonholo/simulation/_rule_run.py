@@ -5,7 +5,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
@@ -20,12 +20,14 @@ Run: TypeAlias = Callable[..., tuple[Rows, Outcome, int]]
 def rule_runner(discrete: Discretization, rule: BranchRule, backend: str, demanded: np.ndarray | None) -> Run:
     """Return the run by a rule, from the displacement or full momentum of the start if one is demanded."""
     if backend == "numba":
-        got = f"the branch rule {rule!r}"
+        got = f"the branch rule {shown(rule)}"
         raise error("simulate(backend=...)", "be 'auto' or 'jax'", got, "Only 'principal' runs compiled by numba.")
     if has_frame(discrete) and backend == "auto":
         return lambda *arguments: _run(discrete, rule, demanded, *arguments)
     if rule != "nearest":
-        raise error("simulate(backend=...)", "be 'auto'", f"{backend!r} with branch {rule!r}", "Leave it out.")
+        raise error(
+            "simulate(backend=...)", "be 'auto'", f"{shown(backend)} with branch {shown(rule)}", "Leave it out."
+        )
     from nonholo.discrete._definition import run_by_definition
 
     chart = None

@@ -6,11 +6,10 @@ from typing import Any, overload
 
 import numpy as np
 
-from nonholo._checks import error, flags, path
+from nonholo._checks import error, flags, path, shown
 from nonholo._results import finished
 from nonholo.discrete import Discretization
 from nonholo.discrete._branch_rules import BranchRule
-from nonholo.discrete._composition import compiled_step
 from nonholo.discrete._start import check_first_state
 from nonholo.orbit import Orbit
 from nonholo.simulation._composed_run import composed_runner
@@ -18,7 +17,7 @@ from nonholo.simulation._events_run import run_compiled, run_with_events, watche
 from nonholo.simulation._prepared import Start, checked_counts, first_state, refuse_too_large, refuse_too_long
 from nonholo.simulation._rule_run import Run, rule_runner
 from nonholo.simulation._stored_run import refuse_without_store, run_into_store
-from nonholo.simulation._stretch import CompiledRun, compiled_run
+from nonholo.simulation._stretch import CompiledRun, closed_step, compiled_run
 from nonholo.systems._coordinate_system import AbstractCoordinateDiscretization, OrbitT, refuse_in_coordinates
 
 
@@ -155,13 +154,14 @@ def simulate(
         return discrete.simulate(configuration=configuration, steps=steps, **starts, **options)
     steps, every, rule = checked_counts(discrete, steps, save_every, branch, backend, displacement)
     starts["restricted_velocity"] = restricted_velocity
-    closed = compiled_step(discrete) if rule == "principal" and backend != "jax" else None
+    closed = closed_step(discrete, rule, backend)
     refuse_too_long("simulate", discrete, steps, compiled=closed is not None)
     watch = None if events is None else watched("simulate", discrete, events, rule, reconstruct)
     kept = {"checkpoint_every": checkpoint_every, "scenario": scenario}
     if store is not None:
         store = path("simulate(store=...)", store)
-        stored = compiled_run("simulate(store=...)", discrete, rule, backend, every, reconstruct)
+        stored = compiled_run("simulate(store=...)", discrete, closed, every, reconstruct)
+        refuse_too_large("simulate", discrete, 1, reconstruct)
         start = first_state(discrete, configuration, int(reconstruct), True, starts)
         return run_into_store(stored, start, steps, store, watch, **kept, throw=throw, progress=progress)
     refuse_without_store(**kept)
@@ -198,7 +198,7 @@ def _uncompiled(
 def _by_definition(discrete: Discretization, backend: str) -> Run:
     if backend == "numba":
         remedy = "Pass backend='jax', or difference='matrix'."
-        raise error("simulate(backend=...)", "have a closed form of the step", repr(discrete.difference), remedy)
+        raise error("simulate(backend=...)", "have a closed form of the step", shown(discrete.difference), remedy)
     from nonholo.discrete._definition import run_by_definition
 
     if discrete.order > 2:

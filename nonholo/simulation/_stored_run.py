@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from nonholo import io
-from nonholo._checks import count, error
+from nonholo._checks import count, error, shown
 from nonholo._limits import within_disk, within_memory
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, finished
@@ -80,7 +80,7 @@ def refuse_without_store(**given: Any) -> None:
     """Refuse what only a store can keep."""
     for name, value in given.items():
         if value is not None:
-            got, remedy = f"{value!r} without a store", "Pass store='run.zarr' too, or leave it out."
+            got, remedy = f"{shown(value)} without a store", "Pass store='run.zarr' too, or leave it out."
             raise error(f"simulate({name}=...)", "come with a store", got, remedy)
 
 

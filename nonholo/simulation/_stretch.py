@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from nonholo import kernels
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._results import Outcome, finished
 from nonholo.discrete import Discretization
 from nonholo.discrete._composition import compiled_step
@@ -100,11 +100,17 @@ class CompiledRun:
         return Orbit(self.discrete, time, momenta, charts, pose, outcome, self.every)
 
 
-def compiled_run(where: str, discrete: Discretization, rule: Any, backend: str, every: int, posed: bool) -> CompiledRun:
-    """Return the run in blocks of a discretisation; only compiled runs have a state that can be kept."""
-    closed = compiled_step(discrete)
-    if closed is None or rule != "principal" or backend == "jax":
-        got = f"backend {backend!r}, branch {rule!r}, difference {discrete.difference!r}"
+def closed_step(discrete: Discretization, rule: Any = "principal", backend: str = "auto") -> Structured | None:
+    """Return the compiled step of a run, None if it runs by a rule or by the definition."""
+    return compiled_step(discrete) if rule == "principal" and backend != "jax" else None
+
+
+def compiled_run(
+    where: str, discrete: Discretization, closed: Structured | None, every: int, posed: bool
+) -> CompiledRun:
+    """Return the run in blocks of a compiled step; only compiled runs have a state that can be kept."""
+    if closed is None:
+        got = f"another branch, backend='jax' or difference {shown(discrete.difference)}"
         remedy = "Use branch='principal', difference='matrix' and backend='auto', or simulate without it."
         raise error(where, "have a compiled run", got, remedy)
     return CompiledRun(discrete, closed, every, posed)

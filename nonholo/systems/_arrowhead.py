@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import array, error, positive
+from nonholo._checks import array, check_scale, error, scale
 from nonholo._types import Array, Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, AbstractSystem
@@ -141,7 +141,7 @@ class ArrowheadSleigh(AbstractLLSystem):
 
     def __post_init__(self) -> None:
         owner = "MultidimensionalSleigh.arrowhead"
-        mass = positive(f"{owner}(mass=...)", self.mass, "Pass the mass of the body.")
+        mass = scale(f"{owner}(mass=...)", self.mass, "Pass the mass of the body.")
         diagonal, coupling = _arrow(owner, self.diagonal, self.coupling)
         where = f"{owner}(center_of_mass=...)"
         centre = array(where, self.center_of_mass, diagonal.shape, "Pass n body coordinates.")
@@ -213,6 +213,7 @@ def _arrow(owner: str, diagonal: object, coupling: object) -> tuple[np.ndarray, 
     d = array(where, diagonal, (None,), "Pass the n entries of the diagonal.")
     if len(d) < 3:
         raise error(where, "have at least 3 entries", f"{len(d)}", "In the plane use `ChaplyginSleigh`.")
+    check_scale(where, d)
     c = array(f"{owner}(coupling=...)", coupling, (len(d) - 1,), f"Pass the {len(d) - 1} entries beside the corner.")
     return d, c
 

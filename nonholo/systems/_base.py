@@ -11,7 +11,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import last_length, trailing
+from nonholo._checks import shape_of, trailing
 from nonholo._types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._equilibria import Equilibria, equilibria_of
@@ -174,7 +174,7 @@ class AbstractLLSystem(AbstractSystem):
             >>> ChaplyginSleigh(mass=2.0, inertia=1.0, a=0.5).constrained_energy([0.0, 2.0, 0.0])
             np.float64(1.0)
         """
-        restricted = momentum if last_length(momentum) == self.rank else self.restrict(momentum)
+        restricted = momentum if shape_of(momentum)[-1:] == (self.rank,) else self.restrict(momentum)
         restricted = self._along("momentum", restricted)
         return (restricted * self.restricted_velocity(restricted)).sum(axis=-1) / 2
 
@@ -264,7 +264,7 @@ class AbstractLRSystem(AbstractSystem):
             >>> VeselovaTop(np.diag([1.0, 2.0, 3.0])).constrained_energy([4.0, 0.0], np.eye(3))
             np.float64(2.0)
         """
-        r = momentum if last_length(momentum) == self.rank else self.restrict_in_space(momentum, configuration)
+        r = momentum if shape_of(momentum)[-1:] == (self.rank,) else self.restrict_in_space(momentum, configuration)
         r = self._along("momentum", r)
         return (r * self.restricted_velocity(r, configuration)).sum(axis=-1) / 2
 

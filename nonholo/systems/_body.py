@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error, is_traced, positive, symmetric
+from nonholo._checks import array, error, is_traced, scale, shown, symmetric
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._mass import checked_group, inertia_tensor, mass_tensor_from_inertia
@@ -52,7 +52,7 @@ def mass_tensor_of_body(
                [1. , 0. , 2. ]])
     """
     n, slides = _checked_space(f"{owner}.from_inertia(group=...)", group)
-    m = positive(f"{owner}.from_inertia(mass=...)", mass, "Pass the mass of the body.")
+    m = scale(f"{owner}.from_inertia(mass=...)", mass, "Pass the mass of the body.")
     remedy = f"Pass {n} body coordinates, from the {'reference' if slides else 'fixed'} point."
     a = array(f"{owner}.from_inertia(center_of_mass=...)", center_of_mass, (n,), remedy)
     tensor = _about_center(f"{owner}.from_inertia(inertia=...)", inertia, n)
@@ -128,14 +128,14 @@ def _checked_space(where: str, group: AbstractMatrixGroup) -> tuple[int, bool]:
     space = _space(checked_group(where, group))
     if space is None:
         remedy = "Elsewhere pass a mass tensor to the class itself: about the origin it is J_C + m a a^T."
-        raise error(where, "be SO(2), SO(3), SE(2) or SE(3), where inertia tensors are", repr(group), remedy)
+        raise error(where, "be SO(2), SO(3), SE(2) or SE(3), where inertia tensors are", shown(group), remedy)
     return space
 
 
 def _about_center(where: str, inertia: Any, n: int) -> Array:
     """Return the mass tensor about the centre of mass."""
     if n == 2:
-        moment = positive(where, inertia, "Pass the moment of inertia about the center of mass, a number.")
+        moment = scale(where, inertia, "Pass the moment of inertia about the center of mass, a number.")
         return moment / 2 * np.eye(2)
     remedy = "Pass the inertia tensor about the center of mass, (3, 3)."
     tensor = symmetric(where, array(where, inertia, (3, 3), remedy), remedy)

@@ -3,7 +3,7 @@
 import abc
 from typing import Any, Generic, TypeVar
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 
 OrbitT = TypeVar("OrbitT")
 DiscretizationT = TypeVar("DiscretizationT")
@@ -60,4 +60,4 @@ def refuse_in_coordinates(owner: str, **given: tuple[Any, Any]) -> None:
         if value is not default and not (isinstance(value, type(default)) and value == default):
             what = "keep its default for a Lagrange-d'Alembert system"
             remedy = "Leave it out: only tops, sleighs and other LL and LR systems have it."
-            raise error(f"{owner}({name}=...)", what, repr(value), remedy)
+            raise error(f"{owner}({name}=...)", what, shown(value), remedy)

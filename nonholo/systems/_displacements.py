@@ -5,7 +5,7 @@ The variety of a general system, with its charts, belongs to the discrete map.
 
 import numpy as np
 
-from nonholo._checks import error, last_length, positive, trailing
+from nonholo._checks import error, positive, shape_of, trailing
 from nonholo._types import Array, Bool, Float
 
 
@@ -32,7 +32,7 @@ def trace_constraints(
         >>> trace_constraints(np.eye(3), nh.SO(3).exp([0.3, -0.2, 0.0]))
         array([0.])
     """
-    n = last_length(configuration) or 0
+    n = (shape_of(configuration) or (0,))[-1]
     R = trailing("trace_constraints(configuration=...)", configuration, (n, n), "Pass a matrix of SO(n).")
     where, remedy = "trace_constraints(configuration_next=...)", "Pass a matrix of the same SO(n)."
     R_next = trailing(where, configuration_next, (n, n), remedy)

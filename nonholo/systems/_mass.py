@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error, is_traced, symmetric
+from nonholo._checks import array, check_scale, error, is_traced, shown, symmetric
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._wide import narrow
@@ -77,7 +77,7 @@ def body_tensor(where: str, value: Array, remedy: str) -> Array:
 def checked_group(where: str, group: Any) -> AbstractMatrixGroup:
     """Refuse what is not a matrix group."""
     if not isinstance(group, AbstractMatrixGroup):
-        raise error(where, "be a matrix group", repr(group), "Pass SO(n), SE(n), or MatrixGroup(basis).")
+        raise error(where, "be a matrix group", shown(group), "Pass SO(n), SE(n), or MatrixGroup(basis).")
     return group
 
 
@@ -98,6 +98,7 @@ def form_mass_tensor(where: str, group: AbstractMatrixGroup, value: Array) -> Ar
     tensor = array(where, value, (size, size), f"On {group!r} the mass tensor is ({size}, {size}).")
     if is_traced(tensor):
         return tensor
+    check_scale(where, tensor)
     gap, G = np.abs(group.form_adjoint(tensor) - tensor).max(), np.asarray(group.form)
     sizes = np.abs(np.linalg.inv(G)) @ np.abs(tensor).T @ np.abs(G)
     if gap > 64 * np.finfo(np.float64).eps * sizes.max():

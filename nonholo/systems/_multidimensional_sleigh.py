@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from nonholo._checks import array, error, positive, positive_definite, symmetric
+from nonholo._checks import array, error, positive_definite, scale, symmetric
 from nonholo._types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem
@@ -57,7 +57,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
 
     def __post_init__(self) -> None:
         owner = "MultidimensionalSleigh"
-        mass = positive(f"{owner}(mass=...)", self.mass, "Pass the mass of the body.")
+        mass = scale(f"{owner}(mass=...)", self.mass, "Pass the mass of the body.")
         where, remedy = f"{owner}(center_of_mass=...)", "Pass n body coordinates."
         centre = array(where, self.center_of_mass, (None,), remedy)
         n = centre.shape[0]

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import number, positive
+from nonholo._checks import number, scale
 from nonholo._types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, form_along
@@ -49,8 +49,8 @@ class ChaplyginSleigh(AbstractLLSystem):
 
     def __post_init__(self) -> None:
         about = "Pass the moment of inertia about the centre of mass."
-        object.__setattr__(self, "mass", positive("ChaplyginSleigh(mass=...)", self.mass, "Pass the mass of the body."))
-        object.__setattr__(self, "inertia", positive("ChaplyginSleigh(inertia=...)", self.inertia, about))
+        object.__setattr__(self, "mass", scale("ChaplyginSleigh(mass=...)", self.mass, "Pass the mass of the body."))
+        object.__setattr__(self, "inertia", scale("ChaplyginSleigh(inertia=...)", self.inertia, about))
         object.__setattr__(self, "a", number("ChaplyginSleigh(a=...)", self.a))
         object.__setattr__(self, "b", number("ChaplyginSleigh(b=...)", self.b))
 

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error, is_traced
+from nonholo._checks import array, dimension, error, is_traced
+from nonholo._limits import within_memory
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._wide import narrow
@@ -115,11 +116,11 @@ def reference_point_subspace(n: int, plane: Any) -> Float[np.ndarray, "m dim"]:
         array([[1., 0., 0.],
                [0., 1., 0.]])
     """
-    if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 2:
-        raise error("reference_point_subspace(n=...)", "be an integer of at least 2", repr(n), "Pass the n of SE(n).")
-    rows = independent_rows("reference_point_subspace(plane=...)", plane, int(n))
-    turns = int(n) * (int(n) - 1) // 2
-    return np.block([[np.eye(turns), np.zeros((turns, int(n)))], [np.zeros((len(rows), turns)), rows]])
+    n = dimension("reference_point_subspace(n=...)", n)
+    rows = independent_rows("reference_point_subspace(plane=...)", plane, n)
+    turns = n * (n - 1) // 2
+    within_memory("reference_point_subspace(n=...)", 16.0 * (turns + n) ** 2, "Pass a smaller n.")
+    return np.block([[np.eye(turns), np.zeros((turns, n))], [np.zeros((len(rows), turns)), rows]])
 
 
 def _from_axes(rows: Float[np.ndarray, "k dim"]) -> Float[np.ndarray, "k dim"]:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
+from nonholo.numerics import double_precision
 from nonholo.testing._group_samples import GroupSamples
 from nonholo.testing._measures import derivative, gap, largest
 from nonholo.testing._report import Check, NotApplicableError
@@ -149,7 +150,7 @@ def _jax(s: GroupSamples) -> float:
     with contextlib.suppress(ImportError):
         import jax
 
-        with jax.enable_x64(True):
+        with double_precision():
             traced = jax.jit(lambda x: _everything(s.group, x))(jax.numpy.asarray(s.x))
             found = {name: np.asarray(array) for name, array in traced.items()}
         return max(gap(found[name], expected) for name, expected in _everything(s.group, s.x).items())

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 
 
 def gap(found: Any, expected: Any) -> float:
@@ -67,4 +67,4 @@ def seeded(rng: Any) -> np.random.Generator:
     try:
         return np.random.default_rng(0 if rng is None else rng)
     except (TypeError, ValueError):
-        raise error("check_...(rng=...)", "be a seed or a generator", repr(rng), "Pass an integer >= 0.") from None
+        raise error("check_...(rng=...)", "be a seed or a generator", shown(rng), "Pass an integer >= 0.") from None

@@ -4,6 +4,8 @@ import dataclasses
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from nonholo._checks import positive
+
 _HEADINGS = ("", "measured", "allowed", "", "what must hold")
 
 
@@ -132,6 +134,7 @@ def run_checks(owner: str, checks: Sequence[Check], subject: Any, factor: float,
     Raises:
         AssertionError: With `throw`: names every check that failed.
     """
+    factor = float(positive("check_...(tolerance_factor=...)", factor, "Pass a positive factor on every tolerance."))
     report = Report(owner, tuple(_measured(check, subject, factor) for check in checks))
     if throw and report.failed:
         lines = "\n  ".join(map(str, report.failed))

@@ -297,25 +297,26 @@ print("jax" in sys.modules)
 
 
 @pytest.mark.parametrize("set_by_user", [True, False])
-def test_caches_of_a_read_only_installation(set_by_user: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where the package folder cannot be written numba keeps its code in the user's cache; a user's choice stays."""
-    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    if set_by_user:
-        monkeypatch.setenv("NUMBA_CACHE_DIR", "/mine")
-    monkeypatch.setattr(_caches, "_can_write", lambda folder: "kernels" not in str(folder))
-    _caches.use_cache_folders()
-    kept = os.environ["NUMBA_CACHE_DIR"]
-    monkeypatch.setenv("NUMBA_CACHE_DIR", kept)
-    assert kept == ("/mine" if set_by_user else str(tmp_path / ".cache" / "nonholo" / "numba"))
+def test_the_cache_of_jax(set_by_user: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """JAX keeps its code in the user's cache; a user's choice stays."""
+    monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", "/mine")
+    if not set_by_user:
+        monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR")
+    monkeypatch.setenv("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "1")
+    _caches.use_cache_folder()
+    there = os.environ["JAX_COMPILATION_CACHE_DIR"]
+    monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", there)
+    assert there == ("/mine" if set_by_user else str(tmp_path / ".cache" / "nonholo" / "jax"))
 
 
-def test_no_cache_folder_at_all(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where no folder can be written a private temporary one is used, since numba would refuse to work without."""
-    monkeypatch.setenv("NUMBA_CACHE_DIR", "")
-    monkeypatch.delenv("NUMBA_CACHE_DIR")
-    monkeypatch.setattr(_caches, "_can_write", lambda _: False)
-    _caches.use_cache_folders()
-    assert Path(os.environ["NUMBA_CACHE_DIR"]).is_dir()
+@pytest.mark.parametrize("cache", ["/proc/nowhere", "~/.cache"], ids=["read-only", "no home"])
+def test_no_cache_of_jax(cache: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where there is no place for it nothing is set, and no folder of the name ~ is made."""
+    monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR", raising=False)
+    monkeypatch.setattr("platformdirs.user_cache_path", lambda _: Path(cache))
+    _caches.use_cache_folder()
+    assert "JAX_COMPILATION_CACHE_DIR" not in os.environ
+    assert not Path("~").exists()
 
 
 @pytest.mark.parametrize("steps", [10**13, 10**30])

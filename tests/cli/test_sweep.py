@@ -1,6 +1,7 @@
 """`nonholo sweep`, and `info`, `plot`, `resume` and `extend` of what it leaves."""
 
 import errno
+import itertools
 import json
 import os
 import re
@@ -285,6 +286,22 @@ def test_info_of_a_sweep(nonholo: Command) -> None:
     assert told["done"] == told["members"] == 8
     assert told["state"] == "finished"
     assert told["provenance"]["task"]["steps"] == 20
+
+
+def test_a_sweep_without_a_single_result_fails(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`sweep` and `resume` end with 1 and say so in the last line if the task raised for every member."""
+    run, calls = nh.EnsembleTask.__call__, itertools.count()
+
+    def unlucky(task: nh.EnsembleTask, block: nh.MemberBlock) -> dict[str, Any]:
+        if next(calls) < 2:  # the members that are tried
+            return run(task, block)
+        raise ValueError("no luck")
+
+    monkeypatch.setattr(nh.EnsembleTask, "__call__", unlucky)
+    for command in (("sweep", _written(GRID), "--no-plot", "-o", "a.zarr"), ("resume", "a.zarr")):
+        found = nonholo(*command)
+        assert found.exit_code == 1
+        assert found.stderr.splitlines()[-1] == "Every member raised: ValueError: no luck"
 
 
 def test_failed_members_are_told(nonholo: Command) -> None:

@@ -93,7 +93,7 @@ def test_units_of_length_do_not_matter(name: str, length: float) -> None:
     assert np.abs(np.linalg.inv(rescaled) @ found.configuration @ rescaled - expected.configuration).max() <= tolerance
 
 
-@pytest.mark.parametrize("scale", [1e3, 1e6, 1e150])
+@pytest.mark.parametrize("scale", [1e3, 1e6, 1e149])
 @pytest.mark.parametrize(
     "name", ["suslov 4", "any d on SE(3)", "free on SO(4)", "veselova 3", "right-invariant on SE(3)"]
 )

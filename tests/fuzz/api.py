@@ -6,11 +6,8 @@ Each trial is done in a worker under limits. It ends *refused* by a check of our
 """
 
 # ruff: noqa: E402
-import argparse
 import collections
-import json
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +17,7 @@ import compilers
 compilers.use_caches()
 
 from fuzz.calls import all_calls
+from fuzz.figures import options, report
 from fuzz.judge import BROKEN, GOOD, Verdict
 from fuzz.trials import Trial, draw, from_text, told
 from fuzz.worker import answers
@@ -58,22 +56,13 @@ def lines(found: dict[str, Any]) -> list[str]:
 
 def main() -> int:
     """Draw trials or take the one that is asked for, do them, print the figures."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--trials", type=int, default=3000)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--workers", type=int, default=1)
+    parser = options(__doc__, trials=3000, workers=1)
     parser.add_argument("--only", help="one trial: CALL: ARGUMENT = VALUE")
     parser.add_argument("--call", default="", help="only calls whose names begin so")
-    parser.add_argument("--json", type=Path, help="where the figures are written")
     given = parser.parse_args()
-    begin = time.monotonic()
     calls = {name: call for name, call in all_calls().items() if name.startswith(given.call)}
     trials = [from_text(given.only)] if given.only else draw(calls, given.trials, given.seed)
-    found = figures(verdicts(trials, given.workers)) | {"seed": given.seed}
-    sys.stdout.write("\n".join(lines(found)) + f"\n{time.monotonic() - begin:.0f} s\n")
-    if given.json:
-        given.json.write_text(json.dumps(found, indent=1))
-    return int(bool(found["broken"]))
+    return int(bool(report(given, lambda: figures(verdicts(trials, given.workers)), lines)["broken"]))
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ class Call:
         arguments: Those that may be changed, with their kinds.
         slow: Whether it compiles, by JAX or numba, before it answers.
         stores: Whether its folder must hold the stores of `fuzz.shelf`.
+        infinite: Whether infinity is one of its answers, as its docstring says.
     """
 
     name: str
@@ -26,6 +27,7 @@ class Call:
     arguments: dict[str, Argument]
     slow: bool = False
     stores: bool = False
+    infinite: bool = False
 
     def __call__(self, **changed: Any) -> Any:
         """Call it with some arguments changed; what comes block by block is collected."""
@@ -35,10 +37,17 @@ class Call:
 
 
 def call(
-    name: str, function: Callable[..., Any], /, *, slow: bool = False, stores: bool = False, **arguments: Argument
+    name: str,
+    function: Callable[..., Any],
+    /,
+    *,
+    slow: bool = False,
+    stores: bool = False,
+    infinite: bool = False,
+    **arguments: Argument,
 ) -> Call:
     """Return a call that works."""
-    return Call(name, function, arguments, slow, stores)
+    return Call(name, function, arguments, slow, stores, infinite)
 
 
 def by_position(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -60,9 +60,9 @@ def _of_results() -> list[Call]:
         call("Deltoid.discriminant", region.discriminant, restricted_momentum=restricted),
         call("Deltoid.real_branches", region.real_branches, restricted_momentum=restricted),
         call("Deltoid.resting", region.resting, points=count(20)),
-        call("InvariantMeasure.density", measure.density, momentum=restricted),
-        call("InvariantMeasure.jacobian", jacobian, displacement=W),
-        call("LyapunovFunction", by_position(nh.lyapunov_function(system)), momentum=restricted),
+        call("InvariantMeasure.density", measure.density, momentum=restricted, infinite=True),
+        call("InvariantMeasure.jacobian", jacobian, displacement=W, infinite=True),
+        call("LyapunovFunction", by_position(nh.lyapunov_function(system)), momentum=array(restricted.value, "any")),
     ]
 
 

@@ -36,7 +36,10 @@ def _methods(name: str, group: nh.groups.AbstractMatrixGroup) -> list[Call]:
     g = array(group.exp(x.value), "batch")
     pose = array(group.pose_from_matrix(g.value), "batch")
     found = [call(f"{name}.{method}", getattr(group, method), x=x) for method in (*_OF_VECTORS, *_OF_VECTORS_TOO)]
-    found += [call(f"{name}.{method}", getattr(group, method), g=g) for method in _OF_MATRICES]
+    found += [
+        call(f"{name}.{method}", getattr(group, method), g=g, infinite=(name, method) == ("MatrixGroup", "residual"))
+        for method in _OF_MATRICES
+    ]
     return [
         *found,
         call(f"{name}.vee", group.vee, X=array(group.hat(x.value), "batch", complex=True)),

@@ -3,7 +3,7 @@
 import dataclasses
 import linecache
 import types
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -65,22 +65,25 @@ def _place(failure: BaseException) -> str:
     return place
 
 
-def nonfinite(result: Any) -> set[str]:
-    """Return the names of numbers of a result that are not finite; of nothing if it says itself that it failed."""
+def nonfinite(result: Any, *, infinite: bool = False) -> set[str]:
+    """Return the names of numbers of a result that are not finite, or are NaN if `infinite` ones are answers.
+
+    Of nothing if it says itself that it failed.
+    """
     outcome = getattr(result, "outcome", 0)
     if np.any(np.asarray(outcome) != 0):
         return set()
-    return set(_nonfinite("", result, 0))
+    return set(_strange("", result, 0, np.isinf if infinite else np.zeros_like))
 
 
-def _nonfinite(name: str, value: Any, depth: int) -> Iterator[str]:
+def _strange(name: str, value: Any, depth: int, answer: Callable[[np.ndarray], np.ndarray]) -> Iterator[str]:
     if isinstance(value, float | complex | np.ndarray | np.inexact):
         array = np.asarray(value)
-        if array.dtype.kind in "fc" and not np.isfinite(array).all():
+        if array.dtype.kind in "fc" and not (np.isfinite(array) | answer(array).astype(bool)).all():
             yield name
     elif depth < _DEPTH:
         for key, part in _parts(value):
-            yield from _nonfinite(f"{name}.{key}", part, depth + 1)
+            yield from _strange(f"{name}.{key}", part, depth + 1, answer)
 
 
 def _parts(value: Any) -> Iterator[tuple[str, Any]]:

@@ -67,7 +67,7 @@ def print_of(family: str, store: Path) -> str:
 def left_behind(folder: Path) -> list[str]:
     """Return what a run that is over must not leave: its lock, and files that were being written."""
     locks = [str(store) for store in folder.glob("*.zarr") if owner_of(store) is not None]
-    return locks + [str(path) for pattern in ("*.partial*", "lock*") for path in folder.rglob(pattern)]
+    return locks + [str(path) for pattern in ("*.partial*", "lock*", "*.lock") for path in folder.rglob(pattern)]
 
 
 def in_a_child(do: Callable[..., Any], *given: Any) -> str:
@@ -131,14 +131,16 @@ def figures(family: str, count: int, seed: int, restarts: bool = False, names: t
     chance, wrong, kills = random.Random(seed), [], 0  # noqa: S311
     kill = kill_by_restart if restarts else kill_in_forks
     with tempfile.TemporaryDirectory(prefix="fuzz-") as home:
-        undisturbed = {name: _undisturbed(family, name, Path(home)) for name in names or FAMILIES[family]}
+        timed = {name: _undisturbed(family, name, Path(home)) for name in names or FAMILIES[family]}
+        undisturbed, seconds = ({name: pair[at] for name, pair in timed.items()} for at in (0, 1))
         runs = 0
-        while kills < count and runs < 4 * count:  # one that is over before it is killed does not count
+        while kills < count and runs < 4 * count + 20:  # one that is over before it is killed does not count
             name = list(undisturbed)[runs % len(undisturbed)]
-            expected, seconds = undisturbed[name]
+            expected = undisturbed[name]
             folder = Path(home) / f"trial {runs}"
             folder.mkdir()
-            killed_so = kill(family, name, folder / "run.zarr", chance, 0.7 * seconds)
+            killed_so = kill(family, name, folder / "run.zarr", chance, 0.7 * seconds[name])
+            seconds[name] *= 1.0 if killed_so else 0.5  # it was timed when other processes were more busy
             kills, runs = kills + bool(killed_so), runs + 1
             same = in_a_child(print_of, family, folder / "run.zarr") == expected
             rest = left_behind(folder)

@@ -136,7 +136,7 @@ def _is_array(argument: Argument, value: Any) -> bool:
     if argument.shape == "batch":
         return found.shape[max(0, found.ndim - len(wanted)) :] == wanted
     if argument.shape == "rows":
-        return found.ndim == len(wanted) and found.shape[1:] == wanted[1:]
+        return found.shape == (0,) or (found.ndim == len(wanted) and found.shape[1:] == wanted[1:])
     return argument.shape == "any" or found.shape == wanted
 
 

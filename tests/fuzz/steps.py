@@ -6,12 +6,9 @@ continuation that is written apart (`fuzz.following`): whether it comes to the s
 """
 
 # ruff: noqa: E402
-import argparse
 import collections
 import dataclasses
-import json
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -23,6 +20,7 @@ compilers.use_caches()
 
 import numpy as np
 from bodies import mass_tensor, random_rows
+from fuzz.figures import options, report
 from fuzz.following import Equations, followed, newton
 
 import nonholo as nh
@@ -210,22 +208,17 @@ def figures(steps: int, seed: int, families: tuple[str, ...] = tuple(FAMILIES)) 
     return {"all": dict(total), "families": rows, "broken": broken}
 
 
+def lines(found: dict[str, Any]) -> list[str]:
+    """Return figures for people."""
+    rows = {**found["families"], "all": found["all"]}
+    table = [f"{name}: " + ", ".join(f"{count} {kind}" for kind, count in row.items()) for name, row in rows.items()]
+    return table + [f"broken: {row}" for row in found["broken"]]
+
+
 def main() -> int:
     """Run, check, print the figures."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--steps", type=int, default=1_000_000)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--json", type=Path, help="where the figures are written")
-    given = parser.parse_args()
-    begin = time.monotonic()
-    found = figures(given.steps, given.seed)
-    for name, row in {**found["families"], "all": found["all"]}.items():
-        sys.stdout.write(f"{name}: " + ", ".join(f"{count} {kind}" for kind, count in row.items()) + "\n")
-    for row in found["broken"]:
-        sys.stdout.write(f"broken: {row}\n")
-    sys.stdout.write(f"{time.monotonic() - begin:.0f} s\n")
-    if given.json:
-        given.json.write_text(json.dumps(found, indent=1))
+    given = options(__doc__, steps=1_000_000).parse_args()
+    found = report(given, lambda: figures(given.steps, given.seed), lines)
     return int(any(name.startswith(("wrong", "not finite")) for name in found["all"]))
 
 

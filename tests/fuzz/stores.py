@@ -5,11 +5,8 @@ shown, resumed, extended and exported. Right are the numbers of the whole store,
 """
 
 # ruff: noqa: E402
-import argparse
 import collections
-import json
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +15,7 @@ import compilers
 
 compilers.use_caches()
 
+from fuzz.figures import options, report
 from fuzz.judge import BROKEN, Verdict
 from fuzz.openings import FAMILIES, KINDS, Trial, trials
 from fuzz.worker import answers
@@ -52,24 +50,15 @@ def lines(found: dict[str, Any]) -> list[str]:
 
 def main() -> int:
     """Draw trials or take the one that is asked for, do them, print the figures."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--trials", type=int, default=200, help="of each family and kind")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--workers", type=int, default=1)
+    parser = options(__doc__, trials=200, workers=1)
     parser.add_argument("--only", help="one trial: FAMILY:STORE:KIND:SEED:OPENING")
-    parser.add_argument("--json", type=Path, help="where the figures are written")
     given = parser.parse_args()
-    begin = time.monotonic()
     if given.only:
         family, store, kind, seed, opening = given.only.split(":")
         chosen = [Trial(family, store, kind, int(seed), opening)]
     else:
         chosen = [t for family in FAMILIES for kind in KINDS for t in trials(family, kind, given.trials, given.seed)]
-    found = figures(chosen, given.workers) | {"seed": given.seed}
-    sys.stdout.write("\n".join(lines(found)) + f"\n{time.monotonic() - begin:.0f} s\n")
-    if given.json:
-        given.json.write_text(json.dumps(found, indent=1))
-    return int(bool(found["broken"]))
+    return int(bool(report(given, lambda: figures(chosen, given.workers), lines)["broken"]))
 
 
 if __name__ == "__main__":

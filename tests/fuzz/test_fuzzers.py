@@ -123,6 +123,8 @@ def test_numbers_that_are_not_finite_are_seen() -> None:
     """In arrays, in fields and below them; a result that says that it failed may have them."""
     assert judge.nonfinite([np.array([1.0, np.nan])]) == {".*"}
     assert judge.nonfinite(_Found(np.inf)) == {".value"}
+    assert judge.nonfinite(_Found(np.inf), infinite=True) == set()
+    assert judge.nonfinite(_Found(np.nan), infinite=True) == {".value"}
     assert judge.nonfinite(_Found(np.inf, 1)) == judge.nonfinite(_Found(1.0)) == set()
 
 

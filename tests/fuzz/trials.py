@@ -95,7 +95,7 @@ def verdict(call: Call, changes: dict[str, str], usual: set[str]) -> Verdict:
     try:
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
-            strange = nonfinite(call(**changed)) - usual
+            strange = nonfinite(call(**changed), infinite=call.infinite) - usual
     except Exception as failure:  # whatever comes is classified
         found = of_exception(failure, list(changes))
         theirs = found.kind == "raw" and not illegal and any(map(callable, changed.values()))

@@ -197,3 +197,49 @@ def test_a_half_turn_among_all_values() -> None:
     W = found.displacement[found.principal].real
     assert np.abs(W @ W - np.eye(4)).max() < 1e-12
     assert np.abs(nh.simulate(discrete, momentum=r, steps=1).displacement[0] - W).max() < 1e-12
+
+
+UNEVEN = [
+    [
+        0.028676609862390286,
+        0.00014396212485831282,
+        -1.4045463232856376e-06,
+        2.1121169113529863e-06,
+        -1.5240129550857e-06,
+    ],
+    [
+        0.00014396212485831282,
+        1.3153847232685495e-05,
+        1.0384784089216e-08,
+        -1.0226104249555853e-08,
+        -2.0097347687898e-08,
+    ],
+    [
+        -1.4045463232856376e-06,
+        1.0384784089216e-08,
+        2.1465163318455576e-10,
+        -4.59177093251508e-11,
+        -2.81105265330166e-11,
+    ],
+    [
+        2.1121169113529863e-06,
+        -1.0226104249555853e-08,
+        -4.59177093251508e-11,
+        7.5121621301812e-10,
+        -5.55532748228859e-10,
+    ],
+    [-1.5240129550857e-06, -2.0097347687898e-08, -2.81105265330166e-11, -5.55532748228859e-10, 1.71851391226951e-09],
+]
+"""A tensor whose directions differ by 1e8; by 120 digits its fold lies at 0.05888 of the momentum below."""
+
+
+@pytest.mark.parametrize("share", [0.058, 0.0595, 0.09, 0.5, 1.0])
+def test_tiny_folds_are_not_jumped_over(share: float) -> None:
+    """Uneven bodies fold where the steps of the path would be longer than the way to the fold and back."""
+    top = nh.SuslovTop(UNEVEN)
+    momentum = share * np.array(
+        [-0.0011173302985360758, -6.31419512598405e-06, 5.38752802160346e-08, -8.1157260939562e-08]
+    )
+    velocity = np.linalg.solve(top.constrained_inertia, momentum)
+    orbit = nh.simulate(nh.discretize(top, 1.0), restricted_velocity=velocity, steps=1, throw=False)
+    assert (len(orbit) > 0) == (share < 0.0588)

@@ -223,9 +223,10 @@ def test_numba_backend_needs_a_closed_form() -> None:
 
 def test_an_energy_that_overflows_is_refused() -> None:
     """A start whose energy is not a number of double precision is refused before any work, without a warning."""
-    for velocity in ((0.0, 1e300, 0.0), (1e308, 1.0, 0.0)):
+    heavy = nh.discretize(nh.ChaplyginSleigh(1e100, 1e100, 0.5), 0.1)
+    for velocity in ((0.0, 1e150, 0.0), (1e150, 1.0, 0.0)):
         with pytest.raises(ValueError, match="finite energy"):
-            nh.simulate(SLEIGH, body_velocity=velocity, steps=3)
+            nh.simulate(heavy, body_velocity=velocity, steps=3)
 
 
 def test_an_index_of_an_orbit_is_refused() -> None:

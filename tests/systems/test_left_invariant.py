@@ -336,9 +336,9 @@ def test_an_inertia_that_overflows_is_refused() -> None:
     """Finite entries whose sums are not finite are no inertia, and LAPACK is not asked."""
     with (
         np.errstate(over="ignore", invalid="ignore"),
-        pytest.raises(ValueError, match=r"make the inertia operator finite\. Got an overflow"),
+        pytest.raises(ValueError, match=r"finite\. Got an overflow"),
     ):
-        RigidBody(1e308 * np.eye(3))
+        MultidimensionalSleigh(1e150, [1e150, 0.0, 0.0], np.eye(3))
 
 
 @pytest.mark.parametrize("length", [1e-9, 1e9])

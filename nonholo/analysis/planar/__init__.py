@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.analysis.planar._base import AbstractPlanarVariety, HalfPlanes
 from nonholo.analysis.planar._disc import Disc
@@ -34,7 +34,7 @@ def planar_map(where: str, value: Any) -> tuple[Discretization, AbstractPlanarVa
     variety = planar_variety(discrete.system)
     if variety is None:
         remedy = "For others sample `discrete_legendre`."
-        raise error(where, "be of a top with n = 3 or of a sleigh", repr(discrete.system), remedy)
+        raise error(where, "be of a top with n = 3 or of a sleigh", shown(discrete.system), remedy)
     if not discrete.conserves_energy:
         got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
         raise error(where, "keep energy", got, "Use difference='matrix' and constraint='skew'.")

@@ -1,0 +1,31 @@
+"""What every fuzzer does with its figures: print them for people, write them for programs."""
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+
+def options(told: str, **numbers: int) -> argparse.ArgumentParser:
+    """Return the options that fuzzers share, described by the first line of a docstring, and some numbers."""
+    parser = argparse.ArgumentParser(description=told.splitlines()[0])
+    for name, usual in numbers.items():
+        parser.add_argument(f"--{name}", type=int, default=usual)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--json", type=Path, help="where the figures are written")
+    return parser
+
+
+def report(
+    given: argparse.Namespace, figures: Callable[[], dict[str, Any]], lines: Callable[[dict[str, Any]], list[str]]
+) -> dict[str, Any]:
+    """Make figures, print and write them; return them."""
+    begin = time.monotonic()
+    found = figures() | {"seed": given.seed}
+    sys.stdout.write("\n".join(lines(found)) + f"\n{time.monotonic() - begin:.0f} s\n")
+    if given.json:
+        given.json.write_text(json.dumps(found, indent=1))
+    return found

@@ -1,0 +1,65 @@
+"""The page of promises and figures."""
+
+import json
+from pathlib import Path
+
+import pytest
+from fuzz.judge import BROKEN, GOOD
+from scripts import script
+
+DOCS = Path(__file__).parents[1] / "docs"
+MAKER = "docs/make_reliability_page.py"
+
+
+def test_the_page_is_what_the_script_writes() -> None:
+    """The page is the one of the figures in the repository: `python docs/make_reliability_page.py`."""
+    found = json.loads((DOCS / "figures-of-fuzz.json").read_text())
+    assert (DOCS / "reliability.md").read_text("utf-8") == script(MAKER).page(found)
+
+
+def test_what_it_names_is_there() -> None:
+    """Links and files of tests on the page exist."""
+    text = (DOCS / "reliability.md").read_text("utf-8")
+    links = [link.split(")")[0] for link in text.split("](")[1:] if not link.startswith("http")]
+    files = [word for word in text.split("`") if word.startswith("tests/")]
+    assert links
+    assert files
+    assert all((DOCS / link).exists() for link in links)
+    assert all((DOCS.parent / file.split()[0]).exists() for file in files)
+
+
+@pytest.mark.parametrize(
+    ("fuzzer", "figures", "words"),
+    [
+        (
+            "api",
+            {
+                "trials": 3000,
+                "call forms": 90,
+                "named": 7,
+                "classes": dict.fromkeys([*GOOD, *BROKEN], 1) | {"refused": 9},
+            },
+            "3,000 calls of 90 forms",
+        ),
+        (
+            "stores",
+            {"openings": 1200, "classes": {"orbit, damage": {"same": 3, "raw": 2}}},
+            "orbit, damage: 3 same, 2 raw",
+        ),
+        (
+            "kills",
+            {"orbit": {"runs": 3, "killed": 2, "wrong": ["x"]}, "restarts": "skipped"},
+            "2 killed, 1 wrong; restarts",
+        ),
+        (
+            "steps",
+            {"all": {"steps": 10, "wrong: another root": 2, "not finite": 1}, "families": {"a": {}}},
+            "; 3 wrong",
+        ),
+    ],
+)
+def test_figures_are_shown_as_they_are(fuzzer: str, figures: dict, words: str) -> None:
+    """What went wrong is on the page too."""
+    text = script(MAKER).page({fuzzer: figures})
+    assert words in text
+    assert text.count("not run yet") == 3
