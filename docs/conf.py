@@ -31,6 +31,7 @@ nitpick_ignore_regex = [
 html_theme = "pydata_sphinx_theme"
 html_title = f"nonholo {release}"
 html_copy_source = False
+html_extra_path = ["../LICENSE"]  # Apache-2.0: ours, and that of MathJax, of which the site has a copy
 html_static_path = ["static"]
 html_css_files = ["wide.css"]
 html_sidebars = {page: [] for page in ("index", "paper", "errata")}

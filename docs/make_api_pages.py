@@ -67,7 +67,7 @@ def _directive(value: Any, name: str) -> str:
 
 def _room(value: Any) -> str:
     """Return the room of a class or function, or of the class of a value."""
-    return getattr(value, "__module__", type(value).__module__).split(".")[1]
+    return value.__module__.split(".")[1]
 
 
 def _named_by(room: str) -> list[str]:

@@ -40,16 +40,10 @@ def _apart(before: str, inline: str, after: str) -> str:
     return ("\\ " if re.match(r"[^\s(\[{<\"'/:-]", before) else "") + inline + ("\\ " if after.isalnum() else "")
 
 
-def _process(
-    _app: Any, kind: str, _name: str, _value: Any, _options: Any, lines: list[str]
-) -> None:  # (Sphinx's arguments)
+def _process(_app: Any, kind: str, _name: str, _value: Any, _options: Any, lines: list[str]) -> None:
     text = restructured("\n".join([*lines, ""]))
-    if kind in (
-        "attribute",
-        "data",
-        "property",
-    ):  # an empty comment, or napoleon takes "A: b" for a type and its meaning
-        text = "..\n\n" + text
+    if kind in {"attribute", "data", "property"}:
+        text = "..\n\n" + text  # an empty comment, or napoleon takes "A: b" for a type and its meaning
     lines[:] = text.splitlines()
 
 
