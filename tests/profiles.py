@@ -26,7 +26,7 @@ class Profile:
 
     Attributes:
         about: What it holds, and why that is long.
-        rooms: Folders below `nonholo/` and `tests/` whose change it guards.
+        rooms: Folders below `nonholo/` and `tests/` whose change it guards, and "docs".
         command: What runs it; by default its marked tests.
     """
 
@@ -37,6 +37,7 @@ class Profile:
 
 _MECHANICS = ("numerics", "kernels", "groups", "systems", "discrete", "continuous")
 _RUNS = ("kernels", "orbit", "simulation", "io", "ensembles")
+_QUESTIONS = ("analysis", "plotting", "examples", "testing")
 PROFILES = {
     "routes": Profile(
         "every body by every route: the definition in JAX, which compiles a program for each",
@@ -65,6 +66,11 @@ PROFILES = {
         "kernels with every index checked, which compiles them once more",
         ("kernels", "numerics", "_compiled"),
         f"NUMBA_BOUNDSCHECK=1 {PYTHON} -m pytest -q tests/kernels tests/numerics tests/simulation/test_ensemble.py",
+    ),
+    "site": Profile(
+        "the pages and the docstrings of public names as a site; broken links and unknown names are errors",
+        (*_MECHANICS[2:], *_RUNS[1:], *_QUESTIONS, "lagrange_dalembert", "_results", "docs"),
+        ".venv/bin/pip install -q -c constraints.txt -e '.[all,docs]' && .venv/bin/sphinx-build -W docs build/site",
     ),
     "long": Profile(
         "the same problems in thousands, and a hundred bodies for 100,000 steps: half an hour",
@@ -161,7 +167,9 @@ def room_of(file: str) -> str | None:
     parts = Path(file.replace("nonholo_paper/", "nonholo/paper/", 1)).parts
     if parts[0] in ("nonholo", "tests") and len(parts) > 1:
         return parts[1].removesuffix(".py") if len(parts) > 2 or parts[1].startswith("_") else None
-    return "" if parts[0] in ("docs", "benchmarks", "examples") or file.endswith(".md") else None
+    if parts[0] in ("benchmarks", "examples"):
+        return ""
+    return "docs" if parts[0] == "docs" or file.endswith(".md") else None
 
 
 if __name__ == "__main__":

@@ -30,9 +30,8 @@ def test_every_profile_has_its_command() -> None:
 
 def test_every_room_is_guarded() -> None:
     """The rooms of the profiles exist, and each room of the library belongs to one at least."""
-    rooms = {path.name.removesuffix(".py") for path in (ROOT / "nonholo").iterdir() if path.name[:2] != "__"} | {
-        "paper"
-    }
+    rooms = {path.name.removesuffix(".py") for path in (ROOT / "nonholo").iterdir() if path.name[:2] != "__"}
+    rooms |= {"paper", "docs"}
     listed = {room for profile in PROFILES.values() for room in profile.rooms}
     assert listed <= rooms
     assert rooms - listed <= {"py.typed", "_progress", "_results"}
@@ -78,9 +77,10 @@ def _complete(request: pytest.FixtureRequest) -> bool:
     ("files", "expected"),
     [
         ([], set()),
-        (["docs/house.md", "README.md", "benchmarks/gpu.py"], set()),
+        (["benchmarks/gpu.py", "examples/sleigh.toml"], set()),
+        (["docs/house.md", "README.md", "benchmarks/gpu.py"], {"site"}),
         (["nonholo/cli/_plot.py"], {"faults"}),
-        (["tests/plotting/test_section.py", "docs/paper.md"], {"paper"}),
+        (["tests/plotting/test_section.py", "docs/paper.md"], {"paper", "site"}),
         (["nonholo/kernels/_sleigh.py"], {"routes", "faults", "problems", "shapes", "bounds"}),
         (["nonholo/_checks.py"], {"shapes"}),
         (["pyproject.toml"], set(PROFILES) - {"fuzz", "long", "mutants"}),

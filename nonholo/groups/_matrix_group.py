@@ -33,7 +33,7 @@ class MatrixGroup(AbstractMatrixGroup):
     The compact pose is the matrix row by row, never corrected; random elements are exponentials of standard normal
     coordinates. `log` is the principal logarithm: it exists if no eigenvalue is real and negative.
 
-    With a form the group is *quadratic*: $g^TGg = G$, its inverse is $G^{-1}g^TG$, a mass tensor may be given to
+    With a form the group is "quadratic": $g^TGg = G$, its inverse is $G^{-1}g^TG$, a mass tensor may be given to
     `LLSystem`, and the discrete map conserves the energy (docs/theory/energy-theorem.md).
 
     Args:

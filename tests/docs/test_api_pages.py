@@ -1,0 +1,31 @@
+"""The list of public names: it is the one that the script writes, and holds each name once."""
+
+import re
+from collections import Counter
+from pathlib import Path
+
+from fuzz.calls import public_names
+from scripts import script
+
+PAGES = Path(__file__).parents[2] / "docs" / "api"
+
+
+def test_pages_are_up_to_date() -> None:
+    """The pages in the repository are those that the script writes: `python docs/make_api_pages.py`."""
+    assert {path.name: path.read_text("utf-8") for path in PAGES.iterdir()} == script("docs/make_api_pages.py").pages()
+
+
+def test_every_public_name_is_described_once() -> None:
+    """Each public name has one entry on one page, and stands in one table."""
+    text = "".join(path.read_text("utf-8") for path in PAGES.iterdir())
+    entries = Counter(re.findall(r"^\.\. auto(?:class|exception|function|data):: nonholo\.(\S+)$", text, re.MULTILINE))
+    rows = Counter(re.findall(r"^   nonholo\.(\S+)$", text, re.MULTILINE))
+    assert set(public_names()) <= set(entries)
+    assert entries == rows
+    assert set(entries.values()) == {1}
+
+
+def test_every_page_is_in_the_contents() -> None:
+    """The first page leads to all others."""
+    contents = re.findall(r"^[a-z-]+$", (PAGES / "index.md").read_text("utf-8"), re.MULTILINE)
+    assert sorted(contents) == sorted(path.stem for path in PAGES.iterdir() if path.stem != "index")
