@@ -181,7 +181,7 @@ def require_identity(path: Path, made: str | None) -> None:
 def check_array(where: str, name: str, array: zarr.Array) -> None:
     """Refuse an array of which a chunk does not fit into memory, or whose bytes have another order than ours."""
     remedy = f"The array {name} is damaged or was edited."
-    within_memory(where, 8.0 * math.prod(map(float, array.chunks)), remedy)
+    within_memory(where, 8.0 * min(math.prod(array.chunks), _MOST), remedy)
     orders = {getattr(codec, "endian", None) for codec in array.metadata.codecs}  # type: ignore[union-attr]
     if orders - {None, Endian.little}:
         raise error(where, f"hold the array {name} in the order of bytes that is written", "another one", remedy)

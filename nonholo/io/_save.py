@@ -3,6 +3,7 @@
 import contextlib
 import errno
 import json
+import os
 import re
 import shutil
 import threading
@@ -172,7 +173,9 @@ def new_group(path: Path, told: dict[str, Any], kind: type[BaseModel]) -> zarr.G
 
 
 def consolidate(path: Path) -> None:
-    """Gather the metadata of a complete store in one file."""
+    """Gather the metadata of a complete store in one file; those of inner groups say nothing, and are written again."""
+    for inner in filter(Path.is_dir, (path / "canonical", path / "run")):
+        write_whole(inner / "zarr.json", json.dumps({"attributes": {}, "zarr_format": 3, "node_type": "group"}))
     with _FILTERS, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # zarr: consolidated metadata are not in the specification yet
         zarr.consolidate_metadata(path)
@@ -211,12 +214,35 @@ def create_array(
     )
 
 
+def settle(path: Path) -> None:
+    """Wait until a file, or the names in a folder, are on the disk: a power cut does not take them back."""
+    with contextlib.suppress(PermissionError):  # Windows opens no folders
+        opened = os.open(path, os.O_RDONLY)
+        try:
+            os.fsync(opened)
+        finally:
+            os.close(opened)
+
+
+def settle_store(store: Path) -> None:
+    """Wait until all files of a store, and its folders, are on the disk."""
+    for folder, _, files in os.walk(store, topdown=False):
+        for file in files:
+            settle(Path(folder, file))
+        settle(Path(folder))
+
+
 def write_whole(path: Path, text: str) -> None:
-    """Write a small file at once: a reader sees the old one or the new one, and a killed writer leaves a `.partial`."""
+    """Write a small file at once, and wait until it is on the disk.
+
+    A reader sees the old one or the new one, also after a power cut; a killed writer leaves a `.partial`.
+    """
     part = sibling(path, "partial")
     try:
         part.write_text(text)
+        settle(part)
         part.replace(path)
+        settle(path.parent)
     finally:
         part.unlink(missing_ok=True)
 
@@ -232,13 +258,15 @@ def edit_attributes(path: Path, changes: dict[str, Any]) -> None:
 
 
 def put_in_place(part: Path, target: Path, *, overwrite: bool) -> None:
-    """Rename a complete store to its path; an older one there is replaced only if asked."""
+    """Rename a complete store to its path, once it is on the disk; an older one there is replaced only if asked."""
+    settle_store(part)
     if not (overwrite and target.exists()):
         try:
             part.rename(target)
         except OSError:
             check_target(target)
             raise
+        settle(target.parent)
         return
     check_target(target, overwrite=True)  # once more, after the time that writing took
     old = sibling(target, "old")
@@ -248,4 +276,5 @@ def put_in_place(part: Path, target: Path, *, overwrite: bool) -> None:
     except OSError:
         old.rename(target)
         raise
+    settle(target.parent)
     shutil.rmtree(old, ignore_errors=True)

@@ -6,6 +6,7 @@ of an orbit saved whole an attribute. Older stores have none.
 
 import contextlib
 import hashlib
+import itertools
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
@@ -68,7 +69,7 @@ class Blocks(NamedTuple):
         array = self.arrays[name]
         index = (number,) + (0,) * (array.ndim - 1)
         found = read_chunk(self.path, name, array, index, with_nan=with_nan)
-        return f"{found}, {chunk_name(name, array, index)}" if isinstance(found, str) else found
+        return f"{found}, {self._name(name, number)}" if isinstance(found, str) else found
 
     def file(self, name: str, number: int) -> Path:
         """Return the file of such a chunk."""
@@ -93,18 +94,19 @@ class Blocks(NamedTuple):
         try:
             reached = unpacked_checkpoint(entries, self.events)
         except (ValueError, OverflowError):
-            return f"no checkpoint, {self._name(block)}"
+            return f"no checkpoint, {self._name(CHECKPOINTS, block)}"
         if block == 0 and self.sealed and seal != seal_of(self.path, BEFORE, []):
-            return f"another checkpoint, {self._name(block)}"
+            return f"another checkpoint, {self._name(CHECKPOINTS, block)}"
         return reached, seal
 
     def seal(self, block: int, reached: Checkpoint, chunks: int) -> int:
         """Return the seal of a block that ends at a checkpoint; so many chunks of crossings were there before."""
+        return seal_of(self.path, block, itertools.starmap(self.file, self._chunks(block, reached, chunks)))
+
+    def _chunks(self, block: int, reached: Checkpoint, chunks: int) -> list[tuple[str, int]]:
         names = sorted(self.names()) if self.plan.has_rows(block, reached.done) else []
-        files = [self.file(name, block) for name in names]
-        if reached.seen is not None:
-            files += [self.file(EVENTS, chunk) for chunk in range(chunks, reached.seen.chunks)]
-        return seal_of(self.path, block, files)
+        crossings = () if reached.seen is None else range(chunks, reached.seen.chunks)
+        return [(name, block) for name in names] + [(EVENTS, chunk) for chunk in crossings]
 
     def ended(self, block: int) -> Checkpoint | str:
         """Return the state at the end of a block, or say that the block does not hold the chunks that were written.
@@ -119,9 +121,12 @@ class Blocks(NamedTuple):
         if isinstance(before, str):
             return before
         chunks = 0 if before is None or before.seen is None else before.seen.chunks
-        if self.sealed and seal != self.seal(block, reached, chunks):
-            return f"a chunk of another place in block {block}, which {self._name(block + 1)} seals"
-        return reached
+        if not self.sealed or seal == self.seal(block, reached, chunks):
+            return reached
+        for name, number in self._chunks(block, reached, chunks):
+            if not self.file(name, number).is_file():
+                return f"no such chunk, {self._name(name, number)}"
+        return f"a chunk of another place in block {block}, which {self._name(CHECKPOINTS, block + 1)} seals"
 
     def flaw(self) -> str | None:
         """Say which block of a finished run does not hold the chunks that were written."""
@@ -133,5 +138,6 @@ class Blocks(NamedTuple):
                 break
         return None
 
-    def _name(self, block: int) -> str:
-        return chunk_name(CHECKPOINTS, self.arrays[CHECKPOINTS], (block, 0))
+    def _name(self, name: str, number: int) -> str:
+        array = self.arrays[name]
+        return chunk_name(name, array, (number,) + (0,) * (array.ndim - 1))

@@ -74,11 +74,12 @@ def open_poses(path: Path) -> StoredPoses:
 
 def _saved(stream: Stream) -> int:
     """Return the number of saved states in the full blocks of an unfinished run, refused if one is damaged."""
-    for block in range(stream.finished_blocks()):
-        if flaw := stream.flaw(block):
-            remedy = f"nonholo.resume({str(stream.path)!r}) computes its block again."
-            raise error(_WHERE, "hold sound blocks", f"{flaw}, in '{stream.path}'", remedy)
-    return stream.saved()
+    full = stream.full_blocks()
+    flaw = full if isinstance(full, str) else next(filter(None, map(stream.flaw, range(full))), None)
+    if flaw is not None:
+        remedy = f"nonholo.resume({str(stream.path)!r}) computes its block again."
+        raise error(_WHERE, "hold sound blocks", f"{flaw}, in '{stream.path}'", remedy)
+    return stream.saved(full)
 
 
 def _system(path: Path, stored: dict[str, Any]) -> System:

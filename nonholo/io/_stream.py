@@ -11,6 +11,7 @@ import functools
 import json
 import os
 import uuid
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -34,6 +35,7 @@ from nonholo.io._save import (
     new_beside,
     new_group,
     put_in_place,
+    settle,
 )
 from nonholo.io._seals import BEFORE, CHECKPOINTS, Blocks, seal_of
 from nonholo.io._stored_crossings import chunks_of, create_crossings, cut_crossings, flaw_of_rows, write_crossings
@@ -78,6 +80,7 @@ class Stream:
             self._arrays[name][first : first + len(orbit)] = np.ascontiguousarray(variable.values)
         seal = [self._blocks.seal(block, reached, chunks)] if self.sealed else []
         self._arrays[CHECKPOINTS][block + 1] = np.append(packed_checkpoint(reached), seal)
+        settle(self._blocks.file(CHECKPOINTS, block + 1))
 
     def checkpoint(self, block: int) -> Checkpoint | str:
         """Return the state at the begin of a block, or what is wrong with its chunk."""
@@ -110,12 +113,16 @@ class Stream:
         found = self.checkpoint(marked)
         return self.plan.begin(marked) if isinstance(found, str) else found.done
 
-    def saved(self) -> int:
-        """Return the number of saved states in the full blocks, from the first one on."""
+    def full_blocks(self) -> int | str:
+        """Return the number of blocks from the first one on with all their rows, or what is wrong with the last."""
         full = self.finished_blocks()
         found = self.checkpoint(full)
-        if full and (isinstance(found, str) or found.done != self.plan.stop(full - 1)):
-            full -= 1  # the run failed in this block, or it was the last one before the run was extended
+        if isinstance(found, str):
+            return found
+        return full - (full > 0 and found.done != self.plan.stop(full - 1))  # it failed, or was extended
+
+    def saved(self, full: int) -> int:
+        """Return the number of saved states in so many full blocks."""
         return min(full * self.plan.rows, 1 + self.plan.steps // self.plan.every)
 
     def finished_blocks(self) -> int:
@@ -206,9 +213,10 @@ class Stream:
 
     @functools.cached_property
     def _arrays(self) -> dict[str, zarr.Array]:
-        names = [*json.loads(read_attributes(self.path)["arrays"]), CHECKPOINTS]
+        shapes = json.loads(read_attributes(self.path)["arrays"])
+        names = [*shapes, CHECKPOINTS]
         names += [EVENTS] if self.events is not None else []
-        return {name: writable_array(self.path, name) for name in names}
+        return {name: writable_array(self.path, name, shapes.get(name)) for name in names}
 
 
 def create_stream(
@@ -242,8 +250,8 @@ def open_stream(path: str | Path) -> Stream:
     return Stream(Path(path).resolve(), plan, run["reconstruct"], stored.get("made"), run.get("sealed", False))
 
 
-def writable_array(path: Path, name: str) -> zarr.Array:
-    """Open an array of a store to go on with."""
+def writable_array(path: Path, name: str, shape: Sequence[int] | None = None) -> zarr.Array:
+    """Open an array of a store to go on with, of a known shape but for the number of rows."""
     where = "resume(store=...)"
     try:
         array = zarr.open_array(path / name, mode="r+", zarr_format=3)
@@ -251,6 +259,8 @@ def writable_array(path: Path, name: str) -> zarr.Array:
         got = f"'{path}', where its metadata cannot be read: {failure}"
         raise error(where, f"hold the array {name}", got, "Run it again.") from failure
     check_array(where, name, array)
+    if shape is not None and array.shape[1:] != tuple(shape[1:]):
+        raise error(where, f"hold the array {name} with rows of shape {shape[1:]}", f"'{path}'", "Run it again.")
     return array
 
 
