@@ -33,6 +33,7 @@ SCHEMA = 2
 """Written by this version. Schema 1 had last poses in the canonical frame, and names of components with brackets."""
 READABLE = (1, 2)
 _AGAIN = "Run the sweep again."
+_AXIS = {"long_name": "value of the design"}
 _CODECS = BloscCodec(cname="lz4", clevel=5, shuffle="bitshuffle"), Crc32cCodec()
 """As fast as a sweep: the numbers of its members are too different from each other for a slower one to gain by it."""
 
@@ -203,6 +204,9 @@ class SweepStore:
         if isinstance(found, str):
             got = f"{found}, in '{self.path}'"
             raise error("resume(store=...)", f"hold the axis {name}", got, _AGAIN)
+        told = list(axis_dimensions(name, found)), _AXIS
+        if (list(array.metadata.dimension_names or ()), array.metadata.attributes) != told:  # type: ignore[union-attr]
+            raise error("resume(store=...)", f"hold the axis {name}", f"another one in '{self.path}'", _AGAIN)
         return found
 
     @functools.cached_property
@@ -221,7 +225,7 @@ class SweepStore:
         output, chunk = self.outputs[name], self.layout.chunk
         shape, chunks = (*self.layout.sizes, *output.shape), (*chunk, *(max(1, size) for size in output.shape))
         told = [list(shape), list(chunks), output.dtype, json.dumps(output.attributes)]
-        found = [list(array.shape), list(array.chunks), str(array.dtype), json.dumps(dict(array.attrs))]
+        found = [list(array.shape), list(array.chunks), str(array.dtype), json.dumps(array.metadata.attributes)]
         dimensions = [*self.design.sizes, *output.dimensions]
         if [*found, list(array.metadata.dimension_names or ())] != [*told, dimensions]:  # type: ignore[union-attr]
             got = f"another one in '{self.path}'"
@@ -277,7 +281,7 @@ def attributes_of(path: str | Path) -> dict[str, Any]:
 
 def _create_arrays(group: zarr.Group, design: Design, layout: Layout, outputs: dict[str, Output]) -> None:
     for name, values in design.axes.items():
-        variable = xarray.Variable(axis_dimensions(name, values), values, {"long_name": "value of the design"})
+        variable = xarray.Variable(axis_dimensions(name, values), values, _AXIS)
         io.create_array(group, name, variable, len(values), len(values), is_coordinate=True)[:] = values
     for name, output in outputs.items():
         group.create_array(
