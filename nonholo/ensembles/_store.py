@@ -179,8 +179,7 @@ class SweepStore:
     def prepare(self) -> None:
         """Remove what killed writers left and show that every array can be opened."""
         (self.path / "run" / "blocks").mkdir(exist_ok=True)  # what copies stores may leave out empty folders
-        for left in self.path.rglob("*.partial"):
-            left.unlink(missing_ok=True)
+        io.remove_partials(self.path)
         _ = self._arrays, self.design
 
     def finish(self) -> None:

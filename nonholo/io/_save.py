@@ -173,12 +173,20 @@ def new_group(path: Path, told: dict[str, Any], kind: type[BaseModel]) -> zarr.G
 
 
 def consolidate(path: Path) -> None:
-    """Gather the metadata of a complete store in one file; those of inner groups say nothing, and are written again."""
+    """Gather the metadata of a complete store in one file, and wait until all of them are on the disk.
+
+    Those of inner groups say nothing, and are written again.
+    """
     for inner in filter(Path.is_dir, (path / "canonical", path / "run")):
         write_whole(inner / "zarr.json", json.dumps({"attributes": {}, "zarr_format": 3, "node_type": "group"}))
     with _FILTERS, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # zarr: consolidated metadata are not in the specification yet
         zarr.consolidate_metadata(path)
+    for files in map(path.glob, ("zarr.json", "*/zarr.json", "*/*/zarr.json")):
+        for file in files:
+            settle(file)
+            settle(file.parent)
+    settle(path.parent)
 
 
 def _write_array(group: zarr.Group, name: str, variable: xarray.Variable) -> zarr.Array:
@@ -224,25 +232,22 @@ def settle(path: Path) -> None:
             os.close(opened)
 
 
-def settle_store(store: Path) -> None:
-    """Wait until all files of a store, and its folders, are on the disk."""
-    for folder, _, files in os.walk(store, topdown=False):
+def remove_partials(store: Path) -> None:
+    """Remove what killed writers left in a store."""
+    for folder, _, files in os.walk(store):
         for file in files:
-            settle(Path(folder, file))
-        settle(Path(folder))
+            if file.endswith(".partial"):
+                Path(folder, file).unlink(missing_ok=True)
 
 
-def write_whole(path: Path, text: str) -> None:
-    """Write a small file at once, and wait until it is on the disk.
-
-    A reader sees the old one or the new one, also after a power cut; a killed writer leaves a `.partial`.
-    """
+def write_whole(path: Path, text: str, *, settled: bool = False) -> None:
+    """Write a small file at once: a reader sees the old one or the new one, and a killed writer leaves a `.partial`."""
     part = sibling(path, "partial")
     try:
         part.write_text(text)
-        settle(part)
+        if settled:
+            settle(part)
         part.replace(path)
-        settle(path.parent)
     finally:
         part.unlink(missing_ok=True)
 
@@ -254,19 +259,18 @@ def edit_attributes(path: Path, changes: dict[str, Any]) -> None:
     kept = {name: value for name, value in merged.items() if value is not None}
     document["attributes"] = kept | ({"checksum": checksum(kept)} if "checksum" in kept else {})
     document.pop("consolidated_metadata", None)
-    write_whole(path / "zarr.json", json.dumps(document))
+    write_whole(path / "zarr.json", json.dumps(document), settled=True)
+    settle(path)
 
 
 def put_in_place(part: Path, target: Path, *, overwrite: bool) -> None:
-    """Rename a complete store to its path, once it is on the disk; an older one there is replaced only if asked."""
-    settle_store(part)
+    """Rename a complete store to its path; an older one there is replaced only if asked."""
     if not (overwrite and target.exists()):
         try:
             part.rename(target)
         except OSError:
             check_target(target)
             raise
-        settle(target.parent)
         return
     check_target(target, overwrite=True)  # once more, after the time that writing took
     old = sibling(target, "old")
@@ -276,5 +280,4 @@ def put_in_place(part: Path, target: Path, *, overwrite: bool) -> None:
     except OSError:
         old.rename(target)
         raise
-    settle(target.parent)
     shutil.rmtree(old, ignore_errors=True)

@@ -35,7 +35,7 @@ from nonholo.io._save import (
     new_beside,
     new_group,
     put_in_place,
-    settle,
+    remove_partials,
 )
 from nonholo.io._seals import BEFORE, CHECKPOINTS, Blocks, seal_of
 from nonholo.io._stored_crossings import chunks_of, create_crossings, cut_crossings, flaw_of_rows, write_crossings
@@ -80,7 +80,6 @@ class Stream:
             self._arrays[name][first : first + len(orbit)] = np.ascontiguousarray(variable.values)
         seal = [self._blocks.seal(block, reached, chunks)] if self.sealed else []
         self._arrays[CHECKPOINTS][block + 1] = np.append(packed_checkpoint(reached), seal)
-        settle(self._blocks.file(CHECKPOINTS, block + 1))
 
     def checkpoint(self, block: int) -> Checkpoint | str:
         """Return the state at the begin of a block, or what is wrong with its chunk."""
@@ -183,8 +182,7 @@ class Stream:
 
     def prepare(self) -> None:
         """Remove what a killed writer left and give the arrays their length; nothing here loses data."""
-        for left in self.path.rglob("*.partial"):
-            left.unlink(missing_ok=True)
+        remove_partials(self.path)
         if not self.is_finished:
             self._fit(1 + self.plan.steps // self.plan.every)
             checkpoints = self._arrays[CHECKPOINTS]
