@@ -220,6 +220,10 @@ def text(where: str, value: Any) -> str:
     """Return a text."""
     if not isinstance(value, str):
         raise error(where, "be a text", shown(value), "Pass a text.")
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise error(where, "be a text that files can hold", shown(value), "Leave lone surrogates out.") from None
     return value
 
 

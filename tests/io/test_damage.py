@@ -186,3 +186,9 @@ def test_metadata_of_a_finished_run_are_on_the_disk(tmp_path: Path, monkeypatch:
     now = set(map(Path, synced))
     assert now >= {*store.rglob("zarr.json"), *(file.parent for file in store.rglob("zarr.json")), tmp_path}
     assert any(path.name.startswith(".zarr.json") for path in now), "a new text is synced before it takes its name"
+
+
+def test_a_scenario_that_no_file_can_hold_is_refused(tmp_path: Path) -> None:
+    """A lone surrogate has no UTF-8."""
+    with pytest.raises(ValueError, match="text that files can hold"):
+        _run(tmp_path / "run.zarr", scenario="\udcff")
