@@ -76,7 +76,7 @@ def _saved(stream: Stream) -> int:
     """Return the number of saved states in the full blocks of an unfinished run, refused if one is damaged."""
     full = stream.full_blocks()
     flaw = full if isinstance(full, str) else next(filter(None, map(stream.flaw, range(full))), None)
-    if flaw is not None:
+    if flaw is not None or isinstance(full, str):
         remedy = f"nonholo.resume({str(stream.path)!r}) computes its block again."
         raise error(_WHERE, "hold sound blocks", f"{flaw}, in '{stream.path}'", remedy)
     return stream.saved(full)
