@@ -65,7 +65,7 @@ def test_a_chunk_in_the_place_of_another_is_refused(one: str, other: str, tmp_pa
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # that it is damaged
         found = nh.resume(unfinished, events=[NORTH])
-    assert np.array_equal(found.pose, whole.pose)
+    assert found.to_dataset().identical(whole.to_dataset())
     assert found.events["north"].step.tolist() == whole.events["north"].step.tolist()
 
 
