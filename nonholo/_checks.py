@@ -32,7 +32,8 @@ def error(where: str, requirement: str, got: str, remedy: str) -> ValueError:
         >>> str(error("simulate(steps=...)", "be a positive integer", "0", "Pass steps=1 or more."))
         '`simulate(steps=...)` must be a positive integer. Got 0. Pass steps=1 or more.'
     """
-    return ValueError(f"`{where}` must {requirement}. Got {got}. {remedy}")
+    told = f"`{where}` must {requirement}. Got {got}. {remedy}"
+    return ValueError("\n".join(map(printable, told.split("\n"))))
 
 
 def printable(text: str) -> str:
@@ -256,6 +257,10 @@ def text(where: str, value: Any) -> str:
     """Return a text."""
     if not isinstance(value, str):
         raise error(where, "be a text", shown(value), "Pass a text.")
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise error(where, "be a text that files can hold", shown(value), "Leave lone surrogates out.") from None
     return value
 
 

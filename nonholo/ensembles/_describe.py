@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from nonholo._checks import error
 from nonholo.ensembles._design import Design, Grid, RandomDesign
 from nonholo.ensembles._distributions import DISTRIBUTIONS
 from nonholo.ensembles._names import component_name
@@ -29,7 +30,7 @@ def design_text(design: Design) -> dict[str, Any]:
 def design_from(text: dict[str, Any], axis: Callable[[str], np.ndarray]) -> Design:
     """Return the design of a description, with the names that it has there: arrays and random draws go by them."""
     if text["kind"] == "Grid":
-        along = {name: axis(name) for name in text["axes"]}
+        along = {name: _sound(name, axis(name), told) for name, told in text["axes"].items()}
         design: Design = Grid(along, seed=text["seed"])
         object.__setattr__(design, "values_along", along)
         return design
@@ -90,6 +91,14 @@ def differences(ours: Any, theirs: Any, where: str = "") -> Iterator[str]:
 def _short(value: Any) -> str:
     text = json.dumps(value)
     return text if len(text) <= 200 else f"{text[:200]}..."
+
+
+def _sound(name: str, values: np.ndarray, told: str) -> np.ndarray:
+    """Return the values along an axis, which its description tells by their hash."""
+    if _hash(values) != told:
+        remedy = "The store is damaged: copy it again from its source, or run it again."
+        raise error("load_sweep(store=...)", f"hold the axis {name} of its design", "another one", remedy)
+    return values
 
 
 def _hash(values: np.ndarray) -> str:

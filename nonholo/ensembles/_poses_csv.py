@@ -12,7 +12,7 @@ from nonholo._checks import error, path
 from nonholo.ensembles._block import MemberBlock, block_of
 from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
 from nonholo.ensembles._standing import standing_of
-from nonholo.ensembles._store import Mark, SweepStore, open_store
+from nonholo.ensembles._store import SweepStore, open_store
 from nonholo.simulation import Ensemble
 from nonholo.simulation._ensemble_members import Members
 
@@ -42,7 +42,7 @@ def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: b
     opened = open_store(path("sweep_to_csv(store=...)", store))
     task = _task(opened)
     io.check_file(target, overwrite=overwrite)
-    blocks = [block for block in range(opened.layout.blocks) if isinstance(opened.mark(block), Mark)]
+    blocks = [block for block, _ in opened.marks() if block < opened.layout.blocks]
     opened.check(_WHERE, blocks)
     if len(blocks) < opened.layout.blocks:
         warnings.warn(f"The sweep in '{store}' is not finished: {standing_of(store)}.", RuntimeWarning, stacklevel=2)

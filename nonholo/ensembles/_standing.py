@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import xarray
 
+from nonholo._checks import error
 from nonholo.ensembles._store import SweepStore, open_store
 from nonholo.io import owner_of
 
@@ -44,7 +45,7 @@ class SweepStanding(NamedTuple):
 def standing_of(path: str | Path) -> SweepStanding:
     """Say how far the sweep of a store came."""
     store = open_store(path)
-    marks = list(store.marks())
+    marks = [mark for _, mark in store.marks()]
     outcomes: collections.Counter[str] = collections.Counter()
     for mark in marks:
         outcomes.update(mark.outcomes)
@@ -56,5 +57,9 @@ def standing_of(path: str | Path) -> SweepStanding:
 
 
 def opened_result(store: SweepStore) -> xarray.Dataset:
-    """Return the result as a dataset that is read as it is used."""
-    return xarray.open_zarr(store.path, chunks=None, consolidated=True)
+    """Return the result as a dataset that is read as it is used, by the metadata of its arrays, which were checked."""
+    try:
+        return xarray.open_zarr(store.path, chunks=None, consolidated=False)
+    except Exception as failure:
+        got = f"'{store.path}', where xarray cannot read them: {failure}"
+        raise error("load_sweep(store=...)", "hold sound metadata", got, "Copy it again from its source.") from failure

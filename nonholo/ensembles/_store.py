@@ -12,16 +12,17 @@ import uuid
 import zlib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import xarray
 import zarr
+from pydantic import Field, TypeAdapter, ValidationError
 from zarr.codecs import BloscCodec, Crc32cCodec
 from zarr.core.sync import sync
 
 from nonholo import io
-from nonholo._checks import error
+from nonholo._checks import error, printable
 from nonholo.ensembles._describe import design_from
 from nonholo.ensembles._design import Design, axis_dimensions
 from nonholo.ensembles._layout import Layout, Piece
@@ -32,19 +33,24 @@ SCHEMA = 2
 """Written by this version. Schema 1 had last poses in the canonical frame, and names of components with brackets."""
 READABLE = (1, 2)
 _AGAIN = "Run the sweep again."
+_AXIS = {"long_name": "value of the design"}
 _CODECS = BloscCodec(cname="lz4", clevel=5, shuffle="bitshuffle"), Crc32cCodec()
 """As fast as a sweep: the numbers of its members are too different from each other for a slower one to gain by it."""
 
 
 class Mark(NamedTuple):
-    """What is known of a finished block."""
+    """What is known of a finished block; older marks have no seal."""
 
     members: int
     outcomes: dict[str, int]
     seconds: float
     finished: float
     writer: str
-    messages: list[list[Any]]
+    messages: list[Annotated[list[Any], Field(min_length=2, max_length=2)]]
+    seal: int | None = None
+
+
+_MARK = TypeAdapter(Mark)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -100,7 +106,7 @@ class SweepStore:
         for name in results.arrays:
             self._chunk_file(name, piece.number).unlink(missing_ok=True)  # zarr would read a damaged one first
         sync(self._write_chunks(piece, results))
-        text = json.dumps(mark._asdict())
+        text = json.dumps(mark._replace(seal=self._seal(piece.number))._asdict())
         io.write_whole(self._mark_file(piece.number), f"{zlib.crc32(text.encode()):08x} {text}")
 
     async def _write_chunks(self, piece: Piece, results: Results) -> None:
@@ -123,16 +129,24 @@ class SweepStore:
         except UnicodeDecodeError:
             return f"the mark {self._mark_file(block).name} cannot be read"
         check, _, text = written.partition(" ")
-        if check != f"{zlib.crc32(text.encode()):08x}":
+        try:
+            mark = _MARK.validate_json(text)
+        except ValidationError:
+            check, mark = "", None
+        if mark is None or check != f"{zlib.crc32(text.encode()):08x}":
             return f"the mark {self._mark_file(block).name} is damaged"
-        return Mark(**json.loads(text))
+        return mark._replace(
+            outcomes={printable(name): count for name, count in mark.outcomes.items()},
+            writer=printable(mark.writer),
+            messages=[[member, printable(str(told).replace("\n", " "))] for member, told in mark.messages],
+        )
 
-    def marks(self) -> Iterator[Mark]:
-        """Return the marks that can be read, of finished blocks in any order."""
-        for file in (self.path / "run" / "blocks").glob("*.json"):
-            mark = self.mark(int(file.stem))
-            if isinstance(mark, Mark):
-                yield mark
+    def marks(self) -> Iterator[tuple[int, Mark]]:
+        """Return the numbers of finished blocks in order with their marks, those that can be read."""
+        files = (self.path / "run" / "blocks").glob("*.json")
+        for block in sorted(int(file.stem) for file in files if file.stem.isdecimal()):
+            if isinstance(mark := self.mark(block), Mark):
+                yield block, mark
 
     def flaw(self, block: int) -> str | None:
         """Say which chunk of a block is damaged, and how; None if all are sound."""
@@ -140,12 +154,21 @@ class SweepStore:
             found = io.read_chunk(self.path, name, array, self._index(name, block), with_nan=True)
             if isinstance(found, str):
                 return f"{found}, {io.chunk_name(name, array, self._index(name, block))}"
+        mark = self.mark(block)
+        if not isinstance(mark, Mark):
+            return mark or f"no mark {self._mark_file(block).name}"
+        if mark.seal not in (None, self._seal(block)):
+            return f"a chunk of another place in block {block}, which {self._mark_file(block).name} seals"
         return None
 
+    def _seal(self, block: int) -> int:
+        return io.seal_of(self.path, block, (self._chunk_file(name, block) for name in sorted(self._arrays)))
+
     def check(self, where: str, blocks: Iterable[int]) -> None:
-        """Refuse a store of which one of these blocks is damaged."""
+        """Refuse a store of which one of these blocks, or an axis, is damaged."""
+        _ = self.design
         for flaw in filter(None, map(self.flaw, blocks)):
-            remedy = f"nonholo.resume('{self.path}') computes its block again."
+            remedy = f"nonholo.resume({str(self.path)!r}) computes its block again."
             raise error(where, "be sound", f"'{self.path}', in which there is {flaw}", remedy)
 
     def rows(self, name: str, piece: Piece) -> np.ndarray:
@@ -156,8 +179,7 @@ class SweepStore:
     def prepare(self) -> None:
         """Remove what killed writers left and show that every array can be opened."""
         (self.path / "run" / "blocks").mkdir(exist_ok=True)  # what copies stores may leave out empty folders
-        for left in self.path.rglob("*.partial"):
-            left.unlink(missing_ok=True)
+        io.remove_partials(self.path)
         _ = self._arrays, self.design
 
     def finish(self) -> None:
@@ -181,6 +203,9 @@ class SweepStore:
         if isinstance(found, str):
             got = f"{found}, in '{self.path}'"
             raise error("resume(store=...)", f"hold the axis {name}", got, _AGAIN)
+        told = list(axis_dimensions(name, found)), _AXIS
+        if (list(array.metadata.dimension_names or ()), array.metadata.attributes) != told:  # type: ignore[union-attr]
+            raise error("resume(store=...)", f"hold the axis {name}", f"another one in '{self.path}'", _AGAIN)
         return found
 
     @functools.cached_property
@@ -190,7 +215,20 @@ class SweepStore:
     @functools.cached_property
     def _arrays(self) -> dict[str, zarr.Array]:
         opened = {name: io.writable_array(self.path, name) for name in self.outputs}
+        for name, array in opened.items():
+            self._check_described(name, array)
         return {name: array.with_config({"write_empty_chunks": True}) for name, array in opened.items()}
+
+    def _check_described(self, name: str, array: zarr.Array) -> None:
+        """Refuse an array that is not the one of the description, of which the attributes have a checksum."""
+        output, chunk = self.outputs[name], self.layout.chunk
+        shape, chunks = (*self.layout.sizes, *output.shape), (*chunk, *(max(1, size) for size in output.shape))
+        told = [list(shape), list(chunks), output.dtype, json.dumps(output.attributes)]
+        found = [list(array.shape), list(array.chunks), str(array.dtype), json.dumps(array.metadata.attributes)]
+        dimensions = [*self.design.sizes, *output.dimensions]
+        if [*found, list(array.metadata.dimension_names or ())] != [*told, dimensions]:  # type: ignore[union-attr]
+            got = f"another one in '{self.path}'"
+            raise error("resume(store=...)", f"hold the array {name} of its description", got, _AGAIN)
 
 
 @functools.lru_cache(maxsize=16)
@@ -213,9 +251,8 @@ def create_store(
         raise _exists(path)
     told = description | {"layout": layout, "outputs": {name: dataclasses.astuple(o) for name, o in outputs.items()}}
     about = {"format": FORMAT, "schema": SCHEMA, "made": made, "finished": False, "sweep": json.dumps(told)}
-    about["checksum"] = io.checksum(about)
     with io.new_beside(path) as part:
-        group = zarr.create_group(part, zarr_format=3, attributes=about | {"versions": io.versions_text()} | extra)
+        group = io.new_group(part, about | {"versions": io.versions_text()} | extra, io.SweepMetadata)
         _create_arrays(group, design, layout, outputs)
         (part / "run" / "blocks").mkdir()
         try:
@@ -243,7 +280,7 @@ def attributes_of(path: str | Path) -> dict[str, Any]:
 
 def _create_arrays(group: zarr.Group, design: Design, layout: Layout, outputs: dict[str, Output]) -> None:
     for name, values in design.axes.items():
-        variable = xarray.Variable(axis_dimensions(name, values), values, {"long_name": "value of the design"})
+        variable = xarray.Variable(axis_dimensions(name, values), values, _AXIS)
         io.create_array(group, name, variable, len(values), len(values), is_coordinate=True)[:] = values
     for name, output in outputs.items():
         group.create_array(

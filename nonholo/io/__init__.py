@@ -9,20 +9,13 @@ from nonholo.io._attributes import (
     restore_motion,
     versions_text,
 )
+from nonholo.io._chunks import chunk_name, chunk_path, read_chunk
 from nonholo.io._csv import check_file, new_file, orbit_to_csv, store_to_csv, table_lines
 from nonholo.io._dataset import is_known, labels_of, orbit_to_dataset
 from nonholo.io._descriptions import fields_of
-from nonholo.io._load import (
-    chunk_name,
-    chunk_path,
-    format_of,
-    load_last_block,
-    load_orbit,
-    read_attributes,
-    read_chunk,
-)
+from nonholo.io._load import format_of, load_last_block, load_orbit, read_attributes
 from nonholo.io._lock import locked, owner_of
-from nonholo.io._metadata import TAKEN, checksum, is_array_name, require_identity
+from nonholo.io._metadata import TAKEN, SweepMetadata, checksum, is_array_name, require_identity
 from nonholo.io._pandas import orbit_to_pandas
 from nonholo.io._plan import Checkpoint, Plan
 from nonholo.io._pose_columns import column_names, separate_rows
@@ -34,11 +27,14 @@ from nonholo.io._save import (
     create_array,
     edit_attributes,
     new_beside,
+    new_group,
     put_in_place,
+    remove_partials,
     save_orbit,
     telling_how_to_go_on,
     write_whole,
 )
+from nonholo.io._seals import seal_of
 from nonholo.io._stored_events import Seen, described
 from nonholo.io._stream import Standing, Stream, create_stream, open_stream, standing, writable_array
 
@@ -50,6 +46,7 @@ __all__ = [
     "Seen",
     "Standing",
     "Stream",
+    "SweepMetadata",
     "attributes",
     "attributes_of_text",
     "check_file",
@@ -75,6 +72,7 @@ __all__ = [
     "locked",
     "new_beside",
     "new_file",
+    "new_group",
     "open_stream",
     "orbit_to_csv",
     "orbit_to_dataset",
@@ -84,9 +82,11 @@ __all__ = [
     "put_in_place",
     "read_attributes",
     "read_chunk",
+    "remove_partials",
     "require_identity",
     "restore_motion",
     "save_orbit",
+    "seal_of",
     "separate_rows",
     "separate_variables",
     "standing",

@@ -4,9 +4,11 @@ import errno
 import hashlib
 import json
 import math
+import unicodedata
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import zarr
 from pydantic import (
     AfterValidator,
     BaseModel,
@@ -17,18 +19,18 @@ from pydantic import (
     ValidationError,
     model_validator,
 )
+from zarr.codecs.bytes import Endian
 
 from nonholo._checks import error, printable
 from nonholo._limits import within_memory
 from nonholo._results import Outcome
+from nonholo.io._attributes import attributes_of_text
 
-_DESCRIBED = ("system", "parameters", "motion", "save_every", "branch", "precision", "events", "sweep")
 _MOST = 2**53
 TAKEN = ("run", "zarr.json")
 """Names in a store that no array has."""
 
 Positive = Annotated[int, Field(gt=0, le=_MOST, strict=True)]
-Text = Annotated[str, AfterValidator(printable)]
 
 
 def is_array_name(name: str) -> bool:
@@ -51,13 +53,22 @@ class _Data(BaseModel):
     model_config = ConfigDict(extra="ignore")
 
 
+class _About(_Data):
+    format: str
+    schema_: Annotated[int, Field(alias="schema", strict=True)]
+    versions: Json[dict[str, str]]
+    made: str | None = None
+    scenario: str | None = None
+    scenario_sha256: str | None = None
+
+
 class _Run(_Data):
     steps: Positive
     rows: Positive
     reconstruct: bool
 
 
-class OrbitMetadata(_Data):
+class OrbitMetadata(_About):
     """The attributes of the store of an orbit."""
 
     system: str
@@ -65,12 +76,15 @@ class OrbitMetadata(_Data):
     motion: Json[dict[str, Any]]
     save_every: Positive
     arrays: Json[dict[Name, Annotated[Shape, Field(min_length=1)]]]
-    versions: Json[dict[str, Text]]
     branch: str = "principal"
+    precision: str = "float64"
+    conventions: str = ""
     outcome: Literal[tuple(Outcome.__members__)] | None = None  # type: ignore[valid-type]
     run: Json[_Run] | None = None
     events: Json[list[dict[str, Any]]] | None = None
     crossings: Json[list[NonNegativeInt]] | None = None
+    stopped_by: str | None = None
+    seal: NonNegativeInt | None = None
 
     @model_validator(mode="after")
     def _have_one_length(self) -> "OrbitMetadata":
@@ -100,41 +114,53 @@ class _Sweep(_Data):
         return self
 
 
-class SweepMetadata(_Data):
+class SweepMetadata(_About):
     """The attributes of the store of a sweep."""
 
-    made: str
     finished: bool
     sweep: Json[_Sweep]
-    versions: Json[dict[str, Text]]
+
+
+_OURS = {field.alias or name for kind in (OrbitMetadata, SweepMetadata) for name, field in kind.model_fields.items()}
 
 
 def checksum(stored: dict[str, Any]) -> str:
-    """Return the SHA-256 of what is moved and how: all that another body, motion or task would change."""
-    described = {name: stored[name] for name in _DESCRIBED if name in stored}
-    run = json.loads(stored.get("run", "{}"))
-    described["run"] = {name: run[name] for name in ("rows", "reconstruct") if name in run}
-    return hashlib.sha256(json.dumps(described, sort_keys=True).encode()).hexdigest()
+    """Return the SHA-256 of all attributes that are ours; whoever writes one of them writes it again."""
+    ours = {name: value for name, value in stored.items() if name in _OURS}
+    return hashlib.sha256(json.dumps(ours, sort_keys=True).encode()).hexdigest()
 
 
 def check_metadata(where: str, path: str, stored: dict[str, Any], kind: type[BaseModel]) -> None:
     """Refuse attributes that a store of ours does not have; the message names each.
 
     Raises:
-        ValueError: An attribute is missing, of another type or out of range; the checksum is another one; a chunk of an
-            array would not fit into memory.
+        ValueError: An attribute is missing, of another type or out of range; the checksum is another one; a text would
+            control a terminal.
     """
     remedy = "The store is damaged or was edited: copy it again from its source, or run it again."
     try:
-        kind.model_validate(stored)
+        about = kind.model_validate(stored).model_dump()
+        controls = [name for name, value in about.items() if _has_controls(value)]
         differs = stored.get("checksum", checksum(stored)) != checksum(stored)
     except (ValidationError, RecursionError, TypeError, AttributeError) as failure:
         raise error(where, "hold sound attributes", f"'{path}', in which {_problems(failure)}", remedy) from None
-    scenario = stored.get("scenario")
-    if scenario is not None and hashlib.sha256(str(scenario).encode()).hexdigest() != stored.get("scenario_sha256"):
+    scenario = about["scenario"]
+    if scenario is not None and attributes_of_text(scenario)["scenario_sha256"] != about["scenario_sha256"]:
         raise error(where, "hold the scenario that was run", f"'{path}', whose scenario_sha256 differs", remedy)
     if differs:
-        raise error(where, "hold the motion that it was made with", f"'{path}', whose checksum differs", remedy)
+        raise error(where, "hold the attributes that it was made with", f"'{path}', whose checksum differs", remedy)
+    if controls:
+        got = f"'{path}', in which {controls[0]} has some"
+        raise error(where, "hold texts without control characters", got, "Leave them out of names and texts.")
+
+
+def _has_controls(value: Any) -> bool:
+    """Tell whether a text in nested data would control a terminal; lines and tabs do no harm."""
+    if isinstance(value, str):
+        return any(unicodedata.category(letter) == "Cc" and letter not in "\n\t" for letter in value)
+    if isinstance(value, dict):
+        return any(map(_has_controls, value.keys())) or any(map(_has_controls, value.values()))
+    return isinstance(value, list | tuple) and any(map(_has_controls, value))
 
 
 def require_identity(path: Path, made: str | None) -> None:
@@ -145,16 +171,20 @@ def require_identity(path: Path, made: str | None) -> None:
     """
     try:
         found = json.loads((path / "zarr.json").read_text())["attributes"].get("made")
-    except (OSError, ValueError, KeyError, AttributeError):
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         found = "none"
     if found != made:
         reason = "Another store has taken the place of the one that was being written; nothing of it was changed"
         raise OSError(errno.ESTALE, reason, str(path))
 
 
-def check_chunk(where: str, name: str, chunk: tuple[int, ...]) -> None:
-    """Refuse an array of which a chunk does not fit into memory."""
-    within_memory(where, 8.0 * math.prod(map(float, chunk)), f"The array {name} is damaged or was edited.")
+def check_array(where: str, name: str, array: zarr.Array) -> None:
+    """Refuse an array of which a chunk does not fit into memory, or whose bytes have another order than ours."""
+    remedy = f"The array {name} is damaged or was edited."
+    within_memory(where, 8.0 * min(math.prod(array.chunks), _MOST), remedy)
+    orders = {getattr(codec, "endian", None) for codec in array.metadata.codecs}  # type: ignore[union-attr]
+    if orders - {None, Endian.little}:
+        raise error(where, f"hold the array {name} in the order of bytes that is written", "another one", remedy)
 
 
 def _problems(failure: Exception) -> str:

@@ -35,6 +35,10 @@ class Plan(NamedTuple):
         """Return the step at which it ends; the last block also takes the steps after the last saved state."""
         return self.steps if block == self.blocks - 1 else self.begin(block + 1)
 
+    def has_rows(self, block: int, done: int) -> bool:
+        """Tell whether a block has saved states if the run stands at a step: it may fail before the first one."""
+        return block * self.rows <= done // self.every
+
 
 class Checkpoint(NamedTuple):
     """Where a run stands: the last good step, the outcome so far, the vector to go on from, what its events saw."""

@@ -3,6 +3,7 @@
 import contextlib
 import errno
 import json
+import os
 import re
 import shutil
 import threading
@@ -15,6 +16,7 @@ from typing import Any
 import numpy as np
 import xarray
 import zarr
+from pydantic import BaseModel
 from zarr.codecs import BloscCodec, Crc32cCodec
 
 from nonholo._checks import error, flags
@@ -23,7 +25,8 @@ from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
 from nonholo.io._dataset import CANONICAL, stored_variables
 from nonholo.io._load import format_of
 from nonholo.io._lock import being_made, owner_of, remove_remains
-from nonholo.io._metadata import checksum
+from nonholo.io._metadata import OrbitMetadata, check_metadata, checksum
+from nonholo.io._seals import seal_of_whole
 from nonholo.orbit import Orbit, as_orbit
 
 _ROWS = 100_000  # states in one chunk
@@ -68,7 +71,7 @@ def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scena
     check_target(target, overwrite=overwrite)
     with new_beside(path) as part:
         told = attributes(orbit) | ({} if scenario is None else attributes_of_text(scenario))
-        _write(stored_variables(orbit), told | {"checksum": checksum(told)}, part)
+        _write(stored_variables(orbit), told, part)
         put_in_place(part, target, overwrite=overwrite)
 
 
@@ -112,11 +115,19 @@ def check_suffix(path: str | Path, where: str = "save_orbit(path=...)") -> None:
         raise error(where, "be the path of a Zarr store, usually *.zarr", f"'{path}'", remedy)
 
 
-def check_target(path: str | Path, *, overwrite: bool = False) -> None:
-    """Refuse a path that exists, unless it is a store of an orbit that may be replaced, and one of another format."""
+def check_target(path: str | Path, *, overwrite: bool = False, new: str | None = None) -> None:
+    """Refuse a path that exists, unless it is a store of an orbit that may be replaced, and one of another format.
+
+    Args:
+        path: Where the store shall be.
+        overwrite: Whether the caller asked to replace one.
+        new: In whose name, if it has no such argument.
+    """
     check_suffix(path)
     if not Path(path).exists():
         return
+    if new:
+        raise _exists(path, "Choose another path, or go on with what is there: nonholo.resume(path).", new)
     if not overwrite:
         raise _exists(path, "Choose another path, or pass overwrite=True (--overwrite) to replace it.")
     if format_of(path) != FORMAT:
@@ -135,8 +146,8 @@ def _foreign_file(store: Path) -> str | None:
     return next((name for name in files if not _OWN.fullmatch(name)), None)
 
 
-def _exists(path: str | Path, remedy: str) -> FileExistsError:
-    return FileExistsError(f"`save_orbit(path=...)` must be new. Got '{path}', which exists. {remedy}")
+def _exists(path: str | Path, remedy: str, where: str = "save_orbit(path=...)") -> FileExistsError:
+    return FileExistsError(f"`{where}` must be new. Got '{path}', which exists. {remedy}")
 
 
 def sibling(target: Path, purpose: str) -> Path:
@@ -146,26 +157,44 @@ def sibling(target: Path, purpose: str) -> Path:
 
 def _write(variables: dict[str, xarray.Variable], told: dict[str, Any], path: Path) -> None:
     shapes = {name: variable.shape for name, variable in variables.items()}
-    group = zarr.create_group(path, zarr_format=3, attributes={**told, "arrays": json.dumps(shapes)})
+    group = new_group(path, told | {"arrays": json.dumps(shapes)}, OrbitMetadata)
     group.create_group(CANONICAL.rstrip("/"))
-    for name, variable in variables.items():
-        _write_array(group, name, variable)
+    arrays = {name: _write_array(group, name, variable) for name, variable in variables.items()}
+    edit_attributes(path, {"seal": seal_of_whole(path, arrays)})
     consolidate(path)
 
 
+def new_group(path: Path, told: dict[str, Any], kind: type[BaseModel]) -> zarr.Group:
+    """Make a store with attributes, refused if they could not be read again, and their checksum."""
+    told |= {"checksum": checksum(told)}
+    check_metadata("store=...", str(path), json.loads(json.dumps(told)), kind)
+    return zarr.create_group(path, zarr_format=3, attributes=told)
+
+
 def consolidate(path: Path) -> None:
-    """Gather the metadata of a complete store in one file."""
+    """Gather the metadata of a complete store in one file, and wait until all of them are on the disk.
+
+    Those of inner groups say nothing, and are written again.
+    """
+    for inner in filter(Path.is_dir, (path / "canonical", path / "run")):
+        write_whole(inner / "zarr.json", json.dumps({"attributes": {}, "zarr_format": 3, "node_type": "group"}))
     with _FILTERS, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # zarr: consolidated metadata are not in the specification yet
         zarr.consolidate_metadata(path)
+    for files in map(path.glob, ("zarr.json", "*/zarr.json", "*/*/zarr.json")):
+        for file in files:
+            settle(file)
+            settle(file.parent)
+    settle(path.parent)
 
 
-def _write_array(group: zarr.Group, name: str, variable: xarray.Variable) -> None:
+def _write_array(group: zarr.Group, name: str, variable: xarray.Variable) -> zarr.Array:
     """Write an array one chunk after the other, so that a failure leaves no writer behind."""
     rows = len(variable)
     array = create_array(group, name, variable, rows, max(1, min(_ROWS, rows)), is_coordinate=is_coordinate(name))
     for first in range(0, rows, _ROWS):
         array[first : first + _ROWS] = np.ascontiguousarray(variable.values[first : first + _ROWS])
+    return array
 
 
 def is_coordinate(name: str) -> bool:
@@ -192,11 +221,31 @@ def create_array(
     )
 
 
-def write_whole(path: Path, text: str) -> None:
+def settle(path: Path) -> None:
+    """Wait until a file, or the names in a folder, are on the disk: a power cut does not take them back."""
+    with contextlib.suppress(PermissionError):  # Windows opens no folders
+        opened = os.open(path, os.O_RDONLY)
+        try:
+            os.fsync(opened)
+        finally:
+            os.close(opened)
+
+
+def remove_partials(store: Path) -> None:
+    """Remove what killed writers left in a store."""
+    for folder, _, files in os.walk(store):
+        for file in files:
+            if file.endswith(".partial"):
+                Path(folder, file).unlink(missing_ok=True)
+
+
+def write_whole(path: Path, text: str, *, settled: bool = False) -> None:
     """Write a small file at once: a reader sees the old one or the new one, and a killed writer leaves a `.partial`."""
     part = sibling(path, "partial")
     try:
         part.write_text(text)
+        if settled:
+            settle(part)
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
@@ -206,9 +255,11 @@ def edit_attributes(path: Path, changes: dict[str, Any]) -> None:
     """Change attributes (None removes one) and drop the consolidated metadata, in one atomic write."""
     document = json.loads((path / "zarr.json").read_text())
     merged = document["attributes"] | changes
-    document["attributes"] = {name: value for name, value in merged.items() if value is not None}
+    kept = {name: value for name, value in merged.items() if value is not None}
+    document["attributes"] = kept | ({"checksum": checksum(kept)} if "checksum" in kept else {})
     document.pop("consolidated_metadata", None)
-    write_whole(path / "zarr.json", json.dumps(document))
+    write_whole(path / "zarr.json", json.dumps(document), settled=True)
+    settle(path)
 
 
 def put_in_place(part: Path, target: Path, *, overwrite: bool) -> None:

@@ -10,11 +10,12 @@ import numpy as np
 import zarr
 
 from nonholo._checks import error
+from nonholo.io._chunks import checked_block, opened_array
 from nonholo.io._descriptions import restore_system, unstored
-from nonholo.io._load import checked_block, opened_array, read_attributes, stored_names
+from nonholo.io._load import check_seals, read_attributes, stored_names
 from nonholo.io._lock import owner_of
 from nonholo.io._pose_columns import Stretch
-from nonholo.io._stream import open_stream
+from nonholo.io._stream import Stream, open_stream
 from nonholo.systems import System
 
 _WHERE = "store_to_csv(store=...)"
@@ -61,13 +62,24 @@ def open_poses(path: Path) -> StoredPoses:
         remedy = "Run it again with reconstruct=True: poses cannot be added later."
         raise error(_WHERE, "hold poses", f"'{path}', which was run with reconstruct=False", remedy)
     if "outcome" in stored:
+        check_seals(path, stored)
         arrays = {name: opened_array(path, array, tuple(shapes[array])) for name, array in places.items()}
         return StoredPoses(path, system, shapes["time"][0], places, arrays)
     stream = open_stream(path)
-    rows = stream.saved()
+    rows = _saved(stream)
     _warn(path, max(0, rows - 1) * stream.plan.every, stream.plan.steps)
     arrays = {name: opened_array(path, array, None) for name, array in places.items()}
     return StoredPoses(path, system, rows, places, arrays)
+
+
+def _saved(stream: Stream) -> int:
+    """Return the number of saved states in the full blocks of an unfinished run, refused if one is damaged."""
+    full = stream.full_blocks()
+    flaw = full if isinstance(full, str) else next(filter(None, map(stream.flaw, range(full))), None)
+    if flaw is not None or isinstance(full, str):
+        remedy = f"nonholo.resume({str(stream.path)!r}) computes its block again."
+        raise error(_WHERE, "hold sound blocks", f"{flaw}, in '{stream.path}'", remedy)
+    return stream.saved(full)
 
 
 def _system(path: Path, stored: dict[str, Any]) -> System:

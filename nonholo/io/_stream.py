@@ -9,7 +9,9 @@ store is unfinished it has no outcome among its attributes and no consolidated m
 import dataclasses
 import functools
 import json
+import os
 import uuid
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,10 +22,10 @@ import zarr
 from nonholo._checks import error
 from nonholo.io._attributes import attributes, attributes_of_text
 from nonholo.io._dataset import CANONICAL, HEADED, stored_variables
-from nonholo.io._load import chunk_name, chunk_path, read_attributes, read_chunk
+from nonholo.io._load import read_attributes
 from nonholo.io._lock import owner_of
-from nonholo.io._metadata import checksum, require_identity
-from nonholo.io._plan import Checkpoint, Plan, packed_checkpoint, unpacked_checkpoint
+from nonholo.io._metadata import OrbitMetadata, check_array, require_identity
+from nonholo.io._plan import Checkpoint, Plan, packed_checkpoint
 from nonholo.io._save import (
     check_target,
     consolidate,
@@ -31,13 +33,14 @@ from nonholo.io._save import (
     edit_attributes,
     is_coordinate,
     new_beside,
+    new_group,
     put_in_place,
+    remove_partials,
 )
+from nonholo.io._seals import BEFORE, CHECKPOINTS, Blocks, seal_of
 from nonholo.io._stored_crossings import chunks_of, create_crossings, cut_crossings, flaw_of_rows, write_crossings
 from nonholo.io._stored_events import EVENTS, Seen, seen_nothing
 from nonholo.orbit import EventLog, Orbit
-
-_CHECKPOINTS = "run/checkpoints"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -49,12 +52,14 @@ class Stream:
         plan: How the run is cut.
         reconstruct: Whether poses are kept.
         made: Which one it is: another store at the same path has another number.
+        sealed: Whether checkpoints seal their blocks; those of older stores do not.
     """
 
     path: Path
     plan: Plan
     reconstruct: bool
     made: str | None
+    sealed: bool
 
     @property
     def is_finished(self) -> bool:
@@ -62,27 +67,30 @@ class Stream:
         return "outcome" in read_attributes(self.path)
 
     def write(self, block: int, orbit: Orbit, reached: Checkpoint) -> None:
-        """Write the chunks of a block, then the checkpoint at its end."""
+        """Write the chunks of a block, then the checkpoint at its end, which seals them."""
         require_identity(self.path, self.made)
         self._remove(block)
+        chunks = 0
         if orbit.events is not None and reached.seen is not None:
             write_crossings(self._arrays[EVENTS], orbit.events, reached.seen.chunks)
+            chunks = reached.seen.chunks - chunks_of(self._arrays[EVENTS], orbit.events)
         first = block * self.plan.rows
         variables = stored_variables(orbit, self._turn_before(first), older=self._is_older) if len(orbit) else {}
         for name, variable in variables.items():
             self._arrays[name][first : first + len(orbit)] = np.ascontiguousarray(variable.values)
-        self._arrays[_CHECKPOINTS][block + 1] = packed_checkpoint(reached)
+        seal = [self._blocks.seal(block, reached, chunks)] if self.sealed else []
+        self._arrays[CHECKPOINTS][block + 1] = np.append(packed_checkpoint(reached), seal)
 
     def checkpoint(self, block: int) -> Checkpoint | str:
         """Return the state at the begin of a block, or what is wrong with its chunk."""
-        row = self._chunk(_CHECKPOINTS, block)
-        if isinstance(row, str):
-            return row
-        return unpacked_checkpoint(row[0], None if self.events is None else len(self.events))
+        return self._blocks.checkpoint(block)
 
-    def is_marked(self, block: int) -> bool:
-        """Tell whether there is a checkpoint at the end of a block, sound or not."""
-        return self._file(_CHECKPOINTS, block + 1).is_file()
+    def marked(self) -> set[int]:
+        """Return the blocks at whose end there is a checkpoint, sound or not; the folder is read once."""
+        first = self._blocks.file(CHECKPOINTS, 0)
+        folder = first.parent.parent
+        numbers = (int(name) for name in os.listdir(folder) if name.isdecimal()) if folder.is_dir() else ()
+        return {number - 1 for number in numbers if os.path.isfile(f"{folder}/{number}/{first.name}")} - {-1}
 
     def flaw(self, block: int) -> str | None:
         """Say which chunk of a block that is marked as finished is damaged, and how; None if all are sound."""
@@ -91,34 +99,35 @@ class Stream:
             return reached
         if reached.seen is not None and (wrong := self._flaw_of_crossings(block, reached.seen)):
             return wrong
-        if self.plan.begin(block) // self.plan.every + (block > 0) > reached.done // self.plan.every:
-            return None  # the run failed before the first row of this block
-        for name in self._names():
-            found = self._chunk(name, block)
+        for name in self._blocks.names() if self.plan.has_rows(block, reached.done) else ():
+            found = self._blocks.chunk(name, block)
             if isinstance(found, str):
                 return found
-        return None
+        found = self._blocks.ended(block)
+        return found if isinstance(found, str) else None
 
     def reached(self) -> int:
         """Return the step up to which blocks are marked as finished."""
-        marked = self._marked()
+        marked = self.finished_blocks()
         found = self.checkpoint(marked)
         return self.plan.begin(marked) if isinstance(found, str) else found.done
 
-    def saved(self) -> int:
-        """Return the number of saved states in the full blocks, from the first one on."""
-        full = self._marked()
+    def full_blocks(self) -> int | str:
+        """Return the number of blocks from the first one on with all their rows, or what is wrong with the last."""
+        full = self.finished_blocks()
         found = self.checkpoint(full)
-        if full and (isinstance(found, str) or found.done != self.plan.stop(full - 1)):
-            full -= 1  # the run failed in this block, or it was the last one before the run was extended
+        if isinstance(found, str):
+            return found
+        return full - (full > 0 and found.done != self.plan.stop(full - 1))  # it failed, or was extended
+
+    def saved(self, full: int) -> int:
+        """Return the number of saved states in so many full blocks."""
         return min(full * self.plan.rows, 1 + self.plan.steps // self.plan.every)
 
-    def _marked(self) -> int:
+    def finished_blocks(self) -> int:
         """Return the number of blocks, from the first one on, that are marked as finished."""
-        marked = 0
-        while marked < self.plan.blocks and self.is_marked(marked):
-            marked += 1
-        return marked
+        marked = self.marked()
+        return next(block for block in range(len(marked) + 1) if block not in marked)
 
     def finish(self, end: Checkpoint) -> None:
         """Cut the arrays to the good states, add the outcome and consolidate the metadata."""
@@ -135,7 +144,7 @@ class Stream:
     @functools.cached_property
     def _is_older(self) -> bool:
         """Whether the store has compact states and energies alone."""
-        return not any(name.startswith(CANONICAL) for name in self._names())
+        return not any(name.startswith(CANONICAL) for name in self._blocks.names())
 
     def _turn_before(self, row: int) -> np.ndarray | None:
         """Return the heading or the quaternion of the state before a row, on which what follows goes on."""
@@ -158,7 +167,7 @@ class Stream:
         if isinstance(before, str):
             return before
         begin = seen_nothing(len(seen.counts)) if before is None or before.seen is None else before.seen
-        chunks = [self._chunk(EVENTS, chunk, with_nan=True) for chunk in range(begin.chunks, seen.chunks)]
+        chunks = [self._blocks.chunk(EVENTS, chunk, with_nan=True) for chunk in range(begin.chunks, seen.chunks)]
         wrong = [chunk for chunk in chunks if isinstance(chunk, str)]
         rows = [chunk for chunk in chunks if not isinstance(chunk, str)]
         return wrong[0] if wrong else flaw_of_rows(rows, begin, seen, self.plan.begin(block))
@@ -173,17 +182,16 @@ class Stream:
 
     def prepare(self) -> None:
         """Remove what a killed writer left and give the arrays their length; nothing here loses data."""
-        for left in self.path.rglob("*.partial"):
-            left.unlink(missing_ok=True)
+        remove_partials(self.path)
         if not self.is_finished:
             self._fit(1 + self.plan.steps // self.plan.every)
-            checkpoints = self._arrays[_CHECKPOINTS]
+            checkpoints = self._arrays[CHECKPOINTS]
             if checkpoints.shape[0] != self.plan.blocks + 1:
                 checkpoints.resize((self.plan.blocks + 1, checkpoints.shape[1]))
 
     def _fit(self, rows: int) -> dict[str, tuple[int, ...]]:
         shapes = {}
-        for name in self._names():
+        for name in self._blocks.names():
             array = self._arrays[name]
             shapes[name] = (rows, *array.shape[1:])
             if array.shape != shapes[name]:
@@ -192,28 +200,21 @@ class Stream:
 
     def _remove(self, block: int) -> None:
         """Remove a block, its checkpoint first: zarr would read a damaged chunk before it writes a part of it."""
-        self._file(_CHECKPOINTS, block + 1).unlink(missing_ok=True)
-        for name in self._names():
-            self._file(name, block).unlink(missing_ok=True)
+        self._blocks.file(CHECKPOINTS, block + 1).unlink(missing_ok=True)
+        for name in self._blocks.names():
+            self._blocks.file(name, block).unlink(missing_ok=True)
 
-    def _chunk(self, name: str, number: int, *, with_nan: bool = False) -> np.ndarray | str:
-        array = self._arrays[name]
-        index = (number,) + (0,) * (array.ndim - 1)
-        found = read_chunk(self.path, name, array, index, with_nan=with_nan)
-        return f"{found}, {chunk_name(name, array, index)}" if isinstance(found, str) else found
-
-    def _file(self, name: str, number: int) -> Path:
-        array = self._arrays[name]
-        return chunk_path(self.path, name, array, (number,) + (0,) * (array.ndim - 1))
-
-    def _names(self) -> list[str]:
-        return [name for name in self._arrays if name not in (_CHECKPOINTS, EVENTS)]
+    @functools.cached_property
+    def _blocks(self) -> Blocks:
+        events = None if self.events is None else len(self.events)
+        return Blocks(self.path, self.plan, self._arrays, events, self.sealed)
 
     @functools.cached_property
     def _arrays(self) -> dict[str, zarr.Array]:
-        names = [*json.loads(read_attributes(self.path)["arrays"]), _CHECKPOINTS]
+        shapes = json.loads(read_attributes(self.path)["arrays"])
+        names = [*shapes, CHECKPOINTS]
         names += [EVENTS] if self.events is not None else []
-        return {name: writable_array(self.path, name) for name in names}
+        return {name: writable_array(self.path, name, shapes.get(name)) for name in names}
 
 
 def create_stream(
@@ -228,12 +229,12 @@ def create_stream(
     extra = {} if events is None else {"events": json.dumps(events)}
     extra |= {} if scenario is None else attributes_of_text(scenario)
     target = path.resolve()
-    check_target(target)
+    check_target(target, new="simulate(store=...)")
     extra["made"] = uuid.uuid4().hex
     with new_beside(path) as part:
         _create(part, first, plan, opening, extra)
         put_in_place(part, target, overwrite=False)
-    return Stream(target, plan, first.canonical_pose is not None, extra["made"])
+    return Stream(target, plan, first.canonical_pose is not None, extra["made"], sealed=True)
 
 
 def open_stream(path: str | Path) -> Stream:
@@ -244,16 +245,21 @@ def open_stream(path: str | Path) -> Stream:
         raise error("resume(store=...)", "have checkpoints", f"'{path}', which was saved whole", remedy)
     run = json.loads(stored["run"])
     plan = Plan(run["steps"], stored["save_every"], run["rows"])
-    return Stream(Path(path).resolve(), plan, run["reconstruct"], stored.get("made"))
+    return Stream(Path(path).resolve(), plan, run["reconstruct"], stored.get("made"), run.get("sealed", False))
 
 
-def writable_array(path: Path, name: str) -> zarr.Array:
-    """Open an array of a store to go on with."""
+def writable_array(path: Path, name: str, shape: Sequence[int] | None = None) -> zarr.Array:
+    """Open an array of a store to go on with, of a known shape but for the number of rows."""
+    where = "resume(store=...)"
     try:
-        return zarr.open_array(path / name, mode="r+", zarr_format=3)
+        array = zarr.open_array(path / name, mode="r+", zarr_format=3)
     except Exception as failure:
         got = f"'{path}', where its metadata cannot be read: {failure}"
-        raise error("resume(store=...)", f"hold the array {name}", got, "Run it again.") from failure
+        raise error(where, f"hold the array {name}", got, "Run it again.") from failure
+    check_array(where, name, array)
+    if shape is not None and array.shape[1:] != tuple(shape[1:]):
+        raise error(where, f"hold the array {name} with rows of shape {shape[1:]}", f"'{path}'", "Run it again.")
+    return array
 
 
 class Standing(NamedTuple):
@@ -276,18 +282,17 @@ def standing(path: str | Path) -> Standing | None:
 def _create(part: Path, first: Orbit, plan: Plan, opening: Checkpoint, extra: dict[str, str]) -> None:
     variables, rows = stored_variables(first), 1 + plan.steps // plan.every
     told = {name: value for name, value in attributes(first).items() if name != "outcome"}
-    run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.canonical_pose is not None}
+    run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.canonical_pose is not None, "sealed": True}
     shapes = {name: (rows, *variable.shape[1:]) for name, variable in variables.items()}
     told |= {"run": json.dumps(run), "arrays": json.dumps(shapes), **extra}
-    told["checksum"] = checksum(told)
-    group = zarr.create_group(part, zarr_format=3, attributes=told)
+    group = new_group(part, told, OrbitMetadata)
     group.create_group(CANONICAL.rstrip("/"))
     for name, variable in variables.items():
         create_array(group, name, variable, rows, plan.rows, is_coordinate=is_coordinate(name))
-    row = packed_checkpoint(opening)
+    row = np.append(packed_checkpoint(opening), seal_of(part, BEFORE, []))
     group.create_group("run")
     labelled = xarray.Variable(("block", "entry"), row[None])
-    checkpoints = create_array(group, _CHECKPOINTS, labelled, plan.blocks + 1, 1, is_coordinate=True)
+    checkpoints = create_array(group, CHECKPOINTS, labelled, plan.blocks + 1, 1, is_coordinate=True)
     checkpoints[0] = row
     if first.events is not None:
         create_crossings(group, first.events)

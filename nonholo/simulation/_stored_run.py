@@ -38,7 +38,7 @@ def run_into_store(
     progress: bool,
 ) -> Orbit:
     """Run from a start into a new store, looking for events if there is a watch; return the orbit."""
-    io.check_target(store)
+    io.check_target(store, new="simulate(store=...)")
     plan = Plan(steps, run.every, rows_of_block("simulate(checkpoint_every=...)", run, steps, checkpoint_every))
     vector, first = opened(run, start, steps, throw)
     first, found = searched_first(watch, first)
@@ -109,7 +109,7 @@ def _standing(stream: Stream) -> str:
 def _completed(run: CompiledRun, stream: Stream, watch: Watch | None, progress: bool) -> Checkpoint:
     """Compute every block that is missing or damaged; return the end of the run."""
     plan, computed = stream.plan, not stream.is_finished
-    marked = max((block for block in range(plan.blocks) if stream.is_marked(block)), default=-1)
+    marked = max(stream.marked(), default=-1)
     reached = stream.checkpoint(0)
     with progress_bar("steps", progress) as report:
         for block in range(plan.blocks):

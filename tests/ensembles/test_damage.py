@@ -1,5 +1,7 @@
 """Stores of which something is lost or damaged: it is named, never read as data, and computed again where it can be."""
 
+import json
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -94,3 +96,92 @@ def test_lost_metadata_are_refused(place: str, match: str, damage: str, tmp_path
         resumed(path)
     with pytest.raises(ValueError, match=match if place else "must be a store of a sweep"):
         swept(path, resume=True)
+
+
+def _swap(store: Path, one: str, other: str) -> None:
+    first, second = (store / one).read_bytes(), (store / other).read_bytes()
+    assert first != second
+    (store / one).write_bytes(second)
+    (store / other).write_bytes(first)
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ("noise/c/2/0/0", "noise/c/1/0/0"),
+        ("total/c/0/0", "total/c/2/0"),
+        ("run/blocks/0.json", "run/blocks/1.json"),
+    ],
+)
+def test_a_block_in_the_place_of_another_is_computed_again(one: str, other: str, tmp_path: Path) -> None:
+    """A checksum does not know where its chunk lies: the mark of the block does."""
+    path = tmp_path / "run.zarr"
+    whole = swept(path)
+    _swap(path, one, other)
+    with pytest.raises(ValueError, match="of another place in block"):
+        nh.load_sweep(path)
+    with pytest.warns(RuntimeWarning, match="of another place in block"):
+        assert same(resumed(path), whole)
+    assert same(nh.load_sweep(path), whole)
+
+
+def test_metadata_of_another_array_are_refused(tmp_path: Path) -> None:
+    """An array is the one that the description tells: dimensions, type and what is said of it."""
+    path = tmp_path / "run.zarr"
+    swept(path)
+    _swap(path, "total/zarr.json", "outcome/zarr.json")
+    for opened in (nh.load_sweep, resumed):
+        with pytest.raises(ValueError, match=r"hold the array \w+ of its description"):
+            opened(path)
+    _swap(path, "total/zarr.json", "outcome/zarr.json")
+    for name in ("outcome", "x"):
+        for told in ("a text", {"scale_factor": 2.0}):
+            file = path / name / "zarr.json"
+            sound = file.read_text()
+            file.write_text(json.dumps(json.loads(sound) | {"attributes": told}))
+            with pytest.raises(ValueError, match=f"hold the (array|axis) {name}"):
+                nh.load_sweep(path)
+            file.write_text(sound)
+
+
+@pytest.mark.parametrize("name", ["total", "start", "run"])
+def test_consolidated_metadata_are_not_believed(name: str, tmp_path: Path) -> None:
+    """They repeat what each array says of itself, which is what is read."""
+    path = tmp_path / "run.zarr"
+    whole = swept(path)
+    document = json.loads((path / "zarr.json").read_text())
+    document["consolidated_metadata"]["metadata"][name] = {"shape": None}
+    (path / "zarr.json").write_text(json.dumps(document))
+    assert same(nh.load_sweep(path), whole)
+    (path / "run" / "zarr.json").write_text("{")
+    with pytest.raises(ValueError, match="hold sound metadata"):
+        nh.load_sweep(path)
+
+
+def test_an_axis_of_other_values_is_refused(tmp_path: Path) -> None:
+    """The description holds the hash of what lies along an axis."""
+    path, other = tmp_path / "run.zarr", tmp_path / "other.zarr"
+    nh.sweep(lambda block: block["x"], nh.Grid({"x": [1.0, 2.0]}), path)
+    nh.sweep(lambda block: block["x"], nh.Grid({"x": [1.0, 3.0]}), other)
+    (path / "x" / "c" / "0").write_bytes((other / "x" / "c" / "0").read_bytes())
+    with pytest.raises(ValueError, match="hold the axis x of its design"):
+        nh.load_sweep(path)
+
+
+def test_a_mark_is_data(tmp_path: Path) -> None:
+    """A mark of other entries is damaged, whatever its checksum says; what a task said cannot control a terminal."""
+    path = tmp_path / "run.zarr"
+    swept(path)
+    for text in ('{"members": 1}', "[" * 100_000, "7"):
+        (path / "run" / "blocks" / "0.json").write_text(f"{zlib.crc32(text.encode()):08x} {text}")
+        assert standing_of(path).done == 4
+        with pytest.raises(ValueError, match=r"mark 0\.json is damaged"):
+            nh.load_sweep(path)
+
+    def failing(block: nh.MemberBlock) -> Any:
+        if 1.5 in block["x"]:
+            raise RuntimeError("a\x1b]0;gone\x07b")
+        return block["x"]
+
+    nh.sweep(failing, nh.Grid({"x": [1.0, 1.5]}), tmp_path / "raised.zarr")
+    assert standing_of(tmp_path / "raised.zarr").messages == [[1, "RuntimeError: a?]0;gone?b"]]

@@ -1,0 +1,63 @@
+"""Chunks of a store: each must be there and intact; nothing missing is ever read as data."""
+
+from pathlib import Path
+
+import numpy as np
+import zarr
+
+from nonholo._checks import error, printable
+from nonholo.io._metadata import check_array
+
+WHERE = "load_orbit(path=...)"
+AGAIN = "The store is damaged: copy it again from its source, or run it again."
+_NAN = "NaN"
+
+
+def opened_array(root: Path, name: str, shape: tuple[int, ...] | None) -> zarr.Array:
+    """Open an array of a store, of a known shape unless the run is not finished."""
+    try:
+        array = zarr.open_array(root / name, mode="r")
+    except Exception as failure:
+        raise error(WHERE, f"hold the array {name}", f"{type(failure).__name__}: {failure}", AGAIN) from failure
+    if array.shape != (shape or array.shape) or array.dtype != np.float64:
+        got = f"{array.dtype} of shape {array.shape}"
+        raise error(WHERE, f"hold the array {name} as float64 of shape {shape}", got, AGAIN)
+    check_array(WHERE, name, array)
+    return array
+
+
+def checked_block(
+    root: Path, name: str, array: zarr.Array, index: tuple[int, ...], *, with_nan: bool = False
+) -> np.ndarray:
+    """Return one chunk; refuse one that is missing or damaged, with its name."""
+    found = read_chunk(root, name, array, index, with_nan=with_nan)
+    if isinstance(found, str):
+        requirement = f"hold {chunk_name(name, array, index)}" + (" free of NaN" if found == _NAN else "")
+        raise error(WHERE, requirement, found, AGAIN)
+    return found
+
+
+def chunk_name(name: str, array: zarr.Array, index: tuple[int, ...]) -> str:
+    """Return how messages call a chunk."""
+    return f"chunk {array.metadata.encode_chunk_key(index)} of the array {name}"
+
+
+def chunk_path(root: Path, name: str, array: zarr.Array, index: tuple[int, ...]) -> Path:
+    """Return the file of a chunk."""
+    return root / name / array.metadata.encode_chunk_key(index)
+
+
+def read_chunk(
+    root: Path, name: str, array: zarr.Array, index: tuple[int, ...], *, with_nan: bool = False
+) -> np.ndarray | str:
+    """Return one chunk, or what is wrong with it; NaN is wrong too, unless it may be a result.
+
+    A missing one would be read as its fill value, NaN, so its file is looked for first.
+    """
+    if not chunk_path(root, name, array, index).is_file():
+        return "no such chunk"
+    try:
+        block = np.asarray(array.blocks[index])
+    except Exception as failure:
+        return f"a corrupt one ({printable(str(failure))})"
+    return _NAN if not with_nan and np.isnan(block).any() else block
