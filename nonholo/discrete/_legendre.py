@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nonholo._checks import array, choice
+from nonholo._checks import array, choice, needs
 from nonholo._types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 
@@ -58,7 +58,8 @@ def legendre(discrete: "Discretization", increment: Inexact[Array, "... N N"], s
         return matrix_legendre(group, tensor, increment, side) / discrete.time_step
     if discrete.difference == "logarithmic":
         return logarithmic_legendre(discrete, increment + group.identity, side)
-    from nonholo.discrete._definition import legendre_by_derivative
+    with needs("jax", "discretize(difference=...)"):
+        from nonholo.discrete._definition import legendre_by_derivative
 
     return legendre_by_derivative(discrete, increment + group.identity, side)
 

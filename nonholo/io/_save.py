@@ -6,7 +6,6 @@ import json
 import re
 import shutil
 import threading
-import uuid
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -20,6 +19,7 @@ from zarr.codecs import BloscCodec, Crc32cCodec
 from nonholo._checks import error, flags
 from nonholo._checks import path as checked_path
 from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
+from nonholo.io._beside import new_beside, sibling
 from nonholo.io._dataset import CANONICAL, stored_variables
 from nonholo.io._load import format_of
 from nonholo.io._lock import owner_of
@@ -73,24 +73,6 @@ def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scena
 
 
 @contextlib.contextmanager
-def new_beside(path: Path) -> Iterator[Path]:
-    """Give a hidden new name beside a path; what is left of it is removed, and a failure names the path."""
-    part = sibling(path.resolve(), "partial")
-    try:
-        part.parent.mkdir(parents=True, exist_ok=True)
-        yield part
-    except OSError as failure:
-        if failure.errno is None:  # a refusal of ours, which says it all
-            raise
-        reason = f"{failure.strerror}. Nothing at this path was changed. Free space, or choose another path"
-        raise OSError(failure.errno, reason, str(path)) from failure
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
-        with contextlib.suppress(OSError):  # where it is a file
-            part.unlink()
-
-
-@contextlib.contextmanager
 def telling_how_to_go_on(store: Path, what: str, standing: Callable[[], object]) -> Iterator[None]:
     """Tell, if the writing of a store is stopped or fails, how far it came and how to go on."""
     again = f"nonholo.resume({str(store)!r})"
@@ -138,11 +120,6 @@ def _foreign_file(store: Path) -> str | None:
 
 def _exists(path: str | Path, remedy: str) -> FileExistsError:
     return FileExistsError(f"`save_orbit(path=...)` must be new. Got '{path}', which exists. {remedy}")
-
-
-def sibling(target: Path, purpose: str) -> Path:
-    """Return a hidden new name beside a path."""
-    return target.with_name(f".{target.name}.{uuid.uuid4().hex[:12]}.{purpose}")
 
 
 def _write(variables: dict[str, xarray.Variable], told: dict[str, Any], path: Path) -> None:

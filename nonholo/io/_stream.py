@@ -19,6 +19,7 @@ import zarr
 
 from nonholo._checks import error
 from nonholo.io._attributes import attributes, attributes_of_text
+from nonholo.io._beside import new_beside
 from nonholo.io._dataset import CANONICAL, HEADED, stored_variables
 from nonholo.io._load import chunk_name, chunk_path, read_attributes, read_chunk
 from nonholo.io._lock import owner_of
@@ -30,7 +31,6 @@ from nonholo.io._save import (
     create_array,
     edit_attributes,
     is_coordinate,
-    new_beside,
     put_in_place,
 )
 from nonholo.io._stored_crossings import chunks_of, create_crossings, cut_crossings, flaw_of_rows, write_crossings

@@ -5,7 +5,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo._checks import error, needs
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
@@ -26,7 +26,8 @@ def rule_runner(discrete: Discretization, rule: BranchRule, backend: str, demand
         return lambda *arguments: _run(discrete, rule, demanded, *arguments)
     if rule != "nearest":
         raise error("simulate(backend=...)", "be 'auto'", f"{backend!r} with branch {rule!r}", "Leave it out.")
-    from nonholo.discrete._definition import run_by_definition
+    with needs("jax", "simulate(branch=...) of a step that is not compiled"):
+        from nonholo.discrete._definition import run_by_definition
 
     chart = None
     if demanded is not None and demanded.ndim == 2:
