@@ -50,8 +50,8 @@ COMMANDS = [
     "simulate veselova",
     "simulate left_invariant",
     "info sleigh.zarr",
-    "plot sleigh.zarr -o sleigh.png",
-    "export sleigh.zarr -o sleigh.csv",
+    "plot sleigh.zarr -o picture.png",
+    "export sleigh.zarr -o poses.csv",
     "extend sleigh.zarr --steps 10",
     "sweep SWEEP --members 20",
     "new top",
@@ -72,7 +72,7 @@ def test_commands_work(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("command", "extra"),
-    [(["paper"], "paper"), (["simulate", "sleigh", "--set", "run.difference=logarithmic"], "jax")],
+    [(["paper"], "paper"), (["simulate", "sleigh", "--set", 'run.difference="logarithmic"'], "jax")],
     ids=["paper", "logarithmic difference"],
 )
 def test_commands_that_need_an_extra(command: list[str], extra: str, tmp_path: Path) -> None:

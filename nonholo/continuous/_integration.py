@@ -27,16 +27,15 @@ def integrate(
 
     Times elapse from zero. After a failure only the good states are returned.
     """
-    group, spatial = system.group, isinstance(system, AbstractLRSystem)
+    group = system.group
     planar = group == SE(2)
     g, turned = group.matrix_from_pose(pose).ravel(), np.arctan2(pose[1:2], pose[0:1]) if planar else np.zeros(0)
-    if spatial:
-        start, motion = np.concatenate([g, turned]), space_flow(system, reduced_momentum, planar)
+    if isinstance(system, AbstractLRSystem):
+        k, motion = 0, space_flow(system, reduced_momentum, planar)
     else:
-        start, motion = np.concatenate([reduced_momentum, g, turned]), body_flow(system, planar)
-    rows = solve(motion, start, elapsed, tolerances)
-    k = 0 if spatial else len(reduced_momentum)
-    momenta = np.tile(reduced_momentum, (len(rows), 1)) if spatial else rows[:, :k]
+        k, motion = len(reduced_momentum), body_flow(system, planar)
+    rows = solve(motion, np.concatenate([reduced_momentum[:k], g, turned]), elapsed, tolerances)
+    momenta = rows[:, :k] if k else np.tile(reduced_momentum, (len(rows), 1))
     poses = _poses(group, rows[:, k : k + len(g)])
     outcome = Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
     return momenta, poses, on_same_turn(rows[:, -1], poses) if planar else None, outcome
@@ -60,16 +59,16 @@ def integrate_pose(
 def body_flow(system: AbstractSystem, planar: bool) -> BodyFlow:
     """Return what the compiled rates need of a system with a constraint fixed in the body."""
     group, (S, inertia, to_velocity) = system.group, body_of(system)
-    momenta = group.coordinates.dual_matrix(to_velocity @ inertia.T)
-    return BodyFlow(*map(np.ascontiguousarray, (group.hat(to_velocity), momenta, group.hat(S))), planar)
+    dual = group.coordinates.dual_matrix(to_velocity @ inertia.T)
+    velocities, momenta, rows = map(np.ascontiguousarray, (group.hat(to_velocity), dual, group.hat(S)))
+    return BodyFlow(velocities, momenta, rows, planar)
 
 
 def space_flow(system: AbstractLRSystem, momentum: Float[np.ndarray, "k"], planar: bool) -> SpaceFlow:
     """Return what the compiled rates need of a system with a constraint fixed in space."""
-    rows = system.group.hat(system.constraint_subspace)
-    duals = np.swapaxes(system.group.form_adjoint(rows), -1, -2)
-    numbers = (np.asarray(momentum), rows, duals, system.homogeneous_mass_tensor)
-    return SpaceFlow(*map(np.ascontiguousarray, numbers), planar)
+    rows = np.ascontiguousarray(system.group.hat(system.constraint_subspace))
+    duals = np.ascontiguousarray(np.swapaxes(system.group.form_adjoint(rows), -1, -2))
+    return SpaceFlow(np.asarray(momentum), rows, duals, np.ascontiguousarray(system.homogeneous_mass_tensor), planar)
 
 
 def on_same_turn(headings: Float[np.ndarray, "K"], poses: Float[np.ndarray, "K 4"]) -> Float[np.ndarray, "K"]:
