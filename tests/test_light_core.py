@@ -52,7 +52,8 @@ COMMANDS = [
     "info sleigh.zarr",
     "plot sleigh.zarr -o picture.png",
     "export sleigh.zarr -o poses.csv",
-    "extend sleigh.zarr --steps 10",
+    "extend sleigh.zarr --steps 60",
+    "resume sleigh.zarr",
     "sweep SWEEP --members 20",
     "new top",
     "systems",
@@ -63,8 +64,8 @@ COMMANDS = [
 def test_commands_work(tmp_path: Path) -> None:
     """Every command but `paper` does its work without extras."""
     sweep = str(PROGRAM.parents[1] / "examples" / "sleigh_turning_sweep.toml")
-    first = _run("command", "simulate", "sleigh", "-o", "sleigh.zarr", folder=tmp_path)
-    assert first.returncode == 0, first.stderr
+    sleigh, store = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), tmp_path / "sleigh.zarr"
+    nh.simulate(sleigh, body_velocity=(0.1, -1.0, 0.0), steps=50, store=store, checkpoint_every=20)
     for command in COMMANDS:
         done = _run("command", *command.replace("SWEEP", sweep).split(), folder=tmp_path)
         assert done.returncode == 0, f"{command}: {done.stdout}{done.stderr}"
