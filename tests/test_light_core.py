@@ -55,7 +55,7 @@ COMMANDS = [
     "extend sleigh.zarr --steps 60",
     "resume sleigh.zarr",
     "sweep SWEEP --members 20",
-    "new top",
+    "new sleigh",
     "systems",
 ]
 
