@@ -165,15 +165,27 @@ _HOMES = {
 }
 _ROOMS = {"examples": "examples", "plot": "plotting", "testing": "testing"}
 
+_EXTRAS = {"discrete._precision": "jax", "discrete._step": "jax", "examples": "jax", "lagrange_dalembert": "jax"}
+"""What homes must have installed beyond the core."""
+
 __version__ = version("nonholo")
 
 
 def __getattr__(name: str) -> Any:
     if name in _ROOMS:
-        return importlib.import_module(f"nonholo.{_ROOMS[name]}")
+        return _home(_ROOMS[name], name)
     if name not in _HOMES:
         raise AttributeError(f"module 'nonholo' has no attribute {name!r}")
-    return getattr(importlib.import_module(f"nonholo.{_HOMES[name]}"), name)
+    return getattr(_home(_HOMES[name], name), name)
+
+
+def _home(home: str, name: str) -> Any:
+    if home not in _EXTRAS:
+        return importlib.import_module(f"nonholo.{home}")
+    from nonholo._checks import needs
+
+    with needs(_EXTRAS[home], f"nonholo.{name}"):
+        return importlib.import_module(f"nonholo.{home}")
 
 
 def __dir__() -> list[str]:

@@ -21,8 +21,9 @@ def use_caches() -> None:
     That of numba belongs to the text of the kernels: its own index does not notice that a callee has changed.
     """
     text = hashlib.sha256(os.environ.get("NUMBA_BOUNDSCHECK", "").encode())
-    for file in sorted((ROOT / "nonholo").glob("[kn]*/*.py")):
-        text.update(file.read_bytes())
+    for room in ("continuous", "kernels", "numerics"):
+        for file in sorted((ROOT / "nonholo" / room).glob("*.py")):
+            text.update(file.read_bytes())
     folder = ROOT / "build" / "tests"
     os.environ.setdefault("NUMBA_CACHE_DIR", str(folder / f"numba-{text.hexdigest()[:16]}"))
     os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(folder / "jax"))

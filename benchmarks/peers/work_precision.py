@@ -40,12 +40,13 @@ def library_methods(problem: Problem) -> tuple[list[Method], list[str]]:
         found.append(Method(f"nonholo, map of order {order}", solve, steps))
     times = (0.0, problem.end)
 
-    def flow(tolerance: float) -> State:
-        return last(
-            nh.flow(problem.system, body_velocity=problem.velocity, times=times, rtol=tolerance, atol=tolerance)
-        )
+    given, reached = {"body_velocity": problem.velocity, "times": times}, [t for t in TOLERANCES if t >= 1e-14]
+    for name, method in (("nonholo flow", None), ("nonholo flow, diffrax", "diffrax")):
 
-    found.append(Method("nonholo flow", flow, [t for t in TOLERANCES if t >= 1e-14]))
+        def flow(tolerance: float, method: str | None = method) -> State:
+            return last(nh.flow(problem.system, **given, rtol=tolerance, atol=tolerance, method=method))
+
+        found.append(Method(name, flow, reached))
     return found, left_out
 
 

@@ -7,6 +7,7 @@ from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.continuous._blade_path import blade_path
 from nonholo.continuous._heteroclinic import Heteroclinic, heteroclinic
+from nonholo.continuous._integration import integrate_pose
 from nonholo.numerics import sinc
 from nonholo.systems import AbstractSystem, ChaplyginSleigh, SuslovTop
 
@@ -29,8 +30,6 @@ def closed_form(
         poses, turned = _sleigh_poses(system, motion, reduced_momentum, pose, elapsed)
         return motion.momentum(elapsed), poses, turned, Outcome.successful
     if isinstance(system, SuslovTop) and system.group.dim == 3:
-        from nonholo.continuous._integration import integrate_pose
-
         motion = heteroclinic(system, reduced_momentum)
         poses, outcome = integrate_pose(system, motion, pose, elapsed, tolerances)
         return motion.momentum(elapsed)[: len(poses)], poses, None, outcome

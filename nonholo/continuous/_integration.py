@@ -1,22 +1,19 @@
-"""Numerical integration of momentum and pose. Imported on first use, since diffrax loads slowly."""
+"""Numerical integration of momentum and pose by the compiled DOP853, in matrices whatever the group."""
 
-import functools
-from collections.abc import Callable
-from typing import Any
+from typing import TypeAlias
 
-import jax
 import numpy as np
 
 from nonholo._results import Outcome
-from nonholo._types import Array, Float
-from nonholo.continuous._equations import Body, body_of, momentum_rate, spatial_velocity
+from nonholo._types import Float
+from nonholo.continuous._equations import body_of
 from nonholo.continuous._heteroclinic import Heteroclinic
+from nonholo.continuous._turning import Turning
 from nonholo.groups import SE, AbstractMatrixGroup
-from nonholo.numerics import double_precision
-from nonholo.numerics._time_sweep import State, padded, reached, sweep
+from nonholo.kernels import BodyFlow, SpaceFlow, solve
 from nonholo.systems import AbstractLRSystem, AbstractSystem
 
-Rate = Callable[[AbstractMatrixGroup, Array, State, Any], State]
+Solved: TypeAlias = tuple[Float[np.ndarray, "K k"], Float[np.ndarray, "K size"], Float[np.ndarray, "K"] | None, Outcome]
 
 
 def integrate(
@@ -25,22 +22,23 @@ def integrate(
     pose: Float[np.ndarray, "size"],
     elapsed: Float[np.ndarray, "K"],
     tolerances: tuple[float, float],
-) -> tuple[Float[np.ndarray, "K k"], Float[np.ndarray, "K size"], Float[np.ndarray, "K"] | None, Outcome]:
+) -> Solved:
     """Return momenta, poses, on SE(2) the heading without ambiguity of full turns, and the outcome.
 
     Times elapse from zero. After a failure only the good states are returned.
     """
-    planar = system.group == SE(2)
-    turned = np.arctan2(pose[1:2], pose[0:1]) if planar else np.zeros(0)
-    start = (reduced_momentum, pose, turned)
+    group = system.group
+    planar = group == SE(2)
+    g, turned = group.matrix_from_pose(pose).ravel(), np.arctan2(pose[1:2], pose[0:1]) if planar else np.zeros(0)
     if isinstance(system, AbstractLRSystem):
-        rate, known = _spatial_rate, (system.constraint_subspace, system.homogeneous_mass_tensor)
+        k, motion = 0, space_flow(system, reduced_momentum, planar)
     else:
-        rate, known = _motion_rate, body_of(system)
-    rows, outcome = _solve(rate, system.group, start, known, elapsed, tolerances)
-    momenta, poses, headings = rows
-    poses = system.group.normalize_pose(poses)
-    return momenta, poses, _same_turn(headings[:, 0], poses) if planar else None, outcome
+        k, motion = len(reduced_momentum), body_flow(system, planar)
+    rows = solve(motion, np.concatenate([reduced_momentum[:k], g, turned]), elapsed, tolerances)
+    momenta = rows[:, :k] if k else np.tile(reduced_momentum, (len(rows), 1))
+    poses = _poses(group, rows[:, k : k + len(g)])
+    outcome = Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
+    return momenta, poses, on_same_turn(rows[:, -1], poses) if planar else None, outcome
 
 
 def integrate_pose(
@@ -51,54 +49,34 @@ def integrate_pose(
     tolerances: tuple[float, float],
 ) -> tuple[Float[np.ndarray, "K size"], Outcome]:
     """Return the poses of a body whose momentum is known in closed form."""
-    _, _, to_velocity = body_of(system)
-    known = (motion.across @ to_velocity, motion.along @ to_velocity, np.float64(motion.start), np.float64(motion.rate))
-    rows, outcome = _solve(_pose_rate, system.group, (pose,), known, elapsed, tolerances)
-    return system.group.normalize_pose(rows[0]), outcome
+    group, (_, _, to_velocity) = system.group, body_of(system)
+    across, along = group.hat(motion.across @ to_velocity), group.hat(motion.along @ to_velocity)
+    turning = Turning(across, along, float(motion.start), float(motion.rate))
+    rows = solve(turning, group.matrix_from_pose(pose).ravel(), elapsed, tolerances)
+    return _poses(group, rows), Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
 
 
-def _same_turn(headings: np.ndarray, poses: np.ndarray) -> np.ndarray:
+def body_flow(system: AbstractSystem, planar: bool) -> BodyFlow:
+    """Return what the compiled rates need of a system with a constraint fixed in the body."""
+    group, (S, inertia, to_velocity) = system.group, body_of(system)
+    dual = group.coordinates.dual_matrix(to_velocity @ inertia.T)
+    velocities, momenta, rows = map(np.ascontiguousarray, (group.hat(to_velocity), dual, group.hat(S)))
+    return BodyFlow(velocities, momenta, rows, planar)
+
+
+def space_flow(system: AbstractLRSystem, momentum: Float[np.ndarray, "k"], planar: bool) -> SpaceFlow:
+    """Return what the compiled rates need of a system with a constraint fixed in space."""
+    rows = np.ascontiguousarray(system.group.hat(system.constraint_subspace))
+    duals = np.ascontiguousarray(np.swapaxes(system.group.form_adjoint(rows), -1, -2))
+    return SpaceFlow(np.asarray(momentum), rows, duals, np.ascontiguousarray(system.homogeneous_mass_tensor), planar)
+
+
+def on_same_turn(headings: Float[np.ndarray, "K"], poses: Float[np.ndarray, "K 4"]) -> Float[np.ndarray, "K"]:
     """Return the angles of the poses, each on the turn that the integrated heading tells."""
     angles = np.arctan2(poses[:, 1], poses[:, 0])
     return angles + 2 * np.pi * np.rint((headings - angles) / (2 * np.pi))
 
 
-def _motion_rate(group: AbstractMatrixGroup, time: Array, state: State, body: Body) -> State:
-    del time
-    momentum, pose, turned = state
-    rate, velocity, _ = momentum_rate(group, body, momentum)
-    return rate, group.pose_rate(pose, velocity), velocity[: turned.shape[0]]
-
-
-def _spatial_rate(group: AbstractMatrixGroup, time: Array, state: State, known: tuple[Array, Array]) -> State:
-    del time
-    momentum, pose, turned = state
-    g = group.matrix_from_pose(pose)
-    spatial = spatial_velocity(group, *known, momentum, g)
-    velocity = group.adjoint(group.inverse(g)) @ spatial
-    return jax.numpy.zeros_like(momentum), group.pose_rate(pose, velocity), velocity[: turned.shape[0]]
-
-
-def _pose_rate(group: AbstractMatrixGroup, time: Array, state: State, known: tuple[Array, ...]) -> State:
-    return (group.pose_rate(state[0], Heteroclinic(*known).momentum(time)),)
-
-
-def _solve(
-    rate: Rate,
-    group: AbstractMatrixGroup,
-    state: State,
-    known: Any,
-    elapsed: np.ndarray,
-    tolerances: tuple[float, float],
-) -> tuple[list[np.ndarray], Outcome]:
-    with double_precision():
-        found, good = _sweep(rate, group, state, known, padded(elapsed), tolerances)
-    rows = reached(state, found, good, len(elapsed))
-    return rows, Outcome.successful if len(rows[0]) == len(elapsed) else Outcome.not_converged
-
-
-@functools.partial(jax.jit, static_argnums=(0, 1))
-def _sweep(
-    rate: Rate, group: AbstractMatrixGroup, state: State, known: Any, elapsed: Array, tolerances: tuple[Array, Array]
-) -> tuple[State, Array]:
-    return sweep(lambda time, current: rate(group, time, current, known), lambda end: end, state, elapsed, tolerances)
+def _poses(group: AbstractMatrixGroup, rows: Float[np.ndarray, "K entries"]) -> Float[np.ndarray, "K size"]:
+    g = rows.reshape(len(rows), group.size, group.size)
+    return group.normalize_pose(group.pose_from_matrix(g))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from nonholo import kernels
-from nonholo._checks import choice, error
+from nonholo._checks import choice, error, needs
 from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.discrete._structured import Structured, decoded, decoded_poses, encoded, encoded_poses, structured
@@ -124,7 +124,8 @@ def whole_steps(
     """
     closed, group, frame = structured(discrete), discrete.system.group, discrete.system.frame
     if closed is None:
-        from nonholo.discrete._composition_definition import whole_steps_by_definition
+        with needs("jax", "A step that is not compiled"):
+            from nonholo.discrete._composition_definition import whole_steps_by_definition
 
         return whole_steps_by_definition(discrete, momenta, g)
     poses = encoded_poses(closed, group, group.pose_from_matrix(g @ frame))

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nonholo._checks import error, function
+from nonholo._checks import error, function, needs
 from nonholo._types import Array
 from nonholo.discrete._discretization import Discretization, as_discretization
 
@@ -38,7 +38,8 @@ def consistency_defect(discrete: Discretization, discretization_map: Callable[[A
         True
     """
     as_discretization("consistency_defect(discrete=...)", discrete)
-    from nonholo.discrete._definition import map_each, sample_displacements
+    with needs("jax", "consistency_defect(...)"):
+        from nonholo.discrete._definition import map_each, sample_displacements
 
     group, annihilator = discrete.system.group, np.asarray(discrete.system.annihilator)
     where = "consistency_defect(discretization_map=...)"

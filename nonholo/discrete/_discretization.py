@@ -6,7 +6,7 @@ from typing import Any, overload
 
 import numpy as np
 
-from nonholo._checks import choice, error, scale, shown, trailing
+from nonholo._checks import choice, error, needs, scale, shown, trailing
 from nonholo._types import Array, Float
 from nonholo.discrete._composition import checked_order, first_substep, refuse_composition, whole_displacements
 from nonholo.discrete._legendre import legendre, legendre_of_chart
@@ -71,7 +71,8 @@ class Discretization(AbstractMotion):
         """
         if not callable(self.difference):
             return True
-        from nonholo.discrete._definition import is_even
+        with needs("jax", "discretize(difference=...)"):
+            from nonholo.discrete._definition import is_even
 
         return is_even(self.difference, self.system.group)
 
@@ -222,7 +223,8 @@ def _difference(system: AbstractSystem, difference: Difference | None) -> Differ
 
 def _scalar(where: str, system: AbstractSystem, difference: Callable[[Array], Array]) -> Callable[[Array], Array]:
     """Refuse a discrete Lagrangian that is not a finite number with finite derivatives at the identity."""
-    from nonholo.discrete._definition import value_and_slope
+    with needs("jax", where):
+        from nonholo.discrete._definition import value_and_slope
 
     try:
         value, slope = value_and_slope(difference, system.group)

@@ -6,7 +6,7 @@ for every other discrete Lagrangian they are derivatives taken by JAX (`_definit
 
 from typing import TYPE_CHECKING
 
-from nonholo._checks import array, choice, shape_of
+from nonholo._checks import array, choice, needs, shape_of
 from nonholo._types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 
@@ -56,7 +56,8 @@ def legendre(discrete: "Discretization", increment: Inexact[Array, "... N N"], s
         return matrix_legendre(group, tensor, increment, side) / discrete.time_step
     if discrete.difference == "logarithmic":
         return logarithmic_legendre(discrete, increment + group.identity, side)
-    from nonholo.discrete._definition import legendre_by_derivative
+    with needs("jax", "discretize(difference=...)"):
+        from nonholo.discrete._definition import legendre_by_derivative
 
     return legendre_by_derivative(discrete, increment + group.identity, side)
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from nonholo import kernels
+from nonholo._checks import needs
 from nonholo._results import Outcome, OutcomeError
 from nonholo._types import Array, Float
 from nonholo.discrete._general import general_body
@@ -114,7 +115,8 @@ def next_charts(discrete: "Discretization", states: Orbit) -> Float[np.ndarray, 
     """Return the displacements that follow, one step from each state."""
     closed = structured(discrete)
     if closed is None:
-        from nonholo.discrete._definition import next_charts_by_definition
+        with needs("jax", "A step that is not compiled"):
+            from nonholo.discrete._definition import next_charts_by_definition
 
         return next_charts_by_definition(discrete, states)
     charts = to_kernel(closed, states.canonical_chart)

@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nonholo._checks import choice, error
+from nonholo._checks import choice, error, needs
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractSystem
@@ -127,7 +127,8 @@ def equations_of(variety: Variety, D: Float[np.ndarray, "... N N"]) -> Float[np.
     """Return the equations of a variety at displacements in the canonical frame, in 64 bits."""
     if isinstance(variety.constraint, str):
         return variety.equations(D)
-    from nonholo.discrete._definition import map_each
+    with needs("jax", "discretize(constraint=...)"):
+        from nonholo.discrete._definition import map_each
 
     values = map_each(variety.equations, D.reshape(-1, *D.shape[-2:]))  # functions take one matrix at a time
     return values.reshape(*D.shape[:-2], -1)
@@ -159,7 +160,8 @@ def _at_identity(
     where: str, functions: tuple[Callable[[Array], Array], ...], group: AbstractMatrixGroup
 ) -> tuple[Float[np.ndarray, "s"], Float[np.ndarray, "s dim"]]:
     """Return the values of functions at the identity and their derivatives along the group."""
-    from nonholo.discrete._definition import value_and_slope
+    with needs("jax", where):
+        from nonholo.discrete._definition import value_and_slope
 
     values, slopes = np.zeros(len(functions)), np.zeros((len(functions), group.dim))
     for j, function in enumerate(functions):

@@ -11,9 +11,8 @@ from nonholo._checks import count, error, flags
 from nonholo._checks import path as checked_path
 from nonholo._progress import progress_bar
 from nonholo._types import Float
+from nonholo.io._beside import new_beside
 from nonholo.io._pose_columns import Stretch, column_names, rows_of
-from nonholo.io._save import new_beside
-from nonholo.io._stored_poses import open_poses
 from nonholo.orbit import Orbit, as_orbit
 from nonholo.systems import System
 
@@ -91,6 +90,8 @@ def store_to_csv(
     every = count("store_to_csv(every=...)", every, "Pass 1 for every saved state.")
     check_file(target, overwrite=overwrite)
     flags("store_to_csv", overwrite=overwrite, progress=progress)
+    from nonholo.io._stored_poses import open_poses  # loads zarr, which a CSV of an orbit does not need
+
     poses = open_poses(checked_path("store_to_csv(store=...)", store))
     poses.check()
     with new_file(target, overwrite=overwrite) as file, progress_bar("states", progress) as report:

@@ -7,7 +7,6 @@ import os
 import re
 import shutil
 import threading
-import uuid
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -22,9 +21,10 @@ from zarr.codecs import BloscCodec, Crc32cCodec
 from nonholo._checks import error, flags
 from nonholo._checks import path as checked_path
 from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
+from nonholo.io._beside import new_beside, sibling
 from nonholo.io._dataset import CANONICAL, stored_variables
 from nonholo.io._load import format_of
-from nonholo.io._lock import being_made, owner_of, remove_remains
+from nonholo.io._lock import owner_of
 from nonholo.io._metadata import OrbitMetadata, check_metadata, checksum
 from nonholo.io._seals import seal_of_whole
 from nonholo.orbit import Orbit, as_orbit
@@ -73,23 +73,6 @@ def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scena
         told = attributes(orbit) | ({} if scenario is None else attributes_of_text(scenario))
         _write(stored_variables(orbit), told, part)
         put_in_place(part, target, overwrite=overwrite)
-
-
-@contextlib.contextmanager
-def new_beside(path: Path) -> Iterator[Path]:
-    """Give a hidden new name beside a path; what is left of it is removed, and a failure names the path."""
-    target = path.resolve()
-    part = sibling(target, "partial")
-    try:
-        part.parent.mkdir(parents=True, exist_ok=True)
-        remove_remains(target)
-        with being_made(part):
-            yield part
-    except OSError as failure:
-        if failure.errno is None:  # a refusal of ours, which says it all
-            raise
-        reason = f"{failure.strerror}. Nothing at this path was changed. Free space, or choose another path"
-        raise OSError(failure.errno, reason, str(path)) from failure
 
 
 @contextlib.contextmanager
@@ -148,11 +131,6 @@ def _foreign_file(store: Path) -> str | None:
 
 def _exists(path: str | Path, remedy: str, where: str = "save_orbit(path=...)") -> FileExistsError:
     return FileExistsError(f"`{where}` must be new. Got '{path}', which exists. {remedy}")
-
-
-def sibling(target: Path, purpose: str) -> Path:
-    """Return a hidden new name beside a path."""
-    return target.with_name(f".{target.name}.{uuid.uuid4().hex[:12]}.{purpose}")
 
 
 def _write(variables: dict[str, xarray.Variable], told: dict[str, Any], path: Path) -> None:

@@ -21,6 +21,7 @@ import zarr
 
 from nonholo._checks import error
 from nonholo.io._attributes import attributes, attributes_of_text
+from nonholo.io._beside import new_beside
 from nonholo.io._dataset import CANONICAL, HEADED, stored_variables
 from nonholo.io._load import read_attributes
 from nonholo.io._lock import owner_of
@@ -32,7 +33,6 @@ from nonholo.io._save import (
     create_array,
     edit_attributes,
     is_coordinate,
-    new_beside,
     new_group,
     put_in_place,
     remove_partials,

@@ -1,8 +1,10 @@
 """The compiled steps: scalar arithmetic written once for numba and JAX, the matrix step for any body, the loops."""
 
 from nonholo.kernels._composition import ComposedBody, whole_steps
+from nonholo.kernels._dop853 import RATES, solve
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
+from nonholo.kernels._flow import BodyFlow, SpaceFlow
 from nonholo.kernels._general import GeneralBody
 from nonholo.kernels._interface import Body, certified, increment, move, residual
 from nonholo.kernels._secular import SecularBody, secular_sleigh, secular_top
@@ -11,13 +13,16 @@ from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
 
 __all__ = [
     "LANES",
+    "RATES",
     "AnyBody",
     "Body",
+    "BodyFlow",
     "ComposedBody",
     "GeneralBody",
     "MemberRows",
     "SecularBody",
     "SleighBody",
+    "SpaceFlow",
     "SuslovBody",
     "advance",
     "advance_members",
@@ -29,6 +34,7 @@ __all__ = [
     "secular_sleigh",
     "secular_top",
     "sizes",
+    "solve",
     "start",
     "step_each",
     "suslov_body",

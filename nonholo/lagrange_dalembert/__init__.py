@@ -1,11 +1,14 @@
 """Mechanics in coordinates: the discrete Lagrange-d'Alembert principle on R^n, and the flow it discretises."""
 
-from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
-from nonholo.lagrange_dalembert._group_discretization import GroupDiscretization
-from nonholo.lagrange_dalembert._group_orbit import GroupOrbit
-from nonholo.lagrange_dalembert._on_group import GroupLagrangeDAlembert, mass_tensor_lagrangian
-from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
-from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+from nonholo._checks import needs
+
+with needs("jax", "nonholo.lagrange_dalembert"):
+    from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
+    from nonholo.lagrange_dalembert._group_discretization import GroupDiscretization
+    from nonholo.lagrange_dalembert._group_orbit import GroupOrbit
+    from nonholo.lagrange_dalembert._on_group import GroupLagrangeDAlembert, mass_tensor_lagrangian
+    from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
+    from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 
 __all__ = [
     "CoordinateDiscretization",

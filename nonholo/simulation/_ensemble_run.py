@@ -11,6 +11,7 @@ import numba
 import numpy as np
 
 from nonholo import kernels
+from nonholo._checks import needs
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.discrete._composition import compiled_step
@@ -122,7 +123,8 @@ def _advance_by_jax(
     fields: np.ndarray, one: bool, momenta: np.ndarray, poses: np.ndarray, plan: Plan, rows: kernels.MemberRows
 ) -> None:
     """Run members by JAX, and those whose roots are not certain by the compiled loop."""
-    from nonholo.simulation._ensemble_jax import advance_by_jax
+    with needs("jax", "ensemble(backend='jax')"):
+        from nonholo.simulation._ensemble_jax import advance_by_jax
 
     uncertain = advance_by_jax(_kind(fields)(*fields), momenta, poses, plan.steps, plan.every or 0, rows)
     again = np.flatnonzero(uncertain)
@@ -183,7 +185,8 @@ def states_of(steps: int, every: int | None) -> int:
 def _parts(count: int, threads: int, backend: str) -> list[slice]:
     """Cut members into pieces of work: whole blocks of the kernel, some for each thread, or what JAX takes at once."""
     if backend == "jax":
-        from nonholo.simulation._ensemble_jax import chunk
+        with needs("jax", "ensemble(backend='jax')"):
+            from nonholo.simulation._ensemble_jax import chunk
 
         size = chunk() or count
     else:

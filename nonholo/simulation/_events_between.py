@@ -13,6 +13,7 @@ from collections.abc import Callable
 import numpy as np
 
 from nonholo import kernels
+from nonholo._checks import needs
 from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.discrete._composition import compiled_step, weights
@@ -110,7 +111,8 @@ def _advanced(
 
 
 def _by_definition(discrete: Discretization, states: Orbit, fractions: np.ndarray) -> tuple[np.ndarray, ...]:
-    from nonholo.simulation._events_definition import partial_step
+    with needs("jax", "simulate(events=...) of a step that is not compiled"):
+        from nonholo.simulation._events_definition import partial_step
 
     group, frame, C = discrete.system.group, discrete.system.frame, discrete.system.frame_map
     g = group.matrix_from_pose(_poses(discrete, states)) @ group.inverse(frame)

@@ -1,14 +1,15 @@
 """`flow`: an orbit of the continuous equations, from a checked start to a decoded result."""
 
 import functools
+from collections.abc import Callable
 from typing import Any, overload
 
 import numpy as np
 
-from nonholo._checks import choice, error, flow_times, flow_tolerances, shown
+from nonholo._checks import choice, error, flow_times, flow_tolerances, needs, shown
 from nonholo._limits import within_memory
 from nonholo._results import Outcome, OutcomeError
-from nonholo.continuous import ContinuousFlow, closed_form
+from nonholo.continuous import ContinuousFlow, closed_form, integrate
 from nonholo.discrete._start import in_group, initial_momentum, one_start
 from nonholo.orbit import Orbit
 from nonholo.simulation._events import checked_events
@@ -81,7 +82,7 @@ def flow(
         rtol: Relative error of a step, at least 1e-14.
         atol: Absolute error of a step. Smaller components are not resolved: a numerical solution that starts so near a
             repelling equilibrium leaves it at the wrong time.
-        method: None (numerical) or "closed_form".
+        method: None (numerical), "closed_form", or "diffrax": numerical too, by JAX, from the extra `jax`.
         events: `Event`s, or functions of an orbit, whose changes of sign from one requested time to the next are found,
             and located on the solution; see `Orbit.events`. Two of them between two times are not seen: ask for more
             times. A stopping event ends the orbit with the last requested time before it.
@@ -116,7 +117,7 @@ def flow(
         )
     if not isinstance(system, AbstractSystem):
         raise error("flow(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
-    choice("flow(method=...)", method, (None, "closed_form"))
+    choice("flow(method=...)", method, tuple(_METHODS))
     time, tolerances = flow_times(times), flow_tolerances(rtol, atol)
     group, motion = system.group, ContinuousFlow(system)
     within_memory("flow(times=...)", 32.0 * len(time) * (system.rank + group.pose_size), "Ask for fewer times.")
@@ -127,7 +128,7 @@ def flow(
     reduced = initial_momentum("flow", system, g, **starts)
     if momentum is not None:
         _check_momentum(momentum, Orbit(motion, time[:1], reduced[None], None, pose[None]).momentum[0])
-    solve = functools.partial(_solver(method), system.canonical, tolerances=tolerances)
+    solve = functools.partial(_METHODS[method](), system.canonical, tolerances=tolerances)
     watched = None if events is None else checked_events("flow", events)
     if watched is not None:
         check_functions(watched, Orbit(motion, time[:1], reduced[None], None, pose[None]))
@@ -142,12 +143,18 @@ def flow(
     return orbit
 
 
-def _solver(method: str | None) -> Any:
-    if method == "closed_form":
-        return closed_form
-    from nonholo.continuous._integration import integrate
+def _by_diffrax() -> Any:
+    with needs("jax", "flow(method='diffrax')"):
+        from nonholo.continuous._integration_jax import integrate_by_diffrax
 
-    return integrate
+    return integrate_by_diffrax
+
+
+_METHODS: dict[str | None, Callable[[], Any]] = {
+    None: lambda: integrate,
+    "closed_form": lambda: closed_form,
+    "diffrax": _by_diffrax,
+}
 
 
 def _check_momentum(given: Any, found: np.ndarray) -> None:

@@ -1,20 +1,22 @@
 """Whether the events given to go on with a stored run are those of the store, which holds no functions."""
 
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from nonholo import io
 from nonholo._checks import error
-from nonholo.io import Stream
 from nonholo.simulation._events_run import watched
 from nonholo.simulation._events_scan import Watch, search
 from nonholo.simulation._stored_events import descriptions, seen_by
 from nonholo.simulation._stretch import CompiledRun
 
+if TYPE_CHECKING:
+    from nonholo.io import Stream
+
 _SAME = 1e-9  # of 1 + the value at the first state: rounding on another processor is far less
 
 
-def watch_of_store(owner: str, stream: Stream, run: CompiledRun, events: Any) -> Watch | None:
+def watch_of_store(owner: str, stream: "Stream", run: CompiledRun, events: Any) -> Watch | None:
     """Return what the run of a store looks for; refused if it is not what the store says."""
     stored, where = io.read_attributes(stream.path).get("events"), f"{owner}(events=...)"
     if stored is None and not events:
@@ -33,7 +35,7 @@ def watch_of_store(owner: str, stream: Stream, run: CompiledRun, events: Any) ->
     return watch
 
 
-def _refuse_other_functions(where: str, stream: Stream, run: CompiledRun, watch: Watch) -> None:
+def _refuse_other_functions(where: str, stream: "Stream", run: CompiledRun, watch: Watch) -> None:
     """Refuse functions that have other values at the first state than the store says."""
     first = stream.checkpoint(0)
     if isinstance(first, str) or first.seen is None:

@@ -1,18 +1,20 @@
 """`resume` and `extend`: going on with a run that was written to a store."""
 
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from nonholo import io
 from nonholo._checks import count, error, flags, path, shown
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
-from nonholo.io import Stream
 from nonholo.orbit import Orbit
 from nonholo.simulation._events_scan import Watch
 from nonholo.simulation._given_events import watch_of_store
 from nonholo.simulation._stored_run import go_on
 from nonholo.simulation._stretch import CompiledRun, closed_step, compiled_run
+
+if TYPE_CHECKING:
+    from nonholo.io import Stream
 
 
 def resume(
@@ -118,7 +120,7 @@ def _refuse_ended(stored: dict[str, Any]) -> None:
 
 def _opened(
     owner: str, store: str | Path, discrete: Discretization | None, events: Any
-) -> tuple[Stream, CompiledRun, Watch | None]:
+) -> tuple["Stream", CompiledRun, Watch | None]:
     stream = io.open_stream(store)
     motion = cast(Discretization, io.restore_motion(io.read_attributes(store), discrete))
     run = compiled_run("resume(store=...)", motion, closed_step(motion), stream.plan.every, stream.reconstruct)

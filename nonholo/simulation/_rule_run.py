@@ -5,7 +5,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from nonholo._checks import error, shown
+from nonholo._checks import error, needs, shown
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
@@ -25,10 +25,10 @@ def rule_runner(discrete: Discretization, rule: BranchRule, backend: str, demand
     if has_frame(discrete) and backend == "auto":
         return lambda *arguments: _run(discrete, rule, demanded, *arguments)
     if rule != "nearest":
-        raise error(
-            "simulate(backend=...)", "be 'auto'", f"{shown(backend)} with branch {shown(rule)}", "Leave it out."
-        )
-    from nonholo.discrete._definition import run_by_definition
+        got = f"{shown(backend)} with branch {shown(rule)}"
+        raise error("simulate(backend=...)", "be 'auto'", got, "Leave it out.")
+    with needs("jax", "simulate(branch=...) of a step that is not compiled"):
+        from nonholo.discrete._definition import run_by_definition
 
     chart = None
     if demanded is not None and demanded.ndim == 2:

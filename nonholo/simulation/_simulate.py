@@ -6,7 +6,7 @@ from typing import Any, overload
 
 import numpy as np
 
-from nonholo._checks import error, flags, path, shown
+from nonholo._checks import error, flags, needs, path, shown
 from nonholo._results import finished
 from nonholo.discrete import Discretization
 from nonholo.discrete._branch_rules import BranchRule
@@ -199,7 +199,8 @@ def _by_definition(discrete: Discretization, backend: str) -> Run:
     if backend == "numba":
         remedy = "Pass backend='jax', or difference='matrix'."
         raise error("simulate(backend=...)", "have a closed form of the step", shown(discrete.difference), remedy)
-    from nonholo.discrete._definition import run_by_definition
+    with needs("jax", "simulate(...) of a step that is not compiled"):
+        from nonholo.discrete._definition import run_by_definition
 
     if discrete.order > 2:
         return composed_runner(discrete)

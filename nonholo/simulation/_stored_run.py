@@ -3,7 +3,7 @@
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from nonholo import io
 from nonholo._checks import count, error, shown
@@ -13,13 +13,16 @@ from nonholo._results import Outcome, finished
 from nonholo.discrete import Discretization
 from nonholo.discrete._branch_rules import BranchRule
 from nonholo.discrete._composition import compiled_step
-from nonholo.io import Checkpoint, Plan, Stream
+from nonholo.io import Checkpoint, Plan
 from nonholo.orbit import AbstractMotion, Orbit
 from nonholo.simulation._events_pieces import searched_first, stretch_of
 from nonholo.simulation._events_scan import Watch
 from nonholo.simulation._prepared import Start
 from nonholo.simulation._stored_events import descriptions, gone_on_from, seen_by
 from nonholo.simulation._stretch import CompiledRun, opened
+
+if TYPE_CHECKING:
+    from nonholo.io import Stream
 
 _ROWS, _NUMBERS, _STEPS = 1 << 16, 1 << 22, 1 << 23  # at most in a block: states, numbers in an array, steps
 _LOADED = 1 << 27  # numbers of an orbit that is returned whole, 1 GiB
@@ -84,7 +87,7 @@ def refuse_without_store(**given: Any) -> None:
             raise error(f"simulate({name}=...)", "come with a store", got, remedy)
 
 
-def go_on(run: CompiledRun, stream: Stream, watch: Watch | None, *, throw: bool, progress: bool) -> Orbit:
+def go_on(run: CompiledRun, stream: "Stream", watch: Watch | None, *, throw: bool, progress: bool) -> Orbit:
     """Compute what a locked store lacks, block after block, and return the orbit."""
     stream.prepare()
     _warn_of_other_versions(stream)
@@ -94,7 +97,7 @@ def go_on(run: CompiledRun, stream: Stream, watch: Watch | None, *, throw: bool,
     return finished(orbit, float(run.discrete.time_step), reached.done, stream.plan.steps, throw)
 
 
-def _warn_of_other_versions(stream: Stream) -> None:
+def _warn_of_other_versions(stream: "Stream") -> None:
     """Say so if what is still to compute may differ in its last bits from a run with the versions of the store."""
     others = io.other_versions(io.read_attributes(stream.path))
     if others and not stream.is_finished:
@@ -102,11 +105,11 @@ def _warn_of_other_versions(stream: Stream) -> None:
         warnings.warn(told, RuntimeWarning, stacklevel=4)
 
 
-def _standing(stream: Stream) -> str:
+def _standing(stream: "Stream") -> str:
     return f"{stream.reached()} of {stream.plan.steps}"
 
 
-def _completed(run: CompiledRun, stream: Stream, watch: Watch | None, progress: bool) -> Checkpoint:
+def _completed(run: CompiledRun, stream: "Stream", watch: Watch | None, progress: bool) -> Checkpoint:
     """Compute every block that is missing or damaged; return the end of the run."""
     plan, computed = stream.plan, not stream.is_finished
     marked = max(stream.marked(), default=-1)
@@ -125,7 +128,7 @@ def _completed(run: CompiledRun, stream: Stream, watch: Watch | None, progress: 
     return end
 
 
-def _sound(stream: Stream, block: int) -> Checkpoint | None:
+def _sound(stream: "Stream", block: int) -> Checkpoint | None:
     """Return the end of a block that is marked as finished; None, with a warning, if it is damaged."""
     reached = stream.checkpoint(block + 1)
     if isinstance(reached, Checkpoint) and not _is_final(stream, block, reached):
@@ -138,14 +141,14 @@ def _sound(stream: Stream, block: int) -> Checkpoint | None:
     return None
 
 
-def _is_final(stream: Stream, block: int, reached: Checkpoint) -> bool:
+def _is_final(stream: "Stream", block: int, reached: Checkpoint) -> bool:
     """Tell whether a block needs no more rows: not so if the run was extended, or ended and was not yet cut."""
     return reached.done == stream.plan.stop(block) or (reached.is_last and stream.is_finished)
 
 
 def _computed(
     run: CompiledRun,
-    stream: Stream,
+    stream: "Stream",
     watch: Watch | None,
     block: int,
     start: Checkpoint | str,
@@ -167,7 +170,7 @@ def _known(state: Checkpoint | str) -> Checkpoint:
     return state
 
 
-def _loaded(run: CompiledRun, stream: Stream, reached: Checkpoint) -> Orbit:
+def _loaded(run: CompiledRun, stream: "Stream", reached: Checkpoint) -> Orbit:
     """Return the orbit, of one that would fill the memory the last block."""
     states = 1 + reached.done // run.every + (0 if reached.seen is None else int(reached.seen.counts.sum()))
     if states * (2 + sum(run.sizes)) <= _LOADED:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import scipy.integrate
 
+from nonholo._checks import needs
 from nonholo._results import OutcomeError
 from nonholo._types import Float
 from nonholo.continuous import vector_field
@@ -161,6 +162,7 @@ def _made(found: Any, otherwise: str) -> Any:
 
 def _of_jax(function: Callable[[Any], Any], W: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "..."]:
     """Return the values of a function of one JAX matrix; JAX loads slowly, and only callables need it."""
-    from nonholo.discrete._definition import map_each
+    with needs("jax", "check_discretization(...) with functions"):
+        from nonholo.discrete._definition import map_each
 
     return map_each(function, W.reshape(-1, *W.shape[-2:])).reshape(W.shape[:-2])

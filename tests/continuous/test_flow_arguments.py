@@ -113,7 +113,7 @@ def test_impossible_tolerance_is_an_outcome() -> None:
         ({"times": (0.0, np.inf)}, r"`flow\(times=...\)` must be finite"),
         ({"rtol": 1e-15}, r"`flow\(rtol=...\)` must be at least 1e-14. Got 1e-15"),
         ({"atol": 0.0}, r"`flow\(atol=...\)` must be positive"),
-        ({"method": "euler"}, r"`flow\(method=...\)` must be one of None, 'closed_form'. Got 'euler'"),
+        ({"method": "euler"}, r"`flow\(method=...\)` must be one of None, 'closed_form', 'diffrax'. Got 'euler'"),
         (
             {"momentum": (1.0, 0.0)},
             r"`flow\(...\)` must be given exactly one of .* Got restricted_velocity and momentum",

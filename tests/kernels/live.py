@@ -63,6 +63,13 @@ def past_pi() -> Arrays:
     return [orbit.reduced_momentum, orbit.cayley]
 
 
+def flows(system: Any, method: str | None = None) -> Arrays:
+    """Return a continuous motion."""
+    velocity = np.random.default_rng(4).normal(size=len(system.constraint_subspace))
+    orbit = nh.flow(system, restricted_velocity=velocity, times=np.linspace(0.0, 5.0, 6), method=method)
+    return [orbit.reduced_momentum, orbit.canonical_pose]
+
+
 def body(group: Any, k: int, seed: int) -> nh.LLSystem:
     """Return a body with a random constraint."""
     rng = np.random.default_rng(seed)
@@ -97,6 +104,10 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     "right-invariant on SE(3)": lambda: orbits(GENERAL["right-invariant on SE(3)"][0]),
     "any d on SO(8)": lambda: orbits(body(nh.SO(8), 4, 8)),
     "a top past angle pi": lambda: past_pi(),
+    "flow of a top": lambda: flows(TOP),
+    "flow of a sleigh": lambda: flows(SLEIGH),
+    "right-invariant flow on SE(3)": lambda: flows(GENERAL["right-invariant on SE(3)"][0]),
+    "pose of a top in closed form": lambda: flows(TOP, "closed_form"),
     "a fold on SO(4)": lambda: orbits(GENERAL["any d on SO(4)"][0], size=20.0),
 }
 

@@ -1,0 +1,79 @@
+"""Momentum and pose by diffrax: a route of its own beside `_integration`. Imported on first use: it loads slowly."""
+
+import functools
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import numpy as np
+
+from nonholo._results import Outcome
+from nonholo._types import Array, Float
+from nonholo.continuous._equations import Body, body_of, momentum_rate, spatial_velocity
+from nonholo.continuous._integration import on_same_turn
+from nonholo.groups import SE, AbstractMatrixGroup
+from nonholo.numerics._time_sweep import State, padded, reached, sweep
+from nonholo.systems import AbstractLRSystem, AbstractSystem
+
+Rate = Callable[[AbstractMatrixGroup, Array, State, Any], State]
+
+
+def integrate_by_diffrax(
+    system: AbstractSystem,
+    reduced_momentum: Float[np.ndarray, "k"],
+    pose: Float[np.ndarray, "size"],
+    elapsed: Float[np.ndarray, "K"],
+    tolerances: tuple[float, float],
+) -> tuple[Float[np.ndarray, "K k"], Float[np.ndarray, "K size"], Float[np.ndarray, "K"] | None, Outcome]:
+    """Return momenta, poses, on SE(2) the heading without ambiguity of full turns, and the outcome.
+
+    Times elapse from zero. After a failure only the good states are returned.
+    """
+    planar = system.group == SE(2)
+    turned = np.arctan2(pose[1:2], pose[0:1]) if planar else np.zeros(0)
+    start = (reduced_momentum, pose, turned)
+    if isinstance(system, AbstractLRSystem):
+        rate, known = _spatial_rate, (system.constraint_subspace, system.homogeneous_mass_tensor)
+    else:
+        rate, known = _motion_rate, body_of(system)
+    rows, outcome = _solve(rate, system.group, start, known, elapsed, tolerances)
+    momenta, poses, headings = rows
+    poses = system.group.normalize_pose(poses)
+    return momenta, poses, on_same_turn(headings[:, 0], poses) if planar else None, outcome
+
+
+def _motion_rate(group: AbstractMatrixGroup, time: Array, state: State, body: Body) -> State:
+    del time
+    momentum, pose, turned = state
+    rate, velocity, _ = momentum_rate(group, body, momentum)
+    return rate, group.pose_rate(pose, velocity), velocity[: turned.shape[0]]
+
+
+def _spatial_rate(group: AbstractMatrixGroup, time: Array, state: State, known: tuple[Array, Array]) -> State:
+    del time
+    momentum, pose, turned = state
+    g = group.matrix_from_pose(pose)
+    spatial = spatial_velocity(group, *known, momentum, g)
+    velocity = group.adjoint(group.inverse(g)) @ spatial
+    return jax.numpy.zeros_like(momentum), group.pose_rate(pose, velocity), velocity[: turned.shape[0]]
+
+
+def _solve(
+    rate: Rate,
+    group: AbstractMatrixGroup,
+    state: State,
+    known: Any,
+    elapsed: np.ndarray,
+    tolerances: tuple[float, float],
+) -> tuple[list[np.ndarray], Outcome]:
+    with jax.enable_x64(True):
+        found, good = _sweep(rate, group, state, known, padded(elapsed), tolerances)
+    rows = reached(state, found, good, len(elapsed))
+    return rows, Outcome.successful if len(rows[0]) == len(elapsed) else Outcome.not_converged
+
+
+@functools.partial(jax.jit, static_argnums=(0, 1))
+def _sweep(
+    rate: Rate, group: AbstractMatrixGroup, state: State, known: Any, elapsed: Array, tolerances: tuple[Array, Array]
+) -> tuple[State, Array]:
+    return sweep(lambda time, current: rate(group, time, current, known), lambda end: end, state, elapsed, tolerances)

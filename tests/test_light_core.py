@@ -1,0 +1,110 @@
+"""The core without any extra: what works, what names its extra, and what a run loads."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import nonholo as nh
+
+PROGRAM = Path(__file__).parent / "without_extras.py"
+WITHOUT_HOME = {"GroupLagrangeDAlembert", "LagrangeDAlembert", "allow_float32", "examples", "mass_tensor_lagrangian"}
+HEAVY = {"dask", "diffrax", "equinox", "jax", "matplotlib", "pandas", "pydantic", "xarray", "zarr"}
+
+
+def _run(*arguments: str, folder: Path | None = None) -> subprocess.CompletedProcess:
+    command = [sys.executable, str(PROGRAM), *arguments]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True)  # noqa: S603
+
+
+def _printed(*arguments: str) -> dict[str, str]:
+    done = _run(*arguments)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def test_names_that_need_an_extra() -> None:
+    """Names that only JAX gives a meaning ask for it, by name and with how to install it; all others are there."""
+    assert _printed("names") == dict.fromkeys(WITHOUT_HOME | {"step"}, "jax")
+
+
+@pytest.mark.profile("faults", keep=["quick"])
+@pytest.mark.parametrize(
+    ("which", "asked"),
+    [
+        ("quick", {"branches [certified]": "certify"}),
+        ("all", {"branches [certified]": "certify", "consistency_defect": "jax", "step": "jax", "step [flat]": "jax"}),
+    ],
+    ids=["quick", "all"],
+)
+def test_calls_that_need_an_extra(which: str, asked: dict[str, str]) -> None:
+    """Each call of each public name works without extras, or asks for the one that it needs."""
+    assert _printed("calls", which) == asked
+
+
+COMMANDS = [
+    "simulate sleigh",
+    "simulate suslov",
+    "simulate veselova",
+    "simulate left_invariant",
+    "info sleigh.zarr",
+    "plot sleigh.zarr -o picture.png",
+    "export sleigh.zarr -o poses.csv",
+    "extend sleigh.zarr --steps 60",
+    "resume sleigh.zarr",
+    "sweep SWEEP --members 20",
+    "new sleigh",
+    "systems",
+]
+
+
+@pytest.mark.profile("faults", instead="test_commands_that_need_an_extra")
+def test_commands_work(tmp_path: Path) -> None:
+    """Every command but `paper` does its work without extras."""
+    sweep = str(PROGRAM.parents[1] / "examples" / "sleigh_turning_sweep.toml")
+    sleigh, store = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), tmp_path / "sleigh.zarr"
+    nh.simulate(sleigh, body_velocity=(0.1, -1.0, 0.0), steps=50, store=store, checkpoint_every=20)
+    for command in COMMANDS:
+        done = _run("command", *command.replace("SWEEP", sweep).split(), folder=tmp_path)
+        assert done.returncode == 0, f"{command}: {done.stdout}{done.stderr}"
+
+
+@pytest.mark.parametrize(
+    ("command", "extra"),
+    [(["paper"], "paper"), (["simulate", "sleigh", "--set", 'run.difference="logarithmic"'], "jax")],
+    ids=["paper", "logarithmic difference"],
+)
+def test_commands_that_need_an_extra(command: list[str], extra: str, tmp_path: Path) -> None:
+    """A command that needs an extra says so in a sentence and does nothing."""
+    done = _run("command", *command, folder=tmp_path)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert f"pip install 'nonholo[{extra}]'" in " ".join(done.stderr.split())
+    assert not list(tmp_path.rglob("*.zarr"))
+
+
+@pytest.mark.parametrize(
+    "run",
+    [
+        "nh.simulate(nh.discretize(sleigh, 0.1), body_velocity=(1, 0, 0), steps=10)",
+        "nh.flow(sleigh, body_velocity=(1, 0, 0), times=(0, 1))",
+    ],
+    ids=["simulate", "flow"],
+)
+def test_a_run_loads_nothing_that_it_does_not_use(run: str) -> None:
+    """A run loads neither JAX nor what makes datasets, stores, pictures and scenarios."""
+    program = (
+        f"import sys, nonholo as nh; sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5); o = {run}; o.momentum, o.heading;"
+    )
+    program += f"print(sorted({HEAVY} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
+    assert done.stdout.strip() == "[]"
+
+
+def test_every_name_of_the_store_room_has_a_home() -> None:
+    """The names of `nonholo.io`, which load on first use, are there; others are refused as in any module."""
+    assert all(getattr(nh.io, name) is not None for name in nh.io.__all__)
+    with pytest.raises(AttributeError, match=r"module 'nonholo\.io' has no attribute 'storre'"):
+        _ = nh.io.storre

@@ -1,0 +1,120 @@
+"""The package where no library of an extra can be imported: a program that prints which extra each thing asks for.
+
+python without_extras.py names               # of each public name that has no home without one
+python without_extras.py calls quick|all     # of each call of the table of the fuzzers
+python without_extras.py command ARGUMENT... # run a command of `nonholo`
+"""
+
+import contextlib
+import functools
+import importlib.abc
+import json
+import os
+import re
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+ABSENT = {
+    "diffrax",
+    "distributed",
+    "equinox",
+    "flint",
+    "jax",
+    "jaxlib",
+    "latex2mathml",
+    "lineax",
+    "mpmath",
+    "optimistix",
+}
+"""The libraries of the extras that users run, and what those bring."""
+
+
+class _Absent(importlib.abc.MetaPathFinder):
+    """What finds nothing under some names, and lets no one else look."""
+
+    def find_spec(self, name: str, path: Any = None, target: Any = None) -> None:  # noqa: ARG002
+        """Refuse the libraries of extras."""
+        if name.partition(".")[0] in ABSENT:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+
+sys.meta_path.insert(0, _Absent())
+
+import nonholo as nh  # noqa: E402
+from nonholo._checks import MissingExtraError  # noqa: E402
+
+
+def extra_of(missing: MissingExtraError) -> str:
+    """Return the extra that an error names, with how to install it."""
+    (extra,) = set(re.findall(r"extra `(\w+)`", str(missing)))
+    if f"pip install 'nonholo[{extra}]'" not in str(missing):
+        raise AssertionError(f"no remedy in {missing}")
+    return extra
+
+
+def names() -> dict[str, str]:
+    """Return the extras that public names ask for."""
+    asked = {}
+    for name in dir(nh):
+        try:
+            getattr(nh, name)
+        except MissingExtraError as missing:
+            asked[name] = extra_of(missing)
+    return asked
+
+
+def _home_of(name: str, *_: Any, **__: Any) -> Any:
+    """Ask again for a public name that has no home."""
+    vars(nh).pop(name, None)
+    return getattr(nh, name)
+
+
+def calls(which: str) -> dict[str, str]:
+    """Return the extras that the calls of public names ask for; the rest work."""
+    from fuzz import calls_systems
+    from fuzz.calls import all_calls
+
+    for missing in names():  # the table names them when it is made
+        vars(nh)[missing] = functools.partial(_home_of, missing)
+    for group in ("_in_coordinates", "_examples"):  # systems that cannot be made without an extra: see `names`
+        try:
+            getattr(calls_systems, group)()
+        except (MissingExtraError, AttributeError):
+            setattr(calls_systems, group, list)
+    chosen = {name: call for name, call in all_calls().items() if which == "all" or not (call.slow or call.stores)}
+    asked = {}
+    with tempfile.TemporaryDirectory() as folder:
+        shelf = Path(folder) / "shelf"
+        shelf.mkdir()
+        if which == "all":
+            from fuzz.shelf import fill
+
+            fill(shelf)
+        for number, (name, call) in enumerate(chosen.items()):
+            own = Path(folder) / str(number)
+            (shutil.copytree if call.stores else lambda _, path: path.mkdir())(shelf, own)
+            with contextlib.chdir(own):
+                try:
+                    call()
+                except MissingExtraError as missing:
+                    asked[name] = extra_of(missing)
+    return asked
+
+
+if __name__ == "__main__":
+    kind, *arguments = sys.argv[1:]
+    if kind == "command":
+        from nonholo.cli import main
+
+        sys.argv[1:] = arguments
+        main()
+    else:
+        found = names() if kind == "names" else calls(*arguments)
+        sys.stdout.write(json.dumps(found))
+        sys.stdout.flush()
+        os._exit(0)
