@@ -18,7 +18,7 @@ from simulation import killed
 from stopping import stopped_at
 
 import nonholo as nh
-from nonholo.io import Stream
+from nonholo.io import Stream, checksum
 from nonholo.systems import AbstractSystem
 
 TOP = nh.discretize(PROBLEMS[0].system, 0.1)
@@ -234,6 +234,7 @@ def test_other_versions_are_told(tmp_path: Path) -> None:
     document = json.loads((path / "zarr.json").read_text())
     versions = json.loads(document["attributes"]["versions"])
     document["attributes"]["versions"] = json.dumps(versions | {"numba": "0.1"})
+    document["attributes"]["checksum"] = checksum(document["attributes"])
     (path / "zarr.json").write_text(json.dumps(document))
     assert _same(nh.resume(path), _whole()), "a finished store is loaded in silence"
     with pytest.warns(RuntimeWarning, match=r"begun with numba 0\.1 \(now .*last bits"):
