@@ -79,7 +79,7 @@ def _complete(request: pytest.FixtureRequest) -> bool:
         ([], set()),
         (["benchmarks/gpu.py", "examples/sleigh.toml"], set()),
         (["docs/house.md", "README.md", "benchmarks/gpu.py"], {"site"}),
-        (["nonholo/cli/_plot.py"], {"faults"}),
+        (["nonholo/cli/commands/plot.py"], {"faults"}),
         (["tests/plotting/test_section.py", "docs/paper.md"], {"paper", "site"}),
         (["nonholo/kernels/_sleigh.py"], {"routes", "faults", "problems", "shapes", "bounds"}),
         (["nonholo/_checks.py"], {"shapes"}),

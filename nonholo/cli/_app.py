@@ -7,16 +7,16 @@ from typing import Annotated
 import typer
 
 from nonholo import __version__
-from nonholo.cli._export import export
-from nonholo.cli._extend import extend
-from nonholo.cli._info import info
-from nonholo.cli._new import new
-from nonholo.cli._paper import paper
-from nonholo.cli._plot import plot
-from nonholo.cli._resume import resume
-from nonholo.cli._simulate import simulate
-from nonholo.cli._sweep import sweep
-from nonholo.cli._systems import systems
+from nonholo.cli.commands.export import export
+from nonholo.cli.commands.extend import extend
+from nonholo.cli.commands.info import info
+from nonholo.cli.commands.new import new
+from nonholo.cli.commands.paper import paper
+from nonholo.cli.commands.plot import plot
+from nonholo.cli.commands.resume import resume
+from nonholo.cli.commands.simulate import simulate
+from nonholo.cli.commands.sweep import sweep
+from nonholo.cli.commands.systems import systems
 
 app = typer.Typer(
     name="nonholo",

@@ -15,8 +15,8 @@ from typer.testing import Result
 
 import nonholo as nh
 from nonholo import plotting
-from nonholo.cli import _caches, _run
-from nonholo.cli._scenario_file import load_scenario
+from nonholo.cli.commands import _caches, _running
+from nonholo.cli.scenario.files import load_scenario
 from nonholo.simulation import _stored_run
 
 Command = Callable[..., Result]
@@ -75,9 +75,9 @@ def test_runs_at_the_same_time_get_different_stores(rows: int, tmp_path: Path, m
     """Runs that begin and end together all keep their orbit."""
     monkeypatch.setattr(_stored_run, "_ROWS", rows)
     loaded = load_scenario("sleigh", [])
-    _run.check_output(None, overwrite=False)
+    _running.check_output(None, overwrite=False)
     with ThreadPoolExecutor(4) as pool:
-        kept = list(pool.map(lambda _: _run.run_and_keep(loaded, None, overwrite=False, progress=False), range(8)))
+        kept = list(pool.map(lambda _: _running.run_and_keep(loaded, None, overwrite=False, progress=False), range(8)))
     assert len({store for store, _ in kept}) == 8
     assert all(len(nh.load_orbit(store)) == 1 + loaded.scenario.run.steps for store, _ in kept)
     assert len(list((tmp_path / "runs").iterdir())) == 8

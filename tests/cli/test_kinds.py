@@ -11,10 +11,10 @@ import pytest
 from typer.testing import Result
 
 import nonholo as nh
-from nonholo.cli._bodies import BODIES, AnyBody
-from nonholo.cli._new import KINDS
-from nonholo.cli._problems import ScenarioError
-from nonholo.cli._scenario_file import built_in, effective_text, load_scenario, parse_setting
+from nonholo.cli.commands.new import KINDS
+from nonholo.cli.scenario.bodies import BODIES, AnyBody
+from nonholo.cli.scenario.files import built_in, effective_text, load_scenario, parse_setting
+from nonholo.cli.scenario.problems import ScenarioError
 from nonholo.systems import SYSTEMS, ArrowheadSleigh, ArrowheadTop
 
 Command = Callable[..., Result]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nonholo.cli._report import duration
+from nonholo.cli.screen.report import duration
 
 
 @pytest.mark.parametrize(

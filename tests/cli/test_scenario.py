@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import Result
 
-from nonholo.cli._bodies import BODIES
-from nonholo.cli._problems import ScenarioError
-from nonholo.cli._scenario_file import built_in, effective_text, load_scenario, parse_setting
+from nonholo.cli.scenario.bodies import BODIES
+from nonholo.cli.scenario.files import built_in, effective_text, load_scenario, parse_setting
+from nonholo.cli.scenario.problems import ScenarioError
 
 _KINDS = " or ".join(f'"{kind}"' for kind in BODIES)
 _GOOD = """

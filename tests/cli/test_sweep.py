@@ -20,9 +20,9 @@ from typer.testing import Result
 from waiting import wait_for
 
 import nonholo as nh
-from nonholo.cli._problems import ScenarioError
-from nonholo.cli._scenario_file import Setting, parse_setting
-from nonholo.cli._sweep_file import load_sweep_scenario, sweep_text
+from nonholo.cli.scenario.files import Setting, parse_setting
+from nonholo.cli.scenario.problems import ScenarioError
+from nonholo.cli.scenario.sweep_files import load_sweep_scenario, sweep_text
 from nonholo.ensembles import standing_of
 from nonholo.ensembles._store import SweepStore
 from nonholo.io import locked

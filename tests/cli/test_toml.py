@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from typer.testing import Result
 
-from nonholo.cli._toml import parsed
+from nonholo.cli.scenario.toml import parsed
 
 BOMBS = {
     "deep arrays": ("a = " + "[" * 200_000, "nested deeper than 32"),

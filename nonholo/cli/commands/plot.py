@@ -27,20 +27,20 @@ def plot(
     nonholo plot runs/sleigh-001.zarr --gif
     nonholo plot sweep.zarr --color outcome --x body.a --y run.time_step
     """
-    from nonholo.cli._caches import use_cache_folder
+    from nonholo.cli.commands._caches import use_cache_folder
 
     use_cache_folder()
     from nonholo import io
     from nonholo._progress import waiting
-    from nonholo.cli._errors import FAILED, USAGE, leave, store_errors
-    from nonholo.cli._pictures import beside, draw
+    from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
+    from nonholo.cli.screen.pictures import beside, draw
 
     if output is not None:
         with store_errors(USAGE):
             io.check_file(output, overwrite=overwrite, where="nonholo plot -o")
     path = output or beside(store, "gif" if gif else "png")
     if io.format_of(store) == io.SWEEP_FORMAT:
-        from nonholo.cli._sweep_picture import draw_stored_sweep
+        from nonholo.cli.screen.sweep_picture import draw_stored_sweep
 
         if gif:
             leave("A sweep has no animation. Leave --gif out.", USAGE)

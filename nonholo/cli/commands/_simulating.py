@@ -7,11 +7,11 @@ from typing import Any
 import typer
 
 from nonholo._progress import waiting
-from nonholo.cli._errors import FAILED, USAGE, leave, scenario_errors, store_errors, told_warnings
-from nonholo.cli._pictures import beside, draw, warn_of_older
-from nonholo.cli._report import as_json, duration, figures, show
-from nonholo.cli._run import Ran, check_output, run_and_keep
-from nonholo.cli._scenario_file import Loaded, Setting, load_scenario, parse_setting
+from nonholo.cli.commands._running import Ran, check_output, run_and_keep
+from nonholo.cli.scenario.files import Loaded, Setting, load_scenario, parse_setting
+from nonholo.cli.screen.errors import FAILED, USAGE, leave, scenario_errors, store_errors, told_warnings
+from nonholo.cli.screen.pictures import beside, draw, warn_of_older
+from nonholo.cli.screen.report import as_json, duration, figures, show
 from nonholo.orbit import Orbit
 
 

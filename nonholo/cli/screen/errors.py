@@ -44,7 +44,7 @@ def told_warnings() -> Iterator[None]:
 @contextlib.contextmanager
 def scenario_errors() -> Iterator[None]:
     """Report everything that is wrong with a scenario."""
-    from nonholo.cli._problems import ScenarioError
+    from nonholo.cli.scenario.problems import ScenarioError
 
     try:
         yield

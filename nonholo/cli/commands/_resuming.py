@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import cast
 
 from nonholo._results import OutcomeError
-from nonholo.cli._errors import FAILED, USAGE, leave, store_errors, told_warnings, warn
-from nonholo.cli._provenance import show_provenance
-from nonholo.cli._sweep_report import leave_if_all_raised, show_sweep, sweep_figures
+from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors, told_warnings, warn
+from nonholo.cli.screen.provenance import show_provenance
+from nonholo.cli.screen.sweep_report import leave_if_all_raised, show_sweep, sweep_figures
 from nonholo.ensembles import functions_of, resume, standing_of
 from nonholo.io import read_attributes
 from nonholo.orbit import Orbit

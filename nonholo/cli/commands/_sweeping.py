@@ -10,16 +10,16 @@ from typing import Any
 import typer
 import xarray
 
-from nonholo.cli._errors import USAGE, leave, scenario_errors, store_errors, told_warnings
-from nonholo.cli._going_on import going
-from nonholo.cli._pictures import beside
-from nonholo.cli._problems import ScenarioError, problem_of_value
-from nonholo.cli._run import at_free_path, check_output
-from nonholo.cli._scenario_file import Loaded, Setting, parse_setting
-from nonholo.cli._sweep_file import load_sweep_scenario, sweep_text
-from nonholo.cli._sweep_picture import draw_sweep
-from nonholo.cli._sweep_report import leave_if_all_raised, show_sweep, sweep_figures
-from nonholo.cli._sweep_scenario import SweepScenario
+from nonholo.cli.commands._resuming import going
+from nonholo.cli.commands._running import at_free_path, check_output
+from nonholo.cli.scenario.files import Loaded, Setting, parse_setting
+from nonholo.cli.scenario.problems import ScenarioError, problem_of_value
+from nonholo.cli.scenario.sweep_files import load_sweep_scenario, sweep_text
+from nonholo.cli.scenario.sweeps import SweepScenario
+from nonholo.cli.screen.errors import USAGE, leave, scenario_errors, store_errors, told_warnings
+from nonholo.cli.screen.pictures import beside
+from nonholo.cli.screen.sweep_picture import draw_sweep
+from nonholo.cli.screen.sweep_report import leave_if_all_raised, show_sweep, sweep_figures
 from nonholo.ensembles import EnsembleTask, sweep
 
 

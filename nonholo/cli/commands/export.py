@@ -26,10 +26,10 @@ def export(
     nonholo export runs/sleigh-001.zarr -o sleigh.csv
     nonholo export run.zarr --every 100 | head
     """
-    from nonholo.cli._caches import use_cache_folder
+    from nonholo.cli.commands._caches import use_cache_folder
 
     use_cache_folder()
-    from nonholo.cli._errors import FAILED, USAGE, store_errors, told_warnings
+    from nonholo.cli.screen.errors import FAILED, USAGE, store_errors, told_warnings
     from nonholo.io import SWEEP_FORMAT, check_file, format_of, read_attributes, store_to_csv
 
     is_sweep = format_of(store) == SWEEP_FORMAT

@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
-from nonholo.cli._bodies import BODIES
-from nonholo.cli._groups import NAME, TABLE, GroupTable
-from nonholo.cli._sections import Section
-from nonholo.cli._sweep_scenario import DESIGNS
+from nonholo.cli.scenario._groups import NAME, TABLE, GroupTable
+from nonholo.cli.scenario.bodies import BODIES
+from nonholo.cli.scenario.sections import Section
+from nonholo.cli.scenario.sweeps import DESIGNS
 
 _TAGGED: dict[str, dict[str, type[Section]]] = {"body": dict(BODIES), "design": DESIGNS}
 """Tables that are one of several: pydantic puts the one that was meant into the key path."""

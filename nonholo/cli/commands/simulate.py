@@ -46,10 +46,10 @@ def simulate(
     nonholo simulate my.toml --set 'start={momentum=[0.1, 1.0]}'
     nonholo simulate my.toml -o study/first.zarr --json
     """
-    from nonholo.cli._caches import use_cache_folder
+    from nonholo.cli.commands._caches import use_cache_folder
 
     use_cache_folder()
-    from nonholo.cli._command import simulate_and_keep
+    from nonholo.cli.commands._simulating import simulate_and_keep
 
     chosen = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}
     chosen |= {"output.plot": ("--plot", plot), "output.gif": ("--gif", gif)}

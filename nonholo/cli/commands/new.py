@@ -41,6 +41,6 @@ def new(
     nonholo simulate my.toml
     nonholo new sweep > many.toml
     """
-    from nonholo.cli._scenario_file import built_in
+    from nonholo.cli.scenario.files import built_in
 
     typer.echo({**built_in(), **built_in("sweeps")}[kind], nl=False)

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from nonholo.cli._sweep import Scheduler, Workers
+from nonholo.cli.commands.sweep import Scheduler, Workers
 
 Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by sweep, or by simulate(..., store=...).")]
 Trust = Annotated[
@@ -28,11 +28,11 @@ def resume(
     nonholo resume run.zarr
     nonholo resume sweep.zarr --workers 4
     """
-    from nonholo.cli._caches import use_cache_folder
+    from nonholo.cli.commands._caches import use_cache_folder
 
     use_cache_folder()
     from nonholo import io
-    from nonholo.cli._going_on import go_on_and_report, go_on_with_sweep
+    from nonholo.cli.commands._resuming import go_on_and_report, go_on_with_sweep
     from nonholo.ensembles import resume as going_on
 
     if io.format_of(store) == io.SWEEP_FORMAT:

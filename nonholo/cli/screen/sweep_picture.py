@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nonholo._progress import waiting
-from nonholo.cli._errors import FAILED, store_errors, warn
-from nonholo.cli._pictures import complete
-from nonholo.cli._sweep_scenario import library_name
-from nonholo.cli._toml import parsed
+from nonholo.cli.scenario.sweeps import library_name
+from nonholo.cli.scenario.toml import parsed
+from nonholo.cli.screen.errors import FAILED, store_errors, warn
+from nonholo.cli.screen.pictures import complete
 
 if TYPE_CHECKING:
     import xarray

@@ -18,11 +18,11 @@ def info(
     nonholo info runs/suslov-001.zarr
     nonholo info runs/suslov-001.zarr --scenario > again.toml
     """
-    from nonholo.cli._caches import use_cache_folder
+    from nonholo.cli.commands._caches import use_cache_folder
 
     use_cache_folder()
-    from nonholo.cli._errors import FAILED, USAGE, leave, store_errors
-    from nonholo.cli._provenance import show_provenance, show_standing, show_sweep_standing
+    from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
+    from nonholo.cli.screen.provenance import show_provenance, show_standing, show_sweep_standing
     from nonholo.ensembles._store import attributes_of
     from nonholo.io import SWEEP_FORMAT, format_of, load_orbit, read_attributes, standing
 

@@ -12,8 +12,8 @@ def systems() -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from nonholo.cli._bodies import BODIES
-    from nonholo.cli._scenario_file import built_in
+    from nonholo.cli.scenario.bodies import BODIES
+    from nonholo.cli.scenario.files import built_in
 
     bodies = Table("kind", "what it is", "parameters", title="Bodies", title_justify="left")
     for kind, body in BODIES.items():

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nonholo._progress import progress_bar, waiting
-from nonholo.cli._errors import warn
+from nonholo.cli.screen.errors import warn
 
 if TYPE_CHECKING:
     from nonholo.orbit import Orbit

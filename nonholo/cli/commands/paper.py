@@ -25,14 +25,14 @@ def paper(
     nonholo paper
     nonholo paper -o part --only sus_int --only st
     """
-    from nonholo.cli._caches import use_cache_folder
+    from nonholo.cli.commands._caches import use_cache_folder
 
     use_cache_folder()
     import sys
 
     from nonholo._checks import needs
     from nonholo._progress import progress_bar
-    from nonholo.cli._errors import FAILED, USAGE, leave, store_errors
+    from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
 
     with store_errors(USAGE), needs("paper", "nonholo paper"):
         from nonholo_paper import check_folder, entries, evaluate_all, select, write_folder

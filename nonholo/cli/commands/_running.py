@@ -14,10 +14,10 @@ from typing import Any, NamedTuple, TypeVar
 from nonholo._limits import within_disk
 from nonholo._progress import waiting
 from nonholo._results import OutcomeError
-from nonholo.cli._errors import USAGE, store_errors
-from nonholo.cli._pictures import beside
-from nonholo.cli._problems import ScenarioError, problem_of_value
-from nonholo.cli._scenario_file import Loaded, effective_text
+from nonholo.cli.scenario.files import Loaded, effective_text
+from nonholo.cli.scenario.problems import ScenarioError, problem_of_value
+from nonholo.cli.screen.errors import USAGE, store_errors
+from nonholo.cli.screen.pictures import beside
 from nonholo.discrete import Discretization
 from nonholo.io import check_target, save_orbit
 from nonholo.orbit import Orbit

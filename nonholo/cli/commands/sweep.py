@@ -60,10 +60,10 @@ def sweep(
     nonholo sweep my.toml --scheduler tcp://127.0.0.1:8786
     nonholo resume large.zarr               go on with one that stopped
     """
-    from nonholo.cli._caches import use_cache_folder
+    from nonholo.cli.commands._caches import use_cache_folder
 
     use_cache_folder()
-    from nonholo.cli._sweep_command import sweep_and_keep
+    from nonholo.cli.commands._sweeping import sweep_and_keep
 
     chosen = {"design.members": ("--members", members), "output.plot": ("--plot", plot)}
     sweep_and_keep(

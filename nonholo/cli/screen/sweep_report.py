@@ -11,8 +11,8 @@ import typer
 import xarray
 
 from nonholo._limits import size_text
-from nonholo.cli._errors import FAILED, leave
-from nonholo.cli._report import as_json, duration, show
+from nonholo.cli.screen.errors import FAILED, leave
+from nonholo.cli.screen.report import as_json, duration, show
 from nonholo.ensembles import SweepStanding, standing_of
 from nonholo.ensembles._store import attributes_of
 

@@ -8,10 +8,10 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 from pydantic import ValidationError
 
-from nonholo.cli._problems import Problem, ScenarioError, problems_of, suggestion
-from nonholo.cli._scenario import Scenario
-from nonholo.cli._sections import Section
-from nonholo.cli._toml import parsed, read_text
+from nonholo.cli.scenario.motion import Scenario
+from nonholo.cli.scenario.problems import Problem, ScenarioError, problems_of, suggestion
+from nonholo.cli.scenario.sections import Section
+from nonholo.cli.scenario.toml import parsed, read_text
 
 Model = TypeVar("Model", bound=Section)
 

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from nonholo.cli._resume import Json, Store
+from nonholo.cli.commands.resume import Json, Store
 
 
 def extend(
@@ -16,12 +16,12 @@ def extend(
 
     nonholo extend run.zarr --steps 1000000
     """
-    from nonholo.cli._caches import use_cache_folder
+    from nonholo.cli.commands._caches import use_cache_folder
 
     use_cache_folder()
     from nonholo import io
-    from nonholo.cli._errors import USAGE, leave
-    from nonholo.cli._going_on import go_on_and_report
+    from nonholo.cli.commands._resuming import go_on_and_report
+    from nonholo.cli.screen.errors import USAGE, leave
     from nonholo.simulation import extend as going_on
 
     if io.format_of(store) == io.SWEEP_FORMAT:

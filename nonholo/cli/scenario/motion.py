@@ -1,11 +1,11 @@
-"""What a scenario may say: a body, its start, a run, its output. The file itself is read in `_scenario_file`."""
+"""What a scenario may say: a body, its start, a run, its output. The file itself is read in `files`."""
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from nonholo.cli._bodies import AnyBody
-from nonholo.cli._sections import Count, Matrix, Positive, Section, Vector, exactly_one
+from nonholo.cli.scenario.bodies import AnyBody
+from nonholo.cli.scenario.sections import Count, Matrix, Positive, Section, Vector, exactly_one
 
 if TYPE_CHECKING:
     from nonholo.discrete import Discretization

@@ -8,9 +8,9 @@ from typing import Any
 import typer
 
 from nonholo._progress import waiting
-from nonholo.cli._errors import FAILED, USAGE, leave, store_errors
-from nonholo.cli._report import as_json, figures, show
-from nonholo.cli._sweep_report import show_sweep, sweep_figures
+from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
+from nonholo.cli.screen.report import as_json, figures, show
+from nonholo.cli.screen.sweep_report import show_sweep, sweep_figures
 from nonholo.ensembles import load_sweep
 from nonholo.ensembles._store import open_store
 from nonholo.io import Standing

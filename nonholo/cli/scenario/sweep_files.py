@@ -4,11 +4,11 @@ import re
 from pathlib import Path
 from typing import Any
 
-from nonholo.cli._bodies import AbstractBody
-from nonholo.cli._problems import ScenarioError, problem, suggestion
-from nonholo.cli._scenario_file import Loaded, Setting, assign, built_in, checked, read_document, toml_text
-from nonholo.cli._sweep_scenario import SweepScenario
-from nonholo.cli._sweep_values import along, drawn, needs_size
+from nonholo.cli.scenario._values import along, drawn, needs_size
+from nonholo.cli.scenario.bodies import AbstractBody
+from nonholo.cli.scenario.files import Loaded, Setting, assign, built_in, checked, read_document, toml_text
+from nonholo.cli.scenario.problems import ScenarioError, problem, suggestion
+from nonholo.cli.scenario.sweeps import SweepScenario
 
 _TABLES = ("body", "start", "run")
 _STARTS = ("body_velocity", "restricted_velocity", "momentum")

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import AfterValidator, Discriminator, Tag
 
-from nonholo.cli._sections import Matrix, Section
+from nonholo.cli.scenario.sections import Matrix, Section
 
 if TYPE_CHECKING:
     from nonholo.groups import AbstractMatrixGroup

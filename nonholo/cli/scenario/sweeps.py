@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field
 
-from nonholo.cli._bodies import AnyBody
-from nonholo.cli._scenario import Run, Start
-from nonholo.cli._sections import Count, Section
-from nonholo.cli._sweep_values import Along, Drawn, along, drawn, is_range
+from nonholo.cli.scenario._values import Along, Drawn, along, drawn, is_range
+from nonholo.cli.scenario.bodies import AnyBody
+from nonholo.cli.scenario.motion import Run, Start
+from nonholo.cli.scenario.sections import Count, Section
 
 if TYPE_CHECKING:
     from nonholo.ensembles import EnsembleTask, Grid, RandomDesign

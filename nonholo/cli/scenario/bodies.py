@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 from pydantic import model_validator
 
-from nonholo.cli._groups import Group, group_of
-from nonholo.cli._sections import Matrix, Number, Positive, Section, Vector, exactly_one
+from nonholo.cli.scenario._groups import Group, group_of
+from nonholo.cli.scenario.sections import Matrix, Number, Positive, Section, Vector, exactly_one
 
 if TYPE_CHECKING:
     from nonholo.systems import System

@@ -1,0 +1,1 @@
+"""Scenarios as files: what they may say, reading them, saying what is wrong."""

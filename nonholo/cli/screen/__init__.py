@@ -1,0 +1,1 @@
+"""What a person sees: errors in words, figures, pictures."""
