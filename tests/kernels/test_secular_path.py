@@ -299,3 +299,20 @@ def test_a_box_has_one_root() -> None:
                 assert holds(body, x, box, x)
                 assert not holds(body, x, box, np.append(x[:2], -x[2:]))
     assert certain > 10
+
+
+@pytest.mark.parametrize("share", [0.99, 1.01, 22.07])
+def test_the_general_step_sees_tiny_folds(share: float) -> None:
+    """A top that folds at a small angle: the general step went on to another branch."""
+    tensor = np.array(
+        [
+            [1.0, 0.0007355764, 0.001473202, -0.001420035],
+            [0.0007355764, 4.991517e-06, 1.089421e-07, -1.168234e-06],
+            [0.001473202, 1.089421e-07, 1.145525e-05, -1.056824e-05],
+            [-0.001420035, -1.168234e-06, -1.056824e-05, 2.55948e-05],
+        ]
+    )
+    step = matrix_step(nh.discretize(nh.SuslovTop(tensor), 1.0))
+    assert step is not None
+    momentum = share * 0.04532060048 * np.array([-0.9221329, -0.0006786948, -0.001358454])
+    assert (kernels.start(step.body, step.scale * momentum, np.eye(4).ravel())[0] == 0) == (share < 1)
