@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from nonholo._checks import array, trailing
+from nonholo._checks import trailing
 from nonholo._types import Array, Float
 
 
@@ -35,7 +35,7 @@ def euler_angle_discrete_lagrangian(principal_moments: Any, angles: Any, angles_
         np.float64(2.298...)
     """
     where, remedy = "euler_angle_discrete_lagrangian({}=...)", "Pass three numbers, or an array of triples."
-    moments = array(where.format("principal_moments"), principal_moments, (3,), "Pass three numbers.")
+    moments = trailing(where.format("principal_moments"), principal_moments, (3,), remedy, real=True)
     first = trailing(where.format("angles"), angles, (3,), remedy, real=True)
     second = trailing(where.format("angles_next"), angles_next, (3,), remedy, real=True)
     xp = (first * second).__array_namespace__()
