@@ -1,14 +1,20 @@
-"""Ctrl-C in every long call: a child gets SIGINT in the midst of its work, and ends within two seconds."""
+"""Ctrl-C in every long call: a child gets SIGINT in the midst of its work, and ends within two seconds.
 
+They are seconds of its processors: others may be at work on the machine.
+"""
+
+import os
+import re
 import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
 HEAD = """
-import signal, sys
+import signal, sys, time
 signal.signal(signal.SIGINT, signal.default_int_handler)
 import numpy as np, nonholo as nh
 sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
@@ -17,8 +23,11 @@ start = dict(restricted_velocity=(0.3, 0.2))
 def begin(short, long):
     short()
     print("begun", flush=True)
-    long()
-    print("over", flush=True)
+    try:
+        long()
+        print("over", flush=True)
+    finally:
+        print(f"processor {time.process_time()}", file=sys.stderr, flush=True)
 """
 CALLS = {
     "simulate": "begin(*(lambda n=n: nh.simulate(sleigh, **start, steps=n, save_every=1000) for n in (1000, 10**10)))",
@@ -48,10 +57,17 @@ CALLS = {
 }
 
 
+def processor_time(process: int) -> float:
+    """Return the seconds that a process has had of the processors."""
+    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="processor times of other processes are read there")
 @pytest.mark.profile("faults", keep=["simulate", "iterate"])
 @pytest.mark.parametrize("call", CALLS)
 def test_ctrl_c(call: str, tmp_path) -> None:  # noqa: ANN001
-    """The call raises `KeyboardInterrupt` within two seconds."""
+    """The call raises `KeyboardInterrupt` after two seconds of the processor at most."""
     command = [sys.executable, "-c", HEAD + CALLS[call]]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "cwd": tmp_path}
     with subprocess.Popen(command, **pipes) as child:  # noqa: S603
@@ -59,12 +75,12 @@ def test_ctrl_c(call: str, tmp_path) -> None:  # noqa: ANN001
             assert child.stdout is not None
             begun = child.stdout.readline()
             time.sleep(0.5)
+            before = processor_time(child.pid)
             child.send_signal(signal.SIGINT)
-            since = time.monotonic()
-            _, complaint = child.communicate(timeout=30)
-            waited = time.monotonic() - since
+            _, complaint = child.communicate(timeout=60)
         finally:
             child.kill()
     assert begun == "begun\n", complaint
     assert "KeyboardInterrupt" in complaint
-    assert waited < 2.0
+    (at_end,) = re.findall(r"processor (\S+)", complaint)
+    assert float(at_end) - before < 2.0
