@@ -53,7 +53,7 @@ def compare(found: ctypes.CDLL, name: str, posed: bool) -> None:
         assert uncertain == 0
 
     def kernel() -> None:
-        kernels.advance_members(step.body, None, first, unit, STEPS, 0, rows)
+        kernels.advance_members(step.body, None, first, unit, STEPS, 0, rows, np.zeros(1, dtype=np.bool_))
 
     def call() -> nh.Ensemble:
         return nh.ensemble(discrete, restricted_velocity=velocities, steps=STEPS, reconstruct=posed)

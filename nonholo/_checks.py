@@ -22,6 +22,7 @@ LARGEST = 1e150  # what a number may be; squares of larger ones overflow
 _SMALLEST = 1 / LARGEST  # mass, inertia and time step, so that squares do not underflow
 _MOST = 2**53  # the integers up to it are floats too
 _MOST_INDEX = 2**63 - 1
+_MOST_AXES = 16  # NumPy broadcasts 32
 _LONGEST_NAME = 255  # bytes; more is more than any file system has
 
 
@@ -86,6 +87,8 @@ def _numbers(where: str, value: Any, remedy: str) -> np.ndarray:
         raw = np.array(None)
     if raw.dtype.kind not in "iufc" or np.ma.is_masked(value):
         raise error(where, "be an array of real numbers", shown(value), remedy)
+    if raw.ndim > _MOST_AXES:
+        raise error(where, f"have at most {_MOST_AXES} axes", f"{raw.ndim}", remedy)
     return raw
 
 

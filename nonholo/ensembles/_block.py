@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import count, error, natural
+from nonholo._checks import error, natural
+from nonholo._limits import bounded_count
 from nonholo._types import Float
 from nonholo.ensembles._design import AbstractDesign
 from nonholo.ensembles._names import component_name
@@ -56,7 +57,8 @@ class MemberBlock(Mapping[str, Any]):
 
     def random(self, width: int, stream: str = "") -> Float[np.ndarray, "count width"]:
         """Return uniform numbers in [0, 1), so many of each member, the same in any block; streams are independent."""
-        width = count("MemberBlock.random(width=...)", width, "Pass how many numbers each member needs.")
+        remedy = "Pass how many numbers each member needs."
+        width = bounded_count("MemberBlock.random(width=...)", width, 24.0 * self.count, remedy)
         if not isinstance(stream, str):
             got = f"a {type(stream).__name__}"
             raise error("MemberBlock.random(stream=...)", "be a text", got, "Pass a name for these numbers.")

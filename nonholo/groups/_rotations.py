@@ -14,6 +14,7 @@ from nonholo.numerics._matrix_functions import (
     principal_logarithm,
 )
 
+_ENTRY = 1e3  # more than any entry of a matrix that is a rotation to whatever rounding
 _MODERATE = -0.5  # cosine of the angle, 120 degrees, up to which tan(angle / 2) loses no digits
 
 _LARGE = 1e3  # lengths from which on it is asked whether one plane turns
@@ -65,6 +66,9 @@ def logarithm(R: Float[Array, "... n n"], where: str) -> Float[Array, "... n n"]
     flat = R.reshape(-1, *R.shape[-2:])
     result = np.full(flat.shape, np.nan)
     finite = np.flatnonzero(np.isfinite(flat).all(axis=(1, 2)))
+    if np.abs(flat[finite]).max(initial=0.0) > _ENTRY:
+        got = f"an entry {np.abs(flat[finite]).max():g}"
+        raise error(where, "be a rotation", got, "Use a rotation, built by `exp` or `cayley`.")
     least_cosine = np.linalg.eigvalsh((flat[finite] + np.swapaxes(flat[finite], 1, 2)) / 2)[:, 0]
     moderate = finite[least_cosine > _MODERATE]
     result[moderate] = _moderate_logarithm(flat[moderate])

@@ -110,7 +110,7 @@ class Translations(AbstractMatrixGroup):
 
     def pose_from_matrix(self, g: Float[Array, "... N N"]) -> Float[Array, "... m"]:
         """Return the vector."""
-        return self.vee(g)
+        return self.vee(self._matrix(g))
 
     def normalize_pose(self, pose: Float[Array, "... m"]) -> Float[Array, "... m"]:
         """Return the vector as it is."""

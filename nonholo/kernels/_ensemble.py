@@ -23,6 +23,7 @@ LANES = 32
 _M, _K, _Y, _U, _V, _Q = 0, 64, 128, 192, 256, 320  # momenta, compensations, three charts (2 rows each), pose (4)
 _N, _L, _W, _OPEN = 448, 512, 576, 640  # next momenta, compensations and chart; whether a member needs more work
 _SIZE = 672
+_LOOK = 1024  # steps between two looks at whether to stop
 
 
 class MemberRows(NamedTuple):
@@ -197,9 +198,16 @@ def _begin(p: Body, table: np.ndarray | None, momenta: np.ndarray, poses: np.nda
 
 @njit(nogil=True, **COMPILED)
 def _run_block(
-    p: Body, table: np.ndarray | None, s: np.ndarray, first: int, steps: int, every: int, rows: MemberRows
+    p: Body,
+    table: np.ndarray | None,
+    s: np.ndarray,
+    first: int,
+    steps: int,
+    every: int,
+    rows: MemberRows,
+    stop: np.ndarray,
 ) -> None:
-    """Take all steps of a block whose first roots are found."""
+    """Take all steps of a block whose first roots are found, or those until it shall stop."""
     for k in range(2 * LANES):
         s[_M + k] = s[_N + k]
         s[_Y + k], s[_U + k], s[_V + k] = s[_W + k], s[_W + k], s[_W + k]
@@ -213,6 +221,8 @@ def _run_block(
         _accept(p, table, s, rows.poses.shape[1] > 0)
         if every > 0 and done % every == 0:
             _save_good(s, rows, first, done // every)
+        if done % _LOOK == 0 and stop[0]:
+            return
     if every == 0:
         _save_good(s, rows, first, 0)
     for i in range(first, min(first + LANES, len(rows.codes))):
@@ -229,6 +239,7 @@ def advance_members(
     steps: int,
     every: int,
     rows: MemberRows,
+    stop: np.ndarray,
 ) -> None:
     """Take steps from scaled momenta (members, 2) and poses (members, 4) into rows, in one thread.
 
@@ -240,6 +251,7 @@ def advance_members(
         steps: Number of steps.
         every: Save the first state and each `every`-th one after it; with 0 only the last one of each member.
         rows: Where to.
+        stop: One truth value, that another thread may set: then the work ends, and the rows are good for nothing.
     """
     s = np.empty(_SIZE)
     for block in range((len(momenta) + LANES - 1) // LANES):
@@ -248,7 +260,9 @@ def advance_members(
         chosen = slice(first, min(first + LANES, len(momenta)))
         if _begin(p, table, momenta[chosen], poses[chosen], s) > 0:
             _rescue(p, table, s, first, -1, every, rows)
-        _run_block(p, table, s, first, steps, every, rows)
+        _run_block(p, table, s, first, steps, every, rows, stop)
+        if stop[0]:
+            return
 
 
 def tables_of(fields: np.ndarray) -> np.ndarray:

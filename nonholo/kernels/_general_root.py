@@ -5,11 +5,13 @@ import numpy as np
 from nonholo._compiled import njit
 from nonholo.kernels._general import LOST, GeneralBody, Workspace, displaced, equations, skew_part
 from nonholo.kernels._scalar import PIECES
-from nonholo.kernels._small import assign, eliminate, multiply, paired
+from nonholo.kernels._small import assign, assign_rows, eliminate, multiply, paired
 
 _STEPS = 12  # of Newton's method
 _FIRST = 0.25  # first continuation step, in s
 _SMALLEST = 1e-7  # continuation step, relative to s, below which the branch is given up
+_BENT = 0.5  # most change of the Jacobian in one piece of the path: two roots for one momentum differ by -2
+_ROUNDING = 1e-24  # squared, of a displacement
 _LEAST = 1e-300  # and the absolute one: a momentum may be any number of times too large
 _FAR = 1e4  # turning of a displacement beyond which the Cayley chart ends: an angle of 179 degrees
 
@@ -73,14 +75,32 @@ def _energy(metric: np.ndarray, m: np.ndarray) -> float:
 
 
 @njit()
-def _tangent(p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray, s: float) -> tuple[float, np.ndarray]:
-    """Return the determinant of the Jacobian at a root and the derivative of the root with respect to s."""
+def _tangent(
+    p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray, s: float, slope: np.ndarray
+) -> tuple[float, np.ndarray]:
+    """Write the Jacobian at a root; return its determinant and the derivative of the root with respect to s."""
     displaced(p, w, y)
     equations(p, w, s * m)
+    assign_rows(slope, w.slope)
     w.residual[:] = 0.0
     assign(w.residual[:, 0], m)
     det = eliminate(w.slope, w.residual)
     return det, w.residual[:, 0].copy()
+
+
+@njit()
+def _bend(before: np.ndarray, after: np.ndarray) -> float:
+    """Return how far Jacobians are apart, by traces of E and E^2, E + I the quotient: the same in all coordinates.
+
+    Were the equations quadratic, E would have an eigenvalue of -2 between two roots for the same momentum.
+    """
+    E, trace = after.copy(), 0.0
+    det = eliminate(before.copy(), E)
+    for a in range(len(E)):
+        E[a, a] -= 1
+        trace += E[a, a]
+    square = abs(paired(E, E.T))
+    return max(abs(trace), square) if np.isfinite(det) and det != 0 and np.isfinite(square) else np.inf
 
 
 @njit()
@@ -91,7 +111,8 @@ def principal(p: GeneralBody, w: Workspace, m: np.ndarray) -> tuple[int, np.ndar
         return 5, y
     if len(y) == 0:
         return 0, y
-    start, tangent = _tangent(p, w, m, y, 0.0)
+    slope, slope_ahead = np.empty_like(w.slope), np.empty_like(w.slope)
+    start, tangent = _tangent(p, w, m, y, 0.0, slope)
     s, size, now, peak = 0.0, _FIRST, start, abs(start)
     for _ in range(PIECES):
         size = min(size, 1.0 - s)
@@ -99,11 +120,14 @@ def principal(p: GeneralBody, w: Workspace, m: np.ndarray) -> tuple[int, np.ndar
         guess = y + size * tangent
         found = guess.copy()
         good, det = newton(p, w, ahead * m, found)
-        moved, off = found - y, found - guess
-        close = np.sum(off * off) <= 0.01 * np.sum(moved * moved) or np.sum(moved * moved) < 1e-6
-        if good and close and det * start > 0 and np.sum(moved * moved) <= 0.04 * (1 + np.sum(y * y)) ** 2:
-            y, s, now, size = found, ahead, det, 2 * size
-            det, tangent = _tangent(p, w, m, y, s)
+        if good and det * start > 0 and _close(y, guess, found):
+            det, tangent_ahead = _tangent(p, w, m, found, ahead, slope_ahead)
+            good = _bend(slope, slope_ahead) <= _BENT
+        else:
+            good, tangent_ahead = False, tangent
+        if good:
+            y, s, now, size, tangent = found, ahead, det, 2 * size, tangent_ahead
+            assign_rows(slope, slope_ahead)
             if len(p.form) > 0:  # boosts scale the determinant
                 peak = max(peak, abs(det))
             if not det * start > 0:  # singular to rounding
@@ -115,6 +139,13 @@ def principal(p: GeneralBody, w: Workspace, m: np.ndarray) -> tuple[int, np.ndar
         else:
             return _why_it_ended(p, w, y, now, peak), y
     return 3, y
+
+
+@njit()
+def _close(y: np.ndarray, guess: np.ndarray, found: np.ndarray) -> bool:
+    """Tell whether a root is where the tangent foretold, to a tenth of a move that is not long, or to rounding."""
+    moved, off, size = np.sum((found - y) ** 2), np.sum((found - guess) ** 2), 1 + np.sum(y * y)
+    return off <= 0.01 * moved + _ROUNDING * size and moved <= 0.04 * size * size
 
 
 @njit()

@@ -86,9 +86,9 @@ def _run_scalar(members: Members, momenta: np.ndarray, plan: Plan, threads: int,
     fields, one = scalar.fields, members.parameters.keys() <= {"time_step"}
     advance = _advance_by_jax if backend == "jax" else _advance
 
-    def work(part: slice) -> None:
+    def work(part: slice, stop: np.ndarray) -> None:
         pieces = kernels.MemberRows(*(array[part] for array in rows))
-        advance(fields if one else fields[:, part], one, scaled[part], poses[part], plan, pieces)
+        advance(fields if one else fields[:, part], one, scaled[part], poses[part], plan, pieces, stop)
 
     if backend == "jax":
         threads = 1  # XLA has its own
@@ -111,16 +111,28 @@ def _kind(fields: np.ndarray) -> type[kernels.Body]:
 
 
 def _advance(
-    fields: np.ndarray, one: bool, momenta: np.ndarray, poses: np.ndarray, plan: Plan, rows: kernels.MemberRows
+    fields: np.ndarray,
+    one: bool,
+    momenta: np.ndarray,
+    poses: np.ndarray,
+    plan: Plan,
+    rows: kernels.MemberRows,
+    stop: np.ndarray,
 ) -> None:
     """Run members by the compiled loop."""
     body = _kind(fields)(*(float(x) for x in fields[:, 0]))
     tables = None if one else kernels.tables_of(fields)
-    kernels.advance_members(body, tables, momenta, poses, plan.steps, plan.every or 0, rows)
+    kernels.advance_members(body, tables, momenta, poses, plan.steps, plan.every or 0, rows, stop)
 
 
 def _advance_by_jax(
-    fields: np.ndarray, one: bool, momenta: np.ndarray, poses: np.ndarray, plan: Plan, rows: kernels.MemberRows
+    fields: np.ndarray,
+    one: bool,
+    momenta: np.ndarray,
+    poses: np.ndarray,
+    plan: Plan,
+    rows: kernels.MemberRows,
+    stop: np.ndarray,
 ) -> None:
     """Run members by JAX, and those whose roots are not certain by the compiled loop."""
     with needs("jax", "ensemble(backend='jax')"):
@@ -130,7 +142,7 @@ def _advance_by_jax(
     again = np.flatnonzero(uncertain)
     if again.size:
         found = _rows(len(again), rows.momenta.shape[1], plan.posed)
-        _advance(fields if one else fields[:, again], one, momenta[again], poses[again], plan, found)
+        _advance(fields if one else fields[:, again], one, momenta[again], poses[again], plan, found, stop)
         for array, values in zip(rows, found, strict=True):
             array[again] = values
 
@@ -140,7 +152,7 @@ def _run_each(members: Members, momenta: np.ndarray, plan: Plan, threads: int, r
     codes, done = np.zeros((2, count), dtype=np.int64)
     found: dict[int, Orbit] = {}
 
-    def work(part: slice) -> None:
+    def work(part: slice, _stop: np.ndarray) -> None:
         for member in range(part.start, part.stop):
             found[member], done[member] = _run_one(members.of(member), momenta[member], plan)
             codes[member] = found[member].outcome
@@ -195,23 +207,20 @@ def _parts(count: int, threads: int, backend: str) -> list[slice]:
     return [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]
 
 
-def _in_threads(work: Callable[[slice], None], parts: list[slice], threads: int, report: Report) -> None:
+def _in_threads(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int, report: Report) -> None:
     """Do all pieces of work, which release the interpreter's lock, and report each."""
     for part in _finished(work, parts, threads):
         report(part.stop - part.start)
 
 
-def _finished(work: Callable[[slice], None], parts: list[slice], threads: int) -> Iterator[slice]:
-    if threads == 1 or len(parts) == 1:
-        for part in parts:
-            work(part)
-            yield part
-        return
-    pool = ThreadPoolExecutor(threads)
+def _finished(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int) -> Iterator[slice]:
+    """Give pieces of work as they are done; what ends this thread, Ctrl-C among it, soon ends the others."""
+    pool, stop = ThreadPoolExecutor(threads), np.zeros(1, dtype=np.bool_)
     try:
-        waiting = {pool.submit(work, part): part for part in parts}
+        waiting = {pool.submit(work, part, stop): part for part in parts}
         for future in as_completed(waiting):
             future.result()
             yield waiting[future]
     finally:
+        stop[0] = True
         pool.shutdown(cancel_futures=True)

@@ -5,6 +5,7 @@ state with compensations and warm starts. So a run goes on from a vector with th
 """
 
 import dataclasses
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -28,7 +29,8 @@ from nonholo.discrete._structured import (
 from nonholo.orbit import Orbit
 from nonholo.simulation._prepared import Start
 
-_PIECE = 1 << 20  # steps between two reports of progress; Ctrl-C waits for them
+_FIRST, _PIECE = 256, 1 << 20  # steps between two reports of progress; Ctrl-C waits for them,
+_SOON, _LATE = 0.1, 0.3  # seconds: from one to the next they are doubled and halved
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -77,16 +79,28 @@ class CompiledRun:
         if opening:
             for row, given in zip(rows, np.split(vector[: sum(widths)], np.cumsum(widths)[:-1]), strict=True):
                 row[0] = given
-        state, done, code = vector[sum(widths) :], begun, 0
+        state, done, code, pace = vector[sum(widths) :], begun, 0, _FIRST
         while code == 0 and done < stop:
-            free = first + (done - begun) // self.every
-            piece = min(max(1, _PIECE // self.every) * self.every, stop - done)
+            free, since = first + (done - begun) // self.every, time.monotonic()
+            piece, every = self._piece(done - begun, stop - begun, pace)
             room = (rows[0][free:], rows[1][free:], rows[2][free:])
-            good, code = kernels.advance(self.closed.body, state, piece, self.every, room)
+            good, code = kernels.advance(self.closed.body, state, piece, every, room)
             done += good
             report(done)
+            pace = _paced(pace, time.monotonic() - since)
         kept = first + (done - begun) // self.every
         return self.orbit((rows[0][:kept], rows[1][:kept], rows[2][:kept]), begun, opening, Outcome(code)), done
+
+    def _piece(self, done: int, total: int, pace: int) -> tuple[int, int]:
+        """Return how many steps to take at once, and after how many of them to save.
+
+        A piece is a number of whole rows, or a part of one that is saved at its end, where the next part overwrites it.
+        """
+        if pace >= self.every and done % self.every == 0:
+            return min(pace // self.every * self.every, total - done), self.every
+        piece = min(pace, self.every - done % self.every, total - done)
+        has_row = done // self.every < total // self.every
+        return piece, piece if has_row else piece + 1
 
     def orbit(
         self, rows: tuple[np.ndarray, np.ndarray, np.ndarray], begun: int, opening: bool, outcome: Outcome
@@ -98,6 +112,13 @@ class CompiledRun:
         pose = decoded_poses(self.closed, self.discrete.system.group, poses) if self.reconstruct else None
         momenta, charts = decoded(self.closed, momenta), from_kernel(self.closed, charts)
         return Orbit(self.discrete, time, momenta, charts, pose, outcome, self.every)
+
+
+def _paced(pace: int, seconds: float) -> int:
+    """Return how many steps to take next, after that many took so long."""
+    if seconds < _SOON:
+        return min(2 * pace, _PIECE)
+    return max(1, pace // 2) if seconds > _LATE else pace
 
 
 def closed_step(discrete: Discretization, rule: Any = "principal", backend: str = "auto") -> Structured | None:

@@ -35,9 +35,9 @@ def euler_angle_discrete_lagrangian(principal_moments: Any, angles: Any, angles_
         np.float64(2.298...)
     """
     where, remedy = "euler_angle_discrete_lagrangian({}=...)", "Pass three numbers, or an array of triples."
-    moments = trailing(where.format("principal_moments"), principal_moments, (3,), remedy)
-    first = trailing(where.format("angles"), angles, (3,), remedy)
-    second = trailing(where.format("angles_next"), angles_next, (3,), remedy)
+    moments = trailing(where.format("principal_moments"), principal_moments, (3,), remedy, real=True)
+    first = trailing(where.format("angles"), angles, (3,), remedy, real=True)
+    second = trailing(where.format("angles_next"), angles_next, (3,), remedy, real=True)
     xp = (first * second).__array_namespace__()
     turn, spin, total = (second - first)[..., 0], (second - first)[..., 2], (first + second)[..., 2]
     c, c_next, s = xp.cos(first[..., 1]), xp.cos(second[..., 1]), xp.sin(first[..., 1]) * xp.sin(second[..., 1])

@@ -65,7 +65,7 @@ def _branches() -> list[Call]:
 
 def _matrices(W: np.ndarray) -> list[Call]:
     defect, rotation = nh.consistency_defect, array(W, "batch")
-    moments, angles = array([5.0, 4.0, 3.0]), array([0.0, 0.4, 0.0], "batch")
+    moments, angles = array([5.0, 4.0, 3.0], "batch"), array([0.0, 0.4, 0.0], "batch")
     lagrangian = nh.euler_angle_discrete_lagrangian
     return [
         call("in_exp_d", nh.in_exp_d, displacement=rotation, tolerance=positive(1e-9)),

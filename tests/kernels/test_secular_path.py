@@ -11,8 +11,10 @@ from nonholo import kernels
 from nonholo.discrete._branch_equations import frame_of
 from nonholo.discrete._secular import SecularStep, secular_step
 from nonholo.discrete._structured import first_root, matrix_step
-from nonholo.kernels._secular import room_for_sums
-from nonholo.kernels._secular_path import on_the_sphere, principal, solve_linear
+from nonholo.kernels._secular import room_for_sums, secular_sleigh, secular_top
+from nonholo.kernels._secular_box import holds, write_bends, write_box
+from nonholo.kernels._secular_linear import solve_linear
+from nonholo.kernels._secular_path import on_the_sphere, principal
 
 PAST_PI = [
     [1.97, 2.24, -1.96, -0.56],
@@ -243,3 +245,74 @@ def test_tiny_folds_are_not_jumped_over(share: float) -> None:
     velocity = np.linalg.solve(top.constrained_inertia, momentum)
     orbit = nh.simulate(nh.discretize(top, 1.0), restricted_velocity=velocity, steps=1, throw=False)
     assert (len(orbit) > 0) == (share < 0.0588)
+
+
+@pytest.mark.parametrize("share", [0.99, 0.999999, 1.000001, 1.01, 10.0, 1000.0])
+def test_a_fold_at_an_angle_of_a_hundredth(share: float) -> None:
+    """Directions differ by 1e12: by 256 bits the path folds at 0.00062078278975552 of the momentum below."""
+    b = np.array([4.709575651449889e-13, 7.470241333923588e-12, 0.006708715317397309, 0.38361559189530325])
+    c = np.array([3.1492572636921275e-14, -4.0386826248559647e-13, 1.2458990216061384e-08, -1.8545600676926565e-07])
+    m = np.array([2.91881527073446e-16, -4.3553942711590654e-15, -9.063350779315726e-06, 0.0015343130131294299])
+    m *= 0.00062078278975552 * share
+    assert principal(secular_top(b, -c), m, 0.0, room_for_sums())[0] == (share > 1)
+
+
+@pytest.mark.parametrize("kind", ["top", "sleigh", "sleigh without arm"])
+def test_bends_are_bounded(kind: str) -> None:
+    """No corner of a box has a second-order part, by dense matrices of the definition, beyond the bounds; some near."""
+    rng, k, nearest = np.random.default_rng(8), 3, 0.0
+    for _ in range(30):
+        b, c = 10 ** rng.uniform(-3, 0, k), rng.normal(size=k)
+        c *= b.min() / 2
+        arm = 0.5 * (kind == "sleigh")
+        body = secular_top(b, -c) if kind == "top" else secular_sleigh(b, c, 0.7, arm, np.zeros(k))
+        x = np.concatenate([rng.normal(size=1), rng.normal(size=1) * (arm != 0), rng.normal(size=k)])
+        R = np.append(np.abs(rng.normal(size=k + 2)), 0.0)
+        R[1] *= arm != 0
+        R[-1] = np.abs(c) @ R[2:-1] + R[1]
+        G = np.empty(k + 3)
+        write_bends(body, x, R, G)
+        at = [np.append(np.append(y[0], y[2:]), [y[1], 0.0]) for y in (x, 0 * x)]
+        values = [arcs._equations(np.diag(b), -c, np.zeros(k), 0.0, 0.0, arm != 0, y) for y in at]
+        J, zero = values[0][1][:-1, :-1], values[1][0][:-1]
+        for corner in np.array(np.meshgrid(*[[-1.0, 1.0]] * (k + 2))).reshape(k + 2, -1).T:
+            u = corner * R[:-1]
+            moved = np.append(np.append(u[0], u[2:]), [u[1], 0.0])
+            value, slope = arcs._equations(np.diag(b), -c, np.zeros(k), 0.0, 0.0, arm != 0, moved)
+            bend = np.linalg.solve(J, (slope[:-1, :-1] @ moved[:-1] - (value[:-1] - zero)))
+            bend = np.concatenate([bend[:1], bend[-1:], bend[1:-1], [c @ bend[1:-1] + bend[-1]]])
+            assert np.all(np.abs(bend) <= G * (1 + 1e-9) + 1e-12 * G.max())
+            nearest = max(nearest, float(np.max(np.abs(bend[2:]) / G[2:])))
+    assert nearest > 0.5
+
+
+def test_a_box_has_one_root() -> None:
+    """Where roots merge, a box that is certain holds the next root of the path and not the one beyond the fold."""
+    body, certain = secular_top(np.array([1.0, 1.0]), np.array([0.0, 0.5])), 0
+    x, box = np.zeros(4), np.empty(5)
+    for angle in np.linspace(0.1, 1.5, 15):  # b z0 z + (c.z) z - |z|^2 c = m is known from its root
+        x[0], x[2] = np.cos(angle), np.sin(angle)
+        for size in (1e-3, 1e-2, 0.1, 1.0):
+            way = size * np.array([-np.sin(angle), 0.0, np.cos(angle), 0.0])
+            if write_box(body, x, way, box) < 1:
+                certain += 1
+                assert holds(body, x, box, x)
+                assert not holds(body, x, box, np.append(x[:2], -x[2:]))
+    assert certain > 10
+
+
+@pytest.mark.parametrize("share", [0.99, 1.01, 22.07])
+def test_the_general_step_sees_tiny_folds(share: float) -> None:
+    """A top that folds at a small angle: the general step went on to another branch."""
+    tensor = np.array(
+        [
+            [1.0, 0.0007355764, 0.001473202, -0.001420035],
+            [0.0007355764, 4.991517e-06, 1.089421e-07, -1.168234e-06],
+            [0.001473202, 1.089421e-07, 1.145525e-05, -1.056824e-05],
+            [-0.001420035, -1.168234e-06, -1.056824e-05, 2.55948e-05],
+        ]
+    )
+    step = matrix_step(nh.discretize(nh.SuslovTop(tensor), 1.0))
+    assert step is not None
+    momentum = share * 0.04532060048 * np.array([-0.9221329, -0.0006786948, -0.001358454])
+    assert (kernels.start(step.body, step.scale * momentum, np.eye(4).ravel())[0] == 0) == (share < 1)
