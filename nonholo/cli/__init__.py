@@ -1,4 +1,4 @@
-"""The command `nonholo`: one file per subcommand in `commands`; heavy rooms are imported inside the commands that need them."""
+"""The command `nonholo`: one file per subcommand in `commands`, which imports heavy rooms where it needs them."""
 
 from nonholo.cli._app import main
 
