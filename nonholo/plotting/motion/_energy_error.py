@@ -14,8 +14,7 @@ from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._subject import drawable, is_discrete, is_steered_in_space, posed
-from nonholo.plotting._thinning import evenly_in_box
+from nonholo.plotting.parts import drawable, evenly_in_box, is_discrete, is_steered_in_space, posed
 
 _MOST_DOTS = 2000
 _COLUMNS = 600

@@ -15,11 +15,11 @@ from nonholo.analysis import deltoid, invariant_curve
 from nonholo.analysis.planar import planar_map
 from nonholo.discrete import Branches, Discretization, discrete_legendre, displacements_over, inverse_discrete_legendre
 from nonholo.discrete import branches as values_of
-from nonholo.plotting import _variety_plane as variety
 from nonholo.plotting import theme
-from nonholo.plotting._deltoid_plane import draw_deltoid, name_inside
-from nonholo.plotting._deltoid_plane import dress as dress_momenta
-from nonholo.plotting._momentum_plane import reduced
+from nonholo.plotting.geometry._deltoid_plane import draw_deltoid, name_inside
+from nonholo.plotting.geometry._deltoid_plane import dress as dress_momenta
+from nonholo.plotting.sheets import _variety_plane as variety
+from nonholo.plotting.sheets import reduced
 from nonholo.systems import ChaplyginSleigh
 
 _BEYOND = 0.3  # how far a tangent goes on beyond its ends, in its length

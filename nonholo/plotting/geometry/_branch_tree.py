@@ -12,10 +12,9 @@ from matplotlib.ticker import MaxNLocator, NullLocator
 
 from nonholo._checks import error, pair, shown
 from nonholo._types import Float
-from nonholo.discrete import BranchTree, Discretization
-from nonholo.discrete._discretization import as_discretization
+from nonholo.discrete import BranchTree, Discretization, as_discretization
 from nonholo.plotting import theme
-from nonholo.plotting._momentum_plane import ellipse, name_axes, reduced
+from nonholo.plotting.sheets import ellipse, name_axes, reduced
 
 _EARLY, _LATE = 0.05, 0.9  # ends of the shades of the generations
 _LARGEST, _SMALLEST = 150.0, 26.0  # areas of the dots of the first and the last generation

@@ -12,7 +12,7 @@ from matplotlib.colors import ListedColormap
 
 from nonholo._checks import error, shown
 from nonholo.plotting import theme
-from nonholo.plotting._sweep_axes import (
+from nonholo.plotting.sweeps._sweep_axes import (
     OUTCOME,
     Subject,
     borders,
@@ -26,7 +26,7 @@ from nonholo.plotting._sweep_axes import (
     scale_of,
     subject_of,
 )
-from nonholo.plotting._sweep_draws import draw_draws
+from nonholo.plotting.sweeps._sweep_draws import draw_draws
 
 _MARKED = 60  # members along a curve that get a dot each
 

@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 
 from nonholo._results import Outcome
 from nonholo.orbit import Orbit
-from nonholo.plotting._subject import time_step
+from nonholo.plotting.parts import time_step
 from nonholo.systems import (
     AbstractLLSystem,
     ChaplyginSleigh,

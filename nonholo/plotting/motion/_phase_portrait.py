@@ -17,10 +17,9 @@ from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._momentum_plane import ellipse, half_axes, name_axes
-from nonholo.plotting._other_images import draw_images, trees_of
-from nonholo.plotting._subject import drawable, is_discrete, known_equilibria
-from nonholo.plotting._thinning import evenly_in_box
+from nonholo.plotting.motion._other_images import draw_images, trees_of
+from nonholo.plotting.parts import drawable, evenly_in_box, is_discrete, known_equilibria
+from nonholo.plotting.sheets import ellipse, half_axes, name_axes
 from nonholo.systems import AbstractLLSystem, AbstractSystem
 
 _MOST_DOTS = 1500

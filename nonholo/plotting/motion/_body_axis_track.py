@@ -16,10 +16,22 @@ from nonholo._types import Float
 from nonholo.groups import SO
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._sphere import View, best_view, draw_curve, draw_globe, given_view
-from nonholo.plotting._sphere_path import draw_named_axes, draw_path, mark_ends
-from nonholo.plotting._subject import known_equilibria, permanent_velocity, posed, same_group
-from nonholo.plotting._thinning import turn_per_state, window
+from nonholo.plotting.parts import (
+    View,
+    best_view,
+    draw_curve,
+    draw_globe,
+    draw_named_axes,
+    draw_path,
+    given_view,
+    known_equilibria,
+    mark_ends,
+    permanent_velocity,
+    posed,
+    same_group,
+    turn_per_state,
+    window,
+)
 from nonholo.systems import AbstractLLSystem, AbstractLRSystem, RigidBody
 
 _MOST_DOTS = 1200

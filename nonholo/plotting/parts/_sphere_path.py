@@ -10,8 +10,8 @@ from matplotlib.colors import to_rgb
 from nonholo._types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._sphere import View, arcs, draw_curve, great_circle, opacity
-from nonholo.plotting._subject import is_discrete
+from nonholo.plotting.parts._sphere import View, arcs, draw_curve, great_circle, opacity
+from nonholo.plotting.parts._subject import is_discrete
 
 _PIECE = np.radians(3.0)  # longer steps are joined by arcs of pieces like this
 _SPARSE = np.radians(40.0)  # the eye cannot join states that are farther apart: dots come first

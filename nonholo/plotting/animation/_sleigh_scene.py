@@ -13,9 +13,8 @@ from matplotlib.patches import Polygon
 from nonholo._types import Float, Int
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._enlargement import square_about
-from nonholo.plotting._scene import stage
-from nonholo.plotting._thinning import evenly_spread, some_states, turn_per_state
+from nonholo.plotting.animation._scene import stage
+from nonholo.plotting.parts import evenly_spread, some_states, square_about, turn_per_state
 from nonholo.systems import ChaplyginSleigh
 
 _SLENDER = 1.6  # length of the drawn body over its width

@@ -14,10 +14,9 @@ from nonholo._types import Float
 from nonholo.analysis import InvariantCurve, MomentumLocus
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._locus_view import best_view
-from nonholo.plotting._subject import drawable
-from nonholo.plotting._thinning import evenly_in_box
 from nonholo.plotting.elements import draw_surface, spans
+from nonholo.plotting.geometry._locus_view import best_view
+from nonholo.plotting.parts import drawable, evenly_in_box
 from nonholo.systems import ChaplyginSleigh
 
 _MOST_DOTS = 600

@@ -17,10 +17,9 @@ from nonholo._types import Int
 from nonholo.io import check_file
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._sleigh_scene import sleigh_motion, sleigh_scene
-from nonholo.plotting._subject import drawable
-from nonholo.plotting._thinning import transition
-from nonholo.plotting._top_scene import top_motion, top_scene
+from nonholo.plotting.animation._sleigh_scene import sleigh_motion, sleigh_scene
+from nonholo.plotting.animation._top_scene import top_motion, top_scene
+from nonholo.plotting.parts import drawable, transition
 from nonholo.systems import ChaplyginSleigh, SuslovTop
 
 _SCENES = {SuslovTop: (top_motion, top_scene), ChaplyginSleigh: (sleigh_motion, sleigh_scene)}

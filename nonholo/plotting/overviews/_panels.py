@@ -10,14 +10,18 @@ from matplotlib.axes import Axes
 from nonholo._types import Float
 from nonholo.groups import SE, SO
 from nonholo.orbit import Orbit
-from nonholo.plotting._blade_track import blade_track
-from nonholo.plotting._body_axis_track import body_axis_track
-from nonholo.plotting._energy_error import energy_error
-from nonholo.plotting._momentum_sphere import momentum_sphere
-from nonholo.plotting._phase_portrait import phase_portrait
-from nonholo.plotting._point_track import point_track
-from nonholo.plotting._subject import is_steered_in_space
-from nonholo.plotting._time_series import heading_and_speed, momentum_components, velocity_components
+from nonholo.plotting.motion import (
+    blade_track,
+    body_axis_track,
+    energy_error,
+    heading_and_speed,
+    momentum_components,
+    momentum_sphere,
+    phase_portrait,
+    point_track,
+    velocity_components,
+)
+from nonholo.plotting.parts import is_steered_in_space
 from nonholo.systems import AbstractLLSystem, ChaplyginSleigh, is_wide
 
 

@@ -12,10 +12,9 @@ from matplotlib.figure import Figure
 from nonholo._types import Float, Int
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._body_axis_track import known_axes, rotation_axes
-from nonholo.plotting._scene import stage
-from nonholo.plotting._sphere import View, arcs, best_view, draw_globe, set_curve
-from nonholo.plotting._thinning import turn_per_state
+from nonholo.plotting.animation._scene import stage
+from nonholo.plotting.motion import known_axes, rotation_axes
+from nonholo.plotting.parts import View, arcs, best_view, draw_globe, set_curve, turn_per_state
 from nonholo.systems import SuslovTop
 
 _TURN = np.radians(22.0)  # most between two frames

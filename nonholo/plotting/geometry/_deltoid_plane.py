@@ -12,7 +12,7 @@ from matplotlib.patches import Polygon
 
 from nonholo.analysis import Deltoid
 from nonholo.plotting import theme
-from nonholo.plotting._momentum_plane import reduced
+from nonholo.plotting.sheets._momentum_plane import reduced
 
 INSIDE = "#dbe9f3"
 

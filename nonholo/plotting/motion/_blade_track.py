@@ -15,9 +15,7 @@ from nonholo._checks import flags
 from nonholo._types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._enlargement import Square, corner_axes, detail, square_about
-from nonholo.plotting._subject import is_discrete, system_of
-from nonholo.plotting._thinning import evenly_spread
+from nonholo.plotting.parts import Square, corner_axes, detail, evenly_spread, is_discrete, square_about, system_of
 from nonholo.systems import ChaplyginSleigh
 
 _MOST_DOTS = 1500

@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.plotting import theme
-from nonholo.plotting._sweep_axes import (
+from nonholo.plotting.sweeps._sweep_axes import (
     OUTCOME,
     Subject,
     colour_key,

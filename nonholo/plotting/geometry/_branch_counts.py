@@ -12,10 +12,10 @@ from nonholo.analysis import deltoid
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._deltoid_plane import draw_deltoid, dress, name_inside
-from nonholo.plotting._momentum_locus import own_orbit
-from nonholo.plotting._momentum_plane import ellipse, reduced
-from nonholo.plotting._thinning import evenly_in_box
+from nonholo.plotting.geometry._deltoid_plane import draw_deltoid, dress, name_inside
+from nonholo.plotting.geometry._momentum_locus import own_orbit
+from nonholo.plotting.parts import evenly_in_box
+from nonholo.plotting.sheets import ellipse, reduced
 
 _MOST_DOTS = 1500
 

@@ -15,9 +15,7 @@ from nonholo._types import Float
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._enlargement import square_about
-from nonholo.plotting._subject import is_discrete, posed, same_group
-from nonholo.plotting._thinning import evenly_spread
+from nonholo.plotting.parts import evenly_spread, is_discrete, posed, same_group, square_about
 
 _MOST_DOTS = 1500
 _BODIES = 14  # places at which the axes of the body are drawn

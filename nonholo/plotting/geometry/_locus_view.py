@@ -3,8 +3,8 @@
 import numpy as np
 
 from nonholo.analysis import MomentumLocus
-from nonholo.plotting._sphere import View
 from nonholo.plotting.elements import spans
+from nonholo.plotting.parts import View
 
 _VIEW = (25.0, -52.0)  # elevation and azimuth
 _AZIMUTHS = np.arange(-70.0, -24.0, 5.0)  # of a top

@@ -14,9 +14,9 @@ from nonholo.analysis.planar import planar_map
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._momentum_locus import own_orbit
-from nonholo.plotting._thinning import evenly_in_box
-from nonholo.plotting._variety_plane import disc, draw_level, dress, flat
+from nonholo.plotting.geometry._momentum_locus import own_orbit
+from nonholo.plotting.parts import evenly_in_box
+from nonholo.plotting.sheets import disc, draw_level, dress, flat
 from nonholo.systems import ChaplyginSleigh
 
 _LEVELS = 9

@@ -12,8 +12,7 @@ from nonholo._types import Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._subject import is_steered_in_space
-from nonholo.plotting._thinning import evenly_in_box
+from nonholo.plotting.parts import evenly_in_box, is_steered_in_space
 
 _MOST_POINTS = 2000
 _MOST_LINES = 60  # momenta in one panel

@@ -11,9 +11,9 @@ from nonholo._checks import path as checked_path
 from nonholo.io import check_file
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._head import write_head
-from nonholo.plotting._panels import Panel, panels_of
-from nonholo.plotting._subject import drawable
+from nonholo.plotting.overviews._head import write_head
+from nonholo.plotting.overviews._panels import Panel, panels_of
+from nonholo.plotting.parts import drawable
 
 _SIZE = (13.0, 7.6)
 _LARGER = 2.2  # times as high as a panel against time

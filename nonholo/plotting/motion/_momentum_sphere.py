@@ -10,10 +10,19 @@ from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._sphere import View, best_view, draw_globe, given_view, opacity
-from nonholo.plotting._sphere_path import draw_path, mark_ends, name_beside
-from nonholo.plotting._subject import drawable, known_equilibria
-from nonholo.plotting._thinning import window
+from nonholo.plotting.parts import (
+    View,
+    best_view,
+    draw_globe,
+    draw_path,
+    drawable,
+    given_view,
+    known_equilibria,
+    mark_ends,
+    name_beside,
+    opacity,
+    window,
+)
 from nonholo.systems import AbstractLLSystem
 
 _MOST_DOTS = 1500

@@ -10,8 +10,8 @@ from nonholo._checks import choice, error, shown
 from nonholo.discrete import BranchTree, Discretization, branch_tree
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting._momentum_plane import reduced
-from nonholo.plotting._thinning import evenly_in_box
+from nonholo.plotting.parts import evenly_in_box
+from nonholo.plotting.sheets import reduced
 
 _SEEDS = 3  # states of the orbit whose images are drawn
 _GENERATIONS = 3
