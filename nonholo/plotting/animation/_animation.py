@@ -20,9 +20,8 @@ from nonholo.plotting import theme
 from nonholo.plotting.animation._sleigh_scene import sleigh_motion, sleigh_scene
 from nonholo.plotting.animation._top_scene import top_motion, top_scene
 from nonholo.plotting.parts import drawable, transition
-from nonholo.systems import ChaplyginSleigh, SuslovTop
+from nonholo.plotting.sheets import sheet_of
 
-_SCENES = {SuslovTop: (top_motion, top_scene), ChaplyginSleigh: (sleigh_motion, sleigh_scene)}
 _COLOURS = 96
 _SHOWN_FOR_PALETTE = 6
 
@@ -44,7 +43,7 @@ def animate(
     but does not flicker.
 
     Args:
-        orbit: An orbit of a `SuslovTop` on SO(3) or of a `ChaplyginSleigh`, with poses.
+        orbit: An orbit of a Suslov top on SO(3) or of a sleigh in the plane, with poses.
         path: Where to write, a new file; ends in .gif.
         frames: Number of frames; fewer if the orbit has fewer states.
         fps: Frames per second.
@@ -91,14 +90,14 @@ def animate(
 def _scene_of(orbit: Orbit) -> tuple[Callable[[Orbit], float], Callable[..., tuple[Figure, Callable[[int], None]]]]:
     where = "animate(orbit=...)"
     drawable(where, orbit)
-    found = next((scene for kind, scene in _SCENES.items() if isinstance(orbit.system, kind)), None)
-    if found is None or orbit.system.group.dim != 3:
+    sheet = sheet_of(orbit.system)
+    if sheet is None:
         got = f"{orbit!r} on {orbit.system.group}"
         requirement = "be an orbit of a Suslov top in space or a sleigh in the plane"
         raise error(where, requirement, got, "Use `overview` for a still picture.")
     if orbit.canonical_pose is None:
         raise error(where, "have poses", "an orbit without them", "Run with reconstruct=True.")
-    return found
+    return (top_motion, top_scene) if sheet.blade is None else (sleigh_motion, sleigh_scene)
 
 
 def _target(path: str | Path) -> Path:

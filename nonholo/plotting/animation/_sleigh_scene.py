@@ -15,7 +15,7 @@ from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.animation._scene import stage
 from nonholo.plotting.parts import evenly_spread, some_states, square_about, turn_per_state
-from nonholo.systems import ChaplyginSleigh
+from nonholo.plotting.sheets import Blade, blade_of_system
 
 _SLENDER = 1.6  # length of the drawn body over its width
 _TURN, _WAY = np.radians(15.0), 0.12  # most of a turn, and of the body's length, between two frames
@@ -27,26 +27,25 @@ def sleigh_motion(orbit: Orbit) -> float:
     if len(orbit) < 2:
         return 0.0
     sample = some_states(orbit, 1000)
-    way = np.abs(sample.body_velocity[:, 1]).max() * np.abs(np.diff(orbit.time)).max()
-    return float(
-        max(turn_per_state(orbit) / _TURN, way / (_WAY * 2 * _half_length(cast(ChaplyginSleigh, orbit.system))))
-    )
+    blade = _blade(orbit)
+    way = np.abs(blade.speed(sample)).max() * np.abs(np.diff(orbit.time)).max()
+    return float(max(turn_per_state(orbit) / _TURN, way / (_WAY * 2 * _half_length(blade))))
 
 
 def sleigh_scene(orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Figure, Callable[[int], None]]:
     """Return the figure and what shows a frame in it."""
     figure, axes, set_clock = stage("Chaplygin sleigh", orbit, shown)
-    sleigh = cast(ChaplyginSleigh, orbit.system)
+    blade = _blade(orbit)
     covered = np.arange(shown[0], shown[-1] + 1)
     track = orbit.chosen(covered)
-    kept = evenly_spread(track.position, _MOST_PIECES)
-    points, times = track.position[kept], track.time[kept]
-    poses = orbit.chosen(shown).configuration
-    outline = _outline(sleigh)
+    kept = evenly_spread(blade.contact(track), _MOST_PIECES)
+    points, times = blade.contact(track)[kept], track.time[kept]
+    poses = blade.poses(orbit.chosen(shown))
+    outline = _outline(blade)
     _ground(axes, points, poses, outline)
     trail = LineCollection([], cmap=theme.TIME, norm=theme.time_scale(orbit), linewidth=2, zorder=2)
     axes.add_collection(trail)
-    body, blade, centre = _parts(axes)
+    body, stroke, centre = _parts(axes)
 
     def show(frame: int) -> None:
         set_clock(frame)
@@ -55,8 +54,8 @@ def sleigh_scene(orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Figure, Cal
         trail.set_array(times[1 : len(past)])
         g = poses[frame]
         body.set_xy(_moved(g, outline))
-        blade.set_data(*_moved(g, _blade(sleigh)).T)
-        centre.set_data(*_moved(g, _centre(sleigh)).T)
+        stroke.set_data(*_moved(g, _stroke(blade)).T)
+        centre.set_data(*_moved(g, blade.center[None]).T)
 
     return figure, show
 
@@ -65,25 +64,25 @@ def _moved(g: Float[np.ndarray, "3 3"], points: Float[np.ndarray, "K 2"]) -> Flo
     return points @ g[:2, :2].T + g[:2, 2]
 
 
-def _half_length(sleigh: ChaplyginSleigh) -> float:
+def _blade(orbit: Orbit) -> Blade:
+    return cast(Blade, blade_of_system(orbit.system))
+
+
+def _half_length(blade: Blade) -> float:
     """Half length of the uniform ellipse with the mass and moment of inertia of the sleigh: J = m (p^2 + q^2) / 4."""
-    width = np.sqrt(4 * float(sleigh.inertia) / float(sleigh.mass) / (1 + _SLENDER**2))
+    width = np.sqrt(4 * blade.inertia / blade.mass / (1 + _SLENDER**2))
     return float(_SLENDER * width)
 
 
-def _outline(sleigh: ChaplyginSleigh) -> Float[np.ndarray, "K 2"]:
+def _outline(blade: Blade) -> Float[np.ndarray, "K 2"]:
     angle = np.linspace(0, 2 * np.pi, 121)
-    length = _half_length(sleigh)
+    length = _half_length(blade)
     ellipse = np.stack([length * np.cos(angle), length / _SLENDER * np.sin(angle)], axis=-1)
-    return ellipse + _centre(sleigh)
+    return ellipse + blade.center
 
 
-def _blade(sleigh: ChaplyginSleigh) -> Float[np.ndarray, "2 2"]:
-    return 0.4 * _half_length(sleigh) * np.array([[-1.0, 0.0], [1.0, 0.0]])
-
-
-def _centre(sleigh: ChaplyginSleigh) -> Float[np.ndarray, "1 2"]:
-    return np.array([[float(sleigh.a), float(sleigh.b)]])
+def _stroke(blade: Blade) -> Float[np.ndarray, "2 2"]:
+    return 0.4 * _half_length(blade) * np.array([[-1.0, 0.0], [1.0, 0.0]])
 
 
 def _ground(

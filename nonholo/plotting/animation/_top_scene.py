@@ -15,7 +15,6 @@ from nonholo.plotting import theme
 from nonholo.plotting.animation._scene import stage
 from nonholo.plotting.motion import known_axes, rotation_axes
 from nonholo.plotting.parts import View, arcs, best_view, draw_globe, set_curve, turn_per_state
-from nonholo.systems import SuslovTop
 
 _TURN = np.radians(22.0)  # most between two frames
 _PIECE = np.radians(4.0)
@@ -43,12 +42,12 @@ def top_scene(orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Figure, Callab
     poses = moving.configuration
     spin = np.einsum("kij,kj->ki", poses, moving.body_velocity)
     spin *= 1.12 / (np.linalg.norm(spin, axis=1).max() or 1.0)
-    half, principal = _box(cast(SuslovTop, orbit.system).mass_tensor)
+    half, principal = _box(cast(np.ndarray, orbit.system.homogeneous_mass_tensor))
     show_box = _faces(axes, view, half)
     show_axes = [_stick(axes, view, look) for look in _BODY_AXES]
     show_spin = _stick(axes, view, _SPIN)
     axes.legend(loc="lower left", fontsize=9, borderaxespad=0.0)
-    frame_axes = orbit.system.frame
+    frame_axes = orbit.system.form_frame
 
     def show(frame: int) -> None:
         g = poses[frame]
@@ -69,7 +68,7 @@ def top_scene(orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Figure, Callab
 def _trace(axes: Axes, orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Callable[[int], None], View]:
     """Draw the sphere; return what shows the path of the forbidden axis up to a frame, and the view."""
     part = orbit[int(shown[0]) : int(shown[-1]) + 1]
-    points = part.configuration @ cast(SuslovTop, orbit.system).axis
+    points = part.configuration @ orbit.system.form_frame[:, 2]
     view = best_view(points, known_axes(*rotation_axes(orbit)))
     draw_globe(axes, view)
     step = np.linalg.norm(np.diff(points, axis=0), axis=1).max(initial=0.0)

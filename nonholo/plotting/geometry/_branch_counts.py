@@ -13,9 +13,8 @@ from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.geometry._deltoid_plane import draw_deltoid, dress, name_inside
-from nonholo.plotting.geometry._momentum_locus import own_orbit
-from nonholo.plotting.parts import evenly_in_box
-from nonholo.plotting.sheets import ellipse, reduced
+from nonholo.plotting.parts import evenly_in_box, own_orbit
+from nonholo.plotting.sheets import ellipse, momenta_on_plane, on_plane
 
 _MOST_DOTS = 1500
 
@@ -68,7 +67,7 @@ def branch_counts(discrete: Discretization, orbit: Orbit | None = None, axes: Ax
     axes = theme.axes_or_new(axes, (6.4, 5.4))
     inside, boundary, dots = draw_deltoid(axes, found)
     look = {"color": theme.MUTED, "linewidth": 1.3, "dashes": (4, 3), "zorder": 2}
-    resting = axes.plot(*reduced(discrete.system, found.resting()).T, label="no translation", **look)[0]
+    resting = axes.plot(*on_plane(discrete.system, found.resting()).T, label="no translation", **look)[0]
     level = path = None
     if orbit is not None:
         level = _level(axes, orbit)
@@ -84,7 +83,7 @@ def _level(axes: Axes, orbit: Orbit) -> Line2D:
 
 
 def _orbit(axes: Axes, orbit: Orbit) -> PathCollection:
-    momentum = orbit.reduced_momentum
+    momentum = momenta_on_plane(orbit)
     chosen = evenly_in_box(momentum, _MOST_DOTS)
     colours: Any = {"c": orbit.time[chosen], "cmap": theme.TIME, "norm": theme.time_scale(orbit)}
     size = theme.dot_size(len(orbit)) + 6

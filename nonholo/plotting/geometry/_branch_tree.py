@@ -14,7 +14,7 @@ from nonholo._checks import error, pair, shown
 from nonholo._types import Float
 from nonholo.discrete import BranchTree, Discretization, as_discretization
 from nonholo.plotting import theme
-from nonholo.plotting.sheets import ellipse, name_axes, reduced
+from nonholo.plotting.sheets import ellipse, name_axes, on_plane
 
 _EARLY, _LATE = 0.05, 0.9  # ends of the shades of the generations
 _LARGEST, _SMALLEST = 150.0, 26.0  # areas of the dots of the first and the last generation
@@ -72,9 +72,10 @@ def branch_tree(discrete: Discretization, tree: BranchTree, axes: tuple[Axes, Ax
     """
     system = _checked(discrete, tree)
     plane, growth = _new_axes() if axes is None else map(theme.axes_or_new, pair("plot.branch_tree(axes=...)", axes))
-    momentum = reduced(system, system.restrict(tree.momentum.real))
+    restricted = system.restrict(tree.momentum.real)
+    momentum = on_plane(system, restricted)
     if momentum.shape[1] == 2:
-        level = ellipse(system, float(system.canonical.constrained_energy(momentum[0])))
+        level = ellipse(system, float(system.constrained_energy(restricted[0])))
         plane.plot(*level.T, color=theme.LEVEL, linewidth=1.1, zorder=1)
     colours = theme.TIME(np.linspace(_EARLY, _LATE, len(tree.counts)))
     edges = _edges(plane, tree, momentum[:, :2], colours)

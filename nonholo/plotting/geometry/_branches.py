@@ -1,7 +1,7 @@
 """All values of the discrete map from one point: on the variety of displacements, or as tangents of the deltoid."""
 
 import dataclasses
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,9 +18,7 @@ from nonholo.discrete import branches as values_of
 from nonholo.plotting import theme
 from nonholo.plotting.geometry._deltoid_plane import draw_deltoid, name_inside
 from nonholo.plotting.geometry._deltoid_plane import dress as dress_momenta
-from nonholo.plotting.sheets import _variety_plane as variety
-from nonholo.plotting.sheets import reduced
-from nonholo.systems import ChaplyginSleigh
+from nonholo.plotting.sheets import AbstractSheet, on_plane, sheet_of
 
 _BEYOND = 0.3  # how far a tangent goes on beyond its ends, in its length
 _AWAY = 12.0  # from a dot to its label, in points
@@ -102,7 +100,7 @@ def branches(
 
 def _chosen(discrete: Discretization, plane: str | None) -> bool:
     """Tell whether to draw on the plane of momenta."""
-    has_deltoid = isinstance(discrete.system, ChaplyginSleigh) and bool(discrete.system.a != 0)
+    has_deltoid = _sheet(discrete).has_deltoid
     if plane is None:
         return has_deltoid
     where = "plot.branches(plane=...)"
@@ -122,53 +120,43 @@ def _present(discrete: Discretization, momentum: Any) -> Float[np.ndarray, "N N"
 
 
 def _on_displacements(axes: Axes, discrete: Discretization, found: Branches, W: np.ndarray) -> BranchesPicture:
-    curves, level = [], None
+    curves, level, sheet = [], None, _sheet(discrete)
     if found.energy > 0:
         curves = [invariant_curve(discrete, found.energy)]
         look = {"color": theme.DISCRETE, "linewidth": 1.5, "zorder": 2}
-        level = variety.draw_level(axes, curves[0], label="its energy", **look)
+        level = sheet.draw_level(axes, curves[0], label="its energy", **look)
     real = np.flatnonzero(found.is_real)
-    places = variety.flat(discrete, planar_map("plot", discrete)[1].points(found.displacement[real].real))
-    here = variety.flat(discrete, planar_map("plot", discrete)[1].points(W[None]))
+    places = sheet.places(sheet.variety.points(found.displacement[real].real))
+    here = sheet.places(sheet.variety.points(W[None]))
     dots = _dots(axes, found, places, here)
-    is_strip = isinstance(discrete.system, ChaplyginSleigh)
-    labels = _labels(axes, discrete, found, places, places * _inwards(places, is_strip))
-    variety.dress(axes, discrete, curves, _title(found))
-    if is_strip:  # a value may have moved farther than the curves are drawn
-        reach = max(axes.get_ylim()[1], 1.1 * np.abs(places[:, 1]).max(initial=0.0))
-        axes.set_ylim(-reach, reach)
+    labels = _labels(axes, sheet, found, places, places * sheet.inwards(places))
+    axes.set_title(_title(found))
+    sheet.dress(axes, curves, places)
     return BranchesPicture(axes, found, *dots, level, (), labels)
 
 
-def _inwards(places: np.ndarray, is_strip: bool) -> np.ndarray:
-    """Return signs that turn the direction of a label inwards where it would meet the rim or the legend."""
-    if is_strip:
-        return np.where(np.abs(places[:, :1]) > np.pi / 2, [-1.0, 1.0], [1.0, 1.0])
-    return np.where(np.linalg.norm(places, axis=1, keepdims=True) > 0.6, -1.0, 1.0)
-
-
 def _over_momenta(axes: Axes, discrete: Discretization, found: Branches, W: np.ndarray) -> BranchesPicture:
-    region, system = deltoid(discrete), discrete.system
+    region, system, sheet = deltoid(discrete), discrete.system, _sheet(discrete)
     draw_deltoid(axes, region)
     before, after = system.restrict(discrete_legendre(discrete, W)), system.restrict(found.momentum[0].real)
-    here, there = reduced(system, np.stack([before, after]))
+    here, there = on_plane(system, np.stack([before, after]))
     real = np.flatnonzero(found.is_real)
-    places = reduced(system, region.touching(_angle(discrete, found)[real]))
+    places = on_plane(system, region.touching(_angles(sheet, found)[real]))
     tangents = tuple(_tangent(axes, there, place, i == found.principal) for i, place in zip(real, places, strict=True))
     axes.scatter(*there, marker="D", s=40, color=theme.UNSTABLE, zorder=6, label="new momentum")
     dots = _dots(axes, found, places, here[None])
-    labels = _labels(axes, discrete, found, places, places - there)
+    labels = _labels(axes, sheet, found, places, places - there)
     name_inside(axes, region, "3 real values")
     dress_momenta(axes, region, _title(found))
     return BranchesPicture(axes, found, *dots, None, tangents, labels)
 
 
-def _angle(discrete: Discretization, found: Branches) -> Float[np.ndarray, "B"]:
-    """Return the step angles of a sleigh, or of a top with the direction left out."""
-    points = planar_map("plot", discrete)[1].points(found.displacement.real)
-    if isinstance(discrete.system, ChaplyginSleigh):
-        return points[:, 0]
-    return 2 * np.arctan2(np.linalg.norm(points[:, 1:], axis=1), np.abs(points[:, 0]))
+def _sheet(discrete: Discretization) -> AbstractSheet:
+    return cast(AbstractSheet, sheet_of(discrete.system))
+
+
+def _angles(sheet: AbstractSheet, found: Branches) -> Float[np.ndarray, "B"]:
+    return sheet.step_angles(sheet.variety.points(found.displacement.real))
 
 
 def _tangent(axes: Axes, there: np.ndarray, place: np.ndarray, is_principal: bool) -> Line2D:
@@ -194,10 +182,10 @@ def _dots(axes: Axes, found: Branches, places: np.ndarray, here: np.ndarray) -> 
 
 
 def _labels(
-    axes: Axes, discrete: Discretization, found: Branches, places: np.ndarray, away: np.ndarray
+    axes: Axes, sheet: AbstractSheet, found: Branches, places: np.ndarray, away: np.ndarray
 ) -> tuple[Annotation, ...]:
     """Write index and step angle beside each real value, in a direction."""
-    angles = np.degrees(_angle(discrete, found))
+    angles = np.degrees(_angles(sheet, found))
     texts = [f"{i}: {angles[i]:.0f}°".replace("-", "\u2212") for i in np.flatnonzero(found.is_real)]
     return tuple(_label(axes, *one) for one in zip(places, away, texts, strict=True))
 

@@ -1,7 +1,7 @@
 """The variety of displacements, foliated by its energy levels: a projective plane for a top, a Moebius band else."""
 
 import dataclasses
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,12 +14,10 @@ from nonholo.analysis.planar import planar_map
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting.geometry._momentum_locus import own_orbit
-from nonholo.plotting.parts import evenly_in_box
-from nonholo.plotting.sheets import disc, draw_level, dress, flat
-from nonholo.systems import ChaplyginSleigh
+from nonholo.plotting.parts import evenly_in_box, own_orbit
+from nonholo.plotting.sheets import AbstractSheet, sheet_of
+from nonholo.systems import AbstractLLSystem
 
-_LEVELS = 9
 _MOST_DOTS = 1500
 _POINTS = 300
 
@@ -73,34 +71,31 @@ def invariant_curves(
     """
     where = "plot.invariant_curves"
     checked = planar_map(f"{where}(discrete=...)", discrete)[0]
+    sheet = cast(AbstractSheet, sheet_of(checked.system))
     own_orbit(f"{where}(orbit=...)", orbit, checked)
     axes = theme.axes_or_new(axes, (6.2, 6.0))
-    curves = [invariant_curve(checked, energy, _POINTS) for energy in _energies(checked, energies)]
-    levels = tuple(draw_level(axes, curve, color=theme.LEVEL, linewidth=1.1, zorder=1) for curve in curves)
+    curves = [invariant_curve(checked, energy, _POINTS) for energy in _energies(sheet, checked, energies)]
+    levels = tuple(sheet.draw_level(axes, curve, color=theme.LEVEL, linewidth=1.1, zorder=1) for curve in curves)
     own = path = None
     if orbit is not None:
         curves = [invariant_curve(checked, orbit[:1].energy[0], _POINTS)] if orbit.energy[0] > 0 else []
         for curve in curves:
-            own = draw_level(axes, curve, color=theme.DISCRETE, linewidth=1.8, zorder=3, label="its energy")
-        path = _orbit(axes, checked, orbit)
-    stable, unstable = _equilibria(axes, checked, curves)
-    dress(axes, checked, curves)
+            own = sheet.draw_level(axes, curve, color=theme.DISCRETE, linewidth=1.8, zorder=3, label="its energy")
+        path = _orbit(axes, sheet, orbit)
+    stable, unstable = _equilibria(axes, sheet, checked, curves)
+    axes.set_title("Displacements")
+    sheet.dress(axes, curves, np.empty((0, 2)))
     return InvariantCurvesPicture(axes, levels, own, stable, unstable, path)
 
 
-def _energies(discrete: Discretization, energies: Any) -> Float[np.ndarray, "L"]:
+def _energies(sheet: AbstractSheet, discrete: Discretization, energies: Any) -> Float[np.ndarray, "L"]:
     if energies is not None:
         return checked_energies("plot.invariant_curves(energies=...)", energies)
-    system, h = discrete.system, float(discrete.time_step)
-    if isinstance(system, ChaplyginSleigh):  # in units of the energy of a quarter-turn on the spot
-        return float(system.inertia + system.mass * system.a**2) / h**2 * (np.arange(1, _LEVELS + 1) / 5) ** 2
-    # of the order of the largest energy there is
-    largest = np.linalg.eigvalsh(np.asarray(system.canonical.constrained_inertia))[-1] / (2 * h**2)
-    return largest * (np.arange(1, _LEVELS + 1) / (_LEVELS + 0.5))
+    return sheet.energies(float(discrete.time_step))
 
 
-def _orbit(axes: Axes, discrete: Discretization, orbit: Orbit) -> PathCollection:
-    x, y = flat(discrete, planar_map("plot", discrete)[1].points(orbit.displacement)).T
+def _orbit(axes: Axes, sheet: AbstractSheet, orbit: Orbit) -> PathCollection:
+    x, y = sheet.places(sheet.variety.points(orbit.displacement)).T
     chosen = evenly_in_box(np.stack([x, y], axis=1), _MOST_DOTS)
     return axes.scatter(
         x[chosen],
@@ -115,24 +110,18 @@ def _orbit(axes: Axes, discrete: Discretization, orbit: Orbit) -> PathCollection
     )
 
 
-def _equilibria(axes: Axes, discrete: Discretization, curves: list[InvariantCurve]) -> tuple[Any, Any]:
+def _equilibria(
+    axes: Axes, sheet: AbstractSheet, discrete: Discretization, curves: list[InvariantCurve]
+) -> tuple[Any, Any]:
     """Draw the line of equilibria, and its points on the curves."""
-    system: Any = discrete.system.canonical
-    if system.equilibria().attracting is None:
+    if cast(AbstractLLSystem, discrete.system).equilibria().attracting is None:
         return None, None
-    if isinstance(system, ChaplyginSleigh):
-        points = [p[np.sign(p[:, 1]) == np.sign(system.a)] for p in (curve.over(0.0) for curve in curves)]
-        reach = max((abs(p).max() for p in points), default=1.0) * 1.06 * np.array([0.0, np.sign(system.a)])
-    else:
-        towards = -np.asarray(system.coupling)
-        reach = towards / np.linalg.norm(towards)
-        points = [disc(curve.over(np.arctan2(reach[1], reach[0]))) for curve in curves]
+    points, reach = sheet.attracting(curves)
     axes.plot(*np.stack([0 * reach, reach], axis=1), color=theme.STABLE, linewidth=0.9, zorder=2)
     axes.plot(*np.stack([0 * reach, -reach], axis=1), color=theme.UNSTABLE, linewidth=0.9, dashes=(5, 3), zorder=2)
-    found = np.concatenate([np.empty((0, 2)), *points])
     size = 40 if len(curves) == 1 else 22
-    stable = axes.scatter(*found.T, s=size, color=theme.STABLE, zorder=5, label="stable")
+    stable = axes.scatter(*points.T, s=size, color=theme.STABLE, zorder=5, label="stable")
     unstable = axes.scatter(
-        *-found.T, s=size, facecolors="white", edgecolors=theme.UNSTABLE, linewidths=1.5, zorder=5, label="unstable"
+        *-points.T, s=size, facecolors="white", edgecolors=theme.UNSTABLE, linewidths=1.5, zorder=5, label="unstable"
     )
     return stable, unstable

@@ -1,7 +1,7 @@
 """A plane section of the momentum locus."""
 
 import dataclasses
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,7 +12,7 @@ from nonholo._checks import array, error, shown
 from nonholo._types import Array, Float
 from nonholo.analysis import MomentumLocus
 from nonholo.plotting import theme
-from nonholo.systems import ChaplyginSleigh
+from nonholo.plotting.sheets import AbstractSheet, sheet_of
 
 _GRID = 501
 _WHISKER = 3.0  # how far whiskers are followed, in lengths of their segments
@@ -113,7 +113,7 @@ def _meeting(
 
 
 def _dress(axes: Axes, locus: MomentumLocus, plane: np.ndarray, n: np.ndarray, height: float) -> None:
-    names = ("p_\\theta", "p_1", "p_2") if isinstance(locus.discrete.system, ChaplyginSleigh) else ("P_1", "P_2", "P_3")
+    names = cast(AbstractSheet, sheet_of(locus.discrete.system)).component_names
     across, up = (_words(row, names) for row in plane)
     axes.set(xlabel=across, ylabel=up)
     axes.set_aspect("equal", adjustable="datalim")

@@ -1,7 +1,7 @@
 """The momentum locus in space: the translucent surface, its singular lines and points, an orbit on it."""
 
 import dataclasses
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -16,14 +16,10 @@ from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.elements import draw_surface, spans
 from nonholo.plotting.geometry._locus_view import best_view
-from nonholo.plotting.parts import drawable, evenly_in_box
-from nonholo.systems import ChaplyginSleigh
+from nonholo.plotting.parts import evenly_in_box, own_orbit
+from nonholo.plotting.sheets import AbstractSheet, sheet_of
 
 _MOST_DOTS = 600
-_LABELS = {
-    True: ("$p_1$, along the blade", "$p_2$, across", r"$p_\theta + bp_1 - ap_2$"),
-    False: ("$P_1$", "$P_2$", "$P_3$"),
-}
 _WHISKER = 0.22  # of the length of its segment
 
 
@@ -91,7 +87,8 @@ def momentum_locus(
         raise error(f"{where}(locus=...)", "be a locus", shown(locus), "Pass what `nh.momentum_locus` returned.")
     own_orbit(f"{where}(orbit=...)", orbit, locus.discrete)
     space: Any = _new_axes() if axes is None else axes
-    drawn = _drawn(locus.discrete.system)
+    sheet = cast(AbstractSheet, sheet_of(locus.discrete.system))
+    drawn = sheet.locus_map()
     if curve is not None and not isinstance(curve, InvariantCurve):
         raise error("plot.momentum_locus(curve=...)", "be an invariant curve", shown(curve), "Pass `invariant_curve`.")
     surface = draw_surface(space, locus.momentum @ drawn)
@@ -106,18 +103,8 @@ def momentum_locus(
     curves = tuple(_curve(space, points @ drawn) for points in (() if curve is None else curve.momentum))
     name(curves, "one energy")
     path = None if orbit is None else _orbit(space, orbit, drawn)
-    _dress(space, locus, view)
+    _dress(space, locus, sheet, view)
     return MomentumLocusPicture(space, surface, doubles, whiskers, pinch, triple_dot, curves, rest, path)
-
-
-def own_orbit(where: str, orbit: Any, discrete: Any) -> None:
-    """Refuse an orbit that belongs to another discretised system."""
-    if orbit is None:
-        return
-    motion = drawable(where, orbit).motion
-    mine, theirs = ((repr(d.system), getattr(d, "time_step", None)) for d in (discrete, motion))
-    if mine != theirs:
-        raise error(where, "be an orbit of the same discretised system", shown(orbit), "Run `nh.simulate` with it.")
 
 
 def _new_axes() -> Any:
@@ -128,13 +115,6 @@ def name(lines: tuple[Any, ...], label: str) -> None:
     """Give the first of several artists a label."""
     for line in lines[:1]:
         line.set_label(label)
-
-
-def _drawn(system: Any) -> Float[np.ndarray, "3 3"]:
-    """Return what takes rows of momenta to the components that are drawn; for a sleigh p_1, p_2, and that about C."""
-    if not isinstance(system, ChaplyginSleigh):
-        return np.eye(3)
-    return np.array([[0.0, 0.0, 1.0], [1.0, 0.0, system.b], [0.0, 1.0, -system.a]])
 
 
 def _segment(axes: Any, ends: Float[np.ndarray, "2 3"], **look: Any) -> Any:
@@ -167,18 +147,12 @@ def _orbit(axes: Any, orbit: Orbit, drawn: Float[np.ndarray, "3 3"]) -> Any:
     )
 
 
-def _kind(locus: MomentumLocus) -> str:
-    if isinstance(locus.discrete.system, ChaplyginSleigh):
-        return "Plücker's conoid"
-    return "Steiner's surface" if len(locus.double_lines) else "a flat disc"
-
-
-def _dress(axes: Any, locus: MomentumLocus, view: tuple[float, float] | None) -> None:
-    is_sleigh = isinstance(locus.discrete.system, ChaplyginSleigh)
-    across, deep, up = _LABELS[is_sleigh]
+def _dress(axes: Any, locus: MomentumLocus, sheet: AbstractSheet, view: tuple[float, float] | None) -> None:
+    across, deep, up = sheet.locus_labels
     axes.set(xlabel=across, ylabel=deep, zlabel=up)
-    span = spans(locus.momentum)[2]
-    if not is_sleigh and np.ptp(locus.momentum[..., 2]) < span:
+    drawn = locus.momentum @ sheet.locus_map()
+    span = spans(drawn)[2]
+    if np.ptp(drawn[..., 2]) < span:
         axes.set_zlim(-span / 4, span / 4)
     axes.view_init(*(best_view(locus) if view is None else pair("plot.momentum_locus(view=...)", view)))
     axes.set_box_aspect((1.0, 1.0, 0.85), zoom=1.0)
@@ -191,7 +165,7 @@ def _dress(axes: Any, locus: MomentumLocus, view: tuple[float, float] | None) ->
     axes.text2D(
         0.03,
         0.97,
-        f"Momentum locus: {_kind(locus)}",
+        f"Momentum locus: {sheet.locus_kind(locus)}",
         transform=axes.transAxes,
         fontsize="large",
         fontweight="bold",

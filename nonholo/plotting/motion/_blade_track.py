@@ -4,19 +4,28 @@
 """
 
 import dataclasses
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.lines import Line2D
 
-from nonholo._checks import flags
+from nonholo._checks import error, flags, shown
 from nonholo._types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting.parts import Square, corner_axes, detail, evenly_spread, is_discrete, square_about, system_of
-from nonholo.systems import ChaplyginSleigh
+from nonholo.plotting.parts import (
+    Square,
+    corner_axes,
+    detail,
+    drawable,
+    evenly_spread,
+    is_discrete,
+    posed,
+    square_about,
+)
+from nonholo.plotting.sheets import Blade, blade_of_system
 
 _MOST_DOTS = 1500
 _REMEDY = "Use `body_axis_track` for a top."
@@ -57,7 +66,7 @@ def blade_track(orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = Non
     Reference: [fedorov-zenkov-2004], sketch chsleigh.
 
     Args:
-        orbit: An orbit of a `ChaplyginSleigh`, with poses.
+        orbit: An orbit of a sleigh in the plane, with poses.
         axes: Where to draw; a new figure by default.
         flow: The continuous motion from the same initial data, drawn over it.
         enlarge: Whether to show the cusp enlarged.
@@ -73,18 +82,31 @@ def blade_track(orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = Non
         (121, 1)
     """
     flags("blade_track", enlarge=enlarge)
-    system_of("blade_track(orbit=...)", orbit, ChaplyginSleigh, _REMEDY)
+    blade = _blade("blade_track(orbit=...)", orbit)
     if flow is not None:
-        system_of("blade_track(flow=...)", flow, ChaplyginSleigh, _REMEDY)
+        _blade("blade_track(flow=...)", flow)
     axes = theme.axes_or_new(axes, (6.0, 6.0))
-    position, velocity = orbit.position, orbit.body_velocity
-    cusps, view = _cusps(position, velocity[:, 1]), square_about(position)
+    position = blade.contact(orbit)
+    cusps, view = _cusps(position, blade.speed(orbit)), square_about(position)
     track, blades, masses, line = _draw(axes, orbit, orbit, flow, view)
     stars, ends = _marks(axes, position, cusps, theme.end_colours(orbit))
     axes.set(xlim=view[0], ylim=view[1], xlabel="$x$", ylabel="$y$", title="Track of the blade", aspect="equal")
     theme.legend_above(axes)
-    enlarged = _enlarged(axes, orbit, flow, cusps, (position, velocity, view)) if enlarge and len(cusps) else None
+    enlarged = _enlarged(axes, orbit, flow, cusps, (position, view)) if enlarge and len(cusps) else None
     return BladeTrack(axes, track, blades, masses, stars, ends, line, enlarged)
+
+
+def _blade(where: str, orbit: Any) -> Blade:
+    """Return the blade of an orbit that has one, and poses."""
+    blade = blade_of_system(drawable(where, orbit).system)
+    if blade is None:
+        raise error(where, "be an orbit of a sleigh in the plane", shown(orbit), _REMEDY)
+    posed(where, orbit)
+    return blade
+
+
+def _contact(orbit: Orbit) -> Float[np.ndarray, "K 2"]:
+    return _blade("blade_track", orbit).contact(orbit)
 
 
 def _cusps(position: Float[np.ndarray, "K 2"], speed: Float[np.ndarray, "K"]) -> Float[np.ndarray, "C 2"]:
@@ -106,7 +128,7 @@ def _draw(
 
 
 def _track(axes: Axes, part: Orbit, whole: Orbit) -> PathCollection | LineCollection:
-    position = part.position
+    position = _contact(part)
     chosen = evenly_spread(position, _MOST_DOTS)
     colours: dict[str, Any] = {"cmap": theme.TIME, "norm": theme.time_scale(whole), "zorder": 3}
     if is_discrete(part):
@@ -121,19 +143,19 @@ def _track(axes: Axes, part: Orbit, whole: Orbit) -> PathCollection | LineCollec
 
 
 def _flow(axes: Axes, flow: Orbit) -> Line2D:
-    position = flow.position
+    position = _contact(flow)
     x, y = position[evenly_spread(position, 10 * _MOST_DOTS)].T
     return axes.plot(x, y, color=theme.CONTINUOUS, linewidth=1.0, zorder=4, label="continuous")[0]
 
 
 def _blades(axes: Axes, orbit: Orbit, count: int, length: float) -> tuple[LineCollection, PathCollection]:
-    sleigh, shown = cast(ChaplyginSleigh, orbit.system), orbit.chosen(_now_and_then(orbit, count))
-    points, along = shown.position, shown.configuration[:, :2, 0]
-    half = length / 2 * along
+    blade = _blade("blade_track", orbit)
+    poses = blade.poses(orbit.chosen(_now_and_then(orbit, count)))
+    points, half = poses[:, :2, 2], length / 2 * poses[:, :2, 0]
     blades = LineCollection(
         [*zip(points - half, points + half, strict=True)], colors=theme.INK, linewidth=1.5, zorder=5
     )
-    centre = (shown.configuration @ np.array([float(sleigh.a), float(sleigh.b), 1.0]))[:, :2]
+    centre = (poses @ np.append(blade.center, 1.0))[:, :2]
     pins = LineCollection([*zip(points, centre, strict=True)], colors=theme.MUTED, linewidth=0.7, zorder=2)
     axes.add_collection(pins)
     axes.add_collection(blades)
@@ -145,7 +167,7 @@ def _blades(axes: Axes, orbit: Orbit, count: int, length: float) -> tuple[LineCo
 
 def _now_and_then(orbit: Orbit, count: int) -> np.ndarray:
     """Choose states evenly in way and, with less weight, in turn, so that the cusp gets its share."""
-    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(orbit.position, axis=0), axis=1))])
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(_contact(orbit), axis=0), axis=1))])
     turn = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(orbit.heading)))])
     shares = [weight * total / total[-1] for weight, total in ((1.0, way), (0.35, turn)) if total[-1] > 0]
     return evenly_spread(np.sum(shares, axis=0)[:, None], count) if shares else np.array([0])
@@ -181,8 +203,8 @@ def _name(axes: Axes, word: str, point: Float[np.ndarray, "2"], middle: Float[np
 def _enlarged(
     axes: Axes, orbit: Orbit, flow: Orbit | None, cusps: Float[np.ndarray, "C 2"], seen: tuple[Any, ...]
 ) -> Axes:
-    position, velocity, view = seen
-    rows, near = detail(position, velocity[:, 0], cusps[0], view)
+    position, view = seen
+    rows, near = detail(position, orbit.body_velocity[:, 0], cusps[0], view)
     inset = corner_axes(axes, position[evenly_spread(position, _MOST_DOTS)], view, near)
     _draw(inset, orbit[rows], orbit, flow, near, blades=10, length=0.11)
     inset.scatter(*cusps.T, s=110, marker="*", color=theme.UNSTABLE, linewidths=0, zorder=8)

@@ -24,6 +24,7 @@ from nonholo.plotting.parts import (
     draw_named_axes,
     draw_path,
     given_view,
+    is_free,
     known_equilibria,
     mark_ends,
     permanent_velocity,
@@ -32,7 +33,6 @@ from nonholo.plotting.parts import (
     turn_per_state,
     window,
 )
-from nonholo.systems import AbstractLLSystem, AbstractLRSystem, RigidBody
 
 _MOST_DOTS = 1200
 _FINEST = np.radians(4.0)  # no need to draw states that are closer than this
@@ -151,15 +151,15 @@ def _title(orbit: Orbit, chosen: Any) -> str:
 
 
 def _forbids_an_axis(orbit: Orbit) -> bool:
-    return isinstance(orbit.system, AbstractLLSystem) and len(orbit.system.annihilator) == 1
+    return not orbit.system.is_spatial and len(orbit.system.annihilator) == 1
 
 
 def _fixed_axis(orbit: Orbit) -> Float[np.ndarray, "3"] | None:
     """Return the direction in space that the constraint, or the lack of one, singles out."""
     system = orbit.system
-    if isinstance(system, RigidBody):
+    if is_free(system):
         axis = orbit[:1].spatial_momentum[0]
-    elif isinstance(system, AbstractLRSystem) and len(system.annihilator) == 1:
+    elif system.is_spatial and len(system.annihilator) == 1:
         axis = system.annihilator[0]
     else:
         return None
@@ -207,7 +207,7 @@ def _named(
     names = ("rotation axis\nbefore", "rotation axis\nafter")
     if before is not None and after is not None and np.linalg.norm(before - after) < 1e-6:
         before, names = None, ("", "rotation axis")
-    third = "spatial\nmomentum" if isinstance(orbit.system, RigidBody) else "no rotation\nabout this axis"
+    third = "spatial\nmomentum" if is_free(orbit.system) else "no rotation\nabout this axis"
     colours = (theme.UNSTABLE, theme.STABLE, theme.STABLE)
     every = zip((before, after, fixed), (*names, third), colours, strict=True)
     return [(axis, name, colour) for axis, name, colour in every if axis is not None]

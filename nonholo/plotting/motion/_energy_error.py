@@ -14,7 +14,7 @@ from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting.parts import drawable, evenly_in_box, is_discrete, is_steered_in_space, posed
+from nonholo.plotting.parts import drawable, evenly_in_box, is_discrete, posed
 
 _MOST_DOTS = 2000
 _COLUMNS = 600
@@ -66,7 +66,7 @@ def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
         1e-16
     """
     drawable("energy_error(orbit=...)", orbit)
-    if is_steered_in_space(orbit):
+    if orbit.system.is_spatial:
         posed("energy_error(orbit=...)", orbit)
     axes = theme.axes_or_new(axes, (6.0, 2.6))
     energy = orbit.energy

@@ -1,6 +1,7 @@
 """The momenta along a three-dimensional constraint subspace, on their energy ellipsoid drawn as a sphere."""
 
 import dataclasses
+from typing import cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -110,14 +111,14 @@ def _legend(axes: Axes) -> None:
 def _check(orbit: Orbit) -> AbstractLLSystem:
     where = "momentum_sphere(orbit=...)"
     system = drawable(where, orbit).system
-    if not isinstance(system, AbstractLLSystem):
+    if system.is_spatial:
         remedy = "Its momenta along the constraint are conserved: draw `overview` instead."
         raise error(where, "have a left-invariant constraint", shown(orbit), remedy)
     if len(system.constraint_subspace) != 3:
         got = f"dimension {len(system.constraint_subspace)}"
         remedy = "Use `phase_portrait` in two dimensions, `overview` in others."
         raise error(where, "have a three-dimensional constraint subspace", got, remedy)
-    return system
+    return cast(AbstractLLSystem, system)
 
 
 def _part(points: Float[np.ndarray, "K 3"], orbit: Orbit) -> slice:

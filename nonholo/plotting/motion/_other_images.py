@@ -11,7 +11,7 @@ from nonholo.discrete import BranchTree, Discretization, branch_tree
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.parts import evenly_in_box
-from nonholo.plotting.sheets import reduced
+from nonholo.plotting.sheets import momenta_on_plane, on_plane
 
 _SEEDS = 3  # states of the orbit whose images are drawn
 _GENERATIONS = 3
@@ -44,8 +44,8 @@ def draw_images(axes: Axes, orbit: Orbit, trees: list[BranchTree]) -> tuple[Path
 def _other_images(orbit: Orbit, tree: BranchTree) -> tuple[np.ndarray, np.ndarray]:
     """Return the momenta of the parents and of the real images that differ from the orbit's, and their generations."""
     system: Any = orbit.system
-    momentum = reduced(system, system.restrict(tree.momentum.real))
-    missed = np.linalg.norm(momentum[:, None] - orbit.reduced_momentum, axis=2).min(axis=1)
+    momentum = on_plane(system, system.restrict(tree.momentum.real))
+    missed = np.linalg.norm(momentum[:, None] - momenta_on_plane(orbit), axis=2).min(axis=1)
     apart = missed > _SAME * np.linalg.norm(momentum[0])
     chosen = np.flatnonzero(tree.is_real & tree.is_real[tree.parent] & (tree.level > 0) & apart)
     return np.stack([momentum[tree.parent[chosen]], momentum[chosen]], axis=1), tree.level[chosen]

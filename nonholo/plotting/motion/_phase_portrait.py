@@ -18,8 +18,8 @@ from nonholo._types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.motion._other_images import draw_images, trees_of
-from nonholo.plotting.parts import drawable, evenly_in_box, is_discrete, known_equilibria
-from nonholo.plotting.sheets import ellipse, half_axes, name_axes
+from nonholo.plotting.parts import drawable, evenly_in_box, is_discrete, is_same_body, known_equilibria
+from nonholo.plotting.sheets import ellipse, half_axes, momenta_on_plane, name_axes, on_plane, plane_inertia
 from nonholo.systems import AbstractLLSystem, AbstractSystem
 
 _MOST_DOTS = 1500
@@ -69,8 +69,8 @@ def phase_portrait(
     Equilibria are one line through the origin, filled where they attract and empty where they repel; all other
     motions run along their ellipse from one to the other. In a balanced system every point is an equilibrium. Where the
     library does not compute the equilibria of a system they are left out. Momenta
-    are those of the canonical body frame: $(p_\theta + b p_1, p_1)$ of a sleigh, $(M_{13}, M_{23})$ of a top whose
-    third body axis is the forbidden one.
+    of a sleigh are $(p_\theta + b p_1, p_1)$ in the axes of its blade, those of a top $(M_{13}, M_{23})$ in axes whose
+    third one is the forbidden axis, whatever the axes of the body; those of other systems are in its canonical frame.
 
     With `branches="all"` three states of a discrete orbit are followed for three steps along every real branch. All
     images stay on the ellipse. The values from one displacement coincide here, as they have the same momenta along the
@@ -86,7 +86,7 @@ def phase_portrait(
         branches: "principal" or "all".
 
     Raises:
-        ValueError: A right-invariant constraint, a subspace of another dimension, an orbit of another kind of system,
+        ValueError: A right-invariant constraint, a subspace of another dimension, an orbit of another body,
             energies that are not positive, all branches without a discrete orbit or as `nh.branch_tree` refuses them.
 
     Example:
@@ -112,15 +112,15 @@ def phase_portrait(
 
 def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
     where = "phase_portrait(system=...)"
-    if not isinstance(system, AbstractLLSystem):
-        if isinstance(system, AbstractSystem):
-            remedy = "Its momenta along the constraint are conserved: draw `overview` instead."
-            raise error(where, "have a left-invariant constraint", shown(system), remedy)
+    if not isinstance(system, AbstractSystem):
         raise error(where, "be a system", shown(system), "Pass `orbit.system` first, then the orbit.")
+    if system.is_spatial:
+        remedy = "Its momenta along the constraint are conserved: draw `overview` instead."
+        raise error(where, "have a left-invariant constraint", shown(system), remedy)
     if len(system.constraint_subspace) != 2:
         got = f"dimension {len(system.constraint_subspace)}"
         raise error(where, "have a two-dimensional constraint subspace", got, "Plot `orbit.restricted_momentum`.")
-    if orbit is not None and type(drawable("phase_portrait(orbit=...)", orbit).system) is not type(system):
+    if orbit is not None and not is_same_body(drawable("phase_portrait(orbit=...)", orbit).system, system):
         raise error("phase_portrait(orbit=...)", "be an orbit of the system", shown(orbit), "Pass `orbit.system`.")
 
 
@@ -129,22 +129,20 @@ def _energies(system: AbstractLLSystem, orbit: Orbit | None, energies: Any) -> F
         return checked_energies("phase_portrait(energies=...)", energies)
     own = 0.0 if orbit is None else float(orbit[:1].energy[0])
     # at rest, or without an orbit, the ellipse of unit velocities sets the size
-    scale = own if own > 0 else float(np.trace(system.canonical.constrained_inertia)) / 4
+    scale = own if own > 0 else float(np.trace(plane_inertia(system))) / 4
     return scale * (np.arange(1, 5) / 3) ** 2
 
 
 def _equilibria(
     axes: Axes, system: AbstractLLSystem, half_axes: Float[np.ndarray, "2 2"], sizes: Float[np.ndarray, "L"]
 ) -> tuple[Any, ...]:
-    canonical = system.canonical
-    equilibria = known_equilibria(canonical)
+    equilibria = known_equilibria(system)
     if equilibria is None:
         return None, None, None, ()
     attracting = equilibria.attracting
     if attracting is None:
         return None, None, _every_point(axes, half_axes, sizes), ()
-    velocity = attracting @ np.linalg.pinv(canonical.constraint_subspace)
-    u = np.linalg.solve(half_axes, canonical.constrained_inertia @ velocity)
+    u = np.linalg.solve(half_axes, on_plane(system, system.restrict(system.inertia_operator @ attracting)))
     u /= np.linalg.norm(u)
     points = sizes[:, None] * (half_axes @ u)
     reach = 1.12 * points[sizes.argmax()]
@@ -176,7 +174,7 @@ def _arrow(axes: Axes, half_axes: Float[np.ndarray, "2 2"], u: Float[np.ndarray,
 
 
 def _orbit(axes: Axes, orbit: Orbit) -> PathCollection | LineCollection:
-    momentum = orbit.reduced_momentum
+    momentum = momenta_on_plane(orbit)
     chosen = evenly_in_box(momentum, _MOST_DOTS)
     colours = {"cmap": theme.TIME, "norm": theme.time_scale(orbit), "zorder": 6}
     if is_discrete(orbit):

@@ -2,7 +2,7 @@
 
 import dataclasses
 import itertools
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,7 +12,8 @@ from nonholo._types import Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting.parts import evenly_in_box, is_steered_in_space
+from nonholo.plotting.parts import evenly_in_box
+from nonholo.plotting.sheets import Blade, blade_of_system
 
 _MOST_POINTS = 2000
 _MOST_LINES = 60  # momenta in one panel
@@ -55,7 +56,7 @@ def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> 
     if flow is not None:
         for component, values in enumerate(flow.restricted_momentum[:, shown].T):
             _flow(axes, flow.time, values, named=component == len(shown) - 1)
-    kind = "Spatial momentum" if is_steered_in_space(orbit) else "Momentum"
+    kind = "Spatial momentum" if orbit.system.is_spatial else "Momentum"
     of_many = "" if k <= _MOST_LINES else f", the {_MOST_LINES} largest of {k}"
     _dress(axes, orbit, f"{kind} along the constraint{of_many}")
     return TimeSeries((axes,), lines)
@@ -82,11 +83,11 @@ def heading_and_speed(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> Ti
 
 
 def _heading(orbit: Orbit) -> Float[np.ndarray, "K"]:
-    return orbit.heading / np.pi
+    return cast(Blade, blade_of_system(orbit.system)).heading(orbit) / np.pi
 
 
 def _speed(orbit: Orbit) -> Float[np.ndarray, "K"]:
-    return orbit.body_velocity[:, 1]
+    return cast(Blade, blade_of_system(orbit.system)).speed(orbit)
 
 
 def _line(
@@ -128,7 +129,7 @@ def _dress(axes: Axes, orbit: Orbit, title: str) -> None:
 
 def _allowed(orbit: Orbit) -> Float[np.ndarray, "m dim"]:
     """Return rows that span all body velocities the orbit could have."""
-    return np.eye(orbit.system.group.dim) if is_steered_in_space(orbit) else orbit.system.constraint_subspace
+    return np.eye(orbit.system.group.dim) if orbit.system.is_spatial else orbit.system.constraint_subspace
 
 
 def _velocity_names(group: AbstractMatrixGroup) -> list[str]:

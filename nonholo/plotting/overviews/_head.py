@@ -1,32 +1,15 @@
 """The words above the panels of an overview: what moves, its parameters, how long, and how the run ended."""
 
-import numpy as np
 from matplotlib.figure import Figure
 
 from nonholo._results import Outcome
 from nonholo.orbit import Orbit
-from nonholo.plotting.parts import time_step
-from nonholo.systems import (
-    AbstractLLSystem,
-    ChaplyginSleigh,
-    LLSystem,
-    LRSystem,
-    MultidimensionalSleigh,
-    RigidBody,
-    SuslovTop,
-    System,
-    VeselovaTop,
-)
+from nonholo.plotting.parts import is_free, time_step
+from nonholo.plotting.sheets import sheet_of
+from nonholo.systems import LLSystem, System
 
-_NAMES = {
-    SuslovTop: "Suslov top",
-    ChaplyginSleigh: "Chaplygin sleigh",
-    MultidimensionalSleigh: "Multidimensional sleigh",
-    RigidBody: "Free rigid body",
-    VeselovaTop: "Veselova top",
-    LLSystem: "System with a left-invariant constraint",
-    LRSystem: "System with a right-invariant constraint",
-}
+_TOP, _VESELOVA, _FREE = "Suslov top", "Veselova top", "Free rigid body"
+_FIXED = {False: "System with a left-invariant constraint", True: "System with a right-invariant constraint"}
 
 
 def write_head(figure: Figure, orbit: Orbit) -> None:
@@ -34,7 +17,7 @@ def write_head(figure: Figure, orbit: Orbit) -> None:
     figure.text(
         0.012,
         0.985,
-        _NAMES.get(type(orbit.system), type(orbit.system).__name__),
+        _name(orbit.system),
         va="top",
         fontsize=17,
         fontweight="bold",
@@ -55,15 +38,27 @@ def _facts(orbit: Orbit) -> list[str]:
     return [_parameters(orbit.system), run, *stopped]
 
 
+def _name(system: System) -> str:
+    form = system.normal_form
+    if form is not None:
+        sleigh = "Chaplygin sleigh" if form.is_planar else "Multidimensional sleigh"
+        return sleigh if form.is_sleigh else _TOP
+    tensor = system.homogeneous_mass_tensor
+    if tensor is not None and is_free(system) and system.group.is_rigid:
+        return _FREE
+    if tensor is not None and system.is_spatial and system.rank:
+        in_body = LLSystem(system.group, tensor, system.constraint_subspace).normal_form
+        if in_body is not None and not in_body.is_sleigh:
+            return _VESELOVA
+    return _FIXED[system.is_spatial]
+
+
 def _parameters(system: System) -> str:
-    if isinstance(system, ChaplyginSleigh):
-        symbols = {"m": system.mass, "J": system.inertia, "a": system.a, "b": system.b}
-        return ",  ".join(f"${symbol}$ = {float(value):.4g}" for symbol, value in symbols.items())
-    if isinstance(system, SuslovTop) and system.axis is not None:
-        axis = ", ".join(f"{number:.3g}" for number in np.asarray(system.axis) + 0.0)
-        return rf"SO(3),  $\langle\gamma,\omega\rangle = 0$  with  $\gamma$ = ({axis})"
+    sheet = sheet_of(system)
+    if sheet is not None:
+        return sheet.facts(system)
     free, all_directions = system.rank, system.group.dim
     if free == all_directions:
         return f"{system.group},  no constraint"
-    side = "the body" if isinstance(system, AbstractLLSystem) else "space"
+    side = "space" if system.is_spatial else "the body"
     return f"{system.group},  {free} of {all_directions} directions of velocity allowed, fixed in {side}"

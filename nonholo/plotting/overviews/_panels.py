@@ -2,7 +2,7 @@
 
 import functools
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -21,8 +21,8 @@ from nonholo.plotting.motion import (
     point_track,
     velocity_components,
 )
-from nonholo.plotting.parts import is_steered_in_space
-from nonholo.systems import AbstractLLSystem, ChaplyginSleigh, is_wide
+from nonholo.plotting.sheets import blade_of_system, sheet_of
+from nonholo.systems import AbstractLLSystem, is_wide
 
 
 class Panel(NamedTuple):
@@ -35,12 +35,12 @@ class Panel(NamedTuple):
 
 def panels_of(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
     """Return the panels of an orbit, the large one first; there is always one."""
-    if is_wide(orbit.system):
+    if is_wide(orbit.system) and sheet_of(orbit.system) is None:
         return [_components(orbit, flow), Panel(functools.partial(energy_error, orbit), is_timed=True)]
     path, momentum = _path(orbit, flow), _momentum(orbit, flow)
     velocity = Panel(functools.partial(_velocity, orbit, flow), is_timed=True)
     energy = Panel(functools.partial(energy_error, orbit), is_timed=True)
-    if not is_steered_in_space(orbit):
+    if not orbit.system.is_spatial:
         return [*path, *momentum, velocity, energy]
     if orbit.canonical_pose is None:
         return [_components(orbit, flow)]
@@ -51,7 +51,7 @@ def _path(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
     if orbit.canonical_pose is None:
         return []
     group, flow = orbit.system.group, flow if flow is not None and flow.canonical_pose is not None else None
-    if isinstance(orbit.system, ChaplyginSleigh):
+    if blade_of_system(orbit.system) is not None:
         return [Panel(lambda axes: blade_track(orbit, axes=axes, flow=flow))]
     if group == SO(3):
         return [Panel(functools.partial(_body_axis, orbit, flow))]
@@ -65,9 +65,9 @@ def _momentum(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
     system, directions = orbit.system, orbit.system.rank
     if directions == 0:
         return []
-    if isinstance(system, AbstractLLSystem) and directions == 2:
-        return [Panel(lambda axes: phase_portrait(system, orbit, axes=axes))]
-    if isinstance(system, AbstractLLSystem) and directions == 3:
+    if not system.is_spatial and directions == 2:
+        return [Panel(lambda axes: phase_portrait(cast(AbstractLLSystem, system), orbit, axes=axes))]
+    if not system.is_spatial and directions == 3:
         return [Panel(lambda axes: momentum_sphere(orbit, axes=axes))]
     return [_components(orbit, flow)]
 
@@ -84,8 +84,8 @@ def _body_axis(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
 
 
 def _velocity(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
-    headed = isinstance(orbit.system, ChaplyginSleigh) and orbit.canonical_pose is not None
-    if flow is not None and flow.canonical_pose is None and (headed or is_steered_in_space(orbit)):
+    headed = blade_of_system(orbit.system) is not None and orbit.canonical_pose is not None
+    if flow is not None and flow.canonical_pose is None and (headed or orbit.system.is_spatial):
         flow = None
     (heading_and_speed if headed else velocity_components)(orbit, axes, flow)
 

@@ -3,7 +3,7 @@
 Also the few questions that several pictures ask of an orbit. No mechanics.
 """
 
-from typing import Any, TypeVar
+from typing import Any, cast
 
 import numpy as np
 
@@ -11,10 +11,9 @@ from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit, as_orbit
-from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System
+from nonholo.systems import AbstractLLSystem, Equilibria, System
 
-_System = TypeVar("_System", bound=AbstractSystem)
-
+_ROUNDING = 1e-12  # relative
 NEAR_EQUILIBRIUM = 0.03  # sine, in the metric of the energy, of the angle to the line of equilibria
 
 
@@ -30,15 +29,6 @@ def posed(where: str, orbit: Any) -> Orbit:
     if drawable(where, orbit).canonical_pose is None:
         raise error(where, "have poses", "an orbit without them", "Run with reconstruct=True.")
     return orbit
-
-
-def system_of(where: str, orbit: Any, kind: type[_System], remedy: str) -> _System:
-    """Return the system of an orbit that has poses and is of one kind."""
-    system = drawable(where, orbit).system
-    if not isinstance(system, kind):
-        raise error(where, f"be an orbit of a {kind.__name__}", shown(orbit), remedy)
-    posed(where, orbit)
-    return system
 
 
 def same_group(where: str, orbit: Any, other: Orbit) -> None:
@@ -57,17 +47,35 @@ def time_step(orbit: Orbit) -> float | None:
     return float(orbit.motion.time_step) if isinstance(orbit.motion, Discretization) else None
 
 
-def is_steered_in_space(orbit: Orbit) -> bool:
-    """Tell a right-invariant constraint, whose velocities and energy need poses, from a left-invariant one."""
-    return not isinstance(orbit.system, AbstractLLSystem)
+def is_free(system: System) -> bool:
+    """Tell whether nothing constrains the body, whose spatial momentum is then conserved."""
+    return system.rank == system.group.dim
+
+
+def is_same_body(system: System, other: System) -> bool:
+    """Tell whether two systems have the same constraint and inertia, whatever their classes, up to rounding."""
+    if (system.group, system.is_spatial, system.rank) != (other.group, other.is_spatial, other.rank):
+        return False
+    same_rows = np.allclose(system.constraint_subspace, other.constraint_subspace, rtol=0.0, atol=_ROUNDING)
+    scale = np.abs(other.inertia_operator).max(initial=0.0)
+    return same_rows and np.allclose(system.inertia_operator, other.inertia_operator, rtol=0.0, atol=_ROUNDING * scale)
+
+
+def own_orbit(where: str, orbit: Any, discrete: Discretization) -> None:
+    """Refuse an orbit that belongs to another discretised system."""
+    if orbit is None:
+        return
+    same = time_step(drawable(where, orbit)) == float(discrete.time_step)
+    if not (same and is_same_body(orbit.system, discrete.system)):
+        raise error(where, "be an orbit of the same discretised system", shown(orbit), "Run `nh.simulate` with it.")
 
 
 def known_equilibria(system: System) -> Equilibria | None:
     """Return the equilibria of a system; None where they are no linear space, or where the library has none."""
-    if not isinstance(system, AbstractLLSystem):
+    if system.is_spatial:
         return None
     try:
-        return system.equilibria()
+        return cast(AbstractLLSystem, system).equilibria()
     except ValueError:
         return None
 
