@@ -215,8 +215,11 @@ def test_any_body_axis() -> None:
 
 def test_portraits_without_known_equilibria() -> None:
     """A plane of a general system has its energy levels and its orbit; right-invariant constraints are refused."""
-    orbit = CASES["two"][0]()
-    drawn = nh.plot.phase_portrait(orbit.system, orbit)
+    operator = np.eye(3) + 0.3 * (np.eye(3, k=2) + np.eye(3, k=-2))  # the center of the group moves the momenta
+    system = nh.LLSystem(_HEISENBERG, constraint_subspace=np.eye(3)[:2], inertia_operator=operator)
+    with pytest.raises(ValueError, match="must have equilibria that form a linear space"):
+        system.equilibria()
+    drawn = nh.plot.phase_portrait(system, made_up(system))
     assert (drawn.stable, drawn.neutral, drawn.arrows) == (None, None, ())
     assert len(drawn.levels) == 4
     with pytest.raises(ValueError, match=r"must have a left-invariant constraint"):

@@ -14,7 +14,7 @@ from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.animation._scene import stage
 from nonholo.plotting.motion import known_axes, rotation_axes
-from nonholo.plotting.parts import View, arcs, best_view, draw_globe, set_curve, turn_per_state
+from nonholo.plotting.parts import View, arcs, best_view, draw_globe, forbidden_axis, set_curve, turn_per_state
 
 _TURN = np.radians(22.0)  # most between two frames
 _PIECE = np.radians(4.0)
@@ -47,7 +47,7 @@ def top_scene(orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Figure, Callab
     show_axes = [_stick(axes, view, look) for look in _BODY_AXES]
     show_spin = _stick(axes, view, _SPIN)
     axes.legend(loc="lower left", fontsize=9, borderaxespad=0.0)
-    frame_axes = orbit.system.form_frame
+    frame_axes = np.column_stack([orbit.system.form_frame[:, :2], cast(np.ndarray, forbidden_axis(orbit.system))])
 
     def show(frame: int) -> None:
         g = poses[frame]
@@ -68,7 +68,7 @@ def top_scene(orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Figure, Callab
 def _trace(axes: Axes, orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Callable[[int], None], View]:
     """Draw the sphere; return what shows the path of the forbidden axis up to a frame, and the view."""
     part = orbit[int(shown[0]) : int(shown[-1]) + 1]
-    points = part.configuration @ orbit.system.form_frame[:, 2]
+    points = part.configuration @ cast(np.ndarray, forbidden_axis(orbit.system))
     view = best_view(points, known_axes(*rotation_axes(orbit)))
     draw_globe(axes, view)
     step = np.linalg.norm(np.diff(points, axis=0), axis=1).max(initial=0.0)

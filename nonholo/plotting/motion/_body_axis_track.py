@@ -23,6 +23,7 @@ from nonholo.plotting.parts import (
     draw_globe,
     draw_named_axes,
     draw_path,
+    forbidden_axis,
     given_view,
     is_free,
     known_equilibria,
@@ -136,7 +137,8 @@ def _check(orbit: Orbit, flow: Orbit | None) -> None:
 
 def _body_axis(orbit: Orbit, chosen: Any) -> Float[np.ndarray, "3"]:
     if chosen is None:
-        chosen = orbit.system.annihilator[0] if _forbids_an_axis(orbit) else (0.0, 0.0, 1.0)
+        forbidden = forbidden_axis(orbit.system)
+        chosen = (0.0, 0.0, 1.0) if forbidden is None else forbidden
     where, remedy = "body_axis_track(body_axis=...)", "Pass a vector in body coordinates."
     axis = array(where, chosen, (3,), remedy)
     if not axis.any():
@@ -147,11 +149,7 @@ def _body_axis(orbit: Orbit, chosen: Any) -> Float[np.ndarray, "3"]:
 def _title(orbit: Orbit, chosen: Any) -> str:
     if chosen is not None:
         return "Body axis in space"
-    return "Forbidden body axis in space" if _forbids_an_axis(orbit) else "Body axis 3 in space"
-
-
-def _forbids_an_axis(orbit: Orbit) -> bool:
-    return not orbit.system.is_spatial and len(orbit.system.annihilator) == 1
+    return "Body axis 3 in space" if forbidden_axis(orbit.system) is None else "Forbidden body axis in space"
 
 
 def _fixed_axis(orbit: Orbit) -> Float[np.ndarray, "3"] | None:

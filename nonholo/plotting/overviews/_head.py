@@ -8,7 +8,6 @@ from nonholo.plotting.parts import is_free, time_step
 from nonholo.plotting.sheets import sheet_of
 from nonholo.systems import LLSystem, System
 
-_TOP, _VESELOVA, _FREE = "Suslov top", "Veselova top", "Free rigid body"
 _FIXED = {False: "System with a left-invariant constraint", True: "System with a right-invariant constraint"}
 
 
@@ -42,15 +41,19 @@ def _name(system: System) -> str:
     form = system.normal_form
     if form is not None:
         sleigh = "Chaplygin sleigh" if form.is_planar else "Multidimensional sleigh"
-        return sleigh if form.is_sleigh else _TOP
-    tensor = system.homogeneous_mass_tensor
-    if tensor is not None and is_free(system) and system.group.is_rigid:
-        return _FREE
-    if tensor is not None and system.is_spatial and system.rank:
-        in_body = LLSystem(system.group, tensor, system.constraint_subspace).normal_form
-        if in_body is not None and not in_body.is_sleigh:
-            return _VESELOVA
+        return sleigh if form.is_sleigh else "Suslov top"
+    if system.homogeneous_mass_tensor is not None and system.group.is_rigid:
+        if is_free(system):
+            return "Free rigid body"
+        if system.is_spatial and _is_top_in_body(system):
+            return "Veselova top"
     return _FIXED[system.is_spatial]
+
+
+def _is_top_in_body(system: System) -> bool:
+    """Tell whether the body would be a top if its constraint were fixed in it."""
+    form = LLSystem(system.group, system.homogeneous_mass_tensor, system.constraint_subspace).normal_form
+    return form is not None and not form.is_sleigh
 
 
 def _parameters(system: System) -> str:

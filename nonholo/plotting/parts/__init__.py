@@ -5,6 +5,7 @@ from nonholo.plotting.parts._sphere import View, arcs, best_view, draw_curve, dr
 from nonholo.plotting.parts._sphere_path import draw_named_axes, draw_path, mark_ends, name_beside
 from nonholo.plotting.parts._subject import (
     drawable,
+    forbidden_axis,
     is_discrete,
     is_free,
     is_same_body,
@@ -38,6 +39,7 @@ __all__ = [
     "drawable",
     "evenly_in_box",
     "evenly_spread",
+    "forbidden_axis",
     "given_view",
     "is_discrete",
     "is_free",

@@ -11,7 +11,7 @@ from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit, as_orbit
-from nonholo.systems import AbstractLLSystem, Equilibria, System
+from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System
 
 _ROUNDING = 1e-12  # relative
 NEAR_EQUILIBRIUM = 0.03  # sine, in the metric of the energy, of the angle to the line of equilibria
@@ -50,6 +50,14 @@ def time_step(orbit: Orbit) -> float | None:
 def is_free(system: System) -> bool:
     """Tell whether nothing constrains the body, whose spatial momentum is then conserved."""
     return system.rank == system.group.dim
+
+
+def forbidden_axis(system: AbstractSystem) -> Float[np.ndarray, "3"] | None:
+    """Return the body axis about which a body on SO(3) does not turn; None if there is not one."""
+    if system.is_spatial or system.rank != 2:
+        return None
+    axis = system.annihilator[0]
+    return axis / np.linalg.norm(axis)
 
 
 def is_same_body(system: System, other: System) -> bool:

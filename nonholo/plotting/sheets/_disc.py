@@ -9,6 +9,7 @@ from nonholo._types import Float
 from nonholo.analysis import InvariantCurve, MomentumLocus
 from nonholo.analysis.planar import Disc
 from nonholo.plotting.elements import draw_rim
+from nonholo.plotting.parts import forbidden_axis
 from nonholo.plotting.sheets._base import LEVELS, AbstractSheet, runs
 from nonholo.systems import AbstractSystem
 
@@ -42,8 +43,7 @@ class DiscSheet(AbstractSheet):
 
     def facts(self, system: AbstractSystem) -> str:
         """Return the forbidden axis."""
-        covector = system.annihilator[0] / np.linalg.norm(system.annihilator[0])
-        axis = ", ".join(f"{number:.3g}" for number in covector + 0.0)
+        axis = ", ".join(f"{number:.3g}" for number in cast(np.ndarray, forbidden_axis(system)) + 0.0)
         return rf"SO(3),  $\langle\gamma,\omega\rangle = 0$  with  $\gamma$ = ({axis})"
 
     def places(self, points: Float[np.ndarray, "K 3"]) -> Float[np.ndarray, "K 2"]:
