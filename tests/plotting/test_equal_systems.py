@@ -171,6 +171,14 @@ def test_blades_by_their_definition(pair: Pair) -> None:
     assert np.allclose(blade.frame @ [*blade.center, 1.0], tensor[:, 2] / tensor[2, 2], atol=1e-14)
 
 
+@pytest.mark.parametrize("b", [0.0, 20.0])
+def test_heads_show_no_rounding(b: float) -> None:
+    """The parameters of a sleigh are recovered from any axes, and zeros are zeros."""
+    named = nh.ChaplyginSleigh(1.0, 1.0, 0.2, b)
+    equal = moved(named, _turn(0.6, 0.7))
+    assert sheet_of(equal).facts(equal) == sheet_of(named).facts(named)
+
+
 def test_orbits_of_another_body_are_refused() -> None:
     """A portrait takes the orbit of an equal system of another class, and none of another body of the same class."""
     pair = SAME_AXES["sleigh"]

@@ -17,6 +17,7 @@ from nonholo.analysis.planar import AbstractPlanarVariety
 from nonholo.plotting.sheets._blade import Blade
 from nonholo.systems import AbstractSystem
 
+_ROUNDING = 1e-14
 LEVELS = 9  # curves of one energy, where none are asked for
 
 
@@ -104,6 +105,11 @@ class AbstractSheet(abc.ABC):
         lines = LineCollection([piece for points in curve.components for piece in self.pieces(points)], **look)
         axes.add_collection(lines)
         return lines
+
+
+def without_rounding(values: Float[np.ndarray, "K"], size: float) -> Float[np.ndarray, "K"]:
+    """Return numbers to be read: those that are rounding beside a size are zero."""
+    return np.where(np.abs(values) > _ROUNDING * size, values, 0.0)
 
 
 def runs(inside: np.ndarray) -> list[slice]:

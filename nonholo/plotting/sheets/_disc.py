@@ -10,7 +10,7 @@ from nonholo.analysis import InvariantCurve, MomentumLocus
 from nonholo.analysis.planar import Disc
 from nonholo.plotting.elements import draw_rim
 from nonholo.plotting.parts import forbidden_axis
-from nonholo.plotting.sheets._base import LEVELS, AbstractSheet, runs
+from nonholo.plotting.sheets._base import LEVELS, AbstractSheet, runs, without_rounding
 from nonholo.systems import AbstractSystem
 
 
@@ -43,7 +43,7 @@ class DiscSheet(AbstractSheet):
 
     def facts(self, system: AbstractSystem) -> str:
         """Return the forbidden axis."""
-        axis = ", ".join(f"{number:.3g}" for number in cast(np.ndarray, forbidden_axis(system)) + 0.0)
+        axis = ", ".join(f"{number:.3g}" for number in without_rounding(cast(np.ndarray, forbidden_axis(system)), 1.0))
         return rf"SO(3),  $\langle\gamma,\omega\rangle = 0$  with  $\gamma$ = ({axis})"
 
     def places(self, points: Float[np.ndarray, "K 3"]) -> Float[np.ndarray, "K 2"]:

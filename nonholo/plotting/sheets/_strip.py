@@ -12,7 +12,7 @@ from nonholo.analysis import InvariantCurve, MomentumLocus
 from nonholo.analysis.planar import Strip
 from nonholo.groups import SE
 from nonholo.plotting import theme
-from nonholo.plotting.sheets._base import LEVELS, AbstractSheet, runs
+from nonholo.plotting.sheets._base import LEVELS, AbstractSheet, runs, without_rounding
 from nonholo.plotting.sheets._blade import Blade, blade_of
 from nonholo.systems import AbstractSystem
 
@@ -54,9 +54,10 @@ class StripSheet(AbstractSheet):
     def facts(self, system: AbstractSystem) -> str:
         """Return m, J, a and b."""
         del system
-        a, b = self.blade.center
+        lengths = [np.sqrt(self.strip.inertia / self.strip.mass), *np.abs(self.strip.frame[:2, 2])]
+        a, b = without_rounding(self.blade.center, max(lengths))
         symbols = {"m": self.strip.mass, "J": self.strip.inertia, "a": a, "b": b}
-        return ",  ".join(f"${symbol}$ = {value + 0.0:.4g}" for symbol, value in symbols.items())
+        return ",  ".join(f"${symbol}$ = {value:.4g}" for symbol, value in symbols.items())
 
     def places(self, points: Float[np.ndarray, "K 2"]) -> Float[np.ndarray, "K 2"]:
         """Return angles and translations."""
