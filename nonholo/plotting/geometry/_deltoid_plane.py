@@ -12,7 +12,7 @@ from matplotlib.patches import Polygon
 
 from nonholo.analysis import Deltoid
 from nonholo.plotting import theme
-from nonholo.plotting.sheets._momentum_plane import on_plane
+from nonholo.plotting.sheets import on_plane
 
 INSIDE = "#dbe9f3"
 
