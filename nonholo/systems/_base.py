@@ -32,6 +32,8 @@ class AbstractSystem(abc.ABC):
     """Fields that are differentiable numbers; None where a field is not used."""
     structure: ClassVar[tuple[str, ...]]
     """Fields that are fixed: groups, subspaces, axes."""
+    is_spatial: ClassVar[bool]
+    """Whether the constraint is fixed in space; otherwise it is fixed in the body."""
 
     @property
     @abc.abstractmethod
@@ -138,6 +140,8 @@ class AbstractSystem(abc.ABC):
 class AbstractLLSystem(AbstractSystem):
     r"""A left-invariant Lagrangian with a left-invariant constraint: body velocities lie in $\mathfrak{d}$."""
 
+    is_spatial: ClassVar[bool] = False
+
     @property
     @abc.abstractmethod
     def canonical(self) -> "AbstractLLSystem":
@@ -192,6 +196,8 @@ class AbstractLRSystem(AbstractSystem):
     The subspace and its annihilator are fixed in space; the inertia along them turns with the body, and
     `constrained_inertia` is that of a body at the identity.
     """
+
+    is_spatial: ClassVar[bool] = True
 
     @property
     def inertia_along(self) -> Float[Array, "k k"]:

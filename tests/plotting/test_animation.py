@@ -8,8 +8,8 @@ from PIL import Image
 from plotting.runs import sleigh_run, top_run
 
 import nonholo as nh
-from nonholo.plotting._animation import _shown_states
-from nonholo.plotting._top_scene import _box, _face, _way_out
+from nonholo.plotting.animation._animation import _shown_states
+from nonholo.plotting.animation._top_scene import _box, _face, _way_out
 
 
 @pytest.mark.parametrize("kind", ["top_orbit", "sleigh_orbit"])

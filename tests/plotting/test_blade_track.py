@@ -92,7 +92,7 @@ def test_the_flow_is_drawn_over_it(sleigh_orbit: nh.Orbit) -> None:
 
 def test_refuses_a_top_and_an_orbit_without_poses(top_orbit: nh.Orbit) -> None:
     """A top has no blade, and without poses there is no track; both refusals say what to do."""
-    with pytest.raises(ValueError, match=r"must be an orbit of a ChaplyginSleigh. .* Use `body_axis_track` for a top"):
+    with pytest.raises(ValueError, match=r"must be an orbit of a sleigh in the plane. .* `body_axis_track` for a top"):
         nh.plot.blade_track(top_orbit)
     with pytest.raises(ValueError, match=r"must have poses. .* Run with reconstruct=True"):
         nh.plot.blade_track(sleigh_run((0.1, -1.0, 0.0), steps=5, reconstruct=False))

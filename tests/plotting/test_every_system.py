@@ -7,8 +7,8 @@ import pytest
 from plotting.runs import body_tensor, made_up, run_of
 
 import nonholo as nh
-from nonholo.plotting._panels import panels_of
-from nonholo.plotting._time_series import _velocity_names
+from nonholo.plotting.motion._time_series import _velocity_names
+from nonholo.plotting.overviews._panels import panels_of
 from nonholo.systems import SYSTEMS
 
 _HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
@@ -215,8 +215,11 @@ def test_any_body_axis() -> None:
 
 def test_portraits_without_known_equilibria() -> None:
     """A plane of a general system has its energy levels and its orbit; right-invariant constraints are refused."""
-    orbit = CASES["two"][0]()
-    drawn = nh.plot.phase_portrait(orbit.system, orbit)
+    operator = np.eye(3) + 0.3 * (np.eye(3, k=2) + np.eye(3, k=-2))  # the center of the group moves the momenta
+    system = nh.LLSystem(_HEISENBERG, constraint_subspace=np.eye(3)[:2], inertia_operator=operator)
+    with pytest.raises(ValueError, match="must have equilibria that form a linear space"):
+        system.equilibria()
+    drawn = nh.plot.phase_portrait(system, made_up(system))
     assert (drawn.stable, drawn.neutral, drawn.arrows) == (None, None, ())
     assert len(drawn.levels) == 4
     with pytest.raises(ValueError, match=r"must have a left-invariant constraint"):

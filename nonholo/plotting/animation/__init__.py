@@ -1,0 +1,7 @@
+"""Moving pictures of orbits."""
+
+from nonholo.plotting.animation._animation import animate
+
+__all__ = [
+    "animate",
+]

@@ -1,0 +1,90 @@
+"""How many real values the discrete sleigh has, over the plane of its restricted momenta."""
+
+import dataclasses
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon
+
+from nonholo.analysis import deltoid
+from nonholo.discrete import Discretization
+from nonholo.orbit import Orbit
+from nonholo.plotting import theme
+from nonholo.plotting.geometry._deltoid_plane import draw_deltoid, dress, name_inside
+from nonholo.plotting.parts import evenly_in_box, own_orbit
+from nonholo.plotting.sheets import ellipse, momenta_on_plane, on_plane
+
+_MOST_DOTS = 1500
+
+
+@dataclasses.dataclass(frozen=True)
+class BranchCounts:
+    """What `branch_counts` drew; None where there was nothing to draw.
+
+    Attributes:
+        axes: The axes.
+        inside: The region with three real values.
+        boundary: Its boundary, where two values meet.
+        cusps: Where all three meet.
+        resting: Turns without translation.
+        level: The energy ellipse of the orbit.
+        orbit: The momenta of the orbit, coloured by time.
+    """
+
+    axes: Axes
+    inside: Polygon
+    boundary: Line2D
+    cusps: PathCollection
+    resting: Line2D
+    level: Line2D | None
+    orbit: PathCollection | None
+
+
+@theme.styled
+def branch_counts(discrete: Discretization, orbit: Orbit | None = None, axes: Axes | None = None) -> BranchCounts:
+    r"""Draw where the discrete sleigh has one real value and where it has three: the deltoid.
+
+    The plane is that of $\pi = p_\theta + bp_1$ and $p_1$. On the boundary two values meet, in the cusps three. The
+    ellipse of turns without translation (for b = 0: $V_1 = 0$) is drawn dashed, the energy ellipse of the orbit solid.
+
+    Args:
+        discrete: A discretised sleigh with a not zero.
+        orbit: An orbit of it.
+        axes: Where to draw; a new figure by default.
+
+    Raises:
+        ValueError: Another system or discretisation, a = 0, an orbit of another discretised system.
+
+    Example:
+        >>> picture = nh.plot.branch_counts(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.5))
+        >>> picture.cusps.get_offsets().shape
+        (3, 2)
+    """
+    found = deltoid(discrete)
+    own_orbit("plot.branch_counts(orbit=...)", orbit, discrete)
+    axes = theme.axes_or_new(axes, (6.4, 5.4))
+    inside, boundary, dots = draw_deltoid(axes, found)
+    look = {"color": theme.MUTED, "linewidth": 1.3, "dashes": (4, 3), "zorder": 2}
+    resting = axes.plot(*on_plane(discrete.system, found.resting()).T, label="no translation", **look)[0]
+    level = path = None
+    if orbit is not None:
+        level = _level(axes, orbit)
+        path = _orbit(axes, orbit)
+    name_inside(axes, found, "3 real values")
+    dress(axes, found, "Real values")
+    return BranchCounts(axes, inside, boundary, dots, resting, level, path)
+
+
+def _level(axes: Axes, orbit: Orbit) -> Line2D:
+    around = ellipse(orbit.system, float(orbit.energy[0]))
+    return axes.plot(*around.T, color=theme.MUTED, linewidth=1.2, zorder=2, label="energy")[0]
+
+
+def _orbit(axes: Axes, orbit: Orbit) -> PathCollection:
+    momentum = momenta_on_plane(orbit)
+    chosen = evenly_in_box(momentum, _MOST_DOTS)
+    colours: Any = {"c": orbit.time[chosen], "cmap": theme.TIME, "norm": theme.time_scale(orbit)}
+    size = theme.dot_size(len(orbit)) + 6
+    return axes.scatter(*momentum[chosen].T, s=size, linewidths=0, zorder=6, label="orbit", **colours)

@@ -1,0 +1,203 @@
+"""All values of the discrete map from one point: on the variety of displacements, or as tangents of the deltoid."""
+
+import dataclasses
+from typing import Any, cast
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.lines import Line2D
+from matplotlib.text import Annotation
+
+from nonholo._checks import error, shape_of, shown
+from nonholo._types import Float
+from nonholo.analysis import deltoid, invariant_curve
+from nonholo.analysis.planar import planar_map
+from nonholo.discrete import Branches, Discretization, discrete_legendre, displacements_over, inverse_discrete_legendre
+from nonholo.discrete import branches as values_of
+from nonholo.plotting import theme
+from nonholo.plotting.geometry._deltoid_plane import draw_deltoid, name_inside
+from nonholo.plotting.geometry._deltoid_plane import dress as dress_momenta
+from nonholo.plotting.sheets import AbstractSheet, on_plane, sheet_of
+
+_BEYOND = 0.3  # how far a tangent goes on beyond its ends, in its length
+_AWAY = 12.0  # from a dot to its label, in points
+
+
+@dataclasses.dataclass(frozen=True)
+class BranchesPicture:
+    """What `branches` drew; None where there was nothing to draw.
+
+    Attributes:
+        axes: The axes.
+        found: The values.
+        principal: The principal value, filled.
+        others: The other real values, empty.
+        present: Where the map is applied.
+        level: The displacements that have the energy of all values; None on the plane of momenta.
+        tangents: On the plane of momenta, a line for each real value.
+        labels: The index and step angle of each real value.
+    """
+
+    axes: Axes
+    found: Branches
+    principal: PathCollection | None
+    others: PathCollection | None
+    present: PathCollection
+    level: LineCollection | None
+    tangents: tuple[Line2D, ...]
+    labels: tuple[Annotation, ...]
+
+
+@theme.styled
+def branches(
+    discrete: Discretization,
+    *,
+    momentum: Any = None,
+    displacement: Any = None,
+    plane: str | None = None,
+    axes: Axes | None = None,
+) -> BranchesPicture:
+    r"""Draw every value of the discrete map from one displacement: the principal one filled, other real ones empty.
+
+    On the plane "displacements", a disc for a top and a strip for a sleigh as in `invariant_curves`, all real values
+    lie on the curve of their energy. On the plane "momenta" of a sleigh all values are over one point. There the
+    displacements of one step angle are a tangent of the deltoid, with $\varphi = \Delta/2$
+
+    $$ h\pi\cos\varphi - \bigl(\hat p + \tfrac J2\bigr)\sin\varphi = \tfrac J2\sin3\varphi, \qquad
+       \hat p = a\,hp_1 + 2ma^2, $$
+
+    so the values are the tangents through the point. Each bears its index in `nh.branches` and its step angle; complex
+    ones are counted in the legend.
+
+    Reference: docs/theory/branches.md, docs/theory/chaplygin-sleigh.md.
+
+    Args:
+        discrete: A top with n = 3 or a sleigh, discretised with "matrix" and "skew".
+        momentum: As in `nh.branches`.
+        displacement: As in `nh.branches`.
+        plane: "displacements" or "momenta"; by default "momenta" for a sleigh that has a deltoid.
+        axes: Where to draw; a new figure by default.
+
+    Raises:
+        ValueError: Another system or discretisation; a top, or a sleigh with a = 0, on the plane of momenta; as
+            `nh.branches`.
+
+    Example:
+        >>> top = nh.discretize(nh.SuslovTop([[1.25, 0, -0.5], [0, 1, -0.75], [-0.5, -0.75, 1.25]]), 1.0)
+        >>> picture = nh.plot.branches(top, displacement=nh.SO(3).cayley(2 * np.array([0.375, -0.25, 0.0])))
+        >>> len(picture.others.get_offsets()), picture.labels[0].get_text()
+        (3, '0: 49°')
+    """
+    where = "plot.branches"
+    checked = planar_map(f"{where}(discrete=...)", discrete)[0]
+    on_momenta = _chosen(checked, plane)
+    found = values_of(checked, momentum=momentum, displacement=displacement)
+    W = _present(checked, momentum) if displacement is None else np.asarray(displacement, dtype=float)
+    axes = theme.axes_or_new(axes, (6.4, 5.6))
+    return (_over_momenta if on_momenta else _on_displacements)(axes, checked, found, W)
+
+
+def _chosen(discrete: Discretization, plane: str | None) -> bool:
+    """Tell whether to draw on the plane of momenta."""
+    has_deltoid = _sheet(discrete).has_deltoid
+    if plane is None:
+        return has_deltoid
+    where = "plot.branches(plane=...)"
+    if not isinstance(plane, str) or plane not in ("displacements", "momenta"):
+        raise error(where, "be 'displacements' or 'momenta'", shown(plane), "Leave it out for the usual one.")
+    if plane == "momenta" and not has_deltoid:
+        raise error(where, "be 'displacements' where there is no deltoid", shown(discrete.system), "Leave it out.")
+    return plane == "momenta"
+
+
+def _present(discrete: Discretization, momentum: Any) -> Float[np.ndarray, "N N"]:
+    """Return the displacement of a momentum that has one."""
+    if shape_of(momentum) == (discrete.system.group.dim,):
+        return inverse_discrete_legendre(discrete, momentum)
+    found = displacements_over(discrete, momentum)
+    return found.displacement[found.principal].real
+
+
+def _on_displacements(axes: Axes, discrete: Discretization, found: Branches, W: np.ndarray) -> BranchesPicture:
+    curves, level, sheet = [], None, _sheet(discrete)
+    if found.energy > 0:
+        curves = [invariant_curve(discrete, found.energy)]
+        look = {"color": theme.DISCRETE, "linewidth": 1.5, "zorder": 2}
+        level = sheet.draw_level(axes, curves[0], label="its energy", **look)
+    real = np.flatnonzero(found.is_real)
+    places = sheet.places(sheet.variety.points(found.displacement[real].real))
+    here = sheet.places(sheet.variety.points(W[None]))
+    dots = _dots(axes, found, places, here)
+    labels = _labels(axes, sheet, found, places, places * sheet.inwards(places))
+    axes.set_title(_title(found))
+    sheet.dress(axes, curves, places)
+    return BranchesPicture(axes, found, *dots, level, (), labels)
+
+
+def _over_momenta(axes: Axes, discrete: Discretization, found: Branches, W: np.ndarray) -> BranchesPicture:
+    region, system, sheet = deltoid(discrete), discrete.system, _sheet(discrete)
+    draw_deltoid(axes, region)
+    before, after = system.restrict(discrete_legendre(discrete, W)), system.restrict(found.momentum[0].real)
+    here, there = on_plane(system, np.stack([before, after]))
+    real = np.flatnonzero(found.is_real)
+    places = on_plane(system, region.touching(_angles(sheet, found)[real]))
+    tangents = tuple(_tangent(axes, there, place, i == found.principal) for i, place in zip(real, places, strict=True))
+    axes.scatter(*there, marker="D", s=40, color=theme.UNSTABLE, zorder=6, label="new momentum")
+    dots = _dots(axes, found, places, here[None])
+    labels = _labels(axes, sheet, found, places, places - there)
+    name_inside(axes, region, "3 real values")
+    dress_momenta(axes, region, _title(found))
+    return BranchesPicture(axes, found, *dots, None, tangents, labels)
+
+
+def _sheet(discrete: Discretization) -> AbstractSheet:
+    return cast(AbstractSheet, sheet_of(discrete.system))
+
+
+def _angles(sheet: AbstractSheet, found: Branches) -> Float[np.ndarray, "B"]:
+    return sheet.step_angles(sheet.variety.points(found.displacement.real))
+
+
+def _tangent(axes: Axes, there: np.ndarray, place: np.ndarray, is_principal: bool) -> Line2D:
+    ends = np.stack([there, place]) + _BEYOND * np.stack([there - place, place - there])
+    style: Any = {"linewidth": 1.6} if is_principal else {"linewidth": 1.1, "dashes": (5, 3)}
+    return axes.plot(*ends.T, color=theme.STABLE, zorder=3, **style)[0]
+
+
+def _dots(axes: Axes, found: Branches, places: np.ndarray, here: np.ndarray) -> tuple[Any, Any, Any]:
+    """Draw the values and the present displacement; count the complex values in the legend."""
+    real = np.flatnonzero(found.is_real)
+    is_principal = real == found.principal if found.principal is not None else np.zeros(len(real), dtype=bool)
+    look: Any = {"edgecolors": theme.STABLE, "linewidths": 1.6, "s": 58, "zorder": 7}
+    principal = others = None
+    if is_principal.any():
+        principal = axes.scatter(*places[is_principal].T, facecolors=theme.STABLE, label="principal", **look)
+    if not is_principal.all():
+        others = axes.scatter(*places[~is_principal].T, facecolors="white", label="other real", **look)
+    present = axes.scatter(*here.T, marker="x", s=70, color=theme.UNSTABLE, linewidths=2.2, zorder=8, label="present")
+    if not found.is_real.all():
+        axes.plot([], [], " ", label=f"and {np.count_nonzero(~found.is_real)} complex")
+    return principal, others, present
+
+
+def _labels(
+    axes: Axes, sheet: AbstractSheet, found: Branches, places: np.ndarray, away: np.ndarray
+) -> tuple[Annotation, ...]:
+    """Write index and step angle beside each real value, in a direction."""
+    angles = np.degrees(_angles(sheet, found))
+    texts = [f"{i}: {angles[i]:.0f}°".replace("-", "\u2212") for i in np.flatnonzero(found.is_real)]
+    return tuple(_label(axes, *one) for one in zip(places, away, texts, strict=True))
+
+
+def _label(axes: Axes, place: np.ndarray, away: np.ndarray, text: str) -> Annotation:
+    size = np.linalg.norm(away)
+    x, y = away / size if size > 0 else np.array([0.0, 1.0])
+    look: Any = {"ha": "left" if x >= 0 else "right", "va": "center", "path_effects": theme.HALO, "zorder": 9}
+    shift = (_AWAY * float(np.copysign(max(abs(x), 0.6), x)), _AWAY * float(y))
+    return axes.annotate(text, (place[0], place[1]), shift, textcoords="offset points", **look)
+
+
+def _title(found: Branches) -> str:
+    real, others = int(np.count_nonzero(found.is_real)), int(np.count_nonzero(~found.is_real))
+    return f"Values: {real} real" + (f", {others} complex" if others else "")

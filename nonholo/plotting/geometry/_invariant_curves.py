@@ -1,0 +1,127 @@
+"""The variety of displacements, foliated by its energy levels: a projective plane for a top, a Moebius band else."""
+
+import dataclasses
+from typing import Any, cast
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PathCollection
+
+from nonholo._checks import energies as checked_energies
+from nonholo._types import Float
+from nonholo.analysis import InvariantCurve, invariant_curve
+from nonholo.analysis.planar import planar_map
+from nonholo.discrete import Discretization
+from nonholo.orbit import Orbit
+from nonholo.plotting import theme
+from nonholo.plotting.parts import evenly_in_box, own_orbit
+from nonholo.plotting.sheets import AbstractSheet, sheet_of
+from nonholo.systems import AbstractLLSystem
+
+_MOST_DOTS = 1500
+_POINTS = 300
+
+
+@dataclasses.dataclass(frozen=True)
+class InvariantCurvesPicture:
+    """What `invariant_curves` drew; None where there was nothing to draw.
+
+    Attributes:
+        axes: The axes.
+        levels: The curves, for each energy.
+        own: The curve of the orbit's energy.
+        stable: Attracting equilibria on the curves, filled.
+        unstable: Repelling equilibria, empty.
+        orbit: The displacements of the orbit, coloured by time.
+    """
+
+    axes: Axes
+    levels: tuple[LineCollection, ...]
+    own: LineCollection | None
+    stable: PathCollection | None
+    unstable: PathCollection | None
+    orbit: PathCollection | None
+
+
+@theme.styled
+def invariant_curves(
+    discrete: Discretization, orbit: Orbit | None = None, axes: Axes | None = None, energies: Any = None
+) -> InvariantCurvesPicture:
+    r"""Draw the displacements, foliated by energy, with the equilibria and an orbit on its curve.
+
+    For a top the variety is a disc: the radius is the step angle, the direction is u of the plane of rotation
+    $u\wedge e_3$; opposite points of the rim, half-turns, are the same displacement and bear the same letter. For a
+    sleigh it is the strip of the step angle $\Delta$ and the translation $\nu$ along the chord; its left edge is its
+    right edge upside down. An orbit jumps along its curve, from the repelling to the attracting equilibrium.
+
+    Args:
+        discrete: A top with n = 3 or a sleigh, discretised with "matrix" and "skew".
+        orbit: An orbit of it.
+        axes: Where to draw; a new figure by default.
+        energies: Energies of the curves; by default nine.
+
+    Raises:
+        ValueError: Another system or discretisation, an orbit of another one, energies that are not positive.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.5)
+        >>> picture = nh.plot.invariant_curves(sleigh, energies=[1.0, 2.0])
+        >>> len(picture.levels), len(picture.stable.get_offsets())
+        (2, 2)
+    """
+    where = "plot.invariant_curves"
+    checked = planar_map(f"{where}(discrete=...)", discrete)[0]
+    sheet = cast(AbstractSheet, sheet_of(checked.system))
+    own_orbit(f"{where}(orbit=...)", orbit, checked)
+    axes = theme.axes_or_new(axes, (6.2, 6.0))
+    curves = [invariant_curve(checked, energy, _POINTS) for energy in _energies(sheet, checked, energies)]
+    levels = tuple(sheet.draw_level(axes, curve, color=theme.LEVEL, linewidth=1.1, zorder=1) for curve in curves)
+    own = path = None
+    if orbit is not None:
+        curves = [invariant_curve(checked, orbit[:1].energy[0], _POINTS)] if orbit.energy[0] > 0 else []
+        for curve in curves:
+            own = sheet.draw_level(axes, curve, color=theme.DISCRETE, linewidth=1.8, zorder=3, label="its energy")
+        path = _orbit(axes, sheet, orbit)
+    stable, unstable = _equilibria(axes, sheet, checked, curves)
+    axes.set_title("Displacements")
+    sheet.dress(axes, curves, np.empty((0, 2)))
+    return InvariantCurvesPicture(axes, levels, own, stable, unstable, path)
+
+
+def _energies(sheet: AbstractSheet, discrete: Discretization, energies: Any) -> Float[np.ndarray, "L"]:
+    if energies is not None:
+        return checked_energies("plot.invariant_curves(energies=...)", energies)
+    return sheet.energies(float(discrete.time_step))
+
+
+def _orbit(axes: Axes, sheet: AbstractSheet, orbit: Orbit) -> PathCollection:
+    x, y = sheet.places(sheet.variety.points(orbit.displacement)).T
+    chosen = evenly_in_box(np.stack([x, y], axis=1), _MOST_DOTS)
+    return axes.scatter(
+        x[chosen],
+        y[chosen],
+        c=orbit.time[chosen],
+        cmap=theme.TIME,
+        norm=theme.time_scale(orbit),
+        s=theme.dot_size(len(orbit)) + 6,
+        linewidths=0,
+        zorder=6,
+        label="orbit",
+    )
+
+
+def _equilibria(
+    axes: Axes, sheet: AbstractSheet, discrete: Discretization, curves: list[InvariantCurve]
+) -> tuple[Any, Any]:
+    """Draw the line of equilibria, and its points on the curves."""
+    if cast(AbstractLLSystem, discrete.system).equilibria().attracting is None:
+        return None, None
+    points, reach = sheet.attracting(curves)
+    axes.plot(*np.stack([0 * reach, reach], axis=1), color=theme.STABLE, linewidth=0.9, zorder=2)
+    axes.plot(*np.stack([0 * reach, -reach], axis=1), color=theme.UNSTABLE, linewidth=0.9, dashes=(5, 3), zorder=2)
+    size = 40 if len(curves) == 1 else 22
+    stable = axes.scatter(*points.T, s=size, color=theme.STABLE, zorder=5, label="stable")
+    unstable = axes.scatter(
+        *-points.T, s=size, facecolors="white", edgecolors=theme.UNSTABLE, linewidths=1.5, zorder=5, label="unstable"
+    )
+    return stable, unstable

@@ -1,0 +1,173 @@
+"""The momentum locus in space: the translucent surface, its singular lines and points, an orbit on it."""
+
+import dataclasses
+from typing import Any, cast
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from mpl_toolkits.mplot3d.art3d import Line3D, Path3DCollection, Poly3DCollection
+from mpl_toolkits.mplot3d.axes3d import Axes3D
+
+from nonholo._checks import error, pair, shown
+from nonholo._types import Float
+from nonholo.analysis import InvariantCurve, MomentumLocus
+from nonholo.orbit import Orbit
+from nonholo.plotting import theme
+from nonholo.plotting.elements import draw_surface, spans
+from nonholo.plotting.geometry._locus_view import best_view
+from nonholo.plotting.parts import evenly_in_box, own_orbit
+from nonholo.plotting.sheets import AbstractSheet, sheet_of
+
+_MOST_DOTS = 600
+_WHISKER = 0.22  # of the length of its segment
+
+
+@dataclasses.dataclass(frozen=True)
+class MomentumLocusPicture:
+    """What `momentum_locus` drew; None where there was nothing to draw.
+
+    Attributes:
+        axes: The axes in space.
+        surface: The mesh.
+        double_lines: Segments along which the surface meets itself.
+        whiskers: Pieces of the same lines where the equation holds, off the surface.
+        pinch_points: Ends of the segments.
+        triple_point: Where three segments meet.
+        curves: The components of the curve of one energy.
+        rest: Momentum zero, the momentum of the identity.
+        orbit: The momenta of a discrete orbit, coloured by time.
+    """
+
+    axes: Axes3D
+    surface: Poly3DCollection
+    double_lines: tuple[Line3D, ...]
+    whiskers: tuple[Line3D, ...]
+    pinch_points: Path3DCollection | None
+    triple_point: Path3DCollection | None
+    curves: tuple[Line3D, ...]
+    rest: Path3DCollection | None
+    orbit: Path3DCollection | None
+
+
+@theme.styled
+def momentum_locus(
+    locus: MomentumLocus,
+    orbit: Orbit | None = None,
+    curve: InvariantCurve | None = None,
+    axes: Axes3D | None = None,
+    view: tuple[float, float] | None = None,
+) -> MomentumLocusPicture:
+    """Draw the surface of discrete momenta, where it meets itself, where it is pinched, and an orbit that runs on it.
+
+    Lines along which the surface meets itself are solid between their pinch points and dashed beyond: there the
+    equation of the surface still holds, but no real displacement has such a momentum. Axes are components of the body
+    momentum, each with its own scale; for a sleigh the angular momentum is that about the centre of mass.
+
+    Reference: [fedorov-zenkov-2004], equation (Steiner).
+
+    Args:
+        locus: What `nh.momentum_locus` returned.
+        orbit: A discrete orbit of the same system.
+        curve: What `nh.invariant_curve` returned: all momenta of one energy, on the surface.
+        axes: Axes in space; new ones by default.
+        view: Elevation and azimuth of the eye in degrees.
+
+    Raises:
+        ValueError: No locus, an orbit of another discretisation.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.5)
+        >>> picture = nh.plot.momentum_locus(nh.momentum_locus(sleigh, resolution=20))
+        >>> len(picture.double_lines), len(picture.whiskers)
+        (1, 2)
+    """
+    where = "plot.momentum_locus"
+    if not isinstance(locus, MomentumLocus):
+        raise error(f"{where}(locus=...)", "be a locus", shown(locus), "Pass what `nh.momentum_locus` returned.")
+    own_orbit(f"{where}(orbit=...)", orbit, locus.discrete)
+    space: Any = _new_axes() if axes is None else axes
+    sheet = cast(AbstractSheet, sheet_of(locus.discrete.system))
+    drawn = sheet.locus_map()
+    if curve is not None and not isinstance(curve, InvariantCurve):
+        raise error("plot.momentum_locus(curve=...)", "be an invariant curve", shown(curve), "Pass `invariant_curve`.")
+    surface = draw_surface(space, locus.momentum @ drawn)
+    doubles = tuple(_segment(space, ends @ drawn, linewidth=2.6) for ends in locus.double_lines)
+    whiskers = tuple(_segment(space, ends @ drawn, linewidth=1.6, dashes=(3, 2)) for ends in locus.whiskers(_WHISKER))
+    name(doubles, "meets itself")
+    name(whiskers, "equation alone")
+    pinch = _dots(space, locus.pinch_points @ drawn, s=44, facecolors="white", label="pinch points")
+    triple = None if locus.triple_point is None else locus.triple_point[None] @ drawn
+    triple_dot = _dots(space, triple, s=64, facecolors=theme.INK, marker="D", label="triple point")
+    rest = space.scatter(0.0, 0.0, 0.0, s=26, color=theme.INK, depthshade=False, label="rest")
+    curves = tuple(_curve(space, points @ drawn) for points in (() if curve is None else curve.momentum))
+    name(curves, "one energy")
+    path = None if orbit is None else _orbit(space, orbit, drawn)
+    _dress(space, locus, sheet, view)
+    return MomentumLocusPicture(space, surface, doubles, whiskers, pinch, triple_dot, curves, rest, path)
+
+
+def _new_axes() -> Any:
+    return Figure(figsize=(7.2, 6.4)).add_axes((-0.02, 0.01, 0.94, 0.97), projection="3d")
+
+
+def name(lines: tuple[Any, ...], label: str) -> None:
+    """Give the first of several artists a label."""
+    for line in lines[:1]:
+        line.set_label(label)
+
+
+def _segment(axes: Any, ends: Float[np.ndarray, "2 3"], **look: Any) -> Any:
+    return axes.plot(*ends.T, color=theme.UNSTABLE, **look)[0]
+
+
+def _curve(axes: Any, momentum: Float[np.ndarray, "K 3"]) -> Any:
+    return axes.plot(*momentum.T, color=theme.DISCRETE, linewidth=1.3, zorder=7)[0]
+
+
+def _dots(axes: Any, points: Float[np.ndarray, "L 3"] | None, **look: Any) -> Any:
+    if points is None or len(points) == 0:
+        return None
+    return axes.scatter(*points.T, linewidths=1.5, depthshade=False, edgecolors=theme.UNSTABLE, zorder=9, **look)
+
+
+def _orbit(axes: Any, orbit: Orbit, drawn: Float[np.ndarray, "3 3"]) -> Any:
+    momentum = orbit.momentum @ drawn
+    chosen = evenly_in_box(orbit.reduced_momentum, _MOST_DOTS)
+    return axes.scatter(
+        *momentum[chosen].T,
+        c=orbit.time[chosen],
+        cmap=theme.TIME,
+        norm=theme.time_scale(orbit),
+        s=24,
+        linewidths=0,
+        depthshade=False,
+        label="orbit",
+        zorder=8,
+    )
+
+
+def _dress(axes: Any, locus: MomentumLocus, sheet: AbstractSheet, view: tuple[float, float] | None) -> None:
+    across, deep, up = sheet.locus_labels
+    axes.set(xlabel=across, ylabel=deep, zlabel=up)
+    drawn = locus.momentum @ sheet.locus_map()
+    span = spans(drawn)[2]
+    if np.ptp(drawn[..., 2]) < span:
+        axes.set_zlim(-span / 4, span / 4)
+    axes.view_init(*(best_view(locus) if view is None else pair("plot.momentum_locus(view=...)", view)))
+    axes.set_box_aspect((1.0, 1.0, 0.85), zoom=1.0)
+    axes.computed_zorder = False
+    axes.grid(False)
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
+        axis.set_major_locator(MaxNLocator(4))
+        axis.line.set_color(theme.MUTED)
+    axes.text2D(
+        0.03,
+        0.97,
+        f"Momentum locus: {sheet.locus_kind(locus)}",
+        transform=axes.transAxes,
+        fontsize="large",
+        fontweight="bold",
+    )
+    axes.legend(loc="upper right", bbox_to_anchor=(1.02, 1.0))

@@ -1,0 +1,32 @@
+"""Pictures of an orbit: paths in space, momenta, the error of its energy, quantities in time."""
+
+from nonholo.plotting.motion._blade_track import BladeTrack, blade_track
+from nonholo.plotting.motion._body_axis_track import BodyAxisTrack, body_axis_track, known_axes, rotation_axes
+from nonholo.plotting.motion._energy_error import EnergyError, energy_error
+from nonholo.plotting.motion._momentum_sphere import MomentumSphere, momentum_sphere
+from nonholo.plotting.motion._phase_portrait import PhasePortrait, phase_portrait
+from nonholo.plotting.motion._point_track import PointTrack, point_track
+from nonholo.plotting.motion._section import Section, section
+from nonholo.plotting.motion._time_series import heading_and_speed, momentum_components, velocity_components
+
+__all__ = [
+    "BladeTrack",
+    "BodyAxisTrack",
+    "EnergyError",
+    "MomentumSphere",
+    "PhasePortrait",
+    "PointTrack",
+    "Section",
+    "blade_track",
+    "body_axis_track",
+    "energy_error",
+    "heading_and_speed",
+    "known_axes",
+    "momentum_components",
+    "momentum_sphere",
+    "phase_portrait",
+    "point_track",
+    "rotation_axes",
+    "section",
+    "velocity_components",
+]

@@ -1,0 +1,211 @@
+"""The path of a sleigh's blade on the plane, with its cusp.
+
+[fedorov-zenkov-2004], sketch chsleigh and section 5.
+"""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.lines import Line2D
+
+from nonholo._checks import error, flags, shown
+from nonholo._types import Float
+from nonholo.orbit import Orbit
+from nonholo.plotting import theme
+from nonholo.plotting.parts import (
+    Square,
+    corner_axes,
+    detail,
+    drawable,
+    evenly_spread,
+    is_discrete,
+    posed,
+    square_about,
+)
+from nonholo.plotting.sheets import Blade, blade_of_system
+
+_MOST_DOTS = 1500
+_REMEDY = "Use `body_axis_track` for a top."
+
+
+@dataclasses.dataclass(frozen=True)
+class BladeTrack:
+    """What `blade_track` drew; None where there was nothing to draw.
+
+    Attributes:
+        axes: The axes.
+        track: The contact points, coloured by time: dots if discrete, a line if a flow.
+        blades: Strokes along the blade at some of the states.
+        masses: The centres of mass at the same states.
+        cusps: The points where the blade reverses.
+        ends: The first and the last contact point.
+        flow: The continuous curve.
+        enlarged: The axes in a corner that show the cusp, or the turn of a long run, enlarged.
+    """
+
+    axes: Axes
+    track: PathCollection | LineCollection
+    blades: LineCollection
+    masses: PathCollection
+    cusps: PathCollection | None
+    ends: PathCollection
+    flow: Line2D | None
+    enlarged: Axes | None
+
+
+@theme.styled
+def blade_track(orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = None, enlarge: bool = True) -> BladeTrack:
+    r"""Draw the path of the contact point of a sleigh, the blade now and then, and the cusp.
+
+    The cusp is where the velocity along the blade changes sign, $v_1 = 0$; between two states it is interpolated. It is
+    shown enlarged in a corner. A grey pin leads from the blade to the centre of mass.
+
+    Reference: [fedorov-zenkov-2004], sketch chsleigh.
+
+    Args:
+        orbit: An orbit of a sleigh in the plane, with poses.
+        axes: Where to draw; a new figure by default.
+        flow: The continuous motion from the same initial data, drawn over it.
+        enlarge: Whether to show the cusp enlarged.
+
+    Raises:
+        ValueError: An orbit of another system, or without poses.
+
+    Example:
+        >>> sleigh = nh.ChaplyginSleigh(mass=1, inertia=1, a=0.5, b=0.3)
+        >>> orbit = nh.simulate(nh.discretize(sleigh, 0.1), body_velocity=(0.1, -1, 0), steps=120)
+        >>> track = nh.plot.blade_track(orbit)
+        >>> len(track.track.get_offsets()), len(track.cusps.get_offsets())
+        (121, 1)
+    """
+    flags("blade_track", enlarge=enlarge)
+    blade = _blade("blade_track(orbit=...)", orbit)
+    if flow is not None:
+        _blade("blade_track(flow=...)", flow)
+    axes = theme.axes_or_new(axes, (6.0, 6.0))
+    position = blade.contact(orbit)
+    cusps, view = _cusps(position, blade.speed(orbit)), square_about(position)
+    track, blades, masses, line = _draw(axes, orbit, orbit, flow, view)
+    stars, ends = _marks(axes, position, cusps, theme.end_colours(orbit))
+    axes.set(xlim=view[0], ylim=view[1], xlabel="$x$", ylabel="$y$", title="Track of the blade", aspect="equal")
+    theme.legend_above(axes)
+    enlarged = _enlarged(axes, orbit, flow, cusps, (position, view)) if enlarge and len(cusps) else None
+    return BladeTrack(axes, track, blades, masses, stars, ends, line, enlarged)
+
+
+def _blade(where: str, orbit: Any) -> Blade:
+    """Return the blade of an orbit that has one, and poses."""
+    blade = blade_of_system(drawable(where, orbit).system)
+    if blade is None:
+        raise error(where, "be an orbit of a sleigh in the plane", shown(orbit), _REMEDY)
+    posed(where, orbit)
+    return blade
+
+
+def _contact(orbit: Orbit) -> Float[np.ndarray, "K 2"]:
+    return _blade("blade_track", orbit).contact(orbit)
+
+
+def _cusps(position: Float[np.ndarray, "K 2"], speed: Float[np.ndarray, "K"]) -> Float[np.ndarray, "C 2"]:
+    """Return the points at which v_1 changes sign, linear between states; zeros in between count once."""
+    moving = np.flatnonzero(speed)
+    changed = np.flatnonzero(speed[moving[:-1]] * speed[moving[1:]] < 0)
+    before, after = moving[changed], moving[changed + 1]
+    share = (speed[before] / (speed[before] - speed[after]))[:, None]
+    return (1 - share) * position[before] + share * position[after]
+
+
+def _draw(
+    axes: Axes, part: Orbit, whole: Orbit, flow: Orbit | None, view: Square, blades: int = 18, length: float = 0.032
+) -> tuple[PathCollection | LineCollection, LineCollection, PathCollection, Line2D | None]:
+    """Draw a part of the orbit with the colours of the whole; the length of blades is in parts of the view."""
+    track = _track(axes, part, whole)
+    strokes, masses = _blades(axes, part, blades, length * np.ptp(view[0]))
+    return track, strokes, masses, None if flow is None else _flow(axes, flow)
+
+
+def _track(axes: Axes, part: Orbit, whole: Orbit) -> PathCollection | LineCollection:
+    position = _contact(part)
+    chosen = evenly_spread(position, _MOST_DOTS)
+    colours: dict[str, Any] = {"cmap": theme.TIME, "norm": theme.time_scale(whole), "zorder": 3}
+    if is_discrete(part):
+        x, y = position[chosen].T
+        return axes.scatter(
+            x, y, c=part.time[chosen], s=theme.dot_size(len(part)), linewidths=0, label="discrete orbit", **colours
+        )
+    path = LineCollection(theme.pieces(position[chosen]), linewidth=2, **colours)
+    path.set(array=part.time[chosen[1:]], label="flow")
+    axes.add_collection(path)
+    return path
+
+
+def _flow(axes: Axes, flow: Orbit) -> Line2D:
+    position = _contact(flow)
+    x, y = position[evenly_spread(position, 10 * _MOST_DOTS)].T
+    return axes.plot(x, y, color=theme.CONTINUOUS, linewidth=1.0, zorder=4, label="continuous")[0]
+
+
+def _blades(axes: Axes, orbit: Orbit, count: int, length: float) -> tuple[LineCollection, PathCollection]:
+    blade = _blade("blade_track", orbit)
+    poses = blade.poses(orbit.chosen(_now_and_then(orbit, count)))
+    points, half = poses[:, :2, 2], length / 2 * poses[:, :2, 0]
+    blades = LineCollection(
+        [*zip(points - half, points + half, strict=True)], colors=theme.INK, linewidth=1.5, zorder=5
+    )
+    centre = (poses @ np.append(blade.center, 1.0))[:, :2]
+    pins = LineCollection([*zip(points, centre, strict=True)], colors=theme.MUTED, linewidth=0.7, zorder=2)
+    axes.add_collection(pins)
+    axes.add_collection(blades)
+    masses = axes.scatter(
+        *centre.T, s=9, facecolors="white", edgecolors=theme.MUTED, linewidths=0.8, zorder=2.2, label="centre of mass"
+    )
+    return blades, masses
+
+
+def _now_and_then(orbit: Orbit, count: int) -> np.ndarray:
+    """Choose states evenly in way and, with less weight, in turn, so that the cusp gets its share."""
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(_contact(orbit), axis=0), axis=1))])
+    turn = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(orbit.heading)))])
+    shares = [weight * total / total[-1] for weight, total in ((1.0, way), (0.35, turn)) if total[-1] > 0]
+    return evenly_spread(np.sum(shares, axis=0)[:, None], count) if shares else np.array([0])
+
+
+def _marks(
+    axes: Axes, position: Float[np.ndarray, "K 2"], cusps: Float[np.ndarray, "C 2"], rim: list[Any]
+) -> tuple[PathCollection | None, PathCollection]:
+    ends = position[[0, -1]]
+    middle = position[evenly_spread(position, _MOST_DOTS)].mean(axis=0)
+    marked = axes.scatter(*ends.T, s=44, facecolors=["white", rim[1]], edgecolors=rim, linewidths=1.6, zorder=7)
+    _name(axes, "start", ends[0], middle)
+    if not np.allclose(*ends):
+        _name(axes, "end", ends[1], middle)
+    return (_stars(axes, position, cusps) if len(cusps) else None), marked
+
+
+def _stars(axes: Axes, position: Float[np.ndarray, "K 2"], cusps: Float[np.ndarray, "C 2"]) -> PathCollection:
+    nearest = int(np.linalg.norm(position - cusps[0], axis=1).argmin())
+    extent = np.ptp(position, axis=0).max()
+    if np.linalg.norm(position[[0, -1]] - cusps[0], axis=1).min() > 0.08 * extent:  # else the words would collide
+        _name(axes, "cusp", cusps[0], position[max(0, nearest - 8) : nearest + 9].mean(axis=0))
+    return axes.scatter(*cusps.T, s=100, marker="*", color=theme.UNSTABLE, linewidths=0, zorder=8)
+
+
+def _name(axes: Axes, word: str, point: Float[np.ndarray, "2"], middle: Float[np.ndarray, "2"]) -> None:
+    distance = np.linalg.norm(point - middle)
+    away = (point - middle) / distance if distance > 0 else np.array([0.0, 1.0])
+    place = {"xytext": tuple(17 * away), "textcoords": "offset points", "ha": "center", "va": "center"}
+    axes.annotate(word, tuple(point), zorder=9, path_effects=theme.HALO, annotation_clip=False, **place)
+
+
+def _enlarged(
+    axes: Axes, orbit: Orbit, flow: Orbit | None, cusps: Float[np.ndarray, "C 2"], seen: tuple[Any, ...]
+) -> Axes:
+    position, view = seen
+    rows, near = detail(position, orbit.body_velocity[:, 0], cusps[0], view)
+    inset = corner_axes(axes, position[evenly_spread(position, _MOST_DOTS)], view, near)
+    _draw(inset, orbit[rows], orbit, flow, near, blades=10, length=0.11)
+    inset.scatter(*cusps.T, s=110, marker="*", color=theme.UNSTABLE, linewidths=0, zorder=8)
+    return inset

@@ -1,0 +1,118 @@
+"""The relative error of the energy along an orbit, against the rounding of a single number."""
+
+import dataclasses
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection, PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
+from matplotlib.text import Text
+
+from nonholo._types import Float
+from nonholo.discrete import Discretization
+from nonholo.orbit import Orbit
+from nonholo.plotting import theme
+from nonholo.plotting.parts import drawable, evenly_in_box, is_discrete, posed
+
+_MOST_DOTS = 2000
+_COLUMNS = 600
+_EPS = float(np.finfo(np.float64).eps)
+_VISIBLE = 1e-3  # half-width of the band, in units of the axis, from which it is wider than a hairline
+
+
+@dataclasses.dataclass(frozen=True)
+class EnergyError:
+    """What `energy_error` drew.
+
+    Attributes:
+        axes: The axes.
+        error: Dots, or for long orbits the band between the smallest and the
+            largest error in each column; a line for a flow.
+        rounding: The band of relative errors up to machine epsilon.
+        unit: What 1 on the axis means.
+        expected: Whether the error should be zero but for rounding, in words.
+    """
+
+    axes: Axes
+    error: PathCollection | PolyCollection | Line2D
+    rounding: Rectangle
+    unit: float
+    expected: Text
+
+
+@theme.styled
+def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
+    r"""Draw the relative error of the reduced constrained energy against time.
+
+    $$ (E_k - E_0)/E_0 , $$
+
+    in units of 1e-16, or of a larger power of ten where rounding is not what is seen. The shaded band is the machine
+    epsilon 2.2e-16 of double precision to either side. At rest, where E_0 = 0, the error is absolute. A line of
+    text says whether a theorem makes the energy of this discretisation exact (`Discretization.conserves_energy`).
+
+    Args:
+        orbit: The orbit.
+        axes: Where to draw; a new figure by default.
+
+    Raises:
+        ValueError: No orbit, one without states, or one without poses whose energy depends on them.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        >>> orbit = nh.simulate(sleigh, body_velocity=(1, 0, 0), steps=50)
+        >>> nh.plot.energy_error(orbit).unit
+        1e-16
+    """
+    drawable("energy_error(orbit=...)", orbit)
+    if orbit.system.is_spatial:
+        posed("energy_error(orbit=...)", orbit)
+    axes = theme.axes_or_new(axes, (6.0, 2.6))
+    energy = orbit.energy
+    error = (energy - energy[0]) / (energy[0] or 1.0)
+    unit = _unit(float(np.abs(error).max()))
+    shown = "machine epsilon" if _EPS / unit > _VISIBLE else "_machine epsilon"  # a legend of what can be seen
+    rounding = axes.axhspan(
+        -_EPS / unit, _EPS / unit, color=theme.LEVEL, alpha=0.45, linewidth=0, zorder=0, label=shown
+    )
+    axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
+    drawn = (_error if is_discrete(orbit) else _curve)(axes, orbit.time, error / unit)
+    _dress(axes, error / unit, unit, relative=bool(energy[0]))
+    return EnergyError(axes, drawn, rounding, unit, _expected(axes, orbit))
+
+
+def _expected(axes: Axes, orbit: Orbit) -> Text:
+    words = "not exact for this discretisation"
+    if not isinstance(orbit.motion, Discretization):
+        words = "error of the solver"
+    elif orbit.motion.conserves_energy:
+        words = "exact by theorem, up to rounding"
+    look = {"color": "#555a62", "fontsize": 9, "va": "top", "path_effects": theme.HALO, "zorder": 6}
+    return axes.text(0.012, 0.97, words, transform=axes.transAxes, **look)
+
+
+def _unit(largest: float) -> float:
+    return 1e-16 if largest < 1e-13 else float(f"1e{math.floor(math.log10(largest))}")
+
+
+def _error(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K"]) -> PathCollection | PolyCollection:
+    if len(time) <= _MOST_DOTS:
+        return axes.scatter(time, error, s=5, color=theme.DISCRETE, linewidths=0, zorder=3)
+    starts = np.arange(0, len(time), math.ceil(len(time) / _COLUMNS))
+    low, high = np.minimum.reduceat(error, starts), np.maximum.reduceat(error, starts)
+    return axes.fill_between(time[starts], low, high, color=theme.DISCRETE, linewidth=0.8, zorder=3)
+
+
+def _curve(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K"]) -> Line2D:
+    chosen = evenly_in_box(np.stack([time, error], axis=1), _MOST_DOTS)
+    return axes.plot(time[chosen], error[chosen], color=theme.CONTINUOUS, linewidth=1.0, zorder=3)[0]
+
+
+def _dress(axes: Axes, error: Float[np.ndarray, "K"], unit: float, relative: bool) -> None:
+    exponent = math.floor(math.log10(unit) + 0.5)
+    axes.set(xlabel="time", ylabel=rf"$\Delta E{'/E' if relative else ''}$   [$10^{{{exponent}}}$]")
+    reach = 1.4 * max(float(np.abs(error).max()), 1.6 * _EPS / unit)
+    axes.set_ylim(-reach, reach)
+    axes.set_title("Energy error")
+    theme.legend_above(axes)

@@ -1,0 +1,163 @@
+"""The momenta along a three-dimensional constraint subspace, on their energy ellipsoid drawn as a sphere."""
+
+import dataclasses
+from typing import cast
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PathCollection
+
+from nonholo._checks import error, shown
+from nonholo._types import Float
+from nonholo.orbit import Orbit
+from nonholo.plotting import theme
+from nonholo.plotting.parts import (
+    View,
+    best_view,
+    draw_globe,
+    draw_path,
+    drawable,
+    given_view,
+    known_equilibria,
+    mark_ends,
+    name_beside,
+    opacity,
+    window,
+)
+from nonholo.systems import AbstractLLSystem
+
+_MOST_DOTS = 1500
+_FINEST = np.radians(3.0)  # no need to draw states that are closer than this
+
+
+@dataclasses.dataclass(frozen=True)
+class MomentumSphere:
+    """What `momentum_sphere` drew; None where there was nothing to draw.
+
+    Attributes:
+        axes: The axes.
+        view: The projection.
+        points: The drawn points, on the unit sphere where the energy is that of the first state.
+        path: The path, coloured by time, what lies behind the sphere fainter.
+        dots: The states of a discrete orbit.
+        stable: The attracting equilibrium, filled.
+        unstable: The repelling equilibrium, empty.
+    """
+
+    axes: Axes
+    view: View
+    points: Float[np.ndarray, "L 3"]
+    path: LineCollection
+    dots: PathCollection | None
+    stable: PathCollection | None
+    unstable: PathCollection | None
+
+
+@theme.styled
+def momentum_sphere(orbit: Orbit, axes: Axes | None = None, view: tuple[float, float] | None = None) -> MomentumSphere:
+    r"""Draw the momenta along a three-dimensional constraint subspace on the sphere of their energy.
+
+    The ellipsoid of constant energy is drawn as the unit sphere,
+
+    $$ u = B^{-1/2}\,r/\sqrt{2E_0}, \qquad |u|^2 = E/E_0, \qquad B = \mathbb{I}|_{\mathfrak{d}}, $$
+
+    in the canonical body frame. For a free body on SO(3) these are the polhodes. Of an orbit too long to draw, the part
+    about the transition is shown. Equilibria are drawn where the library knows an attracting one.
+
+    Args:
+        orbit: An orbit with a left-invariant constraint whose subspace has dimension 3.
+        axes: Where to draw (plain two-dimensional axes; the projection is orthographic); a new figure by default.
+        view: Azimuth and elevation of the eye in degrees; by default chosen so that most of the path is in front.
+
+    Raises:
+        ValueError: No orbit, one without states, a right-invariant constraint, or a subspace of another dimension.
+
+    Example:
+        >>> body = nh.RigidBody(np.diag([1.0, 3.0, 2.0]))
+        >>> orbit = nh.simulate(nh.discretize(body, 0.1), body_velocity=(0.02, 0.0, 1.0), steps=200)
+        >>> np.allclose(np.linalg.norm(nh.plot.momentum_sphere(orbit).points, axis=1), 1.0)
+        True
+    """
+    system = _check(orbit)
+    values, directions = np.linalg.eigh(np.asarray(system.canonical.constrained_inertia))
+    to_sphere = directions @ np.diag(values**-0.5) @ directions.T
+    size = np.sqrt(2 * orbit[:1].energy[0]) or 1.0
+    part = _part(orbit.reduced_momentum @ to_sphere / size, orbit)
+    shown = orbit[part]
+    points = shown.reduced_momentum @ to_sphere / size
+    attracting = _attracting(system, to_sphere)
+    eye = best_view(points, attracting) if view is None else given_view("momentum_sphere(view=...)", view)
+    axes = theme.axes_or_new(axes, (6.0, 6.0))
+    draw_globe(axes, eye)
+    path, dots = draw_path(axes, eye, shown, points, orbit)
+    _rows(axes, eye, to_sphere)
+    words = ("start" if part.start == 0 else "", "end" if part.stop == len(orbit) else "")
+    mark_ends(axes, eye, points, words, theme.end_colours(orbit))
+    stable, unstable = _equilibria(axes, eye, attracting)
+    axes.set_title("Momentum on its energy sphere")
+    if stable is not None:
+        _legend(axes)
+    return MomentumSphere(axes, eye, points, path, dots, stable, unstable)
+
+
+def _legend(axes: Axes) -> None:
+    """Name the equilibria in the corner beside the sphere, or beside the axes where they are small."""
+    if theme.is_narrow(axes):
+        axes.legend(loc="lower left", bbox_to_anchor=(1.0, 0.0))
+    else:
+        axes.legend(loc="lower right")
+
+
+def _check(orbit: Orbit) -> AbstractLLSystem:
+    where = "momentum_sphere(orbit=...)"
+    system = drawable(where, orbit).system
+    if system.is_spatial:
+        remedy = "Its momenta along the constraint are conserved: draw `overview` instead."
+        raise error(where, "have a left-invariant constraint", shown(orbit), remedy)
+    if len(system.constraint_subspace) != 3:
+        got = f"dimension {len(system.constraint_subspace)}"
+        remedy = "Use `phase_portrait` in two dimensions, `overview` in others."
+        raise error(where, "have a three-dimensional constraint subspace", got, remedy)
+    return cast(AbstractLLSystem, system)
+
+
+def _part(points: Float[np.ndarray, "K 3"], orbit: Orbit) -> slice:
+    if len(orbit) <= _MOST_DOTS:
+        return slice(0, len(orbit), 1)
+    step = np.linalg.norm(np.diff(points, axis=0), axis=1).max(initial=0.0)
+    stride = max(1, int(_FINEST / step)) if step > 0 else max(1, len(orbit) // _MOST_DOTS)
+    return window(orbit, stride, _MOST_DOTS)
+
+
+def _attracting(system: AbstractLLSystem, to_sphere: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "A 3"]:
+    """Return the attracting equilibrium as a row, no row where there is none or more than one."""
+    canonical = system.canonical
+    equilibria = known_equilibria(canonical)
+    if equilibria is None or equilibria.attracting is None or len(equilibria.subspace) != 1:
+        return np.empty((0, 3))
+    point = to_sphere @ canonical.restrict(canonical.inertia_operator @ equilibria.attracting)
+    return (point / np.linalg.norm(point))[None, :]
+
+
+def _rows(axes: Axes, eye: View, to_sphere: Float[np.ndarray, "3 3"]) -> None:
+    """Draw where each component of the momentum alone points, out of the sphere."""
+    for index, direction in enumerate(to_sphere / np.linalg.norm(to_sphere, axis=1)[:, None]):
+        (pole, tip), depth = eye(np.array([[1.0], [1.16]]) * direction)
+        alpha = float(opacity(depth[:1])[0])
+        axes.plot(*np.stack([pole, tip], axis=1), color=theme.MUTED, linewidth=1.4, alpha=alpha, zorder=6)
+        name_beside(axes, f"$r_{index + 1}$", tip, away=tip, colour=theme.MUTED)
+
+
+def _equilibria(
+    axes: Axes, eye: View, attracting: Float[np.ndarray, "A 3"]
+) -> tuple[PathCollection | None, PathCollection | None]:
+    if not len(attracting):
+        return None, None
+    flat, depth = eye(np.concatenate([attracting, -attracting]))
+    alpha = opacity(depth)
+    look = {"s": 60, "linewidths": 1.6, "zorder": 8}
+    stable = axes.scatter(*flat[:1].T, color=theme.STABLE, alpha=alpha[0], label="stable", **look)
+    unstable = axes.scatter(
+        *flat[1:].T, facecolors="white", edgecolors=theme.UNSTABLE, alpha=alpha[1], label="unstable", **look
+    )
+    return stable, unstable

@@ -1,0 +1,188 @@
+"""Phase portraits: the momenta along a two-dimensional constraint subspace, on their energy ellipses.
+
+[fedorov-zenkov-2004], figures suslov and mom_dynamics.
+"""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import FancyArrowPatch
+
+from nonholo._checks import energies as checked_energies
+from nonholo._checks import error, shown
+from nonholo._types import Float
+from nonholo.orbit import Orbit
+from nonholo.plotting import theme
+from nonholo.plotting.motion._other_images import draw_images, trees_of
+from nonholo.plotting.parts import drawable, evenly_in_box, is_discrete, is_same_body, known_equilibria
+from nonholo.plotting.sheets import ellipse, half_axes, momenta_on_plane, name_axes, on_plane, plane_inertia
+from nonholo.systems import AbstractLLSystem, AbstractSystem
+
+_MOST_DOTS = 1500
+
+
+@dataclasses.dataclass(frozen=True)
+class PhasePortrait:
+    """What `phase_portrait` drew; None where there was nothing to draw.
+
+    Attributes:
+        axes: The axes.
+        levels: One closed line for each energy.
+        stable: Attracting equilibria, filled.
+        unstable: Repelling equilibria, empty.
+        neutral: Equilibria of a balanced system, which neither attract nor repel.
+        arrows: The direction of motion along the levels.
+        orbit: The orbit, coloured by time: dots if discrete, a line if a flow.
+        images: Real images of some of its states, of all branches, that are not states of the orbit; diamonds.
+        edges: From each image to its images.
+    """
+
+    axes: Axes
+    levels: tuple[Line2D, ...]
+    stable: PathCollection | None
+    unstable: PathCollection | None
+    neutral: PathCollection | None
+    arrows: tuple[FancyArrowPatch, ...]
+    orbit: PathCollection | LineCollection | None
+    images: PathCollection | None
+    edges: LineCollection | None
+
+
+@theme.styled
+def phase_portrait(
+    system: AbstractLLSystem,
+    orbit: Orbit | None = None,
+    axes: Axes | None = None,
+    energies: Any = None,
+    branches: str = "principal",
+) -> PhasePortrait:
+    r"""Draw the momenta along the constraint subspace: energy levels, equilibria, direction of motion, an orbit.
+
+    The levels of the reduced constrained energy are the ellipses
+
+    $$ \tfrac12\, r\cdot(\mathbb{I}|_{\mathfrak{d}})^{-1} r = E . $$
+
+    Equilibria are one line through the origin, filled where they attract and empty where they repel; all other
+    motions run along their ellipse from one to the other. In a balanced system every point is an equilibrium. Where the
+    library does not compute the equilibria of a system they are left out. Momenta
+    of a sleigh are $(p_\theta + b p_1, p_1)$ in the axes of its blade, those of a top $(M_{13}, M_{23})$ in axes whose
+    third one is the forbidden axis, whatever the axes of the body; those of other systems are in its canonical frame.
+
+    With `branches="all"` three states of a discrete orbit are followed for three steps along every real branch. All
+    images stay on the ellipse. The values from one displacement coincide here, as they have the same momenta along the
+    constraint subspace; what follows them differs. Images that the orbit itself visits are left out.
+
+    Reference: [fedorov-zenkov-2004], figures suslov and mom_dynamics.
+
+    Args:
+        system: A left-invariant system with two-dimensional constraint subspace.
+        orbit: An orbit of it.
+        axes: Where to draw; a new figure by default.
+        energies: Energies of the ellipses; by default four, evenly spread in size, one of them through the orbit.
+        branches: "principal" or "all".
+
+    Raises:
+        ValueError: A right-invariant constraint, a subspace of another dimension, an orbit of another body,
+            energies that are not positive, all branches without a discrete orbit or as `nh.branch_tree` refuses them.
+
+    Example:
+        >>> top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+        >>> portrait = nh.plot.phase_portrait(top, energies=[0.5, 1.0])
+        >>> len(portrait.levels), len(portrait.stable.get_offsets())
+        (2, 2)
+    """
+    _check(system, orbit)
+    trees = trees_of(orbit, branches)
+    levels = _energies(system, orbit, energies)
+    axes = theme.axes_or_new(axes)
+    look: Any = {"color": theme.LEVEL, "linewidth": 1.1, "zorder": 1}
+    drawn = tuple(axes.plot(*ellipse(system, level).T, **look)[0] for level in levels)
+    stable, unstable, neutral, arrows = _equilibria(axes, system, half_axes(system), np.sqrt(2 * levels))
+    path = None if orbit is None else _orbit(axes, orbit)
+    images, edges = draw_images(axes, orbit, trees) if orbit is not None and trees else (None, None)
+    name_axes(axes, system)
+    axes.set_title("Phase portrait")
+    theme.legend_above(axes)
+    return PhasePortrait(axes, drawn, stable, unstable, neutral, arrows, path, images, edges)
+
+
+def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
+    where = "phase_portrait(system=...)"
+    if not isinstance(system, AbstractSystem):
+        raise error(where, "be a system", shown(system), "Pass `orbit.system` first, then the orbit.")
+    if system.is_spatial:
+        remedy = "Its momenta along the constraint are conserved: draw `overview` instead."
+        raise error(where, "have a left-invariant constraint", shown(system), remedy)
+    if len(system.constraint_subspace) != 2:
+        got = f"dimension {len(system.constraint_subspace)}"
+        raise error(where, "have a two-dimensional constraint subspace", got, "Plot `orbit.restricted_momentum`.")
+    if orbit is not None and not is_same_body(drawable("phase_portrait(orbit=...)", orbit).system, system):
+        raise error("phase_portrait(orbit=...)", "be an orbit of the system", shown(orbit), "Pass `orbit.system`.")
+
+
+def _energies(system: AbstractLLSystem, orbit: Orbit | None, energies: Any) -> Float[np.ndarray, "L"]:
+    if energies is not None:
+        return checked_energies("phase_portrait(energies=...)", energies)
+    own = 0.0 if orbit is None else float(orbit[:1].energy[0])
+    # at rest, or without an orbit, the ellipse of unit velocities sets the size
+    scale = own if own > 0 else float(np.trace(plane_inertia(system))) / 4
+    return scale * (np.arange(1, 5) / 3) ** 2
+
+
+def _equilibria(
+    axes: Axes, system: AbstractLLSystem, half_axes: Float[np.ndarray, "2 2"], sizes: Float[np.ndarray, "L"]
+) -> tuple[Any, ...]:
+    equilibria = known_equilibria(system)
+    if equilibria is None:
+        return None, None, None, ()
+    attracting = equilibria.attracting
+    if attracting is None:
+        return None, None, _every_point(axes, half_axes, sizes), ()
+    u = np.linalg.solve(half_axes, on_plane(system, system.restrict(system.inertia_operator @ attracting)))
+    u /= np.linalg.norm(u)
+    points = sizes[:, None] * (half_axes @ u)
+    reach = 1.12 * points[sizes.argmax()]
+    axes.plot(*np.stack([0 * reach, reach], axis=1), color=theme.STABLE, linewidth=0.9, zorder=2)
+    axes.plot(*np.stack([0 * reach, -reach], axis=1), color=theme.UNSTABLE, linewidth=0.9, dashes=(5, 3), zorder=2)
+    stable = axes.scatter(*points.T, s=46, color=theme.STABLE, zorder=5, label="stable")
+    unstable = axes.scatter(
+        *-points.T, s=46, facecolors="white", edgecolors=theme.UNSTABLE, linewidths=1.5, zorder=5, label="unstable"
+    )
+    arrows = tuple(_arrow(axes, size * half_axes, u, side) for size in sizes for side in (1, -1))
+    return stable, unstable, None, arrows
+
+
+def _every_point(axes: Axes, half_axes: Float[np.ndarray, "2 2"], sizes: Float[np.ndarray, "L"]) -> PathCollection:
+    angle = np.arange(24) * (np.pi / 12)
+    circle = np.array([np.cos(angle), np.sin(angle)])
+    x, y = np.concatenate([size * half_axes @ circle for size in sizes], axis=1)
+    return axes.scatter(x, y, s=16, color=theme.MUTED, linewidths=0, zorder=3, label="equilibria")
+
+
+def _arrow(axes: Axes, half_axes: Float[np.ndarray, "2 2"], u: Float[np.ndarray, "2"], side: int) -> FancyArrowPatch:
+    across = side * np.array([-u[1], u[0]])
+    tail, head = (tuple(half_axes @ (across + lean * u)) for lean in (-0.02, 0.02))
+    arrow = FancyArrowPatch(
+        tail, head, arrowstyle="-|>", mutation_scale=13, shrinkA=0, shrinkB=0, linewidth=0, color=theme.MUTED, zorder=2
+    )
+    axes.add_patch(arrow)
+    return arrow
+
+
+def _orbit(axes: Axes, orbit: Orbit) -> PathCollection | LineCollection:
+    momentum = momenta_on_plane(orbit)
+    chosen = evenly_in_box(momentum, _MOST_DOTS)
+    colours = {"cmap": theme.TIME, "norm": theme.time_scale(orbit), "zorder": 6}
+    if is_discrete(orbit):
+        x, y = momentum[chosen].T
+        stays = np.ptp(momentum, axis=0).max() <= 1e-6 * np.abs(momentum).max()
+        size = 60 if stays else theme.dot_size(len(orbit))
+        return axes.scatter(x, y, c=orbit.time[chosen], s=size, linewidths=0, label="discrete orbit", **colours)
+    path = LineCollection(theme.pieces(momentum[chosen]), linewidth=2, **colours)
+    path.set(array=orbit.time[chosen[1:]], label="flow")
+    axes.add_collection(path)
+    return path

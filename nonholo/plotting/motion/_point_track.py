@@ -1,0 +1,161 @@
+"""The path in space of the point of the body at the origin of its frame, for motions of the plane and of space."""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.art3d import Line3DCollection
+
+from nonholo._checks import error, shown
+from nonholo._types import Float
+from nonholo.groups import SE
+from nonholo.orbit import Orbit
+from nonholo.plotting import theme
+from nonholo.plotting.parts import evenly_spread, is_discrete, posed, same_group, square_about
+
+_MOST_DOTS = 1500
+_BODIES = 14  # places at which the axes of the body are drawn
+_ARM = 0.055  # of a body axis, in parts of the picture
+
+
+@dataclasses.dataclass(frozen=True)
+class PointTrack:
+    """What `point_track` drew; None where there was nothing to draw.
+
+    Attributes:
+        axes: The axes, three-dimensional from SE(3) on.
+        coordinates: The coordinates of space that are shown, counted from 0.
+        points: The drawn positions.
+        track: The path, coloured by time: dots if discrete, a line if a flow.
+        frames: The body axes now and then, one collection for each axis.
+        flow: The continuous path.
+    """
+
+    axes: Any
+    coordinates: tuple[int, ...]
+    points: Float[np.ndarray, "L d"]
+    track: Artist
+    frames: tuple[Artist, ...]
+    flow: Artist | None
+
+
+@theme.styled
+def point_track(orbit: Orbit, axes: Any = None, flow: Orbit | None = None) -> PointTrack:
+    """Draw the path of the reference point of a body, with its body axes now and then.
+
+    Motions of the plane are drawn in the plane, others in three dimensions: the three coordinates of space in which
+    the path is largest, with the shadow of the path on the floor.
+
+    Args:
+        orbit: An orbit on SE(n), with poses.
+        axes: Where to draw, three-dimensional (projection="3d") from SE(3) on; a new figure by default.
+        flow: The continuous motion from the same initial data, drawn over it.
+
+    Raises:
+        ValueError: An orbit on another group, one without poses, or axes of the wrong dimension.
+
+    Example:
+        >>> body = nh.RigidBody(np.diag([1.0, 2.0, 3.0, 1.0]), nh.SE(3))
+        >>> orbit = nh.simulate(nh.discretize(body, 0.1), body_velocity=(0, 0.1, 1, 1, 0, 0), steps=30)
+        >>> nh.plot.point_track(orbit).points.shape
+        (31, 3)
+    """
+    where = "point_track(orbit=...)"
+    group = posed(where, orbit).system.group
+    n = group.size - 1
+    if n < 2 or group != SE(n):
+        remedy = "Use `body_axis_track` on SO(3), `overview` on other groups."
+        raise error(where, "be an orbit on SE(n)", f"{group}", remedy)
+    if flow is not None:
+        same_group("point_track(flow=...)", flow, orbit)
+    axes = _axes(axes, 2 if n == 2 else 3)
+    shown = _largest(orbit.position)
+    chosen = evenly_spread(orbit.position, _MOST_DOTS)
+    points = orbit.position[chosen][:, shown]
+    view = _dress(axes, points, shown)
+    track = _track(axes, points, orbit, orbit.time[chosen])
+    curve = None if flow is None else _flow(axes, flow.position[:, shown])
+    frames = _frames(axes, orbit, shown, _ARM * np.ptp(view[0]))
+    _ends(axes, points, theme.end_colours(orbit))
+    theme.legend_above(axes)
+    return PointTrack(axes, tuple(shown.tolist()), points, track, frames, curve)
+
+
+def _axes(axes: Any, dimension: int) -> Any:
+    if axes is None:
+        figure = Figure(figsize=(6.0, 6.0), layout="constrained")
+        return figure.add_subplot(projection="3d" if dimension == 3 else None)
+    if not isinstance(axes, Axes) or hasattr(axes, "get_zlim") != (dimension == 3):
+        remedy = 'Make them with projection="3d".' if dimension == 3 else "Make them without a projection."
+        raise error("point_track(axes=...)", f"be axes of dimension {dimension}", shown(axes), remedy)
+    return axes
+
+
+def _largest(position: Float[np.ndarray, "K n"]) -> np.ndarray:
+    """Return the coordinates, three at most and in order, in which a path is largest."""
+    extent = np.ptp(position, axis=0)
+    return np.sort(np.argsort(-extent, kind="stable")[:3])
+
+
+def _dress(axes: Any, points: Float[np.ndarray, "L d"], shown: np.ndarray) -> Float[np.ndarray, "d 2"]:
+    """Set up the axes about the points; return what they show."""
+    view = square_about(points)
+    solid = len(shown) == 3
+    names = [f"${letter}$" for letter in "xyz"] if shown.max() < 3 else [f"$x_{i + 1}$" for i in shown]
+    axes.set(xlim=view[0], ylim=view[1], xlabel=names[0], ylabel=names[1], aspect="equal")
+    axes.set_title("Reference point", loc="left")
+    if solid:
+        axes.set(zlim=view[2], zlabel=names[2])
+        axes.view_init(elev=24, azim=-58)
+        axes.set_box_aspect((1, 1, 1), zoom=0.92)
+        for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+            axis.pane.set(facecolor="#f7f8fa", edgecolor=theme.LEVEL)
+        floor = np.column_stack([points[:, :2], np.full(len(points), view[2, 0])])
+        axes.plot(*floor.T, color=theme.LEVEL, linewidth=1.2, zorder=1)
+    return view
+
+
+def _track(axes: Any, points: Float[np.ndarray, "L d"], orbit: Orbit, time: Float[np.ndarray, "L"]) -> Artist:
+    colours = {"cmap": theme.TIME, "norm": theme.time_scale(orbit), "zorder": 3}
+    if is_discrete(orbit):
+        own = {"depthshade": False} if points.shape[1] == 3 else {}
+        size = theme.dot_size(len(orbit))
+        return axes.scatter(*points.T, c=time, s=size, linewidths=0, label="discrete orbit", **own, **colours)
+    path = _pieces(points[:-1], points[1:], linewidth=2, **colours)
+    path.set(array=time[1:], label="flow")
+    axes.add_collection(path)
+    return path
+
+
+def _flow(axes: Any, position: Float[np.ndarray, "K d"]) -> Artist:
+    kept = evenly_spread(position, 10 * _MOST_DOTS)
+    return axes.plot(*position[kept].T, color=theme.CONTINUOUS, linewidth=1.0, zorder=4, label="continuous")[0]
+
+
+def _frames(axes: Any, orbit: Orbit, shown: np.ndarray, length: float) -> tuple[Artist, ...]:
+    """Draw the body axes that belong to the coordinates shown."""
+    some = orbit.chosen(evenly_spread(orbit.position, _BODIES))
+    foot, drawn = some.position[:, shown], []
+    for axis, colour in zip(shown, theme.COMPONENTS, strict=False):
+        tip = foot + length * some.configuration[:, shown, axis]
+        look = {"colors": colour, "linewidth": 1.4, "zorder": 5, "label": f"body axis {axis + 1}"}
+        drawn.append(axes.add_collection(_pieces(foot, tip, **look)))
+    return tuple(drawn)
+
+
+def _pieces(feet: Float[np.ndarray, "L d"], tips: Float[np.ndarray, "L d"], **look: Any) -> LineCollection:
+    kind = Line3DCollection if feet.shape[1] == 3 else LineCollection
+    return kind(list(np.stack([feet, tips], axis=1)), **look)
+
+
+def _ends(axes: Any, points: Float[np.ndarray, "L d"], rim: list[Any]) -> None:
+    own = {"depthshade": False} if points.shape[1] == 3 else {}
+    look = {"s": 44, "facecolors": ["white", rim[1]], "edgecolors": rim, "linewidths": 1.6, "zorder": 7}
+    axes.scatter(*points[[0, -1]].T, **look, **own)
+    axes.text(*points[0], "  start", zorder=9, path_effects=theme.HALO)
+    if not np.allclose(points[0], points[-1]):
+        axes.text(*points[-1], "  end", zorder=9, path_effects=theme.HALO)

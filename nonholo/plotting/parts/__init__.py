@@ -1,0 +1,62 @@
+"""What several pictures share: what may be drawn of an orbit, which of its states, spheres, enlarged corners."""
+
+from nonholo.plotting.parts._enlargement import Square, corner_axes, detail, square_about
+from nonholo.plotting.parts._sphere import View, arcs, best_view, draw_curve, draw_globe, given_view, opacity, set_curve
+from nonholo.plotting.parts._sphere_path import draw_named_axes, draw_path, mark_ends, name_beside
+from nonholo.plotting.parts._subject import (
+    drawable,
+    forbidden_axis,
+    is_discrete,
+    is_free,
+    is_same_body,
+    known_equilibria,
+    own_orbit,
+    permanent_velocity,
+    posed,
+    same_group,
+    time_step,
+)
+from nonholo.plotting.parts._thinning import (
+    evenly_in_box,
+    evenly_spread,
+    some_states,
+    transition,
+    turn_per_state,
+    window,
+)
+
+__all__ = [
+    "Square",
+    "View",
+    "arcs",
+    "best_view",
+    "corner_axes",
+    "detail",
+    "draw_curve",
+    "draw_globe",
+    "draw_named_axes",
+    "draw_path",
+    "drawable",
+    "evenly_in_box",
+    "evenly_spread",
+    "forbidden_axis",
+    "given_view",
+    "is_discrete",
+    "is_free",
+    "is_same_body",
+    "known_equilibria",
+    "mark_ends",
+    "name_beside",
+    "opacity",
+    "own_orbit",
+    "permanent_velocity",
+    "posed",
+    "same_group",
+    "set_curve",
+    "some_states",
+    "square_about",
+    "time_step",
+    "transition",
+    "turn_per_state",
+    "window",
+]

@@ -1,0 +1,109 @@
+"""What may be drawn, and refusals in words: orbits that are not empty, of the right system, with poses if needed.
+
+Also the few questions that several pictures ask of an orbit. No mechanics.
+"""
+
+from typing import Any, cast
+
+import numpy as np
+
+from nonholo._checks import error, shown
+from nonholo._types import Float
+from nonholo.discrete import Discretization
+from nonholo.orbit import Orbit, as_orbit
+from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System
+
+_ROUNDING = 1e-12  # relative
+NEAR_EQUILIBRIUM = 0.03  # sine, in the metric of the energy, of the angle to the line of equilibria
+
+
+def drawable(where: str, orbit: Any) -> Orbit:
+    """Return an orbit with at least one state."""
+    if len(as_orbit(where, orbit, "for one in coordinates plot its arrays, as docs/gallery does.")) == 0:
+        raise error(where, "have a state to draw", "none", "See `orbit.outcome` for why the run did not start.")
+    return orbit
+
+
+def posed(where: str, orbit: Any) -> Orbit:
+    """Return an orbit with at least one state and with poses."""
+    if drawable(where, orbit).canonical_pose is None:
+        raise error(where, "have poses", "an orbit without them", "Run with reconstruct=True.")
+    return orbit
+
+
+def same_group(where: str, orbit: Any, other: Orbit) -> None:
+    """Refuse an orbit that moves on another group than the orbit it is drawn beside."""
+    if posed(where, orbit).system.group != other.system.group:
+        raise error(where, f"move on {other.system.group}", f"{orbit.system.group}", "Pass a motion of the same body.")
+
+
+def is_discrete(orbit: Orbit) -> bool:
+    """Tell a discrete orbit from a continuous flow."""
+    return orbit.cayley is not None
+
+
+def time_step(orbit: Orbit) -> float | None:
+    """Return the time step of a discrete orbit."""
+    return float(orbit.motion.time_step) if isinstance(orbit.motion, Discretization) else None
+
+
+def is_free(system: System) -> bool:
+    """Tell whether nothing constrains the body, whose spatial momentum is then conserved."""
+    return system.rank == system.group.dim
+
+
+def forbidden_axis(system: AbstractSystem) -> Float[np.ndarray, "3"] | None:
+    """Return the body axis about which a body on SO(3) does not turn; None if there is not one."""
+    if system.is_spatial or system.rank != 2:
+        return None
+    axis = system.annihilator[0]
+    return axis / np.linalg.norm(axis)
+
+
+def is_same_body(system: System, other: System) -> bool:
+    """Tell whether two systems have the same constraint and inertia, whatever their classes, up to rounding."""
+    if (system.group, system.is_spatial, system.rank) != (other.group, other.is_spatial, other.rank):
+        return False
+    same_rows = np.allclose(system.constraint_subspace, other.constraint_subspace, rtol=0.0, atol=_ROUNDING)
+    scale = np.abs(other.inertia_operator).max(initial=0.0)
+    return same_rows and np.allclose(system.inertia_operator, other.inertia_operator, rtol=0.0, atol=_ROUNDING * scale)
+
+
+def own_orbit(where: str, orbit: Any, discrete: Discretization) -> None:
+    """Refuse an orbit that belongs to another discretised system."""
+    if orbit is None:
+        return
+    same = time_step(drawable(where, orbit)) == float(discrete.time_step)
+    if not (same and is_same_body(orbit.system, discrete.system)):
+        raise error(where, "be an orbit of the same discretised system", shown(orbit), "Run `nh.simulate` with it.")
+
+
+def known_equilibria(system: System) -> Equilibria | None:
+    """Return the equilibria of a system; None where they are no linear space, or where the library has none."""
+    if system.is_spatial:
+        return None
+    try:
+        return cast(AbstractLLSystem, system).equilibria()
+    except ValueError:
+        return None
+
+
+def permanent_velocity(orbit: Orbit, state: int) -> Float[np.ndarray, "dim"] | None:
+    r"""Return the constant body velocity that a state is close to, up to its size; None if there is none.
+
+    Close means that the sine of the angle to the line of equilibria is small, in the metric of the kinetic energy.
+    """
+    system = orbit.system
+    equilibria = known_equilibria(system)
+    if equilibria is None or len(equilibria.subspace) == 0:
+        return None
+    velocity, inertia = orbit[state : state + 1].body_velocity[0], np.asarray(system.inertia_operator)
+    if not velocity @ inertia @ velocity > 0:
+        return None
+    if len(equilibria.subspace) == len(system.constraint_subspace):
+        return velocity
+    line = equilibria.subspace[0]
+    along = (velocity @ inertia @ line) / (line @ inertia @ line)
+    across = velocity - along * line
+    near = across @ inertia @ across <= NEAR_EQUILIBRIUM**2 * (velocity @ inertia @ velocity)
+    return along * line if near else None

@@ -1,0 +1,129 @@
+"""Random draws of a sweep: dots over one or two of their numbers, or a histogram."""
+
+from typing import Any
+
+import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.colorbar import Colorbar
+from matplotlib.ticker import MaxNLocator
+
+from nonholo._checks import error, shown
+from nonholo._types import Float
+from nonholo.plotting import theme
+from nonholo.plotting.sweeps._sweep_axes import (
+    OUTCOME,
+    Subject,
+    colour_key,
+    ends,
+    is_wide,
+    key_to,
+    label,
+    mark_below,
+    scale_of,
+)
+
+_MOST = 20_000  # dots
+_LARGE = 2000  # dots from which they are small
+_BARS = 60
+
+Drawn = tuple[Any, tuple[Any, ...], Colorbar | None]
+
+
+def draw_draws(axes: Axes, result: xarray.Dataset, subject: Subject, x: str | None, y: str | None) -> Drawn:
+    """Draw the members of a random design."""
+    if y is not None and x is None:
+        raise error("plot.sweep_map(y=...)", "come with x", shown(y), "Pass x, or x and y.")
+    if x is not None and y is not None:
+        drawn = _coloured_dots(axes, subject, _number(result, "x", x), _number(result, "y", y))
+    elif subject.values.name == OUTCOME:
+        drawn = _outcomes(axes, subject)
+    elif x is not None:
+        drawn = _dots_over(axes, subject, _number(result, "x", x))
+    else:
+        drawn = _histogram(axes, subject)
+    axes.set_title(subject.title)
+    theme.legend_above(axes)
+    return drawn
+
+
+def _number(result: xarray.Dataset, argument: str, name: str) -> xarray.DataArray:
+    numbers = [str(known) for known, values in result.data_vars.items() if values.dims == ("member",)]
+    if name not in numbers:
+        known = ", ".join(numbers)
+        where = f"plot.sweep_map({argument}=...)"
+        raise error(where, "be one number of each member", shown(name), f"Choose among {known}.")
+    return result[name]
+
+
+def _thinned(*arrays: xarray.DataArray) -> list[np.ndarray]:
+    """Return the values of evenly spaced members, of at most so many."""
+    return [array.values[:: -(-len(array) // _MOST)] for array in arrays]
+
+
+def _dots_over(axes: Axes, subject: Subject, x: xarray.DataArray) -> Drawn:
+    """Draw the quantity of members that succeeded as dots over x; the others are marked along the bottom."""
+    across, values, codes = _thinned(x, subject.values, subject.codes)
+    good, ended = codes == 0, ends(subject.codes)
+    drawn = axes.scatter(across[good], values[good], color=theme.DISCRETE, **_look(across))
+    axes.set(xlabel=label(x), ylabel=label(subject.values), xscale=_scale(across), yscale=_scale(values))
+    shown = mark_below(axes, across, codes, ended, marker="|")
+    key_to(axes, ended)
+    return drawn, shown, None
+
+
+def _coloured_dots(axes: Axes, subject: Subject, x: xarray.DataArray, y: xarray.DataArray) -> Drawn:
+    """Draw members as dots over x and y, those that did not succeed below the others."""
+    across, up, values, codes = _thinned(x, y, subject.values, subject.codes)
+    of_outcome, look = subject.values.name == OUTCOME, _look(across)
+    ended = ends(subject.codes, successful=of_outcome)
+    groups = [(codes == code, colour) for code, _, colour in ended]
+    shown = tuple(axes.scatter(across[of], up[of], color=colour, **look) for of, colour in groups)
+    drawn = bar = None
+    if not of_outcome:
+        good = codes == 0
+        colours: Any = {"c": values[good], "cmap": theme.TIME, "norm": scale_of(subject)}
+        drawn = axes.scatter(across[good], up[good], **colours, **look)
+        bar = colour_key(axes, drawn, subject)
+    axes.set(xlabel=label(x), ylabel=label(y), xscale=_scale(across), yscale=_scale(up))
+    key_to(axes, ended)
+    return drawn, shown, bar
+
+
+def _look(across: np.ndarray) -> Any:
+    return {"s": 14.0 if len(across) <= _LARGE else 5.0, "linewidths": 0, "rasterized": True}
+
+
+def _histogram(axes: Axes, subject: Subject) -> Drawn:
+    """Count the members that succeeded; the legend counts the others."""
+    values = subject.values.values[np.isfinite(subject.values.values)]
+    bars = axes.hist(values, bins=_bins(values, subject.whole), color=theme.DISCRETE, rwidth=0.94)[2]
+    axes.set(xlabel=label(subject.values), ylabel="members", xscale="linear" if subject.whole else _scale(values))
+    if subject.whole:
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    key_to(axes, ends(subject.codes))
+    return bars, (), None
+
+
+def _outcomes(axes: Axes, subject: Subject) -> Drawn:
+    """Count how members ended, one bar each."""
+    ended = ends(subject.codes, successful=True)
+    counts = [int((subject.codes.values == code).sum()) for code, _, _ in ended]
+    bars = axes.barh([name for _, name, _ in ended], counts, color=[colour for _, _, colour in ended], height=0.6)
+    axes.set(xlabel="members", ylim=(len(ended) - 0.5, -0.5))
+    return bars, (), None
+
+
+def _bins(values: Float[np.ndarray, "K"], whole: bool) -> Any:
+    if not values.size:
+        return 1
+    if whole and np.ptp(values) < _BARS:
+        return np.arange(values.min() - 0.5, values.max() + 1)
+    if is_wide(values):
+        return np.geomspace(values.min(), values.max(), _BARS + 1)
+    return min(_BARS, max(1, int(np.sqrt(len(values)))))
+
+
+def _scale(values: Float[np.ndarray, "K"]) -> str:
+    finite = values[np.isfinite(values)]
+    return "log" if is_wide(finite) else "linear"

@@ -1,0 +1,180 @@
+"""The result of a sweep in one picture: a map over a grid, a curve along one axis, draws as dots or a histogram."""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.colorbar import Colorbar
+from matplotlib.colors import ListedColormap
+
+from nonholo._checks import error, shown
+from nonholo.plotting import theme
+from nonholo.plotting.sweeps._sweep_axes import (
+    OUTCOME,
+    Subject,
+    borders,
+    colour_key,
+    ends,
+    is_geometric,
+    is_wide,
+    key_to,
+    label,
+    mark_below,
+    scale_of,
+    subject_of,
+)
+from nonholo.plotting.sweeps._sweep_draws import draw_draws
+
+_MARKED = 60  # members along a curve that get a dot each
+
+
+@dataclasses.dataclass(frozen=True)
+class SweepMap:
+    """What `sweep_map` drew; None where there was nothing to draw.
+
+    Attributes:
+        axes: The axes.
+        drawn: The members that succeeded: a mesh, a line, dots, or the bars of a histogram.
+        ended: For each other outcome what shows it; the legend counts its members.
+        colorbar: The key to the colours.
+    """
+
+    axes: Axes
+    drawn: Any
+    ended: tuple[Any, ...]
+    colorbar: Colorbar | None
+
+
+@theme.styled
+def sweep_map(
+    result: Any, quantity: str | None = None, x: str | None = None, y: str | None = None, axes: Axes | None = None
+) -> SweepMap:
+    """Draw one quantity of a sweep over what was varied; members that did not succeed are shown by how they ended.
+
+    Over a grid: a map with cells around the values, or along one axis a curve; axes whose values have one quotient are
+    logarithmic. For random draws: dots over two values, over one, or with neither x nor y a histogram.
+
+    Args:
+        result: What `sweep` or `load_sweep` returned, or a part of it, as from `result.sel(...)`.
+        quantity: A number of each member; by default the first that the task returned. "outcome" shows how all ended.
+        x: An axis of the grid, by default the first one; for draws any number of each member.
+        y: The same, by default the next axis.
+        axes: Where to draw; a new figure by default.
+
+    Raises:
+        ValueError: No result of a sweep, no such quantity or axis, a quantity with several numbers for each member,
+            more than two axes.
+
+    Example:
+        >>> def turn(block):
+        ...     return {"turn": np.pi * np.sqrt(1 + block["inertia"] / block["a"] ** 2)}
+        >>> design = nh.Grid({"inertia": [0.5, 1.0, 2.0], "a": [0.5, 1.0]})
+        >>> from tempfile import TemporaryDirectory
+        >>> with TemporaryDirectory() as folder:
+        ...     picture = nh.plot.sweep_map(nh.sweep(turn, design, f"{folder}/turns.zarr"))
+        >>> picture.drawn.get_array().shape, picture.axes.get_xlabel()
+        ((2, 3), 'inertia')
+    """
+    subject = subject_of(result, quantity)
+    if subject.codes.dims == ("member",):
+        axes = theme.axes_or_new(axes, (7.2, 5.4))
+        return SweepMap(axes, *draw_draws(axes, result, subject, x, y))
+    along = _along(subject.values, x, y)
+    axes = theme.axes_or_new(axes, (7.2, 5.4))
+    return _curve(axes, subject, *along) if len(along) == 1 else _map(axes, subject, *along)
+
+
+def _along(values: xarray.DataArray, x: str | None, y: str | None) -> list[str]:
+    """Return the axes of the picture; others may only have one value."""
+    known = [str(name) for name in values.dims]
+    for argument, name in (("x", x), ("y", y)):
+        if name is not None and (not isinstance(name, str) or name not in known):
+            got = shown(name)
+            raise error(f"plot.sweep_map({argument}=...)", f"be one of {', '.join(known)}", got, "Choose one of them.")
+    if not known or (x is not None and x == y):
+        got, remedy = ("one member" if not known else f"{x!r} twice"), "Pass more of the result, or name two axes."
+        raise error("plot.sweep_map(result=...)", "have an axis for x, and another one for y", got, remedy)
+    free = [name for name in known if values.sizes[name] > 1 and name not in (x, y)]
+    across = x or (free.pop(0) if free else None)
+    up = y or (free.pop(0) if free and across else None)
+    if free:
+        remedy = f"Pass result.sel({free[0]}=..., method='nearest'), or result.isel({free[0]}=0)."
+        raise error("plot.sweep_map(result=...)", "have at most two free axes", f"also {', '.join(free)}", remedy)
+    return [name for name in (across, up) if name is not None] or known[:1]
+
+
+def _map(axes: Axes, subject: Subject, x: str, y: str) -> SweepMap:
+    values, codes = (_plane(array, x, y) for array in (subject.values, subject.codes))
+    edges = borders(_values(values, x)), borders(_values(values, y))
+    ended = ends(subject.codes, successful=subject.values.name == OUTCOME)
+    shown = _ended(axes, edges, codes, ended)
+    drawn = bar = None
+    if subject.values.name != OUTCOME:
+        look: Any = {"cmap": theme.TIME, "norm": scale_of(subject), "rasterized": True, "zorder": 1}
+        drawn = axes.pcolormesh(*edges, np.ma.masked_invalid(values.values), **look)
+        bar = colour_key(axes, drawn, subject)
+    for name, values_along, side in ((x, values[x], "x"), (y, values[y], "y")):
+        _dress_axis(axes, side, name, values_along)
+    key_to(axes, ended)
+    _name(axes, subject)
+    return SweepMap(axes, drawn, shown, bar)
+
+
+def _ended(axes: Axes, edges: Any, codes: xarray.DataArray, ended: list[tuple[int, str, str]]) -> tuple[QuadMesh, ...]:
+    """Fill the cells of each outcome with its colour."""
+    return tuple(
+        axes.pcolormesh(
+            *edges,
+            np.ma.masked_where(codes.values != code, np.ones(codes.shape)),
+            cmap=ListedColormap([colour]),
+            rasterized=True,
+            zorder=1,
+        )
+        for code, _, colour in ended
+    )
+
+
+def _curve(axes: Axes, subject: Subject, x: str) -> SweepMap:
+    values, codes = (_plane(array, x) for array in (subject.values, subject.codes))
+    across = _values(values, x)
+    marker = "o" if len(across) <= _MARKED else ""
+    (line,) = axes.plot(across, values.values, color=theme.DISCRETE, marker=marker, markersize=3.5)
+    ended = ends(subject.codes)
+    shown = mark_below(axes, across, codes.values, ended, marker="s")
+    _dress_axis(axes, "x", x, values[x])
+    kept = values.values[np.isfinite(values.values)]
+    axes.set(ylabel=label(subject.values), yscale="log" if is_wide(kept) else "linear")
+    key_to(axes, ended)
+    _name(axes, subject)
+    return SweepMap(axes, line, shown, None)
+
+
+def _plane(array: xarray.DataArray, *names: str) -> xarray.DataArray:
+    """Return an array along some axes, the first one last, ascending along all."""
+    flat = array.squeeze([name for name in array.dims if name not in names])
+    return flat.transpose(*reversed(names)).sortby(list(names))
+
+
+def _values(array: xarray.DataArray, name: str) -> np.ndarray:
+    """Return the values along an axis; vectors and matrices are numbered."""
+    return np.asarray(array[name].values, dtype=float)
+
+
+def _dress_axis(axes: Axes, side: str, name: str, values: xarray.DataArray) -> None:
+    scale = "log" if is_geometric(np.sort(values.values.astype(float))) else "linear"
+    text = label(values.rename(name))
+    axes.set(**{f"{side}scale": scale, f"{side}label": text})
+
+
+def _name(axes: Axes, subject: Subject) -> None:
+    """Write what is shown, and the values that the rest of the design has."""
+    fixed = [
+        f"{str(name).replace('_', ' ')} = {values.values.item():.4g}"
+        for name, values in subject.values.coords.items()
+        if values.size == 1 and values.dtype.kind in "if"
+    ]
+    axes.set_title(", ".join([subject.title, *fixed]))
+    theme.legend_above(axes)
