@@ -119,8 +119,15 @@ def _victim(store: Path) -> Path:
 def _compared(found: dict[str, bytes], expected: dict[str, bytes] | Verdict) -> Verdict:
     if isinstance(expected, Verdict):
         return Verdict("silent", "accepted, though the whole store is refused")
-    other = sorted(name for name in found.keys() | expected.keys() if found.get(name) != expected.get(name))
+    other = sorted(name for name in found.keys() | expected.keys() if not _agree(name, found, expected))
     return Verdict("silent", f"other numbers: {', '.join(other)[:200]}") if other else Verdict("same")
+
+
+def _agree(name: str, found: dict[str, bytes], expected: dict[str, bytes]) -> bool:
+    """Tell whether an entry is right: the table of a run that has lost a record ends there, with a warning."""
+    if name == "table" and found.get(name):
+        return expected[name].startswith(found[name])
+    return found.get(name) == expected.get(name)
 
 
 @contextlib.contextmanager
