@@ -11,6 +11,7 @@ _STEPS = 12  # of Newton's method
 _FIRST = 0.25  # first continuation step, in s
 _SMALLEST = 1e-7  # continuation step, relative to s, below which the branch is given up
 _BENT = 0.5  # most change of the Jacobian in one piece of the path: two roots for one momentum differ by -2
+_APART = 1e300  # of Jacobians that cannot be compared
 _ROUNDING = 1e-24  # squared, of a displacement
 _LEAST = 1e-300  # and the absolute one: a momentum may be any number of times too large
 _FAR = 1e4  # turning of a displacement beyond which the Cayley chart ends: an angle of 179 degrees
@@ -100,7 +101,7 @@ def _bend(before: np.ndarray, after: np.ndarray) -> float:
         E[a, a] -= 1
         trace += E[a, a]
     square = abs(paired(E, E.T))
-    return max(abs(trace), square) if np.isfinite(det) and det != 0 and np.isfinite(square) else np.inf
+    return max(abs(trace), square) if np.isfinite(det) and det != 0 and np.isfinite(square) else _APART
 
 
 @njit()
