@@ -45,7 +45,8 @@ def write_bends(p: SecularBody, x: np.ndarray, R: np.ndarray, G: np.ndarray) -> 
             cF += abs(p.c[i]) * F
     slid = R[1] * R[0]
     first, second, third = square + zF, cF if p.arm == 0 else slid + abs(z0) * cF, _push(p, R, j)
-    inverse = np.eye(3)
+    inverse = np.zeros((3, 3))
+    inverse[0, 0] = inverse[1, 1] = inverse[2, 2] = 1.0
     eliminate(reduced_matrix(p, x, mu, j), inverse)
     inverse = np.abs(inverse)
     G[0] = inverse[0, 0] * first + inverse[0, 1] * second + inverse[0, 2] * third
