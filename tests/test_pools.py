@@ -40,7 +40,9 @@ def test_jax_after_a_fork(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(RuntimeError, match="forked from one that had used JAX"):
         nh.step(sleigh, np.array([0.1, 0.1]))
     with pytest.raises(RuntimeError, match="forked"):
-        nh.flow(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), times=[0.0, 1.0], restricted_velocity=(0.1, 0.1))
+        nh.flow(
+            nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), times=[0, 1], restricted_velocity=(0.1, 0.1), method="diffrax"
+        )
 
 
 @pytest.mark.profile("faults", instead="test_jax_after_a_fork")
