@@ -12,6 +12,7 @@ from nonholo._types import Array, Float
 from nonholo.continuous._equations import Body, body_of, momentum_rate, spatial_velocity
 from nonholo.continuous._integration import on_same_turn
 from nonholo.groups import SE, AbstractMatrixGroup
+from nonholo.numerics import double_precision
 from nonholo.numerics._time_sweep import State, padded, reached, sweep
 from nonholo.systems import AbstractLRSystem, AbstractSystem
 
@@ -66,7 +67,7 @@ def _solve(
     elapsed: np.ndarray,
     tolerances: tuple[float, float],
 ) -> tuple[list[np.ndarray], Outcome]:
-    with jax.enable_x64(True):
+    with double_precision():
         found, good = _sweep(rate, group, state, known, padded(elapsed), tolerances)
     rows = reached(state, found, good, len(elapsed))
     return rows, Outcome.successful if len(rows[0]) == len(elapsed) else Outcome.not_converged
