@@ -53,6 +53,7 @@ def test_turning_sweep_shows_the_closed_form(nonholo: Callable[..., Result]) -> 
     assert lost[~below].mean() > 0.5
 
 
+@pytest.mark.profile("problems", instead="test_turning_sweep_shows_the_closed_form")
 def test_random_tops_keep_their_branch_below_the_saddle(nonholo: Callable[..., Result]) -> None:
     """No top whose energy is below its saddle loses its branch; of those above twice that, none keeps it."""
     found = _swept(nonholo, "random_tops_sweep", 100)

@@ -37,6 +37,7 @@ def test_damaged_stores_are_refused_or_right(tmp_path: Path, monkeypatch: pytest
     assert not [row for row in found if row[-1].kind not in stores.RIGHT]
 
 
+@pytest.mark.profile("faults", instead="test_killed_runs_go_on")
 def test_a_killed_run_goes_on(tmp_path: Path) -> None:
     """One SIGKILL at a random time: the bits are those of a run that nobody disturbed, and nothing is left."""
     file = tmp_path / "kills.json"
