@@ -28,7 +28,7 @@ KILLS = {
 
 def _writers(path: Path) -> set[int]:
     """Return the processes that have written blocks."""
-    return {int(mark.writer.partition(":")[2]) for mark in open_store(path).marks()}
+    return {int(mark.writer.partition(":")[2]) for _, mark in open_store(path).marks()}
 
 
 def _printed(code: str) -> str:
