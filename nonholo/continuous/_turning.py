@@ -3,9 +3,9 @@
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
+from nonholo._compiled import njit
 from nonholo.kernels import RATES
 
 
@@ -25,7 +25,7 @@ class Turning(NamedTuple):
     rate: float
 
 
-@numba.njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def turning_rate(p: Turning, time: float, state: np.ndarray, out: np.ndarray) -> None:
     """Write the rate of the pose, without overflow at any time."""
     phase, n = p.start + p.rate * time, len(p.across)

@@ -10,10 +10,10 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 from numba.extending import overload
 
+from nonholo._compiled import njit
 from nonholo._types import Float
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._small import assign
@@ -67,7 +67,7 @@ def _choose_rate(motion: Any, *_: Any) -> Any:
     return lambda motion, time, state, out: function(motion, time, state, out)
 
 
-@numba.njit(cache=True, nogil=True, **COMPILED)
+@njit(nogil=True, **COMPILED)
 def advance(
     motion: Any,
     t: Tables,
@@ -114,7 +114,7 @@ def advance(
     return reached, True
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _attempt(
     motion: Any,
     t: Tables,
@@ -131,7 +131,7 @@ def _attempt(
         rate(motion, time + t.nodes[stage] * step, trial, stages[stage])
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _verdict(miss: float) -> tuple[float, bool]:
     """Return the factor of the next step and whether the error of this one is allowed."""
     if not math.isfinite(miss):
@@ -140,7 +140,7 @@ def _verdict(miss: float) -> tuple[float, bool]:
     return min(max(factor, _SLOWEST), _FASTEST), miss < 1
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _combine(
     weights: np.ndarray, count: int, step: float, state: np.ndarray, stages: np.ndarray, trial: np.ndarray
 ) -> None:
@@ -152,7 +152,7 @@ def _combine(
         trial[i] = state[i] + step * total
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def _miss(
     t: Tables,
     step: float,

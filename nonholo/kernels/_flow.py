@@ -11,9 +11,9 @@ $$ \sum_j \mathrm{tr}(D_i\,g\mathbb{J}g^T D_j^*)\,w_j = r_i, \qquad g' = X g, \q
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
+from nonholo._compiled import njit
 from nonholo.kernels._dop853 import RATES
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._small import eliminate, multiply, paired, transpose
@@ -53,7 +53,7 @@ class SpaceFlow(NamedTuple):
     planar: bool
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def body_rate(p: BodyFlow, time: float, state: np.ndarray, out: np.ndarray) -> None:
     """Write the rate of a motion with a constraint fixed in the body."""
     k, N = len(p.rows), p.rows.shape[1]
@@ -74,7 +74,7 @@ def body_rate(p: BodyFlow, time: float, state: np.ndarray, out: np.ndarray) -> N
         out[i] = paired(p.rows[i], torque)
 
 
-@numba.njit(cache=True, **COMPILED)
+@njit(**COMPILED)
 def space_rate(p: SpaceFlow, time: float, state: np.ndarray, out: np.ndarray) -> None:
     """Write the rate of a motion with a constraint fixed in space."""
     k, N = len(p.rows), p.rows.shape[1]
@@ -96,7 +96,7 @@ def space_rate(p: SpaceFlow, time: float, state: np.ndarray, out: np.ndarray) ->
         out[N * N] = X[1, 0]
 
 
-@numba.njit(cache=True)
+@njit()
 def add_combination(matrices: np.ndarray, weights: np.ndarray, total: np.ndarray) -> None:
     """Add matrices times the first of some weights."""
     for k in range(len(matrices)):

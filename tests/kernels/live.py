@@ -109,6 +109,9 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     "right-invariant flow on SE(3)": lambda: flows(GENERAL["right-invariant on SE(3)"][0]),
     "pose of a top in closed form": lambda: flows(TOP, "closed_form"),
     "a fold on SO(4)": lambda: orbits(GENERAL["any d on SO(4)"][0], size=20.0),
+    "a fold of a top on SO(5)": lambda: orbits(
+        nh.SuslovTop(mass_tensor(nh.SO(5), np.random.default_rng(5))), size=20.0
+    ),
 }
 
 
