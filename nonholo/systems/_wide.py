@@ -29,7 +29,7 @@ class WideInertia:
     """
 
     turning: Float[np.ndarray, "k"]
-    mass: Float[np.ndarray, ""] | None
+    mass: Float[np.ndarray, ""] | np.floating | None
     offset: Float[np.ndarray, "k"]
 
     @property
