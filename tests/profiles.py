@@ -58,7 +58,8 @@ PROFILES = {
     "shapes": Profile(
         "annotations of shapes and types, checked at run time by jaxtyping and beartype",
         (*_MECHANICS, "orbit", "simulation", "_types", "_checks", "_limits"),
-        f"{PYTHON} -m pytest -q tests/groups tests/systems tests/discrete tests/simulation -k 'not refused and not warned_of' "
+        f"{PYTHON} -m pytest -q tests/groups tests/systems tests/discrete tests/simulation "
+        "-k 'not refused and not warned_of' "
         "--jaxtyping-packages=nonholo.groups,nonholo.systems,nonholo.orbit,nonholo.discrete,nonholo.simulation,"
         "beartype.beartype",
     ),
