@@ -11,7 +11,7 @@ from nonholo.discrete import Discretization
 from nonholo.discrete._composition import composed_reversal_defects
 from nonholo.discrete._structured import reversal_defects, structured
 from nonholo.orbit import Orbit, as_orbit
-from nonholo.systems import NormalForm, is_wide
+from nonholo.systems import NormalForm
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
 _SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
@@ -76,7 +76,7 @@ def invariants(orbit: Orbit) -> Invariants:
 
 def _largest_angle(orbit: Orbit) -> float:
     group = orbit.system.group
-    if is_wide(orbit.system):
+    if orbit.system.is_wide:
         turning = len(cast(NormalForm, orbit.system.normal_form).coupling)
         y = orbit.canonical_chart[:, :turning]  # tan of half the angle, in planes through one axis
         return float(np.degrees(2 * np.arctan(np.linalg.norm(y, axis=1)).max()))

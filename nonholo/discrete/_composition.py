@@ -17,7 +17,6 @@ from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.discrete._structured import Structured, decoded, decoded_poses, encoded, encoded_poses, structured
 from nonholo.orbit import Orbit
-from nonholo.systems import AbstractLRSystem
 
 if TYPE_CHECKING:
     from nonholo.discrete._discretization import Discretization
@@ -109,7 +108,7 @@ def _composed(closed: Structured, discrete: "Discretization") -> kernels.Compose
 
 def whole_displacements(discrete: "Discretization", states: Orbit) -> Float[np.ndarray, "K N N"]:
     """Return the displacements of whole steps from states, in the user's frame; spatial ones of LR systems."""
-    group, moves = discrete.system.group, isinstance(discrete.system, AbstractLRSystem)
+    group, moves = discrete.system.group, discrete.system.is_spatial
     g = states.configuration if moves else np.broadcast_to(group.identity, (len(states), group.size, group.size))
     after = whole_steps(discrete, states.reduced_momentum, g)[1]
     return after @ group.inverse(g) if moves else after
@@ -140,7 +139,7 @@ def composed_reversal_defects(discrete: "Discretization", states: Orbit) -> Floa
     Infinite where the step back cannot be taken, NaN where the step forward cannot.
     """
     r, group = states.reduced_momentum, discrete.system.group
-    moves = isinstance(discrete.system, AbstractLRSystem)
+    moves = discrete.system.is_spatial
     g = states.configuration if moves else np.broadcast_to(group.identity, (len(r), group.size, group.size))
     after, there, ahead = whole_steps(discrete, r, g)
     good = ahead == Outcome.successful

@@ -14,7 +14,6 @@ from nonholo.discrete._composition import weights
 from nonholo.discrete._definition import displaced, momentum_of, principal_displacement, restricted
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._precision import in_double
-from nonholo.systems import AbstractLRSystem
 
 State = tuple[Array, Array]
 
@@ -24,7 +23,7 @@ def _substep(discrete: Discretization, weight: Array, r: Array, g: Array) -> tup
     part = dataclasses.replace(discrete, time_step=weight * discrete.time_step, order=2)
     y, code = principal_displacement(part, r, g)
     W = displaced(part, y)
-    after = W @ g if isinstance(discrete.system, AbstractLRSystem) else g @ W
+    after = discrete.system.moved(g, W)
     return restricted(part, momentum_of(part, y, g, "right"), after), after, y, code
 
 

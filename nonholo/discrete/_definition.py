@@ -21,7 +21,6 @@ from nonholo.discrete._precision import in_double
 from nonholo.discrete._root import followed_root, principal_root
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import Orbit
-from nonholo.systems import AbstractLRSystem
 
 _SAMPLES = 16
 _EVEN = 1e-10  # relative difference of values that counts as rounding
@@ -119,7 +118,7 @@ def momentum_of(discrete: Discretization, y: Array, g: Array, side: str) -> Arra
     """Return the body momentum (left) or the one that arrives (right) of a displacement at a pose."""
     group, system = discrete.system.group, discrete.system
     X = discrete.variety.increment(y)
-    if isinstance(system, AbstractLRSystem):
+    if system.is_spatial:
         return legendre(discrete, group.inverse(g) @ X @ g, side)
     return legendre(discrete, jnp.asarray(system.frame) @ X @ jnp.asarray(group.inverse(system.frame)), side)
 
@@ -127,7 +126,7 @@ def momentum_of(discrete: Discretization, y: Array, g: Array, side: str) -> Arra
 def restricted(discrete: Discretization, momentum: Array, g: Array) -> Array:
     """Return the components of a body momentum along the constraint, in space where that is fixed in space."""
     system = discrete.system
-    if isinstance(system, AbstractLRSystem):
+    if system.is_spatial:
         momentum = system.group.coadjoint(system.group.inverse(g), momentum)
     return jnp.asarray(system.constraint_subspace, dtype=momentum.dtype) @ momentum
 
@@ -157,7 +156,7 @@ def _equations(discrete: Discretization, g: Array) -> Callable[[Array, Array], A
 
 def next_charts_by_definition(discrete: Discretization, states: Orbit) -> Float[np.ndarray, "K m"]:
     """Return the canonical chart coordinates that follow, one step from each state."""
-    poses = states.configuration if isinstance(states.system, AbstractLRSystem) else _identities(states)
+    poses = states.configuration if states.system.is_spatial else _identities(states)
     return in_double(_steps_from, discrete, states.canonical_chart, poses)[1]
 
 
@@ -175,7 +174,7 @@ def step_from(discrete: Discretization, y: Array, g: Array) -> tuple[Array, Arra
 def _pushed(discrete: Discretization, y: Array, g: Array) -> tuple[Array, Array]:
     """Return restricted momentum and pose after a displacement."""
     W = displaced(discrete, y)
-    after = W @ g if isinstance(discrete.system, AbstractLRSystem) else g @ W
+    after = discrete.system.moved(g, W)
     return restricted(discrete, momentum_of(discrete, y, g, "right"), after), after
 
 

@@ -13,7 +13,7 @@ from nonholo.discrete._legendre import legendre, legendre_of_chart
 from nonholo.discrete._structured import is_secular, next_charts
 from nonholo.discrete._variety import Constraint, Variety, checked_constraint, equations_of, variety_of
 from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.systems import AbstractLRSystem, AbstractSystem, System, is_wide
+from nonholo.systems import AbstractSystem, System
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem, DiscretizationT, refuse_in_coordinates
 
 Difference = str | Callable[[Array], Array]
@@ -59,7 +59,7 @@ class Discretization(AbstractMotion):
             return True
         variety = self.variety
         skew = self.constraint == "skew" or (self.constraint == "exponential" and not variety.exponential)
-        return self.difference == "matrix" and skew and not isinstance(self.system, AbstractLRSystem)
+        return self.difference == "matrix" and skew and not self.system.is_spatial
 
     @property
     def is_self_adjoint(self) -> bool:
@@ -87,7 +87,7 @@ class Discretization(AbstractMotion):
 
     def constraint_residual(self, states: Orbit) -> Float[np.ndarray, "K j"]:
         """Return the forbidden parts of logarithms of displacements, or the residuals of the variety's equations."""
-        if is_wide(self.system):
+        if self.system.is_wide:
             return np.zeros((len(states), 0))  # the chart has no forbidden directions
         D = self.variety.displaced(states.canonical_chart)
         if self.variety.exact:
@@ -111,7 +111,7 @@ class Discretization(AbstractMotion):
         before = states.chosen(slice(None, -1))
         charts = states.canonical_chart[1:] if states.save_every == 1 else next_charts(self, before)
         arriving = self._momentum(before, before.canonical_chart, "right")
-        if not isinstance(self.system, AbstractLRSystem):
+        if not self.system.is_spatial:
             jump = legendre_of_chart(self, charts, "left") - arriving
             return jump @ np.linalg.pinv(self.system.annihilator)
         group = self.system.group
@@ -120,7 +120,7 @@ class Discretization(AbstractMotion):
         return group.coadjoint(group.inverse(g), jump) @ np.linalg.pinv(self.system.annihilator)
 
     def _momentum(self, states: Orbit, cayley: np.ndarray, side: str) -> np.ndarray:
-        if isinstance(self.system, AbstractLRSystem):
+        if self.system.is_spatial:
             return _in_body(self, cayley, states.configuration, side)
         return legendre_of_chart(self, cayley, side)
 
@@ -207,7 +207,7 @@ def discretize(
 
 
 def _difference(system: AbstractSystem, difference: Difference | None) -> Difference:
-    where, defined = "discretize(difference=...)", is_wide(system) or system.homogeneous_mass_tensor is not None
+    where, defined = "discretize(difference=...)", system.is_wide or system.homogeneous_mass_tensor is not None
     if difference is None:
         return "matrix" if defined else "logarithmic"
     if callable(difference):

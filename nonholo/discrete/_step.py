@@ -20,7 +20,6 @@ from nonholo.discrete._legendre import legendre
 from nonholo.discrete._precision import in_double
 from nonholo.discrete._root import principal_root
 from nonholo.discrete._structured import ScalarStep, scalar_step
-from nonholo.systems import AbstractLRSystem
 
 _ON_LOCUS = 1e-6  # relative distance from the momentum locus that a computed momentum may have
 
@@ -74,7 +73,7 @@ def step(discrete: Discretization, momentum: Any, branch: BranchRule = "principa
         (array([0., 1., 0.]), 0)
     """
     as_discretization("step(discrete=...)", discrete)
-    if isinstance(discrete.system, AbstractLRSystem):
+    if discrete.system.is_spatial:
         got = f"{type(discrete.system).__name__}, whose step depends on the configuration"
         raise error("step(discrete=...)", "have a left-invariant constraint", got, "Use simulate(..., steps=1).")
     k, dim = discrete.system.constraint_subspace.shape

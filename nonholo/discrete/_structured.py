@@ -11,7 +11,7 @@ from nonholo.discrete._general import general_body
 from nonholo.discrete._secular import SecularStep, is_secular, secular_step
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import Orbit
-from nonholo.systems import AbstractLRSystem, AbstractSystem, ChaplyginSleigh, SuslovTop
+from nonholo.systems import AbstractSystem, ChaplyginSleigh, SuslovTop
 
 if TYPE_CHECKING:
     from nonholo.discrete._discretization import Discretization
@@ -127,7 +127,7 @@ def next_charts(discrete: "Discretization", states: Orbit) -> Float[np.ndarray, 
 
 def matrices_of(states: Orbit) -> Float[np.ndarray, "K size"] | None:
     """Return poses as rows of matrix entries where the step depends on them, for right-invariant constraints."""
-    if not isinstance(states.system, AbstractLRSystem):
+    if not states.system.is_spatial:
         return None
     return np.ascontiguousarray(states.configuration.reshape(len(states), states.system.group.size**2))
 

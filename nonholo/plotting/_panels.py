@@ -18,7 +18,7 @@ from nonholo.plotting._phase_portrait import phase_portrait
 from nonholo.plotting._point_track import point_track
 from nonholo.plotting._subject import is_steered_in_space
 from nonholo.plotting._time_series import heading_and_speed, momentum_components, velocity_components
-from nonholo.systems import AbstractLLSystem, ChaplyginSleigh, is_wide
+from nonholo.systems import AbstractLLSystem, ChaplyginSleigh
 
 
 class Panel(NamedTuple):
@@ -31,7 +31,7 @@ class Panel(NamedTuple):
 
 def panels_of(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
     """Return the panels of an orbit, the large one first; there is always one."""
-    if is_wide(orbit.system):
+    if orbit.system.is_wide:
         return [_components(orbit, flow), Panel(functools.partial(energy_error, orbit), is_timed=True)]
     path, momentum = _path(orbit, flow), _momentum(orbit, flow)
     velocity = Panel(functools.partial(_velocity, orbit, flow), is_timed=True)
