@@ -52,7 +52,7 @@ def equal_steps(system: nh.SuslovTop | nh.MultidimensionalSleigh, h: float, rows
         turned = secular.to_kernel(chart[None])
         two, _, _ = kernels.step_each(secular.body, (secular.encode(r)[None], turned, None), start[:1], True)
         scale = np.abs(r).max()
-        assert np.allclose(secular.decoded(two), one / general.scale, rtol=0, atol=1e-13 * scale)
+        assert np.allclose(secular.decode(two), one / general.scale, rtol=0, atol=1e-13 * scale)
 
 
 @pytest.mark.parametrize("n", [4, 5, 9, 20])
