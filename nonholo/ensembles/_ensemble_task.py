@@ -141,6 +141,12 @@ class EnsembleTask:
                 remedy = f"{kind} has {known}; starts are {', '.join(STARTS)}."
                 raise error("sweep(design=...)", "name parameters of the system or starts", shown(name), remedy)
 
+    def on_route_of(self, stored: dict[str, Any]) -> "EnsembleTask":
+        """Return the task by the route that began a store, from the description of that one's task."""
+        task = copy.copy(self)
+        object.__setattr__(task, "discrete", io.on_route_of(stored, self.discrete))
+        return task
+
     def as_of_schema_1(self) -> "EnsembleTask":
         """Return the task with the results of stores of schema 1."""
         task = copy.copy(self)

@@ -8,7 +8,6 @@ from nonholo.discrete.routes._definition import DefinitionRoute
 from nonholo.discrete.routes._matrix import MatrixRoute
 from nonholo.discrete.routes._scalar import ScalarRoute
 from nonholo.discrete.routes._secular import SecularRoute
-from nonholo.systems import LLSystem
 
 _SCALAR = (None, "scalar")
 _SECULAR = (*_SCALAR, "secular")
@@ -30,7 +29,7 @@ def make_route(scheme: Scheme, wanted: str | None = None) -> AbstractRoute:
 
 def _single(scheme: Scheme, wanted: str | None) -> AbstractRoute:
     system, step, difference, constraint = scheme.system, scheme.time_step, scheme.difference, scheme.constraint
-    form = None if isinstance(system, LLSystem) else system.normal_form  # their stores were begun by matrices
+    form = system.normal_form
     if difference == "matrix" and constraint in ("skew", "exponential"):
         if wanted in _SCALAR and form is not None and ScalarRoute.covers(form):
             return ScalarRoute(system, form, step)
