@@ -79,8 +79,11 @@ def restore_motion(stored: dict[str, Any], motion: AbstractMotion | None) -> Abs
     system = restore_system(stored["system"], parameters)
     if kind not in _MOTIONS:
         raise error("load_orbit(path=...)", "hold a motion of this version", repr(kind), "Upgrade nonholo.")
-    described.pop("route", None)
-    return on_route_of(stored, _MOTIONS[kind](system, **described))
+    route = described.pop("route", None)
+    restored = on_route_of(stored, _MOTIONS[kind](system, **described))
+    if isinstance(restored, Discretization) and route not in (None, restored.route.name):
+        raise error("load_orbit(path=...)", "hold a run by a route of this version", repr(route), "Upgrade nonholo.")
+    return restored
 
 
 def _same(stored: dict[str, Any], motion: AbstractMotion) -> AbstractMotion:
@@ -94,17 +97,11 @@ def _same(stored: dict[str, Any], motion: AbstractMotion) -> AbstractMotion:
 
 
 def on_route_of(stored: dict[str, Any], motion: Any) -> Any:
-    """Return a motion by the route that began a store; the motion itself where that is its own.
-
-    Raises:
-        ValueError: This version has no such route for the system.
-    """
+    """Return a motion by the route that began a store, or the next one; the motion itself where that is its own."""
     if not isinstance(motion, Discretization):
         return motion
     named = json.loads(stored["motion"]).get("route")
     other = dataclasses.replace(motion, wanted_route=named or _EARLIER_ROUTES.get(stored["system"]))
-    if named not in (None, other.route.name):
-        raise error("load_orbit(path=...)", "hold a run by a route of this version", repr(named), "Upgrade nonholo.")
     return motion if other.route.name == motion.route.name else other
 
 
@@ -112,7 +109,8 @@ def motion_text(stored: dict[str, Any], motion: AbstractMotion) -> str:
     """Return what a store says of its motion; of before routes had names, with that of a motion by the same route."""
     if not isinstance(motion, Discretization):
         return stored["motion"]
-    return json.dumps({**json.loads(stored["motion"]), "route": motion.route.name})
+    described = json.loads(stored["motion"])
+    return json.dumps({**described, "route": described.get("route", motion.route.name)})
 
 
 def identity_of(motion: AbstractMotion) -> dict[str, str]:
