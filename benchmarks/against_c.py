@@ -19,7 +19,6 @@ import numpy as np
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.discrete._structured import encoded, structured
 
 STEPS, ROUNDS = 1_000_000, 11
 FLAGS = ["-O3", "-march=native", "-ffp-contract=fast", "-fno-math-errno", "-fopenmp-simd", "-shared", "-fPIC"]
@@ -59,9 +58,9 @@ def paired(library: Callable[[], None], reference: Callable[[], None], unit: flo
 def one_orbit(found: ctypes.CDLL, name: str, system: nh.SuslovTop | nh.ChaplyginSleigh, velocity: tuple) -> None:
     """Compare one orbit, stored and not."""
     discrete = nh.discretize(system, 0.01)
-    step = structured(discrete)
+    step = discrete.route
     body = np.array(step.body, dtype=np.float64)
-    first = encoded(step, system.to_canonical(system.restricted_momentum(velocity)))
+    first = step.encode(system.to_canonical(system.restricted_momentum(velocity)))
     momenta, charts, poses = np.empty((STEPS, 2)), np.empty((STEPS, 2)), np.empty((STEPS, 4))
     run = getattr(found, name)
     unit = np.array([1.0, 0.0, 0.0, 0.0])
@@ -82,7 +81,7 @@ def one_orbit(found: ctypes.CDLL, name: str, system: nh.SuslovTop | nh.Chaplygin
     reference((momenta, charts, poses))
     orbit = nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS)
     scale = np.abs(first).max()
-    assert np.allclose(encoded(step, orbit.reduced_momentum[1:]), momenta, rtol=0, atol=1e-11 * scale)
+    assert np.allclose(step.encode(orbit.reduced_momentum[1:]), momenta, rtol=0, atol=1e-11 * scale)
     library_bare()
     for case, run_library, rows in (
         ("stored with pose", library_stored, (momenta, charts, poses)),
@@ -101,8 +100,8 @@ def many_dimensions(found: ctypes.CDLL, n: int, slides: bool) -> None:
     velocity = rng.normal(size=k)
     velocity = np.append(velocity / np.linalg.norm(velocity), [-1.0] * slides)
     discrete = nh.discretize(body, 0.1)
-    step = structured(discrete)
-    first = encoded(step, body.restricted_momentum(velocity))
+    step = discrete.route
+    first = step.encode(body.restricted_momentum(velocity))
     steps = max(10, 2_000_000 // n)
     b, c = step.body.b, step.body.c
     empty = np.empty((0, k + slides)), np.empty((0, k + slides)), np.empty((0, 0))

@@ -20,7 +20,6 @@ import numpy as np
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.discrete._composition import compiled_step
 
 STARTS = 8
 BLOCK = 50  # steps between two looks at where the orbit is
@@ -35,7 +34,7 @@ class Live:
     """A run that is kept alive."""
 
     def __init__(self, discrete: nh.Discretization, number: int, *, reverse: bool) -> None:
-        self.step, self.reverse, self.rng = compiled_step(discrete), reverse, np.random.default_rng(number)
+        self.step, self.reverse, self.rng = discrete.route, reverse, np.random.default_rng(number)
         place = 0 if discrete.order == 2 else 6  # of the momenta that were computed last in the array of a run
         self.momenta, self.lost = slice(place, place + 2), slice(place + 2, place + 4)
         system = discrete.system.canonical

@@ -19,7 +19,6 @@ from against_c import built, paired, pointer
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.discrete._structured import encoded, structured
 
 THREADS = numba.config.NUMBA_NUM_THREADS
 MEMBERS, STEPS, TIME_STEP = 100_000 - 100_000 % 32, 200, 0.05
@@ -40,9 +39,9 @@ def compare(found: ctypes.CDLL, name: str, posed: bool) -> None:
     """Print nanoseconds per step and member of the kernel, the call in one thread and in all, and of C."""
     discrete = nh.discretize(SYSTEMS[name], TIME_STEP)
     velocities = np.random.default_rng(0).normal(size=(MEMBERS, 2))
-    step, run = structured(discrete), getattr(found, name)
+    step, run = discrete.route, getattr(found, name)
     body = np.array(step.body, dtype=np.float64)
-    first = encoded(step, velocities @ discrete.system.constrained_inertia)
+    first = step.encode(velocities @ discrete.system.constrained_inertia)
     unit, rows = np.tile((1.0, 0.0, 0.0, 0.0), (MEMBERS, 1)), kernel_rows(posed)
     m, q = first.copy(), unit.copy()
 
@@ -63,7 +62,7 @@ def compare(found: ctypes.CDLL, name: str, posed: bool) -> None:
     scale = np.abs(first).max()
     assert np.abs(m - rows.momenta[:, 0]).max() < 1e-13 * scale
     assert not posed or np.abs(q - rows.poses[:, 0]).max() < 1e-11
-    assert np.abs(encoded(step, call().reduced_momentum[:, 0]) - m).max() < 1e-13 * scale
+    assert np.abs(step.encode(call().reduced_momentum[:, 0]) - m).max() < 1e-13 * scale
     for label, threads, ours in (("kernel", 1, kernel), ("call", 1, call), ("call", THREADS, call)):
         numba.config.NUMBA_NUM_THREADS = threads
         fast, slow, ratio = paired(ours, reference, MEMBERS * STEPS)

@@ -23,7 +23,6 @@ import numpy as np
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.discrete._structured import scalar_step
 from nonholo.kernels._interface import correction
 
 CORRECTIONS = 3
@@ -138,8 +137,8 @@ def main() -> None:
         return
     top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
     discrete = nh.discretize(top, 0.05)
-    closed = scalar_step(discrete)
-    assert closed is not None
+    closed = discrete.route
+    assert closed.is_scalar
     velocities = np.random.default_rng(0).uniform(-1, 1, (asked.members, 2))
     momenta = float(closed.scale) * (velocities @ top.constrained_inertia).T
     check(discrete, closed.body, momenta, float(closed.scale), asked.steps)

@@ -10,7 +10,7 @@ import numpy as np
 from nonholo._checks import error, shown
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.systems import AbstractLLSystem, AbstractLRSystem, AbstractSystem
+from nonholo.systems import AbstractSystem
 from nonholo.systems._drift import gyroscopic_form
 from nonholo.systems._subspace import null_space, spanned
 
@@ -66,14 +66,12 @@ def conserved_momenta(system: AbstractSystem) -> ConservedMomenta:
         >>> conserved_momenta(nh.ChaplyginSleigh(1.0, 1.0, 0.5)).body.shape
         (0, 3)
     """
-    if isinstance(system, AbstractLLSystem):
-        return _left(system)
-    if isinstance(system, AbstractLRSystem):
-        return _right(system)
-    raise error("conserved_momenta(system=...)", "be a system", shown(system), "Pass a SuslovTop, an LLSystem, ...")
+    if not isinstance(system, AbstractSystem):
+        raise error("conserved_momenta(system=...)", "be a system", shown(system), "Pass a SuslovTop, an LLSystem, ...")
+    return _right(system) if system.is_spatial else _left(system)
 
 
-def _left(system: AbstractLLSystem) -> ConservedMomenta:
+def _left(system: AbstractSystem) -> ConservedMomenta:
     group, rows = system.group, spanned(system.constraint_subspace)
     inertia, everything = np.asarray(system.inertia_operator), np.eye(group.dim)
     form = gyroscopic_form(inertia, _brackets(group, rows, rows), rows)
@@ -82,7 +80,7 @@ def _left(system: AbstractLLSystem) -> ConservedMomenta:
     return ConservedMomenta(coefficients @ rows, _largest_ideal(group, _vanishing(reactions, _scale(group, inertia))))
 
 
-def _right(system: AbstractLRSystem) -> ConservedMomenta:
+def _right(system: AbstractSystem) -> ConservedMomenta:
     group, rows, everything = system.group, spanned(system.constraint_subspace), np.eye(system.group.dim)
     inertia, rng = np.asarray(system.inertia_operator), np.random.default_rng(0)
     brackets, rates, reactions = _brackets(group, rows, everything), [], []

@@ -12,7 +12,7 @@ from nonholo._checks import error, positive
 from nonholo._types import Array, Float
 from nonholo.discrete import Discretization
 from nonholo.discrete._composition import weights
-from nonholo.systems import AbstractLLSystem
+from nonholo.systems import AbstractLLSystem, AbstractSystem
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -104,14 +104,15 @@ def _checked(where: str, value: Any) -> tuple[AbstractLLSystem, Float[np.ndarray
     """Return the body and the time steps of the substeps, one for order 2."""
     remedy = "Pass a SuslovTop, a sleigh, or a discretisation of one."
     body = value.system if isinstance(value, Discretization) else value
-    if not isinstance(body, AbstractLLSystem):
+    if not isinstance(body, AbstractSystem) or body.is_spatial:
         raise error(where, "have a left-invariant constraint", type(body).__name__, remedy)
+    left = cast(AbstractLLSystem, body)
     if not isinstance(value, Discretization):
-        return body, None
+        return left, None
     if not value.conserves_energy:
         got = f"difference={value.difference!r}, constraint={value.constraint!r}"
         raise error(where, "conserve the energy", got, "Use the defaults of `discretize`.")
-    return body, _steps(value)
+    return left, _steps(value)
 
 
 def _rates(body: AbstractLLSystem, w: Float[np.ndarray, "k"]) -> Float[np.ndarray, "j"]:

@@ -7,11 +7,9 @@ import numpy as np
 
 from nonholo._checks import error
 from nonholo._results import Outcome
-from nonholo.discrete import Discretization
-from nonholo.discrete._composition import composed_reversal_defects
-from nonholo.discrete._structured import reversal_defects, structured
+from nonholo.discrete import Discretization, reversal_defects
 from nonholo.orbit import Orbit, as_orbit
-from nonholo.systems import NormalForm, is_wide
+from nonholo.systems import NormalForm
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
 _SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
@@ -76,7 +74,7 @@ def invariants(orbit: Orbit) -> Invariants:
 
 def _largest_angle(orbit: Orbit) -> float:
     group = orbit.system.group
-    if is_wide(orbit.system):
+    if orbit.system.is_wide:
         turning = len(cast(NormalForm, orbit.system.normal_form).coupling)
         y = orbit.canonical_chart[:, :turning]  # tan of half the angle, in planes through one axis
         return float(np.degrees(2 * np.arctan(np.linalg.norm(y, axis=1)).max()))
@@ -91,9 +89,9 @@ def _group_residual(orbit: Orbit) -> float:
 
 def _reversal_defect(orbit: Orbit) -> float | None:
     motion = orbit.motion
-    if not isinstance(motion, Discretization) or structured(motion) is None:
+    route = motion.route.compiled if isinstance(motion, Discretization) else None
+    if route is None:
         return None
     moving = np.abs(orbit.canonical_chart).sum(axis=1) > 0
-    measured = reversal_defects if motion.order == 2 else composed_reversal_defects
-    defects = measured(motion, orbit.chosen(moving))
+    defects = reversal_defects(route, orbit.chosen(moving))
     return float(np.max(defects, initial=0.0, where=~np.isnan(defects)))

@@ -14,7 +14,7 @@ from nonholo._checks import error, number, shown, trailing
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.systems import AbstractLRSystem, AbstractSystem
+from nonholo.systems import AbstractSystem
 from nonholo.systems._mass import inertia_form
 
 Body = tuple[Array, Array, Array]
@@ -66,7 +66,7 @@ class ContinuousFlow(AbstractMotion):
         For a right-invariant constraint the last term is $\sum_j \lambda_j \mathrm{Ad}^*_g a^j$.
         """
         system = self.system
-        if isinstance(system, AbstractLRSystem):
+        if system.is_spatial:
             force = spatial_reaction(system, states.configuration, states.body_velocity)
         else:
             force = reaction(system.group, body_of(system), states.restricted_momentum)
@@ -75,8 +75,8 @@ class ContinuousFlow(AbstractMotion):
     def constraint_residual(self, states: Orbit) -> Float[np.ndarray, "K s"]:
         """Return the forbidden velocities."""
         velocity, system = states.body_velocity, self.system
-        if isinstance(system, AbstractLRSystem):
-            velocity = (system.group.adjoint(states.configuration) @ velocity[..., None])[..., 0]
+        if system.is_spatial:
+            velocity = (system.carried(states.configuration) @ velocity[..., None])[..., 0]
         return velocity @ system.annihilator.T
 
     def displacements(self, states: Orbit) -> Float[np.ndarray, "K N N"]:
@@ -100,7 +100,7 @@ def spatial_velocity(
 
 
 def spatial_reaction(
-    system: AbstractLRSystem, g: Float[np.ndarray, "K N N"], velocity: Float[np.ndarray, "K dim"]
+    system: AbstractSystem, g: Float[np.ndarray, "K N N"], velocity: Float[np.ndarray, "K dim"]
 ) -> Float[np.ndarray, "K dim"]:
     r"""Return the constraint force in space, $\mathrm{Ad}^*_{g^{-1}}(\mathbb{I}\dot\omega - \mathrm{ad}^*_\omega p)$.
 
@@ -110,7 +110,7 @@ def spatial_reaction(
     group, S, inertia = system.group, system.constraint_subspace, system.inertia_operator
     back = group.inverse(g)
     torque = group.coadjoint(back, group.coad(velocity, velocity @ inertia.T))
-    rate = np.linalg.solve(system.spatial_inertia(g), (torque @ S.T)[..., None])[..., 0] @ S
+    rate = system.restricted_velocity(torque @ S.T, g) @ S
     acceleration = (group.adjoint(back) @ rate[..., None])[..., 0]
     return group.coadjoint(back, acceleration @ inertia.T) - torque
 
@@ -147,7 +147,7 @@ def vector_field(system: AbstractSystem) -> Callable[[Array, Float[Array, "size"
         raise error("vector_field(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
     group, S = system.group, system.constraint_subspace
     k, shape = len(S), group.identity.shape
-    body = None if isinstance(system, AbstractLRSystem) else body_of(system)
+    body = None if system.is_spatial else body_of(system)
 
     def derivative(time: Array, state: Float[Array, "size"]) -> Float[Array, "size"]:
         number("vector_field(...)(time=...)", time)

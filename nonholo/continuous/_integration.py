@@ -11,7 +11,7 @@ from nonholo.continuous._heteroclinic import Heteroclinic
 from nonholo.continuous._turning import Turning
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.kernels import BodyFlow, SpaceFlow, solve
-from nonholo.systems import AbstractLRSystem, AbstractSystem
+from nonholo.systems import AbstractSystem
 
 Solved: TypeAlias = tuple[Float[np.ndarray, "K k"], Float[np.ndarray, "K size"], Float[np.ndarray, "K"] | None, Outcome]
 
@@ -30,7 +30,7 @@ def integrate(
     group = system.group
     planar = group == SE(2)
     g, turned = group.matrix_from_pose(pose).ravel(), np.arctan2(pose[1:2], pose[0:1]) if planar else np.zeros(0)
-    if isinstance(system, AbstractLRSystem):
+    if system.is_spatial:
         k, motion = 0, space_flow(system, reduced_momentum, planar)
     else:
         k, motion = len(reduced_momentum), body_flow(system, planar)
@@ -64,7 +64,7 @@ def body_flow(system: AbstractSystem, planar: bool) -> BodyFlow:
     return BodyFlow(velocities, momenta, rows, planar)
 
 
-def space_flow(system: AbstractLRSystem, momentum: Float[np.ndarray, "k"], planar: bool) -> SpaceFlow:
+def space_flow(system: AbstractSystem, momentum: Float[np.ndarray, "k"], planar: bool) -> SpaceFlow:
     """Return what the compiled rates need of a system with a constraint fixed in space."""
     rows = np.ascontiguousarray(system.group.hat(system.constraint_subspace))
     duals = np.ascontiguousarray(np.swapaxes(system.group.form_adjoint(rows), -1, -2))

@@ -14,7 +14,7 @@ from nonholo.continuous._integration import on_same_turn
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.numerics import double_precision
 from nonholo.numerics._time_sweep import State, padded, reached, sweep
-from nonholo.systems import AbstractLRSystem, AbstractSystem
+from nonholo.systems import AbstractSystem
 
 Rate = Callable[[AbstractMatrixGroup, Array, State, Any], State]
 
@@ -33,7 +33,7 @@ def integrate_by_diffrax(
     planar = system.group == SE(2)
     turned = np.arctan2(pose[1:2], pose[0:1]) if planar else np.zeros(0)
     start = (reduced_momentum, pose, turned)
-    if isinstance(system, AbstractLRSystem):
+    if system.is_spatial:
         rate, known = _spatial_rate, (system.constraint_subspace, system.homogeneous_mass_tensor)
     else:
         rate, known = _motion_rate, body_of(system)

@@ -15,7 +15,6 @@ from nonholo.discrete._branch_equations import has_frame
 from nonholo.discrete._branch_values import Branches
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._regions import is_regular, regions
-from nonholo.systems import AbstractLRSystem
 
 Chooser: TypeAlias = Callable[[Branches, np.ndarray], int | None]
 BranchRule: TypeAlias = str | Chooser
@@ -35,7 +34,7 @@ def checked_rule(owner: str, discrete: Discretization, branch: Any) -> Any:
 
 
 def _check_known(where: str, discrete: Discretization, branch: Any) -> None:
-    if isinstance(discrete.system, AbstractLRSystem):
+    if discrete.system.is_spatial:
         got = (
             f"{shown(branch)} for a right-invariant constraint, whose equations change with the pose from step to step"
         )

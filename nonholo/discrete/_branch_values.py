@@ -16,7 +16,6 @@ from nonholo.discrete._branch_roots import Root, roots_of
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete._regions import regions
-from nonholo.discrete._structured import first_root, structured
 from nonholo.systems import AbstractLLSystem
 
 SAME = 1e-6  # relative distance of a computed displacement or momentum from the branch that it is
@@ -122,10 +121,10 @@ def point_over(where: str, discrete: Discretization, frame: Frame, W: np.ndarray
 
 def principal_increment(discrete: Discretization, canonical: Float[np.ndarray, "k"]) -> tuple[Outcome, Array]:
     """Return the outcome and the verified principal displacement, canonical, minus the identity."""
-    step = structured(discrete)
-    if step is None:
+    route = discrete.route.compiled
+    if route is None:
         return Outcome.branch_unverified, None
-    outcome, chart = first_root(step, discrete.system, canonical)
+    outcome, chart = route.first_root(canonical)
     return outcome, discrete.variety.increment(chart) if outcome == Outcome.successful else None
 
 

@@ -5,22 +5,14 @@ of either sign, makes of it; its displacement is the principal one over r. Orbit
 first substep of each step.
 """
 
-import dataclasses
 import functools
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from nonholo import kernels
-from nonholo._checks import choice, error, needs
-from nonholo._results import Outcome
+from nonholo._checks import choice, error
 from nonholo._types import Float
-from nonholo.discrete._structured import Structured, decoded, decoded_poses, encoded, encoded_poses, structured
-from nonholo.orbit import Orbit
-from nonholo.systems import AbstractLRSystem
-
-if TYPE_CHECKING:
-    from nonholo.discrete._discretization import Discretization
+from nonholo.discrete._scheme import Scheme
 
 WEIGHTS = {
     4: ("0.414490771794375737142354062860761495711775", "0.414490771794375737142354062860761495711775"),
@@ -72,81 +64,17 @@ def checked_order(order: Any, difference: object, constraint: object) -> int:
     return order
 
 
-def refuse_composition(where: str, discrete: "Discretization", remedy: str) -> None:
+def refuse_composition(where: str, discrete: Scheme, remedy: str) -> None:
     """Refuse a discretisation of an order above 2."""
     if discrete.order > 2:
         got = f"order {discrete.order}, a composition of {len(weights(discrete.order))} steps"
         raise error(where, "have a discretisation of order 2", got, remedy)
 
 
-def check_composed_run(discrete: "Discretization", rule: object, displacement: Any) -> None:
+def check_composed_run(discrete: Scheme, rule: object, displacement: Any) -> None:
     """Refuse what a run of a composition cannot do."""
     if rule != "principal":
         refuse_composition("simulate(branch=...)", discrete, "Leave branch out: each substep takes the principal root.")
     if displacement is not None:
         remedy = "A whole step does not lie on the variety: start from a momentum or a velocity."
         refuse_composition("simulate(displacement=...)", discrete, remedy)
-
-
-def first_substep(discrete: "Discretization") -> "Discretization":
-    """Return the discretisation of order 2 of the first substep; that of order 2 itself."""
-    if discrete.order == 2:
-        return discrete
-    return dataclasses.replace(discrete, time_step=weights(discrete.order)[0] * discrete.time_step, order=2)
-
-
-def compiled_step(discrete: "Discretization") -> Structured | None:
-    """Return the compiled step of a discretisation of any order, or None if only its definition can be run."""
-    closed = structured(discrete)
-    if closed is None or discrete.order == 2:
-        return closed
-    return closed._replace(body=_composed(closed, discrete))
-
-
-def _composed(closed: Structured, discrete: "Discretization") -> kernels.ComposedBody:
-    return kernels.ComposedBody(closed.body, weights(discrete.order).copy())
-
-
-def whole_displacements(discrete: "Discretization", states: Orbit) -> Float[np.ndarray, "K N N"]:
-    """Return the displacements of whole steps from states, in the user's frame; spatial ones of LR systems."""
-    group, moves = discrete.system.group, isinstance(discrete.system, AbstractLRSystem)
-    g = states.configuration if moves else np.broadcast_to(group.identity, (len(states), group.size, group.size))
-    after = whole_steps(discrete, states.reduced_momentum, g)[1]
-    return after @ group.inverse(g) if moves else after
-
-
-def whole_steps(
-    discrete: "Discretization", momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]
-) -> tuple[Float[np.ndarray, "K k"], Float[np.ndarray, "K N N"], np.ndarray]:
-    """Take one step from each row of canonical momenta and poses; return both after it, and the outcomes.
-
-    Rows that cannot go on are NaN.
-    """
-    closed, group, frame = structured(discrete), discrete.system.group, discrete.system.frame
-    if closed is None:
-        with needs("jax", "A step that is not compiled"):
-            from nonholo.discrete._composition_definition import whole_steps_by_definition
-
-        return whole_steps_by_definition(discrete, momenta, g)
-    poses = encoded_poses(closed, group, group.pose_from_matrix(g @ frame))
-    after, moved, codes = kernels.whole_steps(_composed(closed, discrete), encoded(closed, momenta), poses)
-    after, moved = (np.where((codes == Outcome.successful)[:, None], rows, np.nan) for rows in (after, moved))
-    ahead = group.matrix_from_pose(decoded_poses(closed, group, moved)) @ group.inverse(frame)
-    return decoded(closed, after), ahead, codes
-
-
-def composed_reversal_defects(discrete: "Discretization", states: Orbit) -> Float[np.ndarray, "K"]:
-    """Return, for each state, how far one step forward and one back (from the opposite momentum) miss it, relatively.
-
-    Infinite where the step back cannot be taken, NaN where the step forward cannot.
-    """
-    r, group = states.reduced_momentum, discrete.system.group
-    moves = isinstance(discrete.system, AbstractLRSystem)
-    g = states.configuration if moves else np.broadcast_to(group.identity, (len(r), group.size, group.size))
-    after, there, ahead = whole_steps(discrete, r, g)
-    good = ahead == Outcome.successful
-    back, _, behind = whole_steps(discrete, -after[good], there[good])
-    missed = np.full(len(r), np.nan)
-    far = np.abs(back + r[good]).max(axis=1, initial=0.0) / np.abs(r[good]).max(axis=1, initial=0.0)
-    missed[good] = np.where(behind == Outcome.successful, far, np.inf)
-    return missed

@@ -1,6 +1,7 @@
 """Compositions by the definition of the step, in JAX: what the compiled compositions are tested against."""
 
 import dataclasses
+from typing import Any, cast
 
 import equinox
 import jax
@@ -12,23 +13,22 @@ from nonholo._results import Outcome
 from nonholo._types import Array, Float
 from nonholo.discrete._composition import weights
 from nonholo.discrete._definition import displaced, momentum_of, principal_displacement, restricted
-from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._precision import in_double
-from nonholo.systems import AbstractLRSystem
+from nonholo.discrete._scheme import Scheme
 
 State = tuple[Array, Array]
 
 
-def _substep(discrete: Discretization, weight: Array, r: Array, g: Array) -> tuple[Array, Array, Array, Array]:
+def _substep(discrete: Scheme, weight: Array, r: Array, g: Array) -> tuple[Array, Array, Array, Array]:
     """Return momentum and pose after a substep, the chart of its displacement and the outcome."""
-    part = dataclasses.replace(discrete, time_step=weight * discrete.time_step, order=2)
+    part: Any = dataclasses.replace(cast(Any, discrete), time_step=weight * discrete.time_step, order=2)
     y, code = principal_displacement(part, r, g)
     W = displaced(part, y)
-    after = W @ g if isinstance(discrete.system, AbstractLRSystem) else g @ W
+    after = discrete.system.moved(g, W)
     return restricted(part, momentum_of(part, y, g, "right"), after), after, y, code
 
 
-def _sweep(discrete: Discretization, r: Array, g: Array) -> tuple[State, Array, Array]:
+def _sweep(discrete: Scheme, r: Array, g: Array) -> tuple[State, Array, Array]:
     """Return momentum and pose after a whole step, the chart of its first substep and the outcome."""
 
     def advance(carry: tuple[Array, ...], weight: Array) -> tuple[tuple[Array, ...], Array]:
@@ -48,7 +48,7 @@ _swept_each = equinox.filter_jit(jax.vmap(_sweep, in_axes=(None, 0, 0)))
 
 
 def whole_steps_by_definition(
-    discrete: Discretization, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]
+    discrete: Scheme, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Take one step from each row of canonical momenta and poses; return both after it, and the outcomes."""
     C = discrete.system.frame_map
@@ -58,7 +58,7 @@ def whole_steps_by_definition(
 
 
 def run_composed_by_definition(
-    discrete: Discretization, reduced: np.ndarray, pose: np.ndarray, steps: int, every: int, progress: bool
+    discrete: Scheme, reduced: np.ndarray, pose: np.ndarray, steps: int, every: int, progress: bool
 ) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], Outcome, int]:
     """Run whole steps; return the saved canonical states, the outcome and the number of good steps.
 

@@ -15,19 +15,15 @@ import numpy as np
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, OutcomeError
 from nonholo._types import Array, Float
-from nonholo.discrete._discretization import Discretization
+from nonholo.discrete._functions import momenta_along
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete._precision import in_double
 from nonholo.discrete._root import followed_root, principal_root
-from nonholo.groups import AbstractMatrixGroup
+from nonholo.discrete._scheme import Scheme
 from nonholo.orbit import Orbit
-from nonholo.systems import AbstractLRSystem
-
-_SAMPLES = 16
-_EVEN = 1e-10  # relative difference of values that counts as rounding
 
 
-def reduced_discrete_lagrangian(discrete: Discretization) -> Callable[[Array], Array]:
+def reduced_discrete_lagrangian(discrete: Scheme) -> Callable[[Array], Array]:
     """Return the function W -> l_d(W), which includes the factor time_step."""
     system, h = discrete.system, discrete.time_step
     if callable(discrete.difference):
@@ -44,34 +40,7 @@ def reduced_discrete_lagrangian(discrete: Discretization) -> Callable[[Array], A
     return of_matrix if discrete.difference == "matrix" else of_logarithm
 
 
-def value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup) -> tuple[np.ndarray, np.ndarray]:
-    """Return a discrete Lagrangian and its derivative along the group at the identity."""
-    return in_double(_value_and_slope, lagrangian, group, np.zeros(group.dim))
-
-
-@functools.partial(jax.jit, static_argnums=(0, 1))
-def _value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup, x: Array) -> tuple[Array, Array]:
-    return jax.value_and_grad(lambda x: lagrangian(group.exp(x)))(x)
-
-
-def map_each(function: Callable[[Array], Array], W: Float[np.ndarray, "K N N"]) -> np.ndarray:
-    """Return the values of a function of one matrix at each of several."""
-    return in_double(_map_each, function, W)
-
-
-@functools.partial(jax.jit, static_argnums=0)
-def _map_each(function: Callable[[Array], Array], W: Array) -> Array:
-    return jax.vmap(function)(W)
-
-
-def is_even(function: Callable[[Array], Array], group: AbstractMatrixGroup) -> bool:
-    """Tell whether a function takes the same value at W and its inverse, tried at random elements."""
-    W = group.exp(0.5 * np.random.default_rng(0).normal(size=(_SAMPLES, group.dim)) / np.sqrt(group.dim))
-    there, back = map_each(function, W), map_each(function, group.inverse(W))
-    return bool(np.abs(there - back).max() <= _EVEN * np.abs(there).max())
-
-
-def sample_displacements(discrete: Discretization, count: int) -> Float[np.ndarray, "count N N"]:
+def sample_displacements(discrete: Scheme, count: int) -> Float[np.ndarray, "count N N"]:
     """Draw displacements from the variety, the principal ones of velocities that turn by about 0.3 in a step."""
     system, rng = discrete.system, np.random.default_rng(0)
     velocities = rng.normal(size=(count, len(system.constraint_subspace)))
@@ -84,67 +53,57 @@ def sample_displacements(discrete: Discretization, count: int) -> Float[np.ndarr
 
 
 @equinox.filter_jit
-def _displacements(discrete: Discretization, momenta: Array, g: Array) -> tuple[Array, Array]:
+def _displacements(discrete: Scheme, momenta: Array, g: Array) -> tuple[Array, Array]:
     charts, codes = jax.vmap(lambda r: principal_displacement(discrete, r, g))(momenta)
     return jax.vmap(lambda y: displaced(discrete, y))(charts), codes
 
 
-def legendre_by_derivative(discrete: Discretization, W: Float[Array, "... N N"], side: str) -> Float[Array, "... dim"]:
+def legendre_by_derivative(discrete: Scheme, W: Float[Array, "... N N"], side: str) -> Float[Array, "... dim"]:
     """Return the momenta P(W) (left) or Ad*_W P(W) (right) by automatic differentiation."""
     return in_double(functools.partial(_legendre, side=side), discrete, W)
 
 
 @equinox.filter_jit
-def _legendre(discrete: Discretization, W: Array, side: str) -> Array:
-    group, lagrangian = discrete.system.group, reduced_discrete_lagrangian(discrete)
-
-    def momentum(V: Array) -> Array:
-        def varied(x: Array) -> Array:
-            g = group.exp(x)
-            return lagrangian(g @ V if side == "left" else V @ g)
-
-        return jax.grad(varied)(jnp.zeros(group.dim, V.dtype))
-
-    flat = jnp.reshape(W, (-1, *W.shape[-2:]))
-    return jnp.reshape(jax.vmap(momentum)(flat), (*W.shape[:-2], group.dim))
+def _legendre(discrete: Scheme, W: Array, side: str) -> Array:
+    return momenta_along(reduced_discrete_lagrangian(discrete), discrete.system.group, W, side)
 
 
-def displaced(discrete: Discretization, y: Float[Array, "m"]) -> Float[Array, "N N"]:
+def displaced(discrete: Scheme, y: Float[Array, "m"]) -> Float[Array, "N N"]:
     """Return the element of the variety, in the user's frame, with canonical chart coordinates y."""
     frame = discrete.system.frame
     return jnp.asarray(frame) @ discrete.variety.displaced(y) @ jnp.asarray(discrete.system.group.inverse(frame))
 
 
-def momentum_of(discrete: Discretization, y: Array, g: Array, side: str) -> Array:
+def momentum_of(discrete: Scheme, y: Array, g: Array, side: str) -> Array:
     """Return the body momentum (left) or the one that arrives (right) of a displacement at a pose."""
     group, system = discrete.system.group, discrete.system
     X = discrete.variety.increment(y)
-    if isinstance(system, AbstractLRSystem):
+    if system.is_spatial:
         return legendre(discrete, group.inverse(g) @ X @ g, side)
     return legendre(discrete, jnp.asarray(system.frame) @ X @ jnp.asarray(group.inverse(system.frame)), side)
 
 
-def restricted(discrete: Discretization, momentum: Array, g: Array) -> Array:
+def restricted(discrete: Scheme, momentum: Array, g: Array) -> Array:
     """Return the components of a body momentum along the constraint, in space where that is fixed in space."""
     system = discrete.system
-    if isinstance(system, AbstractLRSystem):
+    if system.is_spatial:
         momentum = system.group.coadjoint(system.group.inverse(g), momentum)
     return jnp.asarray(system.constraint_subspace, dtype=momentum.dtype) @ momentum
 
 
-def principal_displacement(discrete: Discretization, r: Float[Array, "k"], g: Array) -> tuple[Array, Array]:
+def principal_displacement(discrete: Scheme, r: Float[Array, "k"], g: Array) -> tuple[Array, Array]:
     """Return chart coordinates of the principal displacement with these momenta along d, and the outcome."""
     return principal_root(_equations(discrete, g), r, discrete.variety.chart.shape[0])
 
 
-def nearest_displacement(discrete: Discretization, y: Float[Array, "m"], r: Float[Array, "k"]) -> tuple[Array, Array]:
+def nearest_displacement(discrete: Scheme, y: Float[Array, "m"], r: Float[Array, "k"]) -> tuple[Array, Array]:
     """Return chart coordinates of the displacement that y reaches when its momenta along d move straight to r."""
     g = discrete.system.group.identity
     before = restricted(discrete, momentum_of(discrete, y, g, "left"), g)
     return followed_root(_equations(discrete, g), (y, before), r)
 
 
-def _equations(discrete: Discretization, g: Array) -> Callable[[Array, Array], Array]:
+def _equations(discrete: Scheme, g: Array) -> Callable[[Array, Array], Array]:
     """Return the function of chart coordinates and momenta along d that vanishes at a displacement."""
     variety = discrete.variety
 
@@ -155,9 +114,9 @@ def _equations(discrete: Discretization, g: Array) -> Callable[[Array, Array], A
     return residual
 
 
-def next_charts_by_definition(discrete: Discretization, states: Orbit) -> Float[np.ndarray, "K m"]:
+def next_charts_by_definition(discrete: Scheme, states: Orbit) -> Float[np.ndarray, "K m"]:
     """Return the canonical chart coordinates that follow, one step from each state."""
-    poses = states.configuration if isinstance(states.system, AbstractLRSystem) else _identities(states)
+    poses = states.configuration if states.system.is_spatial else _identities(states)
     return in_double(_steps_from, discrete, states.canonical_chart, poses)[1]
 
 
@@ -165,17 +124,17 @@ def _identities(states: Orbit) -> np.ndarray:
     return np.broadcast_to(states.system.group.identity, (len(states), *states.system.group.identity.shape))
 
 
-def step_from(discrete: Discretization, y: Array, g: Array) -> tuple[Array, Array, Array, Array]:
+def step_from(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array, Array, Array]:
     """Return restricted momentum, chart and pose after one step to the principal value, and the outcome."""
     r, after = _pushed(discrete, y, g)
     following, code = principal_displacement(discrete, r, after)
     return r, following, after, code
 
 
-def _pushed(discrete: Discretization, y: Array, g: Array) -> tuple[Array, Array]:
+def _pushed(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
     """Return restricted momentum and pose after a displacement."""
     W = displaced(discrete, y)
-    after = W @ g if isinstance(discrete.system, AbstractLRSystem) else g @ W
+    after = discrete.system.moved(g, W)
     return restricted(discrete, momentum_of(discrete, y, g, "right"), after), after
 
 
@@ -183,7 +142,7 @@ _steps_from = equinox.filter_jit(jax.vmap(step_from, in_axes=(None, 0, 0)))
 
 
 def run_by_definition(
-    discrete: Discretization,
+    discrete: Scheme,
     reduced: np.ndarray,
     pose: np.ndarray,
     steps: int,
@@ -218,7 +177,7 @@ def run_by_definition(
 
 @equinox.filter_jit
 def _advance(
-    discrete: Discretization, nearest: bool, begun: Array, steps: Array, r: Array, y: Array, g: Array
+    discrete: Scheme, nearest: bool, begun: Array, steps: Array, r: Array, y: Array, g: Array
 ) -> tuple[Array, ...]:
     """Take steps; before the first one, if `begun` is -1 and y zero, find the displacement with momenta r at g.
 

@@ -1,24 +1,26 @@
 """A discretisation: a system, a time step, a discrete Lagrangian and a displacement variety."""
 
 import dataclasses
+import functools
 from collections.abc import Callable
-from typing import Any, overload
+from typing import Any, ClassVar, overload
 
 import numpy as np
 
 from nonholo._checks import choice, error, needs, scale, shown, trailing
 from nonholo._types import Array, Float
-from nonholo.discrete._composition import checked_order, first_substep, refuse_composition, whole_displacements
+from nonholo.discrete._composition import checked_order, refuse_composition, weights
 from nonholo.discrete._legendre import legendre, legendre_of_chart
-from nonholo.discrete._structured import is_secular, next_charts
+from nonholo.discrete._pytrees import pytree
+from nonholo.discrete._scheme import Difference
 from nonholo.discrete._variety import Constraint, Variety, checked_constraint, equations_of, variety_of
+from nonholo.discrete.routes import AbstractRoute, make_route
 from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.systems import AbstractLRSystem, AbstractSystem, System, is_wide
+from nonholo.systems import AbstractSystem, System
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem, DiscretizationT, refuse_in_coordinates
 
-Difference = str | Callable[[Array], Array]
 
-
+@pytree
 @dataclasses.dataclass(frozen=True, eq=False)
 class Discretization(AbstractMotion):
     """A discretised system, made by `discretize`.
@@ -41,6 +43,15 @@ class Discretization(AbstractMotion):
     difference: Difference = "matrix"
     constraint: Constraint = "skew"
     order: int = 2
+    wanted_route: str | None = dataclasses.field(default=None, repr=False, kw_only=True, metadata={"stored": False})
+    """The route of a store that was begun by another one than the best; see `make_route`."""
+    leaves: ClassVar[tuple[str, ...]] = ("system", "time_step")
+    structure: ClassVar[tuple[str, ...]] = ("difference", "constraint", "order", "wanted_route")
+
+    @functools.cached_property
+    def route(self) -> AbstractRoute:
+        """How steps are computed; chosen on first use and kept."""
+        return make_route(self, self.wanted_route)
 
     @property
     def variety(self) -> Variety:
@@ -55,11 +66,11 @@ class Discretization(AbstractMotion):
             >>> discretize(ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, difference="logarithmic").conserves_energy
             False
         """
-        if is_secular(self):
-            return True
-        variety = self.variety
-        skew = self.constraint == "skew" or (self.constraint == "exponential" and not variety.exponential)
-        return self.difference == "matrix" and skew and not isinstance(self.system, AbstractLRSystem)
+        if self.difference != "matrix" or self.system.is_spatial:
+            return False
+        if self.constraint != "exponential":
+            return self.constraint == "skew"
+        return self.system.normal_form is not None or not self.variety.exponential
 
     @property
     def is_self_adjoint(self) -> bool:
@@ -72,7 +83,7 @@ class Discretization(AbstractMotion):
         if not callable(self.difference):
             return True
         with needs("jax", "discretize(difference=...)"):
-            from nonholo.discrete._definition import is_even
+            from nonholo.discrete._functions import is_even
 
         return is_even(self.difference, self.system.group)
 
@@ -84,11 +95,16 @@ class Discretization(AbstractMotion):
 
     def displacements(self, states: Orbit) -> Float[np.ndarray, "K N N"]:
         """Return the displacements of whole steps; spatial ones for a right-invariant constraint."""
-        return self.displaced(states.canonical_chart) if self.order == 2 else whole_displacements(self, states)
+        if self.order == 2:
+            return self.displaced(states.canonical_chart)
+        group, moves = self.system.group, self.system.is_spatial
+        g = states.configuration if moves else np.broadcast_to(group.identity, (len(states), group.size, group.size))
+        after = self.route.whole_steps(states.reduced_momentum, g)[1]
+        return after @ group.inverse(g) if moves else after
 
     def constraint_residual(self, states: Orbit) -> Float[np.ndarray, "K j"]:
         """Return the forbidden parts of logarithms of displacements, or the residuals of the variety's equations."""
-        if is_wide(self.system):
+        if self.system.is_wide:
             return np.zeros((len(states), 0))  # the chart has no forbidden directions
         D = self.variety.displaced(states.canonical_chart)
         if self.variety.exact:
@@ -97,7 +113,10 @@ class Discretization(AbstractMotion):
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         """Return the discrete momenta at the displacements, of a composition at those of first substeps."""
-        return first_substep(self)._momentum(states, states.canonical_chart, "left")
+        first = self
+        if self.order > 2:
+            first = dataclasses.replace(self, time_step=weights(self.order)[0] * self.time_step, order=2)
+        return first._momentum(states, states.canonical_chart, "left")
 
     def multipliers(self, states: Orbit) -> Float[np.ndarray, "L s"]:
         r"""Return the impulses $\lambda$ in $P_{k+1} - \mathrm{Ad}^*_{W_k} P_k = \sum_j \lambda_j a^j$.
@@ -110,9 +129,9 @@ class Discretization(AbstractMotion):
             got = f"branch {states.branch!r} and save_every {states.save_every}: the steps between are not known"
             raise error("Orbit.multipliers", "have every step, or the principal branch", got, "Run with save_every=1.")
         before = states.chosen(slice(None, -1))
-        charts = states.canonical_chart[1:] if states.save_every == 1 else next_charts(self, before)
+        charts = states.canonical_chart[1:] if states.save_every == 1 else self.route.next_charts(before)
         arriving = self._momentum(before, before.canonical_chart, "right")
-        if not isinstance(self.system, AbstractLRSystem):
+        if not self.system.is_spatial:
             jump = legendre_of_chart(self, charts, "left") - arriving
             return jump @ np.linalg.pinv(self.system.annihilator)
         group = self.system.group
@@ -121,7 +140,7 @@ class Discretization(AbstractMotion):
         return group.coadjoint(group.inverse(g), jump) @ np.linalg.pinv(self.system.annihilator)
 
     def _momentum(self, states: Orbit, cayley: np.ndarray, side: str) -> np.ndarray:
-        if isinstance(self.system, AbstractLRSystem):
+        if self.system.is_spatial:
             return _in_body(self, cayley, states.configuration, side)
         return legendre_of_chart(self, cayley, side)
 
@@ -208,7 +227,7 @@ def discretize(
 
 
 def _difference(system: AbstractSystem, difference: Difference | None) -> Difference:
-    where, defined = "discretize(difference=...)", is_wide(system) or system.homogeneous_mass_tensor is not None
+    where, defined = "discretize(difference=...)", system.is_wide or system.homogeneous_mass_tensor is not None
     if difference is None:
         return "matrix" if defined else "logarithmic"
     if callable(difference):
@@ -224,7 +243,7 @@ def _difference(system: AbstractSystem, difference: Difference | None) -> Differ
 def _scalar(where: str, system: AbstractSystem, difference: Callable[[Array], Array]) -> Callable[[Array], Array]:
     """Refuse a discrete Lagrangian that is not a finite number with finite derivatives at the identity."""
     with needs("jax", where):
-        from nonholo.discrete._definition import value_and_slope
+        from nonholo.discrete._functions import value_and_slope
 
     try:
         value, slope = value_and_slope(difference, system.group)

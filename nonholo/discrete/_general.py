@@ -18,7 +18,7 @@ from nonholo._types import Float
 from nonholo.discrete._variety import Variety, forbidden_matrices
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.numerics import product_and_remainder
-from nonholo.systems import AbstractLRSystem, AbstractSystem, inertia_from_mass_tensor
+from nonholo.systems import AbstractSystem, inertia_from_mass_tensor
 
 _SINES = np.linspace(0.0, 1.0, 401)[1:-1]  # of the largest angle in the ball
 _MARGIN = 1 - 1e-9
@@ -40,7 +40,7 @@ def general_body(system: AbstractSystem, variety: Variety) -> tuple[kernels.Gene
     tensor = system.homogeneous_mass_tensor * np.outer(shrink, shrink)
     mass = _mass_unit(tensor)
     tensor, directions, form, inverse_form = _in_form(group, tensor / mass, directions)
-    spatial = isinstance(system, AbstractLRSystem)
+    spatial = system.is_spatial
     pairings, lost = product_and_remainder(directions, tensor)
     radius, level = (0.0, 0.0) if spatial else _certain_ball(system, mass)
     body = kernels.GeneralBody(

@@ -1,17 +1,14 @@
-"""Registration of systems and discretisations as JAX pytrees, when the JAX route is first imported."""
+"""Systems, discretisations and routes as JAX pytrees: declared with their classes, registered when JAX is imported."""
 
 import functools
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
-import jax
 import numpy as np
 
-from nonholo.discrete._discretization import Discretization
 from nonholo.systems import SYSTEMS
 
-_Names = tuple[str, ...]
-_LEAVES: dict[type, tuple[_Names, _Names]] = {kind: (kind.leaves, kind.structure) for kind in SYSTEMS}
-_LEAVES[Discretization] = (("system", "time_step"), ("difference", "constraint", "order"))
+_Class = TypeVar("_Class", bound=type)
+_TREES: list[Any] = list(SYSTEMS)
 
 
 class _FixedArray(NamedTuple):
@@ -21,12 +18,22 @@ class _FixedArray(NamedTuple):
     shape: tuple[int, ...]
 
 
+def pytree(kind: _Class) -> _Class:
+    """Declare a class of this room, whose `leaves` are numbers and whose `structure` is static."""
+    _TREES.append(kind)
+    return kind
+
+
 @functools.cache
 def register() -> None:
-    """Register once: the numbers are leaves, the structure is static; no check runs when a tree is rebuilt."""
-    for kind, (leaves, static) in _LEAVES.items():
+    """Register all of them once; no check runs when a tree is rebuilt."""
+    import jax
+
+    for kind in _TREES:
         jax.tree_util.register_pytree_node(
-            kind, functools.partial(_flatten, leaves, static), functools.partial(_unflatten, kind, leaves, static)
+            kind,
+            functools.partial(_flatten, kind.leaves, kind.structure),
+            functools.partial(_unflatten, kind, kind.leaves, kind.structure),
         )
 
 

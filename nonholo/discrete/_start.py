@@ -11,7 +11,7 @@ from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete._variety import equations_of
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.systems import AbstractLRSystem, System
+from nonholo.systems import System
 
 _TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in floating point
 
@@ -31,36 +31,23 @@ def initial_momentum(
         where = f"{owner}(momentum=...)"
         size = k if shape_of(momentum) == (k,) else dim
         value = array(where, momentum, (size,), f"Pass {dim} body momenta or the {k} along the constraint subspace.")
-        return _of_finite_energy(owner, system, g, value if size == k else _restricted(system, value, g))
+        return _of_finite_energy(owner, system, g, value if size == k else system.restrict_at(value, g))
     if body_velocity is not None:
         velocity = _admissible(f"{owner}(body_velocity=...)", system, g, body_velocity)
-        return _of_finite_energy(owner, system, g, _restricted(system, system.inertia_operator @ velocity, g))
+        return _of_finite_energy(owner, system, g, system.restrict_at(system.inertia_operator @ velocity, g))
     where = f"{owner}(restricted_velocity=...)"
     rows = array(where, restricted_velocity, (k,), "Pass one number per admissible direction.")
-    along = (
-        rows @ system.spatial_inertia(g) if isinstance(system, AbstractLRSystem) else system.restricted_momentum(rows)
-    )
-    return _of_finite_energy(owner, system, g, along)
-
-
-def _restricted(system: System, momentum: np.ndarray, g: np.ndarray | None) -> np.ndarray:
-    if isinstance(system, AbstractLRSystem):
-        return system.restrict_in_space(momentum, g)
-    return system.restrict(momentum)
+    return _of_finite_energy(owner, system, g, system.restricted_momentum(rows, g))
 
 
 def _to_body(system: System, g: np.ndarray | None) -> np.ndarray:
     """Return the matrix from velocities in which the constraint is constant to body velocities."""
-    group = system.group
-    return group.adjoint(group.inverse(g)) if isinstance(system, AbstractLRSystem) else np.eye(group.dim)
+    return system.carried(system.group.identity if g is None else system.group.inverse(g))
 
 
 def _of_finite_energy(owner: str, system: System, g: np.ndarray | None, restricted: np.ndarray) -> np.ndarray:
     with np.errstate(over="ignore", invalid="ignore"):
-        if isinstance(system, AbstractLRSystem):
-            energy = system.constrained_energy(restricted, g)
-        else:
-            energy = system.constrained_energy(restricted)
+        energy = system.constrained_energy(restricted, g)
     if not np.isfinite(energy):
         raise error(f"{owner}(...)", "start with a finite energy", f"{energy}", "Start slower, or use other units.")
     return system.to_canonical(restricted)
@@ -97,7 +84,7 @@ def initial_state(
     if displacement is not None:
         W = on_variety("simulate(displacement=...)", discrete, g, displacement)
         found = legendre(discrete, W - system.group.identity, "left")
-        return initial_momentum("simulate", system, g, momentum=_restricted(system, found, g)), W
+        return initial_momentum("simulate", system, g, momentum=system.restrict_at(found, g)), W
     momentum, k = starts.get("momentum"), system.rank
     full = momentum is not None and shape_of(momentum) != (k,)
     return initial_momentum("simulate", system, g, **starts), np.asarray(momentum, dtype=np.float64) if full else None
@@ -126,7 +113,7 @@ def on_variety(where: str, discrete: Discretization, g: np.ndarray | None, displ
     """Return a displacement whose place on the variety is checked, refused with its forbidden part."""
     system, group = discrete.system, discrete.system.group
     W = in_group(where, group, displacement)
-    seen = g @ W @ group.inverse(g) if isinstance(system, AbstractLRSystem) else W
+    seen = g @ W @ group.inverse(g) if system.is_spatial else W
     logarithm = group.log(seen)
     if discrete.variety.exact:
         forbidden, what = system.annihilator @ logarithm, "a logarithm with forbidden part"

@@ -19,8 +19,7 @@ from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete._precision import in_double
 from nonholo.discrete._root import principal_root
-from nonholo.discrete._structured import ScalarStep, scalar_step
-from nonholo.systems import AbstractLRSystem
+from nonholo.discrete.routes import ScalarRoute, ScalarStep
 
 _ON_LOCUS = 1e-6  # relative distance from the momentum locus that a computed momentum may have
 
@@ -74,7 +73,7 @@ def step(discrete: Discretization, momentum: Any, branch: BranchRule = "principa
         (array([0., 1., 0.]), 0)
     """
     as_discretization("step(discrete=...)", discrete)
-    if isinstance(discrete.system, AbstractLRSystem):
+    if discrete.system.is_spatial:
         got = f"{type(discrete.system).__name__}, whose step depends on the configuration"
         raise error("step(discrete=...)", "have a left-invariant constraint", got, "Use simulate(..., steps=1).")
     k, dim = discrete.system.constraint_subspace.shape
@@ -87,7 +86,8 @@ def step(discrete: Discretization, momentum: Any, branch: BranchRule = "principa
         raise error("step(branch=...)", "be 'principal' or 'nearest'", got, "Take this step outside of it.")
     rule = checked_rule("step", discrete, branch)
     if rule == "principal" or traced or not has_frame(discrete):
-        closed = jax.tree.map(_traceable, scalar_step(discrete))
+        route = discrete.route
+        closed = jax.tree.map(_traceable, route.step) if isinstance(route, ScalarRoute) else None
         return in_double(_step, discrete, closed, rule == "nearest", value)
     return _step_by_rule(discrete, rule, value)
 
@@ -148,6 +148,7 @@ def _principal(discrete: Discretization, closed: ScalarStep | None, restricted: 
     if closed is None:
         return principal_displacement(discrete, restricted, discrete.system.group.identity)
     body, C = closed.body, jnp.asarray(discrete.system.frame_map)
+    C = C if closed.rows is None else jnp.asarray(closed.rows) @ C
 
     def residual(y: Array, m: Array) -> Array:
         return jnp.stack(kernels.residual(body, *m, *y))
@@ -155,4 +156,5 @@ def _principal(discrete: Discretization, closed: ScalarStep | None, restricted: 
     def certified(y: Array, m: Array) -> Array:
         return kernels.certified(body, *m, *y)
 
-    return principal_root(residual, closed.scale * (C @ restricted), 2, certified)
+    y, code = principal_root(residual, closed.scale * (C @ restricted), 2, certified)
+    return y if closed.rows is None else y @ jnp.asarray(closed.rows), code

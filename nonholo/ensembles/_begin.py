@@ -100,7 +100,11 @@ def _check_names(design: Design, drawn: dict[str, Output], returned: dict[str, O
 
 def check_same(store: SweepStore, task: Any, design: Design) -> None:
     """Refuse another task or design than that of a store, with the differences."""
-    ours, theirs = json.loads(json.dumps(_described(task, design))), store.description
+    theirs = store.description
+    if isinstance(task, EnsembleTask) and theirs["task"]["kind"] == "EnsembleTask":
+        task = task.on_route_of(theirs["task"])
+        theirs["task"]["motion"] = io.motion_text(theirs["task"], task.discrete)
+    ours = json.loads(json.dumps(_described(task, design)))
     for told in (ours, theirs):
         told["design"] = with_component_names(told["design"])
     found = list(differences(ours, theirs))
@@ -136,8 +140,11 @@ def restored_task(store: SweepStore, task: Any, *, trust: bool = False) -> Task:
 
 
 def _as_begun(store: SweepStore, task: Task) -> Task:
-    """Return the task with the results that a store was begun with."""
-    return task.as_of_schema_1() if store.schema == 1 and isinstance(task, EnsembleTask) else task
+    """Return the task by the route, and with the results, that a store was begun with."""
+    if not isinstance(task, EnsembleTask):
+        return task
+    task = task.on_route_of(store.description["task"])
+    return task.as_of_schema_1() if store.schema == 1 else task
 
 
 def _refuse_untrusted(store: SweepStore, names: list[str], *, trust: bool) -> None:

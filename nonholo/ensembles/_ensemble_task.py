@@ -14,7 +14,6 @@ from nonholo._checks import array, count, error, flag, shown
 from nonholo.discrete import Discretization
 from nonholo.discrete._discretization import as_discretization
 from nonholo.discrete._start import one_start
-from nonholo.discrete._structured import scalar_step
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._names import OUTCOME, STARTS
@@ -23,6 +22,7 @@ from nonholo.ensembles._starts import check_starts, rows_of_starts, start_compon
 from nonholo.io._descriptions import unstored
 from nonholo.simulation import Ensemble, ensemble
 from nonholo.simulation._ensemble_members import Members
+from nonholo.simulation._ensemble_start import run_in_lanes
 
 _MEMBER = re.compile(r"This is member (\d+)\.")
 _BLOCK, _NUMBERS = 1 << 16, 1 << 22  # most members of a block, and numbers of all their states
@@ -119,7 +119,7 @@ class EnsembleTask:
     @property
     def block(self) -> int:
         """Members of a block that make a good piece of work: their states fit in memory, and it takes some seconds."""
-        compiled = self.discrete.order == 2 and scalar_step(self.discrete) is not None
+        compiled = run_in_lanes(self.discrete)
         lanes, steps = (_LANES, _STEPS) if compiled else (1, _STEPS_EACH)
         states = 1 if self._every is None else 1 + self.steps // self._every
         state = 2 * self.discrete.system.rank + self.discrete.system.group.pose_size
@@ -140,6 +140,12 @@ class EnsembleTask:
                 kind, known = type(self.discrete.system).__name__, ", ".join(self._fields)
                 remedy = f"{kind} has {known}; starts are {', '.join(STARTS)}."
                 raise error("sweep(design=...)", "name parameters of the system or starts", shown(name), remedy)
+
+    def on_route_of(self, stored: dict[str, Any]) -> "EnsembleTask":
+        """Return the task by the route that began a store, from the description of that one's task."""
+        task = copy.copy(self)
+        object.__setattr__(task, "discrete", io.on_route_of(stored, self.discrete))
+        return task
 
     def as_of_schema_1(self) -> "EnsembleTask":
         """Return the task with the results of stores of schema 1."""

@@ -29,9 +29,10 @@ from nonholo.ensembles._layout import Layout, Piece
 from nonholo.ensembles._results import Output, Results
 
 FORMAT = "nonholo.sweep"
-SCHEMA = 2
-"""Written by this version. Schema 1 had last poses in the canonical frame, and names of components with brackets."""
-READABLE = (1, 2)
+SCHEMA = 3
+"""Written by this version. Schema 2 had no names of routes; 1 had last poses in the canonical frame, and names of
+components with brackets."""
+READABLE = (1, 2, 3)
 _AGAIN = "Run the sweep again."
 _AXIS = {"long_name": "value of the design"}
 _CODECS = BloscCodec(cname="lz4", clevel=5, shuffle="bitshuffle"), Crc32cCodec()

@@ -1,5 +1,6 @@
 """What a store says about itself: system, motion, conventions, versions; and the way back to objects."""
 
+import dataclasses
 import hashlib
 import json
 import platform
@@ -9,15 +10,18 @@ from typing import Any
 
 from nonholo._checks import error, text
 from nonholo.continuous import ContinuousFlow
-from nonholo.discrete import discretize
+from nonholo.discrete import Discretization, discretize
 from nonholo.io._descriptions import fields_of, restore_system, unstored
 from nonholo.orbit import AbstractMotion, Orbit
 
 FORMAT = "nonholo.orbit"
 SWEEP_FORMAT = "nonholo.sweep"
-SCHEMA = 3
-"""Written by this version. Below 3 there were compact states and energies alone, in 1 no groups among parameters."""
-READABLE = (1, 2, 3)
+SCHEMA = 4
+"""Written by this version. Below 4 routes had no names; below 3 there were compact states and energies alone, in 1 no
+groups among parameters."""
+READABLE = (1, 2, 3, 4)
+_EARLIER_ROUTES = {"LLSystem": "matrix"}
+"""The routes of systems before they had names, where they were others than now."""
 _MOTIONS: dict[str, Callable[..., AbstractMotion]] = {"Discretization": discretize, "ContinuousFlow": ContinuousFlow}
 _CONVENTIONS = (
     "W_k = g_k^-1 g_(k+1), P_k is the momentum at W_k, momenta are physical (L_d includes time_step). Arrays are in "
@@ -75,20 +79,45 @@ def restore_motion(stored: dict[str, Any], motion: AbstractMotion | None) -> Abs
     system = restore_system(stored["system"], parameters)
     if kind not in _MOTIONS:
         raise error("load_orbit(path=...)", "hold a motion of this version", repr(kind), "Upgrade nonholo.")
-    return _MOTIONS[kind](system, **described)
+    route = described.pop("route", None)
+    restored = on_route_of(stored, _MOTIONS[kind](system, **described))
+    if isinstance(restored, Discretization) and route not in (None, restored.route.name):
+        raise error("load_orbit(path=...)", "hold a run by a route of this version", repr(route), "Upgrade nonholo.")
+    return restored
 
 
 def _same(stored: dict[str, Any], motion: AbstractMotion) -> AbstractMotion:
+    motion = on_route_of(stored, motion)
     for key, value in identity_of(motion).items():
-        if value != stored[key]:  # JSON text: floating-point numbers are compared exactly
-            got = f"{key} {value} instead of {stored[key]}"
+        theirs = stored[key] if key != "motion" else motion_text(stored, motion)
+        if value != theirs:  # JSON text: floating-point numbers are compared exactly
+            got = f"{key} {value} instead of {theirs}"
             raise error("load_orbit(discrete=...)", "be the discretisation of the store", got, "Pass that one.")
     return motion
+
+
+def on_route_of(stored: dict[str, Any], motion: Any) -> Any:
+    """Return a motion by the route that began a store, or the next one; the motion itself where that is its own."""
+    if not isinstance(motion, Discretization):
+        return motion
+    named = json.loads(stored["motion"]).get("route")
+    other = dataclasses.replace(motion, wanted_route=named or _EARLIER_ROUTES.get(stored["system"]))
+    return motion if other.route.name == motion.route.name else other
+
+
+def motion_text(stored: dict[str, Any], motion: AbstractMotion) -> str:
+    """Return what a store says of its motion; of before routes had names, with that of a motion by the same route."""
+    if not isinstance(motion, Discretization):
+        return stored["motion"]
+    described = json.loads(stored["motion"])
+    return json.dumps({**described, "route": described.get("route", motion.route.name)})
 
 
 def identity_of(motion: AbstractMotion) -> dict[str, str]:
     """Return what a motion is."""
     described = {"kind": type(motion).__name__, **fields_of(motion)}
+    if isinstance(motion, Discretization):
+        described["route"] = motion.route.name
     return {
         "system": type(motion.system).__name__,
         "parameters": json.dumps(fields_of(motion.system)),

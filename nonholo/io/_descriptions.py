@@ -18,7 +18,8 @@ _FAMILIES = {"SO": SO, "SE": SE, "Translations": Translations}
 
 def fields_of(owner: Any) -> dict[str, Any]:
     """Return the fields of a dataclass as plain data, floating-point numbers such that they are read back exactly."""
-    return {field.name: _plain(getattr(owner, field.name)) for field in dataclasses.fields(owner)}
+    stored = (field.name for field in dataclasses.fields(owner) if field.metadata.get("stored", True))
+    return {name: _plain(getattr(owner, name)) for name in stored}
 
 
 def unstored(described: dict[str, Any]) -> str | None:

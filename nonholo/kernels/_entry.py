@@ -1,4 +1,7 @@
-"""The compiled runs, whatever the body: the scalar steps of tops and sleighs, or the general one of matrices."""
+"""The compiled runs, whatever the body: what each kind of body has, in one table."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -7,57 +10,42 @@ from nonholo.kernels._composition import ComposedBody
 from nonholo.kernels._general import GeneralBody
 from nonholo.kernels._interface import Body
 from nonholo.kernels._secular import SecularBody
+from nonholo.kernels._sleigh import SleighBody
+from nonholo.kernels._suslov import SuslovBody
 
 PlainBody = Body | GeneralBody | SecularBody
 AnyBody = PlainBody | ComposedBody
+Rows = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+class _Runs(NamedTuple):
+    """The functions of a kind of body, with the arguments of those below."""
+
+    sizes: Callable[[Any], tuple[int, int, int]]
+    start: Callable[[Any, np.ndarray, np.ndarray], tuple[int, np.ndarray]]
+    chart_of: Callable[[Any, np.ndarray], np.ndarray]
+    advance: Callable[..., tuple[int, int]]
+    step_each: Callable[..., Rows] | None
 
 
 def sizes(body: AnyBody) -> tuple[int, int, int]:
     """Return the numbers of momenta, chart coordinates and pose entries of a state."""
-    if isinstance(body, ComposedBody):
-        return sizes(body.body)
-    if isinstance(body, GeneralBody):
-        return len(body.directions), len(body.stretch), body.tensor.size
-    if isinstance(body, SecularBody):
-        k = len(body.b) + body.slides
-        return k, k, (k + 1) ** 2
-    return 2, 2, 4
+    return _RUNS[type(body)].sizes(body)
 
 
 def start(body: AnyBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
     """Return the outcome of the first root and the state of a run that begins with scaled momenta and a pose."""
-    if isinstance(body, ComposedBody):
-        return _composition.start(body, momentum, pose)
-    if isinstance(body, GeneralBody):
-        return _general_run.start(body, np.array(momentum), np.array(pose))
-    if isinstance(body, SecularBody):
-        return _secular_run.start(body, np.array(momentum), np.array(pose))
-    state = np.zeros(_driver.STATE_SIZE)
-    return _driver.start(body, momentum, pose, state), state
+    return _RUNS[type(body)].start(body, np.array(momentum), np.array(pose))
 
 
 def chart_of(body: AnyBody, state: np.ndarray) -> np.ndarray:
     """Return the chart coordinates of the displacement in a state."""
-    k, m, _ = sizes(body)
-    if isinstance(body, ComposedBody):
-        return _composition.first_chart(body, state, k, m)
-    if isinstance(body, SecularBody):
-        return _secular_run.chart_in(body, state)
-    chart = state[2 * k : 2 * k + m]
-    return chart * body.stretch if isinstance(body, GeneralBody) else chart
+    return _RUNS[type(body)].chart_of(body, state)
 
 
-def advance(
-    body: AnyBody, state: np.ndarray, steps: int, every: int, rows: tuple[np.ndarray, np.ndarray, np.ndarray]
-) -> tuple[int, int]:
+def advance(body: AnyBody, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
     """Take up to `steps` steps into rows of momenta, charts and poses; return how many were good and the outcome."""
-    if isinstance(body, ComposedBody):
-        return _composition.advance(body, state, steps, every, rows)
-    if isinstance(body, GeneralBody):
-        return _general_run.advance(body, state, steps, every, *rows)
-    if isinstance(body, SecularBody):
-        return _secular_run.advance(body, state, steps, every, *rows)
-    return _driver.advance(body, state, steps, every, *rows)
+    return _RUNS[type(body)].advance(body, state, steps, every, *rows)
 
 
 def step_each(
@@ -65,12 +53,62 @@ def step_each(
     states: tuple[np.ndarray, np.ndarray, np.ndarray | None],
     guesses: np.ndarray,
     principal_only: bool,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+) -> Rows:
     """Take one step from each row of momenta, charts and, for right-invariant constraints, poses as matrices."""
-    momenta, charts, poses = states
-    if isinstance(body, GeneralBody):
-        carried = np.zeros((len(momenta), 0)) if poses is None else poses
-        return _general_run.step_each(body, momenta, charts, carried, guesses, principal_only)
-    if isinstance(body, SecularBody):
-        return _secular_run.step_each(body, momenta, charts, guesses, principal_only)
-    return _driver.step_each(body, momenta, charts, guesses, principal_only)
+    each = _RUNS[type(body)].step_each
+    if each is None:
+        raise TypeError(f"`step_each` needs a plain body. Got {type(body).__name__}. Use `whole_steps`.")
+    return each(body, *states, guesses, principal_only)
+
+
+def _scalar_start(body: Body, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
+    state = np.zeros(_driver.STATE_SIZE)
+    return _driver.start(body, momentum, pose, state), state
+
+
+def _scalar_each(body: Body, momenta: np.ndarray, charts: np.ndarray, poses: None, *rest: Any) -> Rows:
+    return _driver.step_each(body, momenta, charts, *rest)
+
+
+def _secular_sizes(body: SecularBody) -> tuple[int, int, int]:
+    k = len(body.b) + body.slides
+    return k, k, (k + 1) ** 2
+
+
+def _secular_each(body: SecularBody, momenta: np.ndarray, charts: np.ndarray, poses: None, *rest: Any) -> Rows:
+    return _secular_run.step_each(body, momenta, charts, *rest)
+
+
+def _general_sizes(body: GeneralBody) -> tuple[int, int, int]:
+    return len(body.directions), len(body.stretch), body.tensor.size
+
+
+def _general_chart(body: GeneralBody, state: np.ndarray) -> np.ndarray:
+    k, m, _ = _general_sizes(body)
+    return state[2 * k : 2 * k + m] * body.stretch
+
+
+def _general_each(
+    body: GeneralBody, momenta: np.ndarray, charts: np.ndarray, poses: np.ndarray | None, *rest: Any
+) -> Rows:
+    carried = np.zeros((len(momenta), 0)) if poses is None else poses
+    return _general_run.step_each(body, momenta, charts, carried, *rest)
+
+
+def _composed_chart(body: ComposedBody, state: np.ndarray) -> np.ndarray:
+    momenta, coordinates, _ = sizes(body.body)
+    return _composition.first_chart(body, state, momenta, coordinates)
+
+
+def _composed_advance(body: ComposedBody, state: np.ndarray, steps: int, every: int, *rows: Any) -> tuple[int, int]:
+    return _composition.advance(body, state, steps, every, rows)
+
+
+_SCALAR = _Runs(lambda _: (2, 2, 4), _scalar_start, lambda _, state: state[4:6], _driver.advance, _scalar_each)
+_RUNS: dict[type, _Runs] = {
+    SuslovBody: _SCALAR,
+    SleighBody: _SCALAR,
+    SecularBody: _Runs(_secular_sizes, _secular_run.start, _secular_run.chart_in, _secular_run.advance, _secular_each),
+    GeneralBody: _Runs(_general_sizes, _general_run.start, _general_chart, _general_run.advance, _general_each),
+    ComposedBody: _Runs(lambda body: sizes(body.body), _composition.start, _composed_chart, _composed_advance, None),
+}

@@ -139,6 +139,12 @@ charted = chosen(_secular_charted, _general_charted, _two_charted)
 
 def at_rest(body: Body | SecularBody | GeneralBody) -> np.ndarray:
     """Return the unknowns at the identity."""
-    if isinstance(body, SecularBody):
-        return np.array((body.mass * body.arm * body.arm, 0.0))
-    return np.zeros(len(body.stretch) if isinstance(body, GeneralBody) else 2)
+    return _AT_REST[type(body)](body)
+
+
+_AT_REST: dict[type, Callable[[Any], np.ndarray]] = {
+    SuslovBody: lambda _: np.zeros(2),
+    SleighBody: lambda _: np.zeros(2),
+    SecularBody: lambda body: np.array((body.mass * body.arm * body.arm, 0.0)),
+    GeneralBody: lambda body: np.zeros(len(body.stretch)),
+}

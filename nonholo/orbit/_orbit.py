@@ -17,7 +17,7 @@ from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.groups import SE
 from nonholo.orbit._poses import configurations, poses, unwrapped
-from nonholo.systems import AbstractLRSystem, System
+from nonholo.systems import System
 
 STATES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
 """The arrays of an orbit, a row for each state."""
@@ -169,7 +169,7 @@ class Orbit:
     def displacement(self) -> Float[np.ndarray, "K N N"]:
         """Displacements W_k = g_k^-1 g_(k+1) of single steps at the saved states."""
         D = self.motion.displacements(self)
-        if not isinstance(self.system, AbstractLRSystem):
+        if not self.system.is_spatial:
             return D
         g = self.configuration
         return self.system.group.inverse(g) @ D @ g
@@ -178,7 +178,7 @@ class Orbit:
     def spatial_displacement(self) -> Float[np.ndarray, "K N N"]:
         """Displacements U_k = g_(k+1) g_k^-1 seen from space; on the variety for a right-invariant constraint."""
         D = self.motion.displacements(self)
-        if isinstance(self.system, AbstractLRSystem):
+        if self.system.is_spatial:
             return D
         g = self.configuration
         return g @ D @ self.system.group.inverse(g)
@@ -200,7 +200,7 @@ class Orbit:
     def body_velocity(self) -> Float[np.ndarray, "K dim"]:
         """Admissible body velocities whose momenta along the constraint are those of the states."""
         system = self.system
-        if isinstance(system, AbstractLRSystem):
+        if system.is_spatial:
             g = self.configuration
             spatial = system.restricted_velocity(self.reduced_momentum, g) @ system.constraint_subspace
             return (system.group.adjoint(system.group.inverse(g)) @ spatial[..., None])[..., 0]
@@ -234,7 +234,7 @@ class Orbit:
     @property
     def energy(self) -> Float[np.ndarray, "K"]:
         """Reduced constrained energy."""
-        if isinstance(self.system, AbstractLRSystem):
+        if self.system.is_spatial:
             return self.system.constrained_energy(self.reduced_momentum, self.configuration)
         return self.system.canonical.constrained_energy(self.reduced_momentum)
 

@@ -9,7 +9,6 @@ from nonholo._checks import choice, count, error, flags, shown
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
-from nonholo.discrete._composition import compiled_step
 from nonholo.discrete._discretization import as_discretization
 from nonholo.discrete._start import one_start
 from nonholo.simulation._ensemble_members import Members, check_systems, checked_parameters
@@ -98,7 +97,7 @@ def ensemble(
     one_start("ensemble", **starts)
     checked = checked_parameters(discrete, parameters)
     name, rows = checked_start(discrete.system, checked, **starts)
-    compiled = backend != "jax" and compiled_step(discrete) is not None
+    compiled = backend != "jax" and discrete.route.compiled is not None
     refuse_too_long("ensemble", discrete, steps, compiled=compiled, members=len(rows))
     held = len(rows) if reduce is None else 1
     refuse_too_large("ensemble", discrete, states_of(steps, save_every), reconstruct, members=held)
@@ -120,7 +119,7 @@ def ensemble(
 
 def _check_backend(discrete: Discretization, backend: str) -> None:
     choice("ensemble(backend=...)", backend, ("auto", "numba", "jax"))
-    if backend == "numba" and compiled_step(discrete) is None:
+    if backend == "numba" and discrete.route.compiled is None:
         remedy = "Pass backend='jax', or difference='matrix'."
         raise error("ensemble(backend=...)", "have a closed form of the step", shown(discrete.difference), remedy)
 

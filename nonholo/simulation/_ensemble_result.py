@@ -14,7 +14,7 @@ from nonholo.orbit import Orbit
 from nonholo.simulation._ensemble_members import Members
 from nonholo.simulation._ensemble_start import applied, energies, have_kernel, scalar_members
 from nonholo.simulation._events_members import MemberEvents
-from nonholo.systems import AbstractLRSystem, ChaplyginSleigh, SuslovTop, System
+from nonholo.systems import ChaplyginSleigh, SuslovTop, System
 
 _OF_FRAME = ("configuration", "pose", "position", "displacement")
 _KEEPS_FRAME = {SuslovTop: {"mass_tensor"}, ChaplyginSleigh: {"mass", "inertia", "a"}}
@@ -203,6 +203,4 @@ def _first_energy(system: System, reduced: np.ndarray) -> float:
     """Return the energy of a canonical momentum at the identity; NaN of a member that has none."""
     if not np.isfinite(reduced).all():
         return np.nan
-    if isinstance(system, AbstractLRSystem):
-        return float(system.constrained_energy(reduced, system.group.identity))
-    return float(system.canonical.constrained_energy(reduced))
+    return float(system.canonical.constrained_energy(reduced, system.group.identity))

@@ -14,7 +14,6 @@ from nonholo import kernels
 from nonholo._checks import needs
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
-from nonholo.discrete._composition import compiled_step
 from nonholo.orbit import Orbit
 from nonholo.simulation._ensemble_members import Members
 from nonholo.simulation._ensemble_result import Ensemble
@@ -157,7 +156,7 @@ def _run_each(members: Members, momenta: np.ndarray, plan: Plan, threads: int, r
             found[member], done[member] = _run_one(members.of(member), momenta[member], plan)
             codes[member] = found[member].outcome
 
-    compiled = plan.backend != "jax" and compiled_step(members.discrete) is not None
+    compiled = plan.backend != "jax" and members.discrete.route.compiled is not None
     _in_threads(work, [slice(i, i + 1) for i in range(count)], threads if compiled else 1, report)
     orbits = [found[member] for member in range(count)]
     reduced = _filled([orbit.reduced_momentum for orbit in orbits], states)

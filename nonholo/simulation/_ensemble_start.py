@@ -10,10 +10,10 @@ import numpy as np
 from nonholo import kernels
 from nonholo._checks import array, error, shape_of
 from nonholo._types import Float
+from nonholo.discrete import Discretization
 from nonholo.discrete._start import initial_momentum
-from nonholo.discrete._structured import scalar_step
 from nonholo.simulation._ensemble_members import Members, refused
-from nonholo.systems import ChaplyginSleigh, System
+from nonholo.systems import ChaplyginSleigh, SuslovTop, System
 
 _CHUNK = 1 << 16  # members whose starts are made at once: what it takes between is not kept
 _TOLERANCE = 1e-9  # relative, for velocities that a user computed in floating point
@@ -45,12 +45,17 @@ class ScalarMembers:
 
 def have_kernel(members: Members) -> bool:
     """Tell whether members are tops (n = 3) or plane sleighs with a step in closed form."""
-    return members.discrete.order == 2 and scalar_step(members.discrete) is not None
+    return run_in_lanes(members.discrete)
+
+
+def run_in_lanes(discrete: Discretization) -> bool:
+    """Tell whether the members of an ensemble of a discretisation are computed side by side."""
+    return discrete.route.is_scalar and type(discrete.system) in _NUMBERS
 
 
 def scalar_members(members: Members) -> ScalarMembers:
     """Return the numbers of tops and plane sleighs."""
-    return _sleighs(members) if isinstance(members.discrete.system, ChaplyginSleigh) else _tops(members)
+    return _NUMBERS[type(members.discrete.system)](members)
 
 
 def _sleighs(members: Members) -> ScalarMembers:
@@ -71,6 +76,9 @@ def _tops(members: Members) -> ScalarMembers:
     pose = system.group.pose_from_matrix(F)[None]
     table = functools.partial(kernels.suslov_table, B, J[:, :2, 2])
     return ScalarMembers(table, members.time_step / 2, B, np.asarray(system.frame_map)[None], pose)
+
+
+_NUMBERS: dict[type, Callable[[Members], ScalarMembers]] = {ChaplyginSleigh: _sleighs, SuslovTop: _tops}
 
 
 def checked_start(system: System, parameters: dict[str, np.ndarray], **starts: Any) -> tuple[str, np.ndarray]:

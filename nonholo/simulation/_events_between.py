@@ -12,21 +12,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nonholo import kernels
 from nonholo._checks import needs
 from nonholo._types import Float
-from nonholo.discrete import Discretization
-from nonholo.discrete._composition import compiled_step, weights
-from nonholo.discrete._structured import (
-    Structured,
-    decoded,
-    decoded_poses,
-    encoded,
-    encoded_poses,
-    from_kernel,
-    is_secular,
-    structured,
-)
+from nonholo.discrete import AbstractCompiledRoute, Discretization
 from nonholo.groups import SE
 from nonholo.orbit import Orbit, unwrapped
 
@@ -38,11 +26,8 @@ def between_states(discrete: Discretization) -> Between:
 
     Where no whole step starts its displacement is NaN.
     """
-    one, whole = structured(discrete), compiled_step(discrete)
-    if one is None or whole is None:
-        moved = functools.partial(_by_definition, discrete)
-    else:
-        moved = functools.partial(_by_kernel, discrete, one, whole)
+    route = discrete.route.compiled
+    moved = functools.partial(_by_definition, discrete) if route is None else functools.partial(_by_kernel, route)
 
     def between(states: Orbit, fractions: Float[np.ndarray, "K"]) -> Orbit:
         if not len(states):
@@ -71,42 +56,34 @@ def with_headings(states: Orbit, first: float | None) -> Orbit:
     return dataclasses.replace(states, turned=unwrapped(states.canonical_pose, before=first))
 
 
-def _by_kernel(
-    discrete: Discretization, one: Structured, whole: Structured, states: Orbit, fractions: np.ndarray
-) -> tuple[np.ndarray, ...]:
-    group = discrete.system.group
-    poses = _poses(discrete, states)
-    poses = encoded_poses(one, group, poses) if poses.size else poses
-    found = [
-        _advanced(one, whole, discrete.order, *row)
-        for row in zip(encoded(one, states.reduced_momentum), poses, fractions, strict=True)
-    ]
-    momenta, charts, moved = (np.array(column) for column in zip(*found, strict=True))
-    moved = decoded_poses(one, group, moved) if moved.size else moved
-    return decoded(one, momenta), from_kernel(one, charts), moved
+def _by_kernel(route: AbstractCompiledRoute, states: Orbit, fractions: np.ndarray) -> tuple[np.ndarray, ...]:
+    poses = _poses(route.needs_pose, states)
+    poses = route.encode_poses(poses) if poses.size else poses
+    rows = zip(route.encode(states.reduced_momentum), poses, fractions, strict=True)
+    momenta, charts, moved = (np.array(x) for x in zip(*(_advanced(route, *row) for row in rows), strict=True))
+    moved = route.decode_poses(moved) if moved.size else moved
+    return route.decode(momenta), route.from_kernel(charts), moved
 
 
-def _poses(discrete: Discretization, states: Orbit) -> np.ndarray:
-    """Return the poses of states; where they are not kept, any that the step can carry along."""
-    group = discrete.system.group
+def _poses(needed: bool, states: Orbit) -> np.ndarray:
+    """Return the poses of states; where they are not kept, any that the step can carry along, if it needs one."""
+    system = states.system
     if states.canonical_pose is not None:
         return states.canonical_pose
-    if is_secular(discrete):
+    if not needed:
         return np.empty((len(states), 0))
-    return np.broadcast_to(group.pose_from_matrix(discrete.system.frame), (len(states), group.pose_size))
+    return np.broadcast_to(system.group.pose_from_matrix(system.frame), (len(states), system.group.pose_size))
 
 
 def _advanced(
-    one: Structured, whole: Structured, order: int, momenta: np.ndarray, pose: np.ndarray, fraction: float
+    route: AbstractCompiledRoute, momenta: np.ndarray, pose: np.ndarray, fraction: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return momenta, chart and pose of a kernel after a fraction of a step."""
-    part = kernels.ComposedBody(one.body, fraction * weights(order))
-    (after,), (moved,), (code,) = kernels.whole_steps(part, momenta[None], pose[None])
+    (after,), (moved,), (code,) = route.parts_of_steps(momenta[None], pose[None], fraction)
     if code != 0:
-        after, moved = np.full(len(after), np.nan), np.full(len(moved), np.nan)
-        return after, np.full(kernels.sizes(one.body)[1], np.nan), moved
-    code, state = kernels.start(whole.body, after, moved)
-    chart = kernels.chart_of(whole.body, state)
+        return np.full(len(after), np.nan), np.full(route.sizes[1], np.nan), np.full(len(moved), np.nan)
+    code, state = route.start(after, moved)
+    chart = route.chart_of(state)
     return after, chart if code == 0 else np.full(len(chart), np.nan), moved
 
 
@@ -115,7 +92,7 @@ def _by_definition(discrete: Discretization, states: Orbit, fractions: np.ndarra
         from nonholo.simulation._events_definition import partial_step
 
     group, frame, C = discrete.system.group, discrete.system.frame, discrete.system.frame_map
-    g = group.matrix_from_pose(_poses(discrete, states)) @ group.inverse(frame)
+    g = group.matrix_from_pose(_poses(True, states)) @ group.inverse(frame)
     r = np.linalg.solve(C, states.reduced_momentum.T).T
     found = [partial_step(discrete, *row) for row in zip(fractions, r, g, strict=True)]
     momenta, charts, moved = (np.array(column) for column in zip(*found, strict=True))

@@ -10,7 +10,6 @@ from nonholo.discrete import Discretization
 from nonholo.discrete._composition import weights
 from nonholo.discrete._definition import displaced, momentum_of, principal_displacement, restricted
 from nonholo.discrete._precision import in_double
-from nonholo.systems import AbstractLRSystem
 
 _root = equinox.filter_jit(principal_displacement)
 
@@ -32,5 +31,5 @@ def partial_step(
 def _moved(discrete: Discretization, y: Array, g: Array) -> tuple[Array, Array]:
     """Return the momentum along the constraint and the pose after a displacement."""
     W = displaced(discrete, y)
-    after = W @ g if isinstance(discrete.system, AbstractLRSystem) else g @ W
+    after = discrete.system.moved(g, W)
     return restricted(discrete, momentum_of(discrete, y, g, "right"), after), after

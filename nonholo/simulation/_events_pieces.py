@@ -7,7 +7,6 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo import kernels
 from nonholo._results import Outcome
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
@@ -64,7 +63,7 @@ def _advanced(run: CompiledRun, state: np.ndarray, last: KernelRows, most: int) 
     """Take steps with the state of a kernel; return the outcome, and the rows from the last one on."""
     size = min(max(1, min(PIECE, NUMBERS // max(1, *run.sizes))), most)
     rows = _each(lambda row: np.concatenate((row, np.empty((size, row.shape[1])))), last)
-    good, code = kernels.advance(run.closed.body, state, size, 1, _each(operator.itemgetter(slice(1, None)), rows))
+    good, code = run.route.advance(state, size, 1, _each(operator.itemgetter(slice(1, None)), rows))
     return code, _each(operator.itemgetter(slice(0, 1 + good)), rows)
 
 

@@ -17,7 +17,6 @@ from nonholo.simulation._events_pieces import NUMBERS, PIECE, searched_first, st
 from nonholo.simulation._events_scan import Watch, search
 from nonholo.simulation._prepared import Start
 from nonholo.simulation._stretch import CompiledRun, opened
-from nonholo.systems import AbstractLRSystem
 
 _FIRST, _GROWTH = 16, 4  # steps of the first attempt of a run that cannot be gone on with, and factor to the next
 
@@ -37,7 +36,7 @@ def watched_events(
         raise error(
             where, "have the principal branch, where parts of a step are defined", f"branch {shown(rule)}", remedy
         )
-    if isinstance(discrete.system, AbstractLRSystem) and not reconstruct:
+    if discrete.system.is_spatial and not reconstruct:
         got = "reconstruct=False with a right-invariant constraint, whose step depends on the pose"
         raise error(where, "have poses", got, "Run with reconstruct=True.")
     return named

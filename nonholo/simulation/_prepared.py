@@ -11,7 +11,6 @@ from nonholo.discrete._branch_rules import BranchRule, checked_rule
 from nonholo.discrete._composition import check_composed_run
 from nonholo.discrete._discretization import as_discretization
 from nonholo.discrete._start import in_group
-from nonholo.discrete._structured import is_secular
 
 _COMPILED, _BY_DEFINITION = 5e-10, 1e-5  # least seconds of a step for each component of momentum; of one step
 
@@ -63,7 +62,7 @@ def first_state(
 def first_pose(discrete: Discretization, configuration: Any, saved: int, compiled: bool) -> np.ndarray | None:
     """Return the first pose; None where neither the step nor the result needs one."""
     group = discrete.system.group
-    needless = saved == 0 and compiled and is_secular(discrete)
+    needless = saved == 0 and compiled and not discrete.route.needs_pose
     if configuration is None:
         return None if needless else group.identity
     g = in_group("simulate(configuration=...)", group, configuration)

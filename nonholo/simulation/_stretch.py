@@ -11,21 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from nonholo import kernels
 from nonholo._checks import error, shown
 from nonholo._results import Outcome, finished
-from nonholo.discrete import Discretization
-from nonholo.discrete._composition import compiled_step
+from nonholo.discrete import AbstractCompiledRoute, Discretization
 from nonholo.discrete._start import check_first_state
-from nonholo.discrete._structured import (
-    Structured,
-    decoded,
-    decoded_poses,
-    encoded,
-    encoded_poses,
-    from_kernel,
-    is_secular,
-)
 from nonholo.orbit import Orbit
 from nonholo.simulation._prepared import Start
 
@@ -35,33 +24,32 @@ _SOON, _LATE = 0.1, 0.3  # seconds: from one to the next they are doubled and ha
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class CompiledRun:
-    """A discretisation with its compiled step, and what a run of it keeps.
+    """A discretisation with its compiled route, and what a run of it keeps.
 
     Attributes:
         discrete: The discretisation.
-        closed: Its compiled step.
+        route: Its compiled route.
         every: Steps between saved states.
         reconstruct: Whether poses are kept.
     """
 
     discrete: Discretization
-    closed: Structured
+    route: AbstractCompiledRoute
     every: int
     reconstruct: bool
 
     @property
     def sizes(self) -> tuple[int, int, int]:
         """Numbers of momenta, chart coordinates and pose entries of a row."""
-        momenta, charts, pose = kernels.sizes(self.closed.body)
-        return momenta, charts, pose if self.reconstruct or not is_secular(self.discrete) else 0
+        momenta, charts, pose = self.route.sizes
+        return momenta, charts, pose if self.reconstruct or self.route.needs_pose else 0
 
     def start(self, reduced: np.ndarray, pose: np.ndarray) -> tuple[np.ndarray, Outcome]:
         """Return the vector of a run at its first state, and the outcome of the first root."""
-        group = self.discrete.system.group
-        scaled = encoded(self.closed, reduced)
-        coded = encoded_poses(self.closed, group, pose) if pose.size else pose
-        code, state = kernels.start(self.closed.body, scaled, coded)
-        return np.concatenate((scaled, kernels.chart_of(self.closed.body, state), coded, state)), Outcome(code)
+        scaled = self.route.encode(reduced)
+        coded = self.route.encode_poses(pose) if pose.size else pose
+        code, state = self.route.start(scaled, coded)
+        return np.concatenate((scaled, self.route.chart_of(state), coded, state)), Outcome(code)
 
     def first(self, vector: np.ndarray) -> Orbit:
         """Return the state in the first part of a vector as an orbit at time zero."""
@@ -84,7 +72,7 @@ class CompiledRun:
             free, since = first + (done - begun) // self.every, time.monotonic()
             piece, every = self._piece(done - begun, stop - begun, pace)
             room = (rows[0][free:], rows[1][free:], rows[2][free:])
-            good, code = kernels.advance(self.closed.body, state, piece, every, room)
+            good, code = self.route.advance(state, piece, every, room)
             done += good
             report(done)
             pace = _paced(pace, time.monotonic() - since)
@@ -109,8 +97,8 @@ class CompiledRun:
         momenta, charts, poses = rows
         number = begun // self.every + (0 if opening else 1)
         time = self.discrete.time_step * (self.every * np.arange(number, number + len(momenta)))
-        pose = decoded_poses(self.closed, self.discrete.system.group, poses) if self.reconstruct else None
-        momenta, charts = decoded(self.closed, momenta), from_kernel(self.closed, charts)
+        pose = self.route.decode_poses(poses) if self.reconstruct else None
+        momenta, charts = self.route.decode(momenta), self.route.from_kernel(charts)
         return Orbit(self.discrete, time, momenta, charts, pose, outcome, self.every)
 
 
@@ -121,13 +109,15 @@ def _paced(pace: int, seconds: float) -> int:
     return max(1, pace // 2) if seconds > _LATE else pace
 
 
-def closed_step(discrete: Discretization, rule: Any = "principal", backend: str = "auto") -> Structured | None:
-    """Return the compiled step of a run, None if it runs by a rule or by the definition."""
-    return compiled_step(discrete) if rule == "principal" and backend != "jax" else None
+def closed_step(
+    discrete: Discretization, rule: Any = "principal", backend: str = "auto"
+) -> AbstractCompiledRoute | None:
+    """Return the compiled route of a run, None if it runs by a rule or by the definition."""
+    return discrete.route.compiled if rule == "principal" and backend != "jax" else None
 
 
 def compiled_run(
-    where: str, discrete: Discretization, closed: Structured | None, every: int, posed: bool
+    where: str, discrete: Discretization, closed: AbstractCompiledRoute | None, every: int, posed: bool
 ) -> CompiledRun:
     """Return the run in blocks of a compiled step; only compiled runs have a state that can be kept."""
     if closed is None:

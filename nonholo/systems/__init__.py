@@ -1,6 +1,6 @@
 """What a system is: a group, an inertia operator and the subspace that velocities are constrained to."""
 
-from nonholo.systems._arrowhead import ArrowheadSleigh, ArrowheadTop, is_wide
+from nonholo.systems._arrowhead import ArrowheadSleigh, ArrowheadTop
 from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, AbstractSystem, Equilibria, System
 from nonholo.systems._body import ImpossibleBodyWarning
 from nonholo.systems._displacements import in_exp_d, trace_constraints
@@ -52,7 +52,6 @@ __all__ = [
     "inertia_from_mass_tensor",
     "inertia_tensor",
     "is_symmetric_pair",
-    "is_wide",
     "mass_tensor_from_inertia",
     "reference_point_subspace",
     "symmetric_complement",

@@ -13,7 +13,7 @@ import numpy as np
 from nonholo._checks import array, check_scale, error, scale
 from nonholo._types import Array, Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem, AbstractSystem
+from nonholo.systems._base import AbstractLLSystem
 from nonholo.systems._mass import inertia_from_mass_tensor
 from nonholo.systems._multidimensional_sleigh import MultidimensionalSleigh
 from nonholo.systems._normal_form import NormalForm
@@ -223,8 +223,3 @@ def _refuse_negative(where: str, inertia: WideInertia) -> None:
     if not turning.min() > 0:
         got = f"{turning.min():.3g} at entry {int(np.argmin(turning))}"
         raise error(where, "give a positive inertia along the constraint", got, "Pass the mass tensor of a body.")
-
-
-def is_wide(system: AbstractSystem) -> bool:
-    """Tell whether the system has its mass tensor without a matrix."""
-    return isinstance(system, ArrowheadTop | ArrowheadSleigh)

@@ -11,7 +11,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import shape_of, trailing
+from nonholo._checks import error, shape_of, trailing
 from nonholo._types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._equilibria import Equilibria, equilibria_of
@@ -33,7 +33,7 @@ class AbstractSystem(abc.ABC):
     structure: ClassVar[tuple[str, ...]]
     """Fields that are fixed: groups, subspaces, axes."""
     is_spatial: ClassVar[bool]
-    """Whether the constraint is fixed in space; otherwise it is fixed in the body."""
+    """Whether the constraint is fixed in space (right-invariant) instead of in the body (left-invariant)."""
 
     @property
     @abc.abstractmethod
@@ -96,6 +96,12 @@ class AbstractSystem(abc.ABC):
         return None
 
     @property
+    def is_wide(self) -> bool:
+        """Whether the system has its mass tensor without a matrix."""
+        form = self.normal_form
+        return form is not None and form.is_diagonal
+
+    @property
     def form_frame(self) -> Float[Array, "N N"]:
         """The axes of the normal form as seen from the user's frame."""
         form = self.normal_form
@@ -119,10 +125,91 @@ class AbstractSystem(abc.ABC):
         inertia = self.inertia_along
         return inertia.dense if isinstance(inertia, WideInertia) else inertia
 
-    def restricted_momentum(self, restricted_velocity: Float[Array, "... k"]) -> Float[Array, "... k"]:
-        """Return the momenta along the constraint subspace of velocities in its rows, of a body at the identity."""
-        velocity, inertia = self._along("restricted_velocity", restricted_velocity), self.inertia_along
-        return inertia.momenta(velocity) if isinstance(inertia, WideInertia) else velocity @ inertia
+    @abc.abstractmethod
+    def carried(self, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim dim"]:
+        r"""Return the matrix from body velocities to those whose constraint is fixed: the identity, or $\mathrm{Ad}_g$.
+
+        Args:
+            configuration: g.
+
+        Example:
+            >>> quarter = nh.SO(3).exp(np.array([0.0, 0.0, np.pi / 2]))
+            >>> nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])).carried(quarter).round(12) + 0.0
+            array([[ 0., -1.,  0.],
+                   [ 1.,  0.,  0.],
+                   [ 0.,  0.,  1.]])
+            >>> bool(np.all(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])).carried(quarter) == np.eye(3)))
+            True
+        """
+
+    @abc.abstractmethod
+    def moved(self, configuration: Float[Array, "... N N"], displacement: Array) -> Float[Array, "... N N"]:
+        """Return a pose after a displacement that the constraint sees: g W, or W g where it is fixed in space.
+
+        Args:
+            configuration: g.
+            displacement: W, (..., N, N).
+        """
+
+    @abc.abstractmethod
+    def restrict_at(
+        self, momentum: Inexact[Array, "... dim"], configuration: Float[Array, "... N N"] | None = None
+    ) -> Inexact[Array, "... k"]:
+        r"""Return the components of a body momentum along the constraint of a body at a configuration.
+
+        Args:
+            momentum: A full momentum.
+            configuration: g; needed where the constraint is fixed in space, where they are those of the spatial
+                momentum, $S\,\mathrm{Ad}^*_{g^{-1}}p$.
+        """
+
+    @abc.abstractmethod
+    def restricted_velocity(
+        self, restricted_momentum: Float[Array, "... k"], configuration: Float[Array, "... N N"] | None = None
+    ) -> Float[Array, "... k"]:
+        """Return the velocity, in rows of the constraint subspace, that has these momenta along it.
+
+        Args:
+            restricted_momentum: r.
+            configuration: g; needed where the constraint is fixed in space.
+        """
+
+    @abc.abstractmethod
+    def restricted_momentum(
+        self, restricted_velocity: Float[Array, "... k"], configuration: Float[Array, "... N N"] | None = None
+    ) -> Float[Array, "... k"]:
+        """Return the momenta along the constraint subspace of velocities in its rows.
+
+        Args:
+            restricted_velocity: w.
+            configuration: g, by default the identity; it matters where the constraint is fixed in space.
+        """
+
+    def constrained_energy(
+        self,
+        momentum: Float[Array, "... dim"] | Float[Array, "... k"],
+        configuration: Float[Array, "... N N"] | None = None,
+    ) -> Float[Array, "..."]:
+        r"""Return the reduced constrained energy $\tfrac12\,r\cdot(\mathbb{I}|_\mathfrak{d})^{-1}\,r$ of a momentum.
+
+        Here $r = p|_\mathfrak{d}$ are its components along the constraint subspace. Where that is fixed in space, they
+        are those of the spatial momentum and the inertia is $B(g)$ (`AbstractLRSystem.spatial_inertia`).
+
+        Args:
+            momentum: A momentum, or its components along the rows of the constraint subspace (what k numbers are taken
+                for, also when k = dim).
+            configuration: g; needed where the constraint is fixed in space.
+
+        Example:
+            >>> ChaplyginSleigh(mass=2.0, inertia=1.0, a=0.5).constrained_energy([0.0, 2.0, 0.0])
+            np.float64(1.0)
+            >>> from nonholo.systems import VeselovaTop
+            >>> VeselovaTop(np.diag([1.0, 2.0, 3.0])).constrained_energy([4.0, 0.0], np.eye(3))
+            np.float64(2.0)
+        """
+        is_restricted = shape_of(momentum)[-1:] == (self.rank,)
+        r = self._along("momentum", momentum if is_restricted else self.restrict_at(momentum, configuration))
+        return (r * self.restricted_velocity(r, configuration)).sum(axis=-1) / 2
 
     def restrict(self, momentum: Inexact[Array, "... dim"]) -> Inexact[Array, "... k"]:
         """Return the components of a momentum along the rows of the constraint subspace."""
@@ -165,26 +252,36 @@ class AbstractLLSystem(AbstractSystem):
         """
         return equilibria_of(self)
 
-    def constrained_energy(self, momentum: Float[Array, "... dim"] | Float[Array, "... k"]) -> Float[Array, "..."]:
-        r"""Return the reduced constrained energy $\tfrac12\,r\cdot(\mathbb{I}|_\mathfrak{d})^{-1}\,r$ of a momentum.
+    def carried(self, configuration: Float[Array, "... N N"]) -> Float[Array, "dim dim"]:
+        """Return the identity: the constraint is fixed in the body."""
+        del configuration
+        return np.eye(self.group.dim)
 
-        Here $r = p|_\mathfrak{d}$ are its components along the constraint subspace.
+    def moved(self, configuration: Float[Array, "... N N"], displacement: Array) -> Float[Array, "... N N"]:
+        """Return g W."""
+        return configuration @ displacement
 
-        Args:
-            momentum: A momentum, or its components along the rows of the constraint subspace (what k numbers are taken
-                for, also when k = dim).
+    def restrict_at(
+        self, momentum: Inexact[Array, "... dim"], configuration: Float[Array, "... N N"] | None = None
+    ) -> Inexact[Array, "... k"]:
+        """Return the components of a body momentum along the constraint subspace."""
+        del configuration
+        return self.restrict(momentum)
 
-        Example:
-            >>> ChaplyginSleigh(mass=2.0, inertia=1.0, a=0.5).constrained_energy([0.0, 2.0, 0.0])
-            np.float64(1.0)
-        """
-        restricted = momentum if shape_of(momentum)[-1:] == (self.rank,) else self.restrict(momentum)
-        restricted = self._along("momentum", restricted)
-        return (restricted * self.restricted_velocity(restricted)).sum(axis=-1) / 2
-
-    def restricted_velocity(self, restricted_momentum: Float[Array, "... k"]) -> Float[Array, "... k"]:
+    def restricted_velocity(
+        self, restricted_momentum: Float[Array, "... k"], configuration: Float[Array, "... N N"] | None = None
+    ) -> Float[Array, "... k"]:
         """Return the velocity, in rows of the constraint subspace, that has these momenta along it."""
+        del configuration
         return _solve(self.inertia_along, self._along("restricted_momentum", restricted_momentum))
+
+    def restricted_momentum(
+        self, restricted_velocity: Float[Array, "... k"], configuration: Float[Array, "... N N"] | None = None
+    ) -> Float[Array, "... k"]:
+        """Return the momenta along the constraint subspace of velocities in its rows."""
+        del configuration
+        velocity, inertia = self._along("restricted_velocity", restricted_velocity), self.inertia_along
+        return inertia.momenta(velocity) if isinstance(inertia, WideInertia) else velocity @ inertia
 
 
 class AbstractLRSystem(AbstractSystem):
@@ -238,9 +335,11 @@ class AbstractLRSystem(AbstractSystem):
         images = rows @ xp.swapaxes(self.group.adjoint(self.group.inverse(g)), -1, -2)
         return images @ self.inertia_operator @ xp.swapaxes(images, -1, -2)
 
-    def _at(self, configuration: Array) -> Array:
-        where, size = f"{type(self).__name__} (configuration=...)", self.group.size
-        return trailing(where, configuration, (size, size), "Pass the matrix of a pose.")
+    def _at(self, configuration: Array | None) -> Array:
+        where, remedy = f"{type(self).__name__} (configuration=...)", "Pass the matrix of a pose."
+        if configuration is None:
+            raise error(where, "be given where the constraint is fixed in space", "none", remedy)
+        return trailing(where, configuration, (self.group.size, self.group.size), remedy)
 
     def restrict_in_space(
         self, momentum: Float[Array, "... dim"], configuration: Float[Array, "... N N"]
@@ -249,30 +348,36 @@ class AbstractLRSystem(AbstractSystem):
         g = self._at(configuration)
         return self.restrict(self.group.coadjoint(self.group.inverse(g), momentum))
 
+    def carried(self, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim dim"]:
+        r"""Return $\mathrm{Ad}_g$: the constraint is fixed in space."""
+        return self.group.adjoint(self._at(configuration))
+
+    def moved(self, configuration: Float[Array, "... N N"], displacement: Array) -> Float[Array, "... N N"]:
+        """Return W g of a displacement in space."""
+        return displacement @ configuration
+
+    def restrict_at(
+        self, momentum: Inexact[Array, "... dim"], configuration: Float[Array, "... N N"] | None = None
+    ) -> Inexact[Array, "... k"]:
+        """Return the components of the spatial momentum along the constraint subspace (`restrict_in_space`)."""
+        return self.restrict_in_space(momentum, self._at(configuration))
+
     def restricted_velocity(
-        self, restricted_momentum: Float[Array, "... k"], configuration: Float[Array, "... N N"]
+        self, restricted_momentum: Float[Array, "... k"], configuration: Float[Array, "... N N"] | None = None
     ) -> Float[Array, "... k"]:
         """Return the spatial velocity, in rows of the constraint subspace, that has these spatial momenta along it."""
-        return _solve(self.spatial_inertia(configuration), self._along("restricted_momentum", restricted_momentum))
+        inertia = self.spatial_inertia(self._at(configuration))
+        return _solve(inertia, self._along("restricted_momentum", restricted_momentum))
 
-    def constrained_energy(
-        self, momentum: Float[Array, "... dim"] | Float[Array, "... k"], configuration: Float[Array, "... N N"]
-    ) -> Float[Array, "..."]:
-        r"""Return the constrained energy $\tfrac12\,r\cdot B(g)^{-1}\,r$ of a momentum at a configuration.
-
-        Args:
-            momentum: r, the components of the spatial momentum along the rows of the constraint subspace (what k
-                numbers are taken for, also when k = dim), or a body momentum.
-            configuration: g.
-
-        Example:
-            >>> from nonholo.systems import VeselovaTop
-            >>> VeselovaTop(np.diag([1.0, 2.0, 3.0])).constrained_energy([4.0, 0.0], np.eye(3))
-            np.float64(2.0)
-        """
-        r = momentum if shape_of(momentum)[-1:] == (self.rank,) else self.restrict_in_space(momentum, configuration)
-        r = self._along("momentum", r)
-        return (r * self.restricted_velocity(r, configuration)).sum(axis=-1) / 2
+    def restricted_momentum(
+        self, restricted_velocity: Float[Array, "... k"], configuration: Float[Array, "... N N"] | None = None
+    ) -> Float[Array, "... k"]:
+        """Return the spatial momenta along the constraint subspace of spatial velocities in its rows."""
+        velocity = self._along("restricted_velocity", restricted_velocity)
+        if configuration is None:
+            return velocity @ self.inertia_along
+        inertia = self.spatial_inertia(configuration)
+        return velocity @ inertia if inertia.ndim == 2 else (velocity[..., None, :] @ inertia)[..., 0, :]
 
 
 System = AbstractLLSystem | AbstractLRSystem

@@ -6,7 +6,6 @@ import numpy as np
 
 from nonholo.analysis import invariants
 from nonholo.discrete import discrete_legendre
-from nonholo.discrete._structured import structured
 from nonholo.simulation import simulate
 from nonholo.testing._measures import derivative, gap, largest, relative
 from nonholo.testing._orbit_samples import COUNTS, PATH, STEP, OrbitSamples
@@ -119,7 +118,7 @@ def reversal(s: OrbitSamples) -> float:
 
 def compiled_reversal(s: OrbitSamples) -> float:
     """Return how far one compiled step forward and back misses its start."""
-    _need(structured(s.discrete) is not None, "the step is not compiled")
+    _need(s.discrete.route.compiled is not None, "the step is not compiled")
     found = invariants(s.orbit).reversal_defect
     return float("nan") if found is None else found
 
@@ -148,7 +147,7 @@ def order_of_poses(s: OrbitSamples) -> float:
 
 def definition(s: OrbitSamples) -> float:
     """Compare three compiled steps with the definition, solved by JAX."""
-    _need(structured(s.discrete) is not None, "the step that runs is the definition")
+    _need(s.discrete.route.compiled is not None, "the step that runs is the definition")
     slow = simulate(s.discrete, steps=3, backend="jax", **s.first)
     return max(relative(getattr(s.orbit[:4], name), getattr(slow, name)) for name in _AGREE)
 

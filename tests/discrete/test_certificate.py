@@ -10,7 +10,7 @@ import pytest
 from bodies import random_rows
 
 import nonholo as nh
-from nonholo.discrete._structured import structured
+from nonholo.discrete.routes import make_route
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.kernels import GeneralBody
 from nonholo.kernels._general import displaced, workspace
@@ -37,7 +37,7 @@ def _bodies(index: int) -> list[tuple[nh.LLSystem, GeneralBody]]:
         chosen = np.sort(rng.choice(group.dim, k, replace=False))
         rows = np.eye(group.dim)[chosen] if k % 2 else random_rows(group, k, rng)
         system = nh.LLSystem(group, _uneven_tensor(group, rng), rows)
-        found.append((system, structured(nh.discretize(system, 1.0)).body))
+        found.append((system, make_route(nh.discretize(system, 1.0), "matrix").body))
     return found
 
 

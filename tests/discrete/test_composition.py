@@ -11,7 +11,7 @@ from bodies import GENERAL
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.discrete._composition import WEIGHTS, compiled_step, weights
+from nonholo.discrete._composition import WEIGHTS, weights
 from nonholo.systems import AbstractSystem
 
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -171,7 +171,7 @@ def test_momentum_is_that_of_the_first_substep(name: str) -> None:
 def test_a_run_can_stop_and_go_on(name: str) -> None:
     """Ten steps at once and in two parts have the same bits."""
     system, velocity = BODIES[name]
-    body = compiled_step(nh.discretize(system, 0.1, order=4)).body
+    body = nh.discretize(system, 0.1, order=4).route.body
     k, m, size = kernels.sizes(body)
     pose = np.eye(system.group.size).ravel() if size != 4 else np.array([1.0, 0.0, 0.0, 0.0])
     found = []

@@ -8,7 +8,7 @@ import pytest
 from bodies import mass_tensor
 
 import nonholo as nh
-from nonholo.discrete._structured import matrix_step
+from nonholo.discrete.routes import make_route
 from nonholo.kernels._small import paired_twice
 from nonholo.numerics import product_and_remainder
 
@@ -71,7 +71,7 @@ def test_a_hundred_bodies(seed: int) -> None:
 @pytest.mark.parametrize("seed", [1, 4, 5, 11])
 def test_rows_and_moments_to_twice_the_digits(seed: int) -> None:
     """The kernel's annihilator vanishes on its directions, and its D J are products, both to 1e-30, as fractions."""
-    step = matrix_step(nh.discretize(random_case(seed)[0], 1.0))
+    step = make_route(nh.discretize(random_case(seed)[0], 1.0), "matrix")
     assert step is not None
     body = step.body
     k = len(body.directions)

@@ -54,7 +54,7 @@ def test_a_symmetric_pair_of_rank_two(constraint: str) -> None:
 
 def test_all_branches_conserve_energy() -> None:
     """No energy is left to choose a root by: Newton from random guesses on SO(4) finds others of the same energy."""
-    from nonholo.discrete._structured import matrix_step
+    from nonholo.discrete.routes import make_route
     from nonholo.kernels._general import displaced, increments, workspace
     from nonholo.kernels._general_root import newton
 
@@ -62,7 +62,7 @@ def test_all_branches_conserve_energy() -> None:
     system = nh.SuslovTop(mass_tensor(nh.SO(4), rng))
     discrete = nh.discretize(system, 0.5)
     orbit = nh.simulate(discrete, restricted_velocity=(0.8, -0.5, 0.6), steps=1)
-    body, m = matrix_step(discrete).body, 0.5 * orbit.restricted_momentum[1]
+    body, m = make_route(discrete, "matrix").body, 0.5 * orbit.restricted_momentum[1]
     found, work, term = set(), workspace(body), np.zeros(3)
     for y in rng.normal(size=(200, 3)) * 3:
         good, _ = newton(body, work, m, y)

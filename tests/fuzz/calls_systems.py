@@ -76,9 +76,23 @@ def _methods() -> list[Call]:
                 ("restricted_velocity", "restricted_momentum", r),
                 ("to_canonical", "restricted_momentum", r),
                 ("from_canonical", "reduced_momentum", r),
+                ("restrict_at", "momentum", p),
             )
         ]
-    return found
+    return found + _methods_in_space()
+
+
+def _methods_in_space() -> list[Call]:
+    system, pose = nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), array(np.eye(3), "batch")
+    return [
+        call(f"veselova.{method}", getattr(system, method), configuration=pose, **{argument: array(value, "any")})
+        for method, argument, value in (
+            ("constrained_energy", "momentum", [0.2, -0.3]),
+            ("restrict_at", "momentum", [0.2, -0.3, 0.1]),
+            ("restricted_momentum", "restricted_velocity", [0.2, -0.3]),
+            ("restricted_velocity", "restricted_momentum", [0.2, -0.3]),
+        )
+    ] + [call("veselova.carried", system.carried, configuration=pose)]
 
 
 def _in_coordinates() -> list[Call]:

@@ -62,6 +62,6 @@ def test_saved_again_in_the_new_schema(name: str, tmp_path: Path) -> None:
     old = nh.load_orbit(_STORES / f"{name}.zarr")
     nh.save_orbit(old, tmp_path / "o.zarr")
     new = nh.load_orbit(tmp_path / "o.zarr")
-    assert read_attributes(tmp_path / "o.zarr")["schema"] == 3
+    assert read_attributes(tmp_path / "o.zarr")["schema"] == 4
     assert new.reduced_momentum.tobytes() == old.reduced_momentum.tobytes()
     assert new.canonical_pose.tobytes() == old.canonical_pose.tobytes()

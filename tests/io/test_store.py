@@ -347,8 +347,8 @@ def test_changed_shape_is_refused(store: Path) -> None:
 
 def test_future_schema_is_refused(store: Path) -> None:
     """A store of a later schema is refused with the advice to upgrade."""
-    _edit(store, schema=4)
-    with pytest.raises(ValueError, match=r"schema 4\. .*upgrade"):
+    _edit(store, schema=5)
+    with pytest.raises(ValueError, match=r"schema 5\. .*upgrade"):
         nh.load_orbit(store)
 
 
@@ -379,7 +379,7 @@ def test_unknown_system_and_lost_attributes(store: Path) -> None:
 
 def test_callable_difference_must_be_given(store: Path) -> None:
     """A store made with a callable is refused, unless the discretisation is passed; a different one is refused."""
-    described = json.loads(read_attributes(store)["motion"]) | {"difference": "callable"}
+    described = json.loads(read_attributes(store)["motion"]) | {"difference": "callable", "route": "definition"}
     _edit(store, motion=json.dumps(described))
     with pytest.raises(ValueError, match=r"difference is a callable.*discrete="):
         nh.load_orbit(store)
@@ -437,3 +437,16 @@ def test_only_what_is_ours_is_replaced(store: Path) -> None:
         nh.save_orbit(orbit, store, overwrite=True)
     nh.save_orbit(orbit, store, overwrite=True)
     assert nh.load_orbit(store).canonical_pose.tobytes() == orbit.canonical_pose.tobytes()
+
+
+def test_a_route_of_another_version_is_refused(tmp_path: Path) -> None:
+    """A store that names a route which this version does not have says so."""
+    path = tmp_path / "o.zarr"
+    nh.save_orbit(
+        nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), body_velocity=(1, 1, 0), steps=2), path
+    )
+    motion = json.loads(read_attributes(path)["motion"])
+    assert motion["route"] == "scalar"
+    nh.io.edit_attributes(path, {"motion": json.dumps({**motion, "route": "elliptic"})})
+    with pytest.raises(ValueError, match="hold a run by a route of this version"):
+        nh.load_orbit(path)

@@ -9,8 +9,7 @@ import pytest
 import nonholo as nh
 from nonholo import kernels
 from nonholo.discrete._branch_equations import frame_of
-from nonholo.discrete._secular import SecularStep, secular_step
-from nonholo.discrete._structured import first_root, matrix_step
+from nonholo.discrete.routes import SecularRoute, make_route
 from nonholo.kernels._secular import room_for_sums, secular_sleigh, secular_top
 from nonholo.kernels._secular_box import holds, write_bends, write_box
 from nonholo.kernels._secular_linear import solve_linear
@@ -52,13 +51,13 @@ def by_arcs(system: nh.SuslovTop | nh.MultidimensionalSleigh, r: np.ndarray) -> 
     return how, point, least
 
 
-def by_path(step: SecularStep, r: np.ndarray, follow: Callable = principal) -> tuple[int, np.ndarray]:
+def by_path(step: SecularRoute, r: np.ndarray, follow: Callable = principal) -> tuple[int, np.ndarray]:
     """Return the outcome and (z0, z) up to their common sign."""
-    body, m = step.body, step.encoded(r)
+    body, m = step.body, step.encode(r)
     k = len(body.b)
     code, nu, tau = follow(body, m, m[-1] if body.slides else 0.0, room_for_sums())
     y = (m[:k] + tau * (m[:k] + body.c)) / (body.b + nu)
-    return code, np.append(1.0, step.turned_back(y)) / np.sqrt(1 + tau)
+    return code, np.append(1.0, step.from_kernel(y)) / np.sqrt(1 + tau)
 
 
 def agreements(count: int, seed: int) -> tuple[int, int, int]:
@@ -68,7 +67,7 @@ def agreements(count: int, seed: int) -> tuple[int, int, int]:
         system = random_system(KINDS[trial % 4], trial % 3 == 0, rng)
         r = system.restricted_momentum(rng.normal(size=system.rank)) * 10 ** rng.uniform(-0.7, 0.5)
         how, point, least = by_arcs(system, r)
-        step = secular_step(nh.discretize(system, 1.0))
+        step = nh.discretize(system, 1.0).route
         code, found = by_path(step, r)
         if how == arcs.LOST:
             continue
@@ -118,7 +117,7 @@ def test_the_end_of_a_chart_is_no_fold() -> None:
     """`step` by the definition and the general kernel follow in Cayley coordinates: beyond pi they are unsure."""
     discrete = nh.discretize(nh.SuslovTop(PAST_PI), 1.0)
     assert int(nh.step(discrete, MOMENTUM).outcome) == nh.Outcome.branch_unverified
-    step = matrix_step(discrete)
+    step = make_route(discrete, "matrix")
     assert step is not None
     assert kernels.start(step.body, step.scale * MOMENTUM, np.eye(4).ravel())[0] == nh.Outcome.branch_unverified
     assert int(nh.step(discrete, 20 * MOMENTUM[::-1]).outcome) == nh.Outcome.no_real_branch
@@ -130,7 +129,7 @@ def test_a_half_turn() -> None:
     along = MOMENTUM / np.linalg.norm(MOMENTUM)
     r = 2 * (along @ system.coupling) * along
     how, point, _ = by_arcs(system, r)
-    code, found = by_path(secular_step(nh.discretize(system, 1.0)), r)
+    code, found = by_path(nh.discretize(system, 1.0).route, r)
     assert (code, how) == (0, arcs.REACHED)
     assert abs(point[0]) < 1e-12
     assert min(np.abs(found - point).max(), np.abs(found + point).max()) < 1e-12
@@ -143,7 +142,7 @@ def test_the_slide_of_a_sleigh_at_angle_pi(past: float) -> None:
     system = nh.MultidimensionalSleigh(mass, [arm, 0.3, -0.2], 0.1 * np.diag([1.0, 2.0, 3.0]) + 0.01)
     discrete = nh.discretize(system, 1.0)
     r = np.array([18.0, 7.0, -2 * mass * arm * (1 + past)])
-    code, chart = first_root(secular_step(discrete), system, r)
+    code, chart = discrete.route.first_root(r)
     assert code == 0
     values, frame = nh.displacements_over(discrete, r), frame_of("test", discrete)
     y = chart / np.linalg.norm(chart[:-1])  # without the sign and size of z0
@@ -161,7 +160,7 @@ def test_a_sleigh_without_arm_ends_at_angle_pi(along: float) -> None:
     """With a = 0 a turn by pi slides infinitely far, unless there is no momentum along the blade."""
     J = np.roll(np.array(PAST_PI), (1, 1), (0, 1))
     system = nh.MultidimensionalSleigh(1.0, [0.0, 0.0, 0.0, 0.0], J * np.outer([-1, 1, 1, 1], [-1, 1, 1, 1]))
-    code, _ = by_path(secular_step(nh.discretize(system, 1.0)), np.append(MOMENTUM, along))
+    code, _ = by_path(nh.discretize(system, 1.0).route, np.append(MOMENTUM, along))
     assert code == (nh.Outcome.branch_unverified if along else 0)
 
 
@@ -170,7 +169,7 @@ def test_a_sleigh_without_arm_ends_at_angle_pi(along: float) -> None:
 def test_linear_equations(kind: str, equal: bool) -> None:
     """Sums of O(n) solve what the whole matrix of derivatives does, also where one factor z0 b + mu vanishes."""
     rng = np.random.default_rng(6)
-    body = secular_step(nh.discretize(random_system(kind, False, rng), 1.0)).body
+    body = nh.discretize(random_system(kind, False, rng), 1.0).route.body
     k, signs = len(body.b), set()
     if equal:
         body = body._replace(b=np.full(k, body.b[0]))
@@ -314,7 +313,7 @@ def test_the_general_step_sees_tiny_folds(share: float) -> None:
             [-0.001420035, -1.168234e-06, -1.056824e-05, 2.55948e-05],
         ]
     )
-    step = matrix_step(nh.discretize(nh.SuslovTop(tensor), 1.0))
+    step = make_route(nh.discretize(nh.SuslovTop(tensor), 1.0), "matrix").compiled
     assert step is not None
     momentum = share * 0.04532060048 * np.array([-0.9221329, -0.0006786948, -0.001358454])
     assert (kernels.start(step.body, step.scale * momentum, np.eye(4).ravel())[0] == 0) == (share < 1)

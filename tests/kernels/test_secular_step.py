@@ -6,8 +6,7 @@ from bodies import mass_tensor
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.discrete._secular import secular_step
-from nonholo.discrete._structured import matrix_step
+from nonholo.discrete.routes import make_route
 from nonholo.kernels._secular_root import certain_radius, level_of
 
 
@@ -41,19 +40,19 @@ SPECIAL = {
 def equal_steps(system: nh.SuslovTop | nh.MultidimensionalSleigh, h: float, rows: np.ndarray) -> None:
     """Compare one step of both kernels from states with these momenta."""
     discrete = nh.discretize(system, h)
-    general, secular = matrix_step(discrete), secular_step(discrete)
+    general, secular = make_route(discrete, "matrix"), discrete.route
     start = np.zeros_like(rows)
     for r in rows:
         code, state = kernels.start(general.body, general.scale * r, np.eye(system.group.size).ravel())
-        other, same = kernels.start(secular.body, secular.encoded(r), np.empty(0))
+        other, same = kernels.start(secular.body, secular.encode(r), np.empty(0))
         assert code == other == 0
         chart = kernels.chart_of(general.body, state)
-        assert np.allclose(secular.turned_back(kernels.chart_of(secular.body, same)), chart, rtol=0, atol=1e-13)
+        assert np.allclose(secular.from_kernel(kernels.chart_of(secular.body, same)), chart, rtol=0, atol=1e-13)
         one, _, _ = kernels.step_each(general.body, (general.scale * r[None], chart[None], None), start[:1], True)
-        turned = secular.turned(chart[None])
-        two, _, _ = kernels.step_each(secular.body, (secular.encoded(r)[None], turned, None), start[:1], True)
+        turned = secular.to_kernel(chart[None])
+        two, _, _ = kernels.step_each(secular.body, (secular.encode(r)[None], turned, None), start[:1], True)
         scale = np.abs(r).max()
-        assert np.allclose(secular.decoded(two), one / general.scale, rtol=0, atol=1e-13 * scale)
+        assert np.allclose(secular.decode(two), one / general.scale, rtol=0, atol=1e-13 * scale)
 
 
 @pytest.mark.parametrize("n", [4, 5, 9, 20])
@@ -81,11 +80,11 @@ def test_no_other_root_is_certain(make) -> None:  # noqa: ANN001
     for _ in range(12):
         system = make(4 if make is top else 3, rng)
         discrete = nh.discretize(system, 1.0)
-        step = secular_step(discrete)
+        step = discrete.route
         k = len(step.body.b)
         r = system.restricted_momentum(rng.normal(size=system.rank))
         for share in 2.0 ** -np.arange(10):
-            m = step.encoded(share * r)
+            m = step.encode(share * r)
             radius = certain_radius(step.body, level_of(step.body, m[:k], m[-1] if step.body.slides else 0.0))
             if radius > 0:
                 break
@@ -94,7 +93,7 @@ def test_no_other_root_is_certain(make) -> None:  # noqa: ANN001
         for index in np.flatnonzero(found.is_real):
             W = found.displacement[index].real
             K = system.group.vee((W - system.group.inverse(W)) / 2) @ system.constraint_subspace.T
-            x = step.turned(K)[:k]
+            x = step.to_kernel(K)[:k]
             lever = step.body.mass * step.body.arm**2
             below_right_angle = np.trace(W[: system.group.n, : system.group.n]) > system.group.n - 2
             certain = (step.body.b + lever) @ x**2 <= radius and below_right_angle

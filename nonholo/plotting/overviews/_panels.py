@@ -22,7 +22,7 @@ from nonholo.plotting.motion import (
     velocity_components,
 )
 from nonholo.plotting.sheets import blade_of_system, sheet_of
-from nonholo.systems import AbstractLLSystem, is_wide
+from nonholo.systems import AbstractLLSystem
 
 
 class Panel(NamedTuple):
@@ -35,7 +35,7 @@ class Panel(NamedTuple):
 
 def panels_of(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
     """Return the panels of an orbit, the large one first; there is always one."""
-    if is_wide(orbit.system) and sheet_of(orbit.system) is None:
+    if orbit.system.is_wide and sheet_of(orbit.system) is None:
         return [_components(orbit, flow), Panel(functools.partial(energy_error, orbit), is_timed=True)]
     path, momentum = _path(orbit, flow), _momentum(orbit, flow)
     velocity = Panel(functools.partial(_velocity, orbit, flow), is_timed=True)

@@ -1,0 +1,30 @@
+"""How the steps of a discretisation are computed: one route for each way, chosen and built once.
+
+| route | what it computes |
+|---|---|
+| `ScalarRoute` | tops in space and sleighs in the plane, in closed form with scalars |
+| `SecularRoute` | tops on SO(n) and sleighs on SE(n), with two unknowns |
+| `MatrixRoute` | any constraint with difference "matrix", by the matrix equations |
+| `DefinitionRoute` | everything, by derivatives of the discrete Lagrangian in JAX |
+| `ComposedRoute` | compositions of one of the first three |
+"""
+
+from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute
+from nonholo.discrete.routes._choice import make_route
+from nonholo.discrete.routes._composed import ComposedRoute
+from nonholo.discrete.routes._definition import DefinitionRoute
+from nonholo.discrete.routes._matrix import MatrixRoute
+from nonholo.discrete.routes._scalar import ScalarRoute, ScalarStep
+from nonholo.discrete.routes._secular import SecularRoute
+
+__all__ = [
+    "AbstractCompiledRoute",
+    "AbstractRoute",
+    "ComposedRoute",
+    "DefinitionRoute",
+    "MatrixRoute",
+    "ScalarRoute",
+    "ScalarStep",
+    "SecularRoute",
+    "make_route",
+]

@@ -1,0 +1,167 @@
+"""What every route offers, and what all compiled ones do alike: units and axes of a kernel, runs, single steps."""
+
+import abc
+from typing import Any, ClassVar
+
+import numpy as np
+
+from nonholo import kernels
+from nonholo._results import Outcome, OutcomeError
+from nonholo._types import Array, Float
+from nonholo.discrete._composition import weights
+from nonholo.orbit import Orbit
+from nonholo.systems import System
+
+Rows = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+class AbstractRoute(abc.ABC):
+    """How the steps of a discretisation are computed.
+
+    A route sees a system, its displacement variety and a time step. Momenta, charts and poses that it takes and returns
+    are canonical.
+    """
+
+    order: int
+    """Of the steps that it takes: 2, or that of a composition."""
+    is_scalar: ClassVar[bool]
+    """Whether it works with scalars, so that members of an ensemble can run side by side."""
+    needs_pose: bool
+    """Whether it carries a pose along even where none is kept."""
+
+    @property
+    @abc.abstractmethod
+    def name(self) -> str:
+        """Its name in stores; a composition has that of what is composed."""
+
+    @property
+    @abc.abstractmethod
+    def compiled(self) -> "AbstractCompiledRoute | None":
+        """The route itself if its runs are compiled; None if there is only the definition."""
+
+    @abc.abstractmethod
+    def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
+        """Return the displacements that follow, one step of order 2 from each state."""
+
+    @abc.abstractmethod
+    def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Rows:
+        """Take one step from each row of momenta and poses of the user's frame; return both after it, and the outcomes.
+
+        Rows that cannot go on are NaN.
+        """
+
+
+class AbstractCompiledRoute(AbstractRoute):
+    """A route with a compiled kernel, which has units and perhaps axes of its own.
+
+    Attributes:
+        system: What moves.
+        time_step: h.
+    """
+
+    system: System
+    time_step: Array
+
+    @property
+    @abc.abstractmethod
+    def body(self) -> Any:
+        """What the kernel knows of the body, a `kernels.AnyBody`; made once."""
+
+    @property
+    @abc.abstractmethod
+    def scale(self) -> Array:
+        """The factor to the momenta of the kernel."""
+
+    @property
+    @abc.abstractmethod
+    def single(self) -> "AbstractCompiledRoute":
+        """The route of a step of order 2 with the same time step."""
+
+    @abc.abstractmethod
+    def encode(self, momenta: np.ndarray) -> np.ndarray:
+        """Return the momenta of the kernel from canonical ones."""
+
+    @abc.abstractmethod
+    def decode(self, momenta: np.ndarray) -> np.ndarray:
+        """Return canonical momenta from those of the kernel."""
+
+    @abc.abstractmethod
+    def to_kernel(self, charts: np.ndarray) -> np.ndarray:
+        """Return the chart coordinates of the kernel from canonical ones."""
+
+    @abc.abstractmethod
+    def from_kernel(self, charts: np.ndarray) -> np.ndarray:
+        """Return canonical chart coordinates from those of the kernel."""
+
+    @abc.abstractmethod
+    def encode_poses(self, poses: np.ndarray) -> np.ndarray:
+        """Return the poses of the kernel from compact canonical ones."""
+
+    @abc.abstractmethod
+    def decode_poses(self, poses: np.ndarray) -> np.ndarray:
+        """Return compact canonical poses from those of the kernel."""
+
+    @property
+    def compiled(self) -> "AbstractCompiledRoute":
+        """The route itself."""
+        return self
+
+    @property
+    def sizes(self) -> tuple[int, int, int]:
+        """Numbers of momenta, chart coordinates and pose entries of the kernel."""
+        return kernels.sizes(self.body)
+
+    def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
+        """Return the outcome of the first root, and the state of a run, from the kernel's momenta and pose."""
+        return kernels.start(self.body, momenta, pose)
+
+    def chart_of(self, state: np.ndarray) -> np.ndarray:
+        """Return the kernel's chart coordinates of the displacement in the state of a run."""
+        return kernels.chart_of(self.body, state)
+
+    def advance(self, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
+        """Take up to `steps` steps into rows of the kernel; return how many were good and the outcome."""
+        return kernels.advance(self.body, state, steps, every, rows)
+
+    def step_each(
+        self, states: tuple[np.ndarray, np.ndarray, np.ndarray | None], guesses: np.ndarray, *, principal_only: bool
+    ) -> Rows:
+        """Take one step from each of the kernel's momenta, charts and poses; return momenta, charts and outcomes."""
+        return kernels.step_each(self.single.body, states, guesses, principal_only)
+
+    def first_root(self, momenta: np.ndarray) -> tuple[Outcome, np.ndarray]:
+        """Return the outcome of the principal root over canonical momenta, and its canonical chart coordinates."""
+        one, group = self.single, self.system.group
+        pose = one.encode_poses(group.pose_from_matrix(self.system.frame))
+        code, state = one.start(one.encode(momenta), pose)
+        return Outcome(code), one.from_kernel(one.chart_of(state))
+
+    def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
+        """Return the displacements that follow, one step of order 2 from each state."""
+        charts = self.to_kernel(states.canonical_chart)
+        rows = (self.encode(states.reduced_momentum), charts, matrices_of(states))
+        _, following, codes = self.step_each(rows, charts, principal_only=True)
+        if codes.any():
+            raise OutcomeError(Outcome(int(codes.max())), "Step after a saved state")
+        return self.from_kernel(following)
+
+    def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Rows:
+        """Take one step from each row of momenta and poses; return both after it, and the outcomes."""
+        group, frame = self.system.group, self.system.frame
+        poses = self.encode_poses(group.pose_from_matrix(g @ frame))
+        after, moved, codes = self.parts_of_steps(self.encode(momenta), poses)
+        after, moved = (np.where((codes == Outcome.successful)[:, None], rows, np.nan) for rows in (after, moved))
+        ahead = group.matrix_from_pose(self.decode_poses(moved)) @ group.inverse(frame)
+        return self.decode(after), ahead, codes
+
+    def parts_of_steps(self, momenta: np.ndarray, poses: np.ndarray, fraction: float = 1.0) -> Rows:
+        """Take a fraction of a step from each of the kernel's momenta and poses; return both, and the outcomes."""
+        parts = kernels.ComposedBody(self.single.body, fraction * weights(self.order))
+        return kernels.whole_steps(parts, momenta, poses)
+
+
+def matrices_of(states: Orbit) -> Float[np.ndarray, "K size"] | None:
+    """Return poses as rows of matrix entries where the step depends on them, for right-invariant constraints."""
+    if not states.system.is_spatial:
+        return None
+    return np.ascontiguousarray(states.configuration.reshape(len(states), states.system.group.size**2))

@@ -1,0 +1,52 @@
+"""The route by the definition, for every discrete Lagrangian and variety; its JAX files load on first use."""
+
+import dataclasses
+from typing import ClassVar
+
+import numpy as np
+
+from nonholo._checks import needs
+from nonholo._types import Array, Float
+from nonholo.discrete._pytrees import pytree
+from nonholo.discrete._scheme import Difference
+from nonholo.discrete._variety import Constraint, Variety, variety_of
+from nonholo.discrete.routes._base import AbstractRoute, Rows
+from nonholo.orbit import Orbit
+from nonholo.systems import System
+
+
+@pytree
+@dataclasses.dataclass(frozen=True, eq=False)
+class DefinitionRoute(AbstractRoute):
+    """What `_definition` and `_composition_definition` need; a `Scheme`."""
+
+    system: System
+    time_step: Array
+    difference: Difference
+    constraint: Constraint
+    order: int
+    leaves: ClassVar[tuple[str, ...]] = ("system", "time_step")
+    structure: ClassVar[tuple[str, ...]] = ("difference", "constraint", "order")
+    name: ClassVar[str] = "definition"
+    is_scalar: ClassVar[bool] = False
+    needs_pose: ClassVar[bool] = True
+    compiled: ClassVar[None] = None
+
+    @property
+    def variety(self) -> Variety:
+        """The displacement variety in the canonical frame."""
+        return variety_of(self.system, self.constraint)
+
+    def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
+        """Return the displacements that follow, one step of order 2 from each state."""
+        with needs("jax", "A step that is not compiled"):
+            from nonholo.discrete._definition import next_charts_by_definition
+
+        return next_charts_by_definition(self, states)
+
+    def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Rows:
+        """Take one step from each row of momenta and poses; return both after it, and the outcomes."""
+        with needs("jax", "A step that is not compiled"):
+            from nonholo.discrete._composition_definition import whole_steps_by_definition
+
+        return whole_steps_by_definition(self, momenta, g)

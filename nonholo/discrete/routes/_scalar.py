@@ -1,0 +1,112 @@
+"""The route in closed form, which JAX can trace too: tops in space and sleighs in the plane."""
+
+import dataclasses
+import functools
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from nonholo import kernels
+from nonholo._checks import is_traced
+from nonholo._types import Array, Float
+from nonholo.discrete.routes._axes import Axes
+from nonholo.discrete.routes._base import AbstractCompiledRoute
+from nonholo.systems import NormalForm, System
+
+_TURNED = np.diag([-1.0, 1.0])  # the normal form of a sleigh turns in e1 ^ e2, its kernel by omega
+
+
+class ScalarStep(NamedTuple):
+    """What JAX needs of a step in closed form.
+
+    Attributes:
+        body: The body of the kernel.
+        scale: The factor to its momenta.
+        rows: C with m = C r_canonical and y_canonical = y C; None where the rows are the same.
+    """
+
+    body: kernels.Body
+    scale: Array
+    rows: Float[np.ndarray, "2 2"] | None
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class ScalarRoute(AbstractCompiledRoute):
+    """Two momenta, a chart of two numbers and a compact pose of four."""
+
+    system: System
+    form: NormalForm
+    time_step: Array
+    order: ClassVar[int] = 2
+    name: ClassVar[str] = "scalar"
+    is_scalar: ClassVar[bool] = True
+    needs_pose: ClassVar[bool] = True
+
+    @staticmethod
+    def covers(form: NormalForm) -> bool:
+        """Tell whether a body is one of this route; a plane sleigh needs a moment about its center of mass."""
+        if not form.is_planar or form.is_diagonal:
+            return False
+        return not form.is_sleigh or is_traced(form.stiffness) or bool(form.stiffness[0, 0] > 0)
+
+    @functools.cached_property
+    def body(self) -> kernels.Body:
+        """The numbers of the body."""
+        form = self.form
+        if not form.is_sleigh:
+            return kernels.suslov_body(form.stiffness, form.coupling)
+        numbers = (form.mass, form.stiffness[0, 0], form.arm)
+        return kernels.SleighBody(*(x if is_traced(x) else float(x) for x in numbers))
+
+    @property
+    def scale(self) -> Array:
+        """Half the time step for a top, the time step for a sleigh."""
+        return self.time_step if self.form.is_sleigh else self.time_step / 2
+
+    @property
+    def single(self) -> "ScalarRoute":
+        """The route itself."""
+        return self
+
+    @property
+    def step(self) -> ScalarStep:
+        """What JAX needs of it."""
+        return ScalarStep(self.body, self.scale, self._axes.rows)
+
+    def encode(self, momenta: np.ndarray) -> np.ndarray:
+        """Return the momenta of the kernel from canonical ones."""
+        return self.scale * self._axes.momenta(momenta)
+
+    def decode(self, momenta: np.ndarray) -> np.ndarray:
+        """Return canonical momenta from those of the kernel."""
+        return self._axes.canonical_momenta(momenta / self.scale)
+
+    def to_kernel(self, charts: np.ndarray) -> np.ndarray:
+        """Return the chart coordinates of the kernel from canonical ones."""
+        return self._axes.charts(charts)
+
+    def from_kernel(self, charts: np.ndarray) -> np.ndarray:
+        """Return canonical chart coordinates from those of the kernel."""
+        return self._axes.canonical_charts(charts)
+
+    def encode_poses(self, poses: np.ndarray) -> np.ndarray:
+        """Return the compact poses of the kernel's axes."""
+        if self._axes.frame is None:
+            return poses
+        group = self.system.group
+        return group.pose_from_matrix(self._axes.turned(group.matrix_from_pose(poses)))
+
+    def decode_poses(self, poses: np.ndarray) -> np.ndarray:
+        """Return compact canonical poses from those of the kernel."""
+        if self._axes.frame is None:
+            return poses
+        group = self.system.group
+        return group.pose_from_matrix(self._axes.turned_back(group.matrix_from_pose(poses)))
+
+    @functools.cached_property
+    def _axes(self) -> Axes:
+        rows = self.form.frame_map
+        if self.form.is_sleigh:
+            rows = _TURNED if rows is None else _TURNED @ rows
+        same = rows is None or np.array_equal(rows, np.eye(2))
+        return Axes(self.system.group, self.form.frame, None if same else rows)
