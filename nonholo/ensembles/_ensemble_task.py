@@ -21,8 +21,7 @@ from nonholo.ensembles._names import OUTCOME, STARTS
 from nonholo.ensembles._reductions import REDUCTIONS, final_state_of_schema_1
 from nonholo.ensembles._starts import check_starts, rows_of_starts, start_component
 from nonholo.io._descriptions import unstored
-from nonholo.simulation import Ensemble, ensemble
-from nonholo.simulation._ensemble_members import Members
+from nonholo.simulation import Ensemble, Members, ensemble
 
 _MEMBER = re.compile(r"This is member (\d+)\.")
 _BLOCK, _NUMBERS = 1 << 16, 1 << 22  # most members of a block, and numbers of all their states

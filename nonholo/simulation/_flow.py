@@ -11,8 +11,7 @@ from nonholo._results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, closed_form
 from nonholo.discrete._start import in_group, initial_momentum, one_start
 from nonholo.orbit import Orbit
-from nonholo.simulation._events import checked_events
-from nonholo.simulation._events_flow import check_functions, flow_with_events
+from nonholo.simulation.events import check_functions, checked_events, flow_with_events
 from nonholo.systems import AbstractSystem, System
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem, OrbitT, refuse_in_coordinates
 

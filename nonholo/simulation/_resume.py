@@ -9,10 +9,9 @@ from nonholo._results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.io import Stream
 from nonholo.orbit import Orbit
-from nonholo.simulation._events_scan import Watch
-from nonholo.simulation._given_events import watch_of_store
-from nonholo.simulation._stored_run import go_on
-from nonholo.simulation._stretch import CompiledRun, closed_step, compiled_run
+from nonholo.simulation.events import Watch
+from nonholo.simulation.runs import CompiledRun, closed_step, compiled_run
+from nonholo.simulation.stores import go_on, watch_of_store
 
 
 def resume(

@@ -12,12 +12,21 @@ from nonholo.discrete import Discretization
 from nonholo.discrete._branch_rules import BranchRule
 from nonholo.discrete._start import check_first_state
 from nonholo.orbit import Orbit
-from nonholo.simulation._composed_run import composed_runner
-from nonholo.simulation._events_run import run_compiled, run_with_events, watched
-from nonholo.simulation._prepared import Start, checked_counts, first_state, refuse_too_large, refuse_too_long
-from nonholo.simulation._rule_run import Run, rule_runner
-from nonholo.simulation._stored_run import refuse_without_store, run_into_store
-from nonholo.simulation._stretch import CompiledRun, closed_step, compiled_run
+from nonholo.simulation.events import run_compiled, run_with_events, watched
+from nonholo.simulation.runs import (
+    CompiledRun,
+    Run,
+    Start,
+    checked_counts,
+    closed_step,
+    compiled_run,
+    composed_runner,
+    first_state,
+    refuse_too_large,
+    refuse_too_long,
+    rule_runner,
+)
+from nonholo.simulation.stores import refuse_without_store, run_into_store
 from nonholo.systems._coordinate_system import AbstractCoordinateDiscretization, OrbitT, refuse_in_coordinates
 
 

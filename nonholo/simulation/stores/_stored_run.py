@@ -15,11 +15,9 @@ from nonholo.discrete._branch_rules import BranchRule
 from nonholo.discrete._composition import compiled_step
 from nonholo.io import Checkpoint, Plan, Stream
 from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.simulation._events_pieces import searched_first, stretch_of
-from nonholo.simulation._events_scan import Watch
-from nonholo.simulation._prepared import Start
-from nonholo.simulation._stored_events import descriptions, gone_on_from, seen_by
-from nonholo.simulation._stretch import CompiledRun, opened
+from nonholo.simulation.events import Watch, searched_first, stretch_of
+from nonholo.simulation.runs import CompiledRun, Start, opened
+from nonholo.simulation.stores._stored_events import descriptions, gone_on_from, seen_by
 
 _ROWS, _NUMBERS, _STEPS = 1 << 16, 1 << 22, 1 << 23  # at most in a block: states, numbers in an array, steps
 _LOADED = 1 << 27  # numbers of an orbit that is returned whole, 1 GiB

@@ -26,7 +26,7 @@ from nonholo.discrete._structured import (
     is_secular,
 )
 from nonholo.orbit import Orbit
-from nonholo.simulation._prepared import Start
+from nonholo.simulation.runs._prepared import Start
 
 _PIECE = 1 << 20  # steps between two reports of progress; Ctrl-C waits for them
 

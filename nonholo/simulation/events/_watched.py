@@ -11,12 +11,11 @@ from nonholo.discrete import Discretization
 from nonholo.discrete._branch_rules import BranchRule
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
-from nonholo.simulation._events import Event, checked_events
-from nonholo.simulation._events_between import between_states
-from nonholo.simulation._events_pieces import NUMBERS, PIECE, searched_first, stretch_of
-from nonholo.simulation._events_scan import Watch, search
-from nonholo.simulation._prepared import Start
-from nonholo.simulation._stretch import CompiledRun, opened
+from nonholo.simulation.events._between import between_states
+from nonholo.simulation.events._blocks import NUMBERS, PIECE, searched_first, stretch_of
+from nonholo.simulation.events._event import Event, checked_events
+from nonholo.simulation.events._search import Watch, search
+from nonholo.simulation.runs import CompiledRun, Start, opened
 from nonholo.systems import AbstractLRSystem
 
 _FIRST, _GROWTH = 16, 4  # steps of the first attempt of a run that cannot be gone on with, and factor to the next

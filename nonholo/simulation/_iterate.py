@@ -12,12 +12,18 @@ from nonholo.discrete import Discretization
 from nonholo.discrete._branch_rules import BranchRule
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
-from nonholo.simulation._events_pieces import searched_first, stretch_of
-from nonholo.simulation._events_run import watched
-from nonholo.simulation._events_scan import Watch
-from nonholo.simulation._prepared import checked_counts, first_state, refuse_too_large, refuse_too_long
-from nonholo.simulation._stored_run import rows_of_block
-from nonholo.simulation._stretch import CompiledRun, closed_step, compiled_run, opened
+from nonholo.simulation.events import Watch, searched_first, stretch_of, watched
+from nonholo.simulation.runs import (
+    CompiledRun,
+    checked_counts,
+    closed_step,
+    compiled_run,
+    first_state,
+    opened,
+    refuse_too_large,
+    refuse_too_long,
+)
+from nonholo.simulation.stores import rows_of_block
 
 
 def iterate(

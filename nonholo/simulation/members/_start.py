@@ -12,7 +12,7 @@ from nonholo._checks import array, error, shape_of
 from nonholo._types import Float
 from nonholo.discrete._start import initial_momentum
 from nonholo.discrete._structured import scalar_step
-from nonholo.simulation._ensemble_members import Members, refused
+from nonholo.simulation.members._members import Members, refused
 from nonholo.systems import ChaplyginSleigh, System
 
 _CHUNK = 1 << 16  # members whose starts are made at once: what it takes between is not kept

@@ -9,7 +9,7 @@ import numpy as np
 from nonholo._types import Int
 
 if TYPE_CHECKING:
-    from nonholo.simulation._ensemble_result import Ensemble
+    from nonholo.simulation.members._result import Ensemble
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

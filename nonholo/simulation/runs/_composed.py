@@ -1,7 +1,7 @@
 """Runs of compositions that have no compiled step."""
 
 from nonholo.discrete import Discretization
-from nonholo.simulation._rule_run import Run
+from nonholo.simulation.runs._by_rule import Run
 
 
 def composed_runner(discrete: Discretization) -> Run:

@@ -11,8 +11,8 @@ from nonholo import kernels
 from nonholo._results import Outcome
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
-from nonholo.simulation._events_scan import Watch, search
-from nonholo.simulation._stretch import CompiledRun
+from nonholo.simulation.events._search import Watch, search
+from nonholo.simulation.runs import CompiledRun
 
 KernelRows: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
 

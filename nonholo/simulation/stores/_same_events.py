@@ -6,10 +6,9 @@ from typing import Any
 from nonholo import io
 from nonholo._checks import error
 from nonholo.io import Stream
-from nonholo.simulation._events_run import watched
-from nonholo.simulation._events_scan import Watch, search
-from nonholo.simulation._stored_events import descriptions, seen_by
-from nonholo.simulation._stretch import CompiledRun
+from nonholo.simulation.events import Watch, search, watched
+from nonholo.simulation.runs import CompiledRun
+from nonholo.simulation.stores._stored_events import descriptions, seen_by
 
 _SAME = 1e-9  # of 1 + the value at the first state: rounding on another processor is far less
 

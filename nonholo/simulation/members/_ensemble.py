@@ -12,15 +12,14 @@ from nonholo.discrete import Discretization
 from nonholo.discrete._composition import compiled_step
 from nonholo.discrete._discretization import as_discretization
 from nonholo.discrete._start import one_start
-from nonholo.simulation._ensemble_members import Members, check_systems, checked_parameters
-from nonholo.simulation._ensemble_reduce import Reduced, joined
-from nonholo.simulation._ensemble_result import Ensemble
-from nonholo.simulation._ensemble_run import Plan, Report, run_members, states_of
-from nonholo.simulation._ensemble_start import checked_start, first_momenta
-from nonholo.simulation._events import Event
-from nonholo.simulation._events_ensemble import joined_blocks, watched_block
-from nonholo.simulation._events_run import watched_events
-from nonholo.simulation._prepared import refuse_too_large, refuse_too_long
+from nonholo.simulation.events import Event, watched_events
+from nonholo.simulation.members._events import joined_blocks, watched_block
+from nonholo.simulation.members._members import Members, check_systems, checked_parameters
+from nonholo.simulation.members._reduce import Reduced, joined
+from nonholo.simulation.members._result import Ensemble
+from nonholo.simulation.members._run import Plan, Report, run_members, states_of
+from nonholo.simulation.members._start import checked_start, first_momenta
+from nonholo.simulation.runs import refuse_too_large, refuse_too_long
 
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
 _BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
