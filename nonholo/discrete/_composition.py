@@ -79,9 +79,9 @@ def refuse_composition(where: str, discrete: "Discretization", remedy: str) -> N
         raise error(where, "have a discretisation of order 2", got, remedy)
 
 
-def check_composed_run(discrete: "Discretization", rule: object, displacement: Any) -> None:
+def check_composed_run(discrete: "Discretization", displacement: Any, *, principal: bool) -> None:
     """Refuse what a run of a composition cannot do."""
-    if rule != "principal":
+    if not principal:
         refuse_composition("simulate(branch=...)", discrete, "Leave branch out: each substep takes the principal root.")
     if displacement is not None:
         remedy = "A whole step does not lie on the variety: start from a momentum or a velocity."

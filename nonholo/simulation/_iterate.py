@@ -88,7 +88,7 @@ def iterate(
     refuse_too_large("iterate", discrete, 1, reconstruct)
     refuse_too_long("iterate", discrete, steps, compiled=True)
     plan = Plan(steps, every, rows_of_block("iterate(block_steps=...)", run, steps, block_steps))
-    watch = None if events is None else watched("iterate", discrete, events, rule, reconstruct)
+    watch = None if events is None else watched("iterate", discrete, events, rule.name, reconstruct)
     start = first_state(discrete, configuration, int(reconstruct), True, starts)
     vector, first = opened(run, start, steps, throw)
     if not len(first):

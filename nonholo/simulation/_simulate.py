@@ -9,7 +9,7 @@ import numpy as np
 from nonholo._checks import error, flags, path, shown
 from nonholo._results import finished
 from nonholo.discrete import Discretization
-from nonholo.discrete._branch_rules import BranchRule
+from nonholo.discrete._branch_rules import AbstractBranchRule, BranchRule
 from nonholo.discrete._start import check_first_state
 from nonholo.orbit import Orbit
 from nonholo.simulation.events import run_compiled, run_with_events, watched
@@ -165,7 +165,7 @@ def simulate(
     starts["restricted_velocity"] = restricted_velocity
     closed = closed_step(discrete, rule, backend)
     refuse_too_long("simulate", discrete, steps, compiled=closed is not None)
-    watch = None if events is None else watched("simulate", discrete, events, rule, reconstruct)
+    watch = None if events is None else watched("simulate", discrete, events, rule.name, reconstruct)
     kept = {"checkpoint_every": checkpoint_every, "scenario": scenario}
     if store is not None:
         store = path("simulate(store=...)", store)
@@ -189,17 +189,16 @@ def simulate(
 
 
 def _uncompiled(
-    discrete: Discretization, start: Start, rule: BranchRule, backend: str, reconstruct: bool
+    discrete: Discretization, start: Start, rule: AbstractBranchRule, backend: str, reconstruct: bool
 ) -> Callable[[int, int, bool], tuple[Orbit, int]]:
     """Return what runs a map that is not compiled: from `steps`, `every`, `progress` to the orbit and the last step."""
     reduced, pose, demanded = start
-    run = _by_definition(discrete, backend) if rule == "principal" else rule_runner(discrete, rule, backend, demanded)
-    branch = rule if isinstance(rule, str) else "callable"
+    run = _by_definition(discrete, backend) if rule.is_principal else rule_runner(discrete, rule, backend, demanded)
 
     def orbit_of(steps: int, every: int, progress: bool) -> tuple[Orbit, int]:
         (momenta, charts, poses), outcome, done = run(reduced, pose, steps, every, progress)
         time, kept = discrete.time_step * (every * np.arange(len(momenta))), poses if reconstruct else None
-        return Orbit(discrete, time, momenta, charts, kept, outcome, every, branch=branch), done
+        return Orbit(discrete, time, momenta, charts, kept, outcome, every, branch=rule.name), done
 
     return orbit_of
 

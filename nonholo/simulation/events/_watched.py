@@ -4,11 +4,11 @@ import dataclasses
 from collections.abc import Callable
 from typing import Any
 
-from nonholo._checks import error, shown
+from nonholo._checks import error
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, finished
 from nonholo.discrete import Discretization
-from nonholo.discrete._branch_rules import BranchRule
+from nonholo.discrete._branch_rules import PRINCIPAL
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
 from nonholo.simulation.events._between import between_states
@@ -21,21 +21,19 @@ from nonholo.systems import AbstractLRSystem
 _FIRST, _GROWTH = 16, 4  # steps of the first attempt of a run that cannot be gone on with, and factor to the next
 
 
-def watched(owner: str, discrete: Discretization, events: Any, rule: BranchRule, reconstruct: bool) -> Watch:
+def watched(owner: str, discrete: Discretization, events: Any, branch: str, reconstruct: bool) -> Watch:
     """Return what a run looks for, after checking that it can."""
-    return Watch(watched_events(owner, discrete, events, rule, reconstruct), between_states(discrete))
+    return Watch(watched_events(owner, discrete, events, branch, reconstruct), between_states(discrete))
 
 
 def watched_events(
-    owner: str, discrete: Discretization, events: Any, rule: BranchRule, reconstruct: bool
+    owner: str, discrete: Discretization, events: Any, branch: str, reconstruct: bool
 ) -> dict[str, Event]:
     """Return events by name, refused where parts of a step are not defined or cannot be computed."""
     named, where = checked_events(owner, events), f"{owner}(events=...)"
-    if rule != "principal":
+    if branch != PRINCIPAL.name:
         remedy = "Run with branch='principal', or look for changes of sign in the states yourself."
-        raise error(
-            where, "have the principal branch, where parts of a step are defined", f"branch {shown(rule)}", remedy
-        )
+        raise error(where, "have the principal branch, where parts of a step are defined", f"branch {branch!r}", remedy)
     if isinstance(discrete.system, AbstractLRSystem) and not reconstruct:
         got = "reconstruct=False with a right-invariant constraint, whose step depends on the pose"
         raise error(where, "have poses", got, "Run with reconstruct=True.")

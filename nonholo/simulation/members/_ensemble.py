@@ -9,6 +9,7 @@ from nonholo._checks import choice, count, error, flags, shown
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
+from nonholo.discrete._branch_rules import PRINCIPAL
 from nonholo.discrete._composition import compiled_step
 from nonholo.discrete._discretization import as_discretization
 from nonholo.discrete._start import one_start
@@ -106,7 +107,7 @@ def ensemble(
     momenta = first_momenta(members, name, rows)
     full = rows if name == "momentum" and rows.shape[1] != discrete.system.rank else None
     plan = Plan(steps, save_every, bool(reconstruct), backend)
-    watched = None if events is None else watched_events("ensemble", discrete, events, "principal", plan.posed)
+    watched = None if events is None else watched_events("ensemble", discrete, events, PRINCIPAL.name, plan.posed)
     with progress_bar("members", progress) as show:
         report = _counting(show, len(members))
         if reduce is not None:

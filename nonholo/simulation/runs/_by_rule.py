@@ -10,23 +10,25 @@ from nonholo._progress import progress_bar
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.discrete._branch_equations import Frame, frame_of, has_frame
-from nonholo.discrete._branch_rules import BranchRule
+from nonholo.discrete._branch_rules import AbstractBranchRule
 from nonholo.discrete._branch_steps import Place, first_place, next_place
 
 Rows: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray | None]
 Run: TypeAlias = Callable[..., tuple[Rows, Outcome, int]]
 
 
-def rule_runner(discrete: Discretization, rule: BranchRule, backend: str, demanded: np.ndarray | None) -> Run:
+def rule_runner(
+    discrete: Discretization, rule: AbstractBranchRule, backend: str, demanded: np.ndarray | None
+) -> Run:
     """Return the run by a rule, from the displacement or full momentum of the start if one is demanded."""
     if backend == "numba":
-        got = f"the branch rule {shown(rule)}"
+        got = f"the branch rule {rule.name!r}"
         raise error("simulate(backend=...)", "be 'auto' or 'jax'", got, "Only 'principal' runs compiled by numba.")
     if has_frame(discrete) and backend == "auto":
         return lambda *arguments: _run(discrete, rule, demanded, *arguments)
-    if rule != "nearest":
+    if rule.needs_all_values:
         raise error(
-            "simulate(backend=...)", "be 'auto'", f"{shown(backend)} with branch {shown(rule)}", "Leave it out."
+            "simulate(backend=...)", "be 'auto'", f"{shown(backend)} with branch {rule.name!r}", "Leave it out."
         )
     from nonholo.discrete._definition import run_by_definition
 
@@ -39,7 +41,7 @@ def rule_runner(discrete: Discretization, rule: BranchRule, backend: str, demand
 
 def _run(
     discrete: Discretization,
-    rule: BranchRule,
+    rule: AbstractBranchRule,
     demanded: np.ndarray | None,
     reduced: np.ndarray,
     pose: np.ndarray,

@@ -6,7 +6,6 @@ state with compensations and warm starts. So a run goes on from a vector with th
 
 import dataclasses
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from nonholo import kernels
 from nonholo._checks import error, shown
 from nonholo._results import Outcome, finished
 from nonholo.discrete import Discretization
+from nonholo.discrete._branch_rules import PRINCIPAL, AbstractBranchRule
 from nonholo.discrete._composition import compiled_step
 from nonholo.discrete._start import check_first_state
 from nonholo.discrete._structured import (
@@ -100,9 +100,11 @@ class CompiledRun:
         return Orbit(self.discrete, time, momenta, charts, pose, outcome, self.every)
 
 
-def closed_step(discrete: Discretization, rule: Any = "principal", backend: str = "auto") -> Structured | None:
+def closed_step(
+    discrete: Discretization, rule: AbstractBranchRule = PRINCIPAL, backend: str = "auto"
+) -> Structured | None:
     """Return the compiled step of a run, None if it runs by a rule or by the definition."""
-    return compiled_step(discrete) if rule == "principal" and backend != "jax" else None
+    return compiled_step(discrete) if rule.is_principal and backend != "jax" else None
 
 
 def compiled_run(

@@ -7,7 +7,7 @@ import numpy as np
 from nonholo._checks import choice, step_counts
 from nonholo._limits import within_a_year, within_memory
 from nonholo.discrete import Discretization, initial_state
-from nonholo.discrete._branch_rules import BranchRule, checked_rule
+from nonholo.discrete._branch_rules import AbstractBranchRule, checked_rule
 from nonholo.discrete._composition import check_composed_run
 from nonholo.discrete._discretization import as_discretization
 from nonholo.discrete._start import in_group
@@ -26,12 +26,12 @@ class Start(NamedTuple):
 
 def checked_counts(
     discrete: Discretization, steps: Any, save_every: Any, branch: Any, backend: str, displacement: Any
-) -> tuple[int, int, BranchRule]:
+) -> tuple[int, int, AbstractBranchRule]:
     """Return the numbers of steps of a run and its branch rule, after checking that they can be had together."""
     as_discretization("simulate(discrete=...)", discrete, composed=True)
     steps, every = step_counts(steps, save_every)
     rule = checked_rule("simulate", discrete, branch)
-    check_composed_run(discrete, rule, displacement)
+    check_composed_run(discrete, displacement, principal=rule.is_principal)
     choice("simulate(backend=...)", backend, ("auto", "numba", "jax"))
     return steps, every, rule
 

@@ -5,6 +5,7 @@ from typing import Any
 
 from nonholo import io
 from nonholo._checks import error
+from nonholo.discrete._branch_rules import PRINCIPAL
 from nonholo.io import Stream
 from nonholo.simulation.events import Watch, search, watched
 from nonholo.simulation.runs import CompiledRun
@@ -22,7 +23,7 @@ def watch_of_store(owner: str, stream: Stream, run: CompiledRun, events: Any) ->
     if events is None and stored != "[]":
         remedy = "Pass events=[...] again, in that order with these directions and stops: a store holds no functions."
         raise error(where, f"be the events of the store, {asked}", f"None for '{stream.path}'", remedy)
-    watch = watched(owner, run.discrete, events or [], "principal", run.reconstruct)
+    watch = watched(owner, run.discrete, events or [], PRINCIPAL.name, run.reconstruct)
     given = descriptions(watch.events)
     if stored is None or given != json.loads(stored):
         raise error(

@@ -11,7 +11,7 @@ from nonholo._limits import within_disk, within_memory
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, finished
 from nonholo.discrete import Discretization
-from nonholo.discrete._branch_rules import BranchRule
+from nonholo.discrete._branch_rules import PRINCIPAL, BranchRule
 from nonholo.discrete._composition import compiled_step
 from nonholo.io import Checkpoint, Plan, Stream
 from nonholo.orbit import AbstractMotion, Orbit
@@ -68,7 +68,11 @@ def rows_of_block(where: str, run: CompiledRun, steps: int, block_steps: int | N
 
 def size_in_blocks(discrete: AbstractMotion, branch: BranchRule, steps: int, every: int) -> int:
     """Return the bytes of all states of a run if it can go into a store block by block and takes several, else 0."""
-    if branch != "principal" or not isinstance(discrete, Discretization) or (closed := compiled_step(discrete)) is None:
+    if (
+        branch != PRINCIPAL.name
+        or not isinstance(discrete, Discretization)
+        or (closed := compiled_step(discrete)) is None
+    ):
         return 0
     run, states = CompiledRun(discrete, closed, every, True), 1 + steps // every
     return 8 * states * sum(run.sizes) if states > rows_of_block("", run, steps, None) else 0
