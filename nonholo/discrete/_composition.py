@@ -79,15 +79,6 @@ def refuse_composition(where: str, discrete: "Discretization", remedy: str) -> N
         raise error(where, "have a discretisation of order 2", got, remedy)
 
 
-def check_composed_run(discrete: "Discretization", displacement: Any, *, principal: bool) -> None:
-    """Refuse what a run of a composition cannot do."""
-    if not principal:
-        refuse_composition("simulate(branch=...)", discrete, "Leave branch out: each substep takes the principal root.")
-    if displacement is not None:
-        remedy = "A whole step does not lie on the variety: start from a momentum or a velocity."
-        refuse_composition("simulate(displacement=...)", discrete, remedy)
-
-
 def first_substep(discrete: "Discretization") -> "Discretization":
     """Return the discretisation of order 2 of the first substep; that of order 2 itself."""
     if discrete.order == 2:

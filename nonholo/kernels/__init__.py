@@ -1,16 +1,19 @@
 """The compiled steps: scalar arithmetic written once for numba and JAX, the matrix step for any body, the loops."""
 
 from nonholo.kernels._composition import ComposedBody, whole_steps
+from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
 from nonholo.kernels._general import GeneralBody
-from nonholo.kernels._interface import Body, certified, increment, move, residual
+from nonholo.kernels._interface import Body, certified, correction, increment, move, residual
 from nonholo.kernels._secular import SecularBody, secular_sleigh, secular_top
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
 
 __all__ = [
+    "CORRECTIONS",
     "LANES",
+    "SETTLED",
     "AnyBody",
     "Body",
     "ComposedBody",
@@ -23,6 +26,8 @@ __all__ = [
     "advance_members",
     "certified",
     "chart_of",
+    "converged",
+    "correction",
     "increment",
     "move",
     "residual",

@@ -14,10 +14,10 @@ import numpy as np
 
 from nonholo import kernels
 from nonholo._types import Float
-from nonholo.discrete import Discretization
-from nonholo.discrete._composition import compiled_step, weights
-from nonholo.discrete._structured import (
+from nonholo.discrete import (
+    Discretization,
     Structured,
+    compiled_step,
     decoded,
     decoded_poses,
     encoded,
@@ -25,6 +25,7 @@ from nonholo.discrete._structured import (
     from_kernel,
     is_secular,
     structured,
+    weights,
 )
 from nonholo.groups import SE
 from nonholo.orbit import Orbit, unwrapped

@@ -8,8 +8,7 @@ import numpy as np
 from nonholo._checks import error
 from nonholo._types import Float
 from nonholo.discrete import Discretization
-from nonholo.orbit import Crossings, Orbit
-from nonholo.orbit._orbit import as_orbit
+from nonholo.orbit import Crossings, Orbit, as_orbit
 from nonholo.simulation.events._event import Event
 from nonholo.simulation.events._watched import searched, watched
 from nonholo.systems import ArrowheadSleigh, ChaplyginSleigh, MultidimensionalSleigh

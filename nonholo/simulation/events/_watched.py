@@ -1,21 +1,19 @@
 """Runs of the discrete map in memory; those with events look for them at every step, whatever states they keep."""
 
 import dataclasses
-from collections.abc import Callable
 from typing import Any
 
 from nonholo._checks import error
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, finished
-from nonholo.discrete import Discretization
-from nonholo.discrete._branch_rules import PRINCIPAL
+from nonholo.discrete import PRINCIPAL, Discretization
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
 from nonholo.simulation.events._between import between_states
-from nonholo.simulation.events._blocks import NUMBERS, PIECE, searched_first, stretch_of
+from nonholo.simulation.events._blocks import NUMBERS, PIECE, computed_block, searched_first
 from nonholo.simulation.events._event import Event, checked_events
 from nonholo.simulation.events._search import Watch, search
-from nonholo.simulation.runs import CompiledRun, Start, opened
+from nonholo.simulation.runs import CompiledRun, FirstState, Runner, opened
 from nonholo.systems import AbstractLRSystem
 
 _FIRST, _GROWTH = 16, 4  # steps of the first attempt of a run that cannot be gone on with, and factor to the next
@@ -41,21 +39,19 @@ def watched_events(
 
 
 def run_compiled(
-    run: CompiledRun, start: Start, watch: Watch | None, steps: int, *, throw: bool, progress: bool
+    run: CompiledRun, start: FirstState, watch: Watch | None, steps: int, *, throw: bool, progress: bool
 ) -> Orbit:
     """Run a compiled step from a start, looking for events if there is a watch; return the orbit."""
-    vector, first = opened(run, start, steps, throw)
+    state, first = opened(run, start, steps, throw)
     if not len(first):
         return searched_first(watch, first)[0]
     whole = Plan(steps, run.every, 1 + steps // run.every)  # one block
     with progress_bar("steps", progress) as report:
-        orbit, done, _ = stretch_of(run, vector, watch, whole, 0, lambda now: report(now, steps))
-    return finished(orbit, float(run.discrete.time_step), done, steps, throw)
+        block = computed_block(run, state, watch, whole, 0, lambda now: report(now, steps))
+    return finished(block.orbit, float(run.discrete.time_step), block.done, steps, throw)
 
 
-def run_with_events(
-    run: Callable[[int, int, bool], tuple[Orbit, int]], watch: Watch, steps: int, every: int, progress: bool
-) -> tuple[Orbit, int]:
+def run_with_events(run: Runner, watch: Watch, steps: int, every: int, progress: bool) -> tuple[Orbit, int]:
     """Run a step that is not compiled, keeping every state; return the orbit with what was found, and the last step.
 
     Such a run cannot be gone on with. If an event may end it, it is tried with few steps, then again with more.

@@ -12,8 +12,7 @@ import numpy as np
 
 from nonholo import kernels
 from nonholo._results import Outcome
-from nonholo.discrete import Discretization
-from nonholo.discrete._composition import compiled_step
+from nonholo.discrete import Discretization, compiled_step
 from nonholo.orbit import Orbit
 from nonholo.simulation._simulate import simulate
 from nonholo.simulation.members._members import Members

@@ -1,21 +1,24 @@
-"""What a run of the discrete map is: its start, its limits, its compiled step, and runs without one."""
+"""What a run of the discrete map is: its options and limits, its first state, its compiled step, runs without one."""
 
-from nonholo.simulation.runs._by_rule import Run, rule_runner
 from nonholo.simulation.runs._compiled import CompiledRun, closed_step, compiled_run, opened
-from nonholo.simulation.runs._composed import composed_runner
-from nonholo.simulation.runs._prepared import Start, checked_counts, first_state, refuse_too_large, refuse_too_long
+from nonholo.simulation.runs._first_state import FirstState, first_state
+from nonholo.simulation.runs._limits import refuse_too_large, refuse_too_long
+from nonholo.simulation.runs._options import RunOptions
+from nonholo.simulation.runs._state import Rows, RunState
+from nonholo.simulation.runs._uncompiled import Runner, uncompiled_run
 
 __all__ = [
     "CompiledRun",
-    "Run",
-    "Start",
-    "checked_counts",
+    "FirstState",
+    "Rows",
+    "RunOptions",
+    "RunState",
+    "Runner",
     "closed_step",
     "compiled_run",
-    "composed_runner",
     "first_state",
     "opened",
     "refuse_too_large",
     "refuse_too_long",
-    "rule_runner",
+    "uncompiled_run",
 ]

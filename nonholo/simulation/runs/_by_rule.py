@@ -1,45 +1,19 @@
-"""Runs by a branch rule other than the principal one: in NumPy for tops and sleighs, by the definition for others."""
+"""Runs of tops and sleighs by a branch rule other than the principal one, in NumPy."""
 
 from collections.abc import Callable
 from typing import TypeAlias
 
 import numpy as np
 
-from nonholo._checks import error, shown
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome
-from nonholo.discrete import Discretization
-from nonholo.discrete._branch_equations import Frame, frame_of, has_frame
-from nonholo.discrete._branch_rules import AbstractBranchRule
-from nonholo.discrete._branch_steps import Place, first_place, next_place
+from nonholo.discrete import AbstractBranchRule, Discretization, Frame, Place, first_place, frame_of, next_place
 
 Rows: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray | None]
 Run: TypeAlias = Callable[..., tuple[Rows, Outcome, int]]
 
 
-def rule_runner(
-    discrete: Discretization, rule: AbstractBranchRule, backend: str, demanded: np.ndarray | None
-) -> Run:
-    """Return the run by a rule, from the displacement or full momentum of the start if one is demanded."""
-    if backend == "numba":
-        got = f"the branch rule {rule.name!r}"
-        raise error("simulate(backend=...)", "be 'auto' or 'jax'", got, "Only 'principal' runs compiled by numba.")
-    if has_frame(discrete) and backend == "auto":
-        return lambda *arguments: _run(discrete, rule, demanded, *arguments)
-    if rule.needs_all_values:
-        raise error(
-            "simulate(backend=...)", "be 'auto'", f"{shown(backend)} with branch {rule.name!r}", "Leave it out."
-        )
-    from nonholo.discrete._definition import run_by_definition
-
-    chart = None
-    if demanded is not None and demanded.ndim == 2:
-        frame = discrete.system.frame
-        chart = discrete.variety.coordinates(discrete.system.group.inverse(frame) @ demanded @ frame)
-    return lambda *arguments: run_by_definition(discrete, *arguments, nearest=True, chart=chart)
-
-
-def _run(
+def run_by_rule(
     discrete: Discretization,
     rule: AbstractBranchRule,
     demanded: np.ndarray | None,

@@ -5,10 +5,10 @@ from typing import Any
 
 from nonholo import io
 from nonholo._checks import error
-from nonholo.discrete._branch_rules import PRINCIPAL
+from nonholo.discrete import PRINCIPAL
 from nonholo.io import Stream
 from nonholo.simulation.events import Watch, search, watched
-from nonholo.simulation.runs import CompiledRun
+from nonholo.simulation.runs import CompiledRun, RunState
 from nonholo.simulation.stores._stored_events import descriptions, seen_by
 
 _SAME = 1e-9  # of 1 + the value at the first state: rounding on another processor is far less
@@ -38,7 +38,7 @@ def _refuse_other_functions(where: str, stream: Stream, run: CompiledRun, watch:
     first = stream.checkpoint(0)
     if isinstance(first, str) or first.seen is None:
         return
-    found, _ = search(watch, run.first(first.vector), 0)
+    found, _ = search(watch, run.first(RunState.of(first.vector, run.sizes)), 0)
     for name, now, then in zip(watch.events, seen_by(found, 0).values, first.seen.values, strict=True):
         if abs(now - then) > _SAME * (1 + abs(then)):
             got = f"another one of {name!r}: {now:.17g} instead of {then:.17g} at the first state"

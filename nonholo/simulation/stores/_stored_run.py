@@ -10,13 +10,11 @@ from nonholo._checks import count, error, shown
 from nonholo._limits import within_disk, within_memory
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, finished
-from nonholo.discrete import Discretization
-from nonholo.discrete._branch_rules import PRINCIPAL, BranchRule
-from nonholo.discrete._composition import compiled_step
+from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, compiled_step
 from nonholo.io import Checkpoint, Plan, Stream
 from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.simulation.events import Watch, searched_first, stretch_of
-from nonholo.simulation.runs import CompiledRun, Start, opened
+from nonholo.simulation.events import Watch, computed_block, searched_first
+from nonholo.simulation.runs import CompiledRun, FirstState, RunOptions, RunState, opened
 from nonholo.simulation.stores._stored_events import descriptions, gone_on_from, seen_by
 
 _ROWS, _NUMBERS, _STEPS = 1 << 16, 1 << 22, 1 << 23  # at most in a block: states, numbers in an array, steps
@@ -25,32 +23,35 @@ _LOADED = 1 << 27  # numbers of an orbit that is returned whole, 1 GiB
 
 def run_into_store(
     run: CompiledRun,
-    start: Start,
-    steps: int,
-    store: str | Path,
+    start: FirstState,
+    options: RunOptions,
+    store: Path,
     watch: Watch | None,
     *,
     checkpoint_every: int | None,
     scenario: str | None,
-    throw: bool,
-    progress: bool,
 ) -> Orbit:
     """Run from a start into a new store, looking for events if there is a watch; return the orbit."""
     io.check_target(store, new="simulate(store=...)")
+    steps = options.steps
     plan = Plan(steps, run.every, rows_of_block("simulate(checkpoint_every=...)", run, steps, checkpoint_every))
-    vector, first = opened(run, start, steps, throw)
+    state, first = opened(run, start, steps, options.throw)
     first, found = searched_first(watch, first)
     if not len(first):
         return first
-    opening, events = Checkpoint(0, Outcome.successful, vector), None
+    opening, events = Checkpoint(0, Outcome.successful, state.vector), None
     if found is not None:
         opening, events = opening._replace(seen=seen_by(found, 0)), descriptions(found.events)
-    states = 1 + steps // run.every
     remedy = "Raise save_every to keep fewer states."
-    within_disk("simulate(store=...)", 8.0 * states * (1 + sum(run.sizes)), Path(store), remedy)
-    stream = io.create_stream(Path(store), first, plan, opening, events, scenario)
+    within_disk("simulate(store=...)", _bytes(run, steps), store, remedy)
+    stream = io.create_stream(store, first, plan, opening, events, scenario)
     with io.locked(stream.path):
-        return go_on(run, stream, watch, throw=throw, progress=progress)
+        return go_on(run, stream, watch, throw=options.throw, progress=options.progress)
+
+
+def _bytes(run: CompiledRun, steps: int) -> float:
+    """Return the size of all states."""
+    return 8.0 * (1 + steps // run.every) * (1 + sum(run.sizes))
 
 
 def rows_of_block(where: str, run: CompiledRun, steps: int, block_steps: int | None) -> int:
@@ -155,11 +156,11 @@ def _computed(
 ) -> Checkpoint:
     """Compute a block and write it."""
     begin = _known(start)
-    vector, (going, chunks) = begin.vector.copy(), gone_on_from(watch, begin.seen)
-    orbit, done, now = stretch_of(run, vector, going, stream.plan, block, report)
-    seen = None if now is None else seen_by(now, stream.chunks_after(chunks, orbit.events))
-    reached = Checkpoint(done, orbit.outcome, vector, seen)
-    stream.write(block, orbit, reached)
+    going, chunks = gone_on_from(watch, begin.seen)
+    made = computed_block(run, RunState.of(begin.vector, run.sizes), going, stream.plan, block, report)
+    seen = None if made.watch is None else seen_by(made.watch, stream.chunks_after(chunks, made.orbit.events))
+    reached = Checkpoint(made.done, made.orbit.outcome, made.state.vector, seen)
+    stream.write(block, made.orbit, reached)
     return reached
 
 
