@@ -2,7 +2,7 @@
 
 from nonholo.discrete._branch_equations import Frame, frame_of, has_frame
 from nonholo.discrete._branch_rules import PRINCIPAL, AbstractBranchRule, BranchRule, checked_rule
-from nonholo.discrete._branch_steps import Place, first_place, next_place
+from nonholo.discrete._branch_steps import Place, first_place, next_places
 from nonholo.discrete._branch_tree import BranchTree, branch_tree
 from nonholo.discrete._branch_values import Branches
 from nonholo.discrete._branches import branches, displacements_over, fold_distance, inverse_discrete_legendre
@@ -58,7 +58,7 @@ __all__ = [
     "is_secular",
     "legendre",
     "moser_veselov_displacement",
-    "next_place",
+    "next_places",
     "refuse_composition",
     "scalar_step",
     "structured",

@@ -61,11 +61,13 @@ class AbstractBranchRule(abc.ABC):
     Attributes:
         name: What an orbit calls it.
         is_principal: Whether it is the principal value, which has compiled runs, parts of steps and events.
+        is_nearest: Whether it follows the present value, for which there is a kernel.
         needs_all_values: Whether it chooses among all values, which has to be done outside of a JAX transformation.
     """
 
     name: str
     is_principal: ClassVar[bool]
+    is_nearest: ClassVar[bool]
     needs_all_values: ClassVar[bool]
 
     @abc.abstractmethod
@@ -87,6 +89,7 @@ class Principal(AbstractBranchRule):
 
     name: str = "principal"
     is_principal: ClassVar[bool] = True
+    is_nearest: ClassVar[bool] = False
     needs_all_values: ClassVar[bool] = False
 
     def check(self, where: str, discrete: Discretization) -> None:
@@ -106,6 +109,7 @@ class Nearest(AbstractBranchRule):
 
     name: str = "nearest"
     is_principal: ClassVar[bool] = False
+    is_nearest: ClassVar[bool] = True
     needs_all_values: ClassVar[bool] = False
 
     def check(self, where: str, discrete: Discretization) -> None:
@@ -127,6 +131,7 @@ class Extreme(AbstractBranchRule):
     name: str
     sign: int
     is_principal: ClassVar[bool] = False
+    is_nearest: ClassVar[bool] = False
     needs_all_values: ClassVar[bool] = True
 
     def check(self, where: str, discrete: Discretization) -> None:
@@ -153,6 +158,7 @@ class Region(AbstractBranchRule):
 
     name: str
     is_principal: ClassVar[bool] = False
+    is_nearest: ClassVar[bool] = False
     needs_all_values: ClassVar[bool] = True
 
     def check(self, where: str, discrete: Discretization) -> None:
@@ -188,6 +194,7 @@ class Chosen(AbstractBranchRule):
     function: Chooser
     name: str = "callable"
     is_principal: ClassVar[bool] = False
+    is_nearest: ClassVar[bool] = False
     needs_all_values: ClassVar[bool] = True
 
     def check(self, where: str, discrete: Discretization) -> None:

@@ -7,9 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from nonholo import kernels
 from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.discrete._branch_equations import Frame
+from nonholo.discrete._branch_path import nearest_body
 from nonholo.discrete._branch_rules import AbstractBranchRule, Kick, displacement_at, principal_point
 from nonholo.discrete._branches import inverse_discrete_legendre
 from nonholo.discrete._discretization import Discretization
@@ -58,3 +60,29 @@ def next_place(discrete: Discretization, frame: Frame, rule: AbstractBranchRule,
     momentum = place.momentum + frame.momentum(*now.kick(place.point)) / h
     code, x = rule.following(Kick(discrete, frame, place.point, now, frame.equations(h * momentum), momentum))
     return code, Place(x, momentum) if code == 0 else place
+
+
+def next_places(
+    discrete: Discretization, frame: Frame, rule: AbstractBranchRule, place: Place, count: int
+) -> tuple[Outcome, Place]:
+    """Return some states that follow by a rule, up to `count`, as rows; the outcome tells why there are none.
+
+    The kernel takes the clear steps to the nearest value, `next_place` all others, one at a time.
+    """
+    places = _clear_places(discrete, frame, place, count) if rule.is_nearest else None
+    if places is not None and len(places.point):
+        return Outcome.successful, places
+    code, following = next_place(discrete, frame, rule, place)
+    rows = slice(0, int(code == 0))
+    return code, Place(following.point[None][rows], following.momentum[None][rows])
+
+
+def _clear_places(discrete: Discretization, frame: Frame, place: Place, count: int) -> Place:
+    """Return the states of the steps to the nearest value that are clear."""
+    h, k = float(discrete.time_step), len(frame.stiffness)
+    now = frame.equations(h * place.momentum)
+    goal = now.target if now.lever is None else np.append(now.target, now.push)
+    goals, points = np.empty((count, len(goal))), np.empty((count, len(place.point)))
+    done = kernels.advance_to_nearest(nearest_body(now), goal, place.point, goals, points)
+    moved = goals[:done] - goal
+    return Place(points[:done], place.momentum + frame.momentum(moved[:, :k], moved[:, -1]) / h)

@@ -6,6 +6,8 @@ from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
 from nonholo.kernels._general import GeneralBody
 from nonholo.kernels._interface import Body, certified, correction, increment, move, residual
+from nonholo.kernels._nearest import NearestBody
+from nonholo.kernels._nearest import advance as advance_to_nearest
 from nonholo.kernels._secular import SecularBody, secular_sleigh, secular_top
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
@@ -19,11 +21,13 @@ __all__ = [
     "ComposedBody",
     "GeneralBody",
     "MemberRows",
+    "NearestBody",
     "SecularBody",
     "SleighBody",
     "SuslovBody",
     "advance",
     "advance_members",
+    "advance_to_nearest",
     "certified",
     "chart_of",
     "converged",

@@ -7,10 +7,13 @@ import numpy as np
 
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome
-from nonholo.discrete import AbstractBranchRule, Discretization, Frame, Place, first_place, frame_of, next_place
+from nonholo.discrete import AbstractBranchRule, Discretization, Place, first_place, frame_of, next_places
+from nonholo.groups import AbstractMatrixGroup
 
 Rows: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray | None]
 Run: TypeAlias = Callable[..., tuple[Rows, Outcome, int]]
+
+_BATCH = 256  # steps between two poses that are freed of their rounding errors
 
 
 def run_by_rule(
@@ -25,21 +28,26 @@ def run_by_rule(
 ) -> tuple[Rows, Outcome, int]:
     frame, group = frame_of("simulate(discrete=...)", discrete), discrete.system.group
     outcome, place = first_place("simulate", discrete, frame, rule, reduced, demanded)
-    saved, done = [] if place is None else [_row(frame, place, pose)], 0
+    begun = [] if place is None else [(place.momentum[None], frame.chart(place.point)[None], pose[None])]
+    saved, done = [(np.empty((0, reduced.size)),) * 2 + (np.empty((0, pose.size)),), *begun], 0
     with progress_bar("steps", progress) as report:
         while place is not None and outcome == 0 and done < steps:
-            displacement = frame.increment(place.point) + group.identity
-            outcome, place = next_place(discrete, frame, rule, place)
-            if outcome == 0:
-                done += 1
-                pose = group.normalize_pose(group.pose_from_matrix(group.matrix_from_pose(pose) @ displacement))
-                if done % every == 0:
-                    saved.append(_row(frame, place, pose))
-                report(done, steps)
-    columns = list(zip(*saved, strict=True)) or [(), (), ()]
-    momenta, charts = (np.reshape(column, (-1, reduced.size)) for column in columns[:2])
-    return (momenta, charts, np.reshape(columns[2], (-1, pose.size))), outcome, done
+            outcome, ahead = next_places(discrete, frame, rule, place, min(_BATCH, steps - done))
+            if not len(ahead.point):
+                break
+            points = np.concatenate([place.point[None], ahead.point])
+            poses = _carried(group, pose, frame.increment(points[:-1]) + group.identity)
+            kept = slice(every - 1 - done % every, None, every)
+            saved.append((ahead.momentum[kept], frame.chart(ahead.point[kept]), poses[kept]))
+            done, place, pose = done + len(poses), Place(points[-1], ahead.momentum[-1]), poses[-1]
+            report(done, steps)
+    momenta, charts, rows = map(np.concatenate, zip(*saved, strict=True))
+    return (momenta, charts, rows), outcome, done
 
 
-def _row(frame: Frame, place: Place, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    return place.momentum, frame.chart(place.point), pose
+def _carried(group: AbstractMatrixGroup, pose: np.ndarray, displacements: np.ndarray) -> np.ndarray:
+    """Return the poses after displacements, one after another."""
+    g, matrices = group.matrix_from_pose(pose), np.empty_like(displacements)
+    for step, W in enumerate(displacements):
+        g = matrices[step] = g @ W
+    return group.normalize_pose(group.pose_from_matrix(matrices))
