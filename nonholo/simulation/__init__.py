@@ -3,7 +3,7 @@
 from nonholo.orbit import Crossings, EventLog
 from nonholo.simulation._flow import flow
 from nonholo.simulation._iterate import iterate
-from nonholo.simulation._resume import extend, resume
+from nonholo.simulation._resume import extend, resume_run
 from nonholo.simulation._simulate import simulate
 from nonholo.simulation.events import Event, crossings, cusp
 from nonholo.simulation.members import (
@@ -35,7 +35,7 @@ __all__ = [
     "in_one_thread",
     "iterate",
     "refuse_too_long",
-    "resume",
+    "resume_run",
     "scalar_members",
     "simulate",
     "size_in_blocks",
