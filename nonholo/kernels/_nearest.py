@@ -173,7 +173,7 @@ def follow(p: NearestBody, start: np.ndarray, end: np.ndarray, x: np.ndarray) ->
     det = _tangent(p, here, direction, tangent, J)
     if not (np.isfinite(det) and det != 0 and _is_clear(p, J, det)):
         return False
-    side, s, size = np.sign(det), 0.0, 1.0
+    positive, s, size = det > 0, 0.0, 1.0
     while s < 1.0:
         pace = _length(tangent[:, 0], here)
         size = min(size, 1.0 - s, p.longest / pace if pace > 0 else 1.0)
@@ -182,7 +182,7 @@ def follow(p: NearestBody, start: np.ndarray, end: np.ndarray, x: np.ndarray) ->
         clear = _corrected(p, goal, here + size * tangent[:, 0], size * pace, there)
         if clear:
             det = _tangent(p, there, direction, tangent, J)
-            clear = np.sign(det) == side
+            clear = det != 0 and np.isfinite(det) and (det > 0) == positive
         if clear:
             here[:] = there
             s, size = ahead, 2 * size
