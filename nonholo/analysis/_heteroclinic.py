@@ -15,10 +15,9 @@ from nonholo.analysis._asymptotics import Asymptotics, asymptotics
 from nonholo.analysis._followed import approach, followed
 from nonholo.analysis.planar import planar_variety
 from nonholo.discrete import Discretization, as_discretization
-from nonholo.discrete._start import one_start
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
-from nonholo.systems import AbstractLLSystem
+from nonholo.systems import AbstractLLSystem, one_start
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

@@ -1,33 +1,51 @@
 """The discrete mechanics: discretisations, the discrete Legendre transformation, the step and its start."""
 
+from nonholo.discrete._branch_equations import Frame, frame_of, has_frame
+from nonholo.discrete._branch_rules import PRINCIPAL, AbstractBranchRule, BranchRule, checked_rule
+from nonholo.discrete._branch_steps import Place, first_place, next_places
 from nonholo.discrete._branch_tree import BranchTree, branch_tree
 from nonholo.discrete._branch_values import Branches
 from nonholo.discrete._branches import branches, displacements_over, fold_distance, inverse_discrete_legendre
+from nonholo.discrete._composition import refuse_composition, weights
 from nonholo.discrete._consistency import consistency_defect
 from nonholo.discrete._discrete_legendre import discrete_legendre
 from nonholo.discrete._discretization import Discretization, as_discretization, discretize
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete._moser_veselov import moser_veselov_displacement
 from nonholo.discrete._reversal import reversal_defects
-from nonholo.discrete._start import initial_state
-from nonholo.discrete.routes import AbstractCompiledRoute
+from nonholo.discrete._start import check_first_state, initial_state
+from nonholo.discrete.routes import AbstractCompiledRoute, ScalarRoute
 
 __all__ = [
+    "PRINCIPAL",
+    "AbstractBranchRule",
     "AbstractCompiledRoute",
+    "BranchRule",
     "BranchTree",
     "Branches",
     "Discretization",
+    "Frame",
+    "Place",
+    "ScalarRoute",
     "as_discretization",
     "branch_tree",
     "branches",
+    "check_first_state",
+    "checked_rule",
     "consistency_defect",
     "discrete_legendre",
     "discretize",
     "displacements_over",
+    "first_place",
     "fold_distance",
+    "frame_of",
+    "has_frame",
     "initial_state",
     "inverse_discrete_legendre",
     "legendre",
     "moser_veselov_displacement",
+    "next_places",
+    "refuse_composition",
     "reversal_defects",
+    "weights",
 ]

@@ -147,41 +147,42 @@ class Frame:
         r = self.axes.T @ (momentum[:-1] - self.offset * along) / (2 * self.inertia)
         return Equations(self.stiffness, self.coupling, r, self.lever, along * self.length / self.inertia)
 
-    def momentum(self, target: Inexact[Array, "k"], push: Array) -> Inexact[Array, "m"]:
-        """Return the momenta, multiplied by the time step, that `equations` brings to a target and a push."""
-        turning = 2 * self.inertia * (self.axes @ target)
+    def momentum(self, target: Inexact[Array, "... k"], push: Array) -> Inexact[Array, "... m"]:
+        """Return the momenta, multiplied by the time step, that `equations` brings to targets and pushes."""
+        turning = 2 * self.inertia * (target @ self.axes.T)
         if self.length is not None:
-            along = push * self.inertia / self.length
-            turning = np.append(turning + self.offset * along, along)
-        return turning if self.rows is None else np.linalg.solve(self.rows, turning)
+            along = np.asarray(push)[..., None] * self.inertia / self.length
+            turning = np.concatenate([turning + self.offset * along, along], axis=-1)
+        return turning if self.rows is None else np.linalg.solve(self.rows, turning[..., None])[..., 0]
 
-    def chart(self, x: Float[np.ndarray, "m"]) -> Float[np.ndarray, "k"]:
-        """Return the canonical Cayley coordinates of a displacement; huge at angle pi."""
-        k, z0 = len(self.stiffness), x[0] if x[0] != 0 else _AT_PI
-        y = (self.axes @ x[1 : k + 1]) / z0
+    def chart(self, x: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... k"]:
+        """Return the canonical Cayley coordinates of displacements; huge at angle pi."""
+        k = len(self.stiffness)
+        z0 = np.where(x[..., :1] != 0, x[..., :1], _AT_PI)
+        y = (x[..., 1 : k + 1] @ self.axes.T) / z0
         if self.length is not None:
-            nu = self.length * x[-1] - 2 * self.offset @ (y * z0)
-            y = np.append(y, nu / (2 * z0))
+            nu = self.length * x[..., -1:] - 2 * ((y * z0) @ self.offset)[..., None]
+            y = np.concatenate([y, nu / (2 * z0)], axis=-1)
         return y if self.rows is None else y @ self.rows
 
-    def increment(self, x: Inexact[Array, "m"]) -> Inexact[Array, "N N"]:
-        """Return the canonical displacement minus the identity, without cancellation."""
+    def increment(self, x: Inexact[Array, "... m"]) -> Inexact[Array, "... N N"]:
+        """Return the canonical displacements minus the identity, without cancellation."""
         X = self._own_increment(x)
         return X if self.turn is None else self.turn @ X @ np.linalg.inv(self.turn)
 
-    def _own_increment(self, x: Inexact[Array, "m"]) -> Inexact[Array, "N N"]:
+    def _own_increment(self, x: Inexact[Array, "... m"]) -> Inexact[Array, "... N N"]:
         k = len(self.stiffness)
-        z0, z = x[0], self.axes @ x[1 : k + 1]
+        z0, z = x[..., :1], x[..., 1 : k + 1] @ self.axes.T
         if self.length is None:
-            q, sign = np.append(z, z0), np.append(-np.ones(k), 1.0)
-            X = 2 * np.outer(q, q) * sign
-            X[-1, -1] = -2 * (z @ z)
+            q, sign = np.concatenate([z, z0], axis=-1), np.append(-np.ones(k), 1.0)
+            X = 2 * (q[..., :, None] * q[..., None, :]) * sign
+            X[..., -1, -1] = -2 * (z * z).sum(axis=-1)
             return X
-        q, sign = np.append(z0, -z), np.append(1.0, -np.ones(k))
-        X = np.zeros((k + 2, k + 2), dtype=x.dtype)
-        X[:-1, :-1] = 2 * np.outer(q, q) * sign
-        X[0, 0] = -2 * (z @ z)
-        X[:-1, -1] = (self.length * x[-1] - 2 * self.offset @ z) * q
+        q, sign = np.concatenate([z0, -z], axis=-1), np.append(1.0, -np.ones(k))
+        X = np.zeros((*x.shape[:-1], k + 2, k + 2), dtype=x.dtype)
+        X[..., :-1, :-1] = 2 * (q[..., :, None] * q[..., None, :]) * sign
+        X[..., 0, 0] = -2 * (z * z).sum(axis=-1)
+        X[..., :-1, -1] = (self.length * x[..., -1:] - 2 * (z @ self.offset)[..., None]) * q
         return X
 
     def point(self, W: Inexact[np.ndarray, "N N"]) -> Inexact[np.ndarray, "m"]:

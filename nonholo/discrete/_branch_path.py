@@ -7,6 +7,7 @@ import dataclasses
 
 import numpy as np
 
+from nonholo import kernels
 from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.discrete._branch_equations import Equations
@@ -19,6 +20,7 @@ _CONVERGED = 1e-11  # a correction after which the next one is below rounding
 _SHORTEST = 1e-10  # continuation step below which the root is given up
 _FOLD = 1e-2  # regularity below which a root that cannot be followed has met a fold
 _SINGULAR = 1e-8  # regularity of a root that cannot be followed at all
+_CLEAR = 10.0  # times that, for a bound of it that rounding has moved
 _TRANSVERSAL = 1e-6  # part of the momentum's motion across a fold below which the singular point is no fold
 _FAR = 1e5  # length of a displacement that counts as infinite
 
@@ -47,6 +49,13 @@ def followed(start: Equations, end: Equations, x: Float[np.ndarray, "m"]) -> tup
         else:
             return _why_it_ended(_between(start, end, s), direction, x), x
     return Outcome.successful, x
+
+
+def nearest_body(equations: Equations) -> kernels.NearestBody:
+    """Return what a kernel follows the roots of equations by, whatever their target and push."""
+    slides, inertia = equations.lever is not None, equations.stiffness + equations.arm**2
+    how = (_LONGEST, _CLOSE, _SMALL, _CORRECTIONS, _CONVERGED, _SHORTEST, _CLEAR * _SINGULAR)
+    return kernels.NearestBody(inertia, equations.coupling, equations.arm, slides, *how)
 
 
 def _motion(start: Equations, end: Equations) -> Float[np.ndarray, "m"]:

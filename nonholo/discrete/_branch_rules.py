@@ -1,106 +1,288 @@
-r"""Branch rules: which of the values of the discrete map a run takes, and which rules a discretisation has.
+r"""Branch rules: which of the values of the discrete map a run takes. One class a rule; what a rule needs, it says.
 
-The values themselves come from `_branch_values`, following one of them from `_branch_path`. "principal" is not decided
-here but where steps are solved.
+The values themselves come from `_branch_values`, following one of them from `_branch_path`. Compiled and traced runs of
+"principal" and "nearest" solve their steps where they are; all others ask `following`.
 """
 
+import abc
+import dataclasses
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 
 from nonholo._checks import choice, error, is_integer, shown
 from nonholo._results import Outcome
-from nonholo.discrete._branch_equations import has_frame
-from nonholo.discrete._branch_values import Branches
+from nonholo._types import Float
+from nonholo.discrete._branch_equations import Equations, Frame, has_frame
+from nonholo.discrete._branch_path import followed
+from nonholo.discrete._branch_values import SAME, Branches, Roots, branches_of, principal_increment, roots_over
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._regions import is_regular, regions
 
 Chooser: TypeAlias = Callable[[Branches, np.ndarray], int | None]
 BranchRule: TypeAlias = str | Chooser
-RULES = ("principal", "nearest", "smallest", "largest", "inner", "outer")
-_OF_REGIONS = ("inner", "outer")
+_REGIONS = ("inner", "outer")
 _TIED = 1e-9  # relative difference of two norms that rounding may have made
 
 
-def checked_rule(owner: str, discrete: Discretization, branch: Any) -> Any:
+class Kick(NamedTuple):
+    """A step of which all is known but its new displacement.
+
+    Attributes:
+        discrete: The discretised system.
+        frame: The frame of its branches.
+        point: The point over the present displacement.
+        now: The equations that it solves.
+        ahead: Those that the new one has to solve.
+        momentum: The new canonical momentum along the constraint subspace.
+    """
+
+    discrete: Discretization
+    frame: Frame
+    point: Float[np.ndarray, "m"]
+    now: Equations
+    ahead: Equations
+    momentum: Float[np.ndarray, "k"]
+
+    @property
+    def present(self) -> Float[np.ndarray, "N N"]:
+        """The present displacement, in the user's frame."""
+        return displacement_at(self.discrete, self.frame, self.point)
+
+
+Following: TypeAlias = tuple[Outcome, Float[np.ndarray, "m"]]
+
+
+class AbstractBranchRule(abc.ABC):
+    """Which value of the map a step takes.
+
+    Attributes:
+        name: What an orbit calls it.
+        is_principal: Whether it is the principal value, which has compiled runs, parts of steps and events.
+        is_nearest: Whether it follows the present value, for which there is a kernel.
+        needs_all_values: Whether it chooses among all values, which has to be done outside of a JAX transformation.
+    """
+
+    name: str
+    is_principal: ClassVar[bool]
+    is_nearest: ClassVar[bool]
+    needs_all_values: ClassVar[bool]
+
+    @abc.abstractmethod
+    def check(self, where: str, discrete: Discretization) -> None:
+        """Refuse a discretisation that does not have the rule."""
+
+    @abc.abstractmethod
+    def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
+        """Refuse a start that the rule cannot go on from."""
+
+    @abc.abstractmethod
+    def following(self, kick: Kick) -> Following:
+        """Return the outcome and the point over the new displacement."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Principal(AbstractBranchRule):
+    """The root that momentum zero reaches along a ray."""
+
+    name: str = "principal"
+    is_principal: ClassVar[bool] = True
+    is_nearest: ClassVar[bool] = False
+    needs_all_values: ClassVar[bool] = False
+
+    def check(self, where: str, discrete: Discretization) -> None:
+        """Every discretisation has it."""
+
+    def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
+        """Runs check their first displacement themselves."""
+
+    def following(self, kick: Kick) -> Following:
+        """Return the verified principal root."""
+        return principal_point(kick.discrete, kick.frame, kick.momentum)
+
+
+@dataclasses.dataclass(frozen=True)
+class Nearest(AbstractBranchRule):
+    """The root that the present displacement reaches while the momentum moves along a segment."""
+
+    name: str = "nearest"
+    is_principal: ClassVar[bool] = False
+    is_nearest: ClassVar[bool] = True
+    needs_all_values: ClassVar[bool] = False
+
+    def check(self, where: str, discrete: Discretization) -> None:
+        """Every left-invariant constraint has it."""
+        _check_left_invariant(where, discrete, self.name)
+
+    def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
+        """Every displacement can be followed."""
+
+    def following(self, kick: Kick) -> Following:
+        """Follow the present point."""
+        return followed(kick.now, kick.ahead, kick.point)
+
+
+@dataclasses.dataclass(frozen=True)
+class Extreme(AbstractBranchRule):
+    """The real value whose full momentum is smallest (sign 1) or largest (-1)."""
+
+    name: str
+    sign: int
+    is_principal: ClassVar[bool] = False
+    is_nearest: ClassVar[bool] = False
+    needs_all_values: ClassVar[bool] = True
+
+    def check(self, where: str, discrete: Discretization) -> None:
+        """Refuse systems of whose values not all are known."""
+        _check_values_known(where, discrete, self.name)
+
+    def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
+        """Every displacement will do."""
+
+    def following(self, kick: Kick) -> Following:
+        """Choose by the norm; a tie is not decided."""
+        roots, found = _values(kick)
+        real = np.flatnonzero(found.is_real)
+        if len(real) == 0:
+            return _only(kick, roots, found, [])
+        norms = self.sign * np.linalg.norm(found.momentum[real], axis=1)
+        tied = real[norms <= norms.min() + _TIED * np.abs(norms).max()]
+        return _only(kick, roots, found, tied.tolist())
+
+
+@dataclasses.dataclass(frozen=True)
+class Region(AbstractBranchRule):
+    """The value in one part of the invariant curve of a top; the nearest where there are several."""
+
+    name: str
+    is_principal: ClassVar[bool] = False
+    is_nearest: ClassVar[bool] = False
+    needs_all_values: ClassVar[bool] = True
+
+    def check(self, where: str, discrete: Discretization) -> None:
+        """Refuse systems whose invariant curves have no parts."""
+        _check_values_known(where, discrete, self.name)
+        if not is_regular(discrete):
+            kind = type(discrete.system).__name__
+            got = f"{self.name!r} for {kind}, whose invariant curves have no inner and outer part"
+            remedy = "Pass 'nearest'. Only a SuslovTop with n = 3 and det B > 2|c|^2 has regions."
+            raise error(where, "be a rule without regions", got, remedy)
+
+    def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
+        """Refuse a start whose energy level is connected."""
+        if regions(discrete, displacement[None])[0] not in _REGIONS:
+            high = "an energy from the saddle's on, where both parts of the invariant curve are connected"
+            remedy = "Pass 'nearest', or start slower (`critical_energies` has the saddle's energy)."
+            raise error(where, "have a start in the inner or the outer region", f"{self.name!r} and {high}", remedy)
+
+    def following(self, kick: Kick) -> Following:
+        """Choose by the region, then by continuation."""
+        roots, found = _values(kick)
+        inside = np.flatnonzero(found.is_real & (found.region == self.name)).tolist()
+        if len(inside) > 1:
+            nearest = _nearest_of(kick, roots)
+            inside = [nearest] if nearest in inside else inside
+        return _only(kick, roots, found, inside)
+
+
+@dataclasses.dataclass(frozen=True)
+class Chosen(AbstractBranchRule):
+    """The value that a function of the user chooses."""
+
+    function: Chooser
+    name: str = "callable"
+    is_principal: ClassVar[bool] = False
+    is_nearest: ClassVar[bool] = False
+    needs_all_values: ClassVar[bool] = True
+
+    def check(self, where: str, discrete: Discretization) -> None:
+        """Refuse systems of whose values not all are known."""
+        _check_values_known(where, discrete, self.function)
+
+    def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
+        """Every displacement will do."""
+
+    def following(self, kick: Kick) -> Following:
+        """Ask the function, and refuse an answer that is no real value."""
+        roots, found = _values(kick)
+        index = self.function(found, kick.present)
+        if index is None:
+            return _only(kick, roots, found, [])
+        if not is_integer(index) or not 0 <= index < len(found) or not found.is_real[index]:
+            remedy = "Choose among np.flatnonzero(found.is_real), or return None."
+            raise error("branch(found, present)", "return the index of a real branch or None", shown(index), remedy)
+        return _only(kick, roots, found, [int(index)])
+
+
+PRINCIPAL = Principal()
+_RULES = (PRINCIPAL, Nearest(), Extreme("smallest", 1), Extreme("largest", -1), *map(Region, _REGIONS))
+_BY_NAME: dict[str, AbstractBranchRule] = {rule.name: rule for rule in _RULES}
+
+
+def branch_rule(owner: str, branch: BranchRule) -> AbstractBranchRule:
+    """Return the rule that a user names or gives as a function."""
+    if callable(branch):
+        return Chosen(branch)
+    choice(
+        f"{owner}(branch=...)",
+        branch,
+        tuple(_BY_NAME),
+        "Or pass a function of the branches and the present displacement.",
+    )
+    return _BY_NAME[branch]
+
+
+def checked_rule(owner: str, discrete: Discretization, branch: BranchRule) -> AbstractBranchRule:
     """Return a branch rule that a discretisation has, or refuse it with the reason."""
-    where = f"{owner}(branch=...)"
-    if not callable(branch):
-        choice(where, branch, RULES, "Or pass a function of the branches and the present displacement.")
-    if branch != "principal":
-        _check_known(where, discrete, branch)
-    return branch
+    rule = branch_rule(owner, branch)
+    rule.check(f"{owner}(branch=...)", discrete)
+    return rule
 
 
-def _check_known(where: str, discrete: Discretization, branch: Any) -> None:
+def principal_point(discrete: Discretization, frame: Frame, canonical: Float[np.ndarray, "k"]) -> Following:
+    """Return the outcome and the point over the verified principal displacement of a canonical momentum."""
+    code, X = principal_increment(discrete, canonical)
+    return code, np.empty(0) if code != 0 else frame.point(X + discrete.system.group.identity)
+
+
+def displacement_at(discrete: Discretization, frame: Frame, x: np.ndarray) -> Float[np.ndarray, "N N"]:
+    """Return the displacement over a point, in the user's frame."""
+    system = discrete.system
+    return system.frame @ frame.increment(x) @ system.group.inverse(system.frame) + system.group.identity
+
+
+def _check_left_invariant(where: str, discrete: Discretization, branch: BranchRule) -> None:
     if discrete.system.is_spatial:
-        got = (
-            f"{shown(branch)} for a right-invariant constraint, whose equations change with the pose from step to step"
-        )
-        raise error(where, "be 'principal'", got, "Leave it out.")
-    if branch != "nearest" and not has_frame(discrete):
+        changing = "a right-invariant constraint, whose equations change with the pose from step to step"
+        raise error(where, "be 'principal'", f"{shown(branch)} for {changing}", "Leave it out.")
+
+
+def _check_values_known(where: str, discrete: Discretization, branch: BranchRule) -> None:
+    _check_left_invariant(where, discrete, branch)
+    if not has_frame(discrete):
         got = f"{shown(branch)} for {type(discrete.system).__name__}, of whose values not all are known"
         remedy = "All are known of a SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference 'matrix'."
         raise error(where, "be 'principal' or 'nearest'", got, remedy)
-    if branch in _OF_REGIONS and not is_regular(discrete):
-        got = (
-            f"{shown(branch)} for {type(discrete.system).__name__}, whose invariant curves have no inner and outer part"
-        )
-        remedy = "Pass 'nearest'. Only a SuslovTop with n = 3 and det B > 2|c|^2 has regions."
-        raise error(where, "be a rule without regions", got, remedy)
 
 
-def check_regions(owner: str, discrete: Discretization, branch: BranchRule, displacement: np.ndarray) -> None:
-    """Refuse "inner" and "outer" for a start whose energy level is connected."""
-    if branch in _OF_REGIONS and regions(discrete, displacement[None])[0] not in _OF_REGIONS:
-        got = (
-            f"{shown(branch)} and an energy from the saddle's on, where both parts of the invariant curve are connected"
-        )
-        remedy = "Pass 'nearest', or start slower (`critical_energies` has the saddle's energy)."
-        raise error(f"{owner}(branch=...)", "have a start in the inner or the outer region", got, remedy)
+def _values(kick: Kick) -> tuple[Roots, Branches]:
+    roots = roots_over(kick.discrete, kick.frame, kick.momentum)
+    return roots, branches_of(kick.discrete, kick.momentum, roots)
 
 
-def chosen(
-    rule: BranchRule, found: Branches, present: np.ndarray, nearest: Callable[[], int | None]
-) -> tuple[Outcome, int]:
-    """Return the index of the value that a rule takes, or why there is none.
-
-    Args:
-        rule: Any but "principal" and "nearest".
-        found: All values.
-        present: The present displacement.
-        nearest: Tells the index of the nearest value, for a region where there are three.
-    """
-    real = np.flatnonzero(found.is_real)
-    if callable(rule):
-        taken = _by_user(rule, found, present)
-    elif rule in _OF_REGIONS:
-        taken = [int(i) for i in real if found.region[i] == rule]
-        followed = nearest() if len(taken) > 1 else None
-        taken = [followed] if followed in taken else taken
-    else:
-        taken = _extreme(found, real, -1 if rule == "largest" else 1)
+def _only(kick: Kick, roots: Roots, found: Branches, taken: list[int]) -> Following:
+    """Return the one value that is left, or why there is none."""
     if not taken:
-        return Outcome.no_real_branch, -1
+        return Outcome.no_real_branch, kick.point
     if len(taken) > 1 or found.multiplicity[taken[0]] > 1:
-        return Outcome.branch_unverified, -1
-    return Outcome.successful, int(taken[0])
+        return Outcome.branch_unverified, kick.point
+    return Outcome.successful, roots.found[taken[0]].point.real
 
 
-def _extreme(found: Branches, real: np.ndarray, sign: int) -> list[int]:
-    """Return the real values whose full momentum is smallest (sign 1) or largest (-1): several if they tie."""
-    norms = sign * np.linalg.norm(found.momentum[real], axis=1)
-    if len(real) == 0:
-        return []
-    return real[norms <= norms.min() + _TIED * np.abs(norms).max()].tolist()
-
-
-def _by_user(rule: Chooser, found: Branches, present: np.ndarray) -> list[int]:
-    index = rule(found, present)
-    if index is None:
-        return []
-    if not is_integer(index) or not 0 <= index < len(found) or not found.is_real[index]:
-        remedy = "Choose among np.flatnonzero(found.is_real), or return None."
-        raise error("branch(found, present)", "return the index of a real branch or None", shown(index), remedy)
-    return [int(index)]
+def _nearest_of(kick: Kick, roots: Roots) -> int | None:
+    """Return the index of the root that the present point is followed to; None if it is lost."""
+    code, end = followed(kick.now, roots.equations, kick.point)
+    missed = [min(np.linalg.norm(end - root.point), np.linalg.norm(end + root.point)) for root in roots.found]
+    best = int(np.argmin(missed))
+    return best if code == 0 and missed[best] <= SAME * np.linalg.norm(end) else None

@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from nonholo import kernels
 from nonholo._results import Outcome
 from nonholo._types import Float
-from nonholo.discrete._branch_equations import Equations, Frame
-from nonholo.discrete._branch_path import followed
-from nonholo.discrete._branch_rules import BranchRule, check_regions, chosen
-from nonholo.discrete._branch_values import SAME, Roots, branches_of, principal_increment, roots_over
+from nonholo.discrete._branch_equations import Frame
+from nonholo.discrete._branch_path import nearest_body
+from nonholo.discrete._branch_rules import AbstractBranchRule, Kick, displacement_at, principal_point
 from nonholo.discrete._branches import inverse_discrete_legendre
 from nonholo.discrete._discretization import Discretization
 
@@ -28,20 +28,20 @@ def first_place(
     owner: str,
     discrete: Discretization,
     frame: Frame,
-    rule: BranchRule,
+    rule: AbstractBranchRule,
     canonical: Float[np.ndarray, "k"],
     demanded: np.ndarray | None,
 ) -> tuple[Outcome, Place | None]:
     """Return the state of a start: of a displacement, of a full momentum, or else the principal one."""
     if demanded is None:
-        code, X = principal_increment(discrete, canonical)
+        code, point = principal_point(discrete, frame, canonical)
         if code != 0:
             return code, None
-        place = Place(frame.point(X + discrete.system.group.identity), canonical)
+        place = Place(point, canonical)
     else:
         W = demanded if demanded.ndim == 2 else inverse_discrete_legendre(discrete, demanded)
         place = _place_of(discrete, frame, W)
-    check_regions(owner, discrete, rule, displacement_at(discrete, frame, place.point))
+    rule.check_start(f"{owner}(branch=...)", discrete, displacement_at(discrete, frame, place.point))
     return Outcome.successful, place
 
 
@@ -53,31 +53,36 @@ def _place_of(discrete: Discretization, frame: Frame, W: Float[np.ndarray, "N N"
     return Place(x, frame.momentum(rows[:k], rows[k]) / discrete.time_step)
 
 
-def displacement_at(discrete: Discretization, frame: Frame, x: np.ndarray) -> Float[np.ndarray, "N N"]:
-    """Return the displacement over a point, in the user's frame."""
-    system = discrete.system
-    return system.frame @ frame.increment(x) @ system.group.inverse(system.frame) + system.group.identity
-
-
-def next_place(discrete: Discretization, frame: Frame, rule: BranchRule, place: Place) -> tuple[Outcome, Place]:
+def next_place(discrete: Discretization, frame: Frame, rule: AbstractBranchRule, place: Place) -> tuple[Outcome, Place]:
     """Return the outcome and the state that follows by a rule; the present one where none follows."""
     h = discrete.time_step
     now = frame.equations(h * place.momentum)
     momentum = place.momentum + frame.momentum(*now.kick(place.point)) / h
-    ahead = frame.equations(h * momentum)
-    if rule == "nearest":
-        code, x = followed(now, ahead, place.point)
-        return code, Place(x, momentum) if code == 0 else place
-    roots = roots_over(discrete, frame, momentum)
-    present = displacement_at(discrete, frame, place.point)
-    found = branches_of(discrete, momentum, roots)
-    code, index = chosen(rule, found, present, lambda: _nearest_of(now, roots, place.point))
-    return code, Place(roots.found[index].point.real, momentum) if code == 0 else place
+    code, x = rule.following(Kick(discrete, frame, place.point, now, frame.equations(h * momentum), momentum))
+    return code, Place(x, momentum) if code == 0 else place
 
 
-def _nearest_of(now: Equations, roots: Roots, x: np.ndarray) -> int | None:
-    """Return the index of the root that the present point is followed to; None if it is lost."""
-    code, end = followed(now, roots.equations, x)
-    missed = [min(np.linalg.norm(end - root.point), np.linalg.norm(end + root.point)) for root in roots.found]
-    best = int(np.argmin(missed))
-    return best if code == 0 and missed[best] <= SAME * np.linalg.norm(end) else None
+def next_places(
+    discrete: Discretization, frame: Frame, rule: AbstractBranchRule, place: Place, count: int
+) -> tuple[Outcome, Place]:
+    """Return some states that follow by a rule, up to `count`, as rows; the outcome tells why there are none.
+
+    The kernel takes the clear steps to the nearest value, `next_place` all others, one at a time.
+    """
+    places = _clear_places(discrete, frame, place, count) if rule.is_nearest else None
+    if places is not None and len(places.point):
+        return Outcome.successful, places
+    code, following = next_place(discrete, frame, rule, place)
+    rows = slice(0, int(code == 0))
+    return code, Place(following.point[None][rows], following.momentum[None][rows])
+
+
+def _clear_places(discrete: Discretization, frame: Frame, place: Place, count: int) -> Place:
+    """Return the states of the steps to the nearest value that are clear."""
+    h, k = float(discrete.time_step), len(frame.stiffness)
+    now = frame.equations(h * place.momentum)
+    goal = now.target if now.lever is None else np.append(now.target, now.push)
+    goals, points = np.empty((count, len(goal))), np.empty((count, len(place.point)))
+    done = kernels.advance_to_nearest(nearest_body(now), goal, place.point, goals, points)
+    moved = goals[:done] - goal
+    return Place(points[:done], place.momentum + frame.momentum(moved[:, :k], moved[:, -1]) / h)

@@ -69,12 +69,3 @@ def refuse_composition(where: str, discrete: Scheme, remedy: str) -> None:
     if discrete.order > 2:
         got = f"order {discrete.order}, a composition of {len(weights(discrete.order))} steps"
         raise error(where, "have a discretisation of order 2", got, remedy)
-
-
-def check_composed_run(discrete: Scheme, rule: object, displacement: Any) -> None:
-    """Refuse what a run of a composition cannot do."""
-    if rule != "principal":
-        refuse_composition("simulate(branch=...)", discrete, "Leave branch out: each substep takes the principal root.")
-    if displacement is not None:
-        remedy = "A whole step does not lie on the variety: start from a momentum or a velocity."
-        refuse_composition("simulate(displacement=...)", discrete, remedy)

@@ -12,8 +12,8 @@ from nonholo._checks import array, error, is_traced, shape_of, shown
 from nonholo._results import Outcome
 from nonholo._types import Array, Float
 from nonholo.discrete._branch_equations import frame_of, has_frame
-from nonholo.discrete._branch_rules import BranchRule, checked_rule
-from nonholo.discrete._branch_steps import displacement_at, first_place, next_place
+from nonholo.discrete._branch_rules import AbstractBranchRule, BranchRule, branch_rule, displacement_at
+from nonholo.discrete._branch_steps import first_place, next_place
 from nonholo.discrete._definition import displaced, momentum_of, nearest_displacement, principal_displacement
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._legendre import legendre
@@ -81,14 +81,15 @@ def step(discrete: Discretization, momentum: Any, branch: BranchRule = "principa
     where = "step(momentum=...)"
     value = array(where, momentum, (size,), f"Pass {dim} body momenta or the {k} along the constraint subspace.")
     traced = any(is_traced(x) for x in jax.tree.leaves((discrete, value)))
-    if traced and branch not in ("principal", "nearest"):
+    rule = branch_rule("step", branch)
+    if traced and rule.needs_all_values:
         got = f"{shown(branch)} under a JAX transformation"
         raise error("step(branch=...)", "be 'principal' or 'nearest'", got, "Take this step outside of it.")
-    rule = checked_rule("step", discrete, branch)
-    if rule == "principal" or traced or not has_frame(discrete):
+    rule.check("step(branch=...)", discrete)
+    if rule.is_principal or traced or not has_frame(discrete):
         route = discrete.route
         closed = jax.tree.map(_traceable, route.step) if isinstance(route, ScalarRoute) else None
-        return in_double(_step, discrete, closed, rule == "nearest", value)
+        return in_double(_step, discrete, closed, not rule.is_principal, value)
     return _step_by_rule(discrete, rule, value)
 
 
@@ -97,7 +98,7 @@ def _traceable(number: Array) -> Array:
     return np.float64(number) if isinstance(number, float) else number
 
 
-def _step_by_rule(discrete: Discretization, rule: BranchRule, momentum: np.ndarray) -> StepResult:
+def _step_by_rule(discrete: Discretization, rule: AbstractBranchRule, momentum: np.ndarray) -> StepResult:
     """Take a step in NumPy, from a state that need not be on the principal branch."""
     system = discrete.system
     frame = frame_of("step(discrete=...)", discrete)

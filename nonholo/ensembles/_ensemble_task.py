@@ -11,18 +11,15 @@ import numpy as np
 
 from nonholo import io
 from nonholo._checks import array, count, error, flag, shown
-from nonholo.discrete import Discretization
-from nonholo.discrete._discretization import as_discretization
-from nonholo.discrete._start import one_start
+from nonholo.discrete import Discretization, as_discretization
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._names import OUTCOME, STARTS
 from nonholo.ensembles._reductions import REDUCTIONS, final_state_of_schema_1
 from nonholo.ensembles._starts import check_starts, rows_of_starts, start_component
 from nonholo.io._descriptions import unstored
-from nonholo.simulation import Ensemble, ensemble
-from nonholo.simulation._ensemble_members import Members
-from nonholo.simulation._ensemble_start import run_in_lanes
+from nonholo.simulation import Ensemble, Members, ensemble, run_in_lanes
+from nonholo.systems import one_start
 
 _MEMBER = re.compile(r"This is member (\d+)\.")
 _BLOCK, _NUMBERS = 1 << 16, 1 << 22  # most members of a block, and numbers of all their states

@@ -13,8 +13,7 @@ from nonholo.ensembles._block import MemberBlock, block_of
 from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
 from nonholo.ensembles._standing import standing_of
 from nonholo.ensembles._store import SweepStore, open_store
-from nonholo.simulation import Ensemble
-from nonholo.simulation._ensemble_members import Members
+from nonholo.simulation import Ensemble, Members
 
 _WHERE = "sweep_to_csv(store=...)"
 _WANTED = ("outcome", "final_time", "final_pose")

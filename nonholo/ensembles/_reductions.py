@@ -13,8 +13,7 @@ from nonholo.analysis import step_jacobians
 from nonholo.analysis._asymptotics import turn_of_flow
 from nonholo.discrete import displacements_over
 from nonholo.discrete._branch_equations import has_frame
-from nonholo.simulation import Ensemble
-from nonholo.simulation._ensemble_start import applied, have_kernel, scalar_members
+from nonholo.simulation import Ensemble, applied, have_kernel, scalar_members
 from nonholo.systems import AbstractSystem, ChaplyginSleigh
 
 Reduced = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]

@@ -79,7 +79,7 @@ def resume(
                 f"resume({name}=...)", f"come with the store of {owner}", f"{shown(value)} for '{store}'", remedy
             )
     if stored != io.SWEEP_FORMAT:
-        return simulation.resume(store, discrete=discrete, events=events, throw=throw, progress=progress)
+        return simulation.resume_run(store, discrete=discrete, events=events, throw=throw, progress=progress)
     name, workers = checked_scheduler(scheduler, workers)
     opened = open_store(store)
     return go_on(Work(opened, restored_task(opened, task, trust=trust)), name, workers, progress)

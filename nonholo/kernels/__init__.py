@@ -2,32 +2,41 @@
 
 from nonholo.kernels._composition import ComposedBody, whole_steps
 from nonholo.kernels._dop853 import RATES, solve
+from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
 from nonholo.kernels._flow import BodyFlow, SpaceFlow
 from nonholo.kernels._general import GeneralBody
-from nonholo.kernels._interface import Body, certified, increment, move, residual
+from nonholo.kernels._interface import Body, certified, correction, increment, move, residual
+from nonholo.kernels._nearest import NearestBody
+from nonholo.kernels._nearest import advance as advance_to_nearest
 from nonholo.kernels._secular import SecularBody, secular_sleigh, secular_top
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
 
 __all__ = [
+    "CORRECTIONS",
     "LANES",
     "RATES",
+    "SETTLED",
     "AnyBody",
     "Body",
     "BodyFlow",
     "ComposedBody",
     "GeneralBody",
     "MemberRows",
+    "NearestBody",
     "SecularBody",
     "SleighBody",
     "SpaceFlow",
     "SuslovBody",
     "advance",
     "advance_members",
+    "advance_to_nearest",
     "certified",
     "chart_of",
+    "converged",
+    "correction",
     "increment",
     "move",
     "residual",

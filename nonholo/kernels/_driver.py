@@ -12,7 +12,7 @@ from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import assign
 
 STATE_SIZE = 14
-_SETTLED = 1e-150  # of one momentum to the other; squares below it underflow
+SETTLED = 1e-150  # of one momentum to the other; squares below it underflow
 CORRECTIONS = 8  # of a guess, before the root is followed from momentum zero
 
 
@@ -40,8 +40,8 @@ def advance(
     code, done = 0, 0
     while done < steps:
         d1, d2 = increment(p, m1, m2, y1, y2)
-        n1, l1 = _compensated(m1, k1, d1, _SETTLED * abs(m2))
-        n2, l2 = _compensated(m2, k2, d2, _SETTLED * abs(m1))
+        n1, l1 = _compensated(m1, k1, d1, SETTLED * abs(m2))
+        n2, l2 = _compensated(m2, k2, d2, SETTLED * abs(m1))
         code, w1, w2 = _solve(p, n1, n2, 3 * (y1 - u1) + v1, 3 * (y2 - u2) + v2)
         if code != 0:
             break

@@ -141,8 +141,8 @@ def _predict(p: Body, table: np.ndarray | None, s: np.ndarray) -> None:
     for j in range(LANES):
         m1, m2, y1, y2 = s[_M + j], s[_M + 32 + j], s[_Y + j], s[_Y + 32 + j]
         d1, d2 = increment(member(p, table, j), m1, m2, y1, y2)
-        s[_N + j], s[_L + j] = _driver._compensated(m1, s[_K + j], d1, _driver._SETTLED * abs(m2))
-        s[_N + 32 + j], s[_L + 32 + j] = _driver._compensated(m2, s[_K + 32 + j], d2, _driver._SETTLED * abs(m1))
+        s[_N + j], s[_L + j] = _driver._compensated(m1, s[_K + j], d1, _driver.SETTLED * abs(m2))
+        s[_N + 32 + j], s[_L + 32 + j] = _driver._compensated(m2, s[_K + 32 + j], d2, _driver.SETTLED * abs(m1))
     for j in range(2 * LANES):
         s[_W + j] = 3 * (s[_Y + j] - s[_U + j]) + s[_V + j]
 

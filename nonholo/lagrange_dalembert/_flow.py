@@ -14,6 +14,7 @@ from nonholo.lagrange_dalembert._equations import acceleration_matrix, energy, f
 from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
 from nonholo.lagrange_dalembert._sweep import Motion, State, flowed
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+from nonholo.systems import one_start
 
 
 def flow(
@@ -27,7 +28,7 @@ def flow(
 
 
 def _velocity(system: LagrangeDAlembert, q: np.ndarray, starts: dict[str, Any]) -> np.ndarray:
-    if _start.chosen("flow", starts) == "momentum":
+    if one_start("flow", **starts) == "momentum":
         return _start.velocity_of_momentum("flow", system, q, starts["momentum"])[1]
     return _start.velocity("flow", system, q, starts["body_velocity"])
 

@@ -18,7 +18,8 @@ from nonholo.lagrange_dalembert._group_orbit import GroupOrbit
 from nonholo.lagrange_dalembert._newton import root
 from nonholo.lagrange_dalembert._on_group import GroupLagrangeDAlembert
 from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._start import chosen, fixed_time_step
+from nonholo.lagrange_dalembert._start import fixed_time_step
+from nonholo.systems import one_start
 from nonholo.systems._coordinate_system import AbstractCoordinateDiscretization
 
 
@@ -91,7 +92,7 @@ class GroupDiscretization(AbstractCoordinateDiscretization):
         system, h = self.system, np.float64(self.time_step)
         steps, every = step_counts(steps, save_every)
         starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
-        given = chosen("simulate", starts)
+        given = one_start("simulate", **starts)
         g = start.pose("simulate", system, configuration)
         start.consistent(system, g, h)
         rows, code, done = run(_step, system, h, _first(system, h, g, given, starts[given]), steps, every, progress)

@@ -13,15 +13,15 @@ from nonholo.lagrange_dalembert import _group_start as start
 from nonholo.lagrange_dalembert._equations import solve_bordered
 from nonholo.lagrange_dalembert._group_orbit import GroupOrbit
 from nonholo.lagrange_dalembert._on_group import GroupLagrangeDAlembert
-from nonholo.lagrange_dalembert._start import chosen
 from nonholo.lagrange_dalembert._sweep import Motion, State, flowed
+from nonholo.systems import one_start
 
 
 def flow(
     system: GroupLagrangeDAlembert, configuration: Any, starts: dict[str, Any], times: Any, rtol: float, atol: float
 ) -> GroupOrbit:
     """Check a start, solve the equations and return the orbit."""
-    time, errors, given = flow_times(times), flow_tolerances(rtol, atol), chosen("flow", starts)
+    time, errors, given = flow_times(times), flow_tolerances(rtol, atol), one_start("flow", **starts)
     g = start.pose("flow", system, configuration)
     of = start.of_momentum if given == "momentum" else start.of_velocity
     w, _ = of("flow", system, g, starts[given])

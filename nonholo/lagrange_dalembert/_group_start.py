@@ -8,12 +8,12 @@ import numpy as np
 
 from nonholo._checks import array, error
 from nonholo._types import Array, Float
-from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert import _group_equations as equations
 from nonholo.lagrange_dalembert._newton import root
 from nonholo.lagrange_dalembert._on_group import GroupLagrangeDAlembert
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._start import admissible
+from nonholo.systems import in_group
 
 _TOLERANCE = 1e-9  # relative, for matrices and velocities that a user computed in floating point
 _DEGENERATE = 1e-10  # least singular value of scaled matrices, below which they are called singular
@@ -24,7 +24,7 @@ _CLOSE = 1e-4  # what the comparison must reach: far above rounding and the erro
 def pose(owner: str, system: GroupLagrangeDAlembert, configuration: Any) -> Float[np.ndarray, "N N"]:
     """Return a configuration at which the constraint forms are finite and independent."""
     group = system.group
-    g = group.identity if configuration is None else _in_group(f"{owner}(configuration=...)", group, configuration)
+    g = group.identity if configuration is None else in_group(f"{owner}(configuration=...)", group, configuration)
     A = in_double(_forms, system, g)
     what = "GroupLagrangeDAlembert(constraint_forms=...)"
     if not np.all(np.isfinite(A)):
@@ -62,7 +62,7 @@ def of_displacement(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return log(W)/h and P(W) of a displacement that satisfies the discrete constraint."""
     where = "simulate(displacement=...)"
-    v = system.group.log(_in_group(where, system.group, given)) / h
+    v = system.group.log(in_group(where, system.group, given)) / h
     missed, slope = in_double(_constraint_slope, system, g, v, h)
     if not np.all(np.abs(missed) <= _TOLERANCE * (np.abs(slope) @ np.abs(v))):
         got = f"residual {np.array2string(missed, precision=6)}"
@@ -113,14 +113,6 @@ def consistent(system: GroupLagrangeDAlembert, g: np.ndarray, h: float) -> None:
     if _least(slope) < _DEGENERATE or np.linalg.matrix_rank(both, tol=_CLOSE) > len(A):
         got = f"derivatives {slope.tolist()} at W = I, forms {A.tolist()}"
         raise error(where, "have derivatives that span the constraint forms", got, "Check one against the other.")
-
-
-def _in_group(where: str, group: AbstractMatrixGroup, element: Any) -> np.ndarray:
-    g = array(where, element, group.identity.shape, f"Pass an element of {group!r} as a matrix.")
-    distance = float(group.residual(g))
-    if not distance <= _TOLERANCE * np.linalg.norm(g):
-        raise error(where, f"lie in {group!r}", f"a matrix at distance {distance:.3g}", "Build it with `exp`.")
-    return g
 
 
 def _unit(rows: np.ndarray) -> np.ndarray:

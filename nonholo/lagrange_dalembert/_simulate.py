@@ -18,6 +18,7 @@ from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+from nonholo.systems import one_start
 
 _LEAST = 1e-6  # seconds of a step, at least
 
@@ -43,7 +44,7 @@ def simulate(
 
 
 def _first(system: LagrangeDAlembert, h: Any, q: np.ndarray, starts: dict[str, Any]) -> tuple[State, Array, Array]:
-    given = _start.chosen("simulate", starts)
+    given = one_start("simulate", **starts)
     if given == "displacement":
         v = _start.velocity_of_displacement(system, q, starts["displacement"], h)
         return in_double(_set_out_at, system, h, q, v)

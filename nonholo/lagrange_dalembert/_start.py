@@ -12,6 +12,7 @@ from nonholo.lagrange_dalembert._equations import acceleration_matrix, discrete_
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+from nonholo.systems import inadmissible
 
 _TOLERANCE = 1e-9  # relative, for velocities and displacements that a user computed in floating point
 _DEGENERATE = 1e-10  # least singular value of scaled matrices, below which they are called singular
@@ -26,15 +27,6 @@ def fixed_time_step(value: Any) -> float:
         remedy = "Runs in coordinates are compiled by themselves: call them outside jax.jit and jax.grad."
         raise error(where, "be a number", "a traced value", remedy)
     return float(scale(where, value, "Pass a positive real time step."))
-
-
-def chosen(owner: str, starts: dict[str, Any]) -> str:
-    """Return the name of the one start that is given."""
-    given = [name for name, value in starts.items() if value is not None]
-    if len(given) != 1:
-        got = " and ".join(given) if given else "none"
-        raise error(f"{owner}(...)", "be given exactly one of " + ", ".join(starts), got, "Choose one start.")
-    return given[0]
 
 
 def point(owner: str, system: LagrangeDAlembert, configuration: Any) -> Float[np.ndarray, "n"]:
@@ -84,9 +76,7 @@ def admissible(where: str, A: Float[np.ndarray, "s n"], v: Float[np.ndarray, "n"
     """Return a velocity that satisfies A v = 0, refused with its residual and the nearest one that does."""
     missed = A @ v
     if np.any(np.abs(missed) > _TOLERANCE * (np.abs(A) @ np.abs(v))):
-        nearest = v - np.linalg.pinv(A) @ missed
-        got = f"residual {np.array2string(missed, precision=6)}"
-        raise error(where, "satisfy the constraint", got, f"The nearest admissible velocity is {nearest.tolist()}.")
+        raise inadmissible(where, missed, v - np.linalg.pinv(A) @ missed)
     return v
 
 

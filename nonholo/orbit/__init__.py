@@ -1,11 +1,12 @@
 """The orbit: compact states of a motion and their decoding by the group. Nothing is simulated here."""
 
-from nonholo.orbit._crossings import Crossings, EventLog, joined_crossings, joined_states
+from nonholo.orbit._crossings import AbstractEventLog, Crossings, EventLog, joined_crossings, joined_states
 from nonholo.orbit._orbit import STATES, AbstractMotion, Orbit, as_orbit
 from nonholo.orbit._poses import configurations, poses, unwrapped
 
 __all__ = [
     "STATES",
+    "AbstractEventLog",
     "AbstractMotion",
     "Crossings",
     "EventLog",

@@ -1,7 +1,9 @@
 """What events found: the crossings of each, and which one ended the motion."""
 
+import abc
 import dataclasses
 from collections.abc import Iterator, Sequence
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -50,8 +52,34 @@ class Crossings:
         return Crossings(self.step[at], self.fraction[at], self.direction[at], self.states.chosen(at))
 
 
+FoundT = TypeVar("FoundT")
+
+
+class AbstractEventLog(abc.ABC, Generic[FoundT]):
+    """What events found, by name or position.
+
+    Attributes:
+        names: The names of the events.
+        found: What each found.
+    """
+
+    names: tuple[str, ...]
+    found: tuple[FoundT, ...]
+
+    def __getitem__(self, event: str | int) -> FoundT:
+        if isinstance(event, str) and event not in self.names:
+            raise KeyError(f"`events` has no event {event!r}. It has {', '.join(self.names)}.")
+        return self.found[self.names.index(event) if isinstance(event, str) else event]
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
-class EventLog:
+class EventLog(AbstractEventLog[Crossings]):
     """The crossings of all events of a run, by name or position.
 
     Attributes:
@@ -68,18 +96,6 @@ class EventLog:
     names: tuple[str, ...]
     found: tuple[Crossings, ...]
     stopped_by: str | None = None
-
-    def __getitem__(self, event: str | int) -> Crossings:
-        if isinstance(event, str) and event not in self.names:
-            got = ", ".join(self.names)
-            raise KeyError(f"`orbit.events` has no event {event!r}. It has {got}.")
-        return self.found[self.names.index(event) if isinstance(event, str) else event]
-
-    def __len__(self) -> int:
-        return len(self.names)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.names)
 
     def __repr__(self) -> str:
         told = ", ".join(f"{name}: {len(found)}" for name, found in zip(self.names, self.found, strict=True))

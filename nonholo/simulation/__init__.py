@@ -1,32 +1,44 @@
 """Entry points that run a motion: loops, thinning, outcomes."""
 
 from nonholo.orbit import Crossings, EventLog
-from nonholo.simulation._blocks import iterate
-from nonholo.simulation._ensemble import ensemble
-from nonholo.simulation._ensemble_result import Ensemble
-from nonholo.simulation._ensemble_run import in_one_thread
-from nonholo.simulation._events import Event
-from nonholo.simulation._events_of import crossings, cusp
 from nonholo.simulation._flow import flow
-from nonholo.simulation._prepared import refuse_too_long
-from nonholo.simulation._resume import extend, resume
+from nonholo.simulation._iterate import iterate
+from nonholo.simulation._resume import extend, resume_run
 from nonholo.simulation._simulate import simulate
-from nonholo.simulation._stretch import closed_step
+from nonholo.simulation.events import Event, crossings, cusp
+from nonholo.simulation.members import (
+    Ensemble,
+    Members,
+    applied,
+    ensemble,
+    have_kernel,
+    in_one_thread,
+    run_in_lanes,
+    scalar_members,
+)
+from nonholo.simulation.runs import closed_step, refuse_too_long
+from nonholo.simulation.stores import size_in_blocks
 
 __all__ = [
     "Crossings",
     "Ensemble",
     "Event",
     "EventLog",
+    "Members",
+    "applied",
     "closed_step",
     "crossings",
     "cusp",
     "ensemble",
     "extend",
     "flow",
+    "have_kernel",
     "in_one_thread",
     "iterate",
     "refuse_too_long",
-    "resume",
+    "resume_run",
+    "run_in_lanes",
+    "scalar_members",
     "simulate",
+    "size_in_blocks",
 ]

@@ -1,21 +1,17 @@
 """`flow`: an orbit of the continuous equations, from a checked start to a decoded result."""
 
 import functools
-from collections.abc import Callable
-from typing import Any, overload
+from typing import Any, cast, overload
 
 import numpy as np
 
-from nonholo._checks import choice, error, flow_times, flow_tolerances, needs, shown
+from nonholo._checks import error, flow_times, flow_tolerances, shown
 from nonholo._limits import within_memory
 from nonholo._results import Outcome, OutcomeError
-from nonholo.continuous import ContinuousFlow, closed_form, integrate
-from nonholo.discrete._start import in_group, initial_momentum, one_start
+from nonholo.continuous import ContinuousFlow, solver_of
 from nonholo.orbit import Orbit
-from nonholo.simulation._events import checked_events
-from nonholo.simulation._events_flow import check_functions, flow_with_events
-from nonholo.systems import AbstractSystem, System
-from nonholo.systems._coordinate_system import AbstractCoordinateSystem, OrbitT, refuse_in_coordinates
+from nonholo.simulation.events import Event, Solve, check_functions, checked_events, flow_with_events
+from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, OrbitT, Start, System, refuse_in_coordinates
 
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
 
@@ -103,58 +99,50 @@ def flow(
         >>> print(orbit.body_velocity[:, 1].round(6), (np.ptp(orbit.heading) / np.pi).round(6))
         [-2.  2.] 2.0
     """
+    starts = {"body_velocity": body_velocity, "momentum": momentum}
     if isinstance(system, AbstractCoordinateSystem):
-        refuse_in_coordinates(
-            "flow", restricted_velocity=(restricted_velocity, None), method=(method, None), events=(events, None)
-        )
-        return system.flow(
-            configuration=configuration,
-            times=times,
-            body_velocity=body_velocity,
-            momentum=momentum,
-            rtol=rtol,
-            atol=atol,
-        )
+        refused = {"restricted_velocity": restricted_velocity, "method": method, "events": events}
+        refuse_in_coordinates("flow", **{name: (value, None) for name, value in refused.items()})
+        return system.flow(configuration=configuration, times=times, **starts, rtol=rtol, atol=atol)
     if not isinstance(system, AbstractSystem):
         raise error("flow(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
-    choice("flow(method=...)", method, tuple(_METHODS))
-    time, tolerances = flow_times(times), flow_tolerances(rtol, atol)
-    group, motion = system.group, ContinuousFlow(system)
+    solver, time, tolerances = solver_of(method), flow_times(times), flow_tolerances(rtol, atol)
+    solve = functools.partial(solver, system.canonical, tolerances=tolerances)
+    first = _first_state(
+        system, time, Start.of("flow", configuration, restricted_velocity=restricted_velocity, **starts)
+    )
+    return _flowed(first, time, tolerances, solve, None if events is None else checked_events("flow", events))
+
+
+def _first_state(system: System, time: np.ndarray, start: Start) -> Orbit:
+    """Return the checked state at the first time."""
+    group = system.group
     within_memory("flow(times=...)", 32.0 * len(time) * (system.rank + group.pose_size), "Ask for fewer times.")
-    g = group.identity if configuration is None else in_group("flow(configuration=...)", group, configuration)
-    pose = group.pose_from_matrix(g @ system.frame)
-    starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
-    one_start("flow", **starts)
-    reduced = initial_momentum("flow", system, g, **starts)
-    if momentum is not None:
-        _check_momentum(momentum, Orbit(motion, time[:1], reduced[None], None, pose[None]).momentum[0])
-    solve = functools.partial(_METHODS[method](), system.canonical, tolerances=tolerances)
-    watched = None if events is None else checked_events("flow", events)
-    if watched is not None:
-        check_functions(watched, Orbit(motion, time[:1], reduced[None], None, pose[None]))
-    momenta, poses, turned, outcome = solve(reduced, pose, time - time[0])
+    g = start.pose(group)
+    reduced, pose = start.momentum(system, g), group.pose_from_matrix(g @ system.frame)
+    first = Orbit(ContinuousFlow(system), time[:1], reduced[None], None, pose[None])
+    if start.name == "momentum":
+        _check_momentum(start.value, first.momentum[0])
+    return first
+
+
+def _flowed(
+    first: Orbit, time: np.ndarray, tolerances: tuple[float, float], solve: Solve, events: dict[str, Event] | None
+) -> Orbit:
+    """Return the orbit from a first state, with what events found."""
+    if events is not None:
+        check_functions(events, first)
+    poses = cast(np.ndarray, first.canonical_pose)
+    momenta, poses, turned, outcome = solve(first.reduced_momentum[0], poses[0], time - time[0])
     reached = len(momenta)
-    orbit = Orbit(motion, time[:reached], momenta, None, poses, outcome, turned=turned)
-    if watched is not None:
-        orbit = flow_with_events(watched, orbit, solve)
+    orbit = Orbit(first.motion, time[:reached], momenta, None, poses, outcome, turned=turned)
+    if events is not None:
+        orbit = flow_with_events(events, orbit, solve)
     if orbit.outcome != Outcome.successful:
+        rtol, atol = tolerances
         where = f"Flow from time {time[reached - 1]:g} to {time[reached]:g} (rtol {rtol:g}, atol {atol:g})"
         raise OutcomeError(outcome, where, orbit)
     return orbit
-
-
-def _by_diffrax() -> Any:
-    with needs("jax", "flow(method='diffrax')"):
-        from nonholo.continuous._integration_jax import integrate_by_diffrax
-
-    return integrate_by_diffrax
-
-
-_METHODS: dict[str | None, Callable[[], Any]] = {
-    None: lambda: integrate,
-    "closed_form": lambda: closed_form,
-    "diffrax": _by_diffrax,
-}
 
 
 def _check_momentum(given: Any, found: np.ndarray) -> None:

@@ -1,4 +1,4 @@
-"""`resume` and `extend`: going on with a run that was written to a store."""
+"""Going on with a run that was written to a store: the part of `resume` for orbits, and `extend`."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -8,50 +8,18 @@ from nonholo._checks import count, error, flags, path, shown
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
-from nonholo.simulation._events_scan import Watch
-from nonholo.simulation._given_events import watch_of_store
-from nonholo.simulation._stored_run import go_on
-from nonholo.simulation._stretch import CompiledRun, closed_step, compiled_run
+from nonholo.simulation.events import Watch
+from nonholo.simulation.runs import CompiledRun, closed_step, compiled_run
+from nonholo.simulation.stores import go_on, watch_of_store
 
 if TYPE_CHECKING:
     from nonholo.io import Stream
 
 
-def resume(
-    store: str | Path,
-    *,
-    discrete: Discretization | None = None,
-    events: Any = None,
-    throw: bool = True,
-    progress: bool = False,
+def resume_run(
+    store: str | Path, *, discrete: Discretization | None, events: Any, throw: bool, progress: bool
 ) -> Orbit:
-    """Go on with the run of a store from its last checkpoint, with the bits of a run that was never stopped.
-
-    Every finished block is read first. A missing, cut or changed chunk is reported by name in a `RuntimeWarning`, and
-    its block is computed again. A finished, sound store is only loaded.
-
-    Args:
-        store: A store that `simulate(..., store=...)` began.
-        discrete: The discretisation of the run; needed only if its system or group is of your own making, which a
-            store cannot hold. Another one than that of the store is refused.
-        events: The events of the run, if it looks for some: a store holds their names, directions and stops, but no
-            functions. Others than those of the store are refused. To read a finished run `load_orbit` needs none.
-        throw: Raise if the run cannot go on; otherwise return the good steps and the outcome.
-        progress: Show a progress bar on standard error.
-
-    Returns:
-        The orbit, as from `simulate(..., store=...)`.
-
-    Raises:
-        FileNotFoundError: There is nothing at the path.
-        ValueError: The path is no store of a run with checkpoints, or of another schema, discretisation or events.
-        BlockingIOError: Another process is writing the store; the message names it.
-        OSError: The disk is full; the store stays valid.
-        OutcomeError: With `throw`, the run could not go on.
-
-    Example:
-        >>> orbit = nh.resume("run.zarr")  # doctest: +SKIP
-    """
+    """Go on with the run of a store: what `resume` does once it has asked the store, and found no sweep."""
     stream, run, watch = _opened("resume", store, discrete, events)
     with io.locked(stream.path):
         return go_on(run, io.open_stream(stream.path), watch, throw=throw, progress=progress)

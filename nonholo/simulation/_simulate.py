@@ -1,24 +1,27 @@
 """`simulate`: an orbit of the discrete map, from a checked start to a decoded result."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any, overload
 
-import numpy as np
-
-from nonholo._checks import error, flags, needs, path, shown
+from nonholo._checks import flags, path
 from nonholo._results import finished
-from nonholo.discrete import Discretization
-from nonholo.discrete._branch_rules import BranchRule
-from nonholo.discrete._start import check_first_state
+from nonholo.discrete import AbstractCompiledRoute, BranchRule, Discretization
 from nonholo.orbit import Orbit
-from nonholo.simulation._composed_run import composed_runner
-from nonholo.simulation._events_run import run_compiled, run_with_events, watched
-from nonholo.simulation._prepared import Start, checked_counts, first_state, refuse_too_large, refuse_too_long
-from nonholo.simulation._rule_run import Run, rule_runner
-from nonholo.simulation._stored_run import refuse_without_store, run_into_store
-from nonholo.simulation._stretch import CompiledRun, closed_step, compiled_run
-from nonholo.systems._coordinate_system import AbstractCoordinateDiscretization, OrbitT, refuse_in_coordinates
+from nonholo.simulation.events import Watch, run_compiled, run_with_events, watched
+from nonholo.simulation.runs import (
+    CompiledRun,
+    RunOptions,
+    closed_step,
+    compiled_run,
+    first_state,
+    refuse_too_large,
+    refuse_too_long,
+    uncompiled_run,
+)
+from nonholo.simulation.stores import refuse_without_store, run_into_store
+from nonholo.systems import AbstractCoordinateDiscretization, OrbitT, Start, refuse_in_coordinates
+
+_DEFAULTS = {"branch": "principal", "reconstruct": True, "backend": "auto"}  # of what a system in coordinates lacks
 
 
 @overload
@@ -138,70 +141,47 @@ def simulate(
     """
     flags("simulate", reconstruct=reconstruct, throw=throw, progress=progress)
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
+    common = {"steps": steps, "save_every": save_every, "throw": throw, "progress": progress}
+    how = {"branch": branch, "reconstruct": reconstruct, "backend": backend}
+    kept = {"store": store, "checkpoint_every": checkpoint_every, "scenario": scenario}
     if isinstance(discrete, AbstractCoordinateDiscretization):
-        refuse_in_coordinates(
-            "simulate",
-            restricted_velocity=(restricted_velocity, None),
-            branch=(branch, "principal"),
-            reconstruct=(reconstruct, True),
-            backend=(backend, "auto"),
-            events=(events, None),
-            store=(store, None),
-            checkpoint_every=(checkpoint_every, None),
-            scenario=(scenario, None),
-        )
-        options = {"save_every": save_every, "throw": throw, "progress": progress}
-        return discrete.simulate(configuration=configuration, steps=steps, **starts, **options)
-    steps, every, rule = checked_counts(discrete, steps, save_every, branch, backend, displacement)
-    starts["restricted_velocity"] = restricted_velocity
-    closed = closed_step(discrete, rule, backend)
-    refuse_too_long("simulate", discrete, steps, compiled=closed is not None)
-    watch = None if events is None else watched("simulate", discrete, events, rule, reconstruct)
-    kept = {"checkpoint_every": checkpoint_every, "scenario": scenario}
-    if store is not None:
-        store = path("simulate(store=...)", store)
-        stored = compiled_run("simulate(store=...)", discrete, closed, every, reconstruct)
-        refuse_too_large("simulate", discrete, 1, reconstruct)
-        start = first_state(discrete, configuration, int(reconstruct), True, starts)
-        return run_into_store(stored, start, steps, store, watch, **kept, throw=throw, progress=progress)
+        refused = {"restricted_velocity": restricted_velocity, **how, "events": events, **kept}
+        refuse_in_coordinates("simulate", **{name: (value, _DEFAULTS.get(name)) for name, value in refused.items()})
+        return discrete.simulate(configuration=configuration, **starts, **common)
+    options = RunOptions.of(discrete, **common, **how)
+    start = Start.of("simulate", configuration, **starts, restricted_velocity=restricted_velocity)
+    refuse_too_long("simulate", discrete, options.steps, compiled=_closed(discrete, options) is not None)
+    watch = None if events is None else watched("simulate", discrete, events, options.rule.name, options.reconstruct)
+    return (_run_in_memory if store is None else _run_into_store)(discrete, start, options, watch, **kept)
+
+
+def _closed(discrete: Discretization, options: RunOptions) -> AbstractCompiledRoute | None:
+    return closed_step(discrete, options.rule, options.backend)
+
+
+def _run_into_store(
+    discrete: Discretization, start: Start, options: RunOptions, watch: Watch | None, store: Any, **kept: Any
+) -> Orbit:
+    store = path("simulate(store=...)", store)
+    closed, posed = _closed(discrete, options), options.reconstruct
+    run = compiled_run("simulate(store=...)", discrete, closed, options.every, posed)
+    refuse_too_large("simulate", discrete, 1, posed)
+    first = first_state(discrete, start, posed=posed, compiled=True)
+    return run_into_store(run, first, options, store, watch, **kept)
+
+
+def _run_in_memory(
+    discrete: Discretization, start: Start, options: RunOptions, watch: Watch | None, **kept: Any
+) -> Orbit:
     refuse_without_store(**kept)
+    steps, every, posed, throw = options.steps, options.every, options.reconstruct, options.throw
+    closed = _closed(discrete, options)
     if watch is None:  # an event may stop it long before
-        refuse_too_large("simulate", discrete, 1 + steps // every, reconstruct)
-    held = 1 + steps // every if reconstruct else 0
-    start = first_state(discrete, configuration, held, closed is not None, starts)
+        refuse_too_large("simulate", discrete, 1 + steps // every, posed)
+    first = first_state(discrete, start, posed=posed, compiled=closed is not None)
     if closed is not None:
-        going = CompiledRun(discrete, closed, every, reconstruct)
-        return run_compiled(going, start, watch, steps, throw=throw, progress=progress)
-    run = _uncompiled(discrete, start, rule, backend, reconstruct)
-    orbit, done = run(steps, every, progress) if watch is None else run_with_events(run, watch, steps, every, progress)
-    if start.demanded is not None and len(orbit):
-        check_first_state(start.demanded, orbit[:1].displacement[0], orbit[:1].momentum[0])
+        run = CompiledRun(discrete, closed, every, posed)
+        return run_compiled(run, first, watch, steps, throw=throw, progress=options.progress)
+    slow, counts = uncompiled_run(discrete, first, options), (steps, every, options.progress)
+    orbit, done = slow(*counts) if watch is None else run_with_events(slow, watch, *counts)
     return finished(orbit, float(discrete.time_step), done, steps, throw)
-
-
-def _uncompiled(
-    discrete: Discretization, start: Start, rule: BranchRule, backend: str, reconstruct: bool
-) -> Callable[[int, int, bool], tuple[Orbit, int]]:
-    """Return what runs a map that is not compiled: from `steps`, `every`, `progress` to the orbit and the last step."""
-    reduced, pose, demanded = start
-    run = _by_definition(discrete, backend) if rule == "principal" else rule_runner(discrete, rule, backend, demanded)
-    branch = rule if isinstance(rule, str) else "callable"
-
-    def orbit_of(steps: int, every: int, progress: bool) -> tuple[Orbit, int]:
-        (momenta, charts, poses), outcome, done = run(reduced, pose, steps, every, progress)
-        time, kept = discrete.time_step * (every * np.arange(len(momenta))), poses if reconstruct else None
-        return Orbit(discrete, time, momenta, charts, kept, outcome, every, branch=branch), done
-
-    return orbit_of
-
-
-def _by_definition(discrete: Discretization, backend: str) -> Run:
-    if backend == "numba":
-        remedy = "Pass backend='jax', or difference='matrix'."
-        raise error("simulate(backend=...)", "have a closed form of the step", shown(discrete.difference), remedy)
-    with needs("jax", "simulate(...) of a step that is not compiled"):
-        from nonholo.discrete._definition import run_by_definition
-
-    if discrete.order > 2:
-        return composed_runner(discrete)
-    return lambda *arguments: run_by_definition(discrete, *arguments)

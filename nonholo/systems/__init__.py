@@ -3,6 +3,12 @@
 from nonholo.systems._arrowhead import ArrowheadSleigh, ArrowheadTop
 from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, AbstractSystem, Equilibria, System
 from nonholo.systems._body import ImpossibleBodyWarning
+from nonholo.systems._coordinate_system import (
+    AbstractCoordinateDiscretization,
+    AbstractCoordinateSystem,
+    OrbitT,
+    refuse_in_coordinates,
+)
 from nonholo.systems._displacements import in_exp_d, trace_constraints
 from nonholo.systems._euler_angles import euler_angle_discrete_lagrangian
 from nonholo.systems._ll_system import LLSystem
@@ -12,6 +18,7 @@ from nonholo.systems._multidimensional_sleigh import MultidimensionalSleigh
 from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._rigid_body import RigidBody
 from nonholo.systems._sleigh import ChaplyginSleigh
+from nonholo.systems._start import Start, in_group, inadmissible, of_finite_energy, one_start
 from nonholo.systems._subspace import reference_point_subspace
 from nonholo.systems._suslov import SuslovTop
 from nonholo.systems._symmetric_pair import is_symmetric_pair, symmetric_complement
@@ -31,6 +38,8 @@ SYSTEMS = (
 
 __all__ = [
     "SYSTEMS",
+    "AbstractCoordinateDiscretization",
+    "AbstractCoordinateSystem",
     "AbstractLLSystem",
     "AbstractLRSystem",
     "AbstractSystem",
@@ -43,17 +52,24 @@ __all__ = [
     "LRSystem",
     "MultidimensionalSleigh",
     "NormalForm",
+    "OrbitT",
     "RigidBody",
+    "Start",
     "SuslovTop",
     "System",
     "VeselovaTop",
     "euler_angle_discrete_lagrangian",
     "in_exp_d",
+    "in_group",
+    "inadmissible",
     "inertia_from_mass_tensor",
     "inertia_tensor",
     "is_symmetric_pair",
     "mass_tensor_from_inertia",
+    "of_finite_energy",
+    "one_start",
     "reference_point_subspace",
+    "refuse_in_coordinates",
     "symmetric_complement",
     "trace_constraints",
 ]

@@ -17,7 +17,7 @@ import nonholo as nh
 from nonholo import plotting
 from nonholo.cli.commands import _caches, _running
 from nonholo.cli.scenario.files import load_scenario
-from nonholo.simulation import _stored_run
+from nonholo.simulation.stores import _stored_run
 
 Command = Callable[..., Result]
 Figures = Callable[..., dict[str, Any]]

@@ -12,7 +12,7 @@ from typer.testing import Result
 
 import nonholo as nh
 from nonholo.io import Stream, locked
-from nonholo.simulation import _stored_run
+from nonholo.simulation.stores import _stored_run
 
 Command = Callable[..., Result]
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)

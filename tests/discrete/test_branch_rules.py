@@ -11,6 +11,8 @@ from nonholo import Outcome
 from nonholo.discrete import Branches
 from nonholo.discrete._branch_equations import frame_of
 from nonholo.discrete._branch_path import followed as followed_on_sphere
+from nonholo.discrete._branch_rules import PRINCIPAL, branch_rule
+from nonholo.discrete._branch_steps import displacement_at, first_place, next_place
 
 TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.3)
 FOUR = nh.discretize(nh.SuslovTop([[1.25, 0.0, -0.5], [0.0, 1.0, -0.75], [-0.5, -0.75, 1.25]]), 1.0)
@@ -83,6 +85,27 @@ def test_following_from_rest_leads_to_the_principal_value() -> None:
             assert np.abs(W - found.displacement[found.principal]).max() < 1e-12
             far += x[0] < 0
     assert far > 0
+
+
+@pytest.mark.parametrize("discrete", [TOP, SLEIGH, MOTION], ids=["top", "sleigh", "motion"])
+def test_the_principal_rule_on_the_sphere_steps_as_the_compiled_run(discrete: nh.Discretization) -> None:
+    """The rule's own root over each new momentum against the kernels, which never ask it."""
+    frame, r = frame_of("test", discrete), 0.2 * np.arange(1, len(discrete.system.constraint_subspace) + 1)
+    orbit = nh.simulate(discrete, momentum=r, steps=10)
+    code, place = first_place("test", discrete, frame, PRINCIPAL, discrete.system.to_canonical(r), None)
+    for W in orbit.displacement:
+        assert code == 0
+        assert place is not None
+        assert np.abs(displacement_at(discrete, frame, place.point) - W).max() < 1e-13
+        code, place = next_place(discrete, frame, PRINCIPAL, place)
+
+
+@pytest.mark.parametrize("name", ["principal", "nearest", "smallest", "largest", "inner", "outer"])
+def test_a_rule_bears_its_name(name: str) -> None:
+    """One object a name; orbits record it, and only those that compare values need them all."""
+    rule = branch_rule("test", name)
+    assert (rule.name, rule.is_principal) == (name, name == "principal")
+    assert rule.needs_all_values == (name not in ("principal", "nearest"))
 
 
 def test_nearest_follows_any_real_value() -> None:

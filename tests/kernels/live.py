@@ -50,6 +50,16 @@ def orbits(system: Any, order: int = 2, rank: int | None = None, size: float = S
     return found
 
 
+def nearest(system: Any) -> Arrays:
+    """Follow every real value over a momentum, some to the end."""
+    discrete, found = nh.discretize(system, STEP), []
+    values = nh.displacements_over(discrete, SIZE * np.ones(len(system.constraint_subspace)))
+    for W in values.displacement[values.is_real].real:
+        orbit = nh.simulate(discrete, displacement=W, steps=STEPS, branch="nearest", throw=False)
+        found += [orbit.reduced_momentum, orbit.cayley, orbit.pose]
+    return found
+
+
 def past_pi() -> Arrays:
     """Return a step whose principal path passes angle pi, where all unknowns are followed."""
     tensor = [
@@ -103,6 +113,8 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     "any d on SO(4) of order 4": lambda: orbits(GENERAL["any d on SO(4)"][0], 4),
     "right-invariant on SE(3)": lambda: orbits(GENERAL["right-invariant on SE(3)"][0]),
     "any d on SO(8)": lambda: orbits(body(nh.SO(8), 4, 8)),
+    "nearest values of a top": lambda: nearest(TOP),
+    "nearest values of a sleigh": lambda: nearest(SLEIGH),
     "a top past angle pi": lambda: past_pi(),
     "flow of a top": lambda: flows(TOP),
     "flow of a sleigh": lambda: flows(SLEIGH),

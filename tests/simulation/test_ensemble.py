@@ -8,10 +8,10 @@ from bodies import GENERAL, mass_tensor
 
 import nonholo as nh
 from nonholo.kernels import suslov_body
-from nonholo.simulation import _ensemble
-from nonholo.simulation._ensemble_members import Members
-from nonholo.simulation._ensemble_run import Plan, run_members
-from nonholo.simulation._ensemble_start import first_momenta, scalar_members
+from nonholo.simulation.members import _ensemble
+from nonholo.simulation.members._members import Members
+from nonholo.simulation.members._run import Plan, run_members
+from nonholo.simulation.members._start import first_momenta, scalar_members
 
 J = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 TOP = nh.SuslovTop(J, axis=(0.6, 0.0, 0.8))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.simulation._events_between import between_states
+from nonholo.simulation.events._between import between_states
 
 # A sleigh with a = 0 keeps its momenta: P_theta = J sin(theta)/h, so a step of length tau turns it by arcsin(tau w).
 ROUND = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.simulation import _ensemble
+from nonholo.simulation.members import _ensemble
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
 TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.1)

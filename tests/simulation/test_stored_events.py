@@ -246,7 +246,7 @@ def test_large_orbit_comes_with_the_crossings_of_its_last_block(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where only the last block of states is returned, its crossings are; the store holds all."""
-    monkeypatch.setattr("nonholo.simulation._stored_run._LOADED", 100)
+    monkeypatch.setattr("nonholo.simulation.stores._stored_run._LOADED", 100)
     tail, whole = begun(tmp_path / "run.zarr", [TURNS]), begun(None, [TURNS])
     found, known = tail.events["east"], whole.events["east"]
     begin = tail.time[0] - 7 * ROUND.time_step

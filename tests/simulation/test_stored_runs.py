@@ -347,7 +347,7 @@ def test_refused_run_leaves_nothing(tmp_path: Path) -> None:
 
 def test_large_orbit_is_returned_as_its_last_block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """An orbit that would fill the memory is in the store whole; what is returned are its last states."""
-    monkeypatch.setattr("nonholo.simulation._stored_run._LOADED", 100)
+    monkeypatch.setattr("nonholo.simulation.stores._stored_run._LOADED", 100)
     tail = _begun(tmp_path / "run.zarr")
     whole = _whole()
     assert len(tail) == len(whole) % 20

@@ -21,8 +21,7 @@ from nonholo.cli.screen.pictures import beside
 from nonholo.discrete import Discretization
 from nonholo.io import check_target, save_orbit
 from nonholo.orbit import Orbit
-from nonholo.simulation import simulate
-from nonholo.simulation._stored_run import size_in_blocks
+from nonholo.simulation import simulate, size_in_blocks
 
 RUNS = Path("runs")
 Made = TypeVar("Made")

@@ -3,21 +3,26 @@
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
 from nonholo._checks import flags
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, OutcomeError
-from nonholo.discrete import Discretization
-from nonholo.discrete._branch_rules import BranchRule
+from nonholo.discrete import BranchRule, Discretization
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
-from nonholo.simulation._events_pieces import searched_first, stretch_of
-from nonholo.simulation._events_run import watched
-from nonholo.simulation._events_scan import Watch
-from nonholo.simulation._prepared import checked_counts, first_state, refuse_too_large, refuse_too_long
-from nonholo.simulation._stored_run import rows_of_block
-from nonholo.simulation._stretch import CompiledRun, closed_step, compiled_run, opened
+from nonholo.simulation.events import Watch, computed_block, searched_first, watched
+from nonholo.simulation.runs import (
+    CompiledRun,
+    RunOptions,
+    RunState,
+    closed_step,
+    compiled_run,
+    first_state,
+    opened,
+    refuse_too_large,
+    refuse_too_long,
+)
+from nonholo.simulation.stores import rows_of_block
+from nonholo.systems import Start
 
 
 def iterate(
@@ -75,29 +80,39 @@ def iterate(
         [400, 400, 201]
     """
     flags("iterate", reconstruct=reconstruct, throw=throw, progress=progress)
+    how = {"branch": branch, "reconstruct": reconstruct, "backend": backend, "throw": throw, "progress": progress}
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
-    starts["restricted_velocity"] = restricted_velocity
-    steps, every, rule = checked_counts(discrete, steps, save_every, branch, backend, displacement)
-    run = compiled_run("iterate(discrete=...)", discrete, closed_step(discrete, rule, backend), every, reconstruct)
-    refuse_too_large("iterate", discrete, 1, reconstruct)
-    refuse_too_long("iterate", discrete, steps, compiled=True)
-    plan = Plan(steps, every, rows_of_block("iterate(block_steps=...)", run, steps, block_steps))
-    watch = None if events is None else watched("iterate", discrete, events, rule, reconstruct)
-    start = first_state(discrete, configuration, int(reconstruct), True, starts)
-    vector, first = opened(run, start, steps, throw)
-    if not len(first):
-        return iter((searched_first(watch, first)[0],))
-    return _blocks(run, vector, watch, plan, throw=throw, progress=progress)
+    options = RunOptions.of(discrete, steps=steps, save_every=save_every, **how)
+    start = Start.of("simulate", configuration, **starts, restricted_velocity=restricted_velocity)
+    return _blocks(discrete, start, options, block_steps, events)
 
 
 def _blocks(
-    run: CompiledRun, vector: np.ndarray, watch: Watch | None, plan: Plan, *, throw: bool, progress: bool
+    discrete: Discretization, start: Start, options: RunOptions, block_steps: int | None, events: Any
 ) -> Iterator[Orbit]:
-    with progress_bar("steps", progress) as report:
+    """Check and open a run, before any block is asked for, and return the iterator."""
+    closed = closed_step(discrete, options.rule, options.backend)
+    run = compiled_run("iterate(discrete=...)", discrete, closed, options.every, options.reconstruct)
+    refuse_too_large("iterate", discrete, 1, options.reconstruct)
+    refuse_too_long("iterate", discrete, options.steps, compiled=True)
+    rows = rows_of_block("iterate(block_steps=...)", run, options.steps, block_steps)
+    watch = None if events is None else watched("iterate", discrete, events, options.rule.name, options.reconstruct)
+    first_one = first_state(discrete, start, posed=options.reconstruct, compiled=True)
+    state, first = opened(run, first_one, options.steps, options.throw)
+    if not len(first):
+        return iter((searched_first(watch, first)[0],))
+    return _computed(run, state, watch, Plan(options.steps, options.every, rows), options)
+
+
+def _computed(
+    run: CompiledRun, state: RunState, watch: Watch | None, plan: Plan, options: RunOptions
+) -> Iterator[Orbit]:
+    with progress_bar("steps", options.progress) as report:
         for number in range(plan.blocks):
-            block, done, watch = stretch_of(run, vector, watch, plan, number, lambda now: report(now, plan.steps))
-            yield from _given(run, block, done, plan.steps, throw)
-            if block.outcome != Outcome.successful or (watch is not None and watch.stopped_by):
+            block = computed_block(run, state, watch, plan, number, lambda now: report(now, plan.steps))
+            state, watch = block.state, block.watch
+            yield from _given(run, block.orbit, block.done, plan.steps, options.throw)
+            if block.orbit.outcome != Outcome.successful or (watch is not None and watch.stopped_by):
                 return
 
 

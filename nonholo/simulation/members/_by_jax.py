@@ -11,9 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo import kernels
-from nonholo.discrete._precision import in_double
-from nonholo.kernels import _driver
-from nonholo.kernels._interface import correction
+from nonholo.discrete.definition import in_double
 
 State = tuple[jax.Array, ...]  # momenta, compensations, three charts (2, n) each, pose (4, n), who is certain (n,)
 
@@ -75,7 +73,7 @@ def _compensated(total: jax.Array, lost: jax.Array, term: jax.Array) -> tuple[ja
     """Add as the compiled loop does, each momentum measured by the other one."""
     term = term - lost
     result = total + term
-    small = jnp.abs(result) < _driver._SETTLED * jnp.abs(total[::-1])
+    small = jnp.abs(result) < kernels.SETTLED * jnp.abs(total[::-1])
     settled = small & ((jnp.abs(result) < jnp.abs(total)) | (total == 0))
     return jnp.where(settled, 0.0, result), jnp.where(settled, 0.0, (result - total) - term)
 
@@ -85,13 +83,13 @@ def _root(body: kernels.Body, m: jax.Array, guess: jax.Array) -> tuple[jax.Array
 
     def going(carry: tuple[jax.Array, jax.Array, jax.Array]) -> jax.Array:
         count, _, further = carry
-        return (count < _driver.CORRECTIONS) & further.any()
+        return (count < kernels.CORRECTIONS) & further.any()
 
     def correct(carry: tuple[jax.Array, jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array, jax.Array]:
         count, y, further = carry
-        d = jnp.stack(correction(body, *m, *y))
+        d = jnp.stack(kernels.correction(body, *m, *y))
         y = jnp.where(further, y + d, y)
-        return count + 1, y, further & ~_driver.converged(*d, *y)
+        return count + 1, y, further & ~kernels.converged(*d, *y)
 
     _, y, further = jax.lax.while_loop(going, correct, (jnp.asarray(0), guess, jnp.ones(m.shape[1], dtype=bool)))
     return y, ~further & kernels.certified(body, *m, *y)

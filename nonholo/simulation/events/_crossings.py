@@ -8,10 +8,9 @@ import numpy as np
 from nonholo._checks import error
 from nonholo._types import Float
 from nonholo.discrete import Discretization
-from nonholo.orbit import Crossings, Orbit
-from nonholo.orbit._orbit import as_orbit
-from nonholo.simulation._events import Event
-from nonholo.simulation._events_run import searched, watched
+from nonholo.orbit import Crossings, Orbit, as_orbit
+from nonholo.simulation.events._event import Event
+from nonholo.simulation.events._watched import searched, watched
 from nonholo.systems import ArrowheadSleigh, ChaplyginSleigh, MultidimensionalSleigh
 
 

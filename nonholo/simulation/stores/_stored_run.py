@@ -10,15 +10,12 @@ from nonholo._checks import count, error, shown
 from nonholo._limits import within_disk, within_memory
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, finished
-from nonholo.discrete import Discretization
-from nonholo.discrete._branch_rules import BranchRule
+from nonholo.discrete import PRINCIPAL, BranchRule, Discretization
 from nonholo.io import Checkpoint, Plan, Stream
 from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.simulation._events_pieces import searched_first, stretch_of
-from nonholo.simulation._events_scan import Watch
-from nonholo.simulation._prepared import Start
-from nonholo.simulation._stored_events import descriptions, gone_on_from, seen_by
-from nonholo.simulation._stretch import CompiledRun, opened
+from nonholo.simulation.events import Watch, computed_block, searched_first
+from nonholo.simulation.runs import CompiledRun, FirstState, RunOptions, RunState, opened
+from nonholo.simulation.stores._stored_events import descriptions, gone_on_from, seen_by
 
 if TYPE_CHECKING:
     from nonholo.io import Stream
@@ -29,32 +26,35 @@ _LOADED = 1 << 27  # numbers of an orbit that is returned whole, 1 GiB
 
 def run_into_store(
     run: CompiledRun,
-    start: Start,
-    steps: int,
-    store: str | Path,
+    start: FirstState,
+    options: RunOptions,
+    store: Path,
     watch: Watch | None,
     *,
     checkpoint_every: int | None,
     scenario: str | None,
-    throw: bool,
-    progress: bool,
 ) -> Orbit:
     """Run from a start into a new store, looking for events if there is a watch; return the orbit."""
     io.check_target(store, new="simulate(store=...)")
+    steps = options.steps
     plan = Plan(steps, run.every, rows_of_block("simulate(checkpoint_every=...)", run, steps, checkpoint_every))
-    vector, first = opened(run, start, steps, throw)
+    state, first = opened(run, start, steps, options.throw)
     first, found = searched_first(watch, first)
     if not len(first):
         return first
-    opening, events = Checkpoint(0, Outcome.successful, vector), None
+    opening, events = Checkpoint(0, Outcome.successful, state.vector), None
     if found is not None:
         opening, events = opening._replace(seen=seen_by(found, 0)), descriptions(found.events)
-    states = 1 + steps // run.every
     remedy = "Raise save_every to keep fewer states."
-    within_disk("simulate(store=...)", 8.0 * states * (1 + sum(run.sizes)), Path(store), remedy)
-    stream = io.create_stream(Path(store), first, plan, opening, events, scenario)
+    within_disk("simulate(store=...)", _bytes(run, steps), store, remedy)
+    stream = io.create_stream(store, first, plan, opening, events, scenario)
     with io.locked(stream.path):
-        return go_on(run, stream, watch, throw=throw, progress=progress)
+        return go_on(run, stream, watch, throw=options.throw, progress=options.progress)
+
+
+def _bytes(run: CompiledRun, steps: int) -> float:
+    """Return the size of all states."""
+    return 8.0 * (1 + steps // run.every) * (1 + sum(run.sizes))
 
 
 def rows_of_block(where: str, run: CompiledRun, steps: int, block_steps: int | None) -> int:
@@ -72,7 +72,11 @@ def rows_of_block(where: str, run: CompiledRun, steps: int, block_steps: int | N
 
 def size_in_blocks(discrete: AbstractMotion, branch: BranchRule, steps: int, every: int) -> int:
     """Return the bytes of all states of a run if it can go into a store block by block and takes several, else 0."""
-    if branch != "principal" or not isinstance(discrete, Discretization) or (closed := discrete.route.compiled) is None:
+    if (
+        branch != PRINCIPAL.name
+        or not isinstance(discrete, Discretization)
+        or (closed := discrete.route.compiled) is None
+    ):
         return 0
     run, states = CompiledRun(discrete, closed, every, True), 1 + steps // every
     return 8 * states * sum(run.sizes) if states > rows_of_block("", run, steps, None) else 0
@@ -155,11 +159,11 @@ def _computed(
 ) -> Checkpoint:
     """Compute a block and write it."""
     begin = _known(start)
-    vector, (going, chunks) = begin.vector.copy(), gone_on_from(watch, begin.seen)
-    orbit, done, now = stretch_of(run, vector, going, stream.plan, block, report)
-    seen = None if now is None else seen_by(now, stream.chunks_after(chunks, orbit.events))
-    reached = Checkpoint(done, orbit.outcome, vector, seen)
-    stream.write(block, orbit, reached)
+    going, chunks = gone_on_from(watch, begin.seen)
+    made = computed_block(run, RunState.of(begin.vector, run.sizes), going, stream.plan, block, report)
+    seen = None if made.watch is None else seen_by(made.watch, stream.chunks_after(chunks, made.orbit.events))
+    reached = Checkpoint(made.done, made.orbit.outcome, made.state.vector, seen)
+    stream.write(block, made.orbit, reached)
     return reached
 
 

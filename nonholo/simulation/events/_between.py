@@ -89,7 +89,7 @@ def _advanced(
 
 def _by_definition(discrete: Discretization, states: Orbit, fractions: np.ndarray) -> tuple[np.ndarray, ...]:
     with needs("jax", "simulate(events=...) of a step that is not compiled"):
-        from nonholo.simulation._events_definition import partial_step
+        from nonholo.simulation.events._partial_step import partial_step
 
     group, frame, C = discrete.system.group, discrete.system.frame, discrete.system.frame_map
     g = group.matrix_from_pose(_poses(True, states)) @ group.inverse(frame)

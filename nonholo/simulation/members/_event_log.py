@@ -1,15 +1,15 @@
 """What events found in the members of an ensemble: how often, and the first and the last time."""
 
 import dataclasses
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from nonholo._types import Int
+from nonholo.orbit import AbstractEventLog
 
 if TYPE_CHECKING:
-    from nonholo.simulation._ensemble_result import Ensemble
+    from nonholo.simulation.members._result import Ensemble
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -29,7 +29,7 @@ class MemberCrossings:
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
-class MemberEvents:
+class MemberEvents(AbstractEventLog[MemberCrossings]):
     """The crossings of all events in the members of an ensemble, by name or position.
 
     Attributes:
@@ -47,17 +47,6 @@ class MemberEvents:
     names: tuple[str, ...]
     found: tuple[MemberCrossings, ...]
     stopped_by: Int[np.ndarray, "M"]
-
-    def __getitem__(self, event: str | int) -> MemberCrossings:
-        if isinstance(event, str) and event not in self.names:
-            raise KeyError(f"`batch.events` has no event {event!r}. It has {', '.join(self.names)}.")
-        return self.found[self.names.index(event) if isinstance(event, str) else event]
-
-    def __len__(self) -> int:
-        return len(self.names)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.names)
 
     def __repr__(self) -> str:
         told = ", ".join(f"{name}: {found.count.sum()}" for name, found in zip(self.names, self.found, strict=True))

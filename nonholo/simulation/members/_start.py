@@ -3,7 +3,6 @@
 import dataclasses
 import functools
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -11,9 +10,8 @@ from nonholo import kernels
 from nonholo._checks import array, error, shape_of
 from nonholo._types import Float
 from nonholo.discrete import Discretization
-from nonholo.discrete._start import initial_momentum
-from nonholo.simulation._ensemble_members import Members, refused
-from nonholo.systems import ChaplyginSleigh, SuslovTop, System
+from nonholo.simulation.members._members import Members, refused
+from nonholo.systems import ChaplyginSleigh, Start, SuslovTop, System
 
 _CHUNK = 1 << 16  # members whose starts are made at once: what it takes between is not kept
 _TOLERANCE = 1e-9  # relative, for velocities that a user computed in floating point
@@ -81,16 +79,15 @@ def _tops(members: Members) -> ScalarMembers:
 _NUMBERS: dict[type, Callable[[Members], ScalarMembers]] = {ChaplyginSleigh: _sleighs, SuslovTop: _tops}
 
 
-def checked_start(system: System, parameters: dict[str, np.ndarray], **starts: Any) -> tuple[str, np.ndarray]:
-    """Return the name of the start that was given and its rows, one for each member."""
-    ((name, value),) = ((name, value) for name, value in starts.items() if value is not None)
-    where, k, dim = f"ensemble({name}=...)", system.rank, system.group.dim
+def checked_rows(system: System, parameters: dict[str, np.ndarray], start: Start) -> np.ndarray:
+    """Return the rows of a start, one for each member."""
+    where, name, value, k, dim = start.where, start.name, start.value, system.rank, system.group.dim
     lengths = {"body_velocity": (dim,), "restricted_velocity": (k,), "momentum": (k, dim)}[name]
     shape = shape_of(value)
     size = shape[-1] if shape and shape[-1] in lengths else lengths[-1]
     if len(shape) == 1 and parameters:
         count = len(next(iter(parameters.values())))
-        return name, np.broadcast_to(array(where, value, (size,)), (count, size))
+        return np.broadcast_to(array(where, value, (size,)), (count, size))
     rows = array(where, value, (None, size), "Pass one row for each member; `simulate` runs a single one.")
     if not len(rows):
         raise error(where, "have at least one row", "none", "Pass one row for each member.")
@@ -100,7 +97,7 @@ def checked_start(system: System, parameters: dict[str, np.ndarray], **starts: A
             raise error(
                 f"ensemble(parameters={{{other!r}: ...}})", "have one value for each member", got, "Match them."
             )
-    return name, rows
+    return rows
 
 
 def first_momenta(members: Members, name: str, rows: np.ndarray) -> Float[np.ndarray, "M k"]:
@@ -154,6 +151,6 @@ def _of_one(members: Members, member: int, name: str, row: np.ndarray) -> np.nda
     """Return the canonical momentum at which one member starts, refused with its number."""
     system = members.of(member).system
     try:
-        return initial_momentum("ensemble", system, system.group.identity, **{name: row})
+        return Start("ensemble", name, row).momentum(system, system.group.identity)
     except ValueError as failure:
         raise refused(member, failure) from None

@@ -11,9 +11,9 @@ from nonholo._results import Outcome
 from nonholo._types import Float, Int
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
-from nonholo.simulation._ensemble_members import Members
-from nonholo.simulation._ensemble_start import applied, energies, have_kernel, scalar_members
-from nonholo.simulation._events_members import MemberEvents
+from nonholo.simulation.members._event_log import MemberEvents
+from nonholo.simulation.members._members import Members
+from nonholo.simulation.members._start import applied, energies, have_kernel, scalar_members
 from nonholo.systems import ChaplyginSleigh, SuslovTop, System
 
 _OF_FRAME = ("configuration", "pose", "position", "displacement")
@@ -170,7 +170,7 @@ class Ensemble:
 
     def to_dataset(self) -> Any:
         """Return the states as a labelled `xarray.Dataset` with dimensions `member` and `step`."""
-        return importlib.import_module("nonholo.simulation._ensemble_dataset").ensemble_to_dataset(self)
+        return importlib.import_module("nonholo.simulation.members._dataset").ensemble_to_dataset(self)
 
     def _decoded(self, name: str) -> np.ndarray:
         """Return a quantity of orbits, NaN after a member's end; in one go where it is the same function for all."""

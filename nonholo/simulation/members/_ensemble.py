@@ -8,18 +8,16 @@ import numpy as np
 from nonholo._checks import choice, count, error, flags, shown
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome
-from nonholo.discrete import Discretization
-from nonholo.discrete._discretization import as_discretization
-from nonholo.discrete._start import one_start
-from nonholo.simulation._ensemble_members import Members, check_systems, checked_parameters
-from nonholo.simulation._ensemble_reduce import Reduced, joined
-from nonholo.simulation._ensemble_result import Ensemble
-from nonholo.simulation._ensemble_run import Plan, Report, run_members, states_of
-from nonholo.simulation._ensemble_start import checked_start, first_momenta
-from nonholo.simulation._events import Event
-from nonholo.simulation._events_ensemble import joined_blocks, watched_block
-from nonholo.simulation._events_run import watched_events
-from nonholo.simulation._prepared import refuse_too_large, refuse_too_long
+from nonholo.discrete import PRINCIPAL, Discretization, as_discretization
+from nonholo.simulation.events import Event, watched_events
+from nonholo.simulation.members._events import joined_blocks, watched_block
+from nonholo.simulation.members._members import Members, check_systems, checked_parameters
+from nonholo.simulation.members._reduce import Reduced, joined
+from nonholo.simulation.members._result import Ensemble
+from nonholo.simulation.members._run import Plan, Report, run_members, states_of
+from nonholo.simulation.members._start import checked_rows, first_momenta
+from nonholo.simulation.runs import refuse_too_large, refuse_too_long
+from nonholo.systems import Start
 
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
 _BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
@@ -94,27 +92,33 @@ def ensemble(
     if reduce is not None and not callable(reduce):
         raise error("ensemble(reduce=...)", "be a function", f"a {type(reduce).__name__}", "Pass a function, or None.")
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
-    one_start("ensemble", **starts)
+    plan = Plan(steps, save_every, bool(reconstruct), backend)
+    motions = _motions(discrete, Start.of("ensemble", **starts), parameters, plan, whole=reduce is None)
+    watched = None if events is None else watched_events("ensemble", discrete, events, PRINCIPAL.name, plan.posed)
+    with progress_bar("members", progress) as show:
+        report = _counting(show, len(motions[0]))
+        if reduce is not None:
+            return joined(len(motions[0]), _blocks(*motions, plan, watched, reduce, report))
+        if watched is None:
+            return _block(*motions, plan, watched, report)
+        blocks = _blocks(*motions, plan, watched, lambda block: block, report)
+        return joined_blocks(motions[0], [block for _, block in blocks])
+
+
+def _motions(
+    discrete: Discretization, start: Start, parameters: Any, plan: Plan, *, whole: bool
+) -> tuple[Members, np.ndarray, np.ndarray | None]:
+    """Return checked members, their first momenta along the constraint, and full ones that they have to have."""
     checked = checked_parameters(discrete, parameters)
-    name, rows = checked_start(discrete.system, checked, **starts)
-    compiled = backend != "jax" and discrete.route.compiled is not None
-    refuse_too_long("ensemble", discrete, steps, compiled=compiled, members=len(rows))
-    held = len(rows) if reduce is None else 1
-    refuse_too_large("ensemble", discrete, states_of(steps, save_every), reconstruct, members=held)
+    rows = checked_rows(discrete.system, checked, start)
+    compiled = plan.backend != "jax" and discrete.route.compiled is not None
+    refuse_too_long("ensemble", discrete, plan.steps, compiled=compiled, members=len(rows))
+    states = states_of(plan.steps, plan.every)
+    refuse_too_large("ensemble", discrete, states, plan.posed, members=len(rows) if whole else 1)
     members = Members(discrete, checked, len(rows))
     check_systems(members)
-    momenta = first_momenta(members, name, rows)
-    full = rows if name == "momentum" and rows.shape[1] != discrete.system.rank else None
-    plan = Plan(steps, save_every, bool(reconstruct), backend)
-    watched = None if events is None else watched_events("ensemble", discrete, events, "principal", plan.posed)
-    with progress_bar("members", progress) as show:
-        report = _counting(show, len(members))
-        if reduce is not None:
-            return joined(len(members), _blocks(members, momenta, full, plan, watched, reduce, report))
-        if watched is None:
-            return _block(members, momenta, full, plan, watched, report)
-        blocks = _blocks(members, momenta, full, plan, watched, lambda block: block, report)
-        return joined_blocks(members, [block for _, block in blocks])
+    full = rows if start.name == "momentum" and rows.shape[1] != discrete.system.rank else None
+    return members, first_momenta(members, start.name, rows), full
 
 
 def _check_backend(discrete: Discretization, backend: str) -> None:

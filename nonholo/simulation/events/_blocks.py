@@ -3,17 +3,15 @@
 import dataclasses
 import operator
 from collections.abc import Callable, Iterable
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from nonholo._results import Outcome
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
-from nonholo.simulation._events_scan import Watch, search
-from nonholo.simulation._stretch import CompiledRun
-
-KernelRows: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
+from nonholo.simulation.events._search import Watch, search
+from nonholo.simulation.runs import CompiledRun, Rows, RunState
 
 PIECE, NUMBERS = 1 << 14, 1 << 20  # at most in a stretch that is searched at once: states, numbers in an array
 _SHORT = 256  # steps of the first stretch, which an event may soon end; others are at most as long as all before
@@ -27,27 +25,34 @@ def searched_first(watch: Watch | None, first: Orbit) -> tuple[Orbit, Watch | No
     return dataclasses.replace(first, events=found.log()), found
 
 
-def stretch_of(
-    run: CompiledRun, vector: np.ndarray, watch: Watch | None, plan: Plan, block: int, report: Callable[[int], object]
-) -> tuple[Orbit, int, Watch | None]:
-    """Compute a block of a run, to its end or to what ends the run, looking for events if there is a watch.
+class Block(NamedTuple):
+    """A computed block: its states, the state and step of the last good one, and what is known of the events then."""
 
-    The vector becomes that of the last good step.
+    orbit: Orbit
+    state: RunState
+    done: int
+    watch: Watch | None
 
-    Returns:
-        The states of the block, the last good step, and what is known of the events then.
-    """
-    begun, stop, opening = plan.begin(block), plan.stop(block), block == 0
-    if watch is None:
-        return *run.stretch(vector, begun, stop, report, opening=opening), None
-    width, fine = sum(run.sizes), dataclasses.replace(run, every=1)
-    state = vector[width:]  # before it is, with events, the row of the state reached: the last one that was searched
-    last = _each(lambda row: row[None], np.split(vector[:width], np.cumsum(run.sizes)[:-1]))
-    first = fine.orbit(last, begun, True, Outcome.successful)
-    watch, _ = search(dataclasses.replace(watch, parts=()), first, begun)
+
+def computed_block(
+    run: CompiledRun, state: RunState, watch: Watch | None, plan: Plan, block: int, report: Callable[[int], object]
+) -> Block:
+    """Compute a block of a run, to its end or to what ends the run, looking for events if there is a watch."""
+    if watch is not None:
+        return _searched_block(run, state, watch, plan, block, report)
+    stretch = run.stretch(state, plan.begin(block), plan.stop(block), report, opening=block == 0)
+    return Block(*stretch, None)
+
+
+def _searched_block(
+    run: CompiledRun, state: RunState, watch: Watch, plan: Plan, block: int, report: Callable[[int], object]
+) -> Block:
+    begun, stop, opening, fine = plan.begin(block), plan.stop(block), block == 0, dataclasses.replace(run, every=1)
+    kernel, last = state.kernel.copy(), _each(lambda row: row[None], state.row)
+    watch, _ = search(dataclasses.replace(watch, parts=()), fine.orbit(last, begun, True, Outcome.successful), begun)
     kept, code, done = [_each(operator.itemgetter(slice(0, int(opening))), last)], 0, begun
     while code == 0 and done < stop and watch.stopped_by is None:
-        code, seen = _advanced(run, state, last, min(stop - done, max(done, _SHORT)))
+        code, seen = _advanced(run, kernel, last, min(stop - done, max(done, _SHORT)))
         watch, count = search(watch, fine.orbit(seen, done, True, Outcome.successful), done)
         saved = slice(run.every - done % run.every, count, run.every)
         kept.append(_each(lambda rows, saved=saved: rows[saved].copy(), seen))  # a view would hold every state
@@ -55,19 +60,19 @@ def stretch_of(
         report(done)
     outcome = Outcome.successful if watch.stopped_by else Outcome(code)
     orbit = run.orbit(_each(np.concatenate, zip(*kept, strict=True)), begun, opening, outcome)
-    vector[:width] = np.concatenate([row[0] for row in last])
-    return dataclasses.replace(orbit, events=watch.log()), done, watch
+    reached = RunState(_each(lambda row: row[0].copy(), last), kernel)
+    return Block(dataclasses.replace(orbit, events=watch.log()), reached, done, watch)
 
 
-def _advanced(run: CompiledRun, state: np.ndarray, last: KernelRows, most: int) -> tuple[int, KernelRows]:
+def _advanced(run: CompiledRun, kernel: np.ndarray, last: Rows, most: int) -> tuple[int, Rows]:
     """Take steps with the state of a kernel; return the outcome, and the rows from the last one on."""
     size = min(max(1, min(PIECE, NUMBERS // max(1, *run.sizes))), most)
     rows = _each(lambda row: np.concatenate((row, np.empty((size, row.shape[1])))), last)
-    good, code = run.route.advance(state, size, 1, _each(operator.itemgetter(slice(1, None)), rows))
+    good, code = run.route.advance(kernel, size, 1, _each(operator.itemgetter(slice(1, None)), rows))
     return code, _each(operator.itemgetter(slice(0, 1 + good)), rows)
 
 
-def _each(function: Callable[[Any], np.ndarray], rows: Iterable[Any]) -> KernelRows:
+def _each(function: Callable[[Any], np.ndarray], rows: Iterable[Any]) -> Rows:
     """Apply a function to momenta, charts and poses."""
     momenta, charts, poses = map(function, rows)
     return momenta, charts, poses

@@ -9,9 +9,9 @@ import numpy as np
 from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.orbit import Orbit, joined_states
-from nonholo.simulation._events import Event, values_at
-from nonholo.simulation._events_between import Between
-from nonholo.simulation._events_scan import Watch, search
+from nonholo.simulation.events._between import Between
+from nonholo.simulation.events._event import Event, values_at
+from nonholo.simulation.events._search import Watch, search
 
 Solve = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[Any, Any, Any, Outcome]]
 

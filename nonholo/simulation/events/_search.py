@@ -9,8 +9,8 @@ from scipy.optimize import elementwise
 
 from nonholo._types import Bool, Float, Int
 from nonholo.orbit import Crossings, EventLog, Orbit, joined_crossings, joined_states
-from nonholo.simulation._events import Event, values_at
-from nonholo.simulation._events_between import Between, with_headings
+from nonholo.simulation.events._between import Between, with_headings
+from nonholo.simulation.events._event import Event, values_at
 
 _ROUNDING = 2.0**-54  # of a step, beside its end
 

@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING, Any
 
 from nonholo import io
 from nonholo._checks import error
-from nonholo.simulation._events_run import watched
-from nonholo.simulation._events_scan import Watch, search
-from nonholo.simulation._stored_events import descriptions, seen_by
-from nonholo.simulation._stretch import CompiledRun
+from nonholo.discrete import PRINCIPAL
+from nonholo.io import Stream
+from nonholo.simulation.events import Watch, search, watched
+from nonholo.simulation.runs import CompiledRun, RunState
+from nonholo.simulation.stores._stored_events import descriptions, seen_by
 
 if TYPE_CHECKING:
     from nonholo.io import Stream
@@ -25,7 +26,7 @@ def watch_of_store(owner: str, stream: "Stream", run: CompiledRun, events: Any) 
     if events is None and stored != "[]":
         remedy = "Pass events=[...] again, in that order with these directions and stops: a store holds no functions."
         raise error(where, f"be the events of the store, {asked}", f"None for '{stream.path}'", remedy)
-    watch = watched(owner, run.discrete, events or [], "principal", run.reconstruct)
+    watch = watched(owner, run.discrete, events or [], PRINCIPAL.name, run.reconstruct)
     given = descriptions(watch.events)
     if stored is None or given != json.loads(stored):
         raise error(
@@ -40,7 +41,7 @@ def _refuse_other_functions(where: str, stream: "Stream", run: CompiledRun, watc
     first = stream.checkpoint(0)
     if isinstance(first, str) or first.seen is None:
         return
-    found, _ = search(watch, run.first(first.vector), 0)
+    found, _ = search(watch, run.first(RunState.of(first.vector, run.sizes)), 0)
     for name, now, then in zip(watch.events, seen_by(found, 0).values, first.seen.values, strict=True):
         if abs(now - then) > _SAME * (1 + abs(then)):
             got = f"another one of {name!r}: {now:.17g} instead of {then:.17g} at the first state"

@@ -1,22 +1,17 @@
-"""Stretches of a compiled run: from one state of the kernel to a later one, with the rows saved on the way.
-
-The state of a run is one vector: its first row as the kernel sees it (momenta, chart, pose), then the kernel's own
-state with compensations and warm starts. So a run goes on from a vector with the same bits as if it had not stopped.
-"""
+"""Stretches of a compiled run: from one state of the kernel to a later one, with the rows saved on the way."""
 
 import dataclasses
 import time
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
 from nonholo._checks import error, shown
 from nonholo._results import Outcome, finished
-from nonholo.discrete import AbstractCompiledRoute, Discretization
-from nonholo.discrete._start import check_first_state
+from nonholo.discrete import PRINCIPAL, AbstractBranchRule, AbstractCompiledRoute, Discretization, check_first_state
 from nonholo.orbit import Orbit
-from nonholo.simulation._prepared import Start
+from nonholo.simulation.runs._first_state import FirstState
+from nonholo.simulation.runs._state import Rows, RunState
 
 _FIRST, _PIECE = 256, 1 << 20  # steps between two reports of progress; Ctrl-C waits for them,
 _SOON, _LATE = 0.1, 0.3  # seconds: from one to the next they are doubled and halved
@@ -44,40 +39,41 @@ class CompiledRun:
         momenta, charts, pose = self.route.sizes
         return momenta, charts, pose if self.reconstruct or self.route.needs_pose else 0
 
-    def start(self, reduced: np.ndarray, pose: np.ndarray) -> tuple[np.ndarray, Outcome]:
-        """Return the vector of a run at its first state, and the outcome of the first root."""
-        scaled = self.route.encode(reduced)
+    def start(self, first: FirstState) -> tuple[RunState, Outcome]:
+        """Return the state of a run at its first one, and the outcome of the first root."""
+        scaled, pose = self.route.encode(first.reduced), first.pose
         coded = self.route.encode_poses(pose) if pose.size else pose
-        code, state = self.route.start(scaled, coded)
-        return np.concatenate((scaled, self.route.chart_of(state), coded, state)), Outcome(code)
+        code, kernel = self.route.start(scaled, coded)
+        return RunState((scaled, self.route.chart_of(kernel), coded), kernel), Outcome(code)
 
-    def first(self, vector: np.ndarray) -> Orbit:
-        """Return the state in the first part of a vector as an orbit at time zero."""
-        return self.stretch(vector, 0, 0, _silent, opening=True)[0]
+    def first(self, state: RunState) -> Orbit:
+        """Return the first row of a state as an orbit at time zero."""
+        momenta, charts, poses = (row[None] for row in state.row)
+        return self.orbit((momenta, charts, poses), 0, True, Outcome.successful)
 
     def stretch(
-        self, vector: np.ndarray, begun: int, stop: int, report: Callable[[int], object], *, opening: bool
-    ) -> tuple[Orbit, int]:
-        """Go on from step `begun`, a multiple of `every`, to step `stop`; return the rows and the last good step.
+        self, state: RunState, begun: int, stop: int, report: Callable[[int], object], *, opening: bool
+    ) -> tuple[Orbit, RunState, int]:
+        """Go on from step `begun`, a multiple of `every`, to step `stop`; return rows, state and step of the last good.
 
-        The vector becomes that of the last good step. The rows of an opening stretch begin with the first state.
+        The rows of an opening stretch begin with the first state.
         """
-        widths, first = self.sizes, int(opening)
-        rows = tuple(np.empty((first + (stop - begun) // self.every, width)) for width in widths)
-        if opening:
-            for row, given in zip(rows, np.split(vector[: sum(widths)], np.cumsum(widths)[:-1]), strict=True):
-                row[0] = given
-        state, done, code, pace = vector[sum(widths) :], begun, 0, _FIRST
+        first, kernel = int(opening), state.kernel.copy()
+        rows = tuple(np.empty((first + (stop - begun) // self.every, width)) for width in self.sizes)
+        for row, start in zip(rows, state.row, strict=True):
+            row[:first] = start
+        done, code, pace = begun, 0, _FIRST
         while code == 0 and done < stop:
             free, since = first + (done - begun) // self.every, time.monotonic()
             piece, every = self._piece(done - begun, stop - begun, pace)
             room = (rows[0][free:], rows[1][free:], rows[2][free:])
-            good, code = self.route.advance(state, piece, every, room)
+            good, code = self.route.advance(kernel, piece, every, room)
             done += good
             report(done)
             pace = _paced(pace, time.monotonic() - since)
         kept = first + (done - begun) // self.every
-        return self.orbit((rows[0][:kept], rows[1][:kept], rows[2][:kept]), begun, opening, Outcome(code)), done
+        orbit = self.orbit((rows[0][:kept], rows[1][:kept], rows[2][:kept]), begun, opening, Outcome(code))
+        return orbit, RunState(state.row, kernel), done
 
     def _piece(self, done: int, total: int, pace: int) -> tuple[int, int]:
         """Return how many steps to take at once, and after how many of them to save.
@@ -90,9 +86,7 @@ class CompiledRun:
         has_row = done // self.every < total // self.every
         return piece, piece if has_row else piece + 1
 
-    def orbit(
-        self, rows: tuple[np.ndarray, np.ndarray, np.ndarray], begun: int, opening: bool, outcome: Outcome
-    ) -> Orbit:
+    def orbit(self, rows: Rows, begun: int, opening: bool, outcome: Outcome) -> Orbit:
         """Return rows of the kernel as an orbit."""
         momenta, charts, poses = rows
         number = begun // self.every + (0 if opening else 1)
@@ -110,10 +104,10 @@ def _paced(pace: int, seconds: float) -> int:
 
 
 def closed_step(
-    discrete: Discretization, rule: Any = "principal", backend: str = "auto"
+    discrete: Discretization, rule: AbstractBranchRule = PRINCIPAL, backend: str = "auto"
 ) -> AbstractCompiledRoute | None:
     """Return the compiled route of a run, None if it runs by a rule or by the definition."""
-    return discrete.route.compiled if rule == "principal" and backend != "jax" else None
+    return discrete.route.compiled if rule.is_principal and backend != "jax" else None
 
 
 def compiled_run(
@@ -127,17 +121,13 @@ def compiled_run(
     return CompiledRun(discrete, closed, every, posed)
 
 
-def opened(run: CompiledRun, start: Start, steps: int, throw: bool) -> tuple[np.ndarray, Orbit]:
-    """Return the vector of a run at its start and its first state, an empty orbit (or an error) if there is none."""
-    vector, outcome = run.start(start.reduced, start.pose)
-    first = run.first(vector)
+def opened(run: CompiledRun, start: FirstState, steps: int, throw: bool) -> tuple[RunState, Orbit]:
+    """Return a run at its start and its first state as an orbit, empty (or an error) if there is none."""
+    state, outcome = run.start(start)
+    first = run.first(state)
     if outcome != Outcome.successful:
         empty = dataclasses.replace(first.chosen(slice(0, 0)), outcome=outcome)
-        return vector, finished(empty, float(run.discrete.time_step), 0, steps, throw)
+        return state, finished(empty, float(run.discrete.time_step), 0, steps, throw)
     if start.demanded is not None:
         check_first_state(start.demanded, first.displacement[0], first.momentum[0])
-    return vector, first
-
-
-def _silent(done: int) -> None:
-    """Report nothing."""
+    return state, first

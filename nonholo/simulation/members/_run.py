@@ -15,10 +15,10 @@ from nonholo._checks import needs
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
-from nonholo.simulation._ensemble_members import Members
-from nonholo.simulation._ensemble_result import Ensemble
-from nonholo.simulation._ensemble_start import have_kernel, scalar_members
 from nonholo.simulation._simulate import simulate
+from nonholo.simulation.members._members import Members
+from nonholo.simulation.members._result import Ensemble
+from nonholo.simulation.members._start import have_kernel, scalar_members
 
 _PART = 8192  # members in a piece of work of one thread, a multiple of what a compiled block holds
 
@@ -135,7 +135,7 @@ def _advance_by_jax(
 ) -> None:
     """Run members by JAX, and those whose roots are not certain by the compiled loop."""
     with needs("jax", "ensemble(backend='jax')"):
-        from nonholo.simulation._ensemble_jax import advance_by_jax
+        from nonholo.simulation.members._by_jax import advance_by_jax
 
     uncertain = advance_by_jax(_kind(fields)(*fields), momenta, poses, plan.steps, plan.every or 0, rows)
     again = np.flatnonzero(uncertain)
@@ -197,7 +197,7 @@ def _parts(count: int, threads: int, backend: str) -> list[slice]:
     """Cut members into pieces of work: whole blocks of the kernel, some for each thread, or what JAX takes at once."""
     if backend == "jax":
         with needs("jax", "ensemble(backend='jax')"):
-            from nonholo.simulation._ensemble_jax import chunk
+            from nonholo.simulation.members._by_jax import chunk
 
         size = chunk() or count
     else:

@@ -6,7 +6,7 @@ import xarray
 
 from nonholo import io
 from nonholo.orbit import Orbit
-from nonholo.simulation._ensemble_result import Ensemble
+from nonholo.simulation.members._result import Ensemble
 
 _EACH = ("member", "step")
 _AXES = ("row", "column")  # of a parameter that is a matrix

@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.io import Seen
-from nonholo.simulation._events import Event
-from nonholo.simulation._events_scan import Watch
+from nonholo.simulation.events import Event, Watch
 
 
 def descriptions(events: dict[str, Event]) -> list[dict[str, Any]]:

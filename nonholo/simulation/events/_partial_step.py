@@ -6,10 +6,8 @@ import equinox
 import numpy as np
 
 from nonholo._types import Array
-from nonholo.discrete import Discretization
-from nonholo.discrete._composition import weights
-from nonholo.discrete._definition import displaced, momentum_of, principal_displacement, restricted
-from nonholo.discrete._precision import in_double
+from nonholo.discrete import Discretization, weights
+from nonholo.discrete.definition import displaced, in_double, momentum_of, principal_displacement, restricted
 
 _root = equinox.filter_jit(principal_displacement)
 

@@ -1,41 +1,36 @@
 """Runs of the discrete map in memory; those with events look for them at every step, whatever states they keep."""
 
 import dataclasses
-from collections.abc import Callable
 from typing import Any
 
-from nonholo._checks import error, shown
+from nonholo._checks import error
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, finished
-from nonholo.discrete import Discretization
-from nonholo.discrete._branch_rules import BranchRule
+from nonholo.discrete import PRINCIPAL, Discretization
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
-from nonholo.simulation._events import Event, checked_events
-from nonholo.simulation._events_between import between_states
-from nonholo.simulation._events_pieces import NUMBERS, PIECE, searched_first, stretch_of
-from nonholo.simulation._events_scan import Watch, search
-from nonholo.simulation._prepared import Start
-from nonholo.simulation._stretch import CompiledRun, opened
+from nonholo.simulation.events._between import between_states
+from nonholo.simulation.events._blocks import NUMBERS, PIECE, computed_block, searched_first
+from nonholo.simulation.events._event import Event, checked_events
+from nonholo.simulation.events._search import Watch, search
+from nonholo.simulation.runs import CompiledRun, FirstState, Runner, opened
 
 _FIRST, _GROWTH = 16, 4  # steps of the first attempt of a run that cannot be gone on with, and factor to the next
 
 
-def watched(owner: str, discrete: Discretization, events: Any, rule: BranchRule, reconstruct: bool) -> Watch:
+def watched(owner: str, discrete: Discretization, events: Any, branch: str, reconstruct: bool) -> Watch:
     """Return what a run looks for, after checking that it can."""
-    return Watch(watched_events(owner, discrete, events, rule, reconstruct), between_states(discrete))
+    return Watch(watched_events(owner, discrete, events, branch, reconstruct), between_states(discrete))
 
 
 def watched_events(
-    owner: str, discrete: Discretization, events: Any, rule: BranchRule, reconstruct: bool
+    owner: str, discrete: Discretization, events: Any, branch: str, reconstruct: bool
 ) -> dict[str, Event]:
     """Return events by name, refused where parts of a step are not defined or cannot be computed."""
     named, where = checked_events(owner, events), f"{owner}(events=...)"
-    if rule != "principal":
+    if branch != PRINCIPAL.name:
         remedy = "Run with branch='principal', or look for changes of sign in the states yourself."
-        raise error(
-            where, "have the principal branch, where parts of a step are defined", f"branch {shown(rule)}", remedy
-        )
+        raise error(where, "have the principal branch, where parts of a step are defined", f"branch {branch!r}", remedy)
     if discrete.system.is_spatial and not reconstruct:
         got = "reconstruct=False with a right-invariant constraint, whose step depends on the pose"
         raise error(where, "have poses", got, "Run with reconstruct=True.")
@@ -43,21 +38,19 @@ def watched_events(
 
 
 def run_compiled(
-    run: CompiledRun, start: Start, watch: Watch | None, steps: int, *, throw: bool, progress: bool
+    run: CompiledRun, start: FirstState, watch: Watch | None, steps: int, *, throw: bool, progress: bool
 ) -> Orbit:
     """Run a compiled step from a start, looking for events if there is a watch; return the orbit."""
-    vector, first = opened(run, start, steps, throw)
+    state, first = opened(run, start, steps, throw)
     if not len(first):
         return searched_first(watch, first)[0]
     whole = Plan(steps, run.every, 1 + steps // run.every)  # one block
     with progress_bar("steps", progress) as report:
-        orbit, done, _ = stretch_of(run, vector, watch, whole, 0, lambda now: report(now, steps))
-    return finished(orbit, float(run.discrete.time_step), done, steps, throw)
+        block = computed_block(run, state, watch, whole, 0, lambda now: report(now, steps))
+    return finished(block.orbit, float(run.discrete.time_step), block.done, steps, throw)
 
 
-def run_with_events(
-    run: Callable[[int, int, bool], tuple[Orbit, int]], watch: Watch, steps: int, every: int, progress: bool
-) -> tuple[Orbit, int]:
+def run_with_events(run: Runner, watch: Watch, steps: int, every: int, progress: bool) -> tuple[Orbit, int]:
     """Run a step that is not compiled, keeping every state; return the orbit with what was found, and the last step.
 
     Such a run cannot be gone on with. If an event may end it, it is tried with few steps, then again with more.

@@ -10,12 +10,10 @@ from nonholo._results import Outcome
 from nonholo._types import Float, Int
 from nonholo.groups import SE
 from nonholo.orbit import Crossings, Orbit
-from nonholo.simulation._ensemble_members import Members
-from nonholo.simulation._ensemble_result import Ensemble
-from nonholo.simulation._events import Event, values_at
-from nonholo.simulation._events_between import Between, between_states
-from nonholo.simulation._events_members import MemberCrossings, MemberEvents
-from nonholo.simulation._events_scan import changes, located
+from nonholo.simulation.events import Between, Event, between_states, changes, located, values_at
+from nonholo.simulation.members._event_log import MemberCrossings, MemberEvents
+from nonholo.simulation.members._members import Members
+from nonholo.simulation.members._result import Ensemble
 
 
 class Flat(NamedTuple):

@@ -1,0 +1,32 @@
+"""Events: what they are, the search for them in states of a motion, and runs and flows that look for some."""
+
+from nonholo.simulation.events._between import Between, between_states
+from nonholo.simulation.events._blocks import computed_block, searched_first
+from nonholo.simulation.events._crossings import crossings, cusp
+from nonholo.simulation.events._event import Event, checked_events, values_at
+from nonholo.simulation.events._flow import Solve, check_functions, flow_with_events
+from nonholo.simulation.events._search import Watch, changes, located, search
+from nonholo.simulation.events._watched import run_compiled, run_with_events, watched, watched_events
+
+__all__ = [
+    "Between",
+    "Event",
+    "Solve",
+    "Watch",
+    "between_states",
+    "changes",
+    "check_functions",
+    "checked_events",
+    "computed_block",
+    "crossings",
+    "cusp",
+    "flow_with_events",
+    "located",
+    "run_compiled",
+    "run_with_events",
+    "search",
+    "searched_first",
+    "values_at",
+    "watched",
+    "watched_events",
+]

@@ -1,0 +1,12 @@
+"""Runs that are written to a store block by block, in bounded memory, and can stop at any moment."""
+
+from nonholo.simulation.stores._same_events import watch_of_store
+from nonholo.simulation.stores._stored_run import (
+    go_on,
+    refuse_without_store,
+    rows_of_block,
+    run_into_store,
+    size_in_blocks,
+)
+
+__all__ = ["go_on", "refuse_without_store", "rows_of_block", "run_into_store", "size_in_blocks", "watch_of_store"]

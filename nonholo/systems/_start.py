@@ -1,0 +1,124 @@
+"""Where a motion starts, whatever runs it: exactly one start, a pose of the group, an admissible velocity."""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from nonholo._checks import array, error, shape_of
+from nonholo._types import Float
+from nonholo.groups import AbstractMatrixGroup
+from nonholo.systems._base import System
+
+_TOLERANCE = 1e-9  # relative, for matrices and velocities that a user computed in floating point
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Start:
+    """The one start that a call was given, and the pose there.
+
+    Attributes:
+        owner: The function that was called, for messages.
+        name: "body_velocity", "restricted_velocity", "momentum" or "displacement".
+        value: What it is, not yet checked.
+        configuration: The pose, not yet checked; None for the identity.
+
+    Example:
+        >>> from nonholo.systems import Start
+        >>> start = Start.of("simulate", momentum=(0.4, 0.9, 0.0), body_velocity=None)
+        >>> start.name, start.momentum(nh.SuslovTop(np.eye(3)), np.eye(3)).tolist()
+        ('momentum', [0.4, 0.9])
+    """
+
+    owner: str
+    name: str
+    value: Any
+    configuration: Any = None
+
+    @classmethod
+    def of(cls, owner: str, configuration: Any = None, **starts: Any) -> "Start":
+        """Return the start of a call, refused if it names none or several."""
+        name = one_start(owner, **starts)
+        return cls(owner, name, starts[name], configuration)
+
+    @property
+    def where(self) -> str:
+        """The argument, for messages."""
+        return f"{self.owner}({self.name}=...)"
+
+    def pose(self, group: AbstractMatrixGroup) -> Float[np.ndarray, "N N"]:
+        """Return the pose, refused with its distance from the group."""
+        if self.configuration is None:
+            return group.identity
+        return in_group(f"{self.owner}(configuration=...)", group, self.configuration)
+
+    def momentum(self, system: System, g: Float[np.ndarray, "N N"] | None) -> Float[np.ndarray, "k"]:
+        """Return the canonical momentum along the constraint that a velocity or a momentum has at a pose."""
+        along = {"momentum": _of_momentum, "body_velocity": _of_velocity}.get(self.name, _of_coordinates)
+        return of_finite_energy(self.owner, system, g, along(self, system, g))
+
+
+def one_start(owner: str, **starts: Any) -> str:
+    """Return the name of the only start that is given, refused if there are none or several."""
+    given = [name for name, value in starts.items() if value is not None]
+    if len(given) != 1:
+        got = " and ".join(given) if given else "none"
+        raise error(f"{owner}(...)", "be given exactly one of " + ", ".join(starts), got, "Choose one start.")
+    return given[0]
+
+
+def in_group(where: str, group: AbstractMatrixGroup, element: Any) -> np.ndarray:
+    """Return a matrix of the group, refused with its distance from the group."""
+    g = array(where, element, group.identity.shape, f"Pass an element of {group} as a matrix.")
+    distance = float(group.residual(g))
+    if not distance <= _TOLERANCE * np.linalg.norm(g):
+        remedy = "Build it with `exp` or `cayley`."
+        raise error(where, f"lie in {group}", f"a matrix at distance {distance:.3g}", remedy)
+    return g
+
+
+def inadmissible(where: str, residual: np.ndarray, nearest: np.ndarray) -> ValueError:
+    """Return the error of a velocity that does not satisfy the constraint, with the nearest one that does."""
+    got = f"residual {np.array2string(residual, precision=6)}"
+    return error(where, "satisfy the constraint", got, f"The nearest admissible velocity is {nearest.tolist()}.")
+
+
+def of_finite_energy(owner: str, system: System, g: np.ndarray | None, along: np.ndarray) -> np.ndarray:
+    """Return canonical components of a momentum along the constraint, refused if its energy is not finite."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        energy = system.constrained_energy(along, g)
+    if not np.isfinite(energy):
+        raise error(f"{owner}(...)", "start with a finite energy", f"{energy}", "Start slower, or use other units.")
+    return system.to_canonical(along)
+
+
+def _of_momentum(start: Start, system: System, g: np.ndarray | None) -> np.ndarray:
+    k, dim = system.rank, system.group.dim
+    size = k if shape_of(start.value) == (k,) else dim
+    remedy = f"Pass {dim} body momenta or the {k} along the constraint subspace."
+    value = array(start.where, start.value, (size,), remedy)
+    return value if size == k else system.restrict_at(value, g)
+
+
+def _of_velocity(start: Start, system: System, g: np.ndarray | None) -> np.ndarray:
+    return system.restrict_at(system.inertia_operator @ _admissible(start.where, system, g, start.value), g)
+
+
+def _of_coordinates(start: Start, system: System, g: np.ndarray | None) -> np.ndarray:
+    rows = array(start.where, start.value, (system.rank,), "Pass one number per admissible direction.")
+    return system.restricted_momentum(rows, g)
+
+
+def _admissible(where: str, system: System, g: np.ndarray | None, body_velocity: Any) -> np.ndarray:
+    velocity = array(where, body_velocity, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
+    to_body = _to_body(system, g)
+    carried = np.linalg.solve(to_body, velocity)
+    forbidden = system.annihilator @ carried
+    if np.abs(forbidden).max(initial=0.0) > _TOLERANCE * np.abs(carried).max():
+        raise inadmissible(where, forbidden, to_body @ (carried - np.linalg.pinv(system.annihilator) @ forbidden))
+    return velocity
+
+
+def _to_body(system: System, g: np.ndarray | None) -> np.ndarray:
+    """Return the matrix from velocities in which the constraint is constant to body velocities."""
+    return system.carried(system.group.identity if g is None else system.group.inverse(g))
