@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 from nonholo import io
 from nonholo._checks import error
 from nonholo.discrete import PRINCIPAL
-from nonholo.io import Stream
 from nonholo.simulation.events import Watch, search, watched
 from nonholo.simulation.runs import CompiledRun, RunState
 from nonholo.simulation.stores._stored_events import descriptions, seen_by

@@ -11,7 +11,7 @@ from nonholo._limits import within_disk, within_memory
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, finished
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization
-from nonholo.io import Checkpoint, Plan, Stream
+from nonholo.io import Checkpoint, Plan
 from nonholo.orbit import AbstractMotion, Orbit
 from nonholo.simulation.events import Watch, computed_block, searched_first
 from nonholo.simulation.runs import CompiledRun, FirstState, RunOptions, RunState, opened
