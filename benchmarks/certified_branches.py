@@ -22,9 +22,9 @@ import numpy as np
 
 import nonholo as nh
 from nonholo.discrete import Branches, Discretization
-from nonholo.discrete._branch_equations import frame_of
-from nonholo.discrete._certificate import Located, enclosures, located
-from nonholo.discrete._certificate_problem import problem_of
+from nonholo.discrete.branching._equations import frame_of
+from nonholo.discrete.certificate._certificate import Located, enclosures, located
+from nonholo.discrete.certificate._problem import problem_of
 
 KINDS = ("top 3", "sleigh", "top 4", "top 6", "sleigh SE(3)")
 LIMIT = 1e-3  # seconds

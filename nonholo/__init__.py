@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from nonholo.discrete import fold_distance as fold_distance
     from nonholo.discrete import inverse_discrete_legendre as inverse_discrete_legendre
     from nonholo.discrete import moser_veselov_displacement as moser_veselov_displacement
-    from nonholo.discrete._precision import allow_float32 as allow_float32
     from nonholo.discrete._step import step as step
+    from nonholo.discrete.definition import allow_float32 as allow_float32
     from nonholo.ensembles import Choice as Choice
     from nonholo.ensembles import Direction as Direction
     from nonholo.ensembles import EnsembleTask as EnsembleTask

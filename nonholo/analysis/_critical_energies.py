@@ -13,9 +13,7 @@ from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.analysis._equilibria import highest_energy
 from nonholo.analysis._fold_energy import fold_energy
-from nonholo.discrete import Discretization
-from nonholo.discrete._composition import refuse_composition
-from nonholo.discrete._regions import Landscape, landscape
+from nonholo.discrete import Discretization, Landscape, landscape, refuse_composition
 from nonholo.systems import NormalForm
 
 _COINCIDENT = 1e-14  # relative distance of two energies below which a curve of critical points is assumed

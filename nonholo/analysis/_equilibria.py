@@ -10,8 +10,7 @@ import numpy as np
 
 from nonholo._checks import error, positive
 from nonholo._types import Array, Float
-from nonholo.discrete import Discretization
-from nonholo.discrete._composition import weights
+from nonholo.discrete import Discretization, weights
 from nonholo.systems import AbstractLLSystem, AbstractSystem
 
 

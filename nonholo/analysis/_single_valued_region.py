@@ -12,8 +12,7 @@ import numpy as np
 from nonholo._checks import error, shown
 from nonholo._types import Float
 from nonholo.analysis.planar import Strip, planar_variety
-from nonholo.discrete import Discretization
-from nonholo.discrete._composition import refuse_composition
+from nonholo.discrete import Discretization, refuse_composition
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

@@ -1,11 +1,5 @@
 """The discrete mechanics: discretisations, the discrete Legendre transformation, the step and its start."""
 
-from nonholo.discrete._branch_equations import Frame, frame_of, has_frame
-from nonholo.discrete._branch_rules import PRINCIPAL, AbstractBranchRule, BranchRule, checked_rule
-from nonholo.discrete._branch_steps import Place, first_place, next_places
-from nonholo.discrete._branch_tree import BranchTree, branch_tree
-from nonholo.discrete._branch_values import Branches
-from nonholo.discrete._branches import branches, displacements_over, fold_distance, inverse_discrete_legendre
 from nonholo.discrete._composition import refuse_composition, weights
 from nonholo.discrete._consistency import consistency_defect
 from nonholo.discrete._discrete_legendre import discrete_legendre
@@ -14,6 +8,27 @@ from nonholo.discrete._legendre import legendre
 from nonholo.discrete._moser_veselov import moser_veselov_displacement
 from nonholo.discrete._reversal import reversal_defects
 from nonholo.discrete._start import check_first_state, initial_state
+from nonholo.discrete.branching import (
+    PRINCIPAL,
+    AbstractBranchRule,
+    Branches,
+    BranchRule,
+    BranchTree,
+    Frame,
+    Landscape,
+    Place,
+    branch_tree,
+    branches,
+    checked_rule,
+    displacements_over,
+    first_place,
+    fold_distance,
+    frame_of,
+    has_frame,
+    inverse_discrete_legendre,
+    landscape,
+    next_places,
+)
 from nonholo.discrete.routes import AbstractCompiledRoute, ScalarRoute
 
 __all__ = [
@@ -25,6 +40,7 @@ __all__ = [
     "Branches",
     "Discretization",
     "Frame",
+    "Landscape",
     "Place",
     "ScalarRoute",
     "as_discretization",
@@ -42,6 +58,7 @@ __all__ = [
     "has_frame",
     "initial_state",
     "inverse_discrete_legendre",
+    "landscape",
     "legendre",
     "moser_veselov_displacement",
     "next_places",

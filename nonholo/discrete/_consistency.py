@@ -39,8 +39,7 @@ def consistency_defect(discrete: Discretization, discretization_map: Callable[[A
     """
     as_discretization("consistency_defect(discrete=...)", discrete)
     with needs("jax", "consistency_defect(...)"):
-        from nonholo.discrete._definition import sample_displacements
-        from nonholo.discrete._functions import map_each
+        from nonholo.discrete.definition import map_each, sample_displacements
 
     group, annihilator = discrete.system.group, np.asarray(discrete.system.annihilator)
     where = "consistency_defect(discretization_map=...)"

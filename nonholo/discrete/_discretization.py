@@ -83,7 +83,7 @@ class Discretization(AbstractMotion):
         if not callable(self.difference):
             return True
         with needs("jax", "discretize(difference=...)"):
-            from nonholo.discrete._functions import is_even
+            from nonholo.discrete.definition import is_even
 
         return is_even(self.difference, self.system.group)
 
@@ -243,7 +243,7 @@ def _difference(system: AbstractSystem, difference: Difference | None) -> Differ
 def _scalar(where: str, system: AbstractSystem, difference: Callable[[Array], Array]) -> Callable[[Array], Array]:
     """Refuse a discrete Lagrangian that is not a finite number with finite derivatives at the identity."""
     with needs("jax", where):
-        from nonholo.discrete._functions import value_and_slope
+        from nonholo.discrete.definition import value_and_slope
 
     try:
         value, slope = value_and_slope(difference, system.group)

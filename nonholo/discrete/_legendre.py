@@ -19,7 +19,7 @@ def legendre(discrete: Scheme, increment: Inexact[Array, "... N N"], side: str) 
     if isinstance(discrete.difference, str):
         return logarithmic_legendre(discrete, increment + group.identity, side)
     with needs("jax", "discretize(difference=...)"):
-        from nonholo.discrete._functions import momenta_by_derivative
+        from nonholo.discrete.definition import momenta_by_derivative
 
     return momenta_by_derivative(discrete.difference, group, increment + group.identity, side)
 

@@ -4,8 +4,7 @@ import numpy as np
 
 from nonholo._results import Outcome
 from nonholo._types import Float
-from nonholo.discrete.routes import AbstractCompiledRoute
-from nonholo.discrete.routes._base import matrices_of
+from nonholo.discrete.routes import AbstractCompiledRoute, matrices_of
 from nonholo.orbit import Orbit
 
 

@@ -11,14 +11,26 @@ from nonholo import kernels
 from nonholo._checks import array, error, is_traced, shape_of, shown
 from nonholo._results import Outcome
 from nonholo._types import Array, Float
-from nonholo.discrete._branch_equations import frame_of, has_frame
-from nonholo.discrete._branch_rules import AbstractBranchRule, BranchRule, branch_rule, displacement_at
-from nonholo.discrete._branch_steps import first_place, next_place
-from nonholo.discrete._definition import displaced, momentum_of, nearest_displacement, principal_displacement
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._legendre import legendre
-from nonholo.discrete._precision import in_double
-from nonholo.discrete._root import principal_root
+from nonholo.discrete.branching import (
+    AbstractBranchRule,
+    BranchRule,
+    branch_rule,
+    displacement_at,
+    first_place,
+    frame_of,
+    has_frame,
+    next_place,
+)
+from nonholo.discrete.definition import (
+    displaced,
+    in_double,
+    momentum_of,
+    nearest_displacement,
+    principal_displacement,
+    principal_root,
+)
 from nonholo.discrete.routes import ScalarRoute, ScalarStep
 
 _ON_LOCUS = 1e-6  # relative distance from the momentum locus that a computed momentum may have

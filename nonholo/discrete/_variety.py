@@ -128,7 +128,7 @@ def equations_of(variety: Variety, D: Float[np.ndarray, "... N N"]) -> Float[np.
     if isinstance(variety.constraint, str):
         return variety.equations(D)
     with needs("jax", "discretize(constraint=...)"):
-        from nonholo.discrete._functions import map_each
+        from nonholo.discrete.definition import map_each
 
     values = map_each(variety.equations, D.reshape(-1, *D.shape[-2:]))  # functions take one matrix at a time
     return values.reshape(*D.shape[:-2], -1)
@@ -161,7 +161,7 @@ def _at_identity(
 ) -> tuple[Float[np.ndarray, "s"], Float[np.ndarray, "s dim"]]:
     """Return the values of functions at the identity and their derivatives along the group."""
     with needs("jax", where):
-        from nonholo.discrete._functions import value_and_slope
+        from nonholo.discrete.definition import value_and_slope
 
     values, slopes = np.zeros(len(functions)), np.zeros((len(functions), group.dim))
     for j, function in enumerate(functions):

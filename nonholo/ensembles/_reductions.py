@@ -11,8 +11,7 @@ from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.analysis import step_jacobians
 from nonholo.analysis._asymptotics import turn_of_flow
-from nonholo.discrete import displacements_over
-from nonholo.discrete._branch_equations import has_frame
+from nonholo.discrete import displacements_over, has_frame
 from nonholo.simulation import Ensemble, applied, have_kernel, scalar_members
 from nonholo.systems import AbstractSystem, ChaplyginSleigh
 

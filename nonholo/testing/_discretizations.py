@@ -3,8 +3,7 @@
 from typing import Any
 
 from nonholo._checks import count, error, flags
-from nonholo.discrete import Discretization
-from nonholo.discrete._composition import refuse_composition
+from nonholo.discrete import Discretization, refuse_composition
 from nonholo.testing import _discrete_motion as measure
 from nonholo.testing._measures import seeded
 from nonholo.testing._orbit_samples import COUNTS, STEP, OrbitSamples

@@ -162,6 +162,6 @@ def _made(found: Any, otherwise: str) -> Any:
 def _of_jax(function: Callable[[Any], Any], W: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "..."]:
     """Return the values of a function of one JAX matrix; JAX loads slowly, and only callables need it."""
     with needs("jax", "check_discretization(...) with functions"):
-        from nonholo.discrete._functions import map_each
+        from nonholo.discrete.definition import map_each
 
     return map_each(function, W.reshape(-1, *W.shape[-2:])).reshape(W.shape[:-2])

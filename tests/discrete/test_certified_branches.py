@@ -10,8 +10,8 @@ from sturm import real_roots
 
 import nonholo as nh
 from nonholo.discrete import Discretization
-from nonholo.discrete._certificate import located
-from nonholo.discrete._certificate_problem import problem_of
+from nonholo.discrete.certificate._certificate import located
+from nonholo.discrete.certificate._problem import problem_of
 
 _TENSOR = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 _TURNED = nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]) + 0.2, (0.6, 0, 0.8))
@@ -142,6 +142,6 @@ def test_what_is_not_decided_is_said() -> None:
 
 def test_a_certificate_without_the_extra_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without python-flint the error names the extra."""
-    monkeypatch.setitem(sys.modules, "nonholo.discrete._certificate", None)
+    monkeypatch.setitem(sys.modules, "nonholo.discrete.certificate._certificate", None)
     with pytest.raises(ValueError, match=r"must have the extra `certify`.*nonholo\[certify\]"):
         nh.displacements_over(*_ENCLOSED["top"], certify=True)

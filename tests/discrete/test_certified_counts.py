@@ -9,10 +9,10 @@ from sturm import real_roots
 
 import nonholo as nh
 from nonholo.discrete import Discretization, _certificate_roots
-from nonholo.discrete._certificate import located
-from nonholo.discrete._certificate_families import _secular
-from nonholo.discrete._certificate_problem import Problem, problem_of
-from nonholo.discrete._certificate_roots import isolated, sharpened
+from nonholo.discrete.certificate._certificate import located
+from nonholo.discrete.certificate._families import _secular
+from nonholo.discrete.certificate._problem import Problem, problem_of
+from nonholo.discrete.certificate._roots import isolated, sharpened
 
 _X = fmpz_poly([0, 1])
 _HUGE = fmpz(10) ** 40

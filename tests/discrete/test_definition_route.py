@@ -7,8 +7,12 @@ import pytest
 from problems import PROBLEMS, Problem
 
 import nonholo as nh
-from nonholo.discrete._definition import legendre_by_derivative, principal_displacement, reduced_discrete_lagrangian
-from nonholo.discrete._precision import in_double
+from nonholo.discrete.definition._precision import in_double
+from nonholo.discrete.definition._step import (
+    legendre_by_derivative,
+    principal_displacement,
+    reduced_discrete_lagrangian,
+)
 
 QUANTITIES = ("momentum", "displacement", "configuration", "multipliers", "chart", "restricted_momentum")
 

@@ -8,7 +8,7 @@ import pytest
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.discrete._branch_equations import frame_of
+from nonholo.discrete.branching._equations import frame_of
 from nonholo.discrete.routes import SecularRoute, make_route
 from nonholo.kernels._secular import room_for_sums, secular_sleigh, secular_top
 from nonholo.kernels._secular_box import holds, write_bends, write_box

@@ -9,7 +9,7 @@
 | `ComposedRoute` | compositions of one of the first three |
 """
 
-from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute
+from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, matrices_of
 from nonholo.discrete.routes._choice import make_route
 from nonholo.discrete.routes._composed import ComposedRoute
 from nonholo.discrete.routes._definition import DefinitionRoute
@@ -27,4 +27,5 @@ __all__ = [
     "ScalarStep",
     "SecularRoute",
     "make_route",
+    "matrices_of",
 ]

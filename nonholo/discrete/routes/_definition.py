@@ -40,13 +40,13 @@ class DefinitionRoute(AbstractRoute):
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
         """Return the displacements that follow, one step of order 2 from each state."""
         with needs("jax", "A step that is not compiled"):
-            from nonholo.discrete._definition import next_charts_by_definition
+            from nonholo.discrete.definition import next_charts_by_definition
 
         return next_charts_by_definition(self, states)
 
     def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Rows:
         """Take one step from each row of momenta and poses; return both after it, and the outcomes."""
         with needs("jax", "A step that is not compiled"):
-            from nonholo.discrete._composition_definition import whole_steps_by_definition
+            from nonholo.discrete.definition import whole_steps_by_definition
 
         return whole_steps_by_definition(self, momenta, g)

@@ -10,11 +10,11 @@ import numpy as np
 from nonholo import kernels
 from nonholo._results import Outcome
 from nonholo._types import Float
-from nonholo.discrete._branch_equations import Frame
-from nonholo.discrete._branch_path import nearest_body
-from nonholo.discrete._branch_rules import AbstractBranchRule, Kick, displacement_at, principal_point
-from nonholo.discrete._branches import inverse_discrete_legendre
 from nonholo.discrete._discretization import Discretization
+from nonholo.discrete.branching._branches import inverse_discrete_legendre
+from nonholo.discrete.branching._equations import Frame
+from nonholo.discrete.branching._path import nearest_body
+from nonholo.discrete.branching._rules import AbstractBranchRule, Kick, displacement_at, principal_point
 
 
 class Place(NamedTuple):

@@ -10,7 +10,7 @@ import numpy as np
 from nonholo import kernels
 from nonholo._results import Outcome
 from nonholo._types import Float
-from nonholo.discrete._branch_equations import Equations
+from nonholo.discrete.branching._equations import Equations
 
 _LONGEST = 0.1  # a predicted move per continuation step, on the sphere
 _CLOSE = 0.1  # part of the predicted move that the corrector may add

@@ -11,11 +11,11 @@ import numpy as np
 from nonholo._checks import error
 from nonholo._results import Outcome
 from nonholo._types import Array, Bool, Float, Inexact, Int
-from nonholo.discrete._branch_equations import Equations, Frame
-from nonholo.discrete._branch_roots import Root, roots_of
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._legendre import legendre
-from nonholo.discrete._regions import regions
+from nonholo.discrete.branching._equations import Equations, Frame
+from nonholo.discrete.branching._regions import regions
+from nonholo.discrete.branching._roots import Root, roots_of
 from nonholo.systems import AbstractLLSystem
 
 SAME = 1e-6  # relative distance of a computed displacement or momentum from the branch that it is

@@ -10,11 +10,11 @@ import numpy as np
 
 from nonholo._checks import array, error, flags, shape_of
 from nonholo._types import Array, Float
-from nonholo.discrete._branch_equations import Frame, frame_of
-from nonholo.discrete._branch_values import SAME, Branches, point_over, values_over
-from nonholo.discrete._certified_values import certified_over
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._legendre import legendre
+from nonholo.discrete.branching._certified import certified_over
+from nonholo.discrete.branching._equations import Frame, frame_of
+from nonholo.discrete.branching._values import SAME, Branches, point_over, values_over
 from nonholo.groups import AbstractMatrixGroup
 
 _ROUNDING = 1e-13

@@ -10,10 +10,10 @@ import numpy as np
 
 from nonholo._checks import array, error, natural
 from nonholo._types import Array, Bool, Int
-from nonholo.discrete._branch_equations import Frame, frame_of
-from nonholo.discrete._branch_values import point_over, roots_over
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._legendre import legendre
+from nonholo.discrete.branching._equations import Frame, frame_of
+from nonholo.discrete.branching._values import point_over, roots_over
 
 _MOST = 10_000  # nodes of a tree
 _ROUNDING = 1e-12  # relative imaginary part that counts as zero

@@ -11,10 +11,10 @@ import numpy as np
 
 from nonholo._checks import needs
 from nonholo._types import Float
-from nonholo.discrete._branch_equations import Frame
-from nonholo.discrete._branch_roots import Root, place
-from nonholo.discrete._branch_values import Branches, Roots, branches_of, values_over
 from nonholo.discrete._discretization import Discretization
+from nonholo.discrete.branching._equations import Frame
+from nonholo.discrete.branching._roots import Root, place
+from nonholo.discrete.branching._values import Branches, Roots, branches_of, values_over
 
 
 def certified_over(owner: str, discrete: Discretization, frame: Frame, r: Float[np.ndarray, "k"]) -> Branches:
@@ -36,5 +36,5 @@ def certified_over(owner: str, discrete: Discretization, frame: Frame, r: Float[
 def _enclosures(owner: str) -> Callable[..., Any]:
     """Import the certificate, or name the extra that it needs."""
     with needs("certify", f"{owner}(certify=...)"):
-        from nonholo.discrete._certificate import enclosures
+        from nonholo.discrete.certificate import enclosures
     return enclosures

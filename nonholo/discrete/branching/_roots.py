@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from nonholo._types import Array, Bool, Float, Inexact
-from nonholo.discrete._branch_candidates import candidates
-from nonholo.discrete._branch_equations import Equations
+from nonholo.discrete.branching._candidates import candidates
+from nonholo.discrete.branching._equations import Equations
 
 _EPS = float(np.finfo(np.float64).eps)
 _CLOSE = 3e-7  # relative distance, about sqrt(eps), below which two roots cannot be told from a double one

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo._types import Array, Float
-from nonholo.discrete._precision import in_double
+from nonholo.discrete.definition._precision import in_double
 from nonholo.groups import AbstractMatrixGroup
 
 _SAMPLES = 16

@@ -12,9 +12,9 @@ from nonholo._progress import progress_bar
 from nonholo._results import Outcome
 from nonholo._types import Array, Float
 from nonholo.discrete._composition import weights
-from nonholo.discrete._definition import displaced, momentum_of, principal_displacement, restricted
-from nonholo.discrete._precision import in_double
 from nonholo.discrete._scheme import Scheme
+from nonholo.discrete.definition._precision import in_double
+from nonholo.discrete.definition._step import displaced, momentum_of, principal_displacement, restricted
 
 State = tuple[Array, Array]
 

@@ -15,11 +15,11 @@ import numpy as np
 from nonholo._progress import progress_bar
 from nonholo._results import Outcome, OutcomeError
 from nonholo._types import Array, Float
-from nonholo.discrete._functions import momenta_along
 from nonholo.discrete._legendre import legendre
-from nonholo.discrete._precision import in_double
-from nonholo.discrete._root import followed_root, principal_root
 from nonholo.discrete._scheme import Scheme
+from nonholo.discrete.definition._functions import momenta_along
+from nonholo.discrete.definition._precision import in_double
+from nonholo.discrete.definition._root import followed_root, principal_root
 from nonholo.orbit import Orbit
 
 

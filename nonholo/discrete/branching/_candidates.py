@@ -8,7 +8,7 @@ import functools
 import numpy as np
 
 from nonholo._types import Array, Inexact
-from nonholo.discrete._branch_equations import Equations
+from nonholo.discrete.branching._equations import Equations
 
 
 def candidates(equations: Equations) -> Inexact[Array, "B m"]:

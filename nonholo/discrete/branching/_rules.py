@@ -14,11 +14,11 @@ import numpy as np
 from nonholo._checks import choice, error, is_integer, shown
 from nonholo._results import Outcome
 from nonholo._types import Float
-from nonholo.discrete._branch_equations import Equations, Frame, has_frame
-from nonholo.discrete._branch_path import followed
-from nonholo.discrete._branch_values import SAME, Branches, Roots, branches_of, principal_increment, roots_over
 from nonholo.discrete._discretization import Discretization
-from nonholo.discrete._regions import is_regular, regions
+from nonholo.discrete.branching._equations import Equations, Frame, has_frame
+from nonholo.discrete.branching._path import followed
+from nonholo.discrete.branching._regions import is_regular, regions
+from nonholo.discrete.branching._values import SAME, Branches, Roots, branches_of, principal_increment, roots_over
 
 Chooser: TypeAlias = Callable[[Branches, np.ndarray], int | None]
 BranchRule: TypeAlias = str | Chooser

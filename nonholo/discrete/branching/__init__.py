@@ -1,0 +1,46 @@
+"""The values of the multivalued map: their equations, how one is followed, rules that choose among them, their tree."""
+
+from nonholo.discrete.branching._branches import (
+    branches,
+    displacements_over,
+    fold_distance,
+    inverse_discrete_legendre,
+)
+from nonholo.discrete.branching._equations import Frame, frame_of, has_frame
+from nonholo.discrete.branching._regions import Landscape, landscape
+from nonholo.discrete.branching._rules import (
+    PRINCIPAL,
+    AbstractBranchRule,
+    BranchRule,
+    branch_rule,
+    checked_rule,
+    displacement_at,
+)
+from nonholo.discrete.branching._steps import Place, first_place, next_place, next_places
+from nonholo.discrete.branching._tree import BranchTree, branch_tree
+from nonholo.discrete.branching._values import Branches
+
+__all__ = [
+    "PRINCIPAL",
+    "AbstractBranchRule",
+    "BranchRule",
+    "BranchTree",
+    "Branches",
+    "Frame",
+    "Landscape",
+    "Place",
+    "branch_rule",
+    "branch_tree",
+    "branches",
+    "checked_rule",
+    "displacement_at",
+    "displacements_over",
+    "first_place",
+    "fold_distance",
+    "frame_of",
+    "has_frame",
+    "inverse_discrete_legendre",
+    "landscape",
+    "next_place",
+    "next_places",
+]

@@ -1,0 +1,36 @@
+"""The map by its definition, in JAX: derivatives of the discrete Lagrangian, roots, runs. Imported on first use."""
+
+from nonholo.discrete.definition._composition import run_composed_by_definition, whole_steps_by_definition
+from nonholo.discrete.definition._functions import is_even, map_each, momenta_by_derivative, value_and_slope
+from nonholo.discrete.definition._precision import allow_float32, in_double
+from nonholo.discrete.definition._root import principal_root
+from nonholo.discrete.definition._step import (
+    displaced,
+    momentum_of,
+    nearest_displacement,
+    next_charts_by_definition,
+    principal_displacement,
+    restricted,
+    run_by_definition,
+    sample_displacements,
+)
+
+__all__ = [
+    "allow_float32",
+    "displaced",
+    "in_double",
+    "is_even",
+    "map_each",
+    "momenta_by_derivative",
+    "momentum_of",
+    "nearest_displacement",
+    "next_charts_by_definition",
+    "principal_displacement",
+    "principal_root",
+    "restricted",
+    "run_by_definition",
+    "run_composed_by_definition",
+    "sample_displacements",
+    "value_and_slope",
+    "whole_steps_by_definition",
+]
