@@ -58,7 +58,7 @@ def text_of_kernels() -> bytes:
     """Return a digest of all that compiled code depends on beside the types of its arguments and the processor."""
     digest = hashlib.sha256(f"{numba.__version__} {config.BOUNDSCHECK}".encode())  # pyright: ignore
     for room in _ROOMS:
-        for file in sorted((Path(__file__).parent / room).glob("*.py")):
+        for file in sorted((Path(__file__).parent / room).rglob("*.py")):
             digest.update(file.read_bytes())
     return digest.digest()
 

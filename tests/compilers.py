@@ -22,7 +22,7 @@ def use_caches() -> None:
     """
     text = hashlib.sha256(os.environ.get("NUMBA_BOUNDSCHECK", "").encode())
     for room in ("continuous", "kernels", "numerics"):
-        for file in sorted((ROOT / "nonholo" / room).glob("*.py")):
+        for file in sorted((ROOT / "nonholo" / room).rglob("*.py")):
             text.update(file.read_bytes())
     folder = ROOT / "build" / "tests"
     os.environ.setdefault("NUMBA_CACHE_DIR", str(folder / f"numba-{text.hexdigest()[:16]}"))

@@ -1,20 +1,37 @@
 """Questions asked of systems and orbits."""
 
-from nonholo.analysis._asymptotics import Asymptotics, asymptotics
-from nonholo.analysis._conserved import ConservedMomenta, conserved_momenta
-from nonholo.analysis._critical_energies import CriticalEnergies, CriticalPoint, critical_energies
 from nonholo.analysis._deltoid import Deltoid, deltoid
 from nonholo.analysis._equilibria import EquilibriumSpectrum, equilibria
-from nonholo.analysis._flow_obstruction import FlowObstruction, flow_obstruction
-from nonholo.analysis._half_planes import HalfPlanes, half_planes
-from nonholo.analysis._heteroclinic import HeteroclinicOrbit, heteroclinic
 from nonholo.analysis._invariant_curve import InvariantCurve, invariant_curve
-from nonholo.analysis._invariant_measure import InvariantMeasure, invariant_measure
-from nonholo.analysis._invariants import Invariants, invariants
-from nonholo.analysis._lyapunov import LyapunovFunction, lyapunov_function
 from nonholo.analysis._momentum_locus import MomentumLocus, momentum_locus
-from nonholo.analysis._single_valued_region import SingleValuedRegion, single_valued_region
-from nonholo.analysis._step_jacobian import step_jacobians
+from nonholo.analysis.conserved import (
+    ConservedMomenta,
+    InvariantMeasure,
+    Invariants,
+    LyapunovFunction,
+    conserved_momenta,
+    invariant_measure,
+    invariants,
+    lyapunov_function,
+    step_jacobians,
+)
+from nonholo.analysis.energies import (
+    CriticalEnergies,
+    CriticalPoint,
+    SingleValuedRegion,
+    critical_energies,
+    single_valued_region,
+)
+from nonholo.analysis.limits import (
+    Asymptotics,
+    FlowObstruction,
+    HalfPlanes,
+    HeteroclinicOrbit,
+    asymptotics,
+    flow_obstruction,
+    half_planes,
+    heteroclinic,
+)
 
 __all__ = [
     "Asymptotics",

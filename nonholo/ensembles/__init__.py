@@ -2,23 +2,24 @@
 
 from nonholo.ensembles._begin import functions_of
 from nonholo.ensembles._block import MemberBlock
-from nonholo.ensembles._design import AbstractDesign, Grid, RandomDesign
-from nonholo.ensembles._distributions import (
+from nonholo.ensembles._ensemble_task import EnsembleTask
+from nonholo.ensembles._names import component_name
+from nonholo.ensembles._reductions import REDUCTIONS
+from nonholo.ensembles._resume import resume
+from nonholo.ensembles._sweep import load_sweep, sweep
+from nonholo.ensembles.designs import (
+    AbstractDesign,
     AbstractDistribution,
     Choice,
     Direction,
+    Grid,
     LogUniform,
     MassTensor,
     Normal,
+    RandomDesign,
     Uniform,
 )
-from nonholo.ensembles._ensemble_task import EnsembleTask
-from nonholo.ensembles._names import component_name
-from nonholo.ensembles._poses_csv import sweep_to_csv
-from nonholo.ensembles._reductions import REDUCTIONS
-from nonholo.ensembles._resume import resume
-from nonholo.ensembles._standing import SweepStanding, standing_of
-from nonholo.ensembles._sweep import load_sweep, sweep
+from nonholo.ensembles.stores import SweepStanding, standing_of, sweep_to_csv
 
 __all__ = [
     "REDUCTIONS",

@@ -20,13 +20,11 @@ from nonholo.ensembles._describe import (
     function_name,
     with_component_names,
 )
-from nonholo.ensembles._design import Design, Grid, RandomDesign, axis_dimensions
 from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
-from nonholo.ensembles._layout import Layout, layout_of
 from nonholo.ensembles._names import Axes, check_dimensions
 from nonholo.ensembles._reductions import REDUCTIONS
-from nonholo.ensembles._results import Output, Task, probed
-from nonholo.ensembles._store import SweepStore, create_store, open_store
+from nonholo.ensembles.designs import Design, Grid, RandomDesign, axis_dimensions
+from nonholo.ensembles.stores import Layout, Output, SweepStore, Task, create_store, layout_of, open_store, probed
 from nonholo.simulation import closed_step, in_one_thread, refuse_too_long
 
 _BLOCK = 4096  # most members of a block of a task that does not say how many

@@ -9,9 +9,8 @@ import numpy as np
 from nonholo._checks import error, natural
 from nonholo._limits import bounded_count
 from nonholo._types import Float
-from nonholo.ensembles._design import AbstractDesign
 from nonholo.ensembles._names import component_name
-from nonholo.ensembles._uniform import uniform_numbers
+from nonholo.ensembles.designs import AbstractDesign, uniform_numbers
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)

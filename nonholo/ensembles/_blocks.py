@@ -11,8 +11,7 @@ import numpy as np
 from nonholo import io
 from nonholo._results import Outcome
 from nonholo.ensembles._block import block_of
-from nonholo.ensembles._results import OUTCOME, RAISED, Results, Task, attempted
-from nonholo.ensembles._store import Mark, SweepStore, store_of
+from nonholo.ensembles.stores import OUTCOME, RAISED, Mark, Results, SweepStore, Task, attempted, store_of
 from nonholo.simulation import in_one_thread
 
 

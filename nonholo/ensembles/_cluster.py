@@ -15,7 +15,7 @@ from typing import Any
 
 from nonholo._checks import error, needs
 from nonholo.ensembles._blocks import Done, Work, do_block
-from nonholo.ensembles._store import attributes_of
+from nonholo.ensembles.stores import attributes_of
 
 _AHEAD = 1024  # blocks of which the scheduler knows at once
 _CONNECT = 10  # seconds

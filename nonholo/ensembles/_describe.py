@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from nonholo._checks import error
-from nonholo.ensembles._design import Design, Grid, RandomDesign
-from nonholo.ensembles._distributions import DISTRIBUTIONS
 from nonholo.ensembles._names import component_name
+from nonholo.ensembles.designs import DISTRIBUTIONS, Design, Grid, RandomDesign
 from nonholo.io import fields_of
 
 NO_NAME = "a function without an importable name"

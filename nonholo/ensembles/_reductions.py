@@ -10,7 +10,7 @@ from nonholo._checks import error, shown
 from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.analysis import step_jacobians
-from nonholo.analysis._asymptotics import turn_of_flow
+from nonholo.analysis.limits import turn_of_flow
 from nonholo.discrete import displacements_over, has_frame
 from nonholo.simulation import Ensemble, applied, have_kernel, scalar_members
 from nonholo.systems import AbstractSystem, ChaplyginSleigh

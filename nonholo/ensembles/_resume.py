@@ -13,8 +13,7 @@ from nonholo.discrete import Discretization
 from nonholo.ensembles._begin import restored_task
 from nonholo.ensembles._blocks import Done, Work
 from nonholo.ensembles._scheduling import checked_scheduler, do_all
-from nonholo.ensembles._standing import opened_result, standing_of
-from nonholo.ensembles._store import SweepStore, attributes_of, open_store
+from nonholo.ensembles.stores import SweepStore, attributes_of, open_store, opened_result, standing_of
 
 
 def resume(

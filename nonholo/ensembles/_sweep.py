@@ -8,11 +8,10 @@ import xarray
 from nonholo._checks import error, flags, path
 from nonholo.ensembles._begin import begun, check_same, check_task, restored_task
 from nonholo.ensembles._blocks import Work
-from nonholo.ensembles._design import Design
 from nonholo.ensembles._resume import go_on
 from nonholo.ensembles._scheduling import checked_scheduler
-from nonholo.ensembles._standing import opened_result, standing_of
-from nonholo.ensembles._store import open_store
+from nonholo.ensembles.designs import Design
+from nonholo.ensembles.stores import open_store, opened_result, standing_of
 
 
 def sweep(

@@ -12,7 +12,7 @@ from nonholo._checks import path as checked_path
 from nonholo._progress import progress_bar
 from nonholo._types import Float
 from nonholo.io._beside import new_beside
-from nonholo.io._pose_columns import Stretch, column_names, rows_of
+from nonholo.io.datasets import Stretch, column_names, rows_of
 from nonholo.orbit import Orbit, as_orbit
 from nonholo.systems import System
 

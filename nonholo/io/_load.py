@@ -16,11 +16,11 @@ from nonholo._types import Float
 from nonholo.discrete import Discretization
 from nonholo.io._attributes import FORMAT, READABLE, SWEEP_FORMAT, restore_motion
 from nonholo.io._chunks import AGAIN, WHERE, checked_block, opened_array
-from nonholo.io._dataset import CANONICAL
 from nonholo.io._metadata import OrbitMetadata, SweepMetadata, check_metadata
 from nonholo.io._plan import Plan
 from nonholo.io._seals import CHECKPOINTS, Blocks, seal_of_whole
 from nonholo.io._stored_events import EVENTS, known, log_of
+from nonholo.io.datasets import CANONICAL
 from nonholo.orbit import STATES, EventLog, Orbit
 
 _KINDS = {FORMAT: "an orbit", SWEEP_FORMAT: "a sweep", "nonholo.ensemble": "an ensemble"}

@@ -22,11 +22,11 @@ from nonholo._checks import error, flags
 from nonholo._checks import path as checked_path
 from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
 from nonholo.io._beside import new_beside, sibling
-from nonholo.io._dataset import CANONICAL, stored_variables
 from nonholo.io._load import format_of
 from nonholo.io._lock import owner_of
 from nonholo.io._metadata import OrbitMetadata, check_metadata, checksum
 from nonholo.io._seals import seal_of_whole
+from nonholo.io.datasets import CANONICAL, stored_variables
 from nonholo.orbit import Orbit, as_orbit
 
 _ROWS = 100_000  # states in one chunk

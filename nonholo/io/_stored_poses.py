@@ -14,8 +14,8 @@ from nonholo.io._chunks import checked_block, opened_array
 from nonholo.io._descriptions import restore_system, unstored
 from nonholo.io._load import check_seals, read_attributes, stored_names
 from nonholo.io._lock import owner_of
-from nonholo.io._pose_columns import Stretch
 from nonholo.io._stream import Stream, open_stream
+from nonholo.io.datasets import Stretch
 from nonholo.systems import System
 
 _WHERE = "store_to_csv(store=...)"

@@ -22,7 +22,6 @@ import zarr
 from nonholo._checks import error
 from nonholo.io._attributes import attributes, attributes_of_text
 from nonholo.io._beside import new_beside
-from nonholo.io._dataset import CANONICAL, HEADED, stored_variables
 from nonholo.io._load import read_attributes
 from nonholo.io._lock import owner_of
 from nonholo.io._metadata import OrbitMetadata, check_array, require_identity
@@ -40,6 +39,7 @@ from nonholo.io._save import (
 from nonholo.io._seals import BEFORE, CHECKPOINTS, Blocks, seal_of
 from nonholo.io._stored_crossings import chunks_of, create_crossings, cut_crossings, flaw_of_rows, write_crossings
 from nonholo.io._stored_events import EVENTS, Seen, seen_nothing
+from nonholo.io.datasets import CANONICAL, HEADED, stored_variables
 from nonholo.orbit import EventLog, Orbit
 
 

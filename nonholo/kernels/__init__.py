@@ -6,13 +6,13 @@ from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
 from nonholo.kernels._flow import BodyFlow, SpaceFlow
-from nonholo.kernels._general import GeneralBody
 from nonholo.kernels._interface import Body, certified, correction, increment, move, residual
 from nonholo.kernels._nearest import NearestBody
 from nonholo.kernels._nearest import advance as advance_to_nearest
-from nonholo.kernels._secular import SecularBody, secular_sleigh, secular_top
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
+from nonholo.kernels.general import GeneralBody
+from nonholo.kernels.secular import SecularBody, secular_sleigh, secular_top
 
 __all__ = [
     "CORRECTIONS",

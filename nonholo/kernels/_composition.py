@@ -12,12 +12,12 @@ import numpy as np
 
 from nonholo._compiled import njit
 from nonholo.kernels._driver import _compensated, _solve
-from nonholo.kernels._general import GeneralBody
 from nonholo.kernels._interface import Body, increment, move
 from nonholo.kernels._scalar import COMPILED
-from nonholo.kernels._secular import SecularBody
 from nonholo.kernels._small import assign
 from nonholo.kernels._substeps import at_rest, charted, chosen, prepared, pushed, solved
+from nonholo.kernels.general import GeneralBody
+from nonholo.kernels.secular import SecularBody
 
 _SETTLED = 1e-150  # of the largest momentum; squares below it underflow
 

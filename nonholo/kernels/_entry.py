@@ -5,13 +5,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo.kernels import _composition, _driver, _general_run, _secular_run
+from nonholo.kernels import _composition, _driver
 from nonholo.kernels._composition import ComposedBody
-from nonholo.kernels._general import GeneralBody
 from nonholo.kernels._interface import Body
-from nonholo.kernels._secular import SecularBody
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody
+from nonholo.kernels.general import GeneralBody
+from nonholo.kernels.general import run as general_run
+from nonholo.kernels.secular import SecularBody
+from nonholo.kernels.secular import run as secular_run
 
 PlainBody = Body | GeneralBody | SecularBody
 AnyBody = PlainBody | ComposedBody
@@ -76,7 +78,7 @@ def _secular_sizes(body: SecularBody) -> tuple[int, int, int]:
 
 
 def _secular_each(body: SecularBody, momenta: np.ndarray, charts: np.ndarray, poses: None, *rest: Any) -> Rows:
-    return _secular_run.step_each(body, momenta, charts, *rest)
+    return secular_run.step_each(body, momenta, charts, *rest)
 
 
 def _general_sizes(body: GeneralBody) -> tuple[int, int, int]:
@@ -92,7 +94,7 @@ def _general_each(
     body: GeneralBody, momenta: np.ndarray, charts: np.ndarray, poses: np.ndarray | None, *rest: Any
 ) -> Rows:
     carried = np.zeros((len(momenta), 0)) if poses is None else poses
-    return _general_run.step_each(body, momenta, charts, carried, *rest)
+    return general_run.step_each(body, momenta, charts, carried, *rest)
 
 
 def _composed_chart(body: ComposedBody, state: np.ndarray) -> np.ndarray:
@@ -108,7 +110,7 @@ _SCALAR = _Runs(lambda _: (2, 2, 4), _scalar_start, lambda _, state: state[4:6],
 _RUNS: dict[type, _Runs] = {
     SuslovBody: _SCALAR,
     SleighBody: _SCALAR,
-    SecularBody: _Runs(_secular_sizes, _secular_run.start, _secular_run.chart_in, _secular_run.advance, _secular_each),
-    GeneralBody: _Runs(_general_sizes, _general_run.start, _general_chart, _general_run.advance, _general_each),
+    SecularBody: _Runs(_secular_sizes, secular_run.start, secular_run.chart_in, secular_run.advance, _secular_each),
+    GeneralBody: _Runs(_general_sizes, general_run.start, _general_chart, general_run.advance, _general_each),
     ComposedBody: _Runs(lambda body: sizes(body.body), _composition.start, _composed_chart, _composed_advance, None),
 }

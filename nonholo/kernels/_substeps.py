@@ -11,15 +11,16 @@ import numpy as np
 from numba.extending import overload
 
 from nonholo._compiled import njit
-from nonholo.kernels import _general_root, _general_run, _secular_run
-from nonholo.kernels._general import GeneralBody, Workspace, increments, workspace
 from nonholo.kernels._interface import Body
 from nonholo.kernels._scalar import COMPILED
-from nonholo.kernels._secular import SecularBody, room_for_sums, term
-from nonholo.kernels._secular_root import certain_radius, level_of
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._small import assign
 from nonholo.kernels._suslov import SuslovBody
+from nonholo.kernels.general import GeneralBody, Workspace, increments, workspace
+from nonholo.kernels.general import root as general_root
+from nonholo.kernels.general import run as general_run
+from nonholo.kernels.secular import SecularBody, certain_radius, level_of, room_for_sums, term
+from nonholo.kernels.secular import run as secular_run
 
 
 @njit(**COMPILED)
@@ -52,7 +53,7 @@ def _secular_solved(
     pose: np.ndarray,
     root: np.ndarray,
 ) -> int:
-    code, root[0], root[1] = _secular_run.solve(p, m, w[0][stage], guess[0], guess[1], w[2])
+    code, root[0], root[1] = secular_run.solve(p, m, w[0][stage], guess[0], guess[1], w[2])
     return code
 
 
@@ -66,18 +67,18 @@ def _secular_pushed(
     pose: np.ndarray,
 ) -> None:
     y, nu, tau, k, lever = w[1], root[0], root[1], len(p.b), p.mass * p.arm * p.arm
-    _secular_run.coordinates(p, m, nu, tau, y)
+    secular_run.coordinates(p, m, nu, tau, y)
     for i in range(k):
         change[i] = term(p.c[i], y[i], nu, tau, lever)
     if p.slides:
         change[k] = 2 * p.mass * p.arm * tau / (1 + tau)
     if len(pose):
-        _secular_run.move(p, m[-1], nu, tau, y, pose.reshape(-1, len(m) + 1))
+        secular_run.move(p, m[-1], nu, tau, y, pose.reshape(-1, len(m) + 1))
 
 
 @njit(**COMPILED)
 def _secular_charted(p: SecularBody, m: np.ndarray, root: np.ndarray, chart: np.ndarray) -> None:
-    _secular_run.chart_of(p, m, root[0], root[1], chart)
+    secular_run.chart_of(p, m, root[0], root[1], chart)
 
 
 @njit()
@@ -89,10 +90,10 @@ def _general_prepared(p: GeneralBody, m: np.ndarray, weights: np.ndarray) -> Wor
 def _general_solved(
     p: GeneralBody, w: Workspace, stage: int, m: np.ndarray, guess: np.ndarray, pose: np.ndarray, root: np.ndarray
 ) -> int:
-    _general_run.see_pose(p, w, pose.reshape(w.X.shape))
-    code, found = _general_root.solve(p, w, m, guess)
+    general_run.see_pose(p, w, pose.reshape(w.X.shape))
+    code, found = general_root.solve(p, w, m, guess)
     assign(root, found)
-    return 5 if _general_run.overflowed(p, pose) else code
+    return 5 if general_run.overflowed(p, pose) else code
 
 
 @njit()
@@ -103,7 +104,7 @@ def _general_pushed(
     change[:] = 0.0
     if not p.spatial:
         increments(p, w, change)
-    _general_run.move(p, w, pose.reshape(w.X.shape))
+    general_run.move(p, w, pose.reshape(w.X.shape))
 
 
 @njit()

@@ -4,11 +4,14 @@ from nonholo._checks import needs
 
 with needs("jax", "nonholo.lagrange_dalembert"):
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
-    from nonholo.lagrange_dalembert._group_discretization import GroupDiscretization
-    from nonholo.lagrange_dalembert._group_orbit import GroupOrbit
-    from nonholo.lagrange_dalembert._on_group import GroupLagrangeDAlembert, mass_tensor_lagrangian
     from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
     from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+    from nonholo.lagrange_dalembert.on_groups import (
+        GroupDiscretization,
+        GroupLagrangeDAlembert,
+        GroupOrbit,
+        mass_tensor_lagrangian,
+    )
 
 __all__ = [
     "CoordinateDiscretization",

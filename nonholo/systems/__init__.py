@@ -1,6 +1,5 @@
 """What a system is: a group, an inertia operator and the subspace that velocities are constrained to."""
 
-from nonholo.systems._arrowhead import ArrowheadSleigh, ArrowheadTop
 from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, AbstractSystem, Equilibria, System
 from nonholo.systems._body import ImpossibleBodyWarning
 from nonholo.systems._coordinate_system import (
@@ -11,17 +10,22 @@ from nonholo.systems._coordinate_system import (
 )
 from nonholo.systems._displacements import in_exp_d, trace_constraints
 from nonholo.systems._euler_angles import euler_angle_discrete_lagrangian
-from nonholo.systems._ll_system import LLSystem
-from nonholo.systems._lr_system import LRSystem, VeselovaTop
 from nonholo.systems._mass import inertia_from_mass_tensor, inertia_tensor, mass_tensor_from_inertia
-from nonholo.systems._multidimensional_sleigh import MultidimensionalSleigh
 from nonholo.systems._normal_form import NormalForm
-from nonholo.systems._rigid_body import RigidBody
-from nonholo.systems._sleigh import ChaplyginSleigh
 from nonholo.systems._start import Start, in_group, inadmissible, of_finite_energy, one_start
 from nonholo.systems._subspace import reference_point_subspace
-from nonholo.systems._suslov import SuslovTop
 from nonholo.systems._symmetric_pair import is_symmetric_pair, symmetric_complement
+from nonholo.systems.families import (
+    ArrowheadSleigh,
+    ArrowheadTop,
+    ChaplyginSleigh,
+    LLSystem,
+    LRSystem,
+    MultidimensionalSleigh,
+    RigidBody,
+    SuslovTop,
+    VeselovaTop,
+)
 
 SYSTEMS = (
     SuslovTop,

@@ -24,7 +24,7 @@ from nonholo.cli.scenario.files import Setting, parse_setting
 from nonholo.cli.scenario.problems import ScenarioError
 from nonholo.cli.scenario.sweep_files import load_sweep_scenario, sweep_text
 from nonholo.ensembles import standing_of
-from nonholo.ensembles._store import SweepStore
+from nonholo.ensembles.stores._store import SweepStore
 from nonholo.io import locked
 
 Command = Callable[..., Result]

@@ -13,8 +13,8 @@ import nonholo as nh
 from nonholo.discrete.routes import make_route
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.kernels import GeneralBody
-from nonholo.kernels._general import displaced, workspace
-from nonholo.kernels._general_root import certified, newton, principal
+from nonholo.kernels.general._step import displaced, workspace
+from nonholo.kernels.general.root import certified, newton, principal
 
 GROUPS = [nh.SO(3), nh.SO(4), nh.SO(5), nh.SE(2), nh.SE(3)]
 INSIDE = 1 - 1e-5  # a difference quotient with a step of 1e-5 radii stays in the ball

@@ -55,8 +55,8 @@ def test_a_symmetric_pair_of_rank_two(constraint: str) -> None:
 def test_all_branches_conserve_energy() -> None:
     """No energy is left to choose a root by: Newton from random guesses on SO(4) finds others of the same energy."""
     from nonholo.discrete.routes import make_route
-    from nonholo.kernels._general import displaced, increments, workspace
-    from nonholo.kernels._general_root import newton
+    from nonholo.kernels.general._step import displaced, increments, workspace
+    from nonholo.kernels.general.root import newton
 
     rng = np.random.default_rng(4)
     system = nh.SuslovTop(mass_tensor(nh.SO(4), rng))

@@ -19,7 +19,7 @@ from problems import PROBLEMS
 
 import nonholo as nh
 from nonholo.io import _save, checksum, locked, orbit_to_dataset, read_attributes
-from nonholo.io._dataset import stored_variables
+from nonholo.io.datasets._dataset import stored_variables
 
 NAMES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
 

@@ -10,10 +10,10 @@ import nonholo as nh
 from nonholo import kernels
 from nonholo.discrete.branching._equations import frame_of
 from nonholo.discrete.routes import SecularRoute, make_route
-from nonholo.kernels._secular import room_for_sums, secular_sleigh, secular_top
-from nonholo.kernels._secular_box import holds, write_bends, write_box
-from nonholo.kernels._secular_linear import solve_linear
-from nonholo.kernels._secular_path import on_the_sphere, principal
+from nonholo.kernels.secular._box import holds, write_bends, write_box
+from nonholo.kernels.secular._linear import solve_linear
+from nonholo.kernels.secular._path import on_the_sphere, principal
+from nonholo.kernels.secular._step import room_for_sums, secular_sleigh, secular_top
 
 PAST_PI = [
     [1.97, 2.24, -1.96, -0.56],

@@ -7,7 +7,7 @@ from bodies import mass_tensor
 import nonholo as nh
 from nonholo import kernels
 from nonholo.discrete.routes import make_route
-from nonholo.kernels._secular_root import certain_radius, level_of
+from nonholo.kernels.secular._root import certain_radius, level_of
 
 
 def top(n: int, rng: np.random.Generator) -> nh.SuslovTop:

@@ -6,12 +6,13 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from nonholo.kernels import _driver, _secular_run
+from nonholo.kernels import _driver
+from nonholo.kernels.secular import run as secular_run
 
 Sum = Callable[[float, float, float, float], tuple[float, float]]
 
 
-@pytest.mark.parametrize("add", [_driver._compensated, _secular_run._compensated], ids=["two momenta", "many momenta"])
+@pytest.mark.parametrize("add", [_driver._compensated, secular_run._compensated], ids=["two momenta", "many momenta"])
 def test_rounding_does_not_gather(add: Sum) -> None:
     """After a hundred thousand terms a compensated sum is off by one rounding at most."""
     terms = np.random.default_rng(0).uniform(0.0, 0.1, 100_000).tolist()

@@ -23,7 +23,7 @@ def info(
     use_cache_folder()
     from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
     from nonholo.cli.screen.provenance import show_provenance, show_standing, show_sweep_standing
-    from nonholo.ensembles._store import attributes_of
+    from nonholo.ensembles.stores import attributes_of
     from nonholo.io import SWEEP_FORMAT, format_of, load_orbit, read_attributes, standing
 
     is_sweep = format_of(store) == SWEEP_FORMAT

@@ -12,7 +12,7 @@ from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
 from nonholo.cli.screen.report import as_json, figures, show
 from nonholo.cli.screen.sweep_report import show_sweep, sweep_figures
 from nonholo.ensembles import load_sweep
-from nonholo.ensembles._store import open_store
+from nonholo.ensembles.stores import open_store
 from nonholo.io import Standing
 from nonholo.orbit import Orbit
 

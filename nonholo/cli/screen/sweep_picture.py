@@ -42,7 +42,7 @@ def _named(result: "xarray.Dataset", path: str) -> str:
 def draw_stored_sweep(store: Path, picture: Path, color: str | None, x: str | None, y: str | None) -> tuple[str | None]:
     """Draw the sweep of a store: what is asked for, or what its scenario shows."""
     from nonholo.ensembles import load_sweep
-    from nonholo.ensembles._store import attributes_of
+    from nonholo.ensembles.stores import attributes_of
 
     with store_errors(FAILED):
         result = load_sweep(store)

@@ -14,7 +14,7 @@ from nonholo._limits import size_text
 from nonholo.cli.screen.errors import FAILED, leave
 from nonholo.cli.screen.report import as_json, duration, show
 from nonholo.ensembles import SweepStanding, standing_of
-from nonholo.ensembles._store import attributes_of
+from nonholo.ensembles.stores import attributes_of
 
 _SLAB = 1 << 22  # members whose numbers are in memory at once
 _MESSAGES = 3

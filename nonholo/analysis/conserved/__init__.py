@@ -1,0 +1,19 @@
+"""What a motion keeps or only lets fall: momenta, invariants, densities, a Lyapunov function."""
+
+from nonholo.analysis.conserved._invariants import Invariants, invariants
+from nonholo.analysis.conserved._lyapunov import LyapunovFunction, lyapunov_function
+from nonholo.analysis.conserved._measure import InvariantMeasure, invariant_measure
+from nonholo.analysis.conserved._momenta import ConservedMomenta, conserved_momenta
+from nonholo.analysis.conserved._step_jacobian import step_jacobians
+
+__all__ = [
+    "ConservedMomenta",
+    "InvariantMeasure",
+    "Invariants",
+    "LyapunovFunction",
+    "conserved_momenta",
+    "invariant_measure",
+    "invariants",
+    "lyapunov_function",
+    "step_jacobians",
+]

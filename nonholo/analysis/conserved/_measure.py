@@ -1,0 +1,160 @@
+r"""Which densities of restricted momenta a motion keeps, and which it certainly does not.
+
+How a step changes volumes is in `_step_jacobian`. Theory: docs/theory/invariant-measure.md.
+"""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from nonholo._checks import array, error, shape_of, shown, trailing
+from nonholo._types import Array, Float
+from nonholo.analysis._equilibria import equilibria
+from nonholo.analysis.conserved._step_jacobian import step_determinants
+from nonholo.analysis.planar import planar_variety
+from nonholo.discrete import Discretization
+from nonholo.orbit import Orbit
+from nonholo.systems import AbstractLLSystem, AbstractSystem
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class InvariantMeasure:
+    r"""What is known about densities $\rho(r)\,dr$ that a motion keeps; r are momenta along the constraint subspace.
+
+    Attributes:
+        motion: The system, meaning its flow, or its discretisation.
+        every_density: Whether the momenta never change, so that every density is invariant: balanced bodies.
+        velocity: A body velocity near whose momentum no continuous positive density is invariant; None for balanced
+            bodies.
+        witness: Why: at that equilibrium one step multiplies volumes by this number, different from 1; or the flow has
+            this divergence there, different from 0. None for balanced bodies.
+    """
+
+    motion: AbstractLLSystem | Discretization
+    every_density: bool
+    velocity: Float[np.ndarray, "dim"] | None
+    witness: float | None
+
+    def density(self, momentum: Any) -> Float[Array, "..."]:
+        r"""Return an invariant density of the flow: $1/|(Bc)\cdot r^\perp|$ for a top, $1/|\pi|$ for a sleigh.
+
+        It is infinite at the equilibria; 1 for a balanced body. As $dr = \det B\,dw$, the former is
+        $dw/|c\cdot w^\perp|$ in velocities.
+
+        Args:
+            momentum: Body momenta or their components along the constraint subspace, leading axes free.
+
+        Raises:
+            ValueError: A discrete map, or a system of higher dimension, of a body that is not balanced.
+
+        Example:
+            >>> flow = invariant_measure(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5))
+            >>> float(flow.density([0.5, 3.0]))
+            2.0
+        """
+        where = "InvariantMeasure.density(momentum=...)"
+        system = self.motion.system if isinstance(self.motion, Discretization) else self.motion
+        k, dim = system.constraint_subspace.shape
+        size = k if shape_of(momentum)[-1:] == (k,) else dim
+        p = trailing(where, momentum, (size,), f"Pass {dim} body momenta or {k} along the constraint.", real=True)
+        r = p if size == k else system.restrict(p)
+        if self.every_density:
+            return np.ones(r.shape[:-1])
+        if isinstance(self.motion, Discretization):
+            got = "a discrete map, whose densities are singular at equilibria, not unique and in no known closed form"
+            raise error(where, "belong to a flow or a balanced body", got, "Pass the system to `invariant_measure`.")
+        variety = planar_variety(system)
+        if variety is None:
+            got = f"{k} admissible directions"
+            raise error(where, "be of a top with n = 3 or a sleigh in the plane", got, "Use `witness`.")
+        with np.errstate(divide="ignore"):
+            return 1 / np.abs(variety.sides_of_momenta(r).side)
+
+    def jacobian(self, displacement: Any) -> Float[Array, "..."]:
+        r"""Return the determinant of one step of the map $r_k \mapsto r_{k+1}$, from displacements.
+
+        $$ \det\frac{\partial r'}{\partial r} = \frac{\det F'(W^{-1})}{\det F'(W)}, \qquad F(W) = P(W)|_\mathfrak{d}, $$
+
+        in closed form for n = 3 and for the sleigh in the plane. A density is invariant if
+        $\rho(r')\,|\det| = \rho(r)$.
+
+        Args:
+            displacement: W on the displacement variety, leading axes free. At a fold the value is infinite.
+
+        Raises:
+            ValueError: A flow, a wrong shape, a value that is not finite.
+
+        Example:
+            >>> found = invariant_measure(nh.discretize(nh.ChaplyginSleigh(1.0, 0.75, 0.5), 0.5))
+            >>> float(np.round(found.jacobian(nh.SE(2).exp(np.array([0.0, 0.4, 0.0]))), 12))
+            0.818181818182
+        """
+        where = "InvariantMeasure.jacobian(displacement=...)"
+        discrete = self._discrete(where)
+        shape = discrete.system.group.identity.shape
+        leading = (None,) * (len(shape_of(displacement)) - 2)
+        W = array(where, displacement, leading + shape, "Pass `orbit.displacement`.")
+        return step_determinants(discrete, W)
+
+    def log_volume(self, orbit: Orbit) -> Float[np.ndarray, "K"]:
+        r"""Return $\log|\det \partial r_k/\partial r_0|$ along an orbit of the map, the sum over its steps.
+
+        Raises:
+            ValueError: A flow, an orbit of another motion, an orbit with states left out.
+        """
+        where = "InvariantMeasure.log_volume(orbit=...)"
+        discrete = self._discrete(where)
+        if not isinstance(orbit, Orbit) or orbit.motion is not discrete:
+            remedy = "Pass an orbit of the same discretisation to the measure of `orbit.motion`."
+            raise error(where, "be an orbit of the measure's motion", shown(orbit), remedy)
+        if orbit.save_every != 1:
+            got = f"save_every={orbit.save_every}"
+            raise error(where, "hold every step", got, "Run it with save_every=1.")
+        steps = np.log(np.abs(step_determinants(discrete, orbit.displacement[:-1])))
+        return np.concatenate([np.zeros(min(1, len(orbit))), np.cumsum(steps)])
+
+    def _discrete(self, where: str) -> Discretization:
+        if not isinstance(self.motion, Discretization):
+            raise error(where, "belong to a discrete map", shown(self.motion), "Pass what `discretize` returned.")
+        return self.motion
+
+
+def invariant_measure(motion: AbstractLLSystem | Discretization, energy: Array = 1.0) -> InvariantMeasure:
+    r"""Tell which densities of restricted momenta the flow of a system, or its discrete map, keeps.
+
+    - A balanced body keeps its momenta (the principal branch is the identity): every density is invariant.
+    - Any other body keeps no density that is continuous and positive near an equilibrium other than rest. An
+      invariant density has $\rho(x)\,|\det T'(x)| = \rho(x)$ at a fixed point x of the map, but $|\det T'(x)| < 1$
+      at the attracting and $> 1$ at the repelling ones, for every step size.
+    - Off the equilibria the motion wanders: it goes from one end to the other and does not return. So densities exist
+      that are singular on the equilibria, as many as there are functions on a piece that one step takes to the next.
+      One of the flow is `density`; the map does not keep it.
+
+    Reference: [fedorov-zenkov-2004], sections 4 to 7; docs/theory/invariant-measure.md.
+
+    Args:
+        motion: A top or a sleigh of any dimension, or its discretisation with "matrix" and "skew".
+        energy: Energy of the equilibrium that is the witness.
+
+    Raises:
+        ValueError: Another system or discretisation; an energy as in `equilibria`.
+
+    Example:
+        >>> top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+        >>> found = invariant_measure(nh.discretize(top, 0.2))
+        >>> found.every_density, round(found.witness, 6)
+        (False, 0.946804)
+        >>> invariant_measure(nh.SuslovTop(np.diag([1.0, 2.0, 3.0]))).every_density
+        True
+    """
+    system = motion.system if isinstance(motion, Discretization) else motion
+    if not isinstance(system, AbstractSystem) or system.normal_form is None:
+        remedy = "Pass a SuslovTop, a sleigh, or a discretisation of one."
+        raise error("invariant_measure(motion=...)", "be a top or a sleigh", type(motion).__name__, remedy)
+    spectrum = equilibria(motion, energy)
+    if spectrum.attracting is None:
+        return InvariantMeasure(motion, True, None, None)
+    factors = spectrum.multipliers
+    witness = float(np.sum(spectrum.rates)) if factors is None else float(np.prod(factors))
+    return InvariantMeasure(motion, False, spectrum.velocity, witness)

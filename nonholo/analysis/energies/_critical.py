@@ -1,0 +1,181 @@
+r"""Critical energies of the discrete Suslov top (n = 3): where the level curves on the displacement variety change.
+
+The variety is a projective plane, $W \leftrightarrow \pm(z_0, z)$; the energy on it is a quartic with isolated critical
+points. Branches and their regions live elsewhere. Theory: docs/theory/critical-energies-and-limits.md.
+"""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from nonholo._checks import error, shown
+from nonholo._types import Float
+from nonholo.analysis._equilibria import highest_energy
+from nonholo.analysis.energies._fold import fold_energy
+from nonholo.discrete import Discretization, Landscape, landscape, refuse_composition
+from nonholo.systems import NormalForm
+
+_COINCIDENT = 1e-14  # relative distance of two energies below which a curve of critical points is assumed
+_AT_SADDLE = 1e-12  # relative distance below which a fold is the saddle, through which a line of folds passes
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class CriticalPoint:
+    r"""A displacement at which the energy is stationary on the displacement variety.
+
+    Attributes:
+        energy: Physical energy.
+        kind: "minimum", "saddle" or "maximum".
+        on_equator: Whether the displacement is a half-turn.
+        stationary: Whether it is an equilibrium of the map (on the line of permanent rotations).
+        half_turn_vector: $z = \sin(\theta/2)\,u$ in the rows of the canonical constraint subspace, $u$ a unit vector;
+            $-z$ is critical too, the same displacement on the equator.
+    """
+
+    energy: float
+    kind: str
+    on_equator: bool
+    stationary: bool
+    half_turn_vector: Float[np.ndarray, "2"]
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class CriticalEnergies:
+    r"""Critical values of the energy of a discrete top, in physical units; None where there is no such point.
+
+    Attributes:
+        saddle: $h^*$: two opposite saddles off the equator. Below it, in the regular regime, the component of the
+            level curve around the identity is separate, and each momentum has a displacement on it.
+        centre: $h^{**}$: two opposite maxima off the equator. Equal to `saddle` if a closed curve of maxima replaces
+            the four points.
+        equatorial_saddle: $h_e$: the highest saddle among half-turns.
+        fold: $h_f$: the least energy of a fold that can be reached from the identity through lower energies, always
+            defined. Below it each momentum has exactly one displacement in the part of the level around the identity,
+            the principal one, and no principal orbit ends. In the regular regime
+            $\tfrac{125}{128}h^* < h_f \le h^*$, and $h_f = h^*$ if $\det B \ge 3|c|^2$.
+        line: The highest energy of an equilibrium, $q_c/(2h^2|c|^2)$, which turns by 90 degrees in a step. Above it
+            every real orbit ends, on whatever branches. None for a balanced body, all of whose states are equilibria.
+        regular: $\det B > 2|c|^2$.
+        points: All isolated critical points, the two (on the equator: one) opposite ones once, from low to high.
+    """
+
+    saddle: float | None
+    centre: float | None
+    equatorial_saddle: float | None
+    fold: float
+    line: float | None
+    regular: bool
+    points: tuple[CriticalPoint, ...]
+
+
+def critical_energies(discrete: Discretization) -> CriticalEnergies:
+    r"""Return the critical values of the energy on the displacement variety of a top in three dimensions.
+
+    With $z = \sqrt\varrho\,u$, $|u| = 1$, $D = \det B$ and $\kappa(u) = 1 - (c\cdot u^\perp)^2/D$
+
+    $$ E = \tfrac{2}{h^2}\,(u\cdot Bu)\,(\varrho - \kappa\varrho^2), \qquad 0 \le \varrho \le 1 . $$
+
+    Off the equator $\varrho = 1/(2\kappa) < 1$ and $Bu = \mu\,(\mathrm{Id} - c^\perp c^{\perp T}/D)\,u$ with
+    $E = \mu/(2h^2)$; on it $\varrho = 1$ and $E = 2\,(u\cdot Bu)(c\cdot u^\perp)^2/(h^2D)$ is stationary, a cubic.
+
+    Reference: [fedorov-zenkov-2004], section 6, "Invariant curves", which lacks $h_e$ and the regular regime.
+
+    Args:
+        discrete: A `SuslovTop` with n = 3, difference "matrix" and constraint "skew" or "exponential".
+
+    Raises:
+        ValueError: Another system or discretisation.
+
+    Example:
+        >>> top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+        >>> found = critical_energies(nh.discretize(top, 1.0))
+        >>> print(f"{found.equatorial_saddle:.6f} {found.saddle:.6f} {found.centre:.6f}")
+        0.347449 0.930510 1.262473
+        >>> found.regular, found.fold == found.saddle, round(found.line, 6)
+        (True, True, 1.008824)
+    """
+    form = _checked("critical_energies(discrete=...)", discrete)
+    land = landscape(form)
+    unit = 2 / float(discrete.time_step) ** 2
+    off = _off_equator(land, unit)
+    points = _on_equator(land, unit) if land.sharpness > 0 else []
+    by_kind = {p.kind: p.energy for p in off}
+    saddles = [p.energy for p in points if p.kind == "saddle"]
+    if len(off) < 2 or off[0].energy - off[1].energy > _COINCIDENT * off[0].energy:
+        points = points + off
+    return CriticalEnergies(
+        saddle=by_kind.get("saddle"),
+        centre=by_kind.get("maximum"),
+        equatorial_saddle=max(saddles, default=None),
+        fold=_fold(form, land, unit, by_kind.get("saddle")),
+        line=highest_energy(discrete),
+        regular=land.is_regular,
+        points=(CriticalPoint(0.0, "minimum", False, True, np.zeros(2)), *sorted(points, key=lambda p: p.energy)),
+    )
+
+
+def _checked(where: str, discrete: Any) -> NormalForm:
+    remedy = "Pass `discretize(SuslovTop(J), time_step)` with n = 3."
+    if not isinstance(discrete, Discretization):
+        raise error(where, "be a discretised Suslov top", shown(discrete), remedy)
+    form = discrete.system.normal_form
+    if form is None or form.is_sleigh or not form.is_planar:
+        if form is not None and form.is_sleigh:
+            remedy = "Its level curves are ellipses; `single_valued_region` gives the energy where branches merge."
+        raise error(where, "be a discretised Suslov top with n = 3", f"{type(discrete.system).__name__}", remedy)
+    refuse_composition(where, discrete, "Pass the discretisation of order 2 that is composed.")
+    if not discrete.conserves_energy:
+        got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
+        raise error(where, "conserve the energy", got, "Use the defaults of `discretize`.")
+    return form
+
+
+def _fold(form: NormalForm, land: Landscape, unit: float, saddle: float | None) -> float:
+    r"""Return $h_f$: the saddle where $D \ge 3|c|^2$, by theorem, otherwise found by a search."""
+    if saddle is not None and 3 * land.sharpness <= 1:
+        return saddle
+    fold = unit * fold_energy(form.stiffness_matrix, np.asarray(form.coupling))
+    if saddle is None or not land.is_regular:
+        return fold
+    return fold if fold < (1 - _AT_SADDLE) * saddle else saddle
+
+
+def _off_equator(land: Landscape, unit: float) -> list[CriticalPoint]:
+    r"""Return centre and saddle; each exists if $\varrho = 1/(2\kappa)$ is less than one."""
+    found = []
+    for inverse, vector, kind in zip(land.inverses, land.vectors.T, ("maximum", "saddle"), strict=True):
+        length = float(np.hypot(*vector))
+        kappa = float(inverse) / length**2
+        if kappa > 0.5:
+            z = vector / length / np.sqrt(2 * kappa)
+            found.append(
+                CriticalPoint(unit / (4 * float(inverse)), kind, False, _along_c(z, land.sharpness), land.axes @ z)
+            )
+    return found
+
+
+def _on_equator(land: Landscape, unit: float) -> list[CriticalPoint]:
+    """Return half-turns: the one along c, of energy zero, and those of the cubic, u = (s, 1)/|(s, 1)|."""
+    (p, q), (_, r) = land.inertia
+    axes, sharpness = land.axes, land.sharpness
+    found = [CriticalPoint(0.0, "minimum", True, True, axes[:, 0])]
+    for s in sorted(_real_roots(np.array([p, 3 * q, 2 * r - p, -q]))):
+        square = 1 + s * s
+        energy = unit * sharpness * float(p * s * s + 2 * q * s + r) / square**2
+        curvature = 3 * p * s * s + 6 * q * s + 2 * r - p  # the slope of the cubic: positive where E is greatest
+        highest, convex = curvature > 0, 2 * (1 - sharpness / square) > 1
+        kind = "saddle" if highest == convex else ("maximum" if highest else "minimum")
+        found.append(CriticalPoint(energy, kind, True, False, axes @ np.array([s, 1.0]) / np.sqrt(square)))
+    return found
+
+
+def _real_roots(cubic: np.ndarray) -> list[float]:
+    """Return the simple real roots; a merged pair, where the energy only has an inflection, counts as none."""
+    roots = np.roots(cubic)
+    real = np.abs(roots.imag) <= 1e-12 * np.maximum(1.0, np.abs(roots))
+    return [float(x) for x in roots[real].real]
+
+
+def _along_c(z: np.ndarray, sharpness: float) -> bool:
+    return sharpness == 0 or bool(abs(z[1]) <= 1e-12 * abs(z[0]))

@@ -1,0 +1,199 @@
+r"""What a motion comes from and tends to: velocities, axes in body and in space, how far a sleigh turns.
+
+Theory: docs/theory/critical-energies-and-limits.md. Orbits are followed to their limits by `_followed`.
+"""
+
+import dataclasses
+from typing import Any, cast
+
+import numpy as np
+
+from nonholo._checks import error
+from nonholo._results import OutcomeError
+from nonholo._types import Float
+from nonholo.analysis._equilibria import highest_energy
+from nonholo.analysis.energies import critical_energies, single_valued_region
+from nonholo.analysis.limits._followed import Approach, Ends, approach, followed, kept_velocity
+from nonholo.discrete import Discretization
+from nonholo.orbit import Orbit
+from nonholo.systems import AbstractLLSystem, AbstractSystem, NormalForm
+
+_SAME = 1e-6  # relative distance of displacements beyond which two orbits are on different branches
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Asymptotics:
+    r"""Limits at $t \to -\infty$ (before) and $t \to \infty$ (after); None where a quantity is not defined.
+
+    Attributes:
+        velocity_before: Limit of the body velocity; for an orbit alone.
+        velocity_after: The same.
+        axis_before: Limit of the unit body velocity, for a top with n = 3: the axis it turns about, as seen in the
+            body; opposite to `axis_after`.
+        axis_after: The same.
+        spatial_axis_before: That axis in space; for an orbit alone.
+        spatial_axis_after: The same.
+        heading_turn: How far a sleigh turns in all; its size alone for a system, with its sign for an orbit.
+        motion_turn: The same for its direction of motion, modulo full turns: the sleigh starts out backwards.
+        persists: Whether the orbit is known to go on for ever. It is for a flow, for a principal orbit of a plane
+            sleigh below its `principal_energy` of `single_valued_region` and of a top (n = 3) below its `fold` of
+            `critical_energies`. Elsewhere the limits are those of an orbit that does, on whatever branches.
+    """
+
+    velocity_before: Float[np.ndarray, "dim"] | None = None
+    velocity_after: Float[np.ndarray, "dim"] | None = None
+    axis_before: Float[np.ndarray, "3"] | None = None
+    axis_after: Float[np.ndarray, "3"] | None = None
+    spatial_axis_before: Float[np.ndarray, "3"] | None = None
+    spatial_axis_after: Float[np.ndarray, "3"] | None = None
+    heading_turn: float | None = None
+    motion_turn: float | None = None
+    persists: bool = True
+
+
+def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
+    r"""Return where the motions of a system, or one orbit of a flow or of a discrete map, come from and go to.
+
+    Every motion goes from the repelling to the attracting equilibrium of its energy. For the discrete map this holds
+    for every real orbit that goes on for ever and is not stationary, whatever branches it takes, in every dimension, at
+    every energy; where no equilibrium has the energy (above `line` of `critical_energies`, `highest_energy` of
+    `equilibria`) none goes on for ever, and there are no limits. The heading of a sleigh turns by
+
+    $$ \theta(\infty) - \theta(-\infty) = \mathrm{sgn}(\omega)\,\pi\sqrt{1 + J/(ma^2)} $$
+
+    along the flow. A discrete orbit has the same limits of the velocity, exactly, and a turn that differs by O(h^2);
+    its turn and the axes in space are found by following the principal orbit of its first state to both ends. They are
+    None if that ends on the way or is another orbit. Of a composition (order > 2) the limits are observed, not proved.
+
+    Reference: [fedorov-zenkov-2004], sections 5 and 6, "bi-asymptotic".
+
+    Args:
+        subject: A top, a sleigh, or an orbit of one. An orbit that starts on an equilibrium, to rounding, stays there.
+
+    Raises:
+        ValueError: Another system or orbit; a discrete orbit that needs more than a million steps.
+
+    Example:
+        >>> print(f"{asymptotics(nh.ChaplyginSleigh(1.0, 0.75, 0.5)).heading_turn / np.pi:.12f}")
+        2.000000000000
+        >>> top = nh.SuslovTop([[1.0, 0.0, 0.5], [0.0, 1.0, 0.0], [0.5, 0.0, 1.0]])
+        >>> asymptotics(top).axis_after
+        array([-0., -1., -0.])
+    """
+    system = subject.system if isinstance(subject, Orbit) else subject
+    form = system.normal_form if isinstance(system, AbstractSystem) else None
+    if form is None:
+        remedy = "Pass a SuslovTop, a sleigh, or an orbit of one."
+        raise error("asymptotics(subject=...)", "be a top or a sleigh, or its orbit", type(subject).__name__, remedy)
+    if not isinstance(subject, Orbit):
+        return _of_system(cast("AbstractLLSystem", system), form)
+    if len(subject) == 0:
+        raise error("asymptotics(subject=...)", "have at least one state", "none", "See the orbit's outcome.")
+    return _of_orbit(form, subject)
+
+
+def turn_of_flow(mass: Any, inertia: Any, a: Any) -> Any:
+    r"""Return how far sleighs turn in all along the flow, $\pi\sqrt{1 + J/(ma^2)}$; of numbers or arrays."""
+    return np.pi * np.sqrt(1 + inertia / mass / a / a)
+
+
+def _of_system(system: AbstractLLSystem, form: NormalForm) -> Asymptotics:
+    attracting = system.equilibria().attracting
+    if attracting is None:
+        return Asymptotics()
+    if form.is_sleigh and form.is_planar:
+        turn = _turn_of_flow(form)
+        return Asymptotics(heading_turn=turn, motion_turn=turn - np.pi)
+    return Asymptotics(axis_before=_axis(form, -attracting), axis_after=_axis(form, attracting))
+
+
+def _turn_of_flow(form: NormalForm) -> float:
+    return float(turn_of_flow(form.mass, form.stiffness[0, 0], form.arm))
+
+
+def _axis(form: NormalForm, velocity: Float[np.ndarray, "dim"]) -> Float[np.ndarray, "3"] | None:
+    """Return the unit vector of a velocity on SO(3); None at rest and in other groups."""
+    size = float(np.linalg.norm(velocity))
+    return velocity / size if form.is_planar and not form.is_sleigh and size > 0 else None
+
+
+def _of_orbit(form: NormalForm, orbit: Orbit) -> Asymptotics:
+    if _is_bound_to_end(orbit):
+        return Asymptotics(persists=False)
+    velocity, found = orbit.body_velocity[0], approach(orbit)
+    if found is None:
+        return _resting(form, orbit, velocity)
+    along, spectrum, energy = found.kept, found.spectrum, found.energy
+    change = np.zeros_like(along) if spectrum.velocity is None else spectrum.velocity
+    persists = _known_to_persist(form, orbit, energy)
+    before, after = along - change, along + change
+    if form.is_sleigh and form.is_planar:
+        turn = _heading_turn(form, orbit, found)
+        forwards = None if turn is None else turn - float(np.copysign(np.pi, velocity[0]))
+        return Asymptotics(before, after, heading_turn=turn, motion_turn=forwards, persists=persists)
+    axes = _axis(form, before), _axis(form, after)
+    in_space = _in_space(orbit, axes, found)
+    return Asymptotics(before, after, *axes, *in_space, persists=persists)
+
+
+def _in_space(orbit: Orbit, axes: tuple, found: Approach) -> tuple:
+    """Return both axes as seen in space; None without axes or poses, or where the orbit is not followed to its ends."""
+    ends = None if axes[1] is None or orbit.canonical_pose is None else _ends(orbit, found)
+    if ends is None:
+        return None, None
+    return ends.first.configuration[-1] @ axes[0], ends.last.configuration[-1] @ axes[1]
+
+
+def _resting(form: NormalForm, orbit: Orbit, velocity: Float[np.ndarray, "dim"]) -> Asymptotics:
+    """Return the limits of a motion with constant velocity: the heading of a balanced sleigh turns for ever."""
+    axis = _axis(form, velocity)
+    in_space = None if axis is None or orbit.canonical_pose is None else orbit.configuration[0] @ axis
+    straight = form.is_sleigh and form.is_planar and form.arm != 0
+    turn = 0.0 if straight else None
+    return Asymptotics(velocity, velocity, axis, axis, in_space, in_space, turn, turn)
+
+
+def _is_bound_to_end(orbit: Orbit) -> bool:
+    """Tell whether an orbit of a map that keeps it has more energy than every equilibrium."""
+    if not isinstance(orbit.motion, Discretization) or not orbit.motion.conserves_energy:
+        return False
+    highest = highest_energy(orbit.motion)
+    return highest is not None and kept_velocity(orbit)[1] > highest
+
+
+def _known_to_persist(form: NormalForm, orbit: Orbit, energy: float) -> bool:
+    discrete = orbit.motion
+    if not isinstance(discrete, Discretization):
+        return True
+    if orbit.branch != "principal" or discrete.order > 2 or not form.is_planar:
+        return False
+    if form.is_sleigh:
+        return energy < single_valued_region(discrete).principal_energy
+    return energy < critical_energies(discrete).fold
+
+
+def _ends(orbit: Orbit, found: Approach) -> Ends | None:
+    """Return both ends of an orbit; None where its principal branch ends, or is not the one that the orbit took."""
+    try:
+        ends = followed(orbit, found)
+    except OutcomeError:
+        return None
+    return ends if orbit.branch == "principal" or _is_start_of(ends.last, orbit) else None
+
+
+def _is_start_of(principal: Orbit, orbit: Orbit) -> bool:
+    """Tell whether two discrete orbits with one first momentum have the same displacements as far as both go."""
+    again, mine = principal.displacement[:: orbit.save_every], orbit.displacement
+    both = min(len(again), len(mine))
+    return bool(np.abs(again[:both] - mine[:both]).max() <= _SAME * np.abs(mine).max())
+
+
+def _heading_turn(form: NormalForm, orbit: Orbit, found: Approach) -> float | None:
+    """Return the signed turn: in closed form for a flow, summed over all steps for a discrete orbit."""
+    if not isinstance(orbit.motion, Discretization):
+        return float(np.copysign(_turn_of_flow(form), orbit.body_velocity[0, 0]))
+    ends = _ends(orbit, found)
+    if ends is None:
+        return None
+    first, last = ends
+    return float(last.heading[-1] - last.heading[0] + first.heading[1] - first.heading[-1])

@@ -1,0 +1,201 @@
+"""Designs: which members a sweep has, as a grid or as random draws; values of any members, without the others."""
+
+import abc
+import dataclasses
+import math
+from collections.abc import Mapping
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from nonholo._checks import array, count, error, natural, shape_of, shown
+from nonholo._types import Float
+from nonholo.ensembles._names import OUTCOME, array_name, component_name, stream_name
+from nonholo.ensembles.designs._distributions import AbstractDistribution
+from nonholo.ensembles.designs._uniform import uniform_numbers
+
+_REMEDY = "Pass a dictionary of names to"
+Values = dict[str, np.ndarray]
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class AbstractDesign(abc.ABC):
+    """The members of a sweep.
+
+    Attributes:
+        seed: What random numbers are made of, those of tasks too.
+    """
+
+    seed: int
+
+    @property
+    @abc.abstractmethod
+    def sizes(self) -> dict[str, int]:
+        """Dimensions and their lengths; members are numbered along the last one first."""
+
+    @property
+    @abc.abstractmethod
+    def axes(self) -> dict[str, np.ndarray]:
+        """Values along one dimension, the first axis of each, by name."""
+
+    @property
+    @abc.abstractmethod
+    def drawn(self) -> dict[str, tuple[int, ...]]:
+        """Names and shapes of what each member has of its own."""
+
+    @abc.abstractmethod
+    def values(self, first: int, count: int) -> Values:
+        """Return the values of some members in order, by name."""
+
+    @property
+    def members(self) -> int:
+        """Number of members."""
+        return math.prod(self.sizes.values())
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Grid(AbstractDesign):
+    """Every combination of values along axes.
+
+    Names are parameters of the system ("a", "mass", "mass_tensor", ...), "time_step", a start ("body_velocity",
+    "restricted_velocity", "momentum") or one component of it ("restricted_velocity_0"); for a function of your own
+    whatever it reads. A component may be written "restricted_velocity[0]"; the result calls it as Python and xarray
+    can. Values are numbers, or along the first axis vectors or matrices. The result has a dimension for each axis.
+
+    Example:
+        >>> design = Grid({"a": [0.1, 0.2], "time_step": np.linspace(0.1, 0.5, 5)})
+        >>> design.members, design.values(first=4, count=2)
+        (10, {'a': array([0.1, 0.2]), 'time_step': array([0.5, 0.1])})
+    """
+
+    values_along: dict[str, np.ndarray]
+
+    def __init__(self, axes: Any, seed: int = 0) -> None:
+        if not isinstance(axes, Mapping) or not axes:
+            raise error("Grid(axes=...)", "be a mapping of names to values", shown(axes), f"{_REMEDY} values.")
+        kept = {name: _along(name, axes[given]) for name, given in _named("Grid(axes=...)", axes).items()}
+        if len({axis_dimension(name, values) for name, values in kept.items()}) < len(kept):
+            raise error(
+                "Grid(axes=...)", "have other names than its vectors and matrices", ", ".join(kept), "Rename one."
+            )
+        object.__setattr__(self, "values_along", kept)
+        object.__setattr__(self, "seed", _seed("Grid(seed=...)", seed))
+
+    def __repr__(self) -> str:
+        return f"<Grid of {self.members} members: {_times(self.sizes)}>"
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        return {axis_dimension(name, values): len(values) for name, values in self.values_along.items()}
+
+    @property
+    def axes(self) -> dict[str, np.ndarray]:
+        return self.values_along
+
+    @property
+    def drawn(self) -> dict[str, tuple[int, ...]]:
+        return {}
+
+    def values(self, first: int, count: int) -> Values:
+        """Return the values of some members in order, by name."""
+        first, count = _some("Grid", first, count)
+        places = np.unravel_index(np.arange(first, first + count), tuple(self.sizes.values()))
+        return {name: values[at] for (name, values), at in zip(self.values_along.items(), places, strict=True)}
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class RandomDesign(AbstractDesign):
+    """Members drawn from distributions: member i is the same in every design with this seed, however many there are.
+
+    Names are those of a `Grid`.
+
+    Example:
+        >>> design = RandomDesign(1_000_000, {"a": Uniform(0.1, 1.0), "restricted_velocity": Direction(2)}, seed=3)
+        >>> design.values(first=999_998, count=2)["a"].shape
+        (2,)
+    """
+
+    count: int
+    distributions: dict[str, AbstractDistribution]
+
+    def __init__(self, members: int, distributions: Any, seed: int = 0) -> None:
+        if not isinstance(distributions, Mapping) or not distributions:
+            got = shown(distributions)
+            raise error("RandomDesign(distributions=...)", "be a mapping", got, f"{_REMEDY} distributions.")
+        named = _named("RandomDesign(distributions=...)", distributions)
+        for name, value in distributions.items():
+            if not isinstance(value, AbstractDistribution):
+                remedy = "Pass nh.Uniform(low, high), ...; what all members share belongs to the task."
+                raise error(f"RandomDesign({{{name!r}: ...}})", "be a distribution", shown(value), remedy)
+        object.__setattr__(self, "count", count("RandomDesign(members=...)", members, "Pass how many."))
+        object.__setattr__(self, "distributions", {name: distributions[given] for name, given in named.items()})
+        object.__setattr__(self, "seed", _seed("RandomDesign(seed=...)", seed))
+
+    def __repr__(self) -> str:
+        drawn = ", ".join(f"{name} {value!r}" for name, value in self.distributions.items())
+        return f"<RandomDesign of {self.members} members, seed {self.seed}: {drawn}>"
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        return {"member": self.count}
+
+    @property
+    def axes(self) -> dict[str, np.ndarray]:
+        return {}
+
+    @property
+    def drawn(self) -> dict[str, tuple[int, ...]]:
+        return {name: value.shape for name, value in self.distributions.items()}
+
+    def values(self, first: int, count: int) -> Values:
+        """Return the values of some members in order, by name."""
+        first, count = _some("RandomDesign", first, count)
+        return {
+            name: value.draw(uniform_numbers(self.seed, f"design {stream_name(name)}", first, count, value.width))
+            for name, value in self.distributions.items()
+        }
+
+
+def _some(owner: str, first: Any, count: Any) -> tuple[int, int]:
+    """Return which members are meant."""
+    first = natural(f"{owner}.values(first=...)", first, "Pass the number of the first member, from 0.")
+    return first, natural(f"{owner}.values(count=...)", count, "Pass how many members.")
+
+
+Design: TypeAlias = Grid | RandomDesign
+
+
+def axis_dimension(name: str, values: Float[np.ndarray, "count ..."]) -> str:
+    """Return the dimension of an axis: its name or, for vectors and matrices, which label no points, another one."""
+    return name if values.ndim == 1 else f"{name}_number"
+
+
+def axis_dimensions(name: str, values: Float[np.ndarray, "count ..."]) -> tuple[str, ...]:
+    """Return the dimension of an axis and those of the vectors or matrices along it."""
+    return (axis_dimension(name, values), *(f"{name}_{axis}" for axis in range(1, values.ndim)))
+
+
+def _along(name: str, values: Any) -> np.ndarray:
+    where = f"Grid({{{name!r}: ...}})"
+    checked = array(where, values, (None,) * max(1, len(shape_of(values))), "Pass a list of values.")
+    if not len(checked):
+        raise error(where, "hold at least one value", "none", "Pass a list of values.")
+    return checked
+
+
+def _named(where: str, given: Mapping[Any, Any]) -> dict[str, str]:
+    """Return the given names by those of the result, refused if two are one."""
+    named = {component_name(array_name(where, name)): name for name in given}
+    if OUTCOME in named:
+        raise error(where, f"leave the name {OUTCOME} to the result", shown(OUTCOME), "Rename it.")
+    if len(named) < len(given):
+        raise error(where, "name each value once", ", ".join(given), "Leave one out.")
+    return named
+
+
+def _seed(where: str, seed: Any) -> int:
+    return natural(where, seed, "Pass 0, 1, 2, ...")
+
+
+def _times(sizes: dict[str, int]) -> str:
+    return " x ".join(f"{size} {name}" for name, size in sizes.items())

@@ -1,0 +1,65 @@
+"""How far a sweep came, from the marks of its blocks; and its result."""
+
+import collections
+import math
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import xarray
+
+from nonholo._checks import error
+from nonholo.ensembles.stores._store import SweepStore, open_store
+from nonholo.io import owner_of
+
+
+class SweepStanding(NamedTuple):
+    """How far a sweep came.
+
+    Attributes:
+        done: Members of finished blocks.
+        members: Members in all.
+        outcomes: How many ended how, by name.
+        rate: Members in a second of work of one worker; NaN before the first block.
+        messages: Some of those for which the task raised, with what it said.
+        owner: Who is writing the store, if anybody.
+        finished: Whether the sweep came to its end.
+    """
+
+    done: int
+    members: int
+    outcomes: dict[str, int]
+    rate: float
+    messages: list[list[Any]]
+    owner: str | None
+    finished: bool
+
+    @property
+    def failed(self) -> int:
+        """Members that did not succeed."""
+        return self.done - self.outcomes.get("successful", 0)
+
+    def __str__(self) -> str:
+        return f"{self.done} of {self.members} members, {self.failed} of them failed"
+
+
+def standing_of(path: str | Path) -> SweepStanding:
+    """Say how far the sweep of a store came."""
+    store = open_store(path)
+    marks = [mark for _, mark in store.marks()]
+    outcomes: collections.Counter[str] = collections.Counter()
+    for mark in marks:
+        outcomes.update(mark.outcomes)
+    done, seconds = sum(mark.members for mark in marks), sum(mark.seconds for mark in marks)
+    messages = [told for mark in marks for told in mark.messages]
+    rate = done / seconds if seconds else math.nan
+    owner = owner_of(store.path)
+    return SweepStanding(done, math.prod(store.layout.sizes), dict(outcomes), rate, messages, owner, store.is_finished)
+
+
+def opened_result(store: SweepStore) -> xarray.Dataset:
+    """Return the result as a dataset that is read as it is used, by the metadata of its arrays, which were checked."""
+    try:
+        return xarray.open_zarr(store.path, chunks=None, consolidated=False)
+    except Exception as failure:
+        got = f"'{store.path}', where xarray cannot read them: {failure}"
+        raise error("load_sweep(store=...)", "hold sound metadata", got, "Copy it again from its source.") from failure

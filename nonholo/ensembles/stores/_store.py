@@ -1,0 +1,297 @@
+"""The store of a sweep: one block is one chunk of each array, then its mark, a small file written after the data.
+
+Writes are atomic, so whoever writes can be killed at any moment. What a block holds depends on nothing but the task and
+the design, so two writers of one block write the same.
+"""
+
+import asyncio
+import dataclasses
+import functools
+import json
+import uuid
+import zlib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+import xarray
+import zarr
+from pydantic import Field, TypeAdapter, ValidationError
+from zarr.codecs import BloscCodec, Crc32cCodec
+from zarr.core.sync import sync
+
+from nonholo import io
+from nonholo._checks import error, printable
+from nonholo.ensembles._describe import design_from
+from nonholo.ensembles.designs import Design, axis_dimensions
+from nonholo.ensembles.stores._layout import Layout, Piece
+from nonholo.ensembles.stores._results import Output, Results
+
+FORMAT = "nonholo.sweep"
+SCHEMA = 3
+"""Written by this version. Schema 2 had no names of routes; 1 had last poses in the canonical frame, and names of
+components with brackets."""
+READABLE = (1, 2, 3)
+_AGAIN = "Run the sweep again."
+_AXIS = {"long_name": "value of the design"}
+_CODECS = BloscCodec(cname="lz4", clevel=5, shuffle="bitshuffle"), Crc32cCodec()
+"""As fast as a sweep: the numbers of its members are too different from each other for a slower one to gain by it."""
+
+
+class Mark(NamedTuple):
+    """What is known of a finished block; older marks have no seal."""
+
+    members: int
+    outcomes: dict[str, int]
+    seconds: float
+    finished: float
+    writer: str
+    messages: list[Annotated[list[Any], Field(min_length=2, max_length=2)]]
+    seal: int | None = None
+
+
+_MARK = TypeAdapter(Mark)
+
+
+@dataclasses.dataclass(frozen=True)
+class SweepStore:
+    """A store that a sweep is written to.
+
+    Attributes:
+        path: Where it is, the same for all who write.
+        made: Which one it is: another store at the same path has another number.
+    """
+
+    path: Path
+    made: str
+
+    def __reduce__(self) -> Any:
+        return SweepStore, (self.path, self.made)
+
+    @functools.cached_property
+    def layout(self) -> Layout:
+        """How members are cut in blocks."""
+        return Layout(*(tuple(sizes) for sizes in self._told["layout"]))
+
+    @functools.cached_property
+    def outputs(self) -> dict[str, Output]:
+        """What each array holds."""
+        return {name: Output(tuple(d), tuple(s), t, a) for name, (d, s, t, a) in self._told["outputs"].items()}
+
+    @functools.cached_property
+    def design(self) -> Design:
+        """The design; values along axes are read from their arrays."""
+        return design_from(self._told["design"], self._axis)
+
+    @property
+    def description(self) -> dict[str, Any]:
+        """The task and the design as plain data."""
+        return {"task": self._told["task"], "design": self._told["design"]}
+
+    @property
+    def schema(self) -> int:
+        """The schema that it was begun with."""
+        return attributes_of(self.path)["schema"]
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether the sweep came to its end; its metadata are consolidated then, which is done last."""
+        document = json.loads((self.path / "zarr.json").read_text())
+        return document["attributes"]["finished"] and "consolidated_metadata" in document
+
+    def write(self, piece: Piece, results: Results, mark: Mark) -> None:
+        """Write the chunks of a block, then its mark."""
+        io.require_identity(self.path, self.made)
+        self._mark_file(piece.number).unlink(missing_ok=True)
+        for name in results.arrays:
+            self._chunk_file(name, piece.number).unlink(missing_ok=True)  # zarr would read a damaged one first
+        sync(self._write_chunks(piece, results))
+        text = json.dumps(mark._replace(seal=self._seal(piece.number))._asdict())
+        io.write_whole(self._mark_file(piece.number), f"{zlib.crc32(text.encode()):08x} {text}")
+
+    async def _write_chunks(self, piece: Piece, results: Results) -> None:
+        """Write the chunks of a block side by side, which takes half of the time; a failure leaves no writer behind."""
+        lengths = tuple(s.stop - s.start for s in piece.place)
+        writes = [
+            self._arrays[name].async_array.setitem(piece.place, rows.reshape(*lengths, *rows.shape[1:]))
+            for name, rows in results.arrays.items()
+        ]
+        for failure in await asyncio.gather(*writes, return_exceptions=True):
+            if isinstance(failure, BaseException):
+                raise failure
+
+    def mark(self, block: int) -> Mark | str | None:
+        """Return the mark of a block, what is wrong with it, or None if the block is not finished."""
+        try:
+            written = self._mark_file(block).read_text()
+        except FileNotFoundError:
+            return None
+        except UnicodeDecodeError:
+            return f"the mark {self._mark_file(block).name} cannot be read"
+        check, _, text = written.partition(" ")
+        try:
+            mark = _MARK.validate_json(text)
+        except ValidationError:
+            check, mark = "", None
+        if mark is None or check != f"{zlib.crc32(text.encode()):08x}":
+            return f"the mark {self._mark_file(block).name} is damaged"
+        return mark._replace(
+            outcomes={printable(name): count for name, count in mark.outcomes.items()},
+            writer=printable(mark.writer),
+            messages=[[member, printable(str(told).replace("\n", " "))] for member, told in mark.messages],
+        )
+
+    def marks(self) -> Iterator[tuple[int, Mark]]:
+        """Return the numbers of finished blocks in order with their marks, those that can be read."""
+        files = (self.path / "run" / "blocks").glob("*.json")
+        for block in sorted(int(file.stem) for file in files if file.stem.isdecimal()):
+            if isinstance(mark := self.mark(block), Mark):
+                yield block, mark
+
+    def flaw(self, block: int) -> str | None:
+        """Say which chunk of a block is damaged, and how; None if all are sound."""
+        for name, array in self._arrays.items():
+            found = io.read_chunk(self.path, name, array, self._index(name, block), with_nan=True)
+            if isinstance(found, str):
+                return f"{found}, {io.chunk_name(name, array, self._index(name, block))}"
+        mark = self.mark(block)
+        if not isinstance(mark, Mark):
+            return mark or f"no mark {self._mark_file(block).name}"
+        if mark.seal not in (None, self._seal(block)):
+            return f"a chunk of another place in block {block}, which {self._mark_file(block).name} seals"
+        return None
+
+    def _seal(self, block: int) -> int:
+        return io.seal_of(self.path, block, (self._chunk_file(name, block) for name in sorted(self._arrays)))
+
+    def check(self, where: str, blocks: Iterable[int]) -> None:
+        """Refuse a store of which one of these blocks, or an axis, is damaged."""
+        _ = self.design
+        for flaw in filter(None, map(self.flaw, blocks)):
+            remedy = f"nonholo.resume({str(self.path)!r}) computes its block again."
+            raise error(where, "be sound", f"'{self.path}', in which there is {flaw}", remedy)
+
+    def rows(self, name: str, piece: Piece) -> np.ndarray:
+        """Return an array of a block, one row for each member."""
+        found = np.asarray(self._arrays[name][piece.place])
+        return found.reshape(piece.count, *found.shape[len(piece.place) :])
+
+    def prepare(self) -> None:
+        """Remove what killed writers left and show that every array can be opened."""
+        (self.path / "run" / "blocks").mkdir(exist_ok=True)  # what copies stores may leave out empty folders
+        io.remove_partials(self.path)
+        _ = self._arrays, self.design
+
+    def finish(self) -> None:
+        """Say that the sweep came to its end, and consolidate the metadata."""
+        io.require_identity(self.path, self.made)
+        io.edit_attributes(self.path, {"finished": True})
+        io.consolidate(self.path)
+
+    def _index(self, name: str, block: int) -> tuple[int, ...]:
+        return (*self.layout.index(block), *(0,) * len(self.outputs[name].shape))
+
+    def _chunk_file(self, name: str, block: int) -> Path:
+        return io.chunk_path(self.path, name, self._arrays[name], self._index(name, block))
+
+    def _mark_file(self, block: int) -> Path:
+        return self.path / "run" / "blocks" / f"{block}.json"
+
+    def _axis(self, name: str) -> np.ndarray:
+        array = io.writable_array(self.path, name)
+        found = io.read_chunk(self.path, name, array, (0,) * array.ndim)
+        if isinstance(found, str):
+            got = f"{found}, in '{self.path}'"
+            raise error("resume(store=...)", f"hold the axis {name}", got, _AGAIN)
+        told = list(axis_dimensions(name, found)), _AXIS
+        if (list(array.metadata.dimension_names or ()), array.metadata.attributes) != told:  # type: ignore[union-attr]
+            raise error("resume(store=...)", f"hold the axis {name}", f"another one in '{self.path}'", _AGAIN)
+        return found
+
+    @functools.cached_property
+    def _told(self) -> dict[str, Any]:
+        return json.loads(attributes_of(self.path)["sweep"])
+
+    @functools.cached_property
+    def _arrays(self) -> dict[str, zarr.Array]:
+        opened = {name: io.writable_array(self.path, name) for name in self.outputs}
+        for name, array in opened.items():
+            self._check_described(name, array)
+        return {name: array.with_config({"write_empty_chunks": True}) for name, array in opened.items()}
+
+    def _check_described(self, name: str, array: zarr.Array) -> None:
+        """Refuse an array that is not the one of the description, of which the attributes have a checksum."""
+        output, chunk = self.outputs[name], self.layout.chunk
+        shape, chunks = (*self.layout.sizes, *output.shape), (*chunk, *(max(1, size) for size in output.shape))
+        told = [list(shape), list(chunks), output.dtype, json.dumps(output.attributes)]
+        found = [list(array.shape), list(array.chunks), str(array.dtype), json.dumps(array.metadata.attributes)]
+        dimensions = [*self.design.sizes, *output.dimensions]
+        if [*found, list(array.metadata.dimension_names or ())] != [*told, dimensions]:  # type: ignore[union-attr]
+            got = f"another one in '{self.path}'"
+            raise error("resume(store=...)", f"hold the array {name} of its description", got, _AGAIN)
+
+
+@functools.lru_cache(maxsize=16)
+def store_of(store: SweepStore) -> SweepStore:
+    """Return the store of this process that stands for one that was sent: its arrays are opened once."""
+    return store
+
+
+def create_store(
+    path: Path,
+    description: dict[str, Any],
+    design: Design,
+    layout: Layout,
+    outputs: dict[str, Output],
+    extra: dict[str, Any],
+) -> SweepStore:
+    """Make a store without rows; it appears at the path only when it is complete."""
+    target, made = path.resolve(), uuid.uuid4().hex
+    if target.exists():
+        raise _exists(path)
+    told = description | {"layout": layout, "outputs": {name: dataclasses.astuple(o) for name, o in outputs.items()}}
+    about = {"format": FORMAT, "schema": SCHEMA, "made": made, "finished": False, "sweep": json.dumps(told)}
+    with io.new_beside(path) as part:
+        group = io.new_group(part, about | {"versions": io.versions_text()} | extra, io.SweepMetadata)
+        _create_arrays(group, design, layout, outputs)
+        (part / "run" / "blocks").mkdir()
+        try:
+            io.put_in_place(part, target, overwrite=False)
+        except FileExistsError:
+            raise _exists(path) from None
+    return SweepStore(target, made)
+
+
+def _exists(path: Path) -> FileExistsError:
+    remedy = "Choose another path, or go on with it: nonholo.resume(store), sweep(..., resume=True)."
+    return FileExistsError(f"`sweep(store=...)` must be new. Got '{path}', which exists. {remedy}")
+
+
+def open_store(path: str | Path) -> SweepStore:
+    """Return the store of a sweep."""
+    stored = attributes_of(path)
+    return SweepStore(Path(path).resolve(), stored["made"])
+
+
+def attributes_of(path: str | Path) -> dict[str, Any]:
+    """Return the attributes of the store of a sweep, after checking that it is one of a known schema."""
+    return io.read_attributes(path, FORMAT, READABLE)
+
+
+def _create_arrays(group: zarr.Group, design: Design, layout: Layout, outputs: dict[str, Output]) -> None:
+    for name, values in design.axes.items():
+        variable = xarray.Variable(axis_dimensions(name, values), values, _AXIS)
+        io.create_array(group, name, variable, len(values), len(values), is_coordinate=True)[:] = values
+    for name, output in outputs.items():
+        group.create_array(
+            name,
+            shape=(*layout.sizes, *output.shape),
+            dtype=output.dtype,
+            chunks=(*layout.chunk, *(max(1, size) for size in output.shape)),
+            compressors=_CODECS,
+            fill_value=output.fill,
+            dimension_names=[*design.sizes, *output.dimensions],
+            attributes=output.attributes,
+        )
+    group.create_group("run")  # or xarray would wonder what that folder is

@@ -1,0 +1,153 @@
+"""An orbit as labelled data in the user's body frame, and the variables of its store, compact states beside it."""
+
+import numpy as np
+import xarray
+
+from nonholo._types import Float
+from nonholo.discrete import Discretization
+from nonholo.io._attributes import attributes
+from nonholo.io.datasets._pose_variables import pose_variables
+from nonholo.orbit import Orbit
+from nonholo.systems import System
+
+CANONICAL = "canonical/"
+"""The group of a store that holds compact states."""
+_MOST = 1000  # components of a momentum, or numbers of a pose, that are told
+HEADED = ("heading", "quaternion")  # whose rows go on from the row before
+
+# name: dimensions after `step`, and what the numbers are
+_COMPACT = {
+    "reduced_momentum": (("component",), "momentum along the constraint subspace, canonical frame", "momentum unit"),
+    "cayley": (("chart",), "chart coordinates of the displacement, canonical frame", "1"),
+    "pose": (("pose_component",), "compact pose, canonical frame", "1, lengths in length unit"),
+    "turned": ((), "heading without ambiguity of full turns", "rad"),
+}
+_KNOWN = {
+    "energy": ((), "reduced constrained energy", "energy unit"),
+    "restricted_momentum": (("component",), "momentum along the rows of the constraint subspace", "momentum unit"),
+    "body_velocity": (("coordinate",), "body velocity", "1 / time unit"),
+    "momentum": (("coordinate",), "body momentum", "momentum unit"),
+}
+_STORED = ("energy", "restricted_momentum")
+_MATRICES = {
+    "configuration": (("row", "column"), "pose as a matrix", "1"),
+    "displacement": (("row", "column"), "displacement of one step as a matrix", "1"),
+}
+_MULTIPLIERS = "multipliers: forces of a flow, impulses to the next state of a discrete orbit"
+_OTHERS = {
+    "time": ((), "time", "time unit"),
+    "multipliers": (("multiplier",), _MULTIPLIERS, "force unit, or times time"),
+}
+_LABELS = _COMPACT | _KNOWN | _MATRICES | _OTHERS
+_SPATIAL = {  # of a right-invariant constraint
+    "reduced_momentum": "spatial momentum along the constraint subspace",
+    "restricted_momentum": "spatial momentum along the rows of the constraint subspace",
+    "cayley": "chart coordinates of the spatial displacement",
+}
+
+
+def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
+    r"""Return an orbit as a labelled dataset in the user's body frame; attributes say how it was made.
+
+    Variables along `step`, with the coordinate `time`: `energy`, `restricted_momentum`, `body_velocity`, `momentum` and
+    the pose.
+
+    | group | the pose |
+    |---|---|
+    | SE(2) | `x`, `y`, `heading` |
+    | SO(3), SE(3) | `quaternion`: w, x, y, z, unit, signs continuous; on SE(3) also `x`, `y`, `z` |
+    | SO(n), SE(n) | `rotation`, a matrix; on SE(n) also `position` |
+    | translations | `position` |
+    | products | those of the factors, translations as `shape` |
+    | other groups | `configuration`, a matrix |
+
+    What the orbit does not know, or is too large for many dimensions, is left out.
+
+    Args:
+        orbit: What to label.
+        decoded: Also poses and displacements as matrices, and `multipliers` of an orbit of which every step is saved,
+            NaN after the last state of a discrete one.
+
+    Example:
+        >>> orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), body_velocity=(1, 0, 0), steps=3)
+        >>> list(orbit.to_dataset().data_vars)
+        ['energy', 'restricted_momentum', 'body_velocity', 'momentum', 'x', 'y', 'heading']
+    """
+    wanted = (*_KNOWN, *_MATRICES) if decoded else tuple(_KNOWN)
+    known = {name: _variable(orbit, name) for name in wanted if _is_known(orbit, name)}
+    found = _time(orbit) | known | _posed(orbit, None)
+    if decoded and _has_multipliers(orbit):
+        found["multipliers"] = _variable(orbit, "multipliers", _padded(orbit.multipliers, len(orbit)))
+    return xarray.Dataset(found, attrs=attributes(orbit)).set_coords("time")
+
+
+def stored_variables(
+    orbit: Orbit, before: Float[np.ndarray, "1 c"] | None = None, *, older: bool = False
+) -> dict[str, xarray.Variable]:
+    """Return the arrays of a store by name: what a person knows, and compact states in a group of their own.
+
+    Args:
+        orbit: What to store, an orbit or a block of one.
+        before: The heading or the quaternion of the state before the first one, in a row.
+        older: Whether the store is of a schema below 3, which had compact states and energies alone.
+    """
+    compact = {
+        ("" if older else CANONICAL) + name: _variable(orbit, name, value)
+        for name, value in zip(_COMPACT, _states(orbit), strict=True)
+        if value is not None
+    }
+    names = [name for name in (_STORED[:1] if older else _STORED) if _is_known(orbit, name)]
+    known = {name: _variable(orbit, name) for name in names}
+    return _time(orbit) | known | ({} if older else _posed(orbit, before)) | compact
+
+
+def is_known(system: System, name: str, *, posed: bool, discrete: bool) -> bool:
+    """Tell whether motions of a system have a quantity; with a right-invariant constraint most need the pose."""
+    needs_pose = {"configuration"}
+    if system.is_spatial:
+        needs_pose |= {"energy", "momentum", "body_velocity", "displacement"}
+    if (name in needs_pose and not posed) or (name == "displacement" and not discrete):
+        return False
+    return name in _STORED or system.group.dim <= _MOST
+
+
+def labels_of(system: System, name: str) -> tuple[tuple[str, ...], dict[str, str]]:
+    """Return the dimensions of a quantity after those of the states, and its attributes."""
+    axes, meaning, units = _LABELS[name]
+    told = _SPATIAL.get(name, meaning) if system.is_spatial else meaning
+    return axes, {"long_name": told, "units": units}
+
+
+def _is_known(orbit: Orbit, name: str) -> bool:
+    return is_known(orbit.system, name, posed=orbit.canonical_pose is not None, discrete=orbit.cayley is not None)
+
+
+def _states(orbit: Orbit) -> tuple[np.ndarray | None, ...]:
+    return orbit.reduced_momentum, orbit.cayley, orbit.canonical_pose, orbit.turned
+
+
+def _time(orbit: Orbit) -> dict[str, xarray.Variable]:
+    return {"time": _variable(orbit, "time")}
+
+
+def _posed(orbit: Orbit, before: np.ndarray | None) -> dict[str, xarray.Variable]:
+    if orbit.canonical_pose is None or orbit.canonical_pose.shape[1] > _MOST:
+        return {}
+    variables = pose_variables(orbit, before).items()
+    return {name: xarray.Variable(("step", *axes), values, told) for name, (axes, values, told) in variables}
+
+
+def _has_multipliers(orbit: Orbit) -> bool:
+    """Tell whether an orbit has multipliers that need no other steps than those of its states."""
+    motion = orbit.motion
+    single = not isinstance(motion, Discretization) or (motion.order == 2 and orbit.save_every == 1)
+    return single and len(orbit) > 0 and _is_known(orbit, "momentum")
+
+
+def _padded(rows: np.ndarray, count: int) -> np.ndarray:
+    return np.concatenate([rows, np.full((count - len(rows), rows.shape[1]), np.nan)])
+
+
+def _variable(orbit: Orbit, name: str, values: np.ndarray | None = None) -> xarray.Variable:
+    axes, told = labels_of(orbit.system, name)
+    return xarray.Variable(("step", *axes), getattr(orbit, name) if values is None else values, told)

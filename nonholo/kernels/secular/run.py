@@ -1,0 +1,218 @@
+"""Runs of the secular step: compensated momenta, rows of the pose, one step from each of many states.
+
+The state of a run is one array, so that it can stop after any step and go on with the same bits: momenta (k) and their
+compensations (k), the last three pairs of unknowns (6), the certain radius, the rows of the pose.
+"""
+
+import math
+
+import numpy as np
+
+from nonholo._compiled import njit
+from nonholo.kernels._scalar import COMPILED
+from nonholo.kernels._small import assign
+from nonholo.kernels.secular._path import principal
+from nonholo.kernels.secular._root import certain_radius, level_of
+from nonholo.kernels.secular._step import SecularBody, coordinate, newton, room_for_sums, term
+
+_SETTLED = 1e-150  # of the scale of the momenta; squares below it underflow
+
+
+@njit(nogil=True, **COMPILED)
+def coordinates(p: SecularBody, m: np.ndarray, nu: float, tau: float, y: np.ndarray) -> None:
+    """Write y."""
+    for i in range(len(p.b)):
+        y[i], _, _ = coordinate(p.b[i], p.c[i], m[i], nu, tau)
+
+
+@njit(nogil=True, **COMPILED)
+def solve(
+    p: SecularBody, m: np.ndarray, certain: float, nu: float, tau: float, room: np.ndarray
+) -> tuple[int, float, float]:
+    """Correct a guess and verify that it is the principal root, or restart from momentum zero."""
+    m0 = m[-1] if p.slides else 0.0
+    good, nu, tau, size = newton(p, m, m0, 1.0, nu, max(tau, 0.0), False, room)
+    if good and tau < 1 and 4 * (size + p.mass * p.arm * p.arm * tau) <= certain * (1 + tau) ** 2:
+        return 0, nu, tau
+    return principal(p, m, m0, room)
+
+
+@njit(**COMPILED)
+def _compensated(total: float, lost: float, change: float, settled: float) -> tuple[float, float]:
+    """Add by Kahan's summation; a sum that has decayed below `settled` is put on the equilibrium."""
+    change = change - lost
+    result = total + change
+    if abs(result) < settled and abs(result) < abs(total):
+        return 0.0, 0.0
+    return result, (result - total) - change
+
+
+@njit(nogil=True, **COMPILED)
+def pushed(
+    p: SecularBody,
+    m: np.ndarray,
+    lost: np.ndarray,
+    nu: float,
+    tau: float,
+    settled: float,
+    total: np.ndarray,
+    rest: np.ndarray,
+) -> None:
+    """Write the momenta after one step, and their compensations."""
+    lever, b, c = p.mass * p.arm * p.arm, p.b, p.c
+    for i in range(len(b)):
+        y, _, _ = coordinate(b[i], c[i], m[i], nu, tau)
+        total[i], rest[i] = _compensated(m[i], lost[i], term(c[i], y, nu, tau, lever), settled)
+    if p.slides:
+        change = 2 * p.mass * p.arm * tau / (1 + tau)
+        total[-1], rest[-1] = _compensated(m[-1], lost[-1], change, settled)
+
+
+@njit(nogil=True, **COMPILED)
+def slide(p: SecularBody, m0: float, nu: float, tau: float, y: np.ndarray) -> float:
+    """Return the last Cayley coordinate of a sleigh, half its slide over the cosine of half its turn.
+
+    Beyond a right angle (1 + tau) q is taken from nu: near angle pi q is the difference of nearly equal numbers.
+    """
+    across, along = 0.0, 0.0
+    for i in range(len(y)):
+        across += p.offset[i] * y[i]
+        along += p.c[i] * y[i]
+    if tau > 1 and p.arm != 0:
+        return (nu - along) / (p.arm * p.mass) - p.arm - across
+    return (m0 * (1 + tau) + p.mass * p.arm * tau) / p.mass - across
+
+
+@njit(nogil=True, **COMPILED)
+def unknowns_of(p: SecularBody, m0: float, chart: np.ndarray) -> tuple[float, float]:
+    """Return nu and tau of a displacement, by the inverse of `slide`."""
+    across, along, tau = 0.0, 0.0, 0.0
+    for i in range(len(p.b)):
+        across += p.offset[i] * chart[i]
+        along += p.c[i] * chart[i]
+        tau += chart[i] * chart[i]
+    if tau > 1 and p.arm != 0:
+        return along + p.arm * p.mass * (chart[len(p.b)] + across + p.arm), tau
+    return along + (1 + tau) * (p.arm * m0 + p.mass * p.arm * p.arm), tau
+
+
+@njit(nogil=True, **COMPILED)
+def move(p: SecularBody, m0: float, nu: float, tau: float, y: np.ndarray, rows: np.ndarray) -> None:
+    """Advance rows of a pose by the displacement, a reflection of each; keep their length."""
+    k, first = len(y), 1 if p.slides else 0
+    axis = 0 if p.slides else k
+    z0 = 1 / math.sqrt(1 + tau)
+    sign = -z0 if p.slides else z0
+    length = 2 * slide(p, m0, nu, tau, y) * z0 if p.slides else 0.0
+    for row in rows:
+        along, square = z0 * row[axis], 0.0
+        for i in range(k):
+            along += sign * y[i] * row[first + i]
+        for i in range(k):
+            row[first + i] -= 2 * along * sign * y[i]
+            square += row[first + i] ** 2
+        row[axis] = 2 * z0 * along - row[axis]
+        square += row[axis] ** 2
+        if square > 0.5:
+            for i in range(k + 1):
+                row[i] *= (3 - square) / 2
+        if p.slides:
+            row[k + 1] += length * along
+
+
+@njit(nogil=True, **COMPILED)
+def start(p: SecularBody, m: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
+    """Return the outcome of the first root and the state of a run that begins with momenta and rows of a pose."""
+    k = len(p.b)
+    m0 = m[-1] if p.slides else 0.0
+    certain = certain_radius(p, level_of(p, m[:k], m0))
+    code, nu, tau = solve(p, m, certain, p.mass * p.arm * p.arm, 0.0, room_for_sums())
+    unknowns = np.array((nu, tau, nu, tau, nu, tau, certain))
+    return code, np.concatenate((m, np.zeros(len(m)), unknowns, pose))
+
+
+@njit(nogil=True, **COMPILED)
+def chart_of(p: SecularBody, m: np.ndarray, nu: float, tau: float, chart: np.ndarray) -> None:
+    """Write the chart coordinates of the displacement."""
+    k = len(p.b)
+    coordinates(p, m, nu, tau, chart[:k])
+    if p.slides:
+        chart[k] = slide(p, m[k], nu, tau, chart[:k])
+
+
+def chart_in(p: SecularBody, state: np.ndarray) -> np.ndarray:
+    """Return the chart coordinates of the displacement in a state."""
+    size = len(p.b) + p.slides
+    chart = np.empty(size)
+    chart_of(p, state[:size], state[2 * size], state[2 * size + 1], chart)
+    return chart
+
+
+@njit(nogil=True, **COMPILED)
+def advance(
+    p: SecularBody,
+    state: np.ndarray,
+    steps: int,
+    every: int,
+    momenta: np.ndarray,
+    charts: np.ndarray,
+    poses: np.ndarray,
+) -> tuple[int, int]:
+    """Take up to `steps` steps, saving each `every`-th one; return how many were good and the outcome.
+
+    After a failure the state is that of the last good step.
+    """
+    k, size = len(p.b), len(p.b) + (1 if p.slides else 0)
+    m, lost, y = state[:size].copy(), state[size : 2 * size].copy(), np.zeros(k)
+    nu, tau, nu1, tau1, nu2, tau2, certain = state[2 * size : 2 * size + 7]
+    rows = state[2 * size + 7 :].copy().reshape(-1, size + 1)
+    settled = _SETTLED * np.abs(m).max()
+    total, rest, room = np.empty_like(m), np.empty_like(m), room_for_sums()
+    code, done = 0, 0
+    while done < steps:
+        pushed(p, m, lost, nu, tau, settled, total, rest)
+        code, nu3, tau3 = solve(p, total, certain, 3 * (nu - nu1) + nu2, 3 * (tau - tau1) + tau2, room)
+        if code != 0:
+            break
+        if len(rows):
+            coordinates(p, m, nu, tau, y)
+            move(p, m[-1], nu, tau, y, rows)
+        m, total, lost, rest = total, m, rest, lost
+        nu2, tau2, nu1, tau1, nu, tau = nu1, tau1, nu, tau, nu3, tau3
+        done += 1
+        if done % every == 0:
+            row = done // every - 1
+            assign(momenta[row], m)
+            chart_of(p, m, nu, tau, charts[row])
+            assign(poses[row], rows.ravel())
+    unknowns = np.array((nu, tau, nu1, tau1, nu2, tau2, certain))
+    assign(state, np.concatenate((m, lost, unknowns, rows.ravel())))
+    return done, code
+
+
+@njit(nogil=True, **COMPILED)
+def step_each(
+    p: SecularBody, momenta: np.ndarray, charts: np.ndarray, guesses: np.ndarray, principal_only: bool
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Take one step from each row; return momenta, charts and outcomes.
+
+    The root is the principal one or else that value of the map which Newton's method reaches from the guess.
+    """
+    k = len(p.b)
+    room = room_for_sums()
+    next_momenta, next_charts = np.empty_like(momenta), np.empty_like(charts)
+    codes, none = np.zeros(len(momenta), dtype=np.int64), np.zeros(momenta.shape[1])
+    for row in range(len(momenta)):
+        before, m = momenta[row], next_momenta[row]
+        nu, tau = unknowns_of(p, before[k] if p.slides else 0.0, charts[row])
+        pushed(p, before, none, nu, tau, 0.0, m, none.copy())
+        m0 = m[k] if p.slides else 0.0
+        nu, tau = unknowns_of(p, m0, guesses[row])
+        if principal_only:
+            certain = certain_radius(p, level_of(p, m[:k], m0))
+            codes[row], nu, tau = solve(p, m, certain, nu, tau, room)
+        else:
+            good, nu, tau, _ = newton(p, m, m0, 1.0, nu, tau, True, room)
+            codes[row] = 0 if good else 3
+        chart_of(p, m, nu, tau, next_charts[row])
+    return next_momenta, next_charts, codes

@@ -1,0 +1,99 @@
+r"""The equations on a group: momenta as derivatives of l_d, constraints in body coordinates, the scaled matrix.
+
+A displacement is described by v with $W = e^{hv}$, not by the matrix, so that the default rule loses no digits in
+log W and goes on beyond angles of pi.
+"""
+
+import jax
+import jax.numpy as jnp
+
+from nonholo._types import Array
+from nonholo.lagrange_dalembert._equations import Scaled, bordered
+from nonholo.lagrange_dalembert.on_groups._system import GroupLagrangeDAlembert
+
+
+def forms(system: GroupLagrangeDAlembert, g: Array) -> Array:
+    """Return the rows a(g), none for a free system."""
+    if system.constraint_forms is None:
+        return jnp.zeros((0, system.group.dim))
+    return jnp.asarray(system.constraint_forms(g))
+
+
+def displaced(system: GroupLagrangeDAlembert, v: Array, h: Array) -> Array:
+    """Return the displacement W."""
+    return system.group.exp(h * v)
+
+
+def discrete_constraints(system: GroupLagrangeDAlembert, g: Array, v: Array, h: Array) -> Array:
+    """Return F(g, W)."""
+    if system.discrete_constraints is not None:
+        return jnp.asarray(system.discrete_constraints(g, displaced(system, v, h), h))
+    return forms(system, g @ displaced(system, v, h / 2)) @ v
+
+
+def momenta(system: GroupLagrangeDAlembert, v: Array, h: Array) -> tuple[Array, Array]:
+    r"""Return P(W) and $P^+(W) = \mathrm{Ad}^*_W P(W)$.
+
+    With D the matrix of derivatives of l_d they are the covectors $\mathrm{tr}\,D^TE_iW$ and $\mathrm{tr}\,D^TWE_i$.
+    """
+    W = displaced(system, v, h)
+    D = jax.grad(system.discrete_lagrangian)(W, h)
+    coordinates = system.group.coordinates
+    return coordinates.dual_vector(D @ W.T), coordinates.dual_vector(W.T @ D)
+
+
+def discrete_energy(system: GroupLagrangeDAlembert, v: Array, h: Array) -> Array:
+    r"""Return $-\partial l_d/\partial h$ at fixed W."""
+    return -jax.grad(system.discrete_lagrangian, argnums=1)(displaced(system, v, h), h)
+
+
+def inertia(system: GroupLagrangeDAlembert, h: Array) -> Array:
+    r"""Return h times the second derivative of $l_d(e^x)$ at x = 0: the inertia operator of a quadratic Lagrangian."""
+
+    def at(x: Array) -> Array:
+        return h * system.discrete_lagrangian(system.group.exp(x), h)
+
+    return jax.hessian(at)(jnp.zeros(system.group.dim))
+
+
+def lagrangian(system: GroupLagrangeDAlembert, w: Array) -> Array:
+    r"""Return $l(\omega)$: the given one, or the quadratic form that belongs to l_d."""
+    if system.lagrangian is not None:
+        return system.lagrangian(w)
+    return w @ inertia(system, jnp.ones(())) @ w / 2
+
+
+def continuous_momentum(system: GroupLagrangeDAlembert, w: Array) -> Array:
+    r"""Return $\partial l/\partial\omega$."""
+    return jax.grad(lagrangian, argnums=1)(system, w)
+
+
+def energy(system: GroupLagrangeDAlembert, w: Array) -> Array:
+    r"""Return $\omega\cdot\partial l/\partial\omega - l$."""
+    return w @ continuous_momentum(system, w) - lagrangian(system, w)
+
+
+def newton_matrix(
+    system: GroupLagrangeDAlembert, g: Array, v: Array, h: Array, kinetic: Array
+) -> tuple[Array, Scaled, tuple[Array, Array]]:
+    """Return the scaled matrix of a step, its units, and P and F at the step."""
+
+    def values(w: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        both = momenta(system, w, h)[0], discrete_constraints(system, g, w, h)
+        return both, both
+
+    (mass, below), found = jax.jacfwd(values, has_aux=True)(v)
+    matrix, units = bordered(mass, forms(system, g), below, kinetic)
+    return matrix, units, found
+
+
+def acceleration_matrix(system: GroupLagrangeDAlembert, g: Array, w: Array) -> tuple[Array, Scaled]:
+    """Return the scaled matrix of the continuous equations."""
+    kinetic, A = jax.hessian(lagrangian, argnums=1)(system, w), forms(system, g)
+    return bordered(kinetic, A, A, kinetic)
+
+
+def normalized(system: GroupLagrangeDAlembert, g: Array) -> Array:
+    """Return the element of the group next to a matrix in which rounding errors have gathered."""
+    group = system.group
+    return group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(g)))

@@ -1,0 +1,206 @@
+"""What a system on a group is whose Lagrangian is left-invariant and whose constraints need not be."""
+
+import dataclasses
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import jax
+
+from nonholo._checks import error, shown
+from nonholo._types import Array, Float
+from nonholo.groups import AbstractMatrixGroup
+from nonholo.lagrange_dalembert._room import room
+from nonholo.lagrange_dalembert._tracing import traced_shape
+from nonholo.numerics import double_precision
+from nonholo.systems._coordinate_system import AbstractCoordinateSystem
+from nonholo.systems._mass import checked_group, group_mass_tensor, inertia_form
+
+if TYPE_CHECKING:
+    from nonholo.lagrange_dalembert.on_groups._discretization import GroupDiscretization
+    from nonholo.lagrange_dalembert.on_groups._orbit import GroupOrbit
+
+
+@dataclasses.dataclass(frozen=True)
+class GroupLagrangeDAlembert(AbstractCoordinateSystem):
+    r"""A left-invariant Lagrangian on a matrix group with velocity constraints that may depend on the configuration.
+
+    $$ \dot p = \mathrm{ad}^*_\omega p + \sum_j\lambda_j a^j(g), \quad p = \frac{\partial l}{\partial\omega}, \qquad
+       a(g)\,\omega = 0, \qquad \dot g = g\,\omega; $$
+    $$ P_{k+1} - \mathrm{Ad}^*_{W_k}P_k = \sum_j\lambda_j a^j(g_{k+1}), \quad P_k = P(W_k), \qquad F(g_k, W_k) = 0,
+       \qquad g_{k+1} = g_k W_k, $$
+
+    with $\langle P(W), x\rangle = \tfrac{d}{d\varepsilon}l_d(e^{\varepsilon x}W)|_0$. Forms that do not depend on g
+    give `LLSystem`, forms $a(g) = \mathrm{Ad}^*_g\alpha$ give `LRSystem`; then those are the faster choice.
+
+    The default F is the midpoint rule
+
+    $$ F(g, W) = a\bigl(g\,e^{(\log W)/2}\bigr)\,\log W/h . $$
+
+    It is second-order accurate, and $F(gW, W^{-1}) = -F(g, W)$: with an l_d for which $l_d(W^{-1}) = l_d(W)$ the map is
+    reversible. Neither the discrete map's energy nor any momentum is conserved in general.
+
+    Reference: [fedorov-zenkov-2004], sections 2 and 3; docs/theory, "lagrange-dalembert-on-groups".
+
+    Args:
+        group: The group.
+        discrete_lagrangian: `discrete_lagrangian(W, time_step)` -> scalar, written with `jax.numpy`; it includes the
+            factor time_step. `mass_tensor_lagrangian` makes that of a rigid body.
+        constraint_forms: `constraint_forms(g)` -> (s, dim), the rows $a^j(g)$ in body coordinates; None for none.
+        discrete_constraints: `discrete_constraints(g, W, time_step)` -> (s,), in place of the midpoint rule.
+        lagrangian: `lagrangian(body_velocity)` -> scalar, the limit of $l_d(e^{h\omega})/h$; only needed for `flow`
+            and for starts from a velocity or a momentum, and only if it is not a quadratic form.
+
+    Raises:
+        ValueError: Something that is no group; a function that JAX cannot trace, or whose value has the wrong shape.
+
+    Example:
+        A sleigh in the plane whose blade turns in the body as the body moves along x:
+
+        >>> import jax.numpy as jnp
+        >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
+        >>> def forms(g):
+        ...     return jnp.array([[0.0, -jnp.sin(g[0, 2]), jnp.cos(g[0, 2])]])
+        >>> action = mass_tensor_lagrangian(nh.SE(2), nh.ChaplyginSleigh(1.0, 0.5, a=0.3).homogeneous_mass_tensor)
+        >>> sleigh = GroupLagrangeDAlembert(nh.SE(2), action, forms)
+        >>> orbit = sleigh.discretize(0.1).simulate(body_velocity=(0.5, 1.0, 0.0), steps=100)
+        >>> orbit.configuration.shape, bool(orbit.constraint_residual.max() < 1e-13)
+        ((101, 3, 3), True)
+    """
+
+    group: AbstractMatrixGroup
+    discrete_lagrangian: Callable[[Array, Array], Array]
+    constraint_forms: Callable[[Array], Array] | None
+    discrete_constraints: Callable[[Array, Array, Array], Array] | None = None
+    lagrangian: Callable[[Array], Array] | None = dataclasses.field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.group, AbstractMatrixGroup):
+            where, remedy = "GroupLagrangeDAlembert(group=...)", "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
+            raise error(where, "be a matrix group", shown(self.group), remedy)
+        with double_precision():
+            g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
+            w, h = jax.ShapeDtypeStruct((self.group.dim,), float), jax.ShapeDtypeStruct((), float)
+            self._check("discrete_lagrangian", (), g, h)
+            if self.constraint_forms is not None:
+                self._check_forms(g)
+            if self.discrete_constraints is not None:
+                self._check("discrete_constraints", (self.constraints,), g, g, h)
+            if self.lagrangian is not None:
+                self._check("lagrangian", (), w)
+
+    def _check(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
+        found = self._shape(name, *arguments)
+        if found != shape:
+            wanted = "a scalar" if shape == () else f"an array of shape {shape}"
+            remedy = f"It is called with arrays of shapes {[x.shape for x in arguments]}."
+            raise error(f"GroupLagrangeDAlembert({name}=...)", f"return {wanted}", f"shape {found}", remedy)
+
+    def _check_forms(self, g: Any) -> None:
+        n, found = self.group.dim, self._shape("constraint_forms", g)
+        if len(found) != 2 or found[1] != n or not 0 < found[0] < n:
+            wanted = f"return an array of shape (s, {n}) with 0 < s < {n}"
+            remedy = "Stack one row per constraint, in body coordinates; pass None for no constraint."
+            raise error("GroupLagrangeDAlembert(constraint_forms=...)", wanted, f"shape {found}", remedy)
+
+    def _shape(self, name: str, *arguments: Any) -> tuple[int, ...]:
+        where = f"GroupLagrangeDAlembert({name}=...)"
+        return traced_shape(where, getattr(self, name), arguments, f"{self.group!r}")
+
+    @property
+    def constraints(self) -> int:
+        """The number s of constraints."""
+        if self.constraint_forms is None:
+            return 0
+        with double_precision():
+            g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
+            return jax.eval_shape(self.constraint_forms, g).shape[0]
+
+    def discretize(self, time_step: Any) -> "GroupDiscretization":
+        """Return the discrete map with this time step.
+
+        Args:
+            time_step: h > 0.
+
+        Raises:
+            ValueError: A time step that is not positive.
+
+        Example:
+            >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
+            >>> action = mass_tensor_lagrangian(nh.SO(3), np.diag([1.0, 2.0, 3.0]))
+            >>> GroupLagrangeDAlembert(nh.SO(3), action, None).discretize(0.1).time_step
+            0.1
+        """
+        return room("on_groups").GroupDiscretization(self, time_step)
+
+    def flow(
+        self,
+        *,
+        configuration: Any = None,
+        times: Any,
+        body_velocity: Any = None,
+        momentum: Any = None,
+        rtol: float = 1e-10,
+        atol: float = 1e-12,
+    ) -> "GroupOrbit":
+        r"""Solve the continuous equations.
+
+        The rate of $\omega$ comes from the constraint differentiated once. Velocities are projected to the constraint,
+        orthogonally in the kinetic energy, at each evaluation and at each requested time; an adaptive Runge-Kutta
+        method of order 8 steps to every requested time, where the pose is put back on the group.
+
+        Args:
+            configuration: The first configuration; the identity by default.
+            times: The times of the states, at least one, increasing or decreasing; the start is at the first.
+            body_velocity: The first velocity, which must satisfy the constraint.
+            momentum: Start with this momentum instead; only its action on admissible velocities counts.
+            rtol: Relative error of a step, at least 1e-14.
+            atol: Absolute error of a step.
+
+        Returns:
+            The orbit. It has no displacements, and its multipliers are the forces at its times.
+
+        Raises:
+            ValueError: A bad argument, before any work.
+            OutcomeError: The solver could not meet the tolerances; its `orbit` holds every good state.
+
+        Example:
+            >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
+            >>> action = mass_tensor_lagrangian(nh.SO(3), np.eye(3))
+            >>> free = GroupLagrangeDAlembert(nh.SO(3), action, None)
+            >>> orbit = free.flow(body_velocity=(0.0, 0.0, np.pi), times=(0.0, 1.0))
+            >>> print(orbit.configuration[-1].diagonal().round(9))
+            [-1. -1.  1.]
+        """
+        starts = {"body_velocity": body_velocity, "momentum": momentum}
+        return room("on_groups._flow").flow(self, configuration, starts, times, rtol, atol)
+
+
+def mass_tensor_lagrangian(
+    group: AbstractMatrixGroup, mass_tensor: Float[Array, "N N"]
+) -> Callable[[Array, Array], Array]:
+    r"""Return the discrete Lagrangian of a body with a mass tensor, for `GroupLagrangeDAlembert`.
+
+    $$ l_d(W) = h\,l\bigl((W - I)/h\bigr) = \tfrac{1}{2h}\mathrm{tr}\bigl((W - I)\,\mathbb{J}\,(W - I)^T\bigr). $$
+
+    Args:
+        group: SO(n) or SE(n).
+        mass_tensor: Symmetric: (n, n) on SO(n), homogeneous (n + 1, n + 1) on SE(n).
+
+    Raises:
+        ValueError: Another group, a wrong shape, an asymmetry, a value that is not finite.
+
+    Example:
+        >>> from nonholo.lagrange_dalembert import mass_tensor_lagrangian
+        >>> action = mass_tensor_lagrangian(nh.SO(3), np.eye(3))
+        >>> float(action(np.diag([-1.0, -1.0, 1.0]), 0.5))  # a half-turn: (4 + 4)/(2 * 0.5)
+        8.0
+    """
+    checked_group("mass_tensor_lagrangian(group=...)", group)
+    where, instead = "mass_tensor_lagrangian(mass_tensor=...)", "Write a discrete Lagrangian of your own."
+    tensor = group_mass_tensor(where, group, mass_tensor, instead)
+
+    def discrete_lagrangian(W: Array, time_step: Array) -> Array:
+        X = W - group.identity
+        return inertia_form(group, X[None], X.__array_namespace__().asarray(tensor))[0, 0] / (2 * time_step)
+
+    return discrete_lagrangian

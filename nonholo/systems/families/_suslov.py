@@ -1,0 +1,183 @@
+"""The Suslov top: a rigid body about a fixed point that may only turn in planes containing one of its own axes."""
+
+import dataclasses
+import functools
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from nonholo._checks import array, error, is_traced, positive_definite, symmetric
+from nonholo._types import Array, Float
+from nonholo.groups import SO, AbstractMatrixGroup
+from nonholo.systems._base import AbstractLLSystem
+from nonholo.systems._body import lines_of, possible, tensors_shown
+from nonholo.systems._mass import (
+    body_tensor,
+    inertia_from_mass_tensor,
+    inertia_tensor,
+    mass_tensor_from_inertia,
+    rotation_to,
+)
+from nonholo.systems._normal_form import NormalForm, top_form
+from nonholo.systems._subspace import complement, plane_rows
+
+if TYPE_CHECKING:
+    from nonholo.systems.families._arrowhead import ArrowheadTop
+
+_E3 = (0.0, 0.0, 1.0)
+
+
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
+class SuslovTop(AbstractLLSystem):
+    r"""A top on SO(n) that may only turn in planes that contain a body axis: $e_n$, or for n = 3 the axis `axis`.
+
+    $$ l(\omega) = \tfrac12 \mathrm{tr}(\hat\omega J \hat\omega^T), \qquad
+       \omega \in \mathfrak{d} = \mathrm{span}\{e_i\wedge e_n\}; \qquad n = 3:\ \langle\gamma, \omega\rangle = 0, $$
+
+    with the mass tensor $J = \int r r^T dm$ (not, for n = 3, the inertia tensor $\mathrm{tr}(J)\,\mathrm{Id} - J$;
+    `from_inertia` takes that one). With $J = \begin{pmatrix} A & c \\ c^T & d\end{pmatrix}$ in the canonical frame,
+    $B = A + d\,\mathrm{Id}$ is the constrained inertia and $c$ the `coupling`, which drives the top from one permanent
+    rotation to another.
+
+    Reference: [fedorov-zenkov-2004], section 4.
+
+    Args:
+        mass_tensor: Symmetric (n, n), n >= 3, with positive definite B; flat and rod-like bodies are allowed.
+        axis: n = 3 alone: forbidden body axis, a unit vector; e3 if left out.
+
+    Raises:
+        ValueError: A shape, an asymmetry, a value that is not finite, B not positive definite, an axis for n > 3.
+
+    Example:
+        >>> top = SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+        >>> top.constrained_inertia
+        array([[2.3, 0.2],
+               [0.2, 1.9]])
+        >>> SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])).constraint_subspace  # e1^e4, e2^e4, e3^e4
+        array([[0., 0., 1., 0., 0., 0.],
+               [0., 0., 0., 0., 1., 0.],
+               [0., 0., 0., 0., 0., 1.]])
+    """
+
+    mass_tensor: Array
+    axis: Array = dataclasses.field(default=None, kw_only=True)
+    leaves: ClassVar[tuple[str, ...]] = ("mass_tensor",)
+    structure: ClassVar[tuple[str, ...]] = ("axis",)
+
+    def __post_init__(self) -> None:
+        where = "SuslovTop(mass_tensor=...)"
+        remedy = "Pass the mass tensor J, not the inertia tensor; `SuslovTop.from_inertia` takes that one."
+        object.__setattr__(self, "mass_tensor", body_tensor(where, self.mass_tensor, remedy))
+        object.__setattr__(self, "axis", _forbidden_axis("SuslovTop(axis=...)", self.axis, len(self.mass_tensor)))
+        positive_definite(where, self.constrained_inertia, "the inertia along the constraint", remedy)
+
+    @classmethod
+    def from_inertia(cls, inertia: Array, axis: Array = _E3) -> "SuslovTop":
+        """Build a top (n = 3) from its inertia tensor and the forbidden body axis, all in the user's body frame.
+
+        The inertia tensor is about the fixed point. An `ImpossibleBodyWarning` says so if no body has it.
+
+        Example:
+            >>> SuslovTop.from_inertia(np.diag([3.0, 2.0, 1.5]), axis=(0, 1, 0)).annihilator
+            array([[0., 1., 0.]])
+        """
+        where = "SuslovTop.from_inertia(inertia=...)"
+        tensor = symmetric(where, array(where, inertia, (3, 3)), "Pass the inertia tensor about the fixed point.")
+        return cls(possible(where, mass_tensor_from_inertia(tensor)), axis=axis)
+
+    @staticmethod
+    def arrowhead(diagonal: Any, coupling: Any) -> "ArrowheadTop":
+        r"""Build a top in many dimensions, n up to millions: $J = \mathrm{diag}(d)$ plus c in the last row and column.
+
+        No n x n array is made. Every mass tensor has this form in the axes that diagonalise B.
+
+        Args:
+            diagonal: d, n numbers, n >= 3.
+            coupling: c, n - 1 numbers.
+
+        Raises:
+            ValueError: A wrong shape, a value that is not finite, an inertia along the constraint that is not positive.
+
+        Example:
+            >>> SuslovTop.arrowhead([1.0, 2.0, 3.0, 4.0], [0.1, 0.2, 0.3]).dense.constrained_inertia.diagonal()
+            array([5., 6., 7.])
+        """
+        from nonholo.systems.families._arrowhead import ArrowheadTop
+
+        return ArrowheadTop(diagonal, coupling)
+
+    def __repr__(self) -> str:
+        head = f"n={self.group.size}" if self.axis is None else f"axis={np.asarray(self.axis).tolist()}"
+        return f"SuslovTop({head},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
+
+    @property
+    def group(self) -> AbstractMatrixGroup:
+        """The rotation group SO(n)."""
+        return SO(self.mass_tensor.shape[-1])
+
+    @property
+    def homogeneous_mass_tensor(self) -> Float[Array, "n n"]:
+        """The mass tensor itself."""
+        return self.mass_tensor
+
+    @property
+    def inertia_operator(self) -> Float[Array, "dim dim"]:
+        r"""The operator $\omega \mapsto J\omega + \omega J$; for n = 3 it is $\mathrm{tr}(J)\,\mathrm{Id} - J$."""
+        if self.axis is None:
+            return inertia_from_mass_tensor(self.group, self.mass_tensor)
+        return inertia_tensor(self.mass_tensor)
+
+    @property
+    def inertia_along(self) -> Float[Array, "k k"]:
+        r"""The matrix $B = A + d\,\mathrm{Id}$; for n = 3 in the rows of the constraint subspace."""
+        return self.normal_form.stiffness
+
+    @property
+    def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
+        r"""Rows $e_i\wedge e_n$; n = 3: S(0, 1, 0) and S(-1, 0, 0), S the shortest rotation taking e3 to the axis."""
+        n = self.mass_tensor.shape[-1]
+        rows = plane_rows(self.group, [(i, n - 1) for i in range(n - 1)])
+        return rows if self.axis is None else rows @ self.frame.T
+
+    @property
+    def annihilator(self) -> Float[np.ndarray, "s dim"]:
+        r"""The forbidden planes $e_i\wedge e_j$, i < j < n; for n = 3 the forbidden axis."""
+        return complement(self.constraint_subspace) if self.axis is None else np.array(self.axis)[None, :]
+
+    @property
+    def frame(self) -> Float[np.ndarray, "n n"]:
+        """The shortest rotation taking e3 to the forbidden axis; the identity for n > 3."""
+        return self.group.identity if self.axis is None else rotation_to(self.axis)
+
+    @property
+    def canonical(self) -> "SuslovTop":
+        """The same top in body axes whose last one is the forbidden axis."""
+        if self.axis is None or np.array_equal(self.axis, _E3):
+            return self
+        turned = self.frame.T @ self.mass_tensor @ self.frame
+        return SuslovTop((turned + turned.T) / 2)
+
+    @property
+    def coupling(self) -> Float[Array, "k"]:
+        """The vector c of the mass tensor in the canonical frame; zero for a balanced top."""
+        return self.normal_form.coupling
+
+    @functools.cached_property
+    def normal_form(self) -> NormalForm:
+        """B and c."""
+        return top_form(self.canonical.mass_tensor)
+
+
+def _forbidden_axis(where: str, value: Array, n: int) -> Array:
+    if n > 3:
+        if value is not None:
+            remedy = "Turn the body so that its planes of rotation contain e_n."
+            raise error(where, "be left out for n > 3", f"an axis for n = {n}", remedy)
+        return None
+    axis = array(where, _E3 if value is None else value, (3,), "Pass a unit vector in body coordinates.")
+    if is_traced(axis):
+        raise error(where, "be concrete", "a traced value", "Differentiate with respect to mass_tensor instead.")
+    length = np.linalg.norm(axis)
+    if abs(length - 1) > 1e-12:
+        raise error(where, "be a unit vector", f"length {length:.17g}", "Divide it by its length.")
+    return axis
