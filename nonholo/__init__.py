@@ -119,7 +119,7 @@ _HOMES = {
     "Translations": "groups",
     "Uniform": "ensembles",
     "VeselovaTop": "systems",
-    "allow_float32": "discrete._precision",
+    "allow_float32": "discrete.definition",
     "asymptotics": "analysis",
     "branch_tree": "discrete",
     "branches": "discrete",
@@ -165,7 +165,7 @@ _HOMES = {
 }
 _ROOMS = {"examples": "examples", "plot": "plotting", "testing": "testing"}
 
-_EXTRAS = {"discrete._precision": "jax", "discrete._step": "jax", "examples": "jax", "lagrange_dalembert": "jax"}
+_EXTRAS = {"discrete.definition": "jax", "discrete._step": "jax", "examples": "jax", "lagrange_dalembert": "jax"}
 """What homes must have installed beyond the core."""
 
 __version__ = version("nonholo")

@@ -391,6 +391,8 @@ def needs(extra: str, where: str) -> Iterator[None]:
     try:
         yield
     except ModuleNotFoundError as missing:
+        if str(missing.name).startswith("nonholo."):
+            raise
         remedy = f"Install the extra `{extra}`: pip install 'nonholo[{extra}]'."
         message = str(error(where, f"have the extra `{extra}`", f"no module {missing.name!r}", remedy))
         raise MissingExtraError(message, name=missing.name) from None

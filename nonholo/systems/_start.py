@@ -27,7 +27,7 @@ class Start:
         >>> from nonholo.systems import Start
         >>> start = Start.of("simulate", momentum=(0.4, 0.9, 0.0), body_velocity=None)
         >>> start.name, start.momentum(nh.SuslovTop(np.eye(3)), np.eye(3)).tolist()
-        ('momentum', [0.4, 0.9])
+        ('momentum', [0.9, -0.4])
     """
 
     owner: str

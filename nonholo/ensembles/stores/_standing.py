@@ -59,7 +59,8 @@ def standing_of(path: str | Path) -> SweepStanding:
 def opened_result(store: SweepStore) -> xarray.Dataset:
     """Return the result as a dataset that is read as it is used, by the metadata of its arrays, which were checked."""
     try:
-        return xarray.open_zarr(store.path, chunks=None, consolidated=False)
+        dataset = xarray.open_zarr(store.path, chunks=None, consolidated=False)
     except Exception as failure:
         got = f"'{store.path}', where xarray cannot read them: {failure}"
         raise error("load_sweep(store=...)", "hold sound metadata", got, "Copy it again from its source.") from failure
+    return dataset[sorted(map(str, dataset.data_vars))]  # a disk lists files in any order
