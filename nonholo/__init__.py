@@ -8,8 +8,6 @@ if TYPE_CHECKING:
     from nonholo import examples as examples
     from nonholo import plotting as plot  # noqa: F401
     from nonholo import testing as testing
-    from nonholo._results import Outcome as Outcome
-    from nonholo._results import OutcomeError as OutcomeError
     from nonholo.analysis import asymptotics as asymptotics
     from nonholo.analysis import conserved_momenta as conserved_momenta
     from nonholo.analysis import critical_energies as critical_energies
@@ -23,6 +21,8 @@ if TYPE_CHECKING:
     from nonholo.analysis import lyapunov_function as lyapunov_function
     from nonholo.analysis import momentum_locus as momentum_locus
     from nonholo.analysis import single_valued_region as single_valued_region
+    from nonholo.base.results import Outcome as Outcome
+    from nonholo.base.results import OutcomeError as OutcomeError
     from nonholo.continuous import vector_field as vector_field
     from nonholo.discrete import Discretization as Discretization
     from nonholo.discrete import branch_tree as branch_tree
@@ -108,8 +108,8 @@ _HOMES = {
     "MultidimensionalSleigh": "systems",
     "Normal": "ensembles",
     "Orbit": "orbit",
-    "Outcome": "_results",
-    "OutcomeError": "_results",
+    "Outcome": "base.results",
+    "OutcomeError": "base.results",
     "ProductGroup": "groups",
     "RandomDesign": "ensembles",
     "RigidBody": "systems",
@@ -182,7 +182,7 @@ def __getattr__(name: str) -> Any:
 def _home(home: str, name: str) -> Any:
     if home not in _EXTRAS:
         return importlib.import_module(f"nonholo.{home}")
-    from nonholo._checks import needs
+    from nonholo.base.checks import needs
 
     with needs(_EXTRAS[home], f"nonholo.{name}"):
         return importlib.import_module(f"nonholo.{home}")

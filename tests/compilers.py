@@ -21,7 +21,7 @@ def use_caches() -> None:
     That of numba belongs to the text of the kernels: its own index does not notice that a callee has changed.
     """
     text = hashlib.sha256(os.environ.get("NUMBA_BOUNDSCHECK", "").encode())
-    for room in ("continuous", "kernels", "numerics"):
+    for room in ("continuous", "kernels", "base/numerics"):
         for file in sorted((ROOT / "nonholo" / room).rglob("*.py")):
             text.update(file.read_bytes())
     folder = ROOT / "build" / "tests"

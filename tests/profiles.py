@@ -57,7 +57,7 @@ PROFILES = {
     ),
     "shapes": Profile(
         "annotations of shapes and types, checked at run time by jaxtyping and beartype",
-        (*_MECHANICS, "orbit", "simulation", "_types", "_checks", "_limits"),
+        (*_MECHANICS, "orbit", "simulation", "base"),
         f"{PYTHON} -m pytest -q tests/groups tests/systems tests/discrete tests/simulation "
         "-k 'not refused and not warned_of' "
         "--jaxtyping-packages=nonholo.groups,nonholo.systems,nonholo.orbit,nonholo.discrete,nonholo.simulation,"
@@ -65,12 +65,12 @@ PROFILES = {
     ),
     "bounds": Profile(
         "kernels with every index checked, which compiles them once more",
-        ("kernels", "numerics", "_compiled"),
-        f"NUMBA_BOUNDSCHECK=1 {PYTHON} -m pytest -q tests/kernels tests/numerics tests/simulation/test_ensemble.py",
+        ("kernels", "base"),
+        f"NUMBA_BOUNDSCHECK=1 {PYTHON} -m pytest -q tests/kernels tests/base tests/simulation/test_ensemble.py",
     ),
     "site": Profile(
         "the pages and the docstrings of public names as a site; broken links and unknown names are errors",
-        (*_MECHANICS[2:], *_RUNS[1:], *_QUESTIONS, "lagrange_dalembert", "_results", "docs"),
+        (*_MECHANICS[2:], *_RUNS[1:], *_QUESTIONS, "lagrange_dalembert", "base", "docs"),
         ".venv/bin/pip install -q -c constraints.txt -e '.[all,docs]' && .venv/bin/sphinx-build -W docs build/site",
     ),
     "long": Profile(

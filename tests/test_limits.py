@@ -99,7 +99,7 @@ def test_a_run_that_an_event_stops_may_be_long() -> None:
 def test_frames_that_fill_the_memory_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Frames are held until the last one is drawn."""
     orbit = nh.simulate(SLEIGH, steps=50, **START)
-    monkeypatch.setattr("nonholo._limits.memory_limit", lambda: 1e6)
+    monkeypatch.setattr("nonholo.base.limits.memory_limit", lambda: 1e6)
     with pytest.raises(ValueError, match=r"animate\(frames=...\)` must fit into memory. Got about .* MB of 1 MB"):
         nh.plot.animate(orbit, tmp_path / "a.gif", frames=40)
     assert not list(tmp_path.iterdir())
@@ -107,6 +107,6 @@ def test_frames_that_fill_the_memory_are_refused(tmp_path: Path, monkeypatch: py
 
 def test_times_that_fill_the_memory_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """A flow holds its states."""
-    monkeypatch.setattr("nonholo._limits.memory_limit", lambda: 1e6)
+    monkeypatch.setattr("nonholo.base.limits.memory_limit", lambda: 1e6)
     with pytest.raises(ValueError, match=r"flow\(times=...\)` must fit into memory"):
         nh.flow(SLEIGH.system, times=np.arange(10.0**5), **START)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.numerics import _double_precision
+from nonholo.base.numerics import _double_precision
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
 

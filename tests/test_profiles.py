@@ -34,7 +34,7 @@ def test_every_room_is_guarded() -> None:
     rooms |= {"paper", "docs"}
     listed = {room for profile in PROFILES.values() for room in profile.rooms}
     assert listed <= rooms
-    assert rooms - listed <= {"py.typed", "_progress", "_results"}
+    assert rooms - listed <= {"py.typed"}
 
 
 def test_marks_mean_something(cases: dict[str, list[pytest.Item]]) -> None:
@@ -82,7 +82,7 @@ def _complete(request: pytest.FixtureRequest) -> bool:
         (["nonholo/cli/commands/plot.py"], {"faults"}),
         (["tests/plotting/test_section.py", "docs/paper.md"], {"paper", "site"}),
         (["nonholo/kernels/_sleigh.py"], {"routes", "faults", "problems", "shapes", "bounds"}),
-        (["nonholo/_checks.py"], {"shapes"}),
+        (["nonholo/base/checks.py"], {"shapes"}),
         (["pyproject.toml"], set(PROFILES) - {"fuzz", "long", "mutants"}),
         (["tests/bodies.py"], set(PROFILES) - {"fuzz", "long", "mutants"}),
         (None, set(PROFILES) - {"fuzz", "long", "mutants"}),

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import nonholo as nh
-from nonholo._progress import progress_bar, waiting
+from nonholo.base.progress import progress_bar, waiting
 
 
 @pytest.fixture(autouse=True)

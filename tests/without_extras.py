@@ -47,7 +47,7 @@ if __name__ == "__main__":  # not where pytest looks for examples
     sys.meta_path.insert(0, _Absent())
 
 import nonholo as nh  # noqa: E402
-from nonholo._checks import MissingExtraError  # noqa: E402
+from nonholo.base.checks import MissingExtraError  # noqa: E402
 
 
 def extra_of(missing: MissingExtraError) -> str:

@@ -5,10 +5,10 @@ from typing import cast
 
 import numpy as np
 
-from nonholo._checks import array, error, shape_of, shown
-from nonholo._limits import bounded_count
-from nonholo._types import Array, Float
 from nonholo.analysis.planar import Strip, planar_map
+from nonholo.base.checks import array, error, shape_of, shown
+from nonholo.base.limits import bounded_count
+from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
 
 

@@ -8,8 +8,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from nonholo._checks import error, positive
-from nonholo._types import Array, Float
+from nonholo.base.checks import error, positive
+from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, weights
 from nonholo.systems import AbstractLLSystem, AbstractSystem
 

@@ -4,10 +4,10 @@ import dataclasses
 
 import numpy as np
 
-from nonholo._checks import number, positive
-from nonholo._limits import bounded_count
-from nonholo._types import Array, Float
 from nonholo.analysis.planar import momenta_at, planar_map
+from nonholo.base.checks import number, positive
+from nonholo.base.limits import bounded_count
+from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
 
 

@@ -4,10 +4,10 @@ import dataclasses
 
 import numpy as np
 
-from nonholo._checks import count, error, number, trailing
-from nonholo._limits import within_memory
-from nonholo._types import Array, Float
 from nonholo.analysis.planar import momenta_at, planar_map
+from nonholo.base.checks import count, error, number, trailing
+from nonholo.base.limits import within_memory
+from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
 
 

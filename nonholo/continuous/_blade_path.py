@@ -8,7 +8,7 @@ can lose every digit (at $\Lambda = 2$, or for large ones), so it is evaluated h
 import numpy as np
 from scipy.special import digamma
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 
 _FRACTION_DEPTH = 200  # enough to rounding for every ratio on the near side of the border
 _SERIES_LENGTH = 60  # enough to rounding on the far side

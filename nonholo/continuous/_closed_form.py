@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from nonholo._checks import error
-from nonholo._results import Outcome
-from nonholo._types import Float
+from nonholo.base.checks import error
+from nonholo.base.numerics import sinc
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
 from nonholo.continuous._blade_path import blade_path
 from nonholo.continuous._heteroclinic import Heteroclinic, heteroclinic
 from nonholo.continuous._integration import integrate_pose
-from nonholo.numerics import sinc
 from nonholo.systems import AbstractSystem, ChaplyginSleigh, SuslovTop
 
 _LARGEST_RATIO = 1e150  # of turn to the Gudermannian; beyond it the centre of mass is as good as at the blade

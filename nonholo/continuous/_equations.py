@@ -10,12 +10,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nonholo._checks import error, number, shown, trailing
-from nonholo._types import Array, Float
+from nonholo.base.checks import error, number, shown, trailing
+from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.systems import AbstractSystem
-from nonholo.systems._mass import inertia_form
+from nonholo.systems import AbstractSystem, inertia_form
 
 Body = tuple[Array, Array, Array]
 r"""Constraint subspace $S$, inertia operator $\mathbb{I}$ and $(S\mathbb{I}S^T)^{-1}S$, which takes r to $\omega$."""

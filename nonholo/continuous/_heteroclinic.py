@@ -9,7 +9,7 @@ import dataclasses
 
 import numpy as np
 
-from nonholo._types import Array, Float
+from nonholo.base.types import Array, Float
 from nonholo.continuous._equations import body_of, momentum_rate
 from nonholo.systems import AbstractSystem
 

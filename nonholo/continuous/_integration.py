@@ -4,8 +4,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from nonholo._results import Outcome
-from nonholo._types import Float
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
 from nonholo.continuous._equations import body_of
 from nonholo.continuous._heteroclinic import Heteroclinic
 from nonholo.continuous._turning import Turning

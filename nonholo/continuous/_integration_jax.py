@@ -7,13 +7,13 @@ from typing import Any
 import jax
 import numpy as np
 
-from nonholo._results import Outcome
-from nonholo._types import Array, Float
+from nonholo.base.numerics import double_precision
+from nonholo.base.numerics.time_sweep import State, padded, reached, sweep
+from nonholo.base.results import Outcome
+from nonholo.base.types import Array, Float
 from nonholo.continuous._equations import Body, body_of, momentum_rate, spatial_velocity
 from nonholo.continuous._integration import on_same_turn
 from nonholo.groups import SE, AbstractMatrixGroup
-from nonholo.numerics import double_precision
-from nonholo.numerics._time_sweep import State, padded, reached, sweep
 from nonholo.systems import AbstractSystem
 
 Rate = Callable[[AbstractMatrixGroup, Array, State, Any], State]

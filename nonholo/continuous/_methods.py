@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from nonholo._checks import choice, needs
+from nonholo.base.checks import choice, needs
 from nonholo.continuous._closed_form import closed_form
 from nonholo.continuous._integration import integrate
 

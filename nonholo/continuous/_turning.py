@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 from nonholo.kernels import RATES
 
 

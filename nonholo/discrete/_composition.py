@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import choice, error
-from nonholo._types import Float
+from nonholo.base.checks import choice, error
+from nonholo.base.types import Float
 from nonholo.discrete._scheme import Scheme
 
 WEIGHTS = {

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nonholo._checks import error, function, needs
-from nonholo._types import Array
+from nonholo.base.checks import error, function, needs
+from nonholo.base.types import Array
 from nonholo.discrete._discretization import Discretization, as_discretization
 
 _SAMPLES = 16

@@ -1,7 +1,7 @@
 """`discrete_legendre`: the momentum of a displacement, checked."""
 
-from nonholo._checks import array, choice, shape_of
-from nonholo._types import Array, Float
+from nonholo.base.checks import array, choice, shape_of
+from nonholo.base.types import Array, Float
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._legendre import legendre
 

@@ -7,8 +7,8 @@ from typing import Any, ClassVar, overload
 
 import numpy as np
 
-from nonholo._checks import choice, error, needs, scale, shown, trailing
-from nonholo._types import Array, Float
+from nonholo.base.checks import choice, error, needs, scale, shown, trailing
+from nonholo.base.types import Array, Float
 from nonholo.discrete._composition import checked_order, refuse_composition, weights
 from nonholo.discrete._legendre import legendre, legendre_of_chart
 from nonholo.discrete._pytrees import pytree
@@ -16,8 +16,7 @@ from nonholo.discrete._scheme import Difference
 from nonholo.discrete._variety import Constraint, Variety, checked_constraint, equations_of, variety_of
 from nonholo.discrete.routes import AbstractRoute, make_route
 from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.systems import AbstractSystem, System
-from nonholo.systems._coordinate_system import AbstractCoordinateSystem, DiscretizationT, refuse_in_coordinates
+from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, DiscretizationT, System, refuse_in_coordinates
 
 
 @pytree

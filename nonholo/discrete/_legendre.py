@@ -4,8 +4,8 @@ For the matrix difference both are closed forms in $X = W - I$, free of cancella
 for every other discrete Lagrangian they are derivatives taken by JAX (`_functions`).
 """
 
-from nonholo._checks import needs
-from nonholo._types import Array, Float, Inexact
+from nonholo.base.checks import needs
+from nonholo.base.types import Array, Float, Inexact
 from nonholo.discrete._scheme import Scheme
 from nonholo.groups import AbstractMatrixGroup
 

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
-from nonholo._checks import array, error, scale, shape_of, symmetric
-from nonholo._types import Array, Float
+from nonholo.base.checks import array, error, scale, shape_of, symmetric
+from nonholo.base.types import Array, Float
 from nonholo.groups import SO
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from nonholo._results import Outcome
-from nonholo._types import Float
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
 from nonholo.discrete.routes import AbstractCompiledRoute, matrices_of
 from nonholo.orbit import Orbit
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Protocol
 
-from nonholo._types import Array
+from nonholo.base.types import Array
 from nonholo.discrete._variety import Constraint, Variety
 from nonholo.systems import System
 

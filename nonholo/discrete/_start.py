@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error, shape_of
-from nonholo._results import Outcome, OutcomeError
-from nonholo._types import Float
+from nonholo.base.checks import error, shape_of
+from nonholo.base.results import Outcome, OutcomeError
+from nonholo.base.types import Float
 from nonholo.discrete._composition import refuse_composition
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._legendre import legendre

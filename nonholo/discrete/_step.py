@@ -8,9 +8,9 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo import kernels
-from nonholo._checks import array, error, is_traced, shape_of, shown
-from nonholo._results import Outcome
-from nonholo._types import Array, Float
+from nonholo.base.checks import array, error, is_traced, shape_of, shown
+from nonholo.base.results import Outcome
+from nonholo.base.types import Array, Float
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete.branching import (

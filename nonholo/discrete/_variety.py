@@ -12,8 +12,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nonholo._checks import choice, error, needs
-from nonholo._types import Array, Float
+from nonholo.base.checks import choice, error, needs
+from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractSystem
 

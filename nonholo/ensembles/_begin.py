@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from nonholo import io
-from nonholo._checks import count, error, shown
-from nonholo._limits import within_a_year, within_disk, within_memory
-from nonholo._progress import waiting
+from nonholo.base.checks import count, error, shown
+from nonholo.base.limits import within_a_year, within_disk, within_memory
+from nonholo.base.progress import waiting
 from nonholo.ensembles._block import block_of
 from nonholo.ensembles._describe import (
     NO_NAME,

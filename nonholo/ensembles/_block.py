@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error, natural
-from nonholo._limits import bounded_count
-from nonholo._types import Float
+from nonholo.base.checks import error, natural
+from nonholo.base.limits import bounded_count
+from nonholo.base.types import Float
 from nonholo.ensembles._names import component_name
 from nonholo.ensembles.designs import AbstractDesign, uniform_numbers
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from nonholo import io
-from nonholo._results import Outcome
+from nonholo.base.results import Outcome
 from nonholo.ensembles._block import block_of
 from nonholo.ensembles.stores import OUTCOME, RAISED, Mark, Results, SweepStore, Task, attempted, store_of
 from nonholo.simulation import in_one_thread

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from typing import Any
 
-from nonholo._checks import error, needs
+from nonholo.base.checks import error, needs
 from nonholo.ensembles._blocks import Done, Work, do_block
 from nonholo.ensembles.stores import attributes_of
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo.base.checks import error
 from nonholo.ensembles._names import component_name
 from nonholo.ensembles.designs import DISTRIBUTIONS, Design, Grid, RandomDesign
 from nonholo.io import fields_of

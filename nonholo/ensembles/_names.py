@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from nonholo._checks import error, shown
+from nonholo.base.checks import error, shown
 from nonholo.io import TAKEN, is_array_name
 
 OUTCOME = "outcome"

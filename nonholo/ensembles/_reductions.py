@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo._checks import error, shown
-from nonholo._results import Outcome
-from nonholo._types import Float
 from nonholo.analysis import step_jacobians
 from nonholo.analysis.limits import turn_of_flow
+from nonholo.base.checks import error, shown
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
 from nonholo.discrete import displacements_over, has_frame
 from nonholo.simulation import Ensemble, applied, have_kernel, scalar_members
 from nonholo.systems import AbstractSystem, ChaplyginSleigh

@@ -7,8 +7,8 @@ from typing import Any
 import xarray
 
 from nonholo import io, simulation
-from nonholo._checks import error, flags, path, shown
-from nonholo._progress import progress_bar
+from nonholo.base.checks import error, flags, path, shown
+from nonholo.base.progress import progress_bar
 from nonholo.discrete import Discretization
 from nonholo.ensembles._begin import restored_task
 from nonholo.ensembles._blocks import Done, Work

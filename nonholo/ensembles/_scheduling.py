@@ -11,7 +11,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
-from nonholo._checks import count, error, shown
+from nonholo.base.checks import count, error, shown
 from nonholo.ensembles._blocks import Done, Work, do_block
 from nonholo.ensembles._cluster import check_cluster, do_on_cluster
 

@@ -5,8 +5,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo._checks import error, shown
-from nonholo._types import Float
+from nonholo.base.checks import error, shown
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._names import STARTS, component_of

@@ -5,7 +5,7 @@ from typing import Any
 
 import xarray
 
-from nonholo._checks import error, flags, path
+from nonholo.base.checks import error, flags, path
 from nonholo.ensembles._begin import begun, check_same, check_task, restored_task
 from nonholo.ensembles._blocks import Work
 from nonholo.ensembles._resume import go_on

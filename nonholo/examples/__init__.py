@@ -1,6 +1,6 @@
 """Ready systems of the literature, each with a start and with what is known about its motion."""
 
-from nonholo._checks import needs
+from nonholo.base.checks import needs
 
 with needs("jax", "nonholo.examples"):
     from nonholo.examples._example import Example

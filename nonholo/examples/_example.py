@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array
-from nonholo._types import Array, Float
+from nonholo.base.checks import array
+from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
 

@@ -5,9 +5,9 @@ import functools
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import number
-from nonholo._limits import bounded_count
-from nonholo._types import Array
+from nonholo.base.checks import number
+from nonholo.base.limits import bounded_count
+from nonholo.base.types import Array
 from nonholo.examples._example import Example
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 

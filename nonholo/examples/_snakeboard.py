@@ -5,8 +5,8 @@ import functools
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import error, scale
-from nonholo._types import Array
+from nonholo.base.checks import error, scale
+from nonholo.base.types import Array
 from nonholo.examples._example import Example, numbers, rate
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import generator, trailing
-from nonholo._limits import within_memory
-from nonholo._types import Array, Float, Inexact
+from nonholo.base.checks import generator, trailing
+from nonholo.base.limits import within_memory
+from nonholo.base.numerics import identity_like
+from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups._coordinates import AbstractCoordinates
-from nonholo.numerics._matrix_functions import identity_like
 
 _WIDE = 1000  # from this size on it is asked whether a matrix fits into memory
 

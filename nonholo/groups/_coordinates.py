@@ -8,7 +8,7 @@ import abc
 
 import numpy as np
 
-from nonholo._types import Array, Float, Inexact, Int
+from nonholo.base.types import Array, Float, Inexact, Int
 
 
 class AbstractCoordinates(abc.ABC):

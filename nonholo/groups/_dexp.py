@@ -1,7 +1,7 @@
 """The inverse of the derivative of the exponential from its definition, for any Lie algebra."""
 
-from nonholo._types import Array, Float
-from nonholo.numerics._matrix_functions import integrated_exponential, inverted
+from nonholo.base.numerics import integrated_exponential, inverted
+from nonholo.base.types import Array, Float
 
 
 def dexp_inverse(ad: Float[Array, "... dim dim"]) -> Float[Array, "... dim dim"]:

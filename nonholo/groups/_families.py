@@ -1,6 +1,6 @@
 """The rotation groups and the groups of rigid motions by dimension: closed forms for SO(3) and SE(2)."""
 
-from nonholo._checks import dimension
+from nonholo.base.checks import dimension
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._special_euclidean import SpecialEuclidean2
 from nonholo.groups._special_euclidean_n import SpecialEuclideanN

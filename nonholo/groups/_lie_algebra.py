@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from nonholo._checks import array, error
-from nonholo._types import Array, Float
+from nonholo.base.checks import array, error
+from nonholo.base.types import Array, Float
 from nonholo.groups._coordinates import coordinates_of
 
 _CLOSED = 1e-10  # relative; a basis typed with ten digits is taken as meant

@@ -6,20 +6,20 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import error
-from nonholo._types import Array, Float
-from nonholo.groups import _dexp
-from nonholo.groups._base import AbstractMatrixGroup
-from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
-from nonholo.groups._lie_algebra import checked_basis
-from nonholo.groups._quadratic_form import checked_form
-from nonholo.numerics._matrix_functions import (
+from nonholo.base.checks import error
+from nonholo.base.numerics import (
     cayley_increment,
     exponential_increment,
     identity_like,
     inverted,
     principal_logarithm,
 )
+from nonholo.base.types import Array, Float
+from nonholo.groups import _dexp
+from nonholo.groups._base import AbstractMatrixGroup
+from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
+from nonholo.groups._lie_algebra import checked_basis
+from nonholo.groups._quadratic_form import checked_form
 
 _REPRODUCED = 1e-8  # relative error of exp(log(g)) beyond which there is no logarithm
 _KNOWN = 1e-12  # of 1 / (|g| |g^-1|), above which the sign of a determinant is no rounding error

@@ -8,11 +8,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import error, shown
-from nonholo._types import Array, Float
+from nonholo.base.checks import error, shown
+from nonholo.base.numerics import block_diagonal
+from nonholo.base.types import Array, Float
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
-from nonholo.numerics._matrix_functions import block_diagonal
 
 
 @dataclasses.dataclass(frozen=True, init=False, repr=False)

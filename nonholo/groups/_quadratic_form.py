@@ -2,8 +2,8 @@ r"""Whether a group preserves a bilinear form, so that its inverse is the linear
 
 import numpy as np
 
-from nonholo._checks import array, error
-from nonholo._types import Array, Float
+from nonholo.base.checks import array, error
+from nonholo.base.types import Array, Float
 from nonholo.groups._coordinates import coordinates_of
 
 _ROUNDING = 1e-10  # relative; a form typed with ten digits is taken as meant

@@ -1,6 +1,6 @@
 """Unit quaternions, scalar first, Hamilton's product: the compact pose of a rotation of space."""
 
-from nonholo._types import Array, Float
+from nonholo.base.types import Array, Float
 
 
 def normalized(q: Float[Array, "... 4"]) -> Float[Array, "... 4"]:

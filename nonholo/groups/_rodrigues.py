@@ -4,10 +4,8 @@ There every analytic function of $X$ is $f_0 I + f_1 X + f_2 X^2$, free of cance
 $\mathrm{ad}_x$ satisfy the same equation.
 """
 
-from nonholo._types import Array, Float
-from nonholo.numerics import sinc, versine
-from nonholo.numerics._bernoulli import cotangent_deficit
-from nonholo.numerics._matrix_functions import identity_like
+from nonholo.base.numerics import cotangent_deficit, identity_like, sinc, versine
+from nonholo.base.types import Array, Float
 
 
 def exp_increment(X: Float[Array, "... N N"], squared: Float[Array, "..."]) -> Float[Array, "... N N"]:

@@ -3,16 +3,16 @@ r"""Rotations of n-dimensional space and their skew-symmetric logarithms; coordi
 import numpy as np
 import scipy.linalg
 
-from nonholo._checks import error
-from nonholo._types import Array, Float, Int
-from nonholo.numerics import _matrix_functions
-from nonholo.numerics._matrix_functions import (
+from nonholo.base.checks import error
+from nonholo.base.numerics import (
+    _matrix_functions,
     exponential_increment,
     identity_like,
     inverse_cayley,
     of_skew,
     principal_logarithm,
 )
+from nonholo.base.types import Array, Float, Int
 
 _ENTRY = 1e3  # more than any entry of a matrix that is a rotation to whatever rounding
 _MODERATE = -0.5  # cosine of the angle, 120 degrees, up to which tan(angle / 2) loses no digits

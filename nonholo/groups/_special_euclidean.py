@@ -5,11 +5,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._types import Array, Float
+from nonholo.base.numerics import half_cotangent
+from nonholo.base.types import Array, Float
 from nonholo.groups import _rodrigues, _rotations
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
-from nonholo.numerics import half_cotangent
 
 
 @dataclasses.dataclass(frozen=True, repr=False)

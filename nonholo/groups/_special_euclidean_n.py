@@ -6,18 +6,20 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._limits import within_memory
-from nonholo._types import Array, Float
+from nonholo.base.limits import within_memory
+from nonholo.base.numerics import (
+    cayley_increment,
+    exponential_increment,
+    half_cotangent,
+    of_skew,
+    principal_logarithm,
+    sinc,
+    versine,
+)
+from nonholo.base.types import Array, Float
 from nonholo.groups import _dexp, _rotations
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._coordinates import SeparatedCoordinates
-from nonholo.numerics import half_cotangent, sinc, versine
-from nonholo.numerics._matrix_functions import (
-    cayley_increment,
-    exponential_increment,
-    of_skew,
-    principal_logarithm,
-)
 
 
 @dataclasses.dataclass(frozen=True, repr=False)

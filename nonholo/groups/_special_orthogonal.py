@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._types import Array, Float
+from nonholo.base.types import Array, Float
 from nonholo.groups import _rodrigues, _rotations
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of

@@ -6,12 +6,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._limits import within_memory
-from nonholo._types import Array, Float
+from nonholo.base.limits import within_memory
+from nonholo.base.numerics import cayley_increment
+from nonholo.base.types import Array, Float
 from nonholo.groups import _dexp, _rotations
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._coordinates import SeparatedCoordinates
-from nonholo.numerics._matrix_functions import cayley_increment
 
 
 @dataclasses.dataclass(frozen=True, repr=False)

@@ -6,11 +6,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import count
-from nonholo._types import Array, Float
+from nonholo.base.checks import count
+from nonholo.base.numerics import identity_like
+from nonholo.base.types import Array, Float
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._coordinates import SeparatedCoordinates
-from nonholo.numerics._matrix_functions import identity_like
 
 
 @dataclasses.dataclass(frozen=True, repr=False)

@@ -16,10 +16,8 @@ from ._csv import new_file as new_file
 from ._csv import orbit_to_csv as orbit_to_csv
 from ._csv import store_to_csv as store_to_csv
 from ._csv import table_lines as table_lines
-from .datasets._dataset import is_known as is_known
-from .datasets._dataset import labels_of as labels_of
-from .datasets._dataset import orbit_to_dataset as orbit_to_dataset
 from ._descriptions import fields_of as fields_of
+from ._descriptions import unstored as unstored
 from ._load import format_of as format_of
 from ._load import load_last_block as load_last_block
 from ._load import load_orbit as load_orbit
@@ -31,12 +29,8 @@ from ._metadata import SweepMetadata as SweepMetadata
 from ._metadata import checksum as checksum
 from ._metadata import is_array_name as is_array_name
 from ._metadata import require_identity as require_identity
-from .datasets._pandas import orbit_to_pandas as orbit_to_pandas
 from ._plan import Checkpoint as Checkpoint
 from ._plan import Plan as Plan
-from .datasets._pose_columns import column_names as column_names
-from .datasets._pose_columns import separate_rows as separate_rows
-from .datasets._pose_variables import separate_variables as separate_variables
 from ._save import check_suffix as check_suffix
 from ._save import check_target as check_target
 from ._save import consolidate as consolidate
@@ -57,3 +51,10 @@ from ._stream import create_stream as create_stream
 from ._stream import open_stream as open_stream
 from ._stream import standing as standing
 from ._stream import writable_array as writable_array
+from .datasets._dataset import is_known as is_known
+from .datasets._dataset import labels_of as labels_of
+from .datasets._dataset import orbit_to_dataset as orbit_to_dataset
+from .datasets._pandas import orbit_to_pandas as orbit_to_pandas
+from .datasets._pose_columns import column_names as column_names
+from .datasets._pose_columns import separate_rows as separate_rows
+from .datasets._pose_variables import separate_variables as separate_variables

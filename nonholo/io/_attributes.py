@@ -8,7 +8,7 @@ from collections.abc import Callable
 from importlib.metadata import version
 from typing import Any
 
-from nonholo._checks import error, text
+from nonholo.base.checks import error, text
 from nonholo.continuous import ContinuousFlow
 from nonholo.discrete import Discretization, discretize
 from nonholo.io._descriptions import fields_of, restore_system, unstored

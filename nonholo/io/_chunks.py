@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import zarr
 
-from nonholo._checks import error, printable
+from nonholo.base.checks import error, printable
 from nonholo.io._metadata import check_array
 
 WHERE = "load_orbit(path=...)"

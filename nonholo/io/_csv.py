@@ -7,10 +7,10 @@ from typing import TextIO
 
 import numpy as np
 
-from nonholo._checks import count, error, flags
-from nonholo._checks import path as checked_path
-from nonholo._progress import progress_bar
-from nonholo._types import Float
+from nonholo.base.checks import count, error, flags
+from nonholo.base.checks import path as checked_path
+from nonholo.base.progress import progress_bar
+from nonholo.base.types import Float
 from nonholo.io._beside import new_beside
 from nonholo.io.datasets import Stretch, column_names, rows_of
 from nonholo.orbit import Orbit, as_orbit

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from nonholo import systems
-from nonholo._checks import error
+from nonholo.base.checks import error
 from nonholo.groups import SE, SO, AbstractMatrixGroup, MatrixGroup, ProductGroup, Translations
 from nonholo.systems import AbstractSystem
 

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import zarr
 
-from nonholo._checks import error
-from nonholo._checks import path as checked_path
-from nonholo._results import Outcome
-from nonholo._types import Float
+from nonholo.base.checks import error
+from nonholo.base.checks import path as checked_path
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.io._attributes import FORMAT, READABLE, SWEEP_FORMAT, restore_motion
 from nonholo.io._chunks import AGAIN, WHERE, checked_block, opened_array

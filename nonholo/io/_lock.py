@@ -12,7 +12,7 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
-from nonholo._checks import printable
+from nonholo.base.checks import printable
 
 _PATIENCE = 0.2  # seconds to wait for who only asks whether the store is locked
 

@@ -21,9 +21,9 @@ from pydantic import (
 )
 from zarr.codecs.bytes import Endian
 
-from nonholo._checks import error, printable
-from nonholo._limits import within_memory
-from nonholo._results import Outcome
+from nonholo.base.checks import error, printable
+from nonholo.base.limits import within_memory
+from nonholo.base.results import Outcome
 from nonholo.io._attributes import attributes_of_text
 
 _MOST = 2**53

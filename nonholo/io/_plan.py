@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo._results import Outcome
-from nonholo._types import Float
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
 from nonholo.io._stored_events import Seen, packed, packed_size, unpacked
 
 

@@ -18,8 +18,8 @@ import zarr
 from pydantic import BaseModel
 from zarr.codecs import BloscCodec, Crc32cCodec
 
-from nonholo._checks import error, flags
-from nonholo._checks import path as checked_path
+from nonholo.base.checks import error, flags
+from nonholo.base.checks import path as checked_path
 from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
 from nonholo.io._beside import new_beside, sibling
 from nonholo.io._load import format_of

@@ -6,7 +6,7 @@ import numpy as np
 import xarray
 import zarr
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 from nonholo.io._save import create_array
 from nonholo.io._stored_events import EVENTS, Seen, known, rows_of
 from nonholo.orbit import EventLog

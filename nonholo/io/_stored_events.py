@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo._results import Outcome
-from nonholo._types import Float, Int
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float, Int
 from nonholo.orbit import STATES, Crossings, EventLog, Orbit
 
 EVENTS = "run/events"

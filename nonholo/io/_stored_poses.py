@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import zarr
 
-from nonholo._checks import error
+from nonholo.base.checks import error
 from nonholo.io._chunks import checked_block, opened_array
 from nonholo.io._descriptions import restore_system, unstored
 from nonholo.io._load import check_seals, read_attributes, stored_names

@@ -19,7 +19,7 @@ import numpy as np
 import xarray
 import zarr
 
-from nonholo._checks import error
+from nonholo.base.checks import error
 from nonholo.io._attributes import attributes, attributes_of_text
 from nonholo.io._beside import new_beside
 from nonholo.io._load import read_attributes

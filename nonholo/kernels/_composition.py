@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 from nonholo.kernels._driver import _compensated, _solve
 from nonholo.kernels._interface import Body, increment, move
 from nonholo.kernels._scalar import COMPILED

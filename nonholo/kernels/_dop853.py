@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba.extending import overload
 
-from nonholo._compiled import njit
-from nonholo._types import Float
+from nonholo.base.compiled import njit
+from nonholo.base.types import Float
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._small import assign
 

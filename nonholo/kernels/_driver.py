@@ -6,7 +6,7 @@ momentum (2), its compensation (2), the last three Cayley coordinates (6), pose 
 
 import numpy as np
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 from nonholo.kernels._interface import Body, certified, correction, increment, move, principal
 from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import assign

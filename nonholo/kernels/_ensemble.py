@@ -12,7 +12,7 @@ import numba
 import numpy as np
 from numba.extending import overload
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 from nonholo.kernels import _driver
 from nonholo.kernels._interface import Body, certified, correction, increment, move, principal
 from nonholo.kernels._scalar import COMPILED

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 from nonholo.kernels._dop853 import RATES
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._small import eliminate, multiply, paired, transpose

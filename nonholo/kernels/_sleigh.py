@@ -11,9 +11,9 @@ and the second is $y_2 = (p_1(1+t^2) + 2am\,t^2)/2m$, half the slide along the c
 import math
 from typing import NamedTuple
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
+from nonholo.base.numerics import real_cubic_roots
 from nonholo.kernels._scalar import COMPILED, scalar, sqrt
-from nonholo.numerics import real_cubic_roots
 
 
 class SleighBody(NamedTuple):

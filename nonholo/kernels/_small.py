@@ -6,7 +6,7 @@ the order of the loops.
 
 import numpy as np
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 
 _WIDE = 8  # rows from which a sandwich is made of two products
 _SPLIT = 2.0**27 + 1  # halves the digits of a number

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numba.extending import overload
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 from nonholo.kernels._interface import Body
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._sleigh import SleighBody

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 from nonholo.kernels._scalar import COMPILED, PIECES, scalar, sqrt
 
 

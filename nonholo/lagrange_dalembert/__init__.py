@@ -1,6 +1,6 @@
 """Mechanics in coordinates: the discrete Lagrange-d'Alembert principle on R^n, and the flow it discretises."""
 
-from nonholo._checks import needs
+from nonholo.base.checks import needs
 
 with needs("jax", "nonholo.lagrange_dalembert"):
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization

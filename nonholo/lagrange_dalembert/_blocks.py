@@ -8,8 +8,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._progress import progress_bar
-from nonholo._types import Array
+from nonholo.base.progress import progress_bar
+from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._precision import in_double
 
 _ROWS = 1024  # saved states of one block

@@ -7,7 +7,7 @@ from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
 from nonholo.lagrange_dalembert._simulate import simulate
 from nonholo.lagrange_dalembert._start import fixed_time_step
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-from nonholo.systems._coordinate_system import AbstractCoordinateDiscretization
+from nonholo.systems import AbstractCoordinateDiscretization
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

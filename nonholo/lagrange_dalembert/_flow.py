@@ -7,8 +7,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import flow_times, flow_tolerances
-from nonholo._types import Array
+from nonholo.base.checks import flow_times, flow_tolerances
+from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import _start
 from nonholo.lagrange_dalembert._equations import acceleration_matrix, energy, forms, solve_bordered
 from nonholo.lagrange_dalembert._orbit import CoordinateOrbit

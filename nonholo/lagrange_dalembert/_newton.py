@@ -10,8 +10,8 @@ from typing import NamedTuple
 import jax
 import jax.numpy as jnp
 
-from nonholo._results import Outcome
-from nonholo._types import Array
+from nonholo.base.results import Outcome
+from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._equations import Scaled, forms, kinetic_matrix, newton_matrix
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 

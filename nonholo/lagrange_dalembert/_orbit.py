@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._results import Outcome
-from nonholo._types import Float
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
 
 Labels = dict[str, tuple[tuple[str, ...], str]]
 """Name: dimensions after `step`, and what the numbers are."""

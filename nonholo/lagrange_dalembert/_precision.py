@@ -6,7 +6,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from nonholo.numerics import double_precision
+from nonholo.base.numerics import double_precision
 
 
 def in_double(function: Callable[..., Any], *arguments: Any) -> Any:

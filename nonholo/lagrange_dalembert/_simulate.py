@@ -7,10 +7,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import step_counts
-from nonholo._limits import within_a_year
-from nonholo._results import Outcome, finished
-from nonholo._types import Array
+from nonholo.base.checks import step_counts
+from nonholo.base.limits import within_a_year
+from nonholo.base.results import Outcome, finished
+from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import _start
 from nonholo.lagrange_dalembert._blocks import State, decoded, run
 from nonholo.lagrange_dalembert._equations import discrete_constraints, discrete_energy, momenta

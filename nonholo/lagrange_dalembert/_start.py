@@ -6,8 +6,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import array, error, is_traced, scale
-from nonholo._types import Array, Float
+from nonholo.base.checks import array, error, is_traced, scale
+from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._equations import acceleration_matrix, discrete_constraints, forms
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert._precision import in_double

@@ -7,10 +7,10 @@ from typing import Any, NamedTuple, TypeVar
 import jax
 import numpy as np
 
-from nonholo._results import Outcome, OutcomeError
-from nonholo._types import Array
+from nonholo.base.numerics.time_sweep import padded, reached, sweep
+from nonholo.base.results import Outcome, OutcomeError
+from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.numerics._time_sweep import padded, reached, sweep
 
 OrbitT = TypeVar("OrbitT")
 State = tuple[Array, Array]

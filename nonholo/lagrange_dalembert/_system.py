@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import jax
 
-from nonholo._checks import choice, count, error
-from nonholo._types import Array
+from nonholo.base.checks import choice, count, error
+from nonholo.base.numerics import double_precision
+from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._room import room
 from nonholo.lagrange_dalembert._tracing import traced_shape, with_time_step
-from nonholo.numerics import double_precision
-from nonholo.systems._coordinate_system import AbstractCoordinateSystem
+from nonholo.systems import AbstractCoordinateSystem
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization

@@ -8,8 +8,8 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 
-from nonholo._checks import error, shown
-from nonholo._types import Array
+from nonholo.base.checks import error, shown
+from nonholo.base.types import Array
 
 
 def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str) -> tuple[int, ...]:

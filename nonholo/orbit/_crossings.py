@@ -7,8 +7,8 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from nonholo._checks import selection
-from nonholo._types import Float, Int
+from nonholo.base.checks import selection
+from nonholo.base.types import Float, Int
 from nonholo.orbit._orbit import STATES, Orbit
 
 

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error, selection, shown
-from nonholo._results import Outcome
-from nonholo._types import Float
+from nonholo.base.checks import error, selection, shown
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
 from nonholo.groups import SE
 from nonholo.orbit._poses import configurations, poses, unwrapped
 from nonholo.systems import System

@@ -2,7 +2,7 @@ r"""Compact poses as matrices, and angles as continuous headings; also for parts
 
 import numpy as np
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 from nonholo.systems import System
 
 _TURN = 2 * np.pi

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.patches import Circle
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 from nonholo.plotting import theme
 
 _SHEET = "#9cc4dd"

@@ -17,8 +17,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 
-from nonholo._checks import error
-from nonholo._types import Float
+from nonholo.base.checks import error
+from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 
 STABLE = "#1a1a1a"

@@ -5,9 +5,9 @@ from typing import Any, cast, overload
 
 import numpy as np
 
-from nonholo._checks import error, flow_times, flow_tolerances, shown
-from nonholo._limits import within_memory
-from nonholo._results import Outcome, OutcomeError
+from nonholo.base.checks import error, flow_times, flow_tolerances, shown
+from nonholo.base.limits import within_memory
+from nonholo.base.results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, solver_of
 from nonholo.orbit import Orbit
 from nonholo.simulation.events import Event, Solve, check_functions, checked_events, flow_with_events

@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from typing import Any
 
-from nonholo._checks import flags
-from nonholo._progress import progress_bar
-from nonholo._results import Outcome, OutcomeError
+from nonholo.base.checks import flags
+from nonholo.base.progress import progress_bar
+from nonholo.base.results import Outcome, OutcomeError
 from nonholo.discrete import BranchRule, Discretization
 from nonholo.io import Plan
 from nonholo.orbit import Orbit

@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from nonholo import io
-from nonholo._checks import count, error, flags, path, shown
-from nonholo._results import Outcome
+from nonholo.base.checks import count, error, flags, path, shown
+from nonholo.base.results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.simulation.events import Watch

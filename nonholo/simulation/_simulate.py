@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import Any, overload
 
-from nonholo._checks import flags, path
-from nonholo._results import finished
+from nonholo.base.checks import flags, path
+from nonholo.base.results import finished
 from nonholo.discrete import AbstractCompiledRoute, BranchRule, Discretization
 from nonholo.orbit import Orbit
 from nonholo.simulation.events import Watch, run_compiled, run_with_events, watched

@@ -5,15 +5,24 @@ from nonholo.systems._body import ImpossibleBodyWarning
 from nonholo.systems._coordinate_system import (
     AbstractCoordinateDiscretization,
     AbstractCoordinateSystem,
+    DiscretizationT,
     OrbitT,
     refuse_in_coordinates,
 )
 from nonholo.systems._displacements import in_exp_d, trace_constraints
+from nonholo.systems._drift import gyroscopic_form
 from nonholo.systems._euler_angles import euler_angle_discrete_lagrangian
-from nonholo.systems._mass import inertia_from_mass_tensor, inertia_tensor, mass_tensor_from_inertia
+from nonholo.systems._mass import (
+    checked_group,
+    group_mass_tensor,
+    inertia_form,
+    inertia_from_mass_tensor,
+    inertia_tensor,
+    mass_tensor_from_inertia,
+)
 from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._start import Start, in_group, inadmissible, of_finite_energy, one_start
-from nonholo.systems._subspace import reference_point_subspace
+from nonholo.systems._subspace import null_space, reference_point_subspace, spanned
 from nonholo.systems._symmetric_pair import is_symmetric_pair, symmetric_complement
 from nonholo.systems.families import (
     ArrowheadSleigh,
@@ -50,6 +59,7 @@ __all__ = [
     "ArrowheadSleigh",
     "ArrowheadTop",
     "ChaplyginSleigh",
+    "DiscretizationT",
     "Equilibria",
     "ImpossibleBodyWarning",
     "LLSystem",
@@ -62,18 +72,24 @@ __all__ = [
     "SuslovTop",
     "System",
     "VeselovaTop",
+    "checked_group",
     "euler_angle_discrete_lagrangian",
+    "group_mass_tensor",
+    "gyroscopic_form",
     "in_exp_d",
     "in_group",
     "inadmissible",
+    "inertia_form",
     "inertia_from_mass_tensor",
     "inertia_tensor",
     "is_symmetric_pair",
     "mass_tensor_from_inertia",
+    "null_space",
     "of_finite_energy",
     "one_start",
     "reference_point_subspace",
     "refuse_in_coordinates",
+    "spanned",
     "symmetric_complement",
     "trace_constraints",
 ]

@@ -11,8 +11,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import error, shape_of, trailing
-from nonholo._types import Array, Float, Inexact
+from nonholo.base.checks import error, shape_of, trailing
+from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._equilibria import Equilibria, equilibria_of
 from nonholo.systems._mass import inertia_form

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error, is_traced, scale, shown, symmetric
-from nonholo._types import Array, Float
+from nonholo.base.checks import array, error, is_traced, scale, shown, symmetric
+from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._mass import checked_group, inertia_tensor, mass_tensor_from_inertia
 

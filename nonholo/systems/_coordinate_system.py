@@ -3,7 +3,7 @@
 import abc
 from typing import Any, Generic, TypeVar
 
-from nonholo._checks import error, shown
+from nonholo.base.checks import error, shown
 
 OrbitT = TypeVar("OrbitT")
 DiscretizationT = TypeVar("DiscretizationT")

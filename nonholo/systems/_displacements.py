@@ -5,8 +5,8 @@ The variety of a general system, with its charts, belongs to the discrete map.
 
 import numpy as np
 
-from nonholo._checks import error, positive, shape_of, trailing
-from nonholo._types import Array, Bool, Float
+from nonholo.base.checks import error, positive, shape_of, trailing
+from nonholo.base.types import Array, Bool, Float
 
 
 def trace_constraints(

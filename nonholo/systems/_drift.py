@@ -6,7 +6,7 @@ Where this form vanishes a momentum is conserved; where it vanishes for every x 
 
 import numpy as np
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 
 
 def gyroscopic_form(

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nonholo._checks import error
-from nonholo._types import Float
+from nonholo.base.checks import error
+from nonholo.base.types import Float
 from nonholo.systems._drift import gyroscopic_form
 from nonholo.systems._normal_form import NormalForm
 

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from nonholo._checks import trailing
-from nonholo._types import Array, Float
+from nonholo.base.checks import trailing
+from nonholo.base.types import Array, Float
 
 
 def euler_angle_discrete_lagrangian(principal_moments: Any, angles: Any, angles_next: Any) -> Float[Array, "..."]:

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, check_scale, error, is_traced, shown, symmetric
-from nonholo._types import Array, Float
+from nonholo.base.checks import array, check_scale, error, is_traced, shown, symmetric
+from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._wide import narrow
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nonholo._checks import is_traced
-from nonholo._types import Array, Float
+from nonholo.base.checks import is_traced
+from nonholo.base.types import Array, Float
 from nonholo.groups import SE, SO
 from nonholo.systems._subspace import plane_rows
 

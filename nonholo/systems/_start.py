@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error, shape_of
-from nonholo._types import Float
+from nonholo.base.checks import array, error, shape_of
+from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._base import System
 

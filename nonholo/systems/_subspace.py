@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, dimension, error, is_traced
-from nonholo._limits import within_memory
-from nonholo._types import Array, Float
+from nonholo.base.checks import array, dimension, error, is_traced
+from nonholo.base.limits import within_memory
+from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._wide import narrow
 

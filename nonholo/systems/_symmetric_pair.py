@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._mass import checked_group
 from nonholo.systems._subspace import independent_rows, null_space, spanned

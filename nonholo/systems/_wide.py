@@ -4,8 +4,8 @@ import dataclasses
 
 import numpy as np
 
-from nonholo._checks import error
-from nonholo._types import Float
+from nonholo.base.checks import error
+from nonholo.base.types import Float
 
 LARGEST = 100_000
 """Components of the longest full momentum that is made; a momentum of SO(n) has n (n - 1) / 2."""

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from nonholo._checks import count, error, flags
+from nonholo.base.checks import count, error, flags
 from nonholo.discrete import Discretization, refuse_composition
 from nonholo.testing import _discrete_motion as measure
 from nonholo.testing._measures import seeded

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
-from nonholo.numerics import double_precision
+from nonholo.base.numerics import double_precision
 from nonholo.testing._group_samples import GroupSamples
 from nonholo.testing._measures import derivative, gap, largest
 from nonholo.testing._report import Check, NotApplicableError

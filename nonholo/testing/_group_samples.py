@@ -5,7 +5,7 @@ import functools
 import numpy as np
 import scipy.linalg
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup
 
 _COUNT = 4

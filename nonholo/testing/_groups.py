@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from nonholo._checks import error, flags
+from nonholo.base.checks import error, flags
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.testing._group_algebra import ALGEBRA
 from nonholo.testing._group_maps import COMPILED, MAPS

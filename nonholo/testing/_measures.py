@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error, shown
+from nonholo.base.checks import error, shown
 
 
 def gap(found: Any, expected: Any) -> float:

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import scipy.integrate
 
-from nonholo._checks import needs
-from nonholo._results import OutcomeError
-from nonholo._types import Float
+from nonholo.base.checks import needs
+from nonholo.base.results import OutcomeError
+from nonholo.base.types import Float
 from nonholo.continuous import vector_field
 from nonholo.discrete import Discretization, discrete_legendre
 from nonholo.orbit import Orbit

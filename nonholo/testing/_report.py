@@ -4,7 +4,7 @@ import dataclasses
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from nonholo._checks import positive
+from nonholo.base.checks import positive
 
 _HEADINGS = ("", "measured", "allowed", "", "what must hold")
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 from nonholo.continuous import vector_field
 from nonholo.systems import AbstractSystem
 from nonholo.testing._measures import derivative

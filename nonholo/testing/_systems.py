@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from nonholo._checks import error, flags
+from nonholo.base.checks import error, flags
 from nonholo.systems import AbstractSystem
 from nonholo.testing._measures import seeded
 from nonholo.testing._report import Report, run_checks

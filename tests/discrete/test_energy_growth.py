@@ -8,9 +8,9 @@ import pytest
 from bodies import mass_tensor
 
 import nonholo as nh
+from nonholo.base.numerics import product_and_remainder
 from nonholo.discrete.routes import make_route
 from nonholo.kernels._small import paired_twice
-from nonholo.numerics import product_and_remainder
 
 GROUPS = (nh.SO(3), nh.SO(4), nh.SO(5), nh.SE(2), nh.SE(3), nh.SE(4))
 ALLOWED = 5e-18  # relative, per step; rows rounded twice gave up to 6e-17, at every step of the same sign

@@ -15,7 +15,7 @@ from ensembles import faults
 from ensembles.small import same
 
 import nonholo as nh
-from nonholo._results import Outcome
+from nonholo.base.results import Outcome
 from nonholo.ensembles import standing_of
 from nonholo.ensembles.stores._results import ABSENT, RAISED
 

@@ -378,8 +378,8 @@ def test_members_that_cannot_begin_have_no_states(size: float, members: int, mon
 
     Nothing is written behind them.
     """
-    monkeypatch.setattr("nonholo._checks.LARGEST", np.inf)
-    monkeypatch.setattr("nonholo._checks._SMALLEST", 0.0)
+    monkeypatch.setattr("nonholo.base.checks.LARGEST", np.inf)
+    monkeypatch.setattr("nonholo.base.checks._SMALLEST", 0.0)
     discrete = nh.discretize(nh.SuslovTop(J), 0.5)
     tensors = np.array([J] * (members - 1) + [np.array(J) * size])
     with np.errstate(all="ignore"):

@@ -5,8 +5,8 @@ from typing import cast
 
 import numpy as np
 
-from nonholo._checks import error
-from nonholo._results import Outcome
+from nonholo.base.checks import error
+from nonholo.base.results import Outcome
 from nonholo.discrete import Discretization, reversal_defects
 from nonholo.orbit import Orbit, as_orbit
 from nonholo.systems import NormalForm

@@ -7,8 +7,8 @@ import dataclasses
 
 import numpy as np
 
-from nonholo._checks import error, shape_of, trailing
-from nonholo._types import Array, Float
+from nonholo.base.checks import error, shape_of, trailing
+from nonholo.base.types import Array, Float
 from nonholo.systems import AbstractLLSystem, AbstractSystem
 
 

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error, shape_of, shown, trailing
-from nonholo._types import Array, Float
 from nonholo.analysis._equilibria import equilibria
 from nonholo.analysis.conserved._step_jacobian import step_determinants
 from nonholo.analysis.planar import planar_variety
+from nonholo.base.checks import array, error, shape_of, shown, trailing
+from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.systems import AbstractLLSystem, AbstractSystem

@@ -7,12 +7,10 @@ import dataclasses
 
 import numpy as np
 
-from nonholo._checks import error, shown
-from nonholo._types import Array, Float
+from nonholo.base.checks import error, shown
+from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.systems import AbstractSystem
-from nonholo.systems._drift import gyroscopic_form
-from nonholo.systems._subspace import null_space, spanned
+from nonholo.systems import AbstractSystem, gyroscopic_form, null_space, spanned
 
 _RANK = 1e-11  # relative size below which a rate of change counts as zero
 

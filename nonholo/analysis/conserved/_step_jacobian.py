@@ -6,8 +6,8 @@ $\det(\partial r'/\partial r) = \det F'(W^{-1})/\det F'(W)$. Theory: docs/theory
 
 import numpy as np
 
-from nonholo._types import Array, Float
 from nonholo.analysis.planar import planar_variety
+from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
 
 

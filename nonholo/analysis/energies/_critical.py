@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error, shown
-from nonholo._types import Float
 from nonholo.analysis._equilibria import highest_energy
 from nonholo.analysis.energies._fold import fold_energy
+from nonholo.base.checks import error, shown
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization, Landscape, landscape, refuse_composition
 from nonholo.systems import NormalForm
 

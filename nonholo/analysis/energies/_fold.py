@@ -11,8 +11,8 @@ import numpy as np
 import scipy.linalg
 import scipy.optimize
 
-from nonholo._types import Float
-from nonholo.numerics import real_cubic_roots
+from nonholo.base.numerics import real_cubic_roots
+from nonholo.base.types import Float
 
 _UNIFORM = 720  # directions around the circle, once in the metric of the energy and once in that of the plane
 _NEAR_SADDLE = 200  # on each side: folds leave the saddle at every scale

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error, shown
-from nonholo._types import Float
 from nonholo.analysis.planar import Strip, planar_variety
+from nonholo.base.checks import error, shown
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization, refuse_composition
 
 

@@ -8,12 +8,12 @@ from typing import Any, cast
 
 import numpy as np
 
-from nonholo._checks import error
-from nonholo._results import OutcomeError
-from nonholo._types import Float
 from nonholo.analysis._equilibria import highest_energy
 from nonholo.analysis.energies import critical_energies, single_valued_region
 from nonholo.analysis.limits._followed import Approach, Ends, approach, followed, kept_velocity
+from nonholo.base.checks import error
+from nonholo.base.results import OutcomeError
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.systems import AbstractLLSystem, AbstractSystem, NormalForm

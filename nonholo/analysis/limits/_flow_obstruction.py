@@ -9,13 +9,13 @@ from typing import Any, cast
 
 import numpy as np
 
-from nonholo._checks import error
-from nonholo._limits import bounded_count
-from nonholo._progress import progress_bar
-from nonholo._types import Float
 from nonholo.analysis._equilibria import equilibria
 from nonholo.analysis.limits._heteroclinic import both_ways, middle
 from nonholo.analysis.planar import planar_map
+from nonholo.base.checks import error
+from nonholo.base.limits import bounded_count
+from nonholo.base.progress import progress_bar
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.simulation import simulate
 from nonholo.systems import AbstractLLSystem

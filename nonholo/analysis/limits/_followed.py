@@ -4,9 +4,9 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from nonholo._checks import error
-from nonholo._types import Float
 from nonholo.analysis._equilibria import EquilibriumSpectrum, equilibria
+from nonholo.base.checks import error
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.simulation import flow, simulate

@@ -5,8 +5,8 @@ Tops with n = 3 and sleighs in the plane. Theory: docs/theory/invariant-measure.
 
 from typing import Any
 
-from nonholo._checks import error, shape_of, trailing
 from nonholo.analysis.planar import HalfPlanes, planar_map
+from nonholo.base.checks import error, shape_of, trailing
 from nonholo.discrete import Discretization
 
 

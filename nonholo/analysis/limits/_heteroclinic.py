@@ -9,11 +9,11 @@ from typing import Any, cast
 
 import numpy as np
 
-from nonholo._checks import choice, error, positive, shown
-from nonholo._types import Float
 from nonholo.analysis.limits._asymptotics import Asymptotics, asymptotics
 from nonholo.analysis.limits._followed import approach, followed
 from nonholo.analysis.planar import planar_variety
+from nonholo.base.checks import choice, error, positive, shown
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate

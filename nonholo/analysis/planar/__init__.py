@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error, shown
-from nonholo._types import Float
 from nonholo.analysis.planar._base import AbstractPlanarVariety, HalfPlanes
 from nonholo.analysis.planar._disc import Disc
 from nonholo.analysis.planar._strip import Strip
+from nonholo.base.checks import error, shown
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization, legendre
 from nonholo.systems import AbstractSystem
 

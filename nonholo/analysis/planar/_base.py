@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from nonholo._types import Array, Float
+from nonholo.base.types import Array, Float
 from nonholo.systems import NormalForm
 
 

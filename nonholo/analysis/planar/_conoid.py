@@ -10,7 +10,7 @@ import dataclasses
 
 import numpy as np
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 from nonholo.groups import SE
 
 

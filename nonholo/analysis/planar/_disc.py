@@ -5,10 +5,10 @@ They are the quaternions of the displacements; z lies in the direction of turnin
 
 import numpy as np
 
-from nonholo._types import Array, Float
 from nonholo.analysis.planar._base import AbstractPlanarVariety, HalfPlanes
 from nonholo.analysis.planar._disc_level import DiscLevel
 from nonholo.analysis.planar._steiner import SteinerSurface, steiner_surface
+from nonholo.base.types import Array, Float
 
 
 class Disc(AbstractPlanarVariety):

@@ -9,8 +9,8 @@ import itertools
 
 import numpy as np
 
-from nonholo._types import Float
 from nonholo.analysis.planar._level_arcs import EQUATOR, FOLD, Arc, closed_curves
+from nonholo.base.types import Float
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

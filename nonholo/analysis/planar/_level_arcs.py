@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 
 FOLD, EQUATOR = "fold", "equator"
 _SAME = 1e-8  # angle below which two middles of arcs are one

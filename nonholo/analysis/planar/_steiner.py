@@ -10,7 +10,7 @@ import dataclasses
 
 import numpy as np
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 
 _FLAT = 1e-10  # singular value of the four forms below which they are dependent
 _REAL = 1e-7  # imaginary part below which a root of the cubic of the pencil is a real one, perhaps double

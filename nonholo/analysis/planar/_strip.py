@@ -5,10 +5,10 @@ The translation is that along the direction $\Delta/2$, and $(\Delta, \nu) \sim 
 
 import numpy as np
 
-from nonholo._types import Array, Float
 from nonholo.analysis.planar._base import AbstractPlanarVariety, HalfPlanes
 from nonholo.analysis.planar._conoid import Conoid, conoid
 from nonholo.analysis.planar._strip_level import StripLevel
+from nonholo.base.types import Array, Float
 from nonholo.groups import SE
 
 _BACK = np.array([-1.0, 1.0])  # the plane e_1^e_2 turns against the angle

@@ -10,8 +10,8 @@ import dataclasses
 
 import numpy as np
 
-from nonholo._types import Float
 from nonholo.analysis.planar._level_arcs import FOLD, Arc
+from nonholo.base.types import Float
 
 _NEAR_HALF_TURN = 0.04  # balanced sleighs: the level goes to infinity at the angle pi; it is cut so far from there
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import cast
 
-from nonholo._results import OutcomeError
+from nonholo.base.results import OutcomeError
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors, told_warnings, warn
 from nonholo.cli.screen.provenance import show_provenance
 from nonholo.cli.screen.sweep_report import leave_if_all_raised, show_sweep, sweep_figures

@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
-from nonholo._limits import within_disk
-from nonholo._progress import waiting
-from nonholo._results import OutcomeError
+from nonholo.base.limits import within_disk
+from nonholo.base.progress import waiting
+from nonholo.base.results import OutcomeError
 from nonholo.cli.scenario.files import Loaded, effective_text
 from nonholo.cli.scenario.problems import ScenarioError, problem_of_value
 from nonholo.cli.screen.errors import USAGE, store_errors

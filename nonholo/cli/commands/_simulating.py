@@ -6,7 +6,7 @@ from typing import Any
 
 import typer
 
-from nonholo._progress import waiting
+from nonholo.base.progress import waiting
 from nonholo.cli.commands._running import Ran, check_output, run_and_keep
 from nonholo.cli.scenario.files import Loaded, Setting, load_scenario, parse_setting
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, scenario_errors, store_errors, told_warnings

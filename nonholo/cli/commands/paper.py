@@ -30,8 +30,8 @@ def paper(
     use_cache_folder()
     import sys
 
-    from nonholo._checks import needs
-    from nonholo._progress import progress_bar
+    from nonholo.base.checks import needs
+    from nonholo.base.progress import progress_bar
     from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
 
     with store_errors(USAGE), needs("paper", "nonholo paper"):

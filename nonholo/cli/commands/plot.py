@@ -31,7 +31,7 @@ def plot(
 
     use_cache_folder()
     from nonholo import io
-    from nonholo._progress import waiting
+    from nonholo.base.progress import waiting
     from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
     from nonholo.cli.screen.pictures import beside, draw
 

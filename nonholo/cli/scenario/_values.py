@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 from pydantic import AfterValidator
 
-from nonholo._checks import is_integer, shown
-from nonholo._limits import bounded_count
+from nonholo.base.checks import is_integer, shown
+from nonholo.base.limits import bounded_count
 
 if TYPE_CHECKING:
     import numpy as np

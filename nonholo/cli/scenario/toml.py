@@ -4,7 +4,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from nonholo._limits import size_text
+from nonholo.base.limits import size_text
 
 _LARGEST = 1 << 22  # bytes of a file: a mass tensor of some hundred dimensions fits
 _DEEPEST = 32  # arrays and tables in each other

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nonholo._progress import progress_bar, waiting
+from nonholo.base.progress import progress_bar, waiting
 from nonholo.cli.screen.errors import warn
 
 if TYPE_CHECKING:

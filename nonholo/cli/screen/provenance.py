@@ -7,7 +7,7 @@ from typing import Any
 
 import typer
 
-from nonholo._progress import waiting
+from nonholo.base.progress import waiting
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
 from nonholo.cli.screen.report import as_json, figures, show
 from nonholo.cli.screen.sweep_report import show_sweep, sweep_figures

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from nonholo._progress import waiting
+from nonholo.base.progress import waiting
 from nonholo.cli.scenario.sweeps import library_name
 from nonholo.cli.scenario.toml import parsed
 from nonholo.cli.screen.errors import FAILED, store_errors, warn

@@ -10,7 +10,7 @@ import numpy as np
 import typer
 import xarray
 
-from nonholo._limits import size_text
+from nonholo.base.limits import size_text
 from nonholo.cli.screen.errors import FAILED, leave
 from nonholo.cli.screen.report import as_json, duration, show
 from nonholo.ensembles import SweepStanding, standing_of

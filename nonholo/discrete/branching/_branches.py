@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error, flags, shape_of
-from nonholo._types import Array, Float
+from nonholo.base.checks import array, error, flags, shape_of
+from nonholo.base.types import Array, Float
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete.branching._certified import certified_over

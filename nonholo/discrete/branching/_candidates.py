@@ -7,7 +7,7 @@ import functools
 
 import numpy as np
 
-from nonholo._types import Array, Inexact
+from nonholo.base.types import Array, Inexact
 from nonholo.discrete.branching._equations import Equations
 
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import needs
-from nonholo._types import Float
+from nonholo.base.checks import needs
+from nonholo.base.types import Float
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete.branching._equations import Frame
 from nonholo.discrete.branching._roots import Root, place

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from nonholo._checks import error
-from nonholo._types import Array, Float, Inexact
+from nonholo.base.checks import error
+from nonholo.base.types import Array, Float, Inexact
 from nonholo.systems import NormalForm
 
 if TYPE_CHECKING:

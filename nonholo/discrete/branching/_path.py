@@ -8,8 +8,8 @@ import dataclasses
 import numpy as np
 
 from nonholo import kernels
-from nonholo._results import Outcome
-from nonholo._types import Float
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
 from nonholo.discrete.branching._equations import Equations
 
 _LONGEST = 0.1  # a predicted move per continuation step, on the sphere

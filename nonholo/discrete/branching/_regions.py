@@ -9,7 +9,7 @@ import dataclasses
 import numpy as np
 import scipy.linalg
 
-from nonholo._types import Float, Inexact
+from nonholo.base.types import Float, Inexact
 from nonholo.discrete._discretization import Discretization
 from nonholo.systems import NormalForm
 

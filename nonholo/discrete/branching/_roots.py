@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo._types import Array, Bool, Float, Inexact
+from nonholo.base.types import Array, Bool, Float, Inexact
 from nonholo.discrete.branching._candidates import candidates
 from nonholo.discrete.branching._equations import Equations
 

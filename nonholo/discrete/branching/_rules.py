@@ -11,9 +11,9 @@ from typing import ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 
-from nonholo._checks import choice, error, is_integer, shown
-from nonholo._results import Outcome
-from nonholo._types import Float
+from nonholo.base.checks import choice, error, is_integer, shown
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete.branching._equations import Equations, Frame, has_frame
 from nonholo.discrete.branching._path import followed

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from nonholo import kernels
-from nonholo._results import Outcome
-from nonholo._types import Float
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete.branching._branches import inverse_discrete_legendre
 from nonholo.discrete.branching._equations import Frame

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error, natural
-from nonholo._types import Array, Bool, Int
+from nonholo.base.checks import array, error, natural
+from nonholo.base.types import Array, Bool, Int
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete.branching._equations import Frame, frame_of

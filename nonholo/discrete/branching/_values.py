@@ -8,9 +8,9 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from nonholo._checks import error
-from nonholo._results import Outcome
-from nonholo._types import Array, Bool, Float, Inexact, Int
+from nonholo.base.checks import error
+from nonholo.base.results import Outcome
+from nonholo.base.types import Array, Bool, Float, Inexact, Int
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete.branching._equations import Equations, Frame

@@ -8,9 +8,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._progress import progress_bar
-from nonholo._results import Outcome
-from nonholo._types import Array, Float
+from nonholo.base.progress import progress_bar
+from nonholo.base.results import Outcome
+from nonholo.base.types import Array, Float
 from nonholo.discrete._composition import weights
 from nonholo.discrete._scheme import Scheme
 from nonholo.discrete.definition._precision import in_double

@@ -8,7 +8,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._types import Array, Float
+from nonholo.base.types import Array, Float
 from nonholo.discrete.definition._precision import in_double
 from nonholo.groups import AbstractMatrixGroup
 

@@ -8,9 +8,9 @@ from typing import Any
 import jax
 import numpy as np
 
-from nonholo._checks import is_traced
+from nonholo.base.checks import is_traced
+from nonholo.base.numerics import double_precision
 from nonholo.discrete import _pytrees
-from nonholo.numerics import double_precision
 
 _float32 = contextvars.ContextVar("float32_allowed", default=False)
 _pytrees.register()

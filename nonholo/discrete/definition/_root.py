@@ -6,8 +6,8 @@ from typing import NamedTuple
 import jax
 import jax.numpy as jnp
 
-from nonholo._results import Outcome
-from nonholo._types import Array, Float
+from nonholo.base.results import Outcome
+from nonholo.base.types import Array, Float
 
 _FIRST = 0.25  # first continuation step, in s
 _SMALLEST = 1e-7  # continuation step, relative to s, below which the branch is given up

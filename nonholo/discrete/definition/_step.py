@@ -12,9 +12,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._progress import progress_bar
-from nonholo._results import Outcome, OutcomeError
-from nonholo._types import Array, Float
+from nonholo.base.progress import progress_bar
+from nonholo.base.results import Outcome, OutcomeError
+from nonholo.base.types import Array, Float
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete._scheme import Scheme
 from nonholo.discrete.definition._functions import momenta_along

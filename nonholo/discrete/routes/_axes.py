@@ -5,7 +5,7 @@ import functools
 
 import numpy as np
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup
 
 

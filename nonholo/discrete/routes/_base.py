@@ -6,8 +6,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from nonholo import kernels
-from nonholo._results import Outcome, OutcomeError
-from nonholo._types import Array, Float
+from nonholo.base.results import Outcome, OutcomeError
+from nonholo.base.types import Array, Float
 from nonholo.discrete._composition import weights
 from nonholo.orbit import Orbit
 from nonholo.systems import System

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo import kernels
-from nonholo._types import Array
+from nonholo.base.types import Array
 from nonholo.discrete._composition import weights
 from nonholo.discrete.routes._base import AbstractCompiledRoute
 from nonholo.systems import System

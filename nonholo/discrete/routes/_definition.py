@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import needs
-from nonholo._types import Array, Float
+from nonholo.base.checks import needs
+from nonholo.base.types import Array, Float
 from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Difference
 from nonholo.discrete._variety import Constraint, Variety, variety_of

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from nonholo import kernels
-from nonholo._types import Float
+from nonholo.base.numerics import product_and_remainder
+from nonholo.base.types import Float
 from nonholo.discrete._variety import Variety, forbidden_matrices
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.numerics import product_and_remainder
 from nonholo.systems import AbstractSystem, inertia_from_mass_tensor
 
 _SINES = np.linspace(0.0, 1.0, 401)[1:-1]  # of the largest angle in the ball

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo import kernels
-from nonholo._types import Array
+from nonholo.base.types import Array
 from nonholo.discrete._variety import Variety
 from nonholo.discrete.routes._base import AbstractCompiledRoute
 from nonholo.discrete.routes._general import general_body

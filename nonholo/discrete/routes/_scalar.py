@@ -7,8 +7,8 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from nonholo import kernels
-from nonholo._checks import is_traced
-from nonholo._types import Array, Float
+from nonholo.base.checks import is_traced
+from nonholo.base.types import Array, Float
 from nonholo.discrete.routes._axes import Axes
 from nonholo.discrete.routes._base import AbstractCompiledRoute
 from nonholo.systems import NormalForm, System

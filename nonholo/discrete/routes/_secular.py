@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo import kernels
-from nonholo._types import Array, Float
+from nonholo.base.types import Array, Float
 from nonholo.discrete.routes._axes import Axes
 from nonholo.discrete.routes._base import AbstractCompiledRoute
 from nonholo.systems import NormalForm, System

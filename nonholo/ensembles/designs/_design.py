@@ -8,8 +8,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo._checks import array, count, error, natural, shape_of, shown
-from nonholo._types import Float
+from nonholo.base.checks import array, count, error, natural, shape_of, shown
+from nonholo.base.types import Float
 from nonholo.ensembles._names import OUTCOME, array_name, component_name, stream_name
 from nonholo.ensembles.designs._distributions import AbstractDistribution
 from nonholo.ensembles.designs._uniform import uniform_numbers

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from scipy.special import ndtri
 
-from nonholo._checks import array, count, error, number, positive, shape_of, trailing
-from nonholo._limits import bounded_count, within_memory
-from nonholo._types import Float
+from nonholo.base.checks import array, count, error, number, positive, shape_of, trailing
+from nonholo.base.limits import bounded_count, within_memory
+from nonholo.base.types import Float
 
 _LEAST = 2.0**-54  # instead of a uniform number zero, where its logarithm is needed
 

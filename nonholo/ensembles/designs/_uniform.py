@@ -4,7 +4,7 @@ import zlib
 
 import numpy as np
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 
 _WORDS = 4  # numbers for each value of Philox's counter
 

@@ -8,7 +8,7 @@ from typing import TextIO
 import numpy as np
 
 from nonholo import io
-from nonholo._checks import error, path
+from nonholo.base.checks import error, path
 from nonholo.ensembles._block import MemberBlock, block_of
 from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
 from nonholo.ensembles.stores._standing import standing_of

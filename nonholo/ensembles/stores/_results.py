@@ -6,8 +6,8 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from nonholo._checks import error
-from nonholo._results import Outcome
+from nonholo.base.checks import error
+from nonholo.base.results import Outcome
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._names import OUTCOME, array_name
 

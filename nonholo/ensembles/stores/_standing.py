@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import xarray
 
-from nonholo._checks import error
+from nonholo.base.checks import error
 from nonholo.ensembles.stores._store import SweepStore, open_store
 from nonholo.io import owner_of
 

@@ -22,7 +22,7 @@ from zarr.codecs import BloscCodec, Crc32cCodec
 from zarr.core.sync import sync
 
 from nonholo import io
-from nonholo._checks import error, printable
+from nonholo.base.checks import error, printable
 from nonholo.ensembles._describe import design_from
 from nonholo.ensembles.designs import Design, axis_dimensions
 from nonholo.ensembles.stores._layout import Layout, Piece

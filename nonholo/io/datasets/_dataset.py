@@ -3,7 +3,7 @@
 import numpy as np
 import xarray
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.io._attributes import attributes
 from nonholo.io.datasets._pose_variables import pose_variables

@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo._types import Float
-from nonholo.groups import AbstractMatrixGroup
-from nonholo.groups._quaternion import quaternion_from_matrix
+from nonholo.base.types import Float
+from nonholo.groups import AbstractMatrixGroup, quaternion_from_matrix
 from nonholo.io._descriptions import describe_group
 from nonholo.orbit import configurations, unwrapped
 from nonholo.systems import System

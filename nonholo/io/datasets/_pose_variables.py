@@ -4,7 +4,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup, ProductGroup, Translations
 from nonholo.io.datasets._pose_columns import HEADING, QUATERNION, Stretch, continued, layout, rows_of, separate_rows
 from nonholo.orbit import Orbit, configurations

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 from nonholo.kernels._small import eliminate, multiply, paired, paired_twice, sandwich, transpose
 
 LOST = 1e12  # turning of a displacement of an iteration that runs away

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 from nonholo.kernels._scalar import PIECES
 from nonholo.kernels._small import assign, assign_rows, eliminate, multiply, paired
 from nonholo.kernels.general._step import LOST, GeneralBody, Workspace, displaced, equations, skew_part

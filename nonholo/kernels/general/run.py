@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 from nonholo.kernels._small import assign, assign_rows, multiply, transpose
 from nonholo.kernels.general._step import GeneralBody, Workspace, displaced, increments, see_tensor, workspace
 from nonholo.kernels.general.root import newton, solve

@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._small import eliminate
 from nonholo.kernels.secular._linear import least_factor, reduced_matrix, total_factor

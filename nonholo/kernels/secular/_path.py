@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 from nonholo.kernels._scalar import COMPILED, PIECES
 from nonholo.kernels.secular._box import holds, write_box
 from nonholo.kernels.secular._linear import solve_linear, total_factor

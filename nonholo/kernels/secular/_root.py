@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 from nonholo.kernels._scalar import COMPILED, PIECES
 from nonholo.kernels.secular._step import SecularBody, newton
 

@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 from nonholo.kernels._scalar import COMPILED, scalar
 
 Sums: TypeAlias = tuple[float, float, float, float, float, float, float]

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._small import assign
 from nonholo.kernels.secular._path import principal

@@ -8,9 +8,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import step_counts
-from nonholo._results import Outcome, finished
-from nonholo._types import Array
+from nonholo.base.checks import step_counts
+from nonholo.base.results import Outcome, finished
+from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._blocks import State, decoded, run
 from nonholo.lagrange_dalembert._newton import root
 from nonholo.lagrange_dalembert._precision import in_double
@@ -19,8 +19,7 @@ from nonholo.lagrange_dalembert.on_groups import _equations as equations
 from nonholo.lagrange_dalembert.on_groups import _start as start
 from nonholo.lagrange_dalembert.on_groups._orbit import GroupOrbit
 from nonholo.lagrange_dalembert.on_groups._system import GroupLagrangeDAlembert
-from nonholo.systems import one_start
-from nonholo.systems._coordinate_system import AbstractCoordinateDiscretization
+from nonholo.systems import AbstractCoordinateDiscretization, one_start
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

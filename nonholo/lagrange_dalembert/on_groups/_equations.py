@@ -7,7 +7,7 @@ log W and goes on beyond angles of pi.
 import jax
 import jax.numpy as jnp
 
-from nonholo._types import Array
+from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._equations import Scaled, bordered
 from nonholo.lagrange_dalembert.on_groups._system import GroupLagrangeDAlembert
 

@@ -6,8 +6,8 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 
-from nonholo._checks import flow_times, flow_tolerances
-from nonholo._types import Array
+from nonholo.base.checks import flow_times, flow_tolerances
+from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._equations import solve_bordered
 from nonholo.lagrange_dalembert._sweep import Motion, State, flowed
 from nonholo.lagrange_dalembert.on_groups import _equations as equations

@@ -6,8 +6,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import array, error
-from nonholo._types import Array, Float
+from nonholo.base.checks import array, error
+from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._newton import root
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._start import admissible

@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import jax
 
-from nonholo._checks import error, shown
-from nonholo._types import Array, Float
+from nonholo.base.checks import error, shown
+from nonholo.base.numerics import double_precision
+from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert._room import room
 from nonholo.lagrange_dalembert._tracing import traced_shape
-from nonholo.numerics import double_precision
-from nonholo.systems._coordinate_system import AbstractCoordinateSystem
-from nonholo.systems._mass import checked_group, group_mass_tensor, inertia_form
+from nonholo.systems import AbstractCoordinateSystem, checked_group, group_mass_tensor, inertia_form
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert.on_groups._discretization import GroupDiscretization

@@ -10,10 +10,10 @@ from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 from PIL import Image
 
-from nonholo._checks import count, error, function, positive, shown
-from nonholo._checks import path as checked_path
-from nonholo._limits import within_memory
-from nonholo._types import Int
+from nonholo.base.checks import count, error, function, positive, shown
+from nonholo.base.checks import path as checked_path
+from nonholo.base.limits import within_memory
+from nonholo.base.types import Int
 from nonholo.io import check_file
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from nonholo._types import Int
+from nonholo.base.types import Int
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
-from nonholo._types import Float, Int
+from nonholo.base.types import Float, Int
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.animation._scene import stage

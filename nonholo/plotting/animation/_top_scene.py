@@ -9,7 +9,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from nonholo._types import Float, Int
+from nonholo.base.types import Float, Int
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.animation._scene import stage

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, NullLocator
 
-from nonholo._checks import error, pair, shown
-from nonholo._types import Float
+from nonholo.base.checks import error, pair, shown
+from nonholo.base.types import Float
 from nonholo.discrete import BranchTree, Discretization, as_discretization
 from nonholo.plotting import theme
 from nonholo.plotting.sheets import ellipse, name_axes, on_plane

@@ -9,10 +9,10 @@ from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
 
-from nonholo._checks import error, shape_of, shown
-from nonholo._types import Float
 from nonholo.analysis import deltoid, invariant_curve
 from nonholo.analysis.planar import planar_map
+from nonholo.base.checks import error, shape_of, shown
+from nonholo.base.types import Float
 from nonholo.discrete import Branches, Discretization, discrete_legendre, displacements_over, inverse_discrete_legendre
 from nonholo.discrete import branches as values_of
 from nonholo.plotting import theme

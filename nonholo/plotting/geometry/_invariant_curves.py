@@ -7,10 +7,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
 
-from nonholo._checks import energies as checked_energies
-from nonholo._types import Float
 from nonholo.analysis import InvariantCurve, invariant_curve
 from nonholo.analysis.planar import planar_map
+from nonholo.base.checks import energies as checked_energies
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme

@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 from matplotlib.contour import QuadContourSet
 
-from nonholo._checks import array, error, shown
-from nonholo._types import Array, Float
 from nonholo.analysis import MomentumLocus
+from nonholo.base.checks import array, error, shown
+from nonholo.base.types import Array, Float
 from nonholo.plotting import theme
 from nonholo.plotting.sheets import AbstractSheet, sheet_of
 

@@ -9,9 +9,9 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3D, Path3DCollection, Poly3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
-from nonholo._checks import error, pair, shown
-from nonholo._types import Float
 from nonholo.analysis import InvariantCurve, MomentumLocus
+from nonholo.base.checks import error, pair, shown
+from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.elements import draw_surface, spans

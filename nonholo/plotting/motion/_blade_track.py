@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.lines import Line2D
 
-from nonholo._checks import error, flags, shown
-from nonholo._types import Float
+from nonholo.base.checks import error, flags, shown
+from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.parts import (

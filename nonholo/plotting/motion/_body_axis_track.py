@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.colors import to_rgb
 
-from nonholo._checks import array, error, shown
-from nonholo._types import Float
+from nonholo.base.checks import array, error, shown
+from nonholo.base.types import Float
 from nonholo.groups import SO
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme

@@ -7,8 +7,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
 
-from nonholo._checks import error, shown
-from nonholo._types import Float
+from nonholo.base.checks import error, shown
+from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.parts import (

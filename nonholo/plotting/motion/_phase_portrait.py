@@ -12,9 +12,9 @@ from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch
 
-from nonholo._checks import energies as checked_energies
-from nonholo._checks import error, shown
-from nonholo._types import Float
+from nonholo.base.checks import energies as checked_energies
+from nonholo.base.checks import error, shown
+from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.motion._other_images import draw_images, trees_of

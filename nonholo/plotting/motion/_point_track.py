@@ -10,8 +10,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
-from nonholo._checks import error, shown
-from nonholo._types import Float
+from nonholo.base.checks import error, shown
+from nonholo.base.types import Float
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme

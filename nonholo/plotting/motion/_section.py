@@ -7,8 +7,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 
-from nonholo._checks import error, function, pair, shown, text
-from nonholo._types import Float
+from nonholo.base.checks import error, function, pair, shown, text
+from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.simulation import Crossings

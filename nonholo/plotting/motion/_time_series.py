@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme

@@ -2,7 +2,7 @@
 
 from matplotlib.figure import Figure
 
-from nonholo._results import Outcome
+from nonholo.base.results import Outcome
 from nonholo.orbit import Orbit
 from nonholo.plotting.parts import is_free, time_step
 from nonholo.plotting.sheets import sheet_of

@@ -6,8 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from nonholo._checks import error
-from nonholo._checks import path as checked_path
+from nonholo.base.checks import error
+from nonholo.base.checks import path as checked_path
 from nonholo.io import check_file
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from matplotlib.axes import Axes
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 from nonholo.groups import SE, SO
 from nonholo.orbit import Orbit
 from nonholo.plotting.motion import (

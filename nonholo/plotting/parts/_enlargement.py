@@ -5,7 +5,7 @@ from typing import TypeAlias
 import numpy as np
 from matplotlib.axes import Axes
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 from nonholo.plotting import theme
 
 Square: TypeAlias = Float[np.ndarray, "2 2"]  # rows (x_min, x_max), (y_min, y_max)

@@ -9,8 +9,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 from matplotlib.patches import Circle
 
-from nonholo._checks import number, pair
-from nonholo._types import Float
+from nonholo.base.checks import number, pair
+from nonholo.base.types import Float
 from nonholo.plotting import theme
 
 _SHADES = 256

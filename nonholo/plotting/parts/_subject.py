@@ -7,8 +7,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from nonholo._checks import error, shown
-from nonholo._types import Float
+from nonholo.base.checks import error, shown
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit, as_orbit
 from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System

@@ -5,7 +5,7 @@ Curves are thinned evenly along the drawn line, so that a short transition in a 
 
 import numpy as np
 
-from nonholo._types import Float, Int
+from nonholo.base.types import Float, Int
 from nonholo.orbit import Orbit
 
 

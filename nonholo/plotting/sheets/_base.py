@@ -11,9 +11,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
-from nonholo._types import Float
 from nonholo.analysis import InvariantCurve, MomentumLocus
 from nonholo.analysis.planar import AbstractPlanarVariety
+from nonholo.base.types import Float
 from nonholo.plotting.sheets._blade import Blade
 from nonholo.systems import AbstractSystem
 

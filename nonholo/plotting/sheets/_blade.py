@@ -4,8 +4,8 @@ import dataclasses
 
 import numpy as np
 
-from nonholo._types import Float
 from nonholo.analysis.planar import Strip
+from nonholo.base.types import Float
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
 

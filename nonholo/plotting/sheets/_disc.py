@@ -5,9 +5,9 @@ from typing import cast
 import numpy as np
 from matplotlib.axes import Axes
 
-from nonholo._types import Float
 from nonholo.analysis import InvariantCurve, MomentumLocus
 from nonholo.analysis.planar import Disc
+from nonholo.base.types import Float
 from nonholo.plotting.elements import draw_rim
 from nonholo.plotting.parts import forbidden_axis
 from nonholo.plotting.sheets._base import LEVELS, AbstractSheet, runs, without_rounding

@@ -7,7 +7,7 @@ on it is not decided here.
 import numpy as np
 from matplotlib.axes import Axes
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting.sheets._chosen import sheet_of
 from nonholo.systems import AbstractSystem

@@ -7,9 +7,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch
 
-from nonholo._types import Float
 from nonholo.analysis import InvariantCurve, MomentumLocus
 from nonholo.analysis.planar import Strip
+from nonholo.base.types import Float
 from nonholo.groups import SE
 from nonholo.plotting import theme
 from nonholo.plotting.sheets._base import LEVELS, AbstractSheet, runs, without_rounding

@@ -11,8 +11,8 @@ from matplotlib.collections import PathCollection
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import BoundaryNorm, LogNorm, Normalize
 
-from nonholo._checks import error, shown
-from nonholo._types import Float
+from nonholo.base.checks import error, shown
+from nonholo.base.types import Float
 from nonholo.plotting import theme
 
 OUTCOME, DRAWN = "outcome", "value of the design"

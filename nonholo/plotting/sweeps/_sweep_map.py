@@ -10,7 +10,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import ListedColormap
 
-from nonholo._checks import error, shown
+from nonholo.base.checks import error, shown
 from nonholo.plotting import theme
 from nonholo.plotting.sweeps._sweep_axes import (
     OUTCOME,

@@ -12,8 +12,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nonholo._checks import needs
-from nonholo._types import Float
+from nonholo.base.checks import needs
+from nonholo.base.types import Float
 from nonholo.discrete import AbstractCompiledRoute, Discretization
 from nonholo.groups import SE
 from nonholo.orbit import Orbit, unwrapped

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo._results import Outcome
+from nonholo.base.results import Outcome
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
 from nonholo.simulation.events._search import Watch, search

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error
-from nonholo._types import Float
+from nonholo.base.checks import error
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Crossings, Orbit, as_orbit
 from nonholo.simulation.events._event import Event

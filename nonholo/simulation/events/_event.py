@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import choice, error, natural, shown
-from nonholo._types import Float
+from nonholo.base.checks import choice, error, natural, shown
+from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 
 

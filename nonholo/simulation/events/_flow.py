@@ -6,8 +6,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from nonholo._results import Outcome
-from nonholo._types import Float
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
 from nonholo.orbit import Orbit, joined_states
 from nonholo.simulation.events._between import Between
 from nonholo.simulation.events._event import Event, values_at

@@ -5,7 +5,7 @@ import dataclasses
 import equinox
 import numpy as np
 
-from nonholo._types import Array
+from nonholo.base.types import Array
 from nonholo.discrete import Discretization, weights
 from nonholo.discrete.definition import displaced, in_double, momentum_of, principal_displacement, restricted
 

@@ -7,7 +7,7 @@ import operator
 import numpy as np
 from scipy.optimize import elementwise
 
-from nonholo._types import Bool, Float, Int
+from nonholo.base.types import Bool, Float, Int
 from nonholo.orbit import Crossings, EventLog, Orbit, joined_crossings, joined_states
 from nonholo.simulation.events._between import Between, with_headings
 from nonholo.simulation.events._event import Event, values_at

@@ -3,9 +3,9 @@
 import dataclasses
 from typing import Any
 
-from nonholo._checks import error
-from nonholo._progress import progress_bar
-from nonholo._results import Outcome, finished
+from nonholo.base.checks import error
+from nonholo.base.progress import progress_bar
+from nonholo.base.results import Outcome, finished
 from nonholo.discrete import PRINCIPAL, Discretization
 from nonholo.io import Plan
 from nonholo.orbit import Orbit

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import choice, count, error, flags, shown
-from nonholo._progress import progress_bar
-from nonholo._results import Outcome
+from nonholo.base.checks import choice, count, error, flags, shown
+from nonholo.base.progress import progress_bar
+from nonholo.base.results import Outcome
 from nonholo.discrete import PRINCIPAL, Discretization, as_discretization
 from nonholo.simulation.events import Event, watched_events
 from nonholo.simulation.members._events import joined_blocks, watched_block

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nonholo._types import Int
+from nonholo.base.types import Int
 from nonholo.orbit import AbstractEventLog
 
 if TYPE_CHECKING:

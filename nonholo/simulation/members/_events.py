@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo._results import Outcome
-from nonholo._types import Float, Int
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float, Int
 from nonholo.groups import SE
 from nonholo.orbit import Crossings, Orbit
 from nonholo.simulation.events import Between, Event, between_states, changes, located, values_at

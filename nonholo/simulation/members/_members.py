@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import array, error, shown
-from nonholo._types import Float
+from nonholo.base.checks import array, error, shown
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.systems import ChaplyginSleigh
 

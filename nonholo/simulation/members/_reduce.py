@@ -5,7 +5,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from nonholo._checks import error
+from nonholo.base.checks import error
 
 Reduced: TypeAlias = np.ndarray | dict[str, np.ndarray]
 

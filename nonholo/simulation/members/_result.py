@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error, natural
-from nonholo._results import Outcome
-from nonholo._types import Float, Int
+from nonholo.base.checks import error, natural
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float, Int
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
 from nonholo.simulation.members._event_log import MemberEvents

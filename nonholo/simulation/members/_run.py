@@ -11,8 +11,8 @@ import numba
 import numpy as np
 
 from nonholo import kernels
-from nonholo._checks import needs
-from nonholo._results import Outcome
+from nonholo.base.checks import needs
+from nonholo.base.results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.simulation._simulate import simulate

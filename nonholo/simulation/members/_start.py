@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from nonholo import kernels
-from nonholo._checks import array, error, shape_of
-from nonholo._types import Float
+from nonholo.base.checks import array, error, shape_of
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.simulation.members._members import Members, refused
 from nonholo.systems import ChaplyginSleigh, Start, SuslovTop, System

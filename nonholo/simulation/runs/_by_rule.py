@@ -5,8 +5,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from nonholo._progress import progress_bar
-from nonholo._results import Outcome
+from nonholo.base.progress import progress_bar
+from nonholo.base.results import Outcome
 from nonholo.discrete import AbstractBranchRule, Discretization, Place, first_place, frame_of, next_places
 from nonholo.groups import AbstractMatrixGroup
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nonholo._checks import error, shown
-from nonholo._results import Outcome, finished
+from nonholo.base.checks import error, shown
+from nonholo.base.results import Outcome, finished
 from nonholo.discrete import PRINCIPAL, AbstractBranchRule, AbstractCompiledRoute, Discretization, check_first_state
 from nonholo.orbit import Orbit
 from nonholo.simulation.runs._first_state import FirstState

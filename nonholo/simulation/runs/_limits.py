@@ -1,6 +1,6 @@
 """What no run may ask for: more time or more memory than there is."""
 
-from nonholo._limits import within_a_year, within_memory
+from nonholo.base.limits import within_a_year, within_memory
 from nonholo.discrete import Discretization
 
 _COMPILED, _BY_DEFINITION = 5e-10, 1e-5  # least seconds of a step for each component of momentum; of one step

@@ -2,7 +2,7 @@
 
 import dataclasses
 
-from nonholo._checks import choice, step_counts
+from nonholo.base.checks import choice, step_counts
 from nonholo.discrete import (
     AbstractBranchRule,
     BranchRule,

@@ -4,7 +4,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 
 Rows: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]  # momenta, charts, poses, as a kernel has them
 

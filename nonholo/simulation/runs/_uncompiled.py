@@ -5,7 +5,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from nonholo._checks import error, needs, shown
+from nonholo.base.checks import error, needs, shown
 from nonholo.discrete import Discretization, check_first_state, has_frame
 from nonholo.orbit import Orbit
 from nonholo.simulation.runs._by_rule import Run, run_by_rule

@@ -4,7 +4,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from nonholo import io
-from nonholo._checks import error
+from nonholo.base.checks import error
 from nonholo.discrete import PRINCIPAL
 from nonholo.simulation.events import Watch, search, watched
 from nonholo.simulation.runs import CompiledRun, RunState

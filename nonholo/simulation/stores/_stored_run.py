@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nonholo import io
-from nonholo._checks import count, error, shown
-from nonholo._limits import within_disk, within_memory
-from nonholo._progress import progress_bar
-from nonholo._results import Outcome, finished
+from nonholo.base.checks import count, error, shown
+from nonholo.base.limits import within_disk, within_memory
+from nonholo.base.progress import progress_bar
+from nonholo.base.results import Outcome, finished
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization
 from nonholo.io import Checkpoint, Plan
 from nonholo.orbit import AbstractMotion, Orbit

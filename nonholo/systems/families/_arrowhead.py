@@ -10,8 +10,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import array, check_scale, error, scale
-from nonholo._types import Array, Float
+from nonholo.base.checks import array, check_scale, error, scale
+from nonholo.base.types import Array, Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem
 from nonholo.systems._mass import inertia_from_mass_tensor

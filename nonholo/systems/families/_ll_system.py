@@ -6,8 +6,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from nonholo._checks import array, error, is_traced, positive_definite, symmetric
-from nonholo._types import Array, Float
+from nonholo.base.checks import array, error, is_traced, positive_definite, symmetric
+from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, form_along
 from nonholo.systems._body import lines_of, mass_tensor_of_body, tensors_shown

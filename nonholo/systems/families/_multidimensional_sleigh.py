@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from nonholo._checks import array, error, positive_definite, scale, symmetric
-from nonholo._types import Array, Float
+from nonholo.base.checks import array, error, positive_definite, scale, symmetric
+from nonholo.base.types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem
 from nonholo.systems._mass import inertia_from_mass_tensor

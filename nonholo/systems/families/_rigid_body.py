@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import positive_definite
-from nonholo._types import Array, Float
+from nonholo.base.checks import positive_definite
+from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, form_along
 from nonholo.systems._body import lines_of, mass_tensor_of_body, tensors_shown

@@ -6,8 +6,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo._checks import number, scale
-from nonholo._types import Array, Float
+from nonholo.base.checks import number, scale
+from nonholo.base.types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, form_along
 from nonholo.systems._mass import inertia_from_mass_tensor

@@ -1,7 +1,7 @@
 """The even function in the inverse of the derivative of an exponential; for NumPy arrays and JAX tracers."""
 
-from nonholo._types import Array, Float
-from nonholo.numerics._even import half_cotangent
+from nonholo.base.numerics._even import half_cotangent
+from nonholo.base.types import Array, Float
 
 # |B_2k| / (2k)!, k = 1 .. 10: exact to rounding for angles up to 1
 _SERIES = (

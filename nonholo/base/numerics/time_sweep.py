@@ -11,7 +11,7 @@ import diffrax
 import jax
 import numpy as np
 
-from nonholo._types import Array
+from nonholo.base.types import Array
 
 _FEWEST = 64  # intervals of a compiled solve; those of no length cost next to nothing
 _SMALLEST_STEP = 1e-13  # of an interval; below it a solve is given up

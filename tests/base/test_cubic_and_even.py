@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nonholo.numerics import half_cotangent, real_cubic_roots, sinc, versine
+from nonholo.base.numerics import half_cotangent, real_cubic_roots, sinc, versine
 
 coefficient = st.floats(-5, 5)
 

@@ -7,7 +7,7 @@ import shutil
 from pathlib import Path
 from typing import Any
 
-from nonholo._checks import count, error
+from nonholo.base.checks import count, error
 
 _YEAR = 365.25 * 24 * 3600.0
 _UNITS = ("B", "kB", "MB", "GB", "TB", "PB", "EB")

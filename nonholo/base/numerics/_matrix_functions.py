@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._types import Array, Float
+from nonholo.base.types import Array, Float
 
 _TERMS = 16  # of the series for norms below 1/2
 _DOUBLINGS = 20  # of traced matrices: norms up to 500,000, as in jax.scipy.linalg.expm

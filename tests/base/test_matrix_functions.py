@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from nonholo.numerics._bernoulli import cotangent_deficit
-from nonholo.numerics._matrix_functions import (
+from nonholo.base.numerics._bernoulli import cotangent_deficit
+from nonholo.base.numerics._matrix_functions import (
     block_diagonal,
     exponential_increment,
     integrated_exponential,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from nonholo._types import Float
+from nonholo.base.types import Float
 
 _SPLIT = 2.0**27 + 1  # halves the digits of a 64-bit number
 
@@ -23,7 +23,7 @@ def product_and_remainder(
         The product and the remainder.
 
     Example:
-        >>> from nonholo.numerics import product_and_remainder
+        >>> from nonholo.base.numerics import product_and_remainder
         >>> product, rest = product_and_remainder(np.array([[0.1, 1.0]]), np.array([[10.0], [-1.0]]))
         >>> float(product[0, 0]), float(rest[0, 0])
         (5.551115123125783e-17, 0.0)

@@ -2,7 +2,7 @@
 
 import math
 
-from nonholo._compiled import njit
+from nonholo.base.compiled import njit
 
 
 @njit(error_model="numpy")

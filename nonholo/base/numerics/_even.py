@@ -6,7 +6,7 @@ gets a harmless argument so that derivatives stay finite.
 
 import math
 
-from nonholo._types import Array, Float
+from nonholo.base.types import Array, Float
 
 _SMALL = 1e-3  # squared angle below which the truncated series are exact to rounding
 

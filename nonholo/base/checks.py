@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._types import Array
+from nonholo.base.types import Array
 
 _LEAST_RTOL = 1e-14
 LARGEST = 1e150  # what a number may be; squares of larger ones overflow
@@ -382,10 +382,10 @@ def needs(extra: str, where: str) -> Iterator[None]:
         MissingExtraError: If a library of the extra is not installed.
 
     Example:
-        >>> with needs("certify", "branches(certify=...)"):
+        >>> with needs("certify", "branches"):
         ...     raise ModuleNotFoundError("No module named 'flint'", name="flint")
         Traceback (most recent call last):
-        nonholo._checks.MissingExtraError: `branches(certify=...)` must have the extra `certify`. Got no module 'flint'.
+        nonholo.base.checks.MissingExtraError: `branches` must have the extra `certify`. Got no module 'flint'.
         Install the extra `certify`: pip install 'nonholo[certify]'.
     """
     try:

@@ -20,7 +20,7 @@ from typing import Any
 import numba
 from numba.core import caching, config, dispatcher, serialize
 
-_ROOMS = ("kernels", "numerics")
+_FOLDERS = ("kernels", "base/numerics")
 _DIGEST = 32
 _REMEDY = "Set NUMBA_CACHE_DIR to a folder that can be written."
 
@@ -57,8 +57,8 @@ def _say(text: str) -> None:
 def text_of_kernels() -> bytes:
     """Return a digest of all that compiled code depends on beside the types of its arguments and the processor."""
     digest = hashlib.sha256(f"{numba.__version__} {config.BOUNDSCHECK}".encode())  # pyright: ignore
-    for room in _ROOMS:
-        for file in sorted((Path(__file__).parent / room).rglob("*.py")):
+    for folder in _FOLDERS:
+        for file in sorted((Path(__file__).parents[1] / folder).rglob("*.py")):
             digest.update(file.read_bytes())
     return digest.digest()
 

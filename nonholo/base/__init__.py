@@ -1,0 +1,1 @@
+"""What every room stands on: types, checks, outcomes, limits, progress, compiled code, numerical functions."""

@@ -1,0 +1,37 @@
+"""Numerical functions with no mechanics in them; `time_sweep` needs diffrax, and is imported on first use."""
+
+from nonholo.base.numerics._bernoulli import cotangent_deficit
+from nonholo.base.numerics._cubic import real_cubic_roots
+from nonholo.base.numerics._double_precision import double_precision
+from nonholo.base.numerics._even import half_cotangent, sinc, versine
+from nonholo.base.numerics._matrix_functions import (
+    block_diagonal,
+    cayley_increment,
+    exponential_increment,
+    identity_like,
+    integrated_exponential,
+    inverse_cayley,
+    inverted,
+    of_skew,
+    principal_logarithm,
+)
+from nonholo.base.numerics._products import product_and_remainder
+
+__all__ = [
+    "block_diagonal",
+    "cayley_increment",
+    "cotangent_deficit",
+    "double_precision",
+    "exponential_increment",
+    "half_cotangent",
+    "identity_like",
+    "integrated_exponential",
+    "inverse_cayley",
+    "inverted",
+    "of_skew",
+    "principal_logarithm",
+    "product_and_remainder",
+    "real_cubic_roots",
+    "sinc",
+    "versine",
+]
