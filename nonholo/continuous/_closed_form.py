@@ -1,4 +1,4 @@
-"""Closed forms of the continuous motion: momenta of tops and sleighs, heading and path of the sleigh."""
+"""Closed forms of the continuous motion: momenta along two directions, heading and path of the sleigh."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from nonholo.base.types import Float
 from nonholo.continuous._blade_path import blade_path
 from nonholo.continuous._heteroclinic import Heteroclinic, heteroclinic
 from nonholo.continuous._integration import integrate_pose
-from nonholo.systems import AbstractSystem, ChaplyginSleigh, SuslovTop
+from nonholo.systems import AbstractSystem, NormalForm
 
 _LARGEST_RATIO = 1e150  # of turn to the Gudermannian; beyond it the centre of mass is as good as at the blade
 
@@ -23,33 +23,67 @@ def closed_form(
 ) -> tuple[Float[np.ndarray, "K k"], Float[np.ndarray, "K size"], Float[np.ndarray, "K"] | None, Outcome]:
     """Return momenta, poses, on SE(2) the heading without ambiguity of full turns, and the outcome.
 
-    The system is a canonical one. The pose of a top is a quadrature within the tolerances; all else is exact.
+    The system is a canonical one. Heading and path of a sleigh are exact; other poses are a quadrature within the
+    tolerances.
     """
-    if isinstance(system, ChaplyginSleigh):
-        motion = heteroclinic(system, reduced_momentum)
-        poses, turned = _sleigh_poses(system, motion, reduced_momentum, pose, elapsed)
+    if system.is_spatial or system.rank != 2:
+        remedy = "Leave method out to integrate numerically."
+        raise error("flow(method='closed_form')", "have a closed-form solution", type(system).__name__, remedy)
+    motion, form = heteroclinic(system, reduced_momentum), system.normal_form
+    if form is not None and form.is_sleigh:
+        poses, turned = _sleigh_poses(system, form, motion, reduced_momentum, pose, elapsed)
         return motion.momentum(elapsed), poses, turned, Outcome.successful
-    if isinstance(system, SuslovTop) and system.group.dim == 3:
-        motion = heteroclinic(system, reduced_momentum)
-        poses, outcome = integrate_pose(system, motion, pose, elapsed, tolerances)
-        return motion.momentum(elapsed)[: len(poses)], poses, None, outcome
-    remedy = "Leave method out to integrate numerically."
-    raise error("flow(method='closed_form')", "have a closed-form solution", type(system).__name__, remedy)
+    poses, outcome = integrate_pose(system, motion, pose, elapsed, tolerances)
+    return motion.momentum(elapsed)[: len(poses)], poses, None, outcome
 
 
 def _sleigh_poses(
-    sleigh: ChaplyginSleigh, motion: Heteroclinic, reduced_momentum: np.ndarray, pose: np.ndarray, elapsed: np.ndarray
+    system: AbstractSystem,
+    form: NormalForm,
+    motion: Heteroclinic,
+    reduced_momentum: np.ndarray,
+    pose: np.ndarray,
+    elapsed: np.ndarray,
 ) -> tuple[Float[np.ndarray, "K 4"], Float[np.ndarray, "K"]]:
-    facing = complex(pose[0], pose[1]) / np.hypot(pose[0], pose[1])
-    omega, v1 = sleigh.restricted_velocity(reduced_momentum)
-    gyration = np.sqrt(sleigh.a**2 + sleigh.inertia / sleigh.mass)
-    if motion.rate == 0 or gyration > _LARGEST_RATIO * abs(sleigh.a):
-        turn, shift = _circle(omega, v1, elapsed)
+    group, foot = system.group, _foot(form)
+    first = pose if foot is None else group.pose_from_matrix(group.matrix_from_pose(pose) @ foot)
+    facing = _facing(first)
+    omega, u = _turn_and_slide(system, form, reduced_momentum)
+    gyration = np.sqrt(form.arm**2 + form.stiffness[0, 0] / form.mass)
+    if motion.rate == 0 or gyration > _LARGEST_RATIO * abs(form.arm):
+        turn, shift = _circle(omega, u, elapsed)
     else:
-        turn, shift = _asymptotically_straight(gyration, sleigh.a, motion, elapsed)
-    heading, place = facing * np.exp(1j * turn), complex(pose[2], pose[3]) + facing * shift
-    rows = (heading.real, heading.imag, place.real, place.imag)
-    return np.stack(rows, axis=-1), np.angle(facing) + turn
+        sign = np.copysign(1.0, _turn_and_slide(system, form, motion.across)[0])
+        turn, shift = _asymptotically_straight(gyration, form.arm, sign, motion, elapsed)
+    heading, place = facing * np.exp(1j * turn), complex(first[2], first[3]) + facing * shift
+    rows = np.stack((heading.real, heading.imag, place.real, place.imag), axis=-1)
+    if foot is not None:
+        rows = group.pose_from_matrix(group.matrix_from_pose(rows) @ group.inverse(foot))
+    return rows, np.angle(_facing(pose)) + turn
+
+
+def _facing(pose: np.ndarray) -> complex:
+    return complex(pose[0], pose[1]) / np.hypot(pose[0], pose[1])
+
+
+def _foot(form: NormalForm) -> Float[np.ndarray, "3 3"] | None:
+    """Return the axes of the blade at the foot of the center of mass, as seen from the canonical frame, or None."""
+    if form.frame is None and not np.any(form.offset):
+        return None
+    shift = np.eye(3)
+    shift[1, 2] = form.offset[0]
+    return shift if form.frame is None else form.frame @ shift
+
+
+def _rows(form: NormalForm) -> Float[np.ndarray, "2 2"]:
+    """Return C with r_form = C r."""
+    return np.eye(2) if form.frame_map is None else form.frame_map
+
+
+def _turn_and_slide(system: AbstractSystem, form: NormalForm, momentum: np.ndarray) -> tuple[float, float]:
+    r"""Return $\omega$ and the velocity along the blade of the foot of the center of mass."""
+    w, v1 = np.linalg.solve(_rows(form).T, system.restricted_velocity(momentum))
+    return -w, v1 + form.offset[0] * w
 
 
 def _circle(omega: float, v1: float, elapsed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -59,13 +93,13 @@ def _circle(omega: float, v1: float, elapsed: np.ndarray) -> tuple[np.ndarray, n
 
 
 def _asymptotically_straight(
-    gyration: float, a: float, motion: Heteroclinic, elapsed: np.ndarray
+    gyration: float, a: float, sign: float, motion: Heteroclinic, elapsed: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     r"""Return turn and shift if neither a nor omega is zero.
 
     With $I = m\rho^2$: $\Lambda = \rho/|a|$, $\theta - \theta_0 = \pm\Lambda(\phi - \phi_0)$, and the shift is
     $\rho^2/a$ times the `blade_path`, for negative omega its conjugate.
     """
-    ratio, sign = gyration / abs(a), np.copysign(1.0, motion.across[0])
+    ratio = gyration / abs(a)
     angle, path = blade_path(ratio, motion.start, motion.rate * elapsed)
     return sign * ratio * angle, gyration**2 / a * (path if sign > 0 else path.conj())

@@ -127,7 +127,7 @@ class EnsembleTask:
     def _every(self) -> int | None:
         """Steps between states: every one, if a built-in reduction needs all of them."""
         named = [REDUCTIONS[r] for r in self.reductions if isinstance(r, str)]
-        return 1 if any(isinstance(self.discrete.system, r.needs_all) for r in named) else self.save_every
+        return 1 if any(r.needs_all(self.discrete.system) for r in named) else self.save_every
 
     def check_design(self, names: list[str]) -> None:
         """Refuse a design that names what the task does not know, no start, or several."""

@@ -13,16 +13,16 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete import displacements_over, has_frame
 from nonholo.simulation import Ensemble, applied, have_kernel, scalar_members
-from nonholo.systems import AbstractSystem, ChaplyginSleigh
+from nonholo.systems import AbstractSystem
 
 Reduced = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]
 
 
 class Reduction(NamedTuple):
-    """A reduction and the systems of which it needs every state."""
+    """A reduction, and whether it needs every state of a system."""
 
     function: Callable[[Ensemble], Reduced]
-    needs_all: tuple[type, ...] = ()
+    needs_all: Callable[[AbstractSystem], bool] = lambda _: False
 
 
 def _final_state(batch: Ensemble) -> Reduced:
@@ -53,11 +53,16 @@ def _energy_drift(batch: Ensemble) -> Reduced:
     return {"energy_drift": ((), np.where(np.isfinite(ended), drift, np.nan), _told("relative error of energy", "1"))}
 
 
+def _is_plane_sleigh(system: AbstractSystem) -> bool:
+    form = system.normal_form
+    return form is not None and form.is_sleigh and form.is_planar
+
+
 def _limit_angle(batch: Ensemble) -> Reduced:
     if not have_kernel(batch.members):
         got, remedy = shown(batch.members.discrete), "Write a reduction of your own."
         raise error("reduction 'limit_angle'", "have a plane sleigh or a top with n = 3", got, remedy)
-    if isinstance(batch.members.discrete.system, ChaplyginSleigh):
+    if _is_plane_sleigh(batch.members.discrete.system):
         return {"heading_turn": ((), _heading_turn(batch), _told("total turn of the heading", "rad"))}
     return {"axis_angle": ((), _axis_angle(batch), _told("angle between the axes in space", "rad"))}
 
@@ -72,7 +77,7 @@ def _heading_turn(batch: Ensemble) -> Float[np.ndarray, "M"]:
 
 def _turning_deviation(batch: Ensemble) -> Reduced:
     """Compare the turn of sleighs with that of the flow, to which it tends from below as the time step tends to 0."""
-    if not isinstance(batch.members.discrete.system, ChaplyginSleigh) or not have_kernel(batch.members):
+    if not (have_kernel(batch.members) and _is_plane_sleigh(batch.members.discrete.system)):
         got, remedy = shown(batch.members.discrete), "Keep another reduction."
         raise error("reduction 'turning_deviation'", "have a plane sleigh", got, remedy)
     mass, inertia, a = (batch.members.values(name) for name in ("mass", "inertia", "a"))
@@ -146,8 +151,8 @@ def _told(meaning: str, units: str = "") -> dict[str, str]:
 REDUCTIONS = {
     "final_state": Reduction(_final_state),
     "energy_drift": Reduction(_energy_drift),
-    "limit_angle": Reduction(_limit_angle, needs_all=(ChaplyginSleigh,)),
-    "turning_deviation": Reduction(_turning_deviation, needs_all=(ChaplyginSleigh,)),
+    "limit_angle": Reduction(_limit_angle, _is_plane_sleigh),
+    "turning_deviation": Reduction(_turning_deviation, _is_plane_sleigh),
     "branch_counts": Reduction(_branch_counts),
-    "lyapunov": Reduction(_lyapunov, needs_all=(AbstractSystem,)),
+    "lyapunov": Reduction(_lyapunov, lambda _: True),
 }

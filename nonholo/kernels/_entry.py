@@ -1,15 +1,13 @@
 """The compiled runs, whatever the body: what each kind of body has, in one table."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args
 
 import numpy as np
 
 from nonholo.kernels import _composition, _driver
 from nonholo.kernels._composition import ComposedBody
 from nonholo.kernels._interface import Body
-from nonholo.kernels._sleigh import SleighBody
-from nonholo.kernels._suslov import SuslovBody
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.general import run as general_run
 from nonholo.kernels.secular import SecularBody
@@ -108,8 +106,7 @@ def _composed_advance(body: ComposedBody, state: np.ndarray, steps: int, every: 
 
 _SCALAR = _Runs(lambda _: (2, 2, 4), _scalar_start, lambda _, state: state[4:6], _driver.advance, _scalar_each)
 _RUNS: dict[type, _Runs] = {
-    SuslovBody: _SCALAR,
-    SleighBody: _SCALAR,
+    **dict.fromkeys(get_args(Body), _SCALAR),
     SecularBody: _Runs(_secular_sizes, secular_run.start, secular_run.chart_in, secular_run.advance, _secular_each),
     GeneralBody: _Runs(_general_sizes, general_run.start, _general_chart, general_run.advance, _general_each),
     ComposedBody: _Runs(lambda body: sizes(body.body), _composition.start, _composed_chart, _composed_advance, None),

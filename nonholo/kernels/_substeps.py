@@ -5,7 +5,7 @@ plane have a loop of their own, in `_composition`.
 """
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numba.extending import overload
@@ -13,9 +13,7 @@ from numba.extending import overload
 from nonholo.base.compiled import njit
 from nonholo.kernels._interface import Body
 from nonholo.kernels._scalar import COMPILED
-from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._small import assign
-from nonholo.kernels._suslov import SuslovBody
 from nonholo.kernels.general import GeneralBody, Workspace, increments, workspace
 from nonholo.kernels.general import root as general_root
 from nonholo.kernels.general import run as general_run
@@ -116,7 +114,7 @@ def chosen(
     secular: Callable[..., Any], general: Callable[..., Any], two: Callable[..., Any] | None = None
 ) -> Callable[..., Any]:
     """Return the function that calls the piece for the type of its first argument, for numba and for plain Python."""
-    table = {SuslovBody: two, SleighBody: two, SecularBody: secular, GeneralBody: general}
+    table = {**dict.fromkeys(get_args(Body), two), SecularBody: secular, GeneralBody: general}
 
     def piece(p: Any, *rest: Any) -> Any:
         return table[type(p)](p, *rest)
@@ -144,8 +142,7 @@ def at_rest(body: Body | SecularBody | GeneralBody) -> np.ndarray:
 
 
 _AT_REST: dict[type, Callable[[Any], np.ndarray]] = {
-    SuslovBody: lambda _: np.zeros(2),
-    SleighBody: lambda _: np.zeros(2),
+    **dict.fromkeys(get_args(Body), lambda _: np.zeros(2)),
     SecularBody: lambda body: np.array((body.mass * body.arm * body.arm, 0.0)),
     GeneralBody: lambda body: np.zeros(len(body.stretch)),
 }

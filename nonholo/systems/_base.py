@@ -34,6 +34,8 @@ class AbstractSystem(abc.ABC):
     """Fields that are fixed: groups, subspaces, axes."""
     is_spatial: ClassVar[bool]
     """Whether the constraint is fixed in space (right-invariant) instead of in the body (left-invariant)."""
+    has_blade: ClassVar[bool] = False
+    """Whether the last row of the constraint subspace is the velocity along a blade, at its point of contact."""
 
     @property
     @abc.abstractmethod

@@ -113,3 +113,34 @@ def test_orbits_between_the_equilibria(body: Any, same: Any, axes: np.ndarray) -
     other = nh.heteroclinic(nh.discretize(same, 0.5), energy=0.3, side=1)
     expected = known.orbit.body_velocity[[0, -1]] @ body.group.adjoint(axes).T
     assert np.allclose(expected, other.orbit.body_velocity[[0, -1]], atol=1e-10)
+
+
+@planar
+def test_flows_in_closed_form(body: Any, same: Any, axes: np.ndarray) -> None:
+    """Momenta, poses and headings are those of the adaptive solver, and those of the named class in its axes."""
+    v = np.zeros(body.group.dim)
+    v[:2] = 0.4, -0.9
+    times, velocity = np.linspace(0.0, 30.0, 7), _seen(body, axes, v)
+    exact = nh.flow(same, body_velocity=velocity, times=times, method="closed_form", rtol=1e-12, atol=1e-14)
+    solved = nh.flow(same, body_velocity=velocity, times=times, rtol=1e-12, atol=1e-14)
+    named = nh.flow(body, body_velocity=v, times=times, method="closed_form", rtol=1e-12, atol=1e-14)
+    assert np.allclose(exact.momentum, solved.momentum, atol=1e-9)
+    assert np.allclose(exact.configuration, solved.configuration, atol=1e-9)
+    moved = axes @ named.configuration @ np.linalg.inv(axes)
+    assert np.allclose(exact.configuration, moved, atol=1e-9)
+    if body.group == nh.SE(2):
+        assert np.allclose(exact.heading, solved.heading, atol=1e-9)
+        assert np.ptp(exact.heading) > np.pi / 4
+
+
+@pytest.mark.parametrize("group", [nh.SO(3), nh.SO(4), nh.SE(3)], ids=str)
+def test_two_directions_have_a_closed_form(group: Any) -> None:
+    """Whatever the body and the two directions: momenta by hyperbolic functions, poses by a quadrature."""
+    rng = np.random.default_rng(group.dim)
+    points = rng.normal(size=(group.size + 3, group.size))
+    points[:, -1] = 1.0
+    system = nh.LLSystem(group, points.T @ points, rng.normal(size=(2, group.dim)))
+    start = {"restricted_velocity": (0.4, -0.9), "times": np.linspace(0.0, 3.0, 5), "rtol": 1e-12, "atol": 1e-14}
+    exact, solved = (nh.flow(system, method=method, **start) for method in ("closed_form", None))
+    assert np.allclose(exact.momentum, solved.momentum, rtol=1e-9, atol=1e-9)
+    assert np.allclose(exact.configuration, solved.configuration, atol=1e-9)

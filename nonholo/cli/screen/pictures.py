@@ -65,7 +65,9 @@ def _flow(orbit: "Orbit") -> "Orbit | None":
     """Return the continuous motion from the same start where a closed form makes it cheap."""
     import nonholo
 
-    if orbit.cayley is None or orbit.canonical_pose is None or not isinstance(orbit.system, nonholo.ChaplyginSleigh):
+    form = orbit.system.normal_form
+    is_exact = form is not None and form.is_sleigh and form.is_planar
+    if orbit.cayley is None or orbit.canonical_pose is None or not is_exact:
         return None
     times = orbit.time[:: max(1, len(orbit) // _MOST_TIMES)]
     start = {"momentum": orbit.restricted_momentum[0], "configuration": orbit.configuration[0]}

@@ -11,7 +11,6 @@ from nonholo.discrete import Discretization
 from nonholo.orbit import Crossings, Orbit, as_orbit
 from nonholo.simulation.events._event import Event
 from nonholo.simulation.events._watched import searched, watched
-from nonholo.systems import ArrowheadSleigh, ChaplyginSleigh, MultidimensionalSleigh
 
 
 def crossings(orbit: Orbit, event: Any) -> Crossings:
@@ -47,7 +46,7 @@ def crossings(orbit: Orbit, event: Any) -> Crossings:
 
 def _forward_speed(orbit: Orbit) -> Float[np.ndarray, "K"]:
     system = orbit.system
-    if not isinstance(system, ChaplyginSleigh | MultidimensionalSleigh | ArrowheadSleigh):
+    if not system.has_blade:
         got, remedy = type(system).__name__, "Write an event of your own: a function of the orbit."
         raise error("cusp", "watch a sleigh", got, remedy)
     return system.restricted_velocity(orbit.restricted_momentum)[:, -1]

@@ -11,7 +11,8 @@ from nonholo.base.results import Outcome
 from nonholo.discrete import PRINCIPAL, Discretization, as_discretization
 from nonholo.simulation.events import Event, watched_events
 from nonholo.simulation.members._events import joined_blocks, watched_block
-from nonholo.simulation.members._members import Members, check_systems, checked_parameters
+from nonholo.simulation.members._families import check_systems
+from nonholo.simulation.members._members import Members, checked_parameters
 from nonholo.simulation.members._reduce import Reduced, joined
 from nonholo.simulation.members._result import Ensemble
 from nonholo.simulation.members._run import Plan, Report, run_members, states_of

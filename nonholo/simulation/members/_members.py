@@ -9,9 +9,8 @@ import numpy as np
 from nonholo.base.checks import array, error, shown
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
-from nonholo.systems import ChaplyginSleigh
 
-_STEP = "time_step"
+STEP = "time_step"
 _ARGUMENTS = {"given_inertia": "inertia_operator"}  # fields that the constructor calls otherwise
 
 
@@ -35,20 +34,20 @@ class Members:
     @property
     def time_step(self) -> Float[np.ndarray, "m"]:
         """The time step of each member, or that of all as one number."""
-        return self.values(_STEP)
+        return self.values(STEP)
 
     def values(self, name: str) -> Float[np.ndarray, "m ..."]:
         """Return a parameter of each member, or with an axis of length 1 that of all."""
         if name in self.parameters:
             return self.parameters[name]
-        return np.asarray(self.discrete.time_step if name == _STEP else getattr(self.discrete.system, name))[None]
+        return np.asarray(self.discrete.time_step if name == STEP else getattr(self.discrete.system, name))[None]
 
     def of(self, member: int) -> Discretization:
         """Return the discretised system of one member."""
         if not self.parameters:
             return self.discrete
         own = {name: values[member] for name, values in self.parameters.items()}
-        step = own.pop(_STEP, self.discrete.time_step)
+        step = own.pop(STEP, self.discrete.time_step)
         system = _rebuilt(self.discrete.system, own) if own else self.discrete.system
         return dataclasses.replace(self.discrete, system=system, time_step=step)
 
@@ -71,13 +70,13 @@ def checked_parameters(discrete: Discretization, parameters: Any) -> dict[str, A
     if not isinstance(parameters, Mapping):
         raise error("ensemble(parameters=...)", "be a mapping of names to arrays", shown(parameters), "Pass a dict.")
     fields = [name for name in system.leaves if getattr(system, name) is not None]
-    known = [*(_ARGUMENTS.get(name, name) for name in fields), _STEP]
+    known = [*(_ARGUMENTS.get(name, name) for name in fields), STEP]
     checked = {}
     for name, value in parameters.items():
         if name not in known:
             remedy = f"{type(system).__name__} has {', '.join(known)}."
             raise error("ensemble(parameters=...)", "name fields of the system", shown(name), remedy)
-        shape = () if name == _STEP else np.shape(getattr(system, name))
+        shape = () if name == STEP else np.shape(getattr(system, name))
         where = f"ensemble(parameters={{{name!r}: ...}})"
         checked[name] = array(where, value, (None, *shape), "Pass one value for each member.")
     _one_length(checked)
@@ -94,31 +93,3 @@ def _one_length(parameters: dict[str, np.ndarray]) -> None:
 def refused(member: int, failure: ValueError) -> ValueError:
     """Return the error of one member, with its number."""
     return ValueError(f"{failure} This is member {member}.")
-
-
-def check_systems(members: Members) -> None:
-    """Refuse parameters of which no system can be made; tops and sleighs are looked through in one go."""
-    step = members.parameters.get(_STEP)
-    if step is not None and not np.all(step > 0):
-        at = int(np.argmax(~(step > 0)))
-        remedy = f"Pass positive time steps. This is member {at}."
-        raise error("ensemble(parameters={'time_step': ...})", "be positive", f"{step[at]}", remedy)
-    for member in np.flatnonzero(_suspicious(members)):
-        try:
-            members.of(int(member))
-        except ValueError as failure:
-            raise refused(int(member), failure) from None
-
-
-def _suspicious(members: Members) -> np.ndarray:
-    """Tell which members have to be built to know that they can be: all, but for clear cases."""
-    given, values = members.parameters, members.values
-    if not given.keys() - {_STEP}:
-        return np.zeros(len(members), dtype=bool)
-    if isinstance(members.discrete.system, ChaplyginSleigh):
-        return np.broadcast_to(~((values("mass") > 0) & (values("inertia") > 0)), len(members))
-    if given.keys() - {_STEP} == {"mass_tensor"}:
-        J = values("mass_tensor")
-        eigenvalues = np.linalg.eigvalsh(J)
-        return ~((J.swapaxes(1, 2) == J).all(axis=(1, 2)) & (eigenvalues[:, 0] > 1e-12 * eigenvalues[:, -1]))
-    return np.ones(len(members), dtype=bool)

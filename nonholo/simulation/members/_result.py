@@ -12,12 +12,12 @@ from nonholo.base.types import Float, Int
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
 from nonholo.simulation.members._event_log import MemberEvents
+from nonholo.simulation.members._families import family_of, have_kernel, scalar_members
 from nonholo.simulation.members._members import Members
-from nonholo.simulation.members._start import applied, energies, have_kernel, scalar_members
-from nonholo.systems import ChaplyginSleigh, SuslovTop, System
+from nonholo.simulation.members._start import applied, energies
+from nonholo.systems import System
 
 _OF_FRAME = ("configuration", "pose", "position", "displacement")
-_KEEPS_FRAME = {SuslovTop: {"mass_tensor"}, ChaplyginSleigh: {"mass", "inertia", "a"}}
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -187,8 +187,9 @@ class Ensemble:
         discrete = self.members.discrete
         composed = discrete.order > 2 and name == "displacement"
         same = set() if name == "momentum" or composed else {"time_step"}
-        if name in _OF_FRAME and not composed:
-            same |= _KEEPS_FRAME.get(type(discrete.system), set())
+        family = family_of(discrete.system)
+        if name in _OF_FRAME and not composed and family is not None:
+            same |= family.keeps_frame
         return self.members.parameters.keys() <= same
 
 

@@ -16,9 +16,9 @@ from nonholo.base.results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.simulation._simulate import simulate
+from nonholo.simulation.members._families import have_kernel, scalar_members
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._result import Ensemble
-from nonholo.simulation.members._start import have_kernel, scalar_members
 
 _PART = 8192  # members in a piece of work of one thread, a multiple of what a compiled block holds
 
@@ -83,7 +83,7 @@ def _run_scalar(members: Members, momenta: np.ndarray, plan: Plan, threads: int,
     poses = np.ascontiguousarray(np.broadcast_to(scalar.pose, (count, 4)))
     rows = _rows(count, states, posed)
     fields, one = scalar.fields, members.parameters.keys() <= {"time_step"}
-    advance = _advance_by_jax if backend == "jax" else _advance
+    advance = functools.partial(_advance_by_jax if backend == "jax" else _advance, scalar.body)
 
     def work(part: slice, stop: np.ndarray) -> None:
         pieces = kernels.MemberRows(*(array[part] for array in rows))
@@ -105,11 +105,8 @@ def _rows(count: int, states: int, posed: bool) -> kernels.MemberRows:
     return kernels.MemberRows(momenta, charts, poses, codes, done)
 
 
-def _kind(fields: np.ndarray) -> type[kernels.Body]:
-    return kernels.SuslovBody if len(fields) == len(kernels.SuslovBody._fields) else kernels.SleighBody
-
-
 def _advance(
+    body: type[kernels.Body],
     fields: np.ndarray,
     one: bool,
     momenta: np.ndarray,
@@ -119,12 +116,13 @@ def _advance(
     stop: np.ndarray,
 ) -> None:
     """Run members by the compiled loop."""
-    body = _kind(fields)(*(float(x) for x in fields[:, 0]))
+    one_body = body(*(float(x) for x in fields[:, 0]))
     tables = None if one else kernels.tables_of(fields)
-    kernels.advance_members(body, tables, momenta, poses, plan.steps, plan.every or 0, rows, stop)
+    kernels.advance_members(one_body, tables, momenta, poses, plan.steps, plan.every or 0, rows, stop)
 
 
 def _advance_by_jax(
+    body: type[kernels.Body],
     fields: np.ndarray,
     one: bool,
     momenta: np.ndarray,
@@ -137,11 +135,11 @@ def _advance_by_jax(
     with needs("jax", "ensemble(backend='jax')"):
         from nonholo.simulation.members._by_jax import advance_by_jax
 
-    uncertain = advance_by_jax(_kind(fields)(*fields), momenta, poses, plan.steps, plan.every or 0, rows)
+    uncertain = advance_by_jax(body(*fields), momenta, poses, plan.steps, plan.every or 0, rows)
     again = np.flatnonzero(uncertain)
     if again.size:
         found = _rows(len(again), rows.momenta.shape[1], plan.posed)
-        _advance(fields if one else fields[:, again], one, momenta[again], poses[again], plan, found, stop)
+        _advance(body, fields if one else fields[:, again], one, momenta[again], poses[again], plan, found, stop)
         for array, values in zip(rows, found, strict=True):
             array[again] = values
 

@@ -1,82 +1,15 @@
 """Where the members of an ensemble start, and the numbers of tops and plane sleighs for all members in one go."""
 
-import dataclasses
-import functools
-from collections.abc import Callable
-
 import numpy as np
 
-from nonholo import kernels
 from nonholo.base.checks import array, error, shape_of
 from nonholo.base.types import Float
-from nonholo.discrete import Discretization
+from nonholo.simulation.members._families import ScalarMembers, have_kernel, scalar_members
 from nonholo.simulation.members._members import Members, refused
-from nonholo.systems import ChaplyginSleigh, Start, SuslovTop, System
+from nonholo.systems import Start, System
 
 _CHUNK = 1 << 16  # members whose starts are made at once: what it takes between is not kept
 _TOLERANCE = 1e-9  # relative, for velocities that a user computed in floating point
-
-
-@dataclasses.dataclass(frozen=True, eq=False)
-class ScalarMembers:
-    """What the kernels of tops (n = 3) and plane sleighs see; an axis of length 1 where all members agree.
-
-    Attributes:
-        table: Makes the fields of their bodies, which only a run needs: for tops they take longer than all else.
-        scale: Factors from canonical momenta to those of the kernel, (m,).
-        inertia: Inertias along the constraint in the canonical frame, (m, 2, 2).
-        frame_map: C with r_canonical = C r, (m, 2, 2).
-        pose: First poses, (m, 4).
-    """
-
-    table: Callable[[], Float[np.ndarray, "f _"]]
-    scale: Float[np.ndarray, "_"]
-    inertia: Float[np.ndarray, "_ 2 2"]
-    frame_map: Float[np.ndarray, "_ 2 2"]
-    pose: Float[np.ndarray, "_ 4"]
-
-    @functools.cached_property
-    def fields(self) -> Float[np.ndarray, "f m"]:
-        """Fields of their bodies, one row each."""
-        return self.table()
-
-
-def have_kernel(members: Members) -> bool:
-    """Tell whether members are tops (n = 3) or plane sleighs with a step in closed form."""
-    return run_in_lanes(members.discrete)
-
-
-def run_in_lanes(discrete: Discretization) -> bool:
-    """Tell whether the members of an ensemble of a discretisation are computed side by side."""
-    return discrete.route.is_scalar and type(discrete.system) in _NUMBERS
-
-
-def scalar_members(members: Members) -> ScalarMembers:
-    """Return the numbers of tops and plane sleighs."""
-    return _NUMBERS[type(members.discrete.system)](members)
-
-
-def _sleighs(members: Members) -> ScalarMembers:
-    m, J, a, b = np.broadcast_arrays(*map(members.values, ("mass", "inertia", "a", "b")))
-    zero, one = np.zeros_like(m), np.ones_like(m)
-    inertia = np.moveaxis(np.array([[J + m * a * a, zero], [zero, m]]), -1, 0)
-    frame_map = np.moveaxis(np.array([[one, b], [zero, one]]), -1, 0)
-    pose = np.stack([one, zero, zero, b], axis=-1)
-    return ScalarMembers(lambda: np.stack([m, J, a]), members.time_step, inertia, frame_map, pose)
-
-
-def _tops(members: Members) -> ScalarMembers:
-    system = members.discrete.system
-    F, J = system.frame, members.values("mass_tensor")
-    turned = F.T @ J @ F
-    J = (turned + turned.swapaxes(1, 2)) / 2
-    B = J[:, :2, :2] + J[:, 2:, 2:] * np.eye(2)
-    pose = system.group.pose_from_matrix(F)[None]
-    table = functools.partial(kernels.suslov_table, B, J[:, :2, 2])
-    return ScalarMembers(table, members.time_step / 2, B, np.asarray(system.frame_map)[None], pose)
-
-
-_NUMBERS: dict[type, Callable[[Members], ScalarMembers]] = {ChaplyginSleigh: _sleighs, SuslovTop: _tops}
 
 
 def checked_rows(system: System, parameters: dict[str, np.ndarray], start: Start) -> np.ndarray:

@@ -138,6 +138,7 @@ class ArrowheadSleigh(AbstractLLSystem):
     coupling: Array
     leaves: ClassVar[tuple[str, ...]] = ("mass", "center_of_mass", "diagonal", "coupling")
     structure: ClassVar[tuple[str, ...]] = ()
+    has_blade: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         owner = "MultidimensionalSleigh.arrowhead"

@@ -54,6 +54,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
     mass_tensor: Array
     leaves: ClassVar[tuple[str, ...]] = ("mass", "center_of_mass", "mass_tensor")
     structure: ClassVar[tuple[str, ...]] = ()
+    has_blade: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         owner = "MultidimensionalSleigh"

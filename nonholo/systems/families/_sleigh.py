@@ -46,6 +46,7 @@ class ChaplyginSleigh(AbstractLLSystem):
     group: ClassVar[AbstractMatrixGroup] = SE(2)
     leaves: ClassVar[tuple[str, ...]] = ("mass", "inertia", "a", "b")
     structure: ClassVar[tuple[str, ...]] = ()
+    has_blade: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         about = "Pass the moment of inertia about the centre of mass."

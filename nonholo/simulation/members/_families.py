@@ -1,0 +1,137 @@
+"""The families whose members are computed side by side, tops (n = 3) and plane sleighs: one entry each in one table."""
+
+import dataclasses
+import functools
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from nonholo import kernels
+from nonholo.base.checks import error
+from nonholo.base.types import Bool, Float
+from nonholo.discrete import Discretization
+from nonholo.simulation.members._members import STEP, Members, refused
+from nonholo.systems import ChaplyginSleigh, SuslovTop, System
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class ScalarMembers:
+    """What the kernels of tops (n = 3) and plane sleighs see; an axis of length 1 where all members agree.
+
+    Attributes:
+        body: The type of their bodies.
+        table: Makes the fields of their bodies, which only a run needs: for tops they take longer than all else.
+        scale: Factors from canonical momenta to those of the kernel, (m,).
+        inertia: Inertias along the constraint in the canonical frame, (m, 2, 2).
+        frame_map: C with r_canonical = C r, (m, 2, 2).
+        pose: First poses, (m, 4).
+    """
+
+    body: type[kernels.Body]
+    table: Callable[[], Float[np.ndarray, "f _"]]
+    scale: Float[np.ndarray, "_"]
+    inertia: Float[np.ndarray, "_ 2 2"]
+    frame_map: Float[np.ndarray, "_ 2 2"]
+    pose: Float[np.ndarray, "_ 4"]
+
+    @functools.cached_property
+    def fields(self) -> Float[np.ndarray, "f m"]:
+        """Fields of their bodies, one row each."""
+        return self.table()
+
+
+class Family(NamedTuple):
+    """What an ensemble knows of a family.
+
+    Attributes:
+        numbers: What the kernels see of members.
+        keeps_frame: Parameters that leave the user's frame where it is.
+        is_doubtful: Tells which members have to be built to know that they can be; all others can.
+    """
+
+    numbers: Callable[[Members], ScalarMembers]
+    keeps_frame: frozenset[str]
+    is_doubtful: Callable[[Members], Bool[np.ndarray, "M"]]
+
+
+def _sleighs(members: Members) -> ScalarMembers:
+    m, J, a, b = np.broadcast_arrays(*map(members.values, ("mass", "inertia", "a", "b")))
+    zero, one = np.zeros_like(m), np.ones_like(m)
+    inertia = np.moveaxis(np.array([[J + m * a * a, zero], [zero, m]]), -1, 0)
+    frame_map = np.moveaxis(np.array([[one, b], [zero, one]]), -1, 0)
+    pose = np.stack([one, zero, zero, b], axis=-1)
+    return ScalarMembers(kernels.SleighBody, lambda: np.stack([m, J, a]), members.time_step, inertia, frame_map, pose)
+
+
+def _tops(members: Members) -> ScalarMembers:
+    system = members.discrete.system
+    F, J = system.frame, members.values("mass_tensor")
+    turned = F.T @ J @ F
+    J = (turned + turned.swapaxes(1, 2)) / 2
+    B = J[:, :2, :2] + J[:, 2:, 2:] * np.eye(2)
+    pose = system.group.pose_from_matrix(F)[None]
+    table = functools.partial(kernels.suslov_table, B, J[:, :2, 2])
+    return ScalarMembers(kernels.SuslovBody, table, members.time_step / 2, B, np.asarray(system.frame_map)[None], pose)
+
+
+def _doubtful_sleighs(members: Members) -> Bool[np.ndarray, "M"]:
+    mass, inertia = members.values("mass"), members.values("inertia")
+    return np.broadcast_to(~((mass > 0) & (inertia > 0)), len(members))
+
+
+def _doubtful_tensors(members: Members) -> Bool[np.ndarray, "M"]:
+    J = members.values("mass_tensor")
+    eigenvalues = np.linalg.eigvalsh(J)
+    clear = (J.swapaxes(1, 2) == J).all(axis=(1, 2)) & (eigenvalues[:, 0] > 1e-12 * eigenvalues[:, -1])
+    return np.broadcast_to(~clear, len(members))
+
+
+_FAMILIES = {
+    ChaplyginSleigh: Family(_sleighs, frozenset({"mass", "inertia", "a"}), _doubtful_sleighs),
+    SuslovTop: Family(_tops, frozenset({"mass_tensor"}), _doubtful_tensors),
+}
+
+
+def family_of(system: System) -> Family | None:
+    """Return what is known of a family, whatever n; None of others."""
+    return _FAMILIES.get(type(system))
+
+
+def run_in_lanes(discrete: Discretization) -> bool:
+    """Tell whether the members of an ensemble of a discretisation are computed side by side."""
+    return discrete.route.is_scalar and family_of(discrete.system) is not None
+
+
+def have_kernel(members: Members) -> bool:
+    """Tell whether members are tops (n = 3) or plane sleighs with a step in closed form."""
+    return run_in_lanes(members.discrete)
+
+
+def scalar_members(members: Members) -> ScalarMembers:
+    """Return the numbers of tops and plane sleighs."""
+    return _FAMILIES[type(members.discrete.system)].numbers(members)
+
+
+def check_systems(members: Members) -> None:
+    """Refuse parameters of which no system can be made; tops and sleighs are looked through in one go."""
+    step = members.parameters.get(STEP)
+    if step is not None and not np.all(step > 0):
+        at = int(np.argmax(~(step > 0)))
+        remedy = f"Pass positive time steps. This is member {at}."
+        raise error("ensemble(parameters={'time_step': ...})", "be positive", f"{step[at]}", remedy)
+    for member in np.flatnonzero(_doubtful(members)):
+        try:
+            members.of(int(member))
+        except ValueError as failure:
+            raise refused(int(member), failure) from None
+
+
+def _doubtful(members: Members) -> Bool[np.ndarray, "M"]:
+    """Tell which members have to be built to know that they can be."""
+    varied, family = members.parameters.keys() - {STEP}, family_of(members.discrete.system)
+    if not varied:
+        return np.zeros(len(members), dtype=bool)
+    if family is not None:
+        return family.is_doubtful(members)
+    return _doubtful_tensors(members) if varied == {"mass_tensor"} else np.ones(len(members), dtype=bool)
