@@ -13,16 +13,17 @@ PAGE_ROOMS = {  # each page and its rooms, whose classes are described too: what
     "systems": ("Systems", ["systems"]),
     "groups": ("Groups", ["groups"]),
     "discrete": ("The discrete map", ["discrete"]),
-    "motions": ("Motions", ["simulation", "orbit", "continuous", "_results"]),
+    "motions": ("Motions", ["simulation", "orbit", "continuous", "base"]),
     "analysis": ("Questions", ["analysis"]),
     "plot": ("Pictures", ["plotting"]),
     "sweeps": ("Sweeps", ["ensembles"]),
     "stores": ("Stores", ["io"]),
     "lagrange-dalembert": ("Lagrange-d'Alembert", ["lagrange_dalembert"]),
-    "examples": ("Examples", ["examples"]),
+    "examples": ("Examples", ["literature"]),
     "testing": ("Checks", ["testing"]),
 }
 INSIDE = ("io",)  # its classes serve other rooms
+INNER = {"Frame", "Landscape", "Members", "Place", "ScalarRoute", "Start"}  # as do these
 
 
 def public() -> dict[str, Any]:
@@ -44,7 +45,11 @@ def _page(title: str, rooms: list[str]) -> str:
         f"{room}.{name}": value
         for room in rooms
         for name, value in vars(import_module(f"nonholo.{room}")).items()
-        if inspect.isclass(value) and name in _named_by(room) and room not in INSIDE and value not in public().values()
+        if inspect.isclass(value)
+        and name in _named_by(room)
+        and room not in INSIDE
+        and name not in INNER
+        and value not in public().values()
     }
     body = _entries(own) + ("\n\n## Results and interfaces\n\n" + _entries(others) if others else "")
     return _TEXT.format(title=title, body=body)

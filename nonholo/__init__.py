@@ -5,7 +5,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from nonholo import examples as examples
+    from nonholo import literature as examples  # noqa: F401
     from nonholo import plotting as plot  # noqa: F401
     from nonholo import testing as testing
     from nonholo.analysis import asymptotics as asymptotics
@@ -163,9 +163,9 @@ _HOMES = {
     "trace_constraints": "systems",
     "vector_field": "continuous",
 }
-_ROOMS = {"examples": "examples", "plot": "plotting", "testing": "testing"}
+_ROOMS = {"examples": "literature", "plot": "plotting", "testing": "testing"}
 
-_EXTRAS = {"discrete.definition": "jax", "discrete._step": "jax", "examples": "jax", "lagrange_dalembert": "jax"}
+_EXTRAS = {"discrete.definition": "jax", "discrete._step": "jax", "literature": "jax", "lagrange_dalembert": "jax"}
 """What homes must have installed beyond the core."""
 
 __version__ = version("nonholo")

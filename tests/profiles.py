@@ -37,11 +37,11 @@ class Profile:
 
 _MECHANICS = ("numerics", "kernels", "groups", "systems", "discrete", "continuous")
 _RUNS = ("kernels", "orbit", "simulation", "io", "ensembles")
-_QUESTIONS = ("analysis", "plotting", "examples", "testing")
+_QUESTIONS = ("analysis", "plotting", "literature", "testing")
 PROFILES = {
     "routes": Profile(
         "every body by every route: the definition in JAX, which compiles a program for each",
-        (*_MECHANICS, "lagrange_dalembert", "orbit", "simulation", "analysis", "testing", "examples"),
+        (*_MECHANICS, "lagrange_dalembert", "orbit", "simulation", "analysis", "testing", "literature"),
     ),
     "faults": Profile(
         "processes and clusters that are killed, disks that are full, blocks that are damaged",
@@ -49,11 +49,11 @@ PROFILES = {
     ),
     "problems": Profile(
         "many random problems, long orbits, and eight times the examples of tests that draw them",
-        (*_MECHANICS, "lagrange_dalembert", "simulation", "analysis", "examples"),
+        (*_MECHANICS, "lagrange_dalembert", "simulation", "analysis", "literature"),
     ),
     "paper": Profile(
         "changed formulas of the paper that findings must notice, and the pages of the docs, executed",
-        ("paper", "plotting", "analysis", "examples"),
+        ("paper", "plotting", "analysis", "literature"),
     ),
     "shapes": Profile(
         "annotations of shapes and types, checked at run time by jaxtyping and beartype",
@@ -97,7 +97,7 @@ DOCTESTS = {  # examples that compile for long
     f"{_DALEMBERT}discretization.CoordinateDiscretization.simulate": "routes",
     f"{_DALEMBERT}system.LagrangeDAlembert.flow": "routes",
     "nonholo.discrete._consistency.consistency_defect": "routes",
-    "nonholo.examples._robot.two_wheeled_robot": "routes",
+    "nonholo.literature._robot.two_wheeled_robot": "routes",
 }
 
 
@@ -168,7 +168,7 @@ def room_of(file: str) -> str | None:
     parts = Path(file.replace("nonholo_paper/", "nonholo/paper/", 1)).parts
     if parts[0] in ("nonholo", "tests") and len(parts) > 1:
         return parts[1].removesuffix(".py") if len(parts) > 2 or parts[1].startswith("_") else None
-    if parts[0] in ("benchmarks", "examples"):
+    if parts[0] in ("benchmarks", "scenarios"):
         return ""
     return "docs" if parts[0] == "docs" or file.endswith(".md") else None
 

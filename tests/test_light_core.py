@@ -63,7 +63,7 @@ COMMANDS = [
 @pytest.mark.profile("faults", instead="test_commands_that_need_an_extra")
 def test_commands_work(tmp_path: Path) -> None:
     """Every command but `paper` does its work without extras."""
-    sweep = str(PROGRAM.parents[1] / "examples" / "sleigh_turning_sweep.toml")
+    sweep = str(PROGRAM.parents[1] / "scenarios" / "sleigh_turning_sweep.toml")
     sleigh, store = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), tmp_path / "sleigh.zarr"
     nh.simulate(sleigh, body_velocity=(0.1, -1.0, 0.0), steps=50, store=store, checkpoint_every=20)
     for command in COMMANDS:

@@ -77,7 +77,7 @@ def _complete(request: pytest.FixtureRequest) -> bool:
     ("files", "expected"),
     [
         ([], set()),
-        (["benchmarks/gpu.py", "examples/sleigh.toml"], set()),
+        (["benchmarks/gpu.py", "scenarios/sleigh.toml"], set()),
         (["docs/house.md", "README.md", "benchmarks/gpu.py"], {"site"}),
         (["nonholo/cli/commands/plot.py"], {"faults"}),
         (["tests/plotting/test_section.py", "docs/paper.md"], {"paper", "site"}),

@@ -26,8 +26,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import nonholo as nh
-from nonholo.examples import Example
 from nonholo.lagrange_dalembert import CoordinateOrbit
+from nonholo.literature import Example
 from nonholo.plotting import theme
 
 STEPS = {0.2: "#9ecae1", 0.1: theme.DISCRETE}

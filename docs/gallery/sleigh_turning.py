@@ -1,4 +1,4 @@
-r"""How far the discrete sleigh turns in all, over 62,500 bodies and time steps: the sweep of examples/ with its theory.
+r"""How far the discrete sleigh turns in all, over 62,500 bodies and time steps: the sweep of scenarios/, with theory.
 
 Along the flow a sleigh turns by $\pi\sqrt{1 + J/(ma^2)}$. Run it to draw the picture of docs/how-to/run-a-sweep.md and
 to print what its text quotes; that takes a minute. J is in units of ma^2 throughout.
@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 
 import nonholo as nh
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "sleigh_turning_sweep.toml"
+EXAMPLE = Path(__file__).parents[2] / "scenarios" / "sleigh_turning_sweep.toml"
 PICTURE = Path(__file__).parents[1] / "images" / "gallery" / "sleigh_turning.png"
 COLOURS = ("#1a1a1a", "#d55e00", "#0072b2")
 LOOK: Any = {"font.size": 11, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False}

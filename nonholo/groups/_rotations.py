@@ -3,9 +3,9 @@ r"""Rotations of n-dimensional space and their skew-symmetric logarithms; coordi
 import numpy as np
 import scipy.linalg
 
+from nonholo.base import numerics
 from nonholo.base.checks import error
 from nonholo.base.numerics import (
-    _matrix_functions,
     exponential_increment,
     identity_like,
     inverse_cayley,
@@ -29,12 +29,12 @@ def cayley_increment(X: Float[np.ndarray, "... n n"]) -> Float[np.ndarray, "... 
     """
     length = np.linalg.norm(X, axis=(-2, -1), keepdims=True) / np.sqrt(2)
     if not np.any(length > _LARGE):
-        return _matrix_functions.cayley_increment(X)
+        return numerics.cayley_increment(X)
     unit, inverse = X / np.maximum(length, _LARGE), 2 / np.maximum(length, _LARGE)
     one = np.abs(unit @ unit @ unit + unit).max(axis=(-2, -1), keepdims=True) < _ONE_PLANE
     closed = 2 * (inverse * unit + unit @ unit) / (1 + inverse * inverse)
     one &= length > _LARGE
-    return np.where(one, closed, _matrix_functions.cayley_increment(np.where(one, 0.0, X)))
+    return np.where(one, closed, numerics.cayley_increment(np.where(one, 0.0, X)))
 
 
 def planes(n: int) -> tuple[Int[np.ndarray, "dim 2"], Int[np.ndarray, "dim 2"], Float[np.ndarray, "dim 2"]]:

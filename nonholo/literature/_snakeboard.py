@@ -7,8 +7,8 @@ import numpy as np
 
 from nonholo.base.checks import error, scale
 from nonholo.base.types import Array
-from nonholo.examples._example import Example, numbers, rate
 from nonholo.lagrange_dalembert import LagrangeDAlembert
+from nonholo.literature._example import Example, numbers, rate
 
 _NAMES = ("x", "y", "theta", "psi", "phi")
 

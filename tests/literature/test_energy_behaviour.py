@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.examples import Example
 from nonholo.lagrange_dalembert import CoordinateOrbit
+from nonholo.literature import Example
 
 X = nh.examples
 

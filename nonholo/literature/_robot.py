@@ -7,8 +7,8 @@ import numpy as np
 
 from nonholo.base.checks import number, scale
 from nonholo.base.types import Array
-from nonholo.examples._example import Example, numbers
 from nonholo.lagrange_dalembert import LagrangeDAlembert
+from nonholo.literature._example import Example, numbers
 
 _NAMES = ("x", "y", "theta", "right", "left")
 

@@ -1,4 +1,4 @@
-"""Every scenario under examples/ runs and has the motion its title promises."""
+"""Every scenario under scenarios/ runs and has the motion its title promises."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -10,7 +10,7 @@ from typer.testing import Result
 
 import nonholo as nh
 
-_FOLDER = Path(__file__).parents[2] / "examples"
+_FOLDER = Path(__file__).parents[2] / "scenarios"
 _FILES = sorted(path for path in _FOLDER.glob("*.toml") if not path.stem.endswith("_sweep"))
 
 

@@ -8,8 +8,8 @@ import numpy as np
 from nonholo.base.checks import number
 from nonholo.base.limits import bounded_count
 from nonholo.base.types import Array
-from nonholo.examples._example import Example
 from nonholo.lagrange_dalembert import LagrangeDAlembert
+from nonholo.literature._example import Example
 
 
 def chaotic_quartic_oscillator(*, pairs: int = 3) -> Example:
