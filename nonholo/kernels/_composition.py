@@ -201,4 +201,4 @@ def whole_steps(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Take one whole step from each row of momenta and poses; return both after it, and the outcomes."""
     p, weights = composed
-    return _each(p, weights, np.ascontiguousarray(momenta), np.ascontiguousarray(poses), at_rest(p))[:3]
+    return _each(p, weights, np.array(momenta, order="C"), np.array(poses, order="C"), at_rest(p))[:3]

@@ -12,6 +12,7 @@ from bodies import GENERAL
 import nonholo as nh
 from nonholo import kernels
 from nonholo.discrete._composition import WEIGHTS, weights
+from nonholo.kernels import _composition
 from nonholo.systems import AbstractSystem
 
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -285,6 +286,26 @@ def test_a_store_brings_a_composition_back(tmp_path: pathlib.Path) -> None:
 def test_reversal_defect_of_whole_steps(name: str) -> None:
     """`invariants` measures one whole step forward and back, at rounding level; a wrong weight would show."""
     assert nh.invariants(run(name, 8, 5, 1.0)).reversal_defect < 1e-14
+
+
+def test_read_only_states_take_the_compiled_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    """States that may not be written, as those of an orbit, are copied: no kernel is compiled for them once more."""
+    seen, each = [], _composition._each
+
+    def noted(*arguments: object) -> object:
+        seen.extend(x.flags.writeable for x in arguments if isinstance(x, np.ndarray))
+        return each(*arguments)
+
+    monkeypatch.setattr(_composition, "_each", noted)
+    momenta, poses = np.zeros((1, 2)), np.array([[1.0, 0.0, 0.0, 0.0]])
+    for array in (momenta, poses):
+        array.setflags(write=False)
+    body = kernels.ComposedBody(kernels.suslov_body(np.diag([1.0, 2.0]), np.array([0.3, 0.1])), 1.0 * weights(4))
+    after, moved, codes = kernels.whole_steps(body, momenta, poses)
+    assert np.array_equal(after, momenta)
+    assert np.array_equal(moved, poses)
+    assert not codes.any()
+    assert all(seen)
 
 
 ROWS = nh.LLSystem(nh.SO(3), TOP.mass_tensor, TOP.constraint_subspace)

@@ -7,6 +7,7 @@ import pytest
 from bodies import GENERAL, mass_tensor
 
 import nonholo as nh
+from nonholo import kernels
 from nonholo.kernels import suslov_body
 from nonholo.simulation.members import _ensemble
 from nonholo.simulation.members._members import Members
@@ -112,6 +113,22 @@ def test_bits_do_not_depend_on_threads(system: Any) -> None:
     assert {0} < set(alone.outcome)
     for threads in (2, 7):
         _assert_same_bits(run_members(members, momenta, plan, threads=threads), alone)
+
+
+@pytest.mark.parametrize("members", [1, 2])
+def test_no_array_of_a_run_is_read_only(members: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One member runs by the code of many: a read-only array would have the kernels compiled again."""
+    writeable = []
+
+    def noted(*arguments: Any) -> None:
+        writeable.extend(x.flags.writeable for x in arguments if isinstance(x, np.ndarray))
+        run(*arguments)
+
+    run = kernels.advance_members
+    monkeypatch.setattr(kernels, "advance_members", noted)
+    nh.ensemble(nh.discretize(TOP, 0.1), restricted_velocity=_velocities(members), steps=1)
+    assert len(writeable) == 3
+    assert all(writeable)
 
 
 @BOTH

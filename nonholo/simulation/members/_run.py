@@ -80,7 +80,7 @@ def _run_scalar(members: Members, momenta: np.ndarray, plan: Plan, threads: int,
     steps, every, posed, backend = plan
     count, states = len(members), states_of(steps, every)
     scaled = np.ascontiguousarray(momenta * scalar.scale[:, None])
-    poses = np.ascontiguousarray(np.broadcast_to(scalar.pose, (count, 4)))
+    poses = np.array(np.broadcast_to(scalar.pose, (count, 4)), order="C")  # never read-only: compiled once
     rows = _rows(count, states, posed)
     fields, one = scalar.fields, members.parameters.keys() <= {"time_step"}
     advance = functools.partial(_advance_by_jax if backend == "jax" else _advance, scalar.body)
