@@ -33,7 +33,7 @@ class Call:
     infinite: bool = False
 
     def __call__(self, **changed: Any) -> Any:
-        """Call it with some arguments changed; what comes block by block is collected, of what goes on and on the first."""
+        """Call it with some arguments changed; what comes block by block is collected, the first blocks of it."""
         values = {name: argument.value for name, argument in self.arguments.items()}
         result = self.function(**{**values, **changed})
         return list(itertools.islice(result, _BLOCKS)) if self.name.startswith("iterate") else result
