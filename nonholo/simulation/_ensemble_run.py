@@ -12,6 +12,7 @@ import numpy as np
 
 from nonholo import kernels
 from nonholo._checks import needs
+from nonholo._progress import until
 from nonholo._results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.discrete._composition import compiled_step
@@ -152,10 +153,11 @@ def _run_each(members: Members, momenta: np.ndarray, plan: Plan, threads: int, r
     codes, done = np.zeros((2, count), dtype=np.int64)
     found: dict[int, Orbit] = {}
 
-    def work(part: slice, _stop: np.ndarray) -> None:
-        for member in range(part.start, part.stop):
-            found[member], done[member] = _run_one(members.of(member), momenta[member], plan)
-            codes[member] = found[member].outcome
+    def work(part: slice, stop: np.ndarray) -> None:
+        with until(lambda: bool(stop[0])):
+            for member in range(part.start, part.stop):
+                found[member], done[member] = _run_one(members.of(member), momenta[member], plan)
+                codes[member] = found[member].outcome
 
     compiled = plan.backend != "jax" and compiled_step(members.discrete) is not None
     _in_threads(work, [slice(i, i + 1) for i in range(count)], threads if compiled else 1, report)
