@@ -8,12 +8,11 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo._checks import step_counts
 from nonholo._results import Outcome, finished
 from nonholo._types import Array
 from nonholo.lagrange_dalembert import _group_equations as equations
 from nonholo.lagrange_dalembert import _group_start as start
-from nonholo.lagrange_dalembert._blocks import State, decoded, run
+from nonholo.lagrange_dalembert._blocks import State, checked_counts, decoded, run
 from nonholo.lagrange_dalembert._group_orbit import GroupOrbit
 from nonholo.lagrange_dalembert._newton import root
 from nonholo.lagrange_dalembert._on_group import GroupLagrangeDAlembert
@@ -89,7 +88,7 @@ class GroupDiscretization(AbstractCoordinateDiscretization):
             [0. 0. 2.]
         """
         system, h = self.system, np.float64(self.time_step)
-        steps, every = step_counts(steps, save_every)
+        steps, every = checked_counts(steps, save_every, 2 * (system.group.identity.size + system.group.dim))
         starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
         given = chosen("simulate", starts)
         g = start.pose("simulate", system, configuration)
