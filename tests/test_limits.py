@@ -80,6 +80,29 @@ TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
 }
 
 
+def _kinetic(_: Any, v: Any) -> Any:
+    return v @ v / 2
+
+
+PARTICLES = {
+    "in coordinates": (lambda: nh.LagrangeDAlembert(_kinetic, None, dimension=2), (1.0, 0.0)),
+    "on a group": (
+        lambda: nh.GroupLagrangeDAlembert(nh.SO(3), nh.mass_tensor_lagrangian(nh.SO(3), np.eye(3)), None),
+        (1.0, 0.0, 0.0),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", PARTICLES)
+@pytest.mark.parametrize(("steps", "every", "told"), [(10**12, 1, "fit into memory"), (10**15, 10**14, "a year")])
+def test_runs_by_the_discrete_principle_are_bounded(name: str, steps: int, every: int, told: str) -> None:
+    """The states of a run in coordinates or on any group are held in memory, and take their time."""
+    system, start = PARTICLES[name]
+    discrete = system().discretize(0.1)
+    with pytest.raises(ValueError, match=rf"simulate\(steps=...\)` must .*{told}"):
+        discrete.simulate(configuration=None, body_velocity=start, steps=steps, save_every=every)
+
+
 @pytest.mark.parametrize("name", TOO_MUCH)
 def test_too_much_is_refused(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The refusal names the figure and the limit, and there is nothing at the path."""

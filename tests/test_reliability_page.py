@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+from fuzz.__main__ import merged
 from fuzz.judge import BROKEN, GOOD
 from scripts import script
 
@@ -63,3 +64,11 @@ def test_figures_are_shown_as_they_are(fuzzer: str, figures: dict, words: str) -
     text = script(MAKER).page({fuzzer: figures})
     assert words in text
     assert text.count("not run yet") == 3
+
+
+def test_figures_of_other_fuzzers_stay(tmp_path: Path) -> None:
+    """A run of one fuzzer replaces its own figures in the file, whose order is that of the page."""
+    file = tmp_path / "figures.json"
+    assert merged(file, {"kills": {"a": 1}}) == {"kills": {"a": 1}}
+    file.write_text(json.dumps({"steps": {"b": 1}, "api": {"c": 1}}))
+    assert list(merged(file, {"api": {"c": 2}}).items()) == [("api", {"c": 2}), ("steps", {"b": 1})]

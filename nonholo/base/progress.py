@@ -1,11 +1,39 @@
 """The progress bar of everything that takes long: on standard error, gone when the work is done."""
 
 import contextlib
+import contextvars
 from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
 
 from rich.console import Console
 from rich.progress import Progress, ProgressColumn, Task, TimeElapsedColumn
 from rich.text import Text
+
+_over: contextvars.ContextVar[Callable[[], bool]] = contextvars.ContextVar("over", default=lambda: False)
+
+
+@contextlib.contextmanager
+def until(over: Callable[[], bool]) -> Iterator[None]:
+    """Let what runs inside end with `CancelledError` at its first report after `over` has become true.
+
+    Work in another thread is ended so: Ctrl-C reaches the main thread alone.
+
+    Example:
+        >>> with until(lambda: True), progress_bar("steps", wanted=False) as report:
+        ...     report(3, 10)
+        Traceback (most recent call last):
+        concurrent.futures._base.CancelledError
+    """
+    token = _over.set(over)
+    try:
+        yield
+    finally:
+        _over.reset(token)
+
+
+def _go_on() -> None:
+    if _over.get()():
+        raise CancelledError
 
 
 class _Rate(ProgressColumn):
@@ -25,12 +53,17 @@ def progress_bar(title: str, wanted: bool) -> Iterator[Callable[[int, int], None
         ...     report(3, 10)
     """
     if not wanted:
-        yield lambda *_: None
+        yield lambda *_: _go_on()
         return
     columns = (*Progress.get_default_columns(), TimeElapsedColumn(), _Rate())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(title, total=None)  # the bar pulses until it is known of how much
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+        def report(done: int, total: int) -> None:
+            _go_on()
+            bar.update(task, completed=done, total=total)
+
+        yield report
 
 
 @contextlib.contextmanager

@@ -8,17 +8,28 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from nonholo.base.checks import step_counts
+from nonholo.base.limits import within_a_year, within_memory
 from nonholo.base.progress import progress_bar
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._precision import in_double
 
 _ROWS = 1024  # saved states of one block
+_LEAST = 1e-6  # seconds of a step, at least
 
 State = tuple[Array, Array, Array]
 """Configuration, velocity of its step, velocity of the step before."""
 
 Step = Callable[[Any, Array, State, Array], tuple[State, Array, Array]]
 """Maps a system, h, a state and an orientation to the next state, the impulses and the outcome."""
+
+
+def checked_counts(steps: Any, save_every: Any, numbers: int) -> tuple[int, int]:
+    """Return numbers of steps, refused where memory cannot hold so many numbers for each saved state, or in a year."""
+    steps, every = step_counts(steps, save_every)
+    within_a_year("simulate(steps=...)", _LEAST * steps, "Pass fewer steps, or a larger time_step.")
+    within_memory("simulate(steps=...)", 8.0 * numbers * (1 + steps // every), "Raise save_every.")
+    return steps, every
 
 
 @functools.partial(jax.jit, static_argnums=(0, 1))

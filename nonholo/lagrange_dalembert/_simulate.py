@@ -7,20 +7,16 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import step_counts
-from nonholo.base.limits import within_a_year
 from nonholo.base.results import Outcome, finished
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import _start
-from nonholo.lagrange_dalembert._blocks import State, decoded, run
+from nonholo.lagrange_dalembert._blocks import State, checked_counts, decoded, run
 from nonholo.lagrange_dalembert._equations import discrete_constraints, discrete_energy, momenta
 from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 from nonholo.systems import one_start
-
-_LEAST = 1e-6  # seconds of a step, at least
 
 
 def simulate(
@@ -34,8 +30,7 @@ def simulate(
     progress: bool,
 ) -> CoordinateOrbit:
     """Check a start, run the map and return its orbit."""
-    steps, every = step_counts(steps, save_every)
-    within_a_year("simulate(steps=...)", _LEAST * steps, "Pass fewer steps, or a larger time_step.")
+    steps, every = checked_counts(steps, save_every, 4 * system.dimension)
     q = _start.point("simulate", system, configuration)
     _start.consistent(system, q, np.float64(h))
     start = _first(system, np.float64(h), q, starts)

@@ -26,16 +26,16 @@ def trace_constraints(
         configuration_next: $R_{k+1}$.
 
     Raises:
-        ValueError: Not two square matrices, or stacks of such, of one size.
+        ValueError: Not two real square matrices, or stacks of such, of one size.
 
     Example:
         >>> trace_constraints(np.eye(3), nh.SO(3).exp([0.3, -0.2, 0.0]))
         array([0.])
     """
     n = (shape_of(configuration) or (0,))[-1]
-    R = trailing("trace_constraints(configuration=...)", configuration, (n, n), "Pass a matrix of SO(n).")
+    R = trailing("trace_constraints(configuration=...)", configuration, (n, n), "Pass a matrix of SO(n).", real=True)
     where, remedy = "trace_constraints(configuration_next=...)", "Pass a matrix of the same SO(n)."
-    R_next = trailing(where, configuration_next, (n, n), remedy)
+    R_next = trailing(where, configuration_next, (n, n), remedy, real=True)
     W = R.__array_namespace__().swapaxes(R, -1, -2) @ R_next
     i, j = np.triu_indices(W.shape[-1] - 1, 1)
     return W[..., j, i] - W[..., i, j]

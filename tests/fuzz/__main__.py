@@ -1,4 +1,7 @@
-"""All fuzzers, for long: `python tests/fuzz [--json FILE]` prints the figures of each, and writes them."""
+"""All fuzzers, for long: `python tests/fuzz [--only NAME ...] [--seed N] [--json FILE]` prints the figures of each.
+
+Into the file go the figures of those that are named, all by default; what it holds of others stays.
+"""
 
 import argparse
 import json
@@ -6,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 LONG = {
     "api": ("--trials", "3000", "--workers", "2"),
@@ -15,23 +19,37 @@ LONG = {
 }
 
 
+def run(name: str, seed: int) -> tuple[dict[str, Any], bool]:
+    """Run a fuzzer; return its figures, and whether something is broken."""
+    sys.stdout.write(f"== {name}\n")
+    sys.stdout.flush()
+    with tempfile.TemporaryDirectory() as folder:
+        file, program = Path(folder) / "figures.json", Path(__file__).with_name(f"{name}.py")
+        command = [sys.executable, program, *LONG[name], "--seed", str(seed), "--json", file]
+        code = subprocess.run(command, check=False).returncode  # noqa: S603
+        return json.loads(file.read_text()), code != 0
+
+
+def merged(file: Path, found: dict[str, Any]) -> dict[str, Any]:
+    """Return figures with those of other fuzzers that a file holds, in the order of the page."""
+    held = json.loads(file.read_text()) if file.exists() else {}
+    return {name: {**held, **found}[name] for name in LONG if name in {**held, **found}}
+
+
 def main() -> int:
     """Run the fuzzers one after another; return 1 if one of them found something."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--json", type=Path, help="where the figures of all of them are written")
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--only", nargs="+", choices=LONG, default=list(LONG), help="which of them")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--json", type=Path, help="where the figures are written")
     given = parser.parse_args()
-    found, broken = {}, 0
-    with tempfile.TemporaryDirectory() as folder:
-        for name, options in LONG.items():
-            sys.stdout.write(f"== {name}\n")
-            sys.stdout.flush()
-            file = Path(folder) / f"{name}.json"
-            program = Path(__file__).with_name(f"{name}.py")
-            broken |= subprocess.run([sys.executable, program, *options, "--json", file], check=False).returncode  # noqa: S603
-            found[name] = json.loads(file.read_text())
-    if given.json:
-        given.json.write_text(json.dumps(found, indent=1))
-    return int(bool(broken))
+    broken = False
+    for name in given.only:
+        found, wrong = run(name, given.seed)
+        broken |= wrong
+        if given.json:
+            given.json.write_text(json.dumps(merged(given.json, {name: found}), indent=1))
+    return int(broken)
 
 
 if __name__ == "__main__":

@@ -60,7 +60,7 @@ def _of_results() -> list[Call]:
         call("Deltoid.discriminant", region.discriminant, restricted_momentum=restricted),
         call("Deltoid.real_branches", region.real_branches, restricted_momentum=restricted),
         call("Deltoid.resting", region.resting, points=count(20)),
-        call("InvariantMeasure.density", measure.density, momentum=restricted, infinite=True),
+        call("InvariantMeasure.density", measure.density, momentum=array(restricted.value, "stack"), infinite=True),
         call("InvariantMeasure.jacobian", jacobian, displacement=W, infinite=True),
         call("LyapunovFunction", by_position(nh.lyapunov_function(system)), momentum=array(restricted.value, "any")),
     ]

@@ -123,7 +123,7 @@ def _results() -> list[Call]:
         call("Orbit.chosen", orbit.chosen, states=anything(slice(2))),
         call("Orbit.to_csv", orbit.to_csv, path=path("new.csv"), overwrite=flag(False)),
         call("Orbit.to_dataset", lambda: orbit.to_dataset()),
-        call("Discretization.displaced", TOP.displaced, cayley=array(orbit.cayley, "any")),
+        call("Discretization.displaced", TOP.displaced, cayley=array(orbit.cayley[0], "batch")),
     ]
 
 

@@ -5,19 +5,28 @@ For a body with tensor $J$ on SO(n) or SE(n), homogeneous there, with $X_i$ the 
 $$ \langle P(W), X_i\rangle = \tfrac1h \operatorname{tr}\bigl(X_i W J (W - I)^T\bigr), \qquad (W - W^{-1})/2 \in d, $$
 
 and the step asks for the $W'$ whose $P(W')$ agrees along $d$ with $\tfrac1h\operatorname{tr}(W X_i J (W - I)^T)$.
-The unknowns are all coordinates $y$ of $W = (I + Y)(I - Y)^{-1}$, so that the variety is an equation here, no chart.
+The unknowns are all coordinates $y$ of $W_k (I + Y)(I - Y)^{-1}$ about the last $W_k$, in each prediction and each
+correction: no angle is special for them. The variety is an equation here, which is singular at half-turns, where other
+sheets pass. So a fold is seen by the derivative of momenta along the tangent plane of the variety, which turns
+continuously along the sheet that is followed.
 """
 
 import dataclasses
+import functools
 
 import numpy as np
 
 _NEWTON = 10
-_JUMP = 0.1  # a root that moves further in one step of the continuation, relative to 1 + |y|, was not followed
+_JUMP = 0.1  # a root that moves further in one step of the continuation was not followed
 _BENT = 0.2  # nor one that misses its tangent by more of its way
-_FAR = 1e8
+_TURNED = 0.5  # nor one whose tangent plane has less of the volume of the last one above that one
+_FAR = 1.0  # a correction so large leads elsewhere
+_SURE = 1e-13  # a correction after which there are no more
+SHARP = 1e-7  # the last correction of a root; rounding makes more of it where bodies are very uneven
+_BLURRED = 1e-3  # on the way, the last correction relative to the step: more than rounding makes of it near half-turns
+_REST = 1e-6  # what is left of the way to s = 1 where the tangent alone goes on
 _SMALLEST = 1e-11
-_FOLD = 1e-3  # relative size of the determinant where the smallest step fails: there the square root of 1e-11 is 3e-6
+_FOLD = 10.0  # so many of its last steps at most from a fold, where squares of determinants vanish linearly
 
 
 @dataclasses.dataclass(frozen=True)
@@ -35,8 +44,7 @@ class Equations:
     def momentum(self, W: np.ndarray, side: str = "left") -> np.ndarray:
         """Return the momenta along d of displacements, or what they leave for the next ones."""
         scaled = self.tensor @ np.swapaxes(W - np.eye(W.shape[-1]), -1, -2)
-        pushed = W @ scaled if side == "left" else scaled @ W
-        return np.einsum("aij,...ji->...a", self.basis, pushed) @ self.rows.T  # tr(W X S) = tr(X S W)
+        return self._paired(W @ scaled if side == "left" else scaled @ W)  # tr(W X S) = tr(X S W)
 
     def scale(self, W: np.ndarray) -> np.ndarray:
         """Return the sizes of what is summed in momenta."""
@@ -45,31 +53,35 @@ class Equations:
 
     def off_the_variety(self, W: np.ndarray) -> np.ndarray:
         """Return the coordinates of (W - W^-1)/2 across d."""
-        return self._coordinates((W - np.linalg.inv(W)) / 2) @ self.annihilator.T
+        return self._across((W - np.linalg.inv(W)) / 2)
 
-    def unknowns(self, W: np.ndarray) -> np.ndarray:
-        """Return the coordinates y of displacements."""
-        unit = np.eye(W.shape[-1])
-        return self._coordinates(np.linalg.solve(np.swapaxes(W + unit, -1, -2), np.swapaxes(W - unit, -1, -2)), True)
+    def system(self, W: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the residuals of the equations and their derivatives by y at y = 0, where dW = 2 W dY."""
+        turned, back = W[:, None] @ self.basis, np.linalg.inv(W)[:, None]
+        off = np.swapaxes(W - np.eye(W.shape[-1]), -1, -2)[:, None]
+        grown = 2 * (turned @ self.tensor @ off + W[:, None] @ self.tensor @ np.swapaxes(turned, -1, -2))
+        slopes = np.concatenate([self._across(turned + self.basis @ back), self._paired(grown)], axis=2)
+        residual = np.concatenate([self.off_the_variety(W), self.momentum(W) - r], axis=1)
+        return residual, np.swapaxes(slopes, 1, 2)
 
-    def system(self, y: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the residuals of the equations and their derivatives."""
-        unit, Y = np.eye(self.tensor.shape[0]), np.einsum("...a,aij->...ij", y, self.basis)
-        right, left = np.linalg.inv(unit - Y), np.linalg.inv(unit + Y)
-        W, back = (unit + Y) @ right, (unit - Y) @ left
-        dW = (unit + W)[:, None] @ self.basis @ right[:, None]
-        variety = self._coordinates((W - back) / 2) @ self.annihilator.T
-        bent = self._coordinates((dW + back[:, None] @ dW @ back[:, None]) / 2) @ self.annihilator.T
-        across = self.tensor @ np.swapaxes(W - unit, -1, -2)
-        turned = dW @ across[:, None] + W[:, None] @ self.tensor @ np.swapaxes(dW, -1, -2)
-        slopes = np.einsum("aij,mbji->mba", self.basis, turned) @ self.rows.T
-        residual = np.concatenate([variety, self.momentum(W) - r], axis=1)
-        return residual, np.swapaxes(np.concatenate([bent, slopes], axis=2), 1, 2)
+    def moved(self, W: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Return W (I + Y)(I - Y)^-1."""
+        Y = np.einsum("...a,aij->...ij", y, self.basis)
+        return W + 2 * W @ Y @ np.linalg.inv(np.eye(W.shape[-1]) - Y)
 
-    def _coordinates(self, X: np.ndarray, transposed: bool = False) -> np.ndarray:
-        X = np.swapaxes(X, -1, -2) if transposed else X
-        flat = self.basis.reshape(len(self.basis), -1)
-        return X.reshape(*X.shape[:-2], flat.shape[1]) @ np.linalg.pinv(flat)
+    def _across(self, X: np.ndarray) -> np.ndarray:
+        return X.reshape(*X.shape[:-2], X.shape[-1] ** 2) @ self._annihilators
+
+    def _paired(self, S: np.ndarray) -> np.ndarray:
+        return S.reshape(*S.shape[:-2], S.shape[-1] ** 2) @ self._directions
+
+    @functools.cached_property
+    def _annihilators(self) -> np.ndarray:
+        return np.linalg.pinv(self.basis.reshape(len(self.basis), -1)) @ self.annihilator.T
+
+    @functools.cached_property
+    def _directions(self) -> np.ndarray:
+        return np.swapaxes(self.basis, 1, 2).reshape(len(self.basis), -1).T @ self.rows.T
 
 
 @dataclasses.dataclass(frozen=True)
@@ -79,7 +91,7 @@ class Path:
     `slopes` are determinants relative to those at rest: they vanish at a fold.
     """
 
-    unknowns: np.ndarray
+    roots: np.ndarray
     s: np.ndarray
     folded: np.ndarray
     slopes: np.ndarray
@@ -90,50 +102,91 @@ class Path:
         return self.s >= 1.0
 
 
+@dataclasses.dataclass(frozen=True)
+class Tangents:
+    """The velocities y of roots as momenta grow, tangent planes (M, dim, k) of the variety, determinants along them."""
+
+    rates: np.ndarray
+    planes: np.ndarray
+    determinants: np.ndarray
+
+    @classmethod
+    def at(cls, equations: Equations, W: np.ndarray, r: np.ndarray) -> "Tangents":
+        """Return the tangents of paths along s r."""
+        slopes, k = equations.system(W, r)[1], r.shape[1]
+        planes = np.linalg.qr(np.swapaxes(slopes[:, :-k], 1, 2), mode="complete")[0][:, :, -k:]
+        rates, determinants = _solved(slopes[:, -k:] @ planes, r)
+        return cls((planes @ rates[..., None])[..., 0], planes, determinants)
+
+    def continues(self, before: "Tangents") -> np.ndarray:
+        """Return where a plane goes on with another one, and the determinants have one sign."""
+        volumes = np.linalg.det(np.swapaxes(before.planes, 1, 2) @ self.planes)
+        return (np.abs(volumes) > _TURNED) & (before.determinants * self.determinants * volumes > 0)
+
+    def __getitem__(self, at: np.ndarray) -> "Tangents":
+        return Tangents(self.rates[at], self.planes[at], self.determinants[at])
+
+    def __setitem__(self, at: np.ndarray, values: "Tangents") -> None:
+        for field in dataclasses.fields(self):
+            getattr(self, field.name)[at] = getattr(values, field.name)
+
+
+def distance(V: np.ndarray, W: np.ndarray) -> np.ndarray:
+    """Return the greatest difference of entries; those of translations are relative to them beyond 1."""
+    size = np.maximum(1.0, np.abs(W).max(-2, keepdims=True))
+    return (np.abs(V - W) / size).max((-1, -2), initial=0.0)
+
+
 def followed(equations: Equations, r: np.ndarray, rounds: int = 400) -> Path:
     """Follow the root of zero momentum along s r, each path with steps of its own, as long as its tangent foretells."""
-    y, s, size = np.zeros((len(r), len(equations.basis))), np.zeros(len(r)), np.full(len(r), 0.05)
-    rates, zero = _rates(equations, y, 0 * r, r)
-    det = zero.copy()
+    W, s = np.tile(np.eye(len(equations.tensor)), (len(r), 1, 1)), np.zeros(len(r))
+    tangents, size, fold = Tangents.at(equations, W, r), np.full(len(r), 0.05), np.full(len(r), np.inf)
+    zero = tangents.determinants.copy()
     for _ in range(rounds):
         at = np.flatnonzero((s < 1.0) & (size > _SMALLEST))
         if not len(at):
             break
         ahead = np.minimum(s[at] + size[at], 1.0)
-        moved = rates[at] * (ahead - s[at])[:, None]
-        found, good, _ = newton(equations, y[at] + moved, ahead[:, None] * r[at])
-        missed, way = np.abs(found - y[at] - moved).max(1), np.abs(moved).max(1)
-        onwards, slope = _rates(equations, found, ahead[:, None] * r[at], r[at])
-        good &= (missed <= _BENT * way) & (way <= _JUMP * (1 + np.abs(y[at]).max(1))) & (slope * zero[at] > 0)
+        step = ahead - s[at]
+        guess = equations.moved(W[at], tangents.rates[at] * step[:, None])
+        root, last = newton(equations, guess, ahead[:, None] * r[at])
+        missed, way = distance(root, guess), distance(guess, W[at])
+        new = Tangents.at(equations, root, r[at])
+        good = (last <= np.maximum(SHARP, _BLURRED * way)) & (missed <= _BENT * way) & (way <= _JUMP)
+        good &= new.continues(tangents[at])
         on = at[good]
-        y[on], s[on], det[on], rates[on] = found[good], ahead[good], slope[good], onwards[good]
+        fold[on] = _fold(tangents[on].determinants, new[good].determinants)
+        W[on], s[on], tangents[on] = root[good], ahead[good], new[good]
         size[at] = np.where(good, 1.5 * size[at], size[at] / 2)
-    with np.errstate(invalid="ignore"):
-        slopes = np.abs(det / zero)
-    return Path(y, s, (s < 1.0) & (size <= _SMALLEST) & (slopes < _FOLD), slopes)
+    folded = (s < 1.0) & (size <= _SMALLEST) & (fold < _FOLD)
+    ends = equations.moved(W, tangents.rates * (1.0 - s)[:, None])
+    near = ~folded & (distance(ends, W) < _REST)
+    ends, s = np.where(near[:, None, None], ends, W), np.where(near, 1.0, s)
+    return Path(ends, s, folded, np.abs(tangents.determinants / zero))
 
 
-def _rates(equations: Equations, y: np.ndarray, r: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the velocities of roots as momenta grow, and the determinants of the derivative."""
-    y = np.where((np.abs(y).max(1) < _FAR)[:, None], y, 0.0)
-    slopes = equations.system(y, r)[1]
+def _fold(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Return after how many more such steps the squares of determinants vanish, if they do so linearly."""
+    fall = (before / after) ** 2 - 1
+    return np.where(fall > 0, 1 / np.where(fall > 0, fall, 1.0), np.inf)
+
+
+def _solved(slopes: np.ndarray, right: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return solutions, the right sides themselves where the determinant is 0, and the determinants."""
     determinant = np.linalg.det(slopes)
-    slopes[determinant == 0] = np.eye(y.shape[1])
-    growth = np.zeros_like(y)
-    growth[:, y.shape[1] - r.shape[1] :] = direction
-    return np.linalg.solve(slopes, growth[..., None])[..., 0], determinant
+    regular = np.where((determinant == 0)[:, None, None], np.eye(slopes.shape[1]), slopes)
+    return np.linalg.solve(regular, right[..., None])[..., 0], determinant
 
 
-def newton(equations: Equations, y: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return roots next to guesses, which of them converged, and the determinants of the derivative."""
-    sound = np.ones(len(y), dtype=bool)
+def newton(equations: Equations, W: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return roots next to guesses, and the last corrections, infinite where they lead elsewhere."""
+    sound, last = np.ones(len(W), dtype=bool), np.zeros(len(W))
     for _ in range(_NEWTON):
-        sound &= np.abs(y).max(1) < _FAR
-        y = np.where(sound[:, None], y, 0.0)
-        residual, slopes = equations.system(y, r)
-        determinant = np.linalg.det(slopes)
-        sound &= determinant != 0
-        slopes[determinant == 0] = np.eye(y.shape[1])
-        correction = np.linalg.solve(slopes, residual[..., None])[..., 0]
-        y = y - correction
-    return y, sound & (np.abs(correction).max(1) < 1e-9 * (1 + np.abs(y).max(1))), determinant
+        correction, determinant = _solved(*equations.system(W, r)[::-1])
+        nearer = equations.moved(W, -correction)
+        last = distance(nearer, W)
+        sound &= (determinant != 0) & (last < _FAR)  # False for NaN too
+        W = np.where(sound[:, None, None], nearer, W)
+        if (last[sound] < _SURE).all():
+            break
+    return W, np.where(sound, last, np.inf)

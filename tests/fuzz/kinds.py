@@ -19,7 +19,8 @@ class Argument:
             a rule, or a function), "thing" (an object of the library, or one of a few names) or "anything".
         value: One that works.
         none: Whether None is legal.
-        shape: For arrays, which shapes are legal: the "same", a "batch" before it, any number of "rows", or "any".
+        shape: For arrays, which shapes are legal: the "same", a "batch" before it, any number of "rows", or "any"; a
+            "stack" is of any shape too. In a batch and a stack NaN marks what has no value.
         complex: Whether complex numbers are legal.
     """
 
@@ -130,14 +131,14 @@ def _is_array(argument: Argument, value: Any) -> bool:
     wanted = argument.value.shape
     if argument.complex and isinstance(value, np.ndarray) and value.dtype.kind == "c":
         value = value.view(type=np.ndarray).real + value.imag
-    found = real_array(value, nan=argument.shape == "batch")
+    found = real_array(value, nan=argument.shape in ("batch", "stack"))
     if found is None or (found.ndim == len(wanted) and np.isnan(found).any()):
-        return False  # in a stack NaN marks what has no value
+        return False
     if argument.shape == "batch":
         return found.shape[max(0, found.ndim - len(wanted)) :] == wanted
     if argument.shape == "rows":
         return found.shape == (0,) or (found.ndim == len(wanted) and found.shape[1:] == wanted[1:])
-    return argument.shape == "any" or found.shape == wanted
+    return argument.shape in ("any", "stack") or found.shape == wanted
 
 
 _LEGAL: dict[str, Callable[[Argument, Any], bool]] = {

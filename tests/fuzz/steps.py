@@ -21,7 +21,7 @@ compilers.use_caches()
 import numpy as np
 from bodies import mass_tensor, random_rows
 from fuzz.figures import options, report
-from fuzz.following import Equations, followed, newton
+from fuzz.following import SHARP, Equations, distance, followed, newton
 
 import nonholo as nh
 
@@ -164,9 +164,9 @@ def _check_every_step(case: Case, counts: collections.Counter[str]) -> None:
 def _check_roots(equations: Equations, W: np.ndarray, r: np.ndarray, counts: collections.Counter[str]) -> None:
     """Compare roots with those of the continuation; Newton's method takes off the rounding that is large near folds."""
     path = followed(equations, r)
-    y, sharp, _ = newton(equations, equations.unknowns(W), r)
-    apart = np.abs(path.unknowns - y).max(1, initial=0.0) / (1 + np.abs(y).max(1, initial=0.0))
-    same = path.whole & sharp & (apart <= _AGREED)
+    root, last = newton(equations, W, r)
+    sharp, apart = last <= SHARP, distance(path.roots, root)
+    same = path.whole & (apart <= _AGREED)
     other = path.whole & sharp & (apart > _DIFFERENT)
     beyond = path.folded & (path.s < 1 - _NEAR)
     counts["sampled"] += len(W)

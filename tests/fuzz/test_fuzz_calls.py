@@ -38,6 +38,11 @@ def test_calls_work(calls: dict[str, Call]) -> None:
             call()
 
 
+def test_calls_that_go_on_and_on_end(calls: dict[str, Call]) -> None:
+    """A million million steps block by block are legal: the first blocks are taken."""
+    assert [len(block) for block in calls["iterate [sleigh]"](steps=10**12)][-3:] == [2, 2, 2]
+
+
 _LONG = ("flow", "ensemble", "simulate", "iterate", "invariants", "LagrangeDAlembert")
 
 
@@ -65,6 +70,10 @@ def _kinds_of(call: Call) -> set[str]:
         (kinds.array(np.eye(3)), "three of them", False),
         (kinds.array(np.eye(3), "batch"), "three of them", True),
         (kinds.array(np.eye(3), "rows"), "one row less", True),
+        (kinds.array(np.ones(2), "stack"), "vector", True),
+        (kinds.array(np.ones(2), "stack"), "one nan", False),
+        (kinds.array(np.ones(2), "stack"), "nan matrix", True),
+        (kinds.array(np.ones(2), "any"), "nan matrix", False),
         (kinds.array(np.eye(3)), "one nan", False),
         (kinds.array(np.eye(3)), "very many of them", False),
         (kinds.path("a"), "bytes", False),

@@ -139,7 +139,7 @@ def test_the_continuation_is_that_of_the_definition(family: str) -> None:
     np.testing.assert_allclose(equations.momentum(orbit.displacement), r, rtol=0, atol=1e-14)
     path = followed(equations, r)
     assert path.whole.all()
-    np.testing.assert_allclose(path.unknowns, equations.unknowns(orbit.displacement), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(path.roots, orbit.displacement, rtol=0, atol=1e-12)
 
 
 def test_the_continuation_meets_folds() -> None:

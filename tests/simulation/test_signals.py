@@ -39,6 +39,10 @@ CALLS = {
         "v = np.full((64, 2), 0.2)\n"
         "begin(*(lambda n=n: nh.ensemble(sleigh, restricted_velocity=v, steps=n) for n in (10, 10**9)))"
     ),
+    "ensemble, general": (
+        "v = np.full((8, 4), 0.2)\n"
+        "begin(*(lambda n=n: nh.ensemble(general, restricted_velocity=v, steps=n) for n in (10, 10**9)))"
+    ),
     "iterate": "begin(*(lambda n=n: [len(o) for o in nh.iterate(sleigh, **start, steps=n)] for n in (10, 10**10)))",
     "branch rule": (
         "begin(*(lambda n=n: nh.simulate(sleigh, **start, steps=n, branch='nearest', save_every=1000) "

@@ -70,3 +70,12 @@ def test_traces_of_other_than_two_matrices_of_one_size_are_refused(pair: tuple) 
     """Other shapes are refused by the name of the argument."""
     with pytest.raises(ValueError, match=r"trace_constraints\(configuration(_next)?=\.\.\.\)` must end in shape"):
         trace_constraints(*pair)
+
+
+@pytest.mark.parametrize("stack", [False, True])
+def test_constraints_of_complex_matrices_are_refused(stack: bool) -> None:
+    """Both configurations are rotations, which are real, as `in_exp_d` demands."""
+    R = np.stack([np.eye(3)] * 2) if stack else np.eye(3)
+    for name, pair in (("configuration", (R.astype(complex), R)), ("configuration_next", (R, R.astype(complex)))):
+        with pytest.raises(ValueError, match=rf"trace_constraints\({name}=...\)` must be real"):
+            trace_constraints(*pair)

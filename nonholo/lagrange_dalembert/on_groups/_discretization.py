@@ -8,10 +8,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import step_counts
 from nonholo.base.results import Outcome, finished
 from nonholo.base.types import Array
-from nonholo.lagrange_dalembert._blocks import State, decoded, run
+from nonholo.lagrange_dalembert._blocks import State, checked_counts, decoded, run
 from nonholo.lagrange_dalembert._newton import root
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._start import fixed_time_step
@@ -89,7 +88,7 @@ class GroupDiscretization(AbstractCoordinateDiscretization):
             [0. 0. 2.]
         """
         system, h = self.system, np.float64(self.time_step)
-        steps, every = step_counts(steps, save_every)
+        steps, every = checked_counts(steps, save_every, 2 * (system.group.identity.size + system.group.dim))
         starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
         given = one_start("simulate", **starts)
         g = start.pose("simulate", system, configuration)

@@ -12,6 +12,7 @@ import numpy as np
 
 from nonholo import kernels
 from nonholo.base.checks import needs
+from nonholo.base.progress import until
 from nonholo.base.results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
@@ -149,10 +150,11 @@ def _run_each(members: Members, momenta: np.ndarray, plan: Plan, threads: int, r
     codes, done = np.zeros((2, count), dtype=np.int64)
     found: dict[int, Orbit] = {}
 
-    def work(part: slice, _stop: np.ndarray) -> None:
-        for member in range(part.start, part.stop):
-            found[member], done[member] = _run_one(members.of(member), momenta[member], plan)
-            codes[member] = found[member].outcome
+    def work(part: slice, stop: np.ndarray) -> None:
+        with until(lambda: bool(stop[0])):
+            for member in range(part.start, part.stop):
+                found[member], done[member] = _run_one(members.of(member), momenta[member], plan)
+                codes[member] = found[member].outcome
 
     compiled = plan.backend != "jax" and members.discrete.route.compiled is not None
     _in_threads(work, [slice(i, i + 1) for i in range(count)], threads if compiled else 1, report)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from nonholo import io
 from nonholo.base.checks import error
 from nonholo.discrete import PRINCIPAL
-from nonholo.simulation.events import Watch, search, watched
+from nonholo.simulation.events import Watch, checked_events, search, watched
 from nonholo.simulation.runs import CompiledRun, RunState
 from nonholo.simulation.stores._stored_events import descriptions, seen_by
 
@@ -19,13 +19,14 @@ _SAME = 1e-9  # of 1 + the value at the first state: rounding on another process
 def watch_of_store(owner: str, stream: "Stream", run: CompiledRun, events: Any) -> Watch | None:
     """Return what the run of a store looks for; refused if it is not what the store says."""
     stored, where = io.read_attributes(stream.path).get("events"), f"{owner}(events=...)"
-    if stored is None and not events:
+    chosen = [] if events is None else events
+    if stored is None and not checked_events(owner, chosen):
         return None
     asked = io.described(json.loads(stored)) if stored is not None else "no events"
     if events is None and stored != "[]":
         remedy = "Pass events=[...] again, in that order with these directions and stops: a store holds no functions."
         raise error(where, f"be the events of the store, {asked}", f"None for '{stream.path}'", remedy)
-    watch = watched(owner, run.discrete, events or [], PRINCIPAL.name, run.reconstruct)
+    watch = watched(owner, run.discrete, chosen, PRINCIPAL.name, run.reconstruct)
     given = descriptions(watch.events)
     if stored is None or given != json.loads(stored):
         raise error(
