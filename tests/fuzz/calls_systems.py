@@ -78,7 +78,8 @@ def _methods() -> list[Call]:
                 ("from_canonical", "reduced_momentum", r),
             )
         ]
-    return found
+    velocity, subspace = array(FLAT_ROWS[2]), array(FLAT_ROWS[2:], "rows")
+    return [*found, call("flat.transverse_rates", flat.transverse_rates, velocity=velocity, subspace=subspace)]
 
 
 def _in_coordinates() -> list[Call]:
