@@ -1,5 +1,6 @@
 """Reading the scenario of a sweep: names of a design as key paths, and values of a body that the design varies."""
 
+import contextlib
 import re
 from pathlib import Path
 from typing import Any
@@ -74,23 +75,21 @@ def _complete_one(own: dict[str, Any], name: str, given: Any) -> None:
         given["size"] = len(own[name])
     if name in own or _COMPONENT.fullmatch(name):
         return
-    try:
+    with contextlib.suppress(ValueError):  # told as a problem of the design
         own[name] = _typical(given)
-    except ValueError:  # told as a problem of the design
-        return
 
 
 def _complete_start(own: dict[str, Any], held: dict[str, Any]) -> None:
     """Give a start of which every component is varied, from the first one on, and none is given."""
     parts = {(part[1], int(part[2] or part[3])): held[name] for name in held if (part := _COMPONENT.fullmatch(name))}
-    if not parts or any(name in own or name in held for name in _STARTS):
+    if not parts or not set(_STARTS).isdisjoint([*own, *held]):
         return
     owner, _ = next(iter(parts))
     wanted = [(owner, component) for component in range(len(parts))]
-    try:
-        own.update({owner: [_typical(parts[part]) for part in wanted]} if parts.keys() == set(wanted) else {})
-    except ValueError:  # told as a problem of the design
+    if parts.keys() != set(wanted):
         return
+    with contextlib.suppress(ValueError):  # told as a problem of the design
+        own[owner] = [_typical(parts[part]) for part in wanted]
 
 
 def _typical(given: Any) -> Any:
@@ -104,6 +103,19 @@ def _typical(given: Any) -> Any:
 
 def _refusals(scenario: SweepScenario) -> list[tuple[str, str]]:
     """Return key paths and texts of what a scenario of one motion may say, but no sweep."""
+    found = _refused_values(scenario)
+    for key in ("displacement", "configuration"):
+        if getattr(scenario.start, key) is not None:
+            found.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(_STARTS)}"))
+    if scenario.run.branch != "principal":
+        found.append(("run.branch", f"must be principal in sweeps. Got {scenario.run.branch!r}"))
+    if scenario.run.save_every != 1:
+        found.append(("run.save_every", "is not for sweeps: [keep] says what is kept"))
+    return found
+
+
+def _refused_values(scenario: SweepScenario) -> list[tuple[str, str]]:
+    """Return key paths and texts of what a design cannot vary."""
     found, values = [], scenario.design.values
     if not any((values.body, values.start, values.run)):
         found.append(("design.values", 'must name what is varied, for example "body.a" = [0.1, 0.2]'))
@@ -116,13 +128,6 @@ def _refusals(scenario: SweepScenario) -> list[tuple[str, str]]:
                 found.append((f"design.values.{table}.{name}", told))
             elif whole != name and getattr(scenario.start, whole) is None:
                 found.append((f"start.{whole}", f"is missing: {name} is varied, the other components are given here"))
-    for key in ("displacement", "configuration"):
-        if getattr(scenario.start, key) is not None:
-            found.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(_STARTS)}"))
-    if scenario.run.branch != "principal":
-        found.append(("run.branch", f"must be principal in sweeps. Got {scenario.run.branch!r}"))
-    if scenario.run.save_every != 1:
-        found.append(("run.save_every", "is not for sweeps: [keep] says what is kept"))
     return found
 
 

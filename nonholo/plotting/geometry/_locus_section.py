@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 from matplotlib.contour import QuadContourSet
 
-from nonholo._checks import array, error, shown
+from nonholo._checks import array, error, instance
 from nonholo._types import Array, Float
 from nonholo.analysis import MomentumLocus
 from nonholo.plotting import theme
@@ -63,8 +63,7 @@ def locus_section(
         1
     """
     where = "plot.locus_section"
-    if not isinstance(locus, MomentumLocus):
-        raise error(f"{where}(locus=...)", "be a locus", shown(locus), "Pass what `nh.momentum_locus` returned.")
+    instance(f"{where}(locus=...)", locus, MomentumLocus, "be a locus", "Pass what `nh.momentum_locus` returned.")
     n = array(f"{where}(normal=...)", normal, (3,), "Pass three components.")
     if not np.any(n):
         raise error(f"{where}(normal=...)", "not be zero", "0, 0, 0", "Pass a direction.")
