@@ -4,10 +4,11 @@ They follow from linear algebra on the quadratic terms of the equations; no moti
 """
 
 import dataclasses
+from typing import cast
 
 import numpy as np
 
-from nonholo._checks import error, shown
+from nonholo._checks import instance
 from nonholo._types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractLLSystem, AbstractLRSystem, AbstractSystem
@@ -66,11 +67,11 @@ def conserved_momenta(system: AbstractSystem) -> ConservedMomenta:
         >>> conserved_momenta(nh.ChaplyginSleigh(1.0, 1.0, 0.5)).body.shape
         (0, 3)
     """
-    if isinstance(system, AbstractLLSystem):
-        return _left(system)
-    if isinstance(system, AbstractLRSystem):
-        return _right(system)
-    raise error("conserved_momenta(system=...)", "be a system", shown(system), "Pass a SuslovTop, an LLSystem, ...")
+    remedy = "Pass a SuslovTop, an LLSystem, ..."
+    instance("conserved_momenta(system=...)", system, AbstractSystem, "be a system", remedy)
+    if system.is_spatial:
+        return _right(cast("AbstractLRSystem", system))
+    return _left(cast("AbstractLLSystem", system))
 
 
 def _left(system: AbstractLLSystem) -> ConservedMomenta:

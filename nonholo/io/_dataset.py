@@ -8,7 +8,7 @@ from nonholo.discrete import Discretization
 from nonholo.io._attributes import attributes
 from nonholo.io._pose_variables import pose_variables
 from nonholo.orbit import Orbit
-from nonholo.systems import AbstractLRSystem, System
+from nonholo.systems import System
 
 CANONICAL = "canonical/"
 """The group of a store that holds compact states."""
@@ -104,7 +104,7 @@ def stored_variables(
 def is_known(system: System, name: str, *, posed: bool, discrete: bool) -> bool:
     """Tell whether motions of a system have a quantity; with a right-invariant constraint most need the pose."""
     needs_pose = {"configuration"}
-    if isinstance(system, AbstractLRSystem):
+    if system.is_spatial:
         needs_pose |= {"energy", "momentum", "body_velocity", "displacement"}
     if (name in needs_pose and not posed) or (name == "displacement" and not discrete):
         return False
@@ -114,7 +114,7 @@ def is_known(system: System, name: str, *, posed: bool, discrete: bool) -> bool:
 def labels_of(system: System, name: str) -> tuple[tuple[str, ...], dict[str, str]]:
     """Return the dimensions of a quantity after those of the states, and its attributes."""
     axes, meaning, units = _LABELS[name]
-    told = _SPATIAL.get(name, meaning) if isinstance(system, AbstractLRSystem) else meaning
+    told = _SPATIAL.get(name, meaning) if system.is_spatial else meaning
     return axes, {"long_name": told, "units": units}
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo._checks import error, selection, shown
+from nonholo._checks import instance, selection
 from nonholo._results import Outcome
 from nonholo._types import Float
 from nonholo.groups import SE
@@ -25,10 +25,8 @@ STATES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
 
 def as_orbit(where: str, value: Any, coordinates: str) -> "Orbit":
     """Refuse what is not an orbit on a group; `coordinates` says what to do with an orbit in coordinates."""
-    if not isinstance(value, Orbit):
-        remedy = f"Pass what `simulate` or `flow` returned; {coordinates}"
-        raise error(where, "be an orbit of a system on a group", shown(value), remedy)
-    return value
+    remedy = f"Pass what `simulate` or `flow` returned; {coordinates}"
+    return instance(where, value, Orbit, "be an orbit of a system on a group", remedy)
 
 
 class AbstractMotion(abc.ABC):
@@ -169,7 +167,7 @@ class Orbit:
     def displacement(self) -> Float[np.ndarray, "K N N"]:
         """Displacements W_k = g_k^-1 g_(k+1) of single steps at the saved states."""
         D = self.motion.displacements(self)
-        if not isinstance(self.system, AbstractLRSystem):
+        if not self.system.is_spatial:
             return D
         g = self.configuration
         return self.system.group.inverse(g) @ D @ g
@@ -178,7 +176,7 @@ class Orbit:
     def spatial_displacement(self) -> Float[np.ndarray, "K N N"]:
         """Displacements U_k = g_(k+1) g_k^-1 seen from space; on the variety for a right-invariant constraint."""
         D = self.motion.displacements(self)
-        if isinstance(self.system, AbstractLRSystem):
+        if self.system.is_spatial:
             return D
         g = self.configuration
         return g @ D @ self.system.group.inverse(g)

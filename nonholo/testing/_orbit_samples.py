@@ -18,7 +18,6 @@ from nonholo.continuous import vector_field
 from nonholo.discrete import Discretization, discrete_legendre
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
-from nonholo.systems import AbstractLRSystem
 from nonholo.testing._report import NotApplicableError
 
 COUNTS = (10, 20, 40)  # steps for the path whose order is measured
@@ -37,7 +36,7 @@ class OrbitSamples:
 
     def __init__(self, discrete: Discretization, rng: np.random.Generator, steps: int) -> None:
         self.discrete, self.system, self.group = discrete, discrete.system, discrete.system.group
-        self.spatial, self.steps = isinstance(self.system, AbstractLRSystem), steps
+        self.spatial, self.steps = self.system.is_spatial, steps
         self.S, self.A = np.asarray(self.system.constraint_subspace), np.asarray(self.system.annihilator)
         self.pose = self.group.random(rng)
         self._rows = rng.normal(size=len(self.S))

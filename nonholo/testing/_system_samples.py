@@ -8,7 +8,7 @@ import numpy as np
 
 from nonholo._types import Float
 from nonholo.continuous import vector_field
-from nonholo.systems import AbstractLRSystem, AbstractSystem
+from nonholo.systems import AbstractSystem
 from nonholo.testing._measures import derivative
 
 _COUNT = 4
@@ -24,7 +24,7 @@ class SystemSamples:
 
     def __init__(self, system: AbstractSystem, rng: np.random.Generator) -> None:
         self.system, self.group = system, system.group
-        self.spatial = isinstance(system, AbstractLRSystem)
+        self.spatial = system.is_spatial
         self.S, self.A = np.asarray(system.constraint_subspace), np.asarray(system.annihilator)
         self.inertia = np.asarray(system.inertia_operator)
         self.covectors = rng.normal(size=(_COUNT, self.group.dim))

@@ -45,10 +45,7 @@ def sweep_text(scenario: SweepScenario) -> str:
 
 def _by_table(document: dict[str, Any]) -> None:
     """Put values under quoted key paths, "body.a" = ..., where unquoted ones stand: in tables."""
-    design = document.get("design")
-    values = design.get("values") if isinstance(design, dict) else None
-    if not isinstance(values, dict):
-        return
+    values = _table(_table(document, "design"), "values")
     for path in [path for path in values if "." in path]:
         table, _, name = path.partition(".")
         held = values.setdefault(table, {})
@@ -58,16 +55,20 @@ def _by_table(document: dict[str, Any]) -> None:
 
 def _complete(document: dict[str, Any]) -> None:
     """Take the size of a distribution from the value it varies; give a value that is varied and not given."""
-    design = document.get("design")
-    values = design.get("values") if isinstance(design, dict) else None
+    values = _table(_table(document, "design"), "values")
     for table in _TABLES:
-        held = values.get(table) if isinstance(values, dict) else None
-        for name, given in held.items() if isinstance(held, dict) else ():
-            own = document.setdefault(table, {})
-            if isinstance(own, dict):
-                _complete_one(own, name, given)
-        if table == "start" and isinstance(held, dict) and isinstance(document.get(table), dict):
-            _complete_start(document[table], held)
+        held = _table(values, table)
+        if held:
+            document.setdefault(table, {})
+        for name, given in held.items():
+            _complete_one(_table(document, table), name, given)
+    _complete_start(_table(document, "start"), _table(values, "start"))
+
+
+def _table(document: dict[str, Any], name: str) -> dict[str, Any]:
+    """Return a table of a document; an empty one where there is none, or a value, which is refused later."""
+    held = document.get(name)
+    return held if isinstance(held, dict) else {}
 
 
 def _complete_one(own: dict[str, Any], name: str, given: Any) -> None:
