@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from nonholo._checks import count, flags, instance
+from nonholo._checks import count, error, flags
 from nonholo.discrete import Discretization
 from nonholo.discrete._composition import refuse_composition
 from nonholo.testing import _discrete_motion as measure
@@ -98,10 +98,11 @@ def check_discretization(
         >>> exact["energy"].status, exact["order of poses"].value < 0.1
         ('ok', True)
     """
-    where, requirement = "check_discretization(discrete=...)", "be a discretisation of a system on a group"
-    remedy = "Pass `discretize(system, time_step)` of an LLSystem or a relative; coordinates are not covered."
-    instance(where, discrete, Discretization, requirement, remedy)
-    refuse_composition(where, discrete, "Check the discretisation of order 2.")
+    if not isinstance(discrete, Discretization):
+        remedy = "Pass `discretize(system, time_step)` of an LLSystem or a relative; coordinates are not covered."
+        requirement = "be a discretisation of a system on a group"
+        raise error("check_discretization(discrete=...)", requirement, type(discrete).__name__, remedy)
+    refuse_composition("check_discretization(discrete=...)", discrete, "Check the discretisation of order 2.")
     flags("check_discretization", definition=definition, throw=throw)
     number = count("check_discretization(steps=...)", steps, "Pass the length of the orbit.")
     samples = OrbitSamples(discrete, seeded(rng), max(number, 4))
