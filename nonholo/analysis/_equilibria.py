@@ -9,9 +9,10 @@ from typing import Any, cast
 import numpy as np
 
 from nonholo.base.checks import error, positive
-from nonholo.base.types import Array, Float
-from nonholo.discrete import Discretization, weights
-from nonholo.systems import AbstractLLSystem, AbstractSystem
+from nonholo.base.types import Array, Float, Inexact
+from nonholo.discrete import Discretization
+from nonholo.discrete._composition import weights
+from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, NormalForm
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -20,29 +21,33 @@ class EquilibriumSpectrum:
 
     Attributes:
         subspace: Rows span the equilibria, shape (m, dim).
-        attracting: A body velocity whose positive multiples attract; its negative multiples repel. None if every
-            admissible velocity stays constant.
-        velocity: The attracting velocity with the energy asked for; None as before.
-        rates: Transverse eigenvalues of the flow at `velocity`, all negative, sorted; of opposite sign at -`velocity`.
+        attracting: A body velocity whose positive multiples attract; its negative multiples repel. None if none does.
+        velocity: The attracting velocity with the energy asked for; on a line of which no half attracts either one
+            with it. None on planes that do not attract, and if every admissible velocity stays constant.
+        rates: Transverse eigenvalues of the flow at `velocity`, sorted; of opposite sign at -`velocity`. All negative
+            where it attracts, otherwise of any sign, or complex.
         multipliers: Transverse eigenvalues of one step at the equilibrium with the momenta of `velocity`, in the order
             of `rates`; reciprocal at the opposite one. None for a system without time step.
         highest_energy: No equilibrium of the discrete map has more energy: there it turns by 90 degrees in a step. None
             where there is no bound: without time step, if equilibria do not turn, or if every velocity is one.
+        others: The other linear spaces of equilibria, of systems that are neither a top nor a sleigh.
     """
 
     subspace: Float[np.ndarray, "m dim"]
     attracting: Float[np.ndarray, "dim"] | None
     velocity: Float[np.ndarray, "dim"] | None
-    rates: Float[np.ndarray, "j"]
+    rates: Inexact[np.ndarray, "j"]
     multipliers: Float[np.ndarray, "j"] | None
     highest_energy: float | None = None
+    others: tuple["EquilibriumSpectrum", ...] = ()
 
 
 def equilibria(system: AbstractLLSystem | Discretization, energy: Array = 1.0) -> EquilibriumSpectrum:
     r"""Return the equilibria of a system or of its discrete map, with their transverse spectrum at an energy.
 
     Rates are $-\zeta|c|^2\,\mathrm{eig}(N^TB^{-1}N)$ for a top turning with $w = -\zeta c$ (N: orthonormal, across c),
-    and $-a_1p_1\,\mathrm{eig}(B_1^{-1})$ for a sleigh. A step of length h multiplies by the Cayley transform
+    and $-a_1p_1\,\mathrm{eig}(B_1^{-1})$ for a sleigh; of other systems they are those of the linearized equations.
+    A step of length h of a top or a sleigh multiplies by the Cayley transform
 
     $$ \mu = \frac{\varkappa + h\sigma/2}{\varkappa - h\sigma/2}, \qquad \varkappa = \cos^2(\theta/2), \quad
        \sin\theta = h|w|, $$
@@ -53,12 +58,13 @@ def equilibria(system: AbstractLLSystem | Discretization, energy: Array = 1.0) -
     Reference: [fedorov-zenkov-2004], sections 6 and 7, "stationary solutions".
 
     Args:
-        system: A left-invariant system, or a discretisation with difference "matrix", constraint "skew".
+        system: A left-invariant system, of three admissible directions at most if it is neither a top nor a sleigh, or
+            a discretisation with difference "matrix", constraint "skew" of a top or a sleigh.
         energy: Reduced constrained energy of the equilibrium that is looked at; rates grow as its square root.
 
     Raises:
-        ValueError: Another system or discretisation, an energy that is not positive, one at which no step with an angle
-            up to 90 degrees has the momenta of the equilibrium.
+        ValueError: Another system or discretisation, an energy that is not positive, one that no multiple of an
+            equilibrium has, one at which no step with an angle up to 90 degrees has the momenta of the equilibrium.
 
     Example:
         >>> sleigh = nh.ChaplyginSleigh(mass=2.0, inertia=1.5, a=0.5)
@@ -68,17 +74,51 @@ def equilibria(system: AbstractLLSystem | Discretization, energy: Array = 1.0) -
     """
     body, step = _checked("equilibria(system=...)", system)
     level = float(positive("equilibria(energy=...)", energy, "Pass the energy of the equilibrium."))
-    known = body.equilibria()
+    if body.normal_form is None:
+        return _of_field(body, step, body.equilibria(), level)
+    return _of_form(body, step, body.equilibria(), level)
+
+
+def _of_form(
+    body: AbstractLLSystem, steps: Float[np.ndarray, "S"] | None, known: Equilibria, level: float
+) -> EquilibriumSpectrum:
     if known.attracting is None:
         nothing = np.zeros(0)
-        return EquilibriumSpectrum(known.subspace, None, None, nothing, None if step is None else nothing)
-    momentum = known.attracting @ np.asarray(body.inertia_operator)
-    velocity = known.attracting * np.sqrt(level / float(body.constrained_energy(momentum)))
+        return EquilibriumSpectrum(known.subspace, None, None, nothing, None if steps is None else nothing)
+    velocity = _with_energy(body, known.attracting, level)
     rates = np.sort(_rates(body, velocity @ np.linalg.pinv(body.constraint_subspace)))
-    if step is None:
+    if steps is None:
         return EquilibriumSpectrum(known.subspace, known.attracting, velocity, rates, None)
-    multipliers, highest = _multipliers(body, velocity, rates, step), _highest_energy(body, step)
+    multipliers, highest = _multipliers(body, velocity, rates, steps), _highest_energy(body, steps)
     return EquilibriumSpectrum(known.subspace, known.attracting, velocity, rates, multipliers, highest)
+
+
+def _of_field(
+    body: AbstractLLSystem, steps: Float[np.ndarray, "S"] | None, known: Equilibria, level: float
+) -> EquilibriumSpectrum:
+    nothing, everywhere = np.zeros(0), len(known.subspace) == body.rank
+    if steps is not None and not everywhere:
+        got, remedy = type(body).__name__, "Pass the system itself, for the rates of its flow."
+        raise error("equilibria(system=...)", "be a top or a sleigh to have known multipliers", got, remedy)
+    others = tuple(_of_field(body, steps, other, level) for other in known.others)
+    line = known.subspace[0] if len(known.subspace) == 1 and not everywhere else None
+    direction = line if known.attracting is None else known.attracting
+    if direction is None:
+        multipliers = None if steps is None else nothing
+        return EquilibriumSpectrum(known.subspace, None, None, nothing, multipliers, others=others)
+    velocity = _with_energy(body, direction, level)
+    rates = body.transverse_rates(velocity, known.subspace)
+    return EquilibriumSpectrum(known.subspace, known.attracting, velocity, rates, None, others=others)
+
+
+def _with_energy(body: AbstractLLSystem, direction: Float[np.ndarray, "dim"], level: float) -> Float[np.ndarray, "dim"]:
+    """Return the multiple of a velocity that has an energy; on groups with a form there may be none."""
+    own = float(body.constrained_energy(direction @ np.asarray(body.inertia_operator)))
+    if not own > 0:
+        got = f"{level:g} for an equilibrium whose energies have the sign of {own:g}"
+        remedy = "Ask for `system.transverse_rates(...)`."
+        raise error("equilibria(energy=...)", "be an energy of the equilibria", got, remedy)
+    return direction * np.sqrt(level / own)
 
 
 def highest_energy(discrete: Discretization) -> float | None:
@@ -101,7 +141,7 @@ def _steps(discrete: Discretization) -> Float[np.ndarray, "S"]:
 
 def _checked(where: str, value: Any) -> tuple[AbstractLLSystem, Float[np.ndarray, "S"] | None]:
     """Return the body and the time steps of the substeps, one for order 2."""
-    remedy = "Pass a SuslovTop, a sleigh, or a discretisation of one."
+    remedy = "Pass a left-invariant system, or a discretisation of a top or a sleigh."
     body = value.system if isinstance(value, Discretization) else value
     if not isinstance(body, AbstractSystem) or body.is_spatial:
         raise error(where, "have a left-invariant constraint", type(body).__name__, remedy)
@@ -116,9 +156,7 @@ def _checked(where: str, value: Any) -> tuple[AbstractLLSystem, Float[np.ndarray
 
 def _rates(body: AbstractLLSystem, w: Float[np.ndarray, "k"]) -> Float[np.ndarray, "j"]:
     """Return the transverse rates at the equilibrium with this velocity in the rows of the constraint subspace."""
-    form = body.normal_form
-    if form is None:
-        raise error("equilibria(system=...)", "be a top or a sleigh", type(body).__name__, "Pass one.")
+    form = cast("NormalForm", body.normal_form)
     w = np.linalg.solve(body.form_map.T, w)
     if not form.is_sleigh or form.arm == 0:
         return _turning(form.stiffness_matrix, form.coupling, w[: len(form.coupling)])

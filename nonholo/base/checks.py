@@ -11,12 +11,13 @@ import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from nonholo.base.types import Array
 
+Kind = TypeVar("Kind")
 _LEAST_RTOL = 1e-14
 LARGEST = 1e150  # what a number may be; squares of larger ones overflow
 _SMALLEST = 1 / LARGEST  # mass, inertia and time step, so that squares do not underflow
@@ -250,6 +251,13 @@ def flag(where: str, value: Any) -> bool:
     return bool(value)
 
 
+def instance(where: str, value: Any, kind: type[Kind], requirement: str, remedy: str) -> Kind:
+    """Return a value of a class; what is none of it is refused."""
+    if not isinstance(value, kind):
+        raise error(where, requirement, shown(value), remedy)
+    return value
+
+
 def function(where: str, value: Any) -> None:
     """Refuse what cannot be called."""
     if not callable(value):
@@ -258,8 +266,7 @@ def function(where: str, value: Any) -> None:
 
 def text(where: str, value: Any) -> str:
     """Return a text."""
-    if not isinstance(value, str):
-        raise error(where, "be a text", shown(value), "Pass a text.")
+    instance(where, value, str, "be a text", "Pass a text.")
     try:
         value.encode()
     except UnicodeEncodeError:
@@ -307,9 +314,8 @@ def selection(where: str, value: Any) -> slice | np.ndarray:
 
 def generator(where: str, value: Any) -> np.random.Generator:
     """Return a random generator."""
-    if not isinstance(value, np.random.Generator):
-        raise error(where, "be a numpy.random.Generator", shown(value), "Pass np.random.default_rng(seed).")
-    return value
+    requirement, remedy = "be a numpy.random.Generator", "Pass np.random.default_rng(seed)."
+    return instance(where, value, np.random.Generator, requirement, remedy)
 
 
 def symmetric(where: str, value: Array, remedy: str) -> Array:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import error, natural
+from nonholo.base.checks import natural, text
 from nonholo.base.limits import bounded_count
 from nonholo.base.types import Float
 from nonholo.ensembles._names import component_name
@@ -58,9 +58,7 @@ class MemberBlock(Mapping[str, Any]):
         """Return uniform numbers in [0, 1), so many of each member, the same in any block; streams are independent."""
         remedy = "Pass how many numbers each member needs."
         width = bounded_count("MemberBlock.random(width=...)", width, 24.0 * self.count, remedy)
-        if not isinstance(stream, str):
-            got = f"a {type(stream).__name__}"
-            raise error("MemberBlock.random(stream=...)", "be a text", got, "Pass a name for these numbers.")
+        text("MemberBlock.random(stream=...)", stream)
         return uniform_numbers(self.seed, f"task {stream}", self.first, self.count, width)
 
     def part(self, begin: int, end: int) -> "MemberBlock":

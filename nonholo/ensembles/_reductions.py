@@ -59,10 +59,11 @@ def _is_plane_sleigh(system: AbstractSystem) -> bool:
 
 
 def _limit_angle(batch: Ensemble) -> Reduced:
-    if not have_kernel(batch.members):
+    form = batch.members.discrete.system.normal_form
+    if form is None or not have_kernel(batch.members):
         got, remedy = shown(batch.members.discrete), "Write a reduction of your own."
         raise error("reduction 'limit_angle'", "have a plane sleigh or a top with n = 3", got, remedy)
-    if _is_plane_sleigh(batch.members.discrete.system):
+    if form.is_sleigh:
         return {"heading_turn": ((), _heading_turn(batch), _told("total turn of the heading", "rad"))}
     return {"axis_angle": ((), _axis_angle(batch), _told("angle between the axes in space", "rad"))}
 

@@ -22,9 +22,14 @@ def check_starts(discrete: Discretization, start: Start | None, names: Sequence[
     varied = {name: part for name in names if (part := start_component(name))}
     if not whole and start is None:
         _check_all(discrete, varied)
-        return
+    else:
+        _check_components(None if whole else start, varied)
+
+
+def _check_components(start: Start | None, varied: dict[str, tuple[str, int]]) -> None:
+    """Refuse components of another start than that of the task, whole or not, and those that it does not have."""
     for name, (owner, component) in varied.items():
-        if whole or start is None or start[0] != owner:
+        if start is None or start[0] != owner:
             remedy = f"Pass EnsembleTask(..., {owner}=...) with what the other components are, or vary each of them."
             raise error("sweep(design=...)", "vary components of the start of the task", shown(name), remedy)
         if component >= len(start[1]):

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from importlib.metadata import version
 from typing import Any
 
-from nonholo.base.checks import error, text
+from nonholo.base.checks import error, instance, text
 from nonholo.continuous import ContinuousFlow
 from nonholo.discrete import Discretization, discretize
 from nonholo.io._descriptions import fields_of, restore_system, unstored
@@ -65,11 +65,9 @@ def restore_motion(stored: dict[str, Any], motion: AbstractMotion | None) -> Abs
 
     Callables and groups of the user's own cannot be stored: such a motion has to be given.
     """
-    if motion is not None and not isinstance(motion, AbstractMotion):
-        where, remedy = "load_orbit(discrete=...)", "Pass that of the store, or None."
-        raise error(where, "be a discretisation", f"a {type(motion).__name__}", remedy)
     if motion is not None:
-        return _same(stored, motion)
+        where, remedy = "load_orbit(discrete=...)", "Pass that of the store, or None."
+        return _same(stored, instance(where, motion, AbstractMotion, "be a discretisation", remedy))
     described, parameters = json.loads(stored["motion"]), json.loads(stored["parameters"])
     missing = unstored(described) or unstored(parameters)
     if missing:

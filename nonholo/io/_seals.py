@@ -117,12 +117,22 @@ class Blocks(NamedTuple):
         if isinstance(found, str):
             return found
         reached, seal = found
-        before = self.checkpoint(block) if self.sealed and reached.seen is not None else None
+        if not self.sealed:
+            return reached
+        chunks = self._crossings_before(block) if reached.seen is not None else 0
+        if isinstance(chunks, str):
+            return chunks
+        return reached if seal == self.seal(block, reached, chunks) else self._broken_seal(block, reached, chunks)
+
+    def _crossings_before(self, block: int) -> int | str:
+        """Return how many chunks of crossings there were before a block, or what is wrong with its checkpoint."""
+        before = self.checkpoint(block)
         if isinstance(before, str):
             return before
-        chunks = 0 if before is None or before.seen is None else before.seen.chunks
-        if not self.sealed or seal == self.seal(block, reached, chunks):
-            return reached
+        return 0 if before.seen is None else before.seen.chunks
+
+    def _broken_seal(self, block: int, reached: Checkpoint, chunks: int) -> str:
+        """Say which chunk of a block is missing, or that one is of another place."""
         for name, number in self._chunks(block, reached, chunks):
             if not self.file(name, number).is_file():
                 return f"no such chunk, {self._name(name, number)}"

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import error, selection, shown
+from nonholo.base.checks import instance, selection
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.groups import SE
@@ -25,10 +25,8 @@ STATES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
 
 def as_orbit(where: str, value: Any, coordinates: str) -> "Orbit":
     """Refuse what is not an orbit on a group; `coordinates` says what to do with an orbit in coordinates."""
-    if not isinstance(value, Orbit):
-        remedy = f"Pass what `simulate` or `flow` returned; {coordinates}"
-        raise error(where, "be an orbit of a system on a group", shown(value), remedy)
-    return value
+    remedy = f"Pass what `simulate` or `flow` returned; {coordinates}"
+    return instance(where, value, Orbit, "be an orbit of a system on a group", remedy)
 
 
 class AbstractMotion(abc.ABC):

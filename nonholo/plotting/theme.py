@@ -17,7 +17,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 
-from nonholo.base.checks import error
+from nonholo.base.checks import instance
 from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 
@@ -53,9 +53,9 @@ def styled(draw: Callable[_P, _R]) -> Callable[_P, _R]:
 
 def axes_or_new(axes: Axes | None, size: tuple[float, float] = (6.0, 5.0)) -> Axes:
     """Return the given axes, or those of a new figure that no window manager knows."""
-    if axes is not None and not isinstance(axes, Axes):
-        raise error("plot(axes=...)", "be axes of matplotlib", f"a {type(axes).__name__}", "Pass axes, or None.")
-    return Figure(figsize=size, layout="constrained").add_subplot() if axes is None else axes
+    if axes is None:
+        return Figure(figsize=size, layout="constrained").add_subplot()
+    return instance("plot(axes=...)", axes, Axes, "be axes of matplotlib", "Pass axes, or None.")
 
 
 def time_scale(orbit: Orbit) -> Normalize:

@@ -14,7 +14,7 @@ import numpy as np
 from nonholo.base.checks import error, shape_of, trailing
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.systems._equilibria import Equilibria, equilibria_of
+from nonholo.systems._equilibria import Equilibria, equilibria_of, transverse_rates
 from nonholo.systems._mass import inertia_form
 from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._wide import WideInertia
@@ -243,14 +243,20 @@ class AbstractLLSystem(AbstractSystem):
         motions, those in the direction of its center of mass attracting; where that lies beside the blade
         ($a_1 = 0$), the turns along c about it, and the straight motions. Every admissible velocity if c = 0 too.
 
+        Of any other system with two admissible directions a line, or both; with three the real eigenspaces of a matrix
+        (docs/theory/groups-and-systems.md): one to three lines, or a plane, alone or with a line, or all.
+
         Raises:
-            ValueError: Velocities change, and the system is neither a top nor a sleigh.
+            ValueError: Velocities change in four directions or more, and the system is neither a top nor a sleigh.
 
         Example:
             >>> nh.SuslovTop([[1.0, 0.0, 0.5], [0.0, 1.0, 0.0], [0.5, 0.0, 1.0]]).equilibria().attracting
             array([-0. , -0.5, -0. ])
             >>> nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=-0.5).equilibria().attracting
             array([-0., -1., -0.])
+            >>> axes = nh.RigidBody(np.diag([1.0, 2.0, 3.0])).equilibria()
+            >>> axes.subspace.round(3), [axis.subspace.round(3).tolist() for axis in axes.others]
+            (array([[0.   , 0.   , 0.577]]), [[[0.0, 0.5, 0.0]], [[0.447, 0.0, 0.0]]])
         """
         return equilibria_of(self)
 
@@ -258,6 +264,25 @@ class AbstractLLSystem(AbstractSystem):
         """Return the identity: the constraint is fixed in the body."""
         del configuration
         return np.eye(self.group.dim)
+
+    def transverse_rates(
+        self, velocity: Float[Array, "dim"], subspace: Float[Array, "m dim"]
+    ) -> Float[np.ndarray, "j"] | Inexact[np.ndarray, "j"]:
+        r"""Return the rates at which small deviations from an equilibrium grow, across a linear space of equilibria.
+
+        Eigenvalues of the linearized reduced equations on the quotient of $\mathfrak{d}$ by the space: negative ones
+        attract, imaginary ones oscillate.
+
+        Args:
+            velocity: The equilibrium, a body velocity.
+            subspace: Rows span a linear space of equilibria that it lies in, such as `equilibria().subspace`.
+
+        Example:
+            >>> body = nh.RigidBody(np.diag([1.0, 2.0, 3.0]))
+            >>> body.transverse_rates([0.0, 1.0, 0.0], [[0.0, 1.0, 0.0]]).round(3)  # the middle axis
+            array([-0.258,  0.258])
+        """
+        return transverse_rates(self, velocity, subspace)
 
     def moved(self, configuration: Float[Array, "... N N"], displacement: Array) -> Float[Array, "... N N"]:
         """Return g W."""

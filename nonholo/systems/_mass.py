@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import array, check_scale, error, is_traced, shown, symmetric
+from nonholo.base.checks import array, check_scale, error, instance, is_traced, symmetric
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._wide import narrow
@@ -76,9 +76,8 @@ def body_tensor(where: str, value: Array, remedy: str) -> Array:
 
 def checked_group(where: str, group: Any) -> AbstractMatrixGroup:
     """Refuse what is not a matrix group."""
-    if not isinstance(group, AbstractMatrixGroup):
-        raise error(where, "be a matrix group", shown(group), "Pass SO(n), SE(n), or MatrixGroup(basis).")
-    return group
+    remedy = "Pass SO(n), SE(n), or MatrixGroup(basis)."
+    return instance(where, group, AbstractMatrixGroup, "be a matrix group", remedy)
 
 
 def group_mass_tensor(where: str, group: AbstractMatrixGroup, value: Array, instead: str) -> Array:

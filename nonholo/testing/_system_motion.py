@@ -35,15 +35,17 @@ def _energy(s: SystemSamples) -> float:
     return largest(s.along_the_motion(s.energy)) / largest(s.energy(s.restricted, s.g))
 
 
-def _equilibria(s: SystemSamples) -> Equilibria:
+def _equilibria(s: SystemSamples) -> tuple[Equilibria, ...]:
+    """Return each linear space of equilibria."""
     need_motion(s)
     system: Any = s.system
     if s.spatial:
         raise NotApplicableError("a right-invariant constraint")
     try:
-        return system.equilibria()
+        known = system.equilibria()
     except ValueError:
         raise NotApplicableError("the system refuses to name its equilibria") from None
+    return known, *known.others
 
 
 def _rate_at(s: SystemSamples, velocity: np.ndarray) -> np.ndarray:
@@ -55,25 +57,30 @@ def _rate_at(s: SystemSamples, velocity: np.ndarray) -> np.ndarray:
 
 
 def _at_rest(s: SystemSamples) -> float:
-    found = _equilibria(s)
-    mixed = np.concatenate([found.subspace, found.subspace.sum(axis=0)[None]])
+    spaces = [known.subspace for known in _equilibria(s)]
+    mixed = np.concatenate([*spaces, *(rows.sum(axis=0)[None] for rows in spaces)])
     forbidden = largest(mixed @ s.A.T)
     return max(forbidden, largest(_rate_at(s, mixed)))
 
 
 def _attraction(s: SystemSamples) -> float:
-    """Return the largest growth rate across the equilibria, relative to the velocity."""
-    found = _equilibria(s)
-    if found.attracting is None:
+    """Return the largest growth rate across the equilibria that attract, relative to the velocity."""
+    attracting = [known for known in _equilibria(s) if known.attracting is not None]
+    if not attracting:
         raise NotApplicableError("no equilibrium attracts")
-    w = found.attracting @ np.linalg.pinv(s.S)
+    return max(_growth(s, known) for known in attracting)
+
+
+def _growth(s: SystemSamples, known: Equilibria) -> float:
+    velocity = np.asarray(known.attracting)
+    w = velocity @ np.linalg.pinv(s.S)
 
     def nearby(t: float) -> np.ndarray:
         return _rate_at(s, (w + t * np.eye(len(w))) @ s.S)
 
     rates = np.sort(np.linalg.eigvals(derivative(nearby, 0.1).T).real)
-    across = len(w) - len(found.subspace)
-    return float(rates[across - 1] / np.linalg.norm(found.attracting))
+    across = len(w) - len(known.subspace)
+    return float(rates[across - 1] / np.linalg.norm(velocity))
 
 
 def _body_momenta(s: SystemSamples) -> float:

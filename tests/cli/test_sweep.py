@@ -448,7 +448,7 @@ def test_plot_of_a_sweep(nonholo: Command) -> None:
     assert "energy drift" in Path("other.svg").read_text()
     missing = nonholo("plot", store, "-o", "none.png", "--color", "nothing")
     assert missing.exit_code == 1
-    assert "must be one of energy_drift, heading_turn, outcome" in missing.stderr
+    assert "must be one of 'energy_drift', 'heading_turn', 'outcome'" in missing.stderr
 
 
 def test_simulate_of_a_sweep_is_refused(nonholo: Command) -> None:

@@ -21,6 +21,9 @@ def _of_systems() -> list[Call]:
         call("asymptotics [orbit]", nh.asymptotics, subject=thing(orbit)),
         call("conserved_momenta", nh.conserved_momenta, system=thing(system)),
         call("equilibria", nh.equilibria, system=thing(system), energy=positive(1.0)),
+        call(
+            "equilibria [free]", nh.equilibria, system=thing(nh.RigidBody(np.diag([1.0, 2, 3]))), energy=positive(1.0)
+        ),
         call("equilibria [discrete]", nh.equilibria, system=thing(TOP), energy=positive(1.0)),
         call("invariant_measure", nh.invariant_measure, motion=thing(TOP), energy=positive(1.0)),
         call("invariants", nh.invariants, orbit=thing(orbit)),

@@ -79,6 +79,8 @@ def _methods() -> list[Call]:
                 ("restrict_at", "momentum", p),
             )
         ]
+    velocity, subspace = array(FLAT_ROWS[2]), array(FLAT_ROWS[2:], "rows")
+    found.append(call("flat.transverse_rates", flat.transverse_rates, velocity=velocity, subspace=subspace))
     return found + _methods_in_space()
 
 

@@ -197,9 +197,9 @@ def test_given_axes_are_used(plane: xarray.Dataset) -> None:
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        ({"quantity": "nothing"}, "must be one of value, many, outcome|must be one of many"),
+        ({"quantity": "nothing"}, "must be one of 'value', 'many', 'outcome'|must be one of 'many'"),
         ({"quantity": "many"}, "Pass result.isel\\(part=0\\)"),
-        ({"x": "d"}, "must be one of a, b, c. Got 'd'"),
+        ({"x": "d"}, "must be one of 'a', 'b', 'c'. Got 'd'"),
         ({"quantity": "value"}, "must have at most two free axes. Got also c. Pass result.sel\\(c="),
     ],
 )

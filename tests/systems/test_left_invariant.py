@@ -310,8 +310,15 @@ def test_repr_names_what_is_shown() -> None:
             r"shape \(3, 3\). Got shape \(2, 2\)",
         ),
         (lambda: LLSystem(nh.SO(3), np.full((3, 3), np.inf), np.eye(3)), "finite. Got inf"),
-        (lambda: LLSystem(nh.SO(3), np.diag([1.0, 2, 3]), np.eye(3)).equilibria(), "linear space. Got a drift of"),
-        (lambda: RigidBody(np.diag([1.0, 2, 3])).equilibria(), r"RigidBody\.equilibria\(\)"),
+        (
+            lambda: RigidBody(np.diag([1.0, 2, 3, 4])).equilibria(),
+            r"at most three admissible directions\. Got 6, in wh",
+        ),
+        (lambda: LLSystem(nh.SO(4), _mass_tensor(4), np.eye(6)[:4]).equilibria(), r"LLSystem\.equilibria\(\)"),
+        (
+            lambda: RigidBody(np.eye(3)).transverse_rates([1, 0], np.eye(3)),
+            r"\(velocity=\.\.\.\)` must have shape \(3,\)",
+        ),
         (lambda: RigidBody(np.diag([1.0, 0, 0])), "inertia operator positive definite. Got an eigenvalue 0"),
         (lambda: RigidBody(None), r"RigidBody\(mass_tensor=\.\.\.\)` must be an array of real numbers. Got None"),
         (lambda: RigidBody(np.eye(3), nh.SE(3)), r"shape \(4, 4\). Got shape \(3, 3\)"),

@@ -46,7 +46,7 @@ def lyapunov_function(system: AbstractLLSystem) -> LyapunovFunction:
     Reference: [fedorov-zenkov-2004], sections 6 and 7, for n = 3 and SE(2).
 
     Args:
-        system: A left-invariant system whose equilibria are known.
+        system: A top, a sleigh, or a system all of whose velocities stay constant.
 
     Raises:
         ValueError: Another system.
@@ -60,7 +60,11 @@ def lyapunov_function(system: AbstractLLSystem) -> LyapunovFunction:
     if not isinstance(system, AbstractSystem) or system.is_spatial:
         remedy = "Pass a SuslovTop, a sleigh, or another left-invariant system."
         raise error("lyapunov_function(system=...)", "have a left-invariant constraint", type(system).__name__, remedy)
-    attracting = system.equilibria().attracting
+    known = system.equilibria()
+    if system.normal_form is None and len(known.subspace) < system.rank:
+        remedy = "Of other systems no such function of the discrete map is known."
+        raise error("lyapunov_function(system=...)", "be a top or a sleigh", type(system).__name__, remedy)
+    attracting = known.attracting
     return LyapunovFunction(
         np.zeros(system.group.dim) if attracting is None else attracting, system.constraint_subspace
     )

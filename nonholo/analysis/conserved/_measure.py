@@ -11,7 +11,7 @@ import numpy as np
 from nonholo.analysis._equilibria import equilibria
 from nonholo.analysis.conserved._step_jacobian import step_determinants
 from nonholo.analysis.planar import planar_variety
-from nonholo.base.checks import array, error, shape_of, shown, trailing
+from nonholo.base.checks import array, error, instance, shape_of, shown, trailing
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
@@ -115,9 +115,8 @@ class InvariantMeasure:
         return np.concatenate([np.zeros(min(1, len(orbit))), np.cumsum(steps)])
 
     def _discrete(self, where: str) -> Discretization:
-        if not isinstance(self.motion, Discretization):
-            raise error(where, "belong to a discrete map", shown(self.motion), "Pass what `discretize` returned.")
-        return self.motion
+        remedy = "Pass what `discretize` returned."
+        return instance(where, self.motion, Discretization, "belong to a discrete map", remedy)
 
 
 def invariant_measure(motion: AbstractLLSystem | Discretization, energy: Array = 1.0) -> InvariantMeasure:

@@ -7,7 +7,7 @@ import dataclasses
 
 import numpy as np
 
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import instance
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractSystem, gyroscopic_form, null_space, spanned
@@ -64,8 +64,8 @@ def conserved_momenta(system: AbstractSystem) -> ConservedMomenta:
         >>> conserved_momenta(nh.ChaplyginSleigh(1.0, 1.0, 0.5)).body.shape
         (0, 3)
     """
-    if not isinstance(system, AbstractSystem):
-        raise error("conserved_momenta(system=...)", "be a system", shown(system), "Pass a SuslovTop, an LLSystem, ...")
+    remedy = "Pass a SuslovTop, an LLSystem, ..."
+    instance("conserved_momenta(system=...)", system, AbstractSystem, "be a system", remedy)
     return _right(system) if system.is_spatial else _left(system)
 
 

@@ -80,16 +80,17 @@ def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
         >>> asymptotics(top).axis_after
         array([-0., -1., -0.])
     """
-    system = subject.system if isinstance(subject, Orbit) else subject
+    orbit = subject if isinstance(subject, Orbit) else None
+    system = subject if orbit is None else orbit.system
     form = system.normal_form if isinstance(system, AbstractSystem) else None
     if form is None:
         remedy = "Pass a SuslovTop, a sleigh, or an orbit of one."
         raise error("asymptotics(subject=...)", "be a top or a sleigh, or its orbit", type(subject).__name__, remedy)
-    if not isinstance(subject, Orbit):
+    if orbit is None:
         return _of_system(cast("AbstractLLSystem", system), form)
-    if len(subject) == 0:
+    if len(orbit) == 0:
         raise error("asymptotics(subject=...)", "have at least one state", "none", "See the orbit's outcome.")
-    return _of_orbit(form, subject)
+    return _of_orbit(form, orbit)
 
 
 def turn_of_flow(mass: Any, inertia: Any, a: Any) -> Any:

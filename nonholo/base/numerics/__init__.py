@@ -3,6 +3,7 @@
 from nonholo.base.numerics._bernoulli import cotangent_deficit
 from nonholo.base.numerics._cubic import real_cubic_roots
 from nonholo.base.numerics._double_precision import double_precision
+from nonholo.base.numerics._eigenspaces import real_eigenspaces
 from nonholo.base.numerics._even import half_cotangent, sinc, versine
 from nonholo.base.numerics._matrix_functions import (
     block_diagonal,
@@ -32,6 +33,7 @@ __all__ = [
     "principal_logarithm",
     "product_and_remainder",
     "real_cubic_roots",
+    "real_eigenspaces",
     "sinc",
     "versine",
 ]

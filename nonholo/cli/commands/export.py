@@ -1,7 +1,9 @@
 """`nonholo export`: the poses of a run as CSV, for other programs."""
 
+import contextlib
 import os
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -40,17 +42,23 @@ def export(
             read_attributes(store)
         if output:
             check_file(output, overwrite=overwrite)
-    with store_errors(FAILED), told_warnings():
-        try:
-            shown = output is not None and sys.stderr.isatty()
-            if is_sweep:
-                from nonholo.ensembles import sweep_to_csv
+    with store_errors(FAILED), told_warnings(), _ending_with_the_reader():
+        if is_sweep:
+            from nonholo.ensembles import sweep_to_csv
 
-                sweep_to_csv(store, output or sys.stdout, overwrite=overwrite)
-            else:
-                store_to_csv(store, output or sys.stdout, every=every, overwrite=overwrite, progress=shown)
-            sys.stdout.flush()
-        except BrokenPipeError:  # the reader has seen enough, as `head` does
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            sweep_to_csv(store, output or sys.stdout, overwrite=overwrite)
+        else:
+            shown = output is not None and sys.stderr.isatty()
+            store_to_csv(store, output or sys.stdout, every=every, overwrite=overwrite, progress=shown)
     if output:
         typer.echo(output)
+
+
+@contextlib.contextmanager
+def _ending_with_the_reader() -> Iterator[None]:
+    """Write to the standard output until its reader has seen enough, as `head` does."""
+    try:
+        yield
+        sys.stdout.flush()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

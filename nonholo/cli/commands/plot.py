@@ -1,6 +1,7 @@
 """`nonholo plot`: draw a run or a sweep that was kept."""
 
 import sys
+from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated
 
@@ -31,9 +32,8 @@ def plot(
 
     use_cache_folder()
     from nonholo import io
-    from nonholo.base.progress import waiting
     from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
-    from nonholo.cli.screen.pictures import beside, draw
+    from nonholo.cli.screen.pictures import beside
 
     if output is not None:
         with store_errors(USAGE):
@@ -48,11 +48,21 @@ def plot(
     else:
         if color or x or y:
             leave("--color, --x and --y are for the store of a sweep.", USAGE)
-        with store_errors(USAGE):
-            io.read_attributes(store)
-        with store_errors(FAILED), waiting("reading", shown := sys.stderr.isatty()):
-            orbit = io.load_orbit(store)
-        drawn = draw(orbit, None if gif else path, path if gif else None, progress=shown).values()
+        drawn = _draw_run(store, path, gif=gif)
     if str(path) not in drawn:
         raise typer.Exit(FAILED)
     typer.echo(path)
+
+
+def _draw_run(store: Path, path: Path, *, gif: bool) -> Collection[str | None]:
+    """Draw the overview or the animation of a run, and return the paths of what was drawn."""
+    from nonholo import io
+    from nonholo.base.progress import waiting
+    from nonholo.cli.screen.errors import FAILED, USAGE, store_errors
+    from nonholo.cli.screen.pictures import draw
+
+    with store_errors(USAGE):
+        io.read_attributes(store)
+    with store_errors(FAILED), waiting("reading", shown := sys.stderr.isatty()):
+        orbit = io.load_orbit(store)
+    return draw(orbit, None if gif else path, path if gif else None, progress=shown).values()

@@ -61,20 +61,24 @@ def _range(given: dict[str, Any]) -> "np.ndarray":
     import numpy as np
 
     _known(given, ["from", "to", "count", "spacing"], ["from", "to", "count"], _RANGE)
-    begin, end, count, spacing = given["from"], given["to"], given["count"], given.get("spacing", "linear")
-    if isinstance(begin, list) or isinstance(end, list) or not _are_numbers([begin, end]):
+    begin, end, spacing = given["from"], given["to"], given.get("spacing", "linear")
+    if not (_is_number(begin) and _is_number(end)):
         raise ValueError(f"must have numbers at from and to. Got {begin!r} and {end!r}")
-    if not is_integer(count) or count < 1:
-        raise ValueError(f"must have a positive integer as count. Got {shown(count)}")
-    try:
-        count = bounded_count("count", count, 64.0, "Pass how many values.")
-    except ValueError as failure:
-        raise ValueError(f"must have a count that is possible: {failure}") from None
+    count = _count(given["count"])
     if spacing not in _SPACINGS:
         raise ValueError(f'must have spacing "linear" or "logarithmic". Got {spacing!r}')
     if spacing == "logarithmic" and not (begin > 0 and end > 0):
         raise ValueError(f"must have positive bounds for logarithmic spacing. Got {begin} and {end}")
     return (np.geomspace if spacing == "logarithmic" else np.linspace)(begin, end, count)
+
+
+def _count(given: Any) -> int:
+    if not is_integer(given) or given < 1:
+        raise ValueError(f"must have a positive integer as count. Got {shown(given)}")
+    try:
+        return bounded_count("count", given, 64.0, "Pass how many values.")
+    except ValueError as failure:
+        raise ValueError(f"must have a count that is possible: {failure}") from None
 
 
 def _list(given: Any) -> "np.ndarray":
@@ -92,6 +96,10 @@ def _list(given: Any) -> "np.ndarray":
 def _are_numbers(given: Any) -> bool:
     if isinstance(given, list):
         return all(_are_numbers(entry) for entry in given)
+    return _is_number(given)
+
+
+def _is_number(given: Any) -> bool:
     return isinstance(given, int | float) and not isinstance(given, bool) and math.isfinite(given)
 
 
@@ -108,17 +116,22 @@ def drawn(given: Any) -> "AbstractDistribution":
     names = [name for name in given if name in kinds] if isinstance(given, dict) else []
     if len(names) != 1:
         raise ValueError(f"must hold one of {', '.join(kinds)}, as in {{uniform = [0.1, 1.0]}}. Got {given!r}")
-    kind, argument = names[0], given[names[0]]
-    sized = kind in _SIZED
-    _known(given, [kind, "size"] if sized else [kind], [kind], f"{{{kind} = ...}}")
+    kind = names[0]
+    _check_drawn(kind, given)
+    try:
+        return kinds[kind](given[kind], given.get("size"))
+    except ValueError as failure:
+        raise ValueError(f"{kind}: {str(failure).partition('` ')[2] or failure}") from None
+
+
+def _check_drawn(kind: str, given: dict[str, Any]) -> None:
+    """Refuse a table of a distribution with other keys, no pair where it needs one, or no size."""
+    _known(given, [kind, "size"] if kind in _SIZED else [kind], [kind], f"{{{kind} = ...}}")
+    argument = given[kind]
     if kind in _PAIRS and not (isinstance(argument, list) and len(argument) == 2):
         raise ValueError(f"must be {_PAIRS[kind]}. Got {argument!r}")
     if kind in _NEED_SIZE and "size" not in given:
         raise ValueError(f"needs size = ..., the length of the {_NEED_SIZE[kind]}, or a value in its own table")
-    try:
-        return kinds[kind](argument, given.get("size"))
-    except ValueError as failure:
-        raise ValueError(f"{kind}: {str(failure).partition('` ')[2] or failure}") from None
 
 
 def needs_size(given: Any) -> bool:

@@ -3,6 +3,7 @@
 import difflib
 import re
 import reprlib
+from collections.abc import Collection
 from typing import Any, NamedTuple
 
 from pydantic import ValidationError
@@ -70,19 +71,28 @@ def suggestion(name: str, known: list[str]) -> str:
 
 def _problem(entry: dict[str, Any], model: type[Section]) -> tuple[str, str]:
     kinds = _TAGGED.get(str(entry["loc"][0]), {}) if entry["loc"] else {}
-    location = [part for i, part in enumerate(entry["loc"]) if not (i == 1 and part in kinds)]
-    location = [part for part in location if part not in (NAME, TABLE)]
+    location = _location(entry["loc"], kinds)
     key = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in location).lstrip(".")
     if entry["type"] == "value_error":
         return _split_core(key, str(entry["ctx"]["error"]))
     if entry["type"] == "extra_forbidden":
         return key, f"is not a known key. {suggestion(str(location[-1]), _known(entry['loc'], model))}"
-    text = _TEXTS.get(entry["type"]) or entry["msg"].replace("Input should", "must", 1)
-    text = text.format(kinds=" or ".join(f'"{kind}"' for kind in kinds)) if "{kinds}" in text else text
+    text = _text(entry, kinds)
     if entry["type"] in ("missing", "union_tag_not_found"):
         return key, text
     got = entry["ctx"]["tag"] if entry["type"] == "union_tag_invalid" else entry["input"]
     return key, f"{text}. Got {reprlib.repr(got)}"
+
+
+def _text(entry: dict[str, Any], kinds: Collection[str]) -> str:
+    text = _TEXTS.get(entry["type"]) or entry["msg"].replace("Input should", "must", 1)
+    return text.format(kinds=" or ".join(f'"{kind}"' for kind in kinds)) if "{kinds}" in text else text
+
+
+def _location(path: tuple[int | str, ...], kinds: Collection[str]) -> list[int | str]:
+    """Return a path of pydantic without what names the kind of a table, as it stands in the file."""
+    named = [part for i, part in enumerate(path) if not (i == 1 and part in kinds)]
+    return [part for part in named if part not in (NAME, TABLE)]
 
 
 def _known(location: tuple[int | str, ...], model: type[Section]) -> list[str]:

@@ -1,5 +1,6 @@
 """Reading the scenario of a sweep: names of a design as key paths, and values of a body that the design varies."""
 
+import contextlib
 import re
 from pathlib import Path
 from typing import Any
@@ -44,10 +45,7 @@ def sweep_text(scenario: SweepScenario) -> str:
 
 def _by_table(document: dict[str, Any]) -> None:
     """Put values under quoted key paths, "body.a" = ..., where unquoted ones stand: in tables."""
-    design = document.get("design")
-    values = design.get("values") if isinstance(design, dict) else None
-    if not isinstance(values, dict):
-        return
+    values = _table(_table(document, "design"), "values")
     for path in [path for path in values if "." in path]:
         table, _, name = path.partition(".")
         held = values.setdefault(table, {})
@@ -57,16 +55,20 @@ def _by_table(document: dict[str, Any]) -> None:
 
 def _complete(document: dict[str, Any]) -> None:
     """Take the size of a distribution from the value it varies; give a value that is varied and not given."""
-    design = document.get("design")
-    values = design.get("values") if isinstance(design, dict) else None
+    values = _table(_table(document, "design"), "values")
     for table in _TABLES:
-        held = values.get(table) if isinstance(values, dict) else None
-        for name, given in held.items() if isinstance(held, dict) else ():
-            own = document.setdefault(table, {})
-            if isinstance(own, dict):
-                _complete_one(own, name, given)
-        if table == "start" and isinstance(held, dict) and isinstance(document.get(table), dict):
-            _complete_start(document[table], held)
+        held = _table(values, table)
+        if held:
+            document.setdefault(table, {})
+        for name, given in held.items():
+            _complete_one(_table(document, table), name, given)
+    _complete_start(_table(document, "start"), _table(values, "start"))
+
+
+def _table(document: dict[str, Any], name: str) -> dict[str, Any]:
+    """Return a table of a document; an empty one where there is none, or a value, which is refused later."""
+    held = document.get(name)
+    return held if isinstance(held, dict) else {}
 
 
 def _complete_one(own: dict[str, Any], name: str, given: Any) -> None:
@@ -74,23 +76,21 @@ def _complete_one(own: dict[str, Any], name: str, given: Any) -> None:
         given["size"] = len(own[name])
     if name in own or _COMPONENT.fullmatch(name):
         return
-    try:
+    with contextlib.suppress(ValueError):  # told as a problem of the design
         own[name] = _typical(given)
-    except ValueError:  # told as a problem of the design
-        return
 
 
 def _complete_start(own: dict[str, Any], held: dict[str, Any]) -> None:
     """Give a start of which every component is varied, from the first one on, and none is given."""
     parts = {(part[1], int(part[2] or part[3])): held[name] for name in held if (part := _COMPONENT.fullmatch(name))}
-    if not parts or any(name in own or name in held for name in _STARTS):
+    if not parts or not set(_STARTS).isdisjoint([*own, *held]):
         return
     owner, _ = next(iter(parts))
     wanted = [(owner, component) for component in range(len(parts))]
-    try:
-        own.update({owner: [_typical(parts[part]) for part in wanted]} if parts.keys() == set(wanted) else {})
-    except ValueError:  # told as a problem of the design
+    if parts.keys() != set(wanted):
         return
+    with contextlib.suppress(ValueError):  # told as a problem of the design
+        own[owner] = [_typical(parts[part]) for part in wanted]
 
 
 def _typical(given: Any) -> Any:
@@ -104,6 +104,19 @@ def _typical(given: Any) -> Any:
 
 def _refusals(scenario: SweepScenario) -> list[tuple[str, str]]:
     """Return key paths and texts of what a scenario of one motion may say, but no sweep."""
+    found = _refused_values(scenario)
+    for key in ("displacement", "configuration"):
+        if getattr(scenario.start, key) is not None:
+            found.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(_STARTS)}"))
+    if scenario.run.branch != "principal":
+        found.append(("run.branch", f"must be principal in sweeps. Got {scenario.run.branch!r}"))
+    if scenario.run.save_every != 1:
+        found.append(("run.save_every", "is not for sweeps: [keep] says what is kept"))
+    return found
+
+
+def _refused_values(scenario: SweepScenario) -> list[tuple[str, str]]:
+    """Return key paths and texts of what a design cannot vary."""
     found, values = [], scenario.design.values
     if not any((values.body, values.start, values.run)):
         found.append(("design.values", 'must name what is varied, for example "body.a" = [0.1, 0.2]'))
@@ -116,13 +129,6 @@ def _refusals(scenario: SweepScenario) -> list[tuple[str, str]]:
                 found.append((f"design.values.{table}.{name}", told))
             elif whole != name and getattr(scenario.start, whole) is None:
                 found.append((f"start.{whole}", f"is missing: {name} is varied, the other components are given here"))
-    for key in ("displacement", "configuration"):
-        if getattr(scenario.start, key) is not None:
-            found.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(_STARTS)}"))
-    if scenario.run.branch != "principal":
-        found.append(("run.branch", f"must be principal in sweeps. Got {scenario.run.branch!r}"))
-    if scenario.run.save_every != 1:
-        found.append(("run.save_every", "is not for sweeps: [keep] says what is kept"))
     return found
 
 

@@ -118,6 +118,17 @@ def _named(returned: Any, count: int) -> dict[str, tuple[tuple[str, ...], np.nda
 
 def _entry(name: str, value: Any, count: int) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
     dimensions, value, *rest = value if isinstance(value, tuple) else (None, value)
+    rows = _rows(name, value, count)
+    if dimensions is None:
+        dimensions = [f"{name}_{axis}" for axis in range(1, rows.ndim)]
+    if len(dimensions) != rows.ndim - 1:
+        got = f"{len(dimensions)} dimensions for shape {rows.shape}"
+        raise error(f"task(...)[{name!r}]", "name each axis but the first", got, "Name them.")
+    return tuple(dimensions), rows, dict(rest[0]) if rest else {}
+
+
+def _rows(name: str, value: Any, count: int) -> np.ndarray:
+    """Return one row for each member."""
     rows = np.asarray(value)
     if rows.dtype.kind not in "biufc":
         remedy = "Return numbers."
@@ -129,12 +140,7 @@ def _entry(name: str, value: Any, count: int) -> tuple[tuple[str, ...], np.ndarr
         rows = _codes(rows)
     if 0 in rows.shape[1:]:
         raise error(f"task(...)[{name!r}]", "hold numbers", f"shape {rows.shape}", "Leave it out.")
-    if dimensions is None:
-        dimensions = [f"{name}_{axis}" for axis in range(1, rows.ndim)]
-    if len(dimensions) != rows.ndim - 1:
-        got = f"{len(dimensions)} dimensions for shape {rows.shape}"
-        raise error(f"task(...)[{name!r}]", "name each axis but the first", got, "Name them.")
-    return tuple(dimensions), rows, dict(rest[0]) if rest else {}
+    return rows
 
 
 def _codes(rows: np.ndarray) -> np.ndarray:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import jax
 
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import error, instance
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
@@ -73,9 +73,8 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     lagrangian: Callable[[Array], Array] | None = dataclasses.field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
-        if not isinstance(self.group, AbstractMatrixGroup):
-            where, remedy = "GroupLagrangeDAlembert(group=...)", "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
-            raise error(where, "be a matrix group", shown(self.group), remedy)
+        where, remedy = "GroupLagrangeDAlembert(group=...)", "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
+        instance(where, self.group, AbstractMatrixGroup, "be a matrix group", remedy)
         with double_precision():
             g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
             w, h = jax.ShapeDtypeStruct((self.group.dim,), float), jax.ShapeDtypeStruct((), float)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, NullLocator
 
-from nonholo.base.checks import error, pair, shown
+from nonholo.base.checks import error, instance, pair
 from nonholo.base.types import Float
 from nonholo.discrete import BranchTree, Discretization, as_discretization
 from nonholo.plotting import theme
@@ -89,8 +89,7 @@ def branch_tree(discrete: Discretization, tree: BranchTree, axes: tuple[Axes, Ax
 def _checked(discrete: Any, tree: Any) -> Any:
     where = "plot.branch_tree(tree=...)"
     system = as_discretization("plot.branch_tree(discrete=...)", discrete).system
-    if not isinstance(tree, BranchTree):
-        raise error(where, "be a tree", shown(tree), "Pass what `nh.branch_tree` returned.")
+    instance(where, tree, BranchTree, "be a tree", "Pass what `nh.branch_tree` returned.")
     if len(tree.counts) < 2:
         raise error(where, "have a generation of images", "the root alone", "Make it with depth=1 or more.")
     if tree.displacement.shape[1:] != system.group.identity.shape:

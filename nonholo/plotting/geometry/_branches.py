@@ -11,7 +11,7 @@ from matplotlib.text import Annotation
 
 from nonholo.analysis import deltoid, invariant_curve
 from nonholo.analysis.planar import planar_map
-from nonholo.base.checks import error, shape_of, shown
+from nonholo.base.checks import choice, error, shape_of, shown
 from nonholo.base.types import Float
 from nonholo.discrete import Branches, Discretization, discrete_legendre, displacements_over, inverse_discrete_legendre
 from nonholo.discrete import branches as values_of
@@ -104,8 +104,7 @@ def _chosen(discrete: Discretization, plane: str | None) -> bool:
     if plane is None:
         return has_deltoid
     where = "plot.branches(plane=...)"
-    if not isinstance(plane, str) or plane not in ("displacements", "momenta"):
-        raise error(where, "be 'displacements' or 'momenta'", shown(plane), "Leave it out for the usual one.")
+    choice(where, plane, ("displacements", "momenta"), "Leave it out for the usual one.")
     if plane == "momenta" and not has_deltoid:
         raise error(where, "be 'displacements' where there is no deltoid", shown(discrete.system), "Leave it out.")
     return plane == "momenta"

@@ -9,7 +9,7 @@ from matplotlib.collections import PathCollection
 from matplotlib.contour import QuadContourSet
 
 from nonholo.analysis import MomentumLocus
-from nonholo.base.checks import array, error, shown
+from nonholo.base.checks import array, error, instance
 from nonholo.base.types import Array, Float
 from nonholo.plotting import theme
 from nonholo.plotting.sheets import AbstractSheet, sheet_of
@@ -63,8 +63,7 @@ def locus_section(
         1
     """
     where = "plot.locus_section"
-    if not isinstance(locus, MomentumLocus):
-        raise error(f"{where}(locus=...)", "be a locus", shown(locus), "Pass what `nh.momentum_locus` returned.")
+    instance(f"{where}(locus=...)", locus, MomentumLocus, "be a locus", "Pass what `nh.momentum_locus` returned.")
     n = array(f"{where}(normal=...)", normal, (3,), "Pass three components.")
     if not np.any(n):
         raise error(f"{where}(normal=...)", "not be zero", "0, 0, 0", "Pass a direction.")

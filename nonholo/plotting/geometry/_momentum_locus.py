@@ -10,7 +10,7 @@ from mpl_toolkits.mplot3d.art3d import Line3D, Path3DCollection, Poly3DCollectio
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from nonholo.analysis import InvariantCurve, MomentumLocus
-from nonholo.base.checks import error, pair, shown
+from nonholo.base.checks import instance, pair
 from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
@@ -83,14 +83,13 @@ def momentum_locus(
         (1, 2)
     """
     where = "plot.momentum_locus"
-    if not isinstance(locus, MomentumLocus):
-        raise error(f"{where}(locus=...)", "be a locus", shown(locus), "Pass what `nh.momentum_locus` returned.")
+    instance(f"{where}(locus=...)", locus, MomentumLocus, "be a locus", "Pass what `nh.momentum_locus` returned.")
     own_orbit(f"{where}(orbit=...)", orbit, locus.discrete)
     space: Any = _new_axes() if axes is None else axes
     sheet = cast(AbstractSheet, sheet_of(locus.discrete.system))
     drawn = sheet.locus_map()
-    if curve is not None and not isinstance(curve, InvariantCurve):
-        raise error("plot.momentum_locus(curve=...)", "be an invariant curve", shown(curve), "Pass `invariant_curve`.")
+    if curve is not None:
+        instance(f"{where}(curve=...)", curve, InvariantCurve, "be an invariant curve", "Pass `invariant_curve`.")
     surface = draw_surface(space, locus.momentum @ drawn)
     doubles = tuple(_segment(space, ends @ drawn, linewidth=2.6) for ends in locus.double_lines)
     whiskers = tuple(_segment(space, ends @ drawn, linewidth=1.6, dashes=(3, 2)) for ends in locus.whiskers(_WHISKER))

@@ -67,8 +67,7 @@ def phase_portrait(
     $$ \tfrac12\, r\cdot(\mathbb{I}|_{\mathfrak{d}})^{-1} r = E . $$
 
     Equilibria are one line through the origin, filled where they attract and empty where they repel; all other
-    motions run along their ellipse from one to the other. In a balanced system every point is an equilibrium. Where the
-    library does not compute the equilibria of a system they are left out. Momenta
+    motions run along their ellipse from one to the other. In a balanced system every point is an equilibrium. Momenta
     of a sleigh are $(p_\theta + b p_1, p_1)$ in the axes of its blade, those of a top $(M_{13}, M_{23})$ in axes whose
     third one is the forbidden axis, whatever the axes of the body; those of other systems are in its canonical frame.
 

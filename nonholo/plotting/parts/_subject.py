@@ -83,9 +83,10 @@ def known_equilibria(system: System) -> Equilibria | None:
     if system.is_spatial:
         return None
     try:
-        return cast(AbstractLLSystem, system).equilibria()
+        equilibria = cast(AbstractLLSystem, system).equilibria()
     except ValueError:
         return None
+    return None if equilibria.others else equilibria
 
 
 def permanent_velocity(orbit: Orbit, state: int) -> Float[np.ndarray, "dim"] | None:

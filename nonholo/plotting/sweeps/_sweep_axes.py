@@ -11,7 +11,7 @@ from matplotlib.collections import PathCollection
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import BoundaryNorm, LogNorm, Normalize
 
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import choice, error
 from nonholo.base.types import Float
 from nonholo.plotting import theme
 
@@ -62,17 +62,20 @@ def subject_of(result: Any, quantity: str | None) -> Subject:
     codes = result[OUTCOME]
     known = [str(name) for name in result.data_vars if result[name].dtype.kind in "biuf"]
     if quantity is None:
-        own = [name for name in known if result[name].attrs.get("long_name") != DRAWN and name != OUTCOME]
-        quantity = next((name for name in own if result[name].dims == codes.dims), OUTCOME)
-    if not isinstance(quantity, str) or quantity not in known:
-        raise error(f"{where}(quantity=...)", f"be one of {', '.join(known)}", shown(quantity), "Choose one of them.")
-    values = result[quantity]
+        quantity = _first_of_the_task(result, known)
+    values = result[choice(f"{where}(quantity=...)", quantity, tuple(known))]
     more = [str(name) for name in values.dims if name not in codes.dims]
     if more:
         got, remedy = f"{quantity} along {', '.join(more)}", f"Pass result.isel({more[0]}=0), or another one."
         raise error(f"{where}(quantity=...)", "be one number of each member", got, remedy)
     kept = values.astype(float) if quantity == OUTCOME else values.where(codes == 0)
     return Subject(kept.assign_attrs(values.attrs), codes, values.dtype.kind in "biu")
+
+
+def _first_of_the_task(result: xarray.Dataset, known: list[str]) -> str:
+    """Return the first name that is one number of each member and no draw; the outcome if there is none."""
+    own = [name for name in known if result[name].attrs.get("long_name") != DRAWN and name != OUTCOME]
+    return next((name for name in own if result[name].dims == result[OUTCOME].dims), OUTCOME)
 
 
 def label(values: xarray.DataArray) -> str:

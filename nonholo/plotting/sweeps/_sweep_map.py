@@ -10,7 +10,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import ListedColormap
 
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import choice, error
 from nonholo.plotting import theme
 from nonholo.plotting.sweeps._sweep_axes import (
     OUTCOME,
@@ -90,20 +90,28 @@ def sweep_map(
 def _along(values: xarray.DataArray, x: str | None, y: str | None) -> list[str]:
     """Return the axes of the picture; others may only have one value."""
     known = [str(name) for name in values.dims]
+    _check_named(known, x, y)
+    return _chosen([name for name in known if values.sizes[name] > 1 and name not in (x, y)], x, y) or known[:1]
+
+
+def _check_named(known: list[str], x: str | None, y: str | None) -> None:
+    """Refuse axes that the result does not have, and one that is named twice."""
     for argument, name in (("x", x), ("y", y)):
-        if name is not None and (not isinstance(name, str) or name not in known):
-            got = shown(name)
-            raise error(f"plot.sweep_map({argument}=...)", f"be one of {', '.join(known)}", got, "Choose one of them.")
+        if name is not None:
+            choice(f"plot.sweep_map({argument}=...)", name, tuple(known))
     if not known or (x is not None and x == y):
         got, remedy = ("one member" if not known else f"{x!r} twice"), "Pass more of the result, or name two axes."
         raise error("plot.sweep_map(result=...)", "have an axis for x, and another one for y", got, remedy)
-    free = [name for name in known if values.sizes[name] > 1 and name not in (x, y)]
+
+
+def _chosen(free: list[str], x: str | None, y: str | None) -> list[str]:
+    """Return the axes that are named, or else the first ones that are free."""
     across = x or (free.pop(0) if free else None)
     up = y or (free.pop(0) if free and across else None)
     if free:
         remedy = f"Pass result.sel({free[0]}=..., method='nearest'), or result.isel({free[0]}=0)."
         raise error("plot.sweep_map(result=...)", "have at most two free axes", f"also {', '.join(free)}", remedy)
-    return [name for name in (across, up) if name is not None] or known[:1]
+    return [name for name in (across, up) if name is not None]
 
 
 def _map(axes: Axes, subject: Subject, x: str, y: str) -> SweepMap:
