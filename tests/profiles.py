@@ -35,7 +35,7 @@ class Profile:
     command: str = ""
 
 
-_MECHANICS = ("numerics", "kernels", "groups", "systems", "discrete", "continuous")
+_MECHANICS = ("kernels", "groups", "systems", "discrete", "continuous")
 _RUNS = ("kernels", "orbit", "simulation", "io", "ensembles")
 _QUESTIONS = ("analysis", "plotting", "literature", "testing")
 PROFILES = {

@@ -10,8 +10,7 @@ import numpy as np
 
 from nonholo.base.checks import error, positive
 from nonholo.base.types import Array, Float, Inexact
-from nonholo.discrete import Discretization
-from nonholo.discrete._composition import weights
+from nonholo.discrete import Discretization, weights
 from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, NormalForm
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.continuous import ContinuousFlow, closed_form
+from nonholo.continuous import ContinuousFlow
 from nonholo.systems import AbstractLLSystem
 
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
@@ -140,5 +140,6 @@ def test_not_a_system() -> None:
 
 def test_no_closed_form() -> None:
     """A system without a closed form is refused with the advice to integrate."""
-    with pytest.raises(ValueError, match=r"must have a closed-form solution. Got object. Leave method out"):
-        closed_form(object(), np.zeros(2), np.zeros(4), np.zeros(1), (1e-10, 1e-12))
+    top = nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0]))
+    with pytest.raises(ValueError, match=r"must have a closed-form solution. Got SuslovTop. Leave method out"):
+        nh.flow(top, restricted_velocity=np.ones(3), times=(0.0, 1.0), method="closed_form")

@@ -142,6 +142,8 @@ def test_what_is_not_decided_is_said() -> None:
 
 def test_a_certificate_without_the_extra_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without python-flint the error names the extra."""
-    monkeypatch.setitem(sys.modules, "nonholo.discrete.certificate._certificate", None)
+    monkeypatch.delitem(sys.modules, "nonholo.discrete.certificate", raising=False)
+    monkeypatch.delitem(sys.modules, "nonholo.discrete.certificate._certificate", raising=False)
+    monkeypatch.setitem(sys.modules, "flint", None)
     with pytest.raises(ValueError, match=r"must have the extra `certify`.*nonholo\[certify\]"):
         nh.displacements_over(*_ENCLOSED["top"], certify=True)

@@ -8,7 +8,8 @@ from flint import acb, ctx, fmpq_mat, fmpz, fmpz_mat, fmpz_poly
 from sturm import real_roots
 
 import nonholo as nh
-from nonholo.discrete import Discretization, _certificate_roots
+from nonholo.discrete import Discretization
+from nonholo.discrete.certificate import _roots as certificate_roots
 from nonholo.discrete.certificate._certificate import located
 from nonholo.discrete.certificate._families import _secular
 from nonholo.discrete.certificate._problem import Problem, problem_of
@@ -65,7 +66,7 @@ def test_every_ball_holds_one_root(polynomial: fmpz_poly) -> None:
 @pytest.mark.parametrize("name", _NEED_NO_SEARCH)
 def test_close_pairs_need_no_search(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The parabola at the middle of two close eigenvalues says whether they are real, and the discs prove it."""
-    monkeypatch.setattr(_certificate_roots, "_searched", lambda *_: [])
+    monkeypatch.setattr(certificate_roots, "_searched", lambda *_: [])
     assert isolated(_POLYNOMIALS[name]) is not None
 
 
@@ -73,7 +74,7 @@ def test_close_pairs_need_no_search(name: str, monkeypatch: pytest.MonkeyPatch) 
 def test_bad_guesses_cost_time_only(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Without guesses the roots are searched, and counted the same."""
     polynomial = _POLYNOMIALS[name]
-    monkeypatch.setattr(_certificate_roots, "_guessed", lambda _: [acb(1)] * polynomial.degree())
+    monkeypatch.setattr(certificate_roots, "_guessed", lambda _: [acb(1)] * polynomial.degree())
     balls = isolated(polynomial)
     assert sum(x.imag == 0 for x in balls) == real_roots(polynomial)
 
