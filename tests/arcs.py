@@ -17,7 +17,7 @@ _NEWTON = 8
 REACHED, FOLDED, LOST = 0, 1, 2
 
 
-@numba.njit
+@numba.njit(cache=True)
 def _equations(B, c, r, lever, push, slides, x):  # noqa: ANN001, ANN202
     """Return the equations at (z0, z, w, s), sphere included, and their Jacobian."""
     k = len(c)
@@ -36,7 +36,7 @@ def _equations(B, c, r, lever, push, slides, x):  # noqa: ANN001, ANN202
     return F, J
 
 
-@numba.njit
+@numba.njit(cache=True)
 def _corrected(B, c, r, lever, push, slides, x, across, at):  # noqa: ANN001, ANN202
     """Correct a point with its component along `across` held at a value."""
     for _ in range(_NEWTON):
@@ -49,7 +49,7 @@ def _corrected(B, c, r, lever, push, slides, x, across, at):  # noqa: ANN001, AN
     return False, x
 
 
-@numba.njit
+@numba.njit(cache=True)
 def _tangent(B, c, r, lever, push, slides, x, before):  # noqa: ANN001, ANN202
     """Return the unit tangent of the curve that points the way of the one before."""
     _, J = _equations(B, c, r, lever, push, slides, x)
@@ -60,7 +60,7 @@ def _tangent(B, c, r, lever, push, slides, x, before):  # noqa: ANN001, ANN202
     return found / np.sqrt(np.sum(found * found))
 
 
-@numba.njit
+@numba.njit(cache=True)
 def followed(B, c, r, lever, push, slides):  # noqa: ANN001, ANN201
     """Return how the path from momentum zero ended, (z0, z) there, its w and the least z0 on the way.
 
