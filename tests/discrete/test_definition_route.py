@@ -13,6 +13,7 @@ from nonholo.discrete._precision import in_double
 QUANTITIES = ("momentum", "displacement", "configuration", "multipliers", "chart", "restricted_momentum")
 
 
+@pytest.mark.profile("routes", cases=["tilted top"])
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: p.name)
 def test_orbits_agree(problem: Problem) -> None:
     """Ten steps by the compiled closed form and by the definition agree to rounding over the time step."""

@@ -139,6 +139,7 @@ def test_without_gyroscopic_terms_the_map_is_reversible(rule: str) -> None:
     assert np.abs(back.configuration - there.configuration[:0:-1]).max() <= 1e-12
 
 
+@pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
 def test_unconstrained_midpoint_conserves_quadratic_invariants() -> None:
     """Without constraints the rule is the implicit midpoint rule: a plane oscillator keeps q_0 p_1 - q_1 p_0."""
     free = LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=2)

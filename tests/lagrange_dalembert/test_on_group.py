@@ -174,6 +174,7 @@ def test_energy_drifts_though_the_rule_is_reversible() -> None:
     assert 3.0 < fallen[0] / fallen[1] < 5.0  # the next term of the expansion in h is still seen
 
 
+@pytest.mark.profile("routes", instead="test_the_start_is_second_order_in_momentum")
 def test_a_momentum_starts_where_the_velocity_does() -> None:
     """dl/domega plus any multiple of the form sets out with the same displacement."""
     w = admissible(0.9, 1.0)

@@ -21,6 +21,11 @@ def east(orbit: nh.Orbit) -> np.ndarray:
 
 
 RUNS: dict[str, tuple[nh.Discretization, dict[str, Any], list[nh.Event] | None]] = {
+    "short sleigh": (
+        nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1e-3),
+        {"body_velocity": (1.0, 0.3, 0.0), "steps": 120_000, "save_every": 2},
+        None,
+    ),
     "sleigh": (
         nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1e-3),
         {"body_velocity": (1.0, 0.3, 0.0), "steps": 300_000, "save_every": 2},

@@ -159,7 +159,10 @@ def test_full_disk_leaves_a_valid_store(tmp_path: Path) -> None:
     assert _same(nh.resume(path), _whole())
 
 
-@pytest.mark.profile("faults", keep=["*-run/checkpoints", "flipped-energy", "missing-*pose", "empty-heading"])
+@pytest.mark.profile(
+    "faults",
+    keep=["flipped-run/checkpoints", "missing-run/checkpoints", "flipped-energy", "missing-*pose", "empty-heading"],
+)
 @pytest.mark.parametrize("array", ["time", "energy", "x", "heading", *COMPACT, "run/checkpoints"])
 @pytest.mark.parametrize("damage", ["missing", "flipped", "cut", "empty"])
 def test_damaged_chunk_is_named_and_computed_again(array: str, damage: str, tmp_path: Path) -> None:
@@ -193,9 +196,9 @@ def test_lost_start_is_refused(tmp_path: Path) -> None:
         nh.resume(path)
 
 
-@pytest.mark.profile("faults", keep=["sleigh-3"])
+@pytest.mark.profile("faults", keep=["short sleigh-3"])
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills forked processes")
-@pytest.mark.parametrize(("name", "kills"), [("sleigh", 3), ("sleigh", 20), ("tumbling body", 5)])
+@pytest.mark.parametrize(("name", "kills"), [("short sleigh", 3), ("sleigh", 20), ("tumbling body", 5)])
 def test_killed_runs_go_on(name: str, kills: int, tmp_path: Path) -> None:
     """Killed at random moments and resumed each time, a run is the undisturbed one, and leaves no rubbish."""
     path = tmp_path / "run.zarr"
