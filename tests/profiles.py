@@ -35,7 +35,7 @@ class Profile:
     command: str = ""
 
 
-_MECHANICS = ("kernels", "groups", "systems", "discrete", "continuous")
+_MECHANICS = ("base", "kernels", "groups", "systems", "discrete", "continuous")
 _RUNS = ("kernels", "orbit", "simulation", "io", "ensembles")
 _QUESTIONS = ("analysis", "plotting", "literature", "testing")
 PROFILES = {
@@ -57,7 +57,7 @@ PROFILES = {
     ),
     "shapes": Profile(
         "annotations of shapes and types, checked at run time by jaxtyping and beartype",
-        (*_MECHANICS, "orbit", "simulation", "base"),
+        (*_MECHANICS, "orbit", "simulation"),
         f"{PYTHON} -m pytest -q tests/groups tests/systems tests/discrete tests/simulation "
         "-k 'not refused and not warned_of' "
         "--jaxtyping-packages=nonholo.groups,nonholo.systems,nonholo.orbit,nonholo.discrete,nonholo.simulation,"

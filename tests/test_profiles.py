@@ -82,7 +82,7 @@ def _complete(request: pytest.FixtureRequest) -> bool:
         (["nonholo/cli/commands/plot.py"], {"faults"}),
         (["tests/plotting/test_section.py", "docs/paper.md"], {"paper", "site"}),
         (["nonholo/kernels/_sleigh.py"], {"routes", "faults", "problems", "shapes", "bounds"}),
-        (["nonholo/base/checks.py"], {"shapes", "bounds", "site"}),
+        (["nonholo/base/checks.py"], {"routes", "problems", "shapes", "bounds", "site"}),
         (["pyproject.toml"], set(PROFILES) - {"fuzz", "long", "mutants"}),
         (["tests/bodies.py"], set(PROFILES) - {"fuzz", "long", "mutants"}),
         (None, set(PROFILES) - {"fuzz", "long", "mutants"}),
