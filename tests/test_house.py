@@ -1,0 +1,72 @@
+"""docs/house.md is true: its rooms, floors and files are there, and what it counts is so."""
+
+import ast
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PAGE = (ROOT / "docs" / "house.md").read_text()
+LIBRARY = ROOT / "nonholo"
+FOLDERS = [path.parent for path in LIBRARY.rglob("__init__.py")]
+FILES = sorted(LIBRARY.rglob("*.py"))
+_FAMILIES = ("Top", "Sleigh", "RigidBody", "LLSystem", "LRSystem")
+_BOXES, _LINES = 16, 40
+
+
+def _boxes(folder: Path) -> list[Path]:
+    files = [path for path in folder.glob("*.py") if path.name != "__init__.py"]
+    return files + [path for path in folder.iterdir() if (path / "__init__.py").exists()]
+
+
+def _tree(file: Path) -> ast.Module:
+    return ast.parse(file.read_text())
+
+
+def _code_lines(function: ast.FunctionDef, text: list[str]) -> int:
+    body = function.body[1:] if ast.get_docstring(function) else function.body
+    head = range(function.lineno, function.body[0].lineno)
+    numbers = {*head, *(n for node in body for n in range(node.lineno, (node.end_lineno or 0) + 1))}
+    return sum(bool(text[n - 1].strip()) and not text[n - 1].strip().startswith("#") for n in numbers)
+
+
+def test_the_floors_are_those_that_are_checked() -> None:
+    """The picture of the rooms is the contract of import-linter, and every room stands in the table."""
+    (contract,) = [
+        contract
+        for contract in tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
+        if contract.get("containers") == ["nonholo"]
+    ]
+    picture = re.search(r"```\n(.*?)```", PAGE, re.DOTALL)
+    assert picture is not None
+    assert [line.split() for line in picture[1].splitlines()] == [
+        re.split(r"[ |]+", floor) for floor in contract["layers"]
+    ]
+    rooms = {path.name for path in _boxes(LIBRARY)}
+    listed = [line.split("|")[1] for line in PAGE.splitlines() if line.startswith("| `")]
+    assert rooms == set(re.findall(r"`(\w+)`", " ".join(listed)))
+
+
+@pytest.mark.parametrize("place", sorted(set(re.findall(r"`((?:[a-z_]+/)+(?:\w+\.\w+)?)`", PAGE))))
+def test_what_it_names_is_there(place: str) -> None:
+    """A file or a folder that the page names exists, in the library or in the repository."""
+    assert any((folder / place).exists() for folder in (ROOT, LIBRARY, LIBRARY / "simulation", LIBRARY / "discrete"))
+
+
+def test_what_it_counts() -> None:
+    """No crowded folder, no long function, no question about the class of a system."""
+    crowded = [str(folder) for folder in FOLDERS if len(_boxes(folder)) > _BOXES]
+    long, asked = [], []
+    for file in FILES:
+        tree, text = _tree(file), file.read_text().splitlines()
+        for node in ast.walk(tree):
+            if isinstance(node, ast.FunctionDef) and _code_lines(node, text) > _LINES:
+                long.append(f"{file}:{node.name}")
+            if isinstance(node, ast.Call) and ast.unparse(node.func) == "isinstance":
+                kind = ast.unparse(node.args[1])
+                asked += [f"{file}:{node.lineno}"] * any(kind.endswith(name) for name in _FAMILIES)
+    assert (crowded, long, asked) == ([], [], [])
+    assert f"at most {_BOXES} files and folders" in PAGE
+    assert f"at most {_LINES} lines of code" in PAGE
