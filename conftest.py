@@ -2,7 +2,7 @@
 
 # ruff: noqa: E402
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent / "tests"))  # before `pythonpath` is read
@@ -52,16 +52,6 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if others:
         config.hook.pytest_deselected(items=others)
         items[:] = [item for item in items if runs(item, chosen)]
-    if hasattr(config, "workerinput"):
-        items.sort(key=_turn({item.path: None for item in items}))
-
-
-def _turn(files: Iterable[Path]) -> Callable[[pytest.Item], int]:
-    """Deal files from the beginning and from the middle: workers in one room wait for what the other compiles."""
-    order = list(files)
-    middle = (len(order) + 1) // 2
-    turns = {file: 2 * (place % middle) + (place >= middle) for place, file in enumerate(order)}
-    return lambda item: turns[item.path]
 
 
 @pytest.fixture(autouse=True)
