@@ -88,14 +88,16 @@ PROFILES = {
 }
 
 MARKED = [DEFAULT, *(name for name, profile in PROFILES.items() if not profile.command)]
-_DALEMBERT = "nonholo.lagrange_dalembert._"
+_DALEMBERT = "nonholo.lagrange_dalembert."
 DOCTESTS = {  # examples that compile for long
-    f"{_DALEMBERT}group_discretization.GroupDiscretization.simulate": "routes",
-    f"{_DALEMBERT}group_orbit.GroupOrbit": "routes",
-    f"{_DALEMBERT}on_group.GroupLagrangeDAlembert": "routes",
-    f"{_DALEMBERT}on_group.GroupLagrangeDAlembert.flow": "routes",
-    f"{_DALEMBERT}discretization.CoordinateDiscretization.simulate": "routes",
-    f"{_DALEMBERT}system.LagrangeDAlembert.flow": "routes",
+    f"{_DALEMBERT}on_groups._discretization.GroupDiscretization.simulate": "routes",
+    f"{_DALEMBERT}on_groups._orbit.GroupOrbit": "routes",
+    f"{_DALEMBERT}on_groups._system.GroupLagrangeDAlembert": "routes",
+    f"{_DALEMBERT}on_groups._system.GroupLagrangeDAlembert.flow": "routes",
+    f"{_DALEMBERT}_discretization.CoordinateDiscretization.simulate": "routes",
+    f"{_DALEMBERT}_system.LagrangeDAlembert.flow": "routes",
+    f"{_DALEMBERT}_orbit.CoordinateOrbit": "routes",
+    "nonholo.literature._particle.particle": "routes",
     "nonholo.discrete._consistency.consistency_defect": "routes",
     "nonholo.literature._robot.two_wheeled_robot": "routes",
 }

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import profiles
 import pytest
-from profiles import COLLECTED, DEFAULT, PROFILES, ROOT, command, profile_of, touched
+from profiles import COLLECTED, DEFAULT, DOCTESTS, PROFILES, ROOT, command, profile_of, touched
 from scripts import script
 
 
@@ -57,6 +57,13 @@ def test_every_property_stays_in_the_default_run(
     for name, items in cases.items():
         if complete and DEFAULT not in map(profile_of, items):
             assert items[0].get_closest_marker("profile").kwargs["instead"] in default, name
+
+
+def test_examples_of_profiles_exist(request: pytest.FixtureRequest) -> None:
+    """Each docstring that a profile names has examples: a name that is left from a move guards nothing."""
+    if not _complete(request):
+        pytest.skip("some tests were not collected")
+    assert set(DOCTESTS) <= {item.name for item in request.config.stash[COLLECTED]}
 
 
 def test_the_page_is_current(request: pytest.FixtureRequest) -> None:

@@ -283,6 +283,7 @@ print([name for name in ("jax", "numba", "numpy", "scipy", "xarray", "zarr", "ma
     assert done.stdout.strip() == "[]"
 
 
+@pytest.mark.profile("faults", instead="test_calls_that_need_an_extra")
 def test_simulate_needs_no_jax() -> None:
     """The first command runs without importing JAX."""
     script = """

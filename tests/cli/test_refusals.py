@@ -34,6 +34,7 @@ def test_unknown_templates_name_the_nearest(kind: str, told: str, nonholo: Comma
     assert "Value error" not in _words(refused)
 
 
+@pytest.mark.profile("faults", keep=["png"])
 @pytest.mark.parametrize("suffix", ["png", "gif"])
 def test_pictures_at_a_path_of_ones_own_are_kept(suffix: str, nonholo: Command) -> None:
     """`plot -o` refuses what is there unless told to replace it; the picture beside the store is drawn anew."""

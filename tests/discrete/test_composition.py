@@ -185,6 +185,7 @@ def test_a_run_can_stop_and_go_on(name: str) -> None:
     assert np.array_equal(*found)
 
 
+@pytest.mark.profile("routes", keep=["left"])
 @pytest.mark.parametrize("system", [TOP, GENERAL["veselova 3"][0]], ids=["left", "right"])
 def test_compiled_runs_agree_with_the_definition(system: AbstractSystem) -> None:
     """The compiled composition and the one made of steps by their definition are equal to rounding."""

@@ -78,7 +78,7 @@ def test_logarithmic_momenta_against_the_series() -> None:
     assert np.abs(P - inverse.T @ system.inertia_operator @ x / h).max() < 1e-9
 
 
-@pytest.mark.profile("routes", keep=["top"])
+@pytest.mark.profile("routes", instead="test_step_derivatives_against_differences")
 @pytest.mark.parametrize("problem", PROBLEMS[:8:7], ids=lambda p: p.name)
 def test_step_repeats_the_orbit_under_transformations(problem: Problem) -> None:
     """`step` gives the next state of `simulate`; jit and vmap change nothing; starts may be full or restricted."""

@@ -16,7 +16,7 @@ QUANTITIES = {
 }
 
 
-@pytest.mark.profile("routes", keep=["*-matrix *", "top-logarithmic *"])
+@pytest.mark.profile("routes", keep=["*-matrix *"])
 @pytest.mark.parametrize("quantity", QUANTITIES)
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: p.name)
 def test_slope_two(problem: Problem, quantity: str) -> None:

@@ -222,6 +222,7 @@ def test_blocks_are_not_small(block: int) -> None:
         (lambda: nh.RandomDesign(5, {}), "must be a mapping"),
         (lambda: nh.RandomDesign(5, {"a": nh.Normal()}, seed=True), "be a natural number|be at most"),
         (lambda: nh.Uniform(2.0, 1.0), "not be below `low`"),
+        (lambda: nh.LogUniform([], 1.0), r"LogUniform\(low=...\)` must have a number. Got none"),
         (lambda: nh.LogUniform(0.0, 1.0), r"LogUniform\(low=...\)` must be positive"),
         (lambda: nh.Normal(0.0, 0.0), "must be positive"),
         (lambda: nh.Direction(0), "must be a positive integer"),

@@ -58,7 +58,7 @@ def _compiled_functions(*rooms: str) -> dict[str, ast.FunctionDef]:
 @pytest.mark.profile("routes", instead="test_bits_of_a_fresh_cache")
 def test_every_compiled_function_is_run() -> None:
     """The live motions call each function that numba compiles: a new one needs a motion that does."""
-    functions = _compiled_functions("continuous", "kernels", "numerics")
+    functions = _compiled_functions("continuous", "kernels", "base")
     assert set(functions) - set(_printed("calls", NUMBA_DISABLE_JIT="1")) == set()
 
 
@@ -79,7 +79,7 @@ def test_compiled_functions_round_as_ieee_says() -> None:
 
     Outside kernels one may: the pose of a top in closed form takes an exponential of the library.
     """
-    functions = _compiled_functions("kernels", "numerics")
+    functions = _compiled_functions("kernels", "base")
     assert len(functions) > 100
     assert _scalar.COMPILED == {"error_model": "numpy"}
     loose = {place: [ast.unparse(n) for n in ast.walk(f) if _inexact(n)] for place, f in functions.items()}

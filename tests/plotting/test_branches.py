@@ -110,5 +110,5 @@ def test_planes_that_do_not_exist_are_refused() -> None:
     for discrete in (FOUR, BALANCED):
         with pytest.raises(ValueError, match=r"`plot.branches\(plane=...\)` must be 'displacements' where there is no"):
             nh.plot.branches(discrete, momentum=[0.1, 0.1], plane="momenta")
-    with pytest.raises(ValueError, match=r"must be 'displacements' or 'momenta'. Got 'disc'"):
+    with pytest.raises(ValueError, match=r"must be one of 'displacements', 'momenta'. Got 'disc'"):
         nh.plot.branches(SLEIGH, momentum=INSIDE, plane="disc")

@@ -78,6 +78,7 @@ def test_steps_on_other_groups(system: AbstractSystem, least: float, most: float
     assert least < report["energy"].value < most
 
 
+@pytest.mark.profile("routes", instead="test_a_compiled_step_against_the_definition")
 def test_callables_in_place_of_names() -> None:
     """The matrix difference and the skew constraint given as functions pass, and keep energy unclaimed."""
     sleigh, h = nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.2

@@ -232,6 +232,9 @@ def _bounds(owner: Any, name: str) -> None:
     """Check and keep two bounds of one shape as plain numbers, which are written to stores exactly."""
     remedy = "Pass numbers, or vectors of one length."
     low, high = (trailing(f"{name}({side}=...)", getattr(owner, side), (), remedy) for side in ("low", "high"))
+    for side, bound in (("low", low), ("high", high)):
+        if not bound.size:
+            raise error(f"{name}({side}=...)", "have a number", "none", remedy)
     if 1 not in (low.size, high.size) and low.shape != high.shape:
         raise error(f"{name}(high=...)", "have the shape of `low`", f"{high.shape} and {low.shape}", remedy)
     low, high = np.broadcast_arrays(low, high)
