@@ -36,8 +36,9 @@ def sharpened(polynomial: fmpz_poly, centres: list[acb], bits: int) -> list[acb]
     flat = [z.imag == 0 for z in centres]
     if 2 * len(flat) - sum(flat) != polynomial.degree() or any(x.overlaps(y) for x, y in combinations(squares, 2)):
         return None
-    placed = [_placed(square, real=on_axis) for square, on_axis in zip(squares, flat, strict=True)]
-    return None if None in placed else placed
+    placed = (_placed(square, real=on_axis) for square, on_axis in zip(squares, flat, strict=True))
+    balls = [ball for ball in placed if ball is not None]
+    return balls if len(balls) == len(flat) else None
 
 
 def _placed(square: acb, *, real: bool) -> acb | None:
