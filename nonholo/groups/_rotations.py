@@ -18,7 +18,7 @@ _ENTRY = 1e3  # more than any entry of a matrix that is a rotation to whatever r
 _MODERATE = -0.5  # cosine of the angle, 120 degrees, up to which tan(angle / 2) loses no digits
 
 _LARGE = 1e3  # lengths from which on it is asked whether one plane turns
-_ONE_PLANE = 4e-15  # what other planes may turn, relative to it
+_ONE_PLANE = 4e-15  # what other planes may turn, and what may slide across, relative to it
 
 
 def cayley_increment(X: Float[np.ndarray, "... n n"]) -> Float[np.ndarray, "... n n"]:
@@ -38,8 +38,8 @@ def motion_cayley_increment(X: Float[np.ndarray, "... N N"]) -> Float[np.ndarray
     r"""Return `cayley_increment` of motions, X with a last column v, as accurate.
 
     If one plane turns, and $v = v_\parallel + v_\perp$ along and across it, the position is
-    $(I - Y)^{-1}v = v_\perp + (v_\parallel + Yv)/(1 + \tau)$. Near half-turns v is as large as Y, so what rounding leaves
-    of $v_\perp$ in a slide along the plane would be all that is seen of it.
+    $(I - Y)^{-1}v = v_\perp + (v_\parallel + Yv)/(1 + \tau)$. Near half-turns v may be as large as Y: what rounding
+    leaves of $v_\perp$ where v slides along the plane would then hide the rest.
     """
     turn, v = X[..., :-1, :-1], X[..., :-1, -1:]
     unit, inverse, one = _one_plane(turn)
@@ -47,8 +47,8 @@ def motion_cayley_increment(X: Float[np.ndarray, "... N N"]) -> Float[np.ndarray
         return numerics.cayley_increment(X)
     closed, turned = np.zeros_like(X), unit @ v
     across = v + unit @ turned
-    is_rounding = np.linalg.norm(across, axis=-2, keepdims=True) < _ONE_PLANE * np.linalg.norm(v, axis=-2, keepdims=True)
-    across = np.where(is_rounding, 0.0, across)
+    beside, whole = (np.linalg.norm(x, axis=-2, keepdims=True) for x in (across, v))
+    across = np.where(beside < _ONE_PLANE * whole, 0.0, across)
     closed[..., :-1, :-1] = cayley_increment(turn)
     closed[..., :-1, -1:] = across + inverse * (inverse * (v - across) + turned) / (1 + inverse * inverse)
     return np.where(one, closed, numerics.cayley_increment(np.where(one, 0.0, X)))
