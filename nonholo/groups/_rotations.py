@@ -47,8 +47,7 @@ def motion_cayley_increment(X: Float[np.ndarray, "... N N"]) -> Float[np.ndarray
         return numerics.cayley_increment(X)
     closed, turned = np.zeros_like(X), unit @ v
     across = v + unit @ turned
-    beside, whole = (np.linalg.norm(x, axis=-2, keepdims=True) for x in (across, v))
-    across = np.where(beside < _ONE_PLANE * whole, 0.0, across)
+    across = np.where(_norm(across) < _ONE_PLANE * _norm(v), 0.0, across)
     closed[..., :-1, :-1] = cayley_increment(turn)
     closed[..., :-1, -1:] = across + inverse * (inverse * (v - across) + turned) / (1 + inverse * inverse)
     return np.where(one, closed, numerics.cayley_increment(np.where(one, 0.0, X)))
@@ -56,13 +55,19 @@ def motion_cayley_increment(X: Float[np.ndarray, "... N N"]) -> Float[np.ndarray
 
 def _one_plane(X: Float[np.ndarray, "... n n"]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     r"""Return $Y/\sqrt\tau$, $1/\sqrt\tau$, and whether Y is large and turns one plane alone."""
-    length = np.linalg.norm(X, axis=(-2, -1), keepdims=True) / np.sqrt(2)
+    length = _norm(X) / np.sqrt(2)
     large = length > _LARGE
     unit, inverse = X / np.maximum(length, _LARGE), 2 / np.maximum(length, _LARGE)
     if not large.any():
         return unit, inverse, large
     one = np.abs(unit @ unit @ unit + unit).max(axis=(-2, -1), keepdims=True) < _ONE_PLANE
     return unit, inverse, one & large
+
+
+def _norm(A: Float[np.ndarray, "... n m"]) -> Float[np.ndarray, "... 1 1"]:
+    """Return Frobenius norms of matrices, whose squares may overflow."""
+    unit = np.ldexp(0.5, np.frexp(np.abs(A).max(axis=(-2, -1), keepdims=True))[1])
+    return unit * np.linalg.norm(A / unit, axis=(-2, -1), keepdims=True)
 
 
 def planes(n: int) -> tuple[Int[np.ndarray, "dim 2"], Int[np.ndarray, "dim 2"], Float[np.ndarray, "dim 2"]]:
