@@ -7,6 +7,7 @@ $r' = S\,\mathrm{ad}^*_\omega p$, without multipliers. Solutions live in `_close
 
 import dataclasses
 from collections.abc import Callable
+from typing import ClassVar
 
 import numpy as np
 
@@ -54,6 +55,8 @@ class ContinuousFlow(AbstractMotion):
     """The continuous motion of a system, as the orbits of `flow` know it."""
 
     system: AbstractSystem
+    conserves_energy: ClassVar[None] = None
+    route_name: ClassVar[None] = None
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         r"""Return the momenta $p = \mathbb{I}\omega$."""

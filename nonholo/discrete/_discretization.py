@@ -53,6 +53,11 @@ class Discretization(AbstractMotion):
         return make_route(self, self.wanted_route)
 
     @property
+    def route_name(self) -> str:
+        """How stores call the route."""
+        return self.route.name
+
+    @property
     def variety(self) -> Variety:
         """The displacement variety in the canonical frame."""
         return variety_of(self.system, self.constraint)

@@ -34,9 +34,8 @@ class Done(NamedTuple):
 def do_block(work: Work, block: int) -> Done:
     """Make sure that a block is in the store."""
     store = store_of(work.store)
-    mark = store.mark(block)
-    damaged = mark if isinstance(mark, str) else None if mark is None else store.flaw(block)
-    if isinstance(mark, Mark) and damaged is None:
+    mark, damaged = _standing(store, block)
+    if mark is not None:
         return Done(block, mark, None, _versions())
     piece, begun = store.layout.piece(block), time.perf_counter()
     members, drawn = block_of(store.design, piece.first, piece.count), store.design.drawn
@@ -47,6 +46,14 @@ def do_block(work: Work, block: int) -> Done:
     mark = _mark(results, piece.count, time.perf_counter() - begun)
     store.write(piece, results, mark)
     return Done(block, mark, damaged, _versions())
+
+
+def _standing(store: SweepStore, block: int) -> tuple[Mark | None, str | None]:
+    """Return the mark of a block that is finished and sound, and what is wrong with one that is not."""
+    try:
+        return (None if store.mark(block) is None else store.sound(block)), None
+    except io.DamagedError as flaw:
+        return None, str(flaw)
 
 
 @functools.cache

@@ -18,7 +18,7 @@ _ENTRY = 1e3  # more than any entry of a matrix that is a rotation to whatever r
 _MODERATE = -0.5  # cosine of the angle, 120 degrees, up to which tan(angle / 2) loses no digits
 
 _LARGE = 1e3  # lengths from which on it is asked whether one plane turns
-_ONE_PLANE = 4e-15  # what other planes may turn, relative to it
+_ONE_PLANE = 4e-15  # what other planes may turn, and what may slide across, relative to it
 
 
 def cayley_increment(X: Float[np.ndarray, "... n n"]) -> Float[np.ndarray, "... n n"]:
@@ -27,14 +27,47 @@ def cayley_increment(X: Float[np.ndarray, "... n n"]) -> Float[np.ndarray, "... 
     There Y is large, and the linear equations lose the planes that do not turn. If only one does, $Y^3 = -\tau Y$,
     $\tau = \frac12|Y|^2$, and the increment is $2(Y + Y^2)/(1 + \tau)$.
     """
-    length = np.linalg.norm(X, axis=(-2, -1), keepdims=True) / np.sqrt(2)
-    if not np.any(length > _LARGE):
+    unit, inverse, one = _one_plane(X)
+    if not one.any():
         return numerics.cayley_increment(X)
-    unit, inverse = X / np.maximum(length, _LARGE), 2 / np.maximum(length, _LARGE)
-    one = np.abs(unit @ unit @ unit + unit).max(axis=(-2, -1), keepdims=True) < _ONE_PLANE
     closed = 2 * (inverse * unit + unit @ unit) / (1 + inverse * inverse)
-    one &= length > _LARGE
     return np.where(one, closed, numerics.cayley_increment(np.where(one, 0.0, X)))
+
+
+def motion_cayley_increment(X: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "... N N"]:
+    r"""Return `cayley_increment` of motions, X with a last column v, as accurate.
+
+    If one plane turns, and $v = v_\parallel + v_\perp$ along and across it, the position is
+    $(I - Y)^{-1}v = v_\perp + (v_\parallel + Yv)/(1 + \tau)$. Near half-turns v may be as large as Y: what rounding
+    leaves of $v_\perp$ where v slides along the plane would then hide the rest.
+    """
+    turn, v = X[..., :-1, :-1], X[..., :-1, -1:]
+    unit, inverse, one = _one_plane(turn)
+    if not one.any():
+        return numerics.cayley_increment(X)
+    closed, turned = np.zeros_like(X), unit @ v
+    across = v + unit @ turned
+    across = np.where(_norm(across) < _ONE_PLANE * _norm(v), 0.0, across)
+    closed[..., :-1, :-1] = cayley_increment(turn)
+    closed[..., :-1, -1:] = across + inverse * (inverse * (v - across) + turned) / (1 + inverse * inverse)
+    return np.where(one, closed, numerics.cayley_increment(np.where(one, 0.0, X)))
+
+
+def _one_plane(X: Float[np.ndarray, "... n n"]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    r"""Return $Y/\sqrt\tau$, $1/\sqrt\tau$, and whether Y is large and turns one plane alone."""
+    length = _norm(X) / np.sqrt(2)
+    large = length > _LARGE
+    unit, inverse = X / np.maximum(length, _LARGE), 2 / np.maximum(length, _LARGE)
+    if not large.any():
+        return unit, inverse, large
+    one = np.abs(unit @ unit @ unit + unit).max(axis=(-2, -1), keepdims=True) < _ONE_PLANE
+    return unit, inverse, one & large
+
+
+def _norm(A: Float[np.ndarray, "... n m"]) -> Float[np.ndarray, "... 1 1"]:
+    """Return Frobenius norms of matrices, whose squares may overflow."""
+    unit = np.ldexp(0.5, np.frexp(np.abs(A).max(axis=(-2, -1), keepdims=True))[1])
+    return unit * np.linalg.norm(A / unit, axis=(-2, -1), keepdims=True)
 
 
 def planes(n: int) -> tuple[Int[np.ndarray, "dim 2"], Int[np.ndarray, "dim 2"], Float[np.ndarray, "dim 2"]]:

@@ -80,7 +80,8 @@ class SpecialEuclideanN(AbstractMatrixGroup):
 
     def cayley_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return `cayley(x)` minus the identity, without cancellation."""
-        return cayley_increment(self.hat(x))
+        X = self.hat(x)
+        return _rotations.motion_cayley_increment(X) if isinstance(X, np.ndarray) else cayley_increment(X)
 
     def dexp_inverse(self, x: Float[Array, "... dim"]) -> Float[Array, "... dim dim"]:
         r"""Return the matrix of $\mathrm{dexp}_x^{-1} = \sum_k B_k\,\mathrm{ad}_x^k/k!$."""

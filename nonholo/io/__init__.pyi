@@ -8,6 +8,7 @@ from ._attributes import other_versions as other_versions
 from ._attributes import restore_motion as restore_motion
 from ._attributes import versions_text as versions_text
 from ._beside import new_beside as new_beside
+from ._chunks import DamagedError as DamagedError
 from ._chunks import chunk_name as chunk_name
 from ._chunks import chunk_path as chunk_path
 from ._chunks import read_chunk as read_chunk

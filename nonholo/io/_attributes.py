@@ -10,7 +10,7 @@ from typing import Any
 
 from nonholo.base.checks import error, instance, text
 from nonholo.continuous import ContinuousFlow
-from nonholo.discrete import Discretization, discretize
+from nonholo.discrete import discretize
 from nonholo.io._descriptions import fields_of, restore_system, unstored
 from nonholo.orbit import AbstractMotion, Orbit
 
@@ -79,7 +79,7 @@ def restore_motion(stored: dict[str, Any], motion: AbstractMotion | None) -> Abs
         raise error("load_orbit(path=...)", "hold a motion of this version", repr(kind), "Upgrade nonholo.")
     route = described.pop("route", None)
     restored = on_route_of(stored, _MOTIONS[kind](system, **described))
-    if isinstance(restored, Discretization) and route not in (None, restored.route.name):
+    if route not in (None, restored.route_name):
         raise error("load_orbit(path=...)", "hold a run by a route of this version", repr(route), "Upgrade nonholo.")
     return restored
 
@@ -96,26 +96,26 @@ def _same(stored: dict[str, Any], motion: AbstractMotion) -> AbstractMotion:
 
 def on_route_of(stored: dict[str, Any], motion: Any) -> Any:
     """Return a motion by the route that began a store, or the next one; the motion itself where that is its own."""
-    if not isinstance(motion, Discretization):
+    if motion.route_name is None:
         return motion
     named = json.loads(stored["motion"]).get("route")
     other = dataclasses.replace(motion, wanted_route=named or _EARLIER_ROUTES.get(stored["system"]))
-    return motion if other.route.name == motion.route.name else other
+    return motion if other.route_name == motion.route_name else other
 
 
 def motion_text(stored: dict[str, Any], motion: AbstractMotion) -> str:
     """Return what a store says of its motion; of before routes had names, with that of a motion by the same route."""
-    if not isinstance(motion, Discretization):
+    if motion.route_name is None:
         return stored["motion"]
     described = json.loads(stored["motion"])
-    return json.dumps({**described, "route": described.get("route", motion.route.name)})
+    return json.dumps({**described, "route": described.get("route", motion.route_name)})
 
 
 def identity_of(motion: AbstractMotion) -> dict[str, str]:
     """Return what a motion is."""
     described = {"kind": type(motion).__name__, **fields_of(motion)}
-    if isinstance(motion, Discretization):
-        described["route"] = motion.route.name
+    if motion.route_name is not None:
+        described["route"] = motion.route_name
     return {
         "system": type(motion.system).__name__,
         "parameters": json.dumps(fields_of(motion.system)),

@@ -13,6 +13,10 @@ AGAIN = "The store is damaged: copy it again from its source, or run it again."
 _NAN = "NaN"
 
 
+class DamagedError(Exception):
+    """What is wrong with a part of a store; whoever reads it says so, or computes the part again."""
+
+
 def opened_array(root: Path, name: str, shape: tuple[int, ...] | None) -> zarr.Array:
     """Open an array of a store, of a known shape unless the run is not finished."""
     try:
@@ -30,11 +34,11 @@ def checked_block(
     root: Path, name: str, array: zarr.Array, index: tuple[int, ...], *, with_nan: bool = False
 ) -> np.ndarray:
     """Return one chunk; refuse one that is missing or damaged, with its name."""
-    found = read_chunk(root, name, array, index, with_nan=with_nan)
-    if isinstance(found, str):
-        requirement = f"hold {chunk_name(name, array, index)}" + (" free of NaN" if found == _NAN else "")
-        raise error(WHERE, requirement, found, AGAIN)
-    return found
+    try:
+        return read_chunk(root, name, array, index, with_nan=with_nan)
+    except DamagedError as wrong:
+        requirement = f"hold {chunk_name(name, array, index)}" + (" free of NaN" if str(wrong) == _NAN else "")
+        raise error(WHERE, requirement, str(wrong), AGAIN) from None
 
 
 def chunk_name(name: str, array: zarr.Array, index: tuple[int, ...]) -> str:
@@ -49,15 +53,20 @@ def chunk_path(root: Path, name: str, array: zarr.Array, index: tuple[int, ...])
 
 def read_chunk(
     root: Path, name: str, array: zarr.Array, index: tuple[int, ...], *, with_nan: bool = False
-) -> np.ndarray | str:
-    """Return one chunk, or what is wrong with it; NaN is wrong too, unless it may be a result.
+) -> np.ndarray:
+    """Return one chunk; NaN is wrong, unless it may be a result.
 
     A missing one would be read as its fill value, NaN, so its file is looked for first.
+
+    Raises:
+        DamagedError: The chunk is missing or damaged.
     """
     if not chunk_path(root, name, array, index).is_file():
-        return "no such chunk"
+        raise DamagedError("no such chunk")
     try:
         block = np.asarray(array.blocks[index])
     except Exception as failure:
-        return f"a corrupt one ({printable(str(failure))})"
-    return _NAN if not with_nan and np.isnan(block).any() else block
+        raise DamagedError(f"a corrupt one ({printable(str(failure))})") from failure
+    if not with_nan and np.isnan(block).any():
+        raise DamagedError(_NAN)
+    return block

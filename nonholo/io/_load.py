@@ -15,7 +15,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.io._attributes import FORMAT, READABLE, SWEEP_FORMAT, restore_motion
-from nonholo.io._chunks import AGAIN, WHERE, checked_block, opened_array
+from nonholo.io._chunks import AGAIN, WHERE, DamagedError, checked_block, opened_array
 from nonholo.io._metadata import OrbitMetadata, SweepMetadata, check_metadata
 from nonholo.io._plan import Plan
 from nonholo.io._seals import CHECKPOINTS, Blocks, seal_of_whole
@@ -75,16 +75,22 @@ def _loaded(root: Path, discrete: Discretization | None, *, last: bool) -> Orbit
 def check_seals(root: Path, stored: dict[str, Any]) -> None:
     """Refuse the store of a finished run, or of an orbit saved whole, where a chunk lies in the place of another."""
     arrays = {name: opened_array(root, name, tuple(shape)) for name, shape in json.loads(stored["arrays"]).items()}
-    run, flaw = json.loads(stored.get("run", "null")), None
-    if run is None:
-        flaw = "another one" if stored.get("seal", seal := seal_of_whole(root, arrays)) != seal else None
-    elif run.get("sealed"):
-        events = len(json.loads(stored["events"])) if "events" in stored else None
-        others = (CHECKPOINTS,) if events is None else (CHECKPOINTS, EVENTS)
-        arrays |= {name: opened_array(root, name, None) for name in others}
-        flaw = Blocks(root, Plan(run["steps"], stored["save_every"], run["rows"]), arrays, events, True).flaw()
-    if flaw:
-        raise error(WHERE, "hold each chunk in its place", f"{flaw}, in '{root}'", AGAIN)
+    run = json.loads(stored.get("run", "null"))
+    try:
+        if run is None:
+            _check_whole(root, stored, arrays)
+        elif run.get("sealed"):
+            events = len(json.loads(stored["events"])) if "events" in stored else None
+            others = (CHECKPOINTS,) if events is None else (CHECKPOINTS, EVENTS)
+            arrays |= {name: opened_array(root, name, None) for name in others}
+            Blocks(root, Plan(run["steps"], stored["save_every"], run["rows"]), arrays, events, True).check()
+    except DamagedError as flaw:
+        raise error(WHERE, "hold each chunk in its place", f"{flaw}, in '{root}'", AGAIN) from None
+
+
+def _check_whole(root: Path, stored: dict[str, Any], arrays: dict[str, zarr.Array]) -> None:
+    if stored.get("seal", seal := seal_of_whole(root, arrays)) != seal:
+        raise DamagedError("another one")
 
 
 def stored_names(arrays: Container[str]) -> dict[str, str]:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import zarr
 
-from nonholo.io._chunks import chunk_name, chunk_path, read_chunk
+from nonholo.io._chunks import DamagedError, chunk_name, chunk_path, read_chunk
 from nonholo.io._plan import Checkpoint, Plan, unpacked_checkpoint
 from nonholo.io._stored_events import EVENTS
 
@@ -48,7 +48,7 @@ def seal_of_whole(root: Path, arrays: Mapping[str, zarr.Array]) -> int:
 
 
 class Blocks(NamedTuple):
-    """The blocks of a stored run.
+    """The blocks of a stored run; what is wrong with them is a `DamagedError`.
 
     Attributes:
         path: The store.
@@ -64,12 +64,14 @@ class Blocks(NamedTuple):
     events: int | None
     sealed: bool
 
-    def chunk(self, name: str, number: int, *, with_nan: bool = False) -> np.ndarray | str:
-        """Return one chunk of an array, or what is wrong with it."""
+    def chunk(self, name: str, number: int, *, with_nan: bool = False) -> np.ndarray:
+        """Return one chunk of an array."""
         array = self.arrays[name]
         index = (number,) + (0,) * (array.ndim - 1)
-        found = read_chunk(self.path, name, array, index, with_nan=with_nan)
-        return f"{found}, {self._name(name, number)}" if isinstance(found, str) else found
+        try:
+            return read_chunk(self.path, name, array, index, with_nan=with_nan)
+        except DamagedError as wrong:
+            raise DamagedError(f"{wrong}, {self._name(name, number)}") from None
 
     def file(self, name: str, number: int) -> Path:
         """Return the file of such a chunk."""
@@ -80,23 +82,20 @@ class Blocks(NamedTuple):
         """Return the names of the arrays of states."""
         return [name for name in self.arrays if name not in (CHECKPOINTS, EVENTS)]
 
-    def checkpoint(self, block: int) -> Checkpoint | str:
-        """Return the state at the begin of a block, or what is wrong with its chunk."""
-        found = self._record(block)
-        return found if isinstance(found, str) else found[0]
+    def checkpoint(self, block: int) -> Checkpoint:
+        """Return the state at the begin of a block."""
+        return self._record(block)[0]
 
-    def _record(self, block: int) -> tuple[Checkpoint, float] | str:
+    def _record(self, block: int) -> tuple[Checkpoint, float]:
         """Return the state at the begin of a block and the seal of what comes before it."""
         row = self.chunk(CHECKPOINTS, block)
-        if isinstance(row, str):
-            return row
         entries, seal = (row[0, :-1], float(row[0, -1])) if self.sealed else (row[0], 0.0)
         try:
             reached = unpacked_checkpoint(entries, self.events)
         except (ValueError, OverflowError):
-            return f"no checkpoint, {self._name(CHECKPOINTS, block)}"
+            raise DamagedError(f"no checkpoint, {self._name(CHECKPOINTS, block)}") from None
         if block == 0 and self.sealed and seal != seal_of(self.path, BEFORE, []):
-            return f"another checkpoint, {self._name(CHECKPOINTS, block)}"
+            raise DamagedError(f"another checkpoint, {self._name(CHECKPOINTS, block)}")
         return reached, seal
 
     def seal(self, block: int, reached: Checkpoint, chunks: int) -> int:
@@ -108,28 +107,18 @@ class Blocks(NamedTuple):
         crossings = () if reached.seen is None else range(chunks, reached.seen.chunks)
         return [(name, block) for name in names] + [(EVENTS, chunk) for chunk in crossings]
 
-    def ended(self, block: int) -> Checkpoint | str:
-        """Return the state at the end of a block, or say that the block does not hold the chunks that were written.
+    def ended(self, block: int) -> Checkpoint:
+        """Return the state at the end of a block that holds the chunks that were written.
 
         That each chunk is sound is looked at where it is read.
         """
-        found = self._record(block + 1)
-        if isinstance(found, str):
-            return found
-        reached, seal = found
-        if not self.sealed:
-            return reached
-        chunks = self._crossings_before(block) if reached.seen is not None else 0
-        if isinstance(chunks, str):
-            return chunks
-        return reached if seal == self.seal(block, reached, chunks) else self._broken_seal(block, reached, chunks)
-
-    def _crossings_before(self, block: int) -> int | str:
-        """Return how many chunks of crossings there were before a block, or what is wrong with its checkpoint."""
-        before = self.checkpoint(block)
-        if isinstance(before, str):
-            return before
-        return 0 if before.seen is None else before.seen.chunks
+        reached, seal = self._record(block + 1)
+        if self.sealed:
+            before = self.checkpoint(block).seen if reached.seen is not None else None
+            chunks = 0 if before is None else before.chunks
+            if seal != self.seal(block, reached, chunks):
+                raise DamagedError(self._broken_seal(block, reached, chunks))
+        return reached
 
     def _broken_seal(self, block: int, reached: Checkpoint, chunks: int) -> str:
         """Say which chunk of a block is missing, or that one is of another place."""
@@ -138,15 +127,11 @@ class Blocks(NamedTuple):
                 return f"no such chunk, {self._name(name, number)}"
         return f"a chunk of another place in block {block}, which {self._name(CHECKPOINTS, block + 1)} seals"
 
-    def flaw(self) -> str | None:
-        """Say which block of a finished run does not hold the chunks that were written."""
+    def check(self) -> None:
+        """Check that every block of a finished run holds the chunks that were written."""
         for block in range(self.plan.blocks if self.sealed else 0):
-            reached = self.ended(block)
-            if isinstance(reached, str):
-                return reached
-            if reached.is_last:
+            if self.ended(block).is_last:
                 break
-        return None
 
     def _name(self, name: str, number: int) -> str:
         array = self.arrays[name]

@@ -7,6 +7,7 @@ import xarray
 import zarr
 
 from nonholo.base.types import Float
+from nonholo.io._chunks import DamagedError
 from nonholo.io._save import create_array
 from nonholo.io._stored_events import EVENTS, Seen, known, rows_of
 from nonholo.orbit import EventLog
@@ -43,10 +44,10 @@ def cut_crossings(array: zarr.Array, chunks: int) -> None:
     array.resize((chunks * array.chunks[0], array.shape[1]))
 
 
-def flaw_of_rows(chunks: Sequence[Float[np.ndarray, "D width"]], begin: Seen, end: Seen, step: int) -> str | None:
-    """Say so if chunks do not hold the crossings that two checkpoints count, the first one at a step."""
+def check_rows(chunks: Sequence[Float[np.ndarray, "D width"]], begin: Seen, end: Seen, step: int) -> None:
+    """Check that chunks hold the crossings that two checkpoints count, the first one at a step."""
     rows = known(np.concatenate(chunks)) if chunks else np.empty((0, 2))
     counts = np.bincount(rows[:, 0].astype(np.int64), minlength=len(end.counts))
-    if np.array_equal(counts, end.counts - begin.counts) and np.all(rows[:, 1] >= step):
-        return None
-    return f"other crossings than its checkpoint says, chunks {begin.chunks} to {end.chunks - 1} of the array {EVENTS}"
+    if not np.array_equal(counts, end.counts - begin.counts) or np.any(rows[:, 1] < step):
+        place = f"chunks {begin.chunks} to {end.chunks - 1} of the array {EVENTS}"
+        raise DamagedError(f"other crossings than its checkpoint says, {place}")

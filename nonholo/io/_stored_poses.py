@@ -10,7 +10,7 @@ import numpy as np
 import zarr
 
 from nonholo.base.checks import error
-from nonholo.io._chunks import checked_block, opened_array
+from nonholo.io._chunks import DamagedError, checked_block, opened_array
 from nonholo.io._descriptions import restore_system, unstored
 from nonholo.io._load import check_seals, read_attributes, stored_names
 from nonholo.io._lock import owner_of
@@ -74,11 +74,13 @@ def open_poses(path: Path) -> StoredPoses:
 
 def _saved(stream: Stream) -> int:
     """Return the number of saved states in the full blocks of an unfinished run, refused if one is damaged."""
-    full = stream.full_blocks()
-    flaw = full if isinstance(full, str) else next(filter(None, map(stream.flaw, range(full))), None)
-    if flaw is not None or isinstance(full, str):
+    try:
+        full = stream.full_blocks()
+        for block in range(full):
+            stream.sound(block)
+    except DamagedError as flaw:
         remedy = f"nonholo.resume({str(stream.path)!r}) computes its block again."
-        raise error(_WHERE, "hold sound blocks", f"{flaw}, in '{stream.path}'", remedy)
+        raise error(_WHERE, "hold sound blocks", f"{flaw}, in '{stream.path}'", remedy) from None
     return stream.saved(full)
 
 

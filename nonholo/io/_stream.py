@@ -22,6 +22,7 @@ import zarr
 from nonholo.base.checks import error
 from nonholo.io._attributes import attributes, attributes_of_text
 from nonholo.io._beside import new_beside
+from nonholo.io._chunks import DamagedError
 from nonholo.io._load import read_attributes
 from nonholo.io._lock import owner_of
 from nonholo.io._metadata import OrbitMetadata, check_array, require_identity
@@ -37,7 +38,7 @@ from nonholo.io._save import (
     remove_partials,
 )
 from nonholo.io._seals import BEFORE, CHECKPOINTS, Blocks, seal_of
-from nonholo.io._stored_crossings import chunks_of, create_crossings, cut_crossings, flaw_of_rows, write_crossings
+from nonholo.io._stored_crossings import check_rows, chunks_of, create_crossings, cut_crossings, write_crossings
 from nonholo.io._stored_events import EVENTS, Seen, seen_nothing
 from nonholo.io.datasets import CANONICAL, HEADED, stored_variables
 from nonholo.orbit import EventLog, Orbit
@@ -81,8 +82,8 @@ class Stream:
         seal = [self._blocks.seal(block, reached, chunks)] if self.sealed else []
         self._arrays[CHECKPOINTS][block + 1] = np.append(packed_checkpoint(reached), seal)
 
-    def checkpoint(self, block: int) -> Checkpoint | str:
-        """Return the state at the begin of a block, or what is wrong with its chunk."""
+    def checkpoint(self, block: int) -> Checkpoint:
+        """Return the state at the begin of a block, unless its chunk is damaged (`DamagedError`)."""
         return self._blocks.checkpoint(block)
 
     def marked(self) -> set[int]:
@@ -92,33 +93,32 @@ class Stream:
         numbers = (int(name) for name in os.listdir(folder) if name.isdecimal()) if folder.is_dir() else ()
         return {number - 1 for number in numbers if os.path.isfile(f"{folder}/{number}/{first.name}")} - {-1}
 
-    def flaw(self, block: int) -> str | None:
-        """Say which chunk of a block that is marked as finished is damaged, and how; None if all are sound."""
+    def sound(self, block: int) -> Checkpoint:
+        """Return the state at the end of a block that is marked as finished, of which every chunk is sound.
+
+        Raises:
+            DamagedError: One is not; the message says which, and how.
+        """
         reached = self.checkpoint(block + 1)
-        if isinstance(reached, str):
-            return reached
-        if reached.seen is not None and (wrong := self._flaw_of_crossings(block, reached.seen)):
-            return wrong
+        if reached.seen is not None:
+            self._check_crossings(block, reached.seen)
         for name in self._blocks.names() if self.plan.has_rows(block, reached.done) else ():
-            found = self._blocks.chunk(name, block)
-            if isinstance(found, str):
-                return found
-        found = self._blocks.ended(block)
-        return found if isinstance(found, str) else None
+            self._blocks.chunk(name, block)
+        return self._blocks.ended(block)
 
     def reached(self) -> int:
         """Return the step up to which blocks are marked as finished."""
         marked = self.finished_blocks()
-        found = self.checkpoint(marked)
-        return self.plan.begin(marked) if isinstance(found, str) else found.done
+        try:
+            return self.checkpoint(marked).done
+        except DamagedError:
+            return self.plan.begin(marked)
 
-    def full_blocks(self) -> int | str:
-        """Return the number of blocks from the first one on with all their rows, or what is wrong with the last."""
+    def full_blocks(self) -> int:
+        """Return the number of blocks from the first one on with all their rows, unless the last one is damaged."""
         full = self.finished_blocks()
-        found = self.checkpoint(full)
-        if isinstance(found, str):
-            return found
-        return full - (full > 0 and found.done != self.plan.stop(full - 1))  # it failed, or was extended
+        done = self.checkpoint(full).done
+        return full - (full > 0 and done != self.plan.stop(full - 1))  # it failed, or was extended
 
     def saved(self, full: int) -> int:
         """Return the number of saved states in so many full blocks."""
@@ -161,16 +161,11 @@ class Stream:
         """Return the number of chunks of crossings with those of another block."""
         return chunks + chunks_of(self._arrays[EVENTS], log)
 
-    def _flaw_of_crossings(self, block: int, seen: Seen) -> str | None:
-        """Say what is wrong with the crossings of a block."""
-        before = self.checkpoint(block) if block > 0 else None
-        if isinstance(before, str):
-            return before
-        begin = seen_nothing(len(seen.counts)) if before is None or before.seen is None else before.seen
+    def _check_crossings(self, block: int, seen: Seen) -> None:
+        before = self.checkpoint(block).seen if block > 0 else None
+        begin = seen_nothing(len(seen.counts)) if before is None else before
         chunks = [self._blocks.chunk(EVENTS, chunk, with_nan=True) for chunk in range(begin.chunks, seen.chunks)]
-        wrong = [chunk for chunk in chunks if isinstance(chunk, str)]
-        rows = [chunk for chunk in chunks if not isinstance(chunk, str)]
-        return wrong[0] if wrong else flaw_of_rows(rows, begin, seen, self.plan.begin(block))
+        check_rows(chunks, begin, seen, self.plan.begin(block))
 
     def lengthened(self, steps: int) -> "Stream":
         """Return the stream with so many more steps to go; a last block that was not full is computed again."""

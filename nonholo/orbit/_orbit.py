@@ -34,6 +34,16 @@ class AbstractMotion(abc.ABC):
 
     system: System
 
+    @property
+    @abc.abstractmethod
+    def conserves_energy(self) -> bool | None:
+        """Whether a discrete map conserves the energy exactly; None for a flow, which does up to its solver."""
+
+    @property
+    @abc.abstractmethod
+    def route_name(self) -> str | None:
+        """How stores call the way in which steps are computed; None for a flow."""
+
     @abc.abstractmethod
     def full_momentum(self, states: "Orbit") -> Float[np.ndarray, "K dim"]:
         """Return body momenta in the user's body frame."""

@@ -155,6 +155,23 @@ def test_the_slide_of_a_sleigh_at_angle_pi(past: float) -> None:
     assert np.linalg.norm(chart[:-1]) > 1e2
 
 
+@pytest.mark.parametrize("past", [0.0, 1e-12, 1e-9, 1e-3])
+@pytest.mark.parametrize("n", [3, 5])
+def test_orbits_of_sleighs_at_angle_pi(n: int, past: float) -> None:
+    """There the chart is nearly infinite; displacements are those of the poses, and full momenta are taken back."""
+    arm = np.append(2.0, np.linspace(0.3, -0.2, n - 1))
+    system = nh.MultidimensionalSleigh(1.0, arm, 0.1 * np.diag(np.arange(1.0, n + 1)) + 0.01)
+    discrete = nh.discretize(system, 1.0)
+    r = np.array([18.0, *np.linspace(7.0, 2.0, n - 2), -4.0 * (1 + past)])
+    orbit = nh.simulate(discrete, momentum=r, steps=1)
+    moved = system.group.inverse(orbit.configuration[0]) @ orbit.configuration[1]
+    assert system.group.angle(system.group.log(moved)) == pytest.approx(np.pi, abs=1e-2)
+    assert np.abs(orbit.displacement[0] - moved).max() < 1e-12
+    batch = nh.ensemble(discrete, momentum=np.stack([r, r]), steps=1, save_every=1)
+    assert np.abs(batch.displacement[:, 0] - moved).max() < 1e-12
+    assert nh.simulate(discrete, momentum=orbit.momentum[0], steps=1).outcome == nh.Outcome.successful
+
+
 @pytest.mark.parametrize("along", [0.0, 0.7])
 def test_a_sleigh_without_arm_ends_at_angle_pi(along: float) -> None:
     """With a = 0 a turn by pi slides infinitely far, unless there is no momentum along the blade."""

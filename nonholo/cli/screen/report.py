@@ -13,7 +13,6 @@ from rich.markup import escape
 from rich.table import Table
 
 from nonholo.analysis import invariants
-from nonholo.discrete import Discretization
 from nonholo.groups import SO
 from nonholo.io import fields_of
 from nonholo.orbit import Orbit
@@ -28,10 +27,9 @@ def figures(orbit: Orbit) -> dict[str, Any]:
     """Return the invariants of an orbit and its body as plain numbers; None where a figure is not defined."""
     measured = dataclasses.asdict(invariants(orbit))
     plain = {name: _plain(value) for name, value in measured.items()}
-    exact = orbit.motion.conserves_energy if isinstance(orbit.motion, Discretization) else None
     return {
         **plain,
-        "energy_is_exact": exact,
+        "energy_is_exact": orbit.motion.conserves_energy,
         "outcome": orbit.outcome.name,
         "message": orbit.outcome.message,
         "body": _body(orbit),

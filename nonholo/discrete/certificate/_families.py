@@ -151,32 +151,45 @@ def _hidden(problem: Problem, common: fmpz_poly, numerators: list[fmpz_poly]) ->
 
 def _on_line(problem: Problem, factor: fmpz_poly) -> Iterator[Family]:
     """The isolated solutions on the line of (y, s) that solve the linear equations at a rational mu."""
-    k = len(problem.excess)
-    low, high = factor.coeffs()
-    B, c, d, half = problem[:4]
-    rows = [[high * B[i, j] - (low if i == j else 0) for j in range(k)] + [-high * d[i]] for i in range(k)]
-    rows.append([high * x for x in c] + [-high * half])
-    M = fmpz_mat(rows)
-    right = fmpz_mat([[high * x] for x in c] + [[low]])
-    augmented = fmpz_mat([[*row, right[i, 0]] for i, row in enumerate(rows)])
-    if M.rank() < k or augmented.rank() > k:
+    M, right = _equations_at(problem, *factor.coeffs())
+    if M.rank() + 1 < M.ncols() or _augmented(M, right).rank() >= M.ncols():
         return  # no solution, or whole curves of them
-    along, left, point = _null(M), _null(M.transpose()), _particular(M, right)
-    line = [fmpq_poly([p, v]) for p, v in zip(point, along, strict=True)]
-    y, s = line[:-1], line[-1]
+    *y, s = [fmpq_poly([p, v]) for p, v in zip(_particular(M, right), _null(M), strict=True)]
     compatible = s - 1 - _dot(y, y)
     if compatible == 0:
         return
-    slope = _dot(left[:-1], y) + left[-1]
-    if compatible.gcd(compatible.derivative()).degree() > 0 or compatible.gcd(slope).degree() > 0:
+    left = _null(M.transpose())
+    if _shares_root(compatible, compatible.derivative()) or _shares_root(compatible, _dot(left[:-1], y) + left[-1]):
         raise UncertainError("the multiplicity of a root that the secular polynomial hides is not known")
     compatible = compatible // compatible.gcd(s)
-    unit = fmpz(1)
-    for row in line:
-        unit = unit.lcm(row.denom())
-    whole = [(row * unit).numer() for row in line]
     if compatible.degree() > 0:
+        unit, whole = _cleared([*y, s])
         yield Family(compatible.numer(), [fmpz_poly([unit]), *whole[:-1]], unit * whole[-1])
+
+
+def _equations_at(problem: Problem, low: fmpz, high: fmpz) -> tuple[fmpz_mat, fmpz_mat]:
+    """Return the matrix and the right-hand side of the linear equations for (y, s) at mu = -low/high."""
+    k = len(problem.excess)
+    B, c, d, half = problem[:4]
+    rows = [[high * B[i, j] - (low if i == j else 0) for j in range(k)] + [-high * d[i]] for i in range(k)]
+    rows.append([high * x for x in c] + [-high * half])
+    return fmpz_mat(rows), fmpz_mat([[high * x] for x in c] + [[low]])
+
+
+def _augmented(M: fmpz_mat, right: fmpz_mat) -> fmpz_mat:
+    return fmpz_mat([[*row, *side] for row, side in zip(M.tolist(), right.tolist(), strict=True)])
+
+
+def _shares_root(polynomial: fmpq_poly, other: fmpq_poly) -> bool:
+    return polynomial.gcd(other).degree() > 0
+
+
+def _cleared(polynomials: list[fmpq_poly]) -> tuple[fmpz, list[fmpz_poly]]:
+    """Return a common denominator of polynomials and their numerators over it."""
+    unit = fmpz(1)
+    for polynomial in polynomials:
+        unit = unit.lcm(polynomial.denom())
+    return unit, [(polynomial * unit).numer() for polynomial in polynomials]
 
 
 def _null(M: fmpz_mat) -> list:
@@ -194,8 +207,7 @@ def _null(M: fmpz_mat) -> list:
 def _particular(M: fmpz_mat, right: fmpz_mat) -> list:
     """Return one solution of compatible equations of corank one."""
     size = M.ncols()
-    augmented = fmpz_mat([[*(M[i, j] for j in range(size)), right[i, 0]] for i in range(size)])
-    reduced = fmpq_mat(augmented).rref()[0]
+    reduced = fmpq_mat(_augmented(M, right)).rref()[0]
     vector = [fmpq_mat(1, 1)[0, 0] for _ in range(size)]
     for i in range(size - 1):
         vector[next(j for j in range(size) if reduced[i, j] != 0)] = reduced[i, size]

@@ -33,11 +33,19 @@ def sharpened(polynomial: fmpz_poly, centres: list[acb], bits: int) -> list[acb]
         value = acb_poly(polynomial)
         slope = value.derivative()
         squares = [_around(value, slope, z.mid(), bits) for z in centres]
-    real = [z.imag == 0 for z in centres]
-    if 2 * len(real) - sum(real) != polynomial.degree() or any(x.overlaps(y) for x, y in combinations(squares, 2)):
+    flat = [z.imag == 0 for z in centres]
+    if 2 * len(flat) - sum(flat) != polynomial.degree() or any(x.overlaps(y) for x, y in combinations(squares, 2)):
         return None
-    placed = (x.imag.mid() == 0 if flat else x.imag > 0 for x, flat in zip(squares, real, strict=True))
-    return [acb(x.real) if flat else x for x, flat in zip(squares, real, strict=True)] if all(placed) else None
+    placed = (_placed(square, real=on_axis) for square, on_axis in zip(squares, flat, strict=True))
+    balls = [ball for ball in placed if ball is not None]
+    return balls if len(balls) == len(flat) else None
+
+
+def _placed(square: acb, *, real: bool) -> acb | None:
+    """Return the ball of the root in a square, of a real root on the axis; None if it lies on the wrong side."""
+    if real:
+        return acb(square.real) if square.imag.mid() == 0 else None
+    return square if square.imag > 0 else None
 
 
 def _around(value: acb_poly, slope: acb_poly, centre: acb, bits: int) -> acb:
@@ -55,15 +63,23 @@ def _around(value: acb_poly, slope: acb_poly, centre: acb, bits: int) -> acb:
 def _guessed(polynomial: fmpz_poly) -> list[acb]:
     """Return eigenvalues of the companion matrix; two that are close come from the parabola at their middle."""
     exponent, values = _eigenvalues(polynomial)
-    real = sorted(z.real for z in values if z.imag == 0)
-    middles = [(x + y) / 2 for x, y in pairwise(real) if y - x <= _CLOSE * abs(y)]
-    alone = [x for x in real if all(abs(x - y) > _CLOSE * abs(x) for y in middles)]
-    upper = [z for z in values if z.imag > 0]
-    alone += [z for z in upper if z.imag > _CLOSE * abs(z)]
-    middles += [z.real for z in upper if z.imag <= _CLOSE * abs(z)]
+    alone, middles = _parted(values)
     with ctx.workprec(PRECISIONS[0]):
         unit = arb(fmpz(1) << exponent) if exponent >= 0 else 1 / arb(fmpz(1) << -exponent)
         return [acb(z) * unit for z in alone] + [z for x in middles for z in _parabola(polynomial, x * unit)]
+
+
+def _parted(values: list[complex]) -> tuple[list[complex], list[float]]:
+    """Return the values that lie alone, none below the real axis, and the real middles of two that are close."""
+    real = sorted(z.real for z in values if z.imag == 0)
+    middles = [(x + y) / 2 for x, y in pairwise(real) if y - x <= _CLOSE * abs(y)]
+    alone: list[complex] = [x for x in real if all(abs(x - y) > _CLOSE * abs(x) for y in middles)]
+    for z in values:
+        if z.imag > _CLOSE * abs(z):
+            alone.append(z)
+        elif z.imag > 0:
+            middles.append(z.real)
+    return alone, middles
 
 
 def _eigenvalues(polynomial: fmpz_poly) -> tuple[int, list[complex]]:

@@ -28,13 +28,28 @@ def make_route(scheme: Scheme, wanted: str | None = None) -> AbstractRoute:
 
 
 def _single(scheme: Scheme, wanted: str | None) -> AbstractRoute:
-    system, step, difference, constraint = scheme.system, scheme.time_step, scheme.difference, scheme.constraint
-    form = system.normal_form
-    if difference == "matrix" and constraint in ("skew", "exponential"):
-        if wanted in _SCALAR and form is not None and ScalarRoute.covers(form):
-            return ScalarRoute(system, form, step)
-        if wanted in _SECULAR and form is not None and SecularRoute.covers(form):
-            return SecularRoute(system, form, step)
-        if wanted in _MATRIX and not (variety := variety_of(system, constraint)).exponential:
-            return MatrixRoute(system, variety, step)
-    return DefinitionRoute(system, step, difference, constraint, scheme.order)
+    compiled = None
+    if scheme.difference == "matrix" and scheme.constraint in ("skew", "exponential"):
+        compiled = _of_form(scheme, wanted) or _of_matrices(scheme, wanted)
+    if compiled is not None:
+        return compiled
+    return DefinitionRoute(scheme.system, scheme.time_step, scheme.difference, scheme.constraint, scheme.order)
+
+
+def _of_form(scheme: Scheme, wanted: str | None) -> AbstractRoute | None:
+    """Return the route of a top or a sleigh, by the numbers of its normal form."""
+    form = scheme.system.normal_form
+    if form is None:
+        return None
+    if wanted in _SCALAR and ScalarRoute.covers(form):
+        return ScalarRoute(scheme.system, form, scheme.time_step)
+    if wanted in _SECULAR and SecularRoute.covers(form):
+        return SecularRoute(scheme.system, form, scheme.time_step)
+    return None
+
+
+def _of_matrices(scheme: Scheme, wanted: str | None) -> AbstractRoute | None:
+    """Return the route of any system whose variety is no exponential."""
+    if wanted not in _MATRIX or (variety := variety_of(scheme.system, scheme.constraint)).exponential:
+        return None
+    return MatrixRoute(scheme.system, variety, scheme.time_step)

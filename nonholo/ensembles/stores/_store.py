@@ -121,21 +121,25 @@ class SweepStore:
             if isinstance(failure, BaseException):
                 raise failure
 
-    def mark(self, block: int) -> Mark | str | None:
-        """Return the mark of a block, what is wrong with it, or None if the block is not finished."""
+    def mark(self, block: int) -> Mark | None:
+        """Return the mark of a block, None if the block is not finished.
+
+        Raises:
+            DamagedError: The mark cannot be read, or is not the one that was written.
+        """
         try:
             written = self._mark_file(block).read_text()
         except FileNotFoundError:
             return None
         except UnicodeDecodeError:
-            return f"the mark {self._mark_file(block).name} cannot be read"
+            raise io.DamagedError(f"the mark {self._mark_file(block).name} cannot be read") from None
         check, _, text = written.partition(" ")
         try:
             mark = _MARK.validate_json(text)
         except ValidationError:
             check, mark = "", None
         if mark is None or check != f"{zlib.crc32(text.encode()):08x}":
-            return f"the mark {self._mark_file(block).name} is damaged"
+            raise io.DamagedError(f"the mark {self._mark_file(block).name} is damaged")
         return mark._replace(
             outcomes={printable(name): count for name, count in mark.outcomes.items()},
             writer=printable(mark.writer),
@@ -146,21 +150,32 @@ class SweepStore:
         """Return the numbers of finished blocks in order with their marks, those that can be read."""
         files = (self.path / "run" / "blocks").glob("*.json")
         for block in sorted(int(file.stem) for file in files if file.stem.isdecimal()):
-            if isinstance(mark := self.mark(block), Mark):
+            try:
+                mark = self.mark(block)
+            except io.DamagedError:
+                continue
+            if mark is not None:
                 yield block, mark
 
-    def flaw(self, block: int) -> str | None:
-        """Say which chunk of a block is damaged, and how; None if all are sound."""
+    def sound(self, block: int) -> Mark:
+        """Return the mark of a finished block, of which every chunk is sound.
+
+        Raises:
+            DamagedError: One is not, or the mark is not; the message says which, and how.
+        """
         for name, array in self._arrays.items():
-            found = io.read_chunk(self.path, name, array, self._index(name, block), with_nan=True)
-            if isinstance(found, str):
-                return f"{found}, {io.chunk_name(name, array, self._index(name, block))}"
+            index = self._index(name, block)
+            try:
+                io.read_chunk(self.path, name, array, index, with_nan=True)
+            except io.DamagedError as wrong:
+                raise io.DamagedError(f"{wrong}, {io.chunk_name(name, array, index)}") from None
         mark = self.mark(block)
-        if not isinstance(mark, Mark):
-            return mark or f"no mark {self._mark_file(block).name}"
+        if mark is None:
+            raise io.DamagedError(f"no mark {self._mark_file(block).name}")
         if mark.seal not in (None, self._seal(block)):
-            return f"a chunk of another place in block {block}, which {self._mark_file(block).name} seals"
-        return None
+            told = f"a chunk of another place in block {block}, which {self._mark_file(block).name} seals"
+            raise io.DamagedError(told)
+        return mark
 
     def _seal(self, block: int) -> int:
         return io.seal_of(self.path, block, (self._chunk_file(name, block) for name in sorted(self._arrays)))
@@ -168,9 +183,12 @@ class SweepStore:
     def check(self, where: str, blocks: Iterable[int]) -> None:
         """Refuse a store of which one of these blocks, or an axis, is damaged."""
         _ = self.design
-        for flaw in filter(None, map(self.flaw, blocks)):
+        try:
+            for block in blocks:
+                self.sound(block)
+        except io.DamagedError as flaw:
             remedy = f"nonholo.resume({str(self.path)!r}) computes its block again."
-            raise error(where, "be sound", f"'{self.path}', in which there is {flaw}", remedy)
+            raise error(where, "be sound", f"'{self.path}', in which there is {flaw}", remedy) from None
 
     def rows(self, name: str, piece: Piece) -> np.ndarray:
         """Return an array of a block, one row for each member."""
@@ -200,10 +218,11 @@ class SweepStore:
 
     def _axis(self, name: str) -> np.ndarray:
         array = io.writable_array(self.path, name)
-        found = io.read_chunk(self.path, name, array, (0,) * array.ndim)
-        if isinstance(found, str):
-            got = f"{found}, in '{self.path}'"
-            raise error("resume(store=...)", f"hold the axis {name}", got, _AGAIN)
+        try:
+            found = io.read_chunk(self.path, name, array, (0,) * array.ndim)
+        except io.DamagedError as flaw:
+            got = f"{flaw}, in '{self.path}'"
+            raise error("resume(store=...)", f"hold the axis {name}", got, _AGAIN) from None
         told = list(axis_dimensions(name, found)), _AXIS
         if (list(array.metadata.dimension_names or ()), array.metadata.attributes) != told:  # type: ignore[union-attr]
             raise error("resume(store=...)", f"hold the axis {name}", f"another one in '{self.path}'", _AGAIN)

@@ -105,19 +105,27 @@ def move(p: SecularBody, m0: float, nu: float, tau: float, y: np.ndarray, rows: 
     sign = -z0 if p.slides else z0
     length = 2 * slide(p, m0, nu, tau, y) * z0 if p.slides else 0.0
     for row in rows:
-        along, square = z0 * row[axis], 0.0
-        for i in range(k):
-            along += sign * y[i] * row[first + i]
-        for i in range(k):
-            row[first + i] -= 2 * along * sign * y[i]
-            square += row[first + i] ** 2
-        row[axis] = 2 * z0 * along - row[axis]
-        square += row[axis] ** 2
-        if square > 0.5:
-            for i in range(k + 1):
-                row[i] *= (3 - square) / 2
+        along = _reflected(row, first, axis, z0, sign, y)
         if p.slides:
             row[k + 1] += length * along
+
+
+@njit(nogil=True, **COMPILED)
+def _reflected(row: np.ndarray, first: int, axis: int, z0: float, sign: float, y: np.ndarray) -> float:
+    """Reflect the turning entries of a row in (z0, sign z0 y), keep their length; return their part along it."""
+    k = len(y)
+    along, square = z0 * row[axis], 0.0
+    for i in range(k):
+        along += sign * y[i] * row[first + i]
+    for i in range(k):
+        row[first + i] -= 2 * along * sign * y[i]
+        square += row[first + i] ** 2
+    row[axis] = 2 * z0 * along - row[axis]
+    square += row[axis] ** 2
+    if square > 0.5:
+        for i in range(k + 1):
+            row[i] *= (3 - square) / 2
+    return along
 
 
 @njit(nogil=True, **COMPILED)

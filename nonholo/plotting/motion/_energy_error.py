@@ -11,7 +11,6 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
 from nonholo.base.types import Float
-from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.parts import drawable, evenly_in_box, is_discrete, posed
@@ -20,6 +19,11 @@ _MOST_DOTS = 2000
 _COLUMNS = 600
 _EPS = float(np.finfo(np.float64).eps)
 _VISIBLE = 1e-3  # half-width of the band, in units of the axis, from which it is wider than a hairline
+_EXPECTED = {
+    True: "exact by theorem, up to rounding",
+    False: "not exact for this discretisation",
+    None: "error of the solver",
+}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -83,11 +87,7 @@ def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
 
 
 def _expected(axes: Axes, orbit: Orbit) -> Text:
-    words = "not exact for this discretisation"
-    if not isinstance(orbit.motion, Discretization):
-        words = "error of the solver"
-    elif orbit.motion.conserves_energy:
-        words = "exact by theorem, up to rounding"
+    words = _EXPECTED[orbit.motion.conserves_energy]
     look = {"color": "#555a62", "fontsize": 9, "va": "top", "path_effects": theme.HALO, "zorder": 6}
     return axes.text(0.012, 0.97, words, transform=axes.transAxes, **look)
 

@@ -116,16 +116,17 @@ def _completed(run: CompiledRun, stream: "Stream", watch: Watch | None, progress
     """Compute every block that is missing or damaged; return the end of the run."""
     plan, computed = stream.plan, not stream.is_finished
     marked = max(stream.marked(), default=-1)
-    reached = stream.checkpoint(0)
+    reached = None
     with progress_bar("steps", progress) as report:
         for block in range(plan.blocks):
             sound = _sound(stream, block) if block <= marked else None
             computed = computed or sound is None
-            reached = sound or _computed(run, stream, watch, block, reached, lambda done: report(done, plan.steps))
+            begin = sound or reached or _first(stream)
+            reached = sound or _computed(run, stream, watch, block, begin, lambda done: report(done, plan.steps))
             report(reached.done, plan.steps)
             if reached.is_last:
                 break
-    end = _known(reached)
+    end = reached or _first(stream)
     if computed:
         stream.finish(end)
     return end
@@ -133,15 +134,12 @@ def _completed(run: CompiledRun, stream: "Stream", watch: Watch | None, progress
 
 def _sound(stream: "Stream", block: int) -> Checkpoint | None:
     """Return the end of a block that is marked as finished; None, with a warning, if it is damaged."""
-    reached = stream.checkpoint(block + 1)
-    if isinstance(reached, Checkpoint) and not _is_final(stream, block, reached):
+    try:
+        return stream.sound(block) if _is_final(stream, block, stream.checkpoint(block + 1)) else None
+    except io.DamagedError as flaw:
+        told = f"The store '{stream.path}' is damaged: {flaw}. Block {block} is computed again from its checkpoint."
+        warnings.warn(told, RuntimeWarning, stacklevel=5)
         return None
-    flaw = stream.flaw(block)
-    if flaw is None and isinstance(reached, Checkpoint):
-        return reached
-    told = f"The store '{stream.path}' is damaged: {flaw}. Block {block} is computed again from its checkpoint."
-    warnings.warn(told, RuntimeWarning, stacklevel=5)
-    return None
 
 
 def _is_final(stream: "Stream", block: int, reached: Checkpoint) -> bool:
@@ -154,11 +152,10 @@ def _computed(
     stream: "Stream",
     watch: Watch | None,
     block: int,
-    start: Checkpoint | str,
+    begin: Checkpoint,
     report: Callable[[int], object],
 ) -> Checkpoint:
     """Compute a block and write it."""
-    begin = _known(start)
     going, chunks = gone_on_from(watch, begin.seen)
     made = computed_block(run, RunState.of(begin.vector, run.sizes), going, stream.plan, block, report)
     seen = None if made.watch is None else seen_by(made.watch, stream.chunks_after(chunks, made.orbit.events))
@@ -167,10 +164,12 @@ def _computed(
     return reached
 
 
-def _known(state: Checkpoint | str) -> Checkpoint:
-    if isinstance(state, str):
-        raise error("resume(store=...)", "hold the start of the run", state, "It is lost: run it again.")
-    return state
+def _first(stream: "Stream") -> Checkpoint:
+    try:
+        return stream.checkpoint(0)
+    except io.DamagedError as flaw:
+        remedy = "It is lost: run it again."
+        raise error("resume(store=...)", "hold the start of the run", str(flaw), remedy) from None
 
 
 def _loaded(run: CompiledRun, stream: "Stream", reached: Checkpoint) -> Orbit:
