@@ -43,6 +43,7 @@ def motion_cayley_increment(X: Float[np.ndarray, "... N N"]) -> Float[np.ndarray
     """
     turn, v = X[..., :-1, :-1], X[..., :-1, -1:]
     unit, inverse, one = _one_plane(turn)
+    one &= np.isfinite(_norm(v))
     if not one.any():
         return numerics.cayley_increment(X)
     closed, turned = np.zeros_like(X), unit @ v
@@ -56,7 +57,7 @@ def motion_cayley_increment(X: Float[np.ndarray, "... N N"]) -> Float[np.ndarray
 def _one_plane(X: Float[np.ndarray, "... n n"]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     r"""Return $Y/\sqrt\tau$, $1/\sqrt\tau$, and whether Y is large and turns one plane alone."""
     length = _norm(X) / np.sqrt(2)
-    large = length > _LARGE
+    large = (length > _LARGE) & np.isfinite(length)
     unit, inverse = X / np.maximum(length, _LARGE), 2 / np.maximum(length, _LARGE)
     if not large.any():
         return unit, inverse, large

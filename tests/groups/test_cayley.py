@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from nonholo.groups import SE, SO
+from nonholo.groups import SE, SO, AbstractMatrixGroup
 
 
 @pytest.mark.parametrize("n", [4, 5, 7])
@@ -68,3 +68,10 @@ def test_slides_across_are_not_lost(across: float) -> None:
     X = _motion(np.array([0.0, 1e8, 0.0]), np.array([1e8, across, 2e8, -across]))
     assert np.abs(SE(4).cayley(SE(4).vee(X)) - _by_definition(X, 60)).max() < 1e-7
     assert SE(4).cayley(SE(4).vee(X))[[1, 3], 4] == pytest.approx([across, -across], abs=1e-7)
+
+
+@pytest.mark.parametrize("group", [SO(4), SE(3)])
+def test_lengths_beyond_all_numbers_are_not_the_identity(group: AbstractMatrixGroup) -> None:
+    """Where the length of a vector overflows there is no silent result."""
+    with pytest.warns(RuntimeWarning):
+        assert np.isnan(group.cayley(np.full(6, 1e308))).any()
