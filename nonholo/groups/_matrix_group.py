@@ -18,8 +18,7 @@ from nonholo.base.types import Array, Float
 from nonholo.groups import _dexp
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
-from nonholo.groups._lie_algebra import checked_basis
-from nonholo.groups._quadratic_form import checked_form
+from nonholo.groups._lie_algebra import checked_basis, checked_form
 
 _REPRODUCED = 1e-8  # relative error of exp(log(g)) beyond which there is no logarithm
 _KNOWN = 1e-12  # of 1 / (|g| |g^-1|), above which the sign of a determinant is no rounding error

@@ -1,5 +1,6 @@
 """What a system is: a group, an inertia operator and the subspace that velocities are constrained to."""
 
+from nonholo.systems import families
 from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, AbstractSystem, Equilibria, System
 from nonholo.systems._body import ImpossibleBodyWarning
 from nonholo.systems._coordinate_system import (
@@ -36,17 +37,7 @@ from nonholo.systems.families import (
     VeselovaTop,
 )
 
-SYSTEMS = (
-    SuslovTop,
-    ChaplyginSleigh,
-    MultidimensionalSleigh,
-    RigidBody,
-    ArrowheadTop,
-    ArrowheadSleigh,
-    LLSystem,
-    VeselovaTop,
-    LRSystem,
-)
+SYSTEMS = tuple(vars(families)[name] for name in families.__all__)
 """Every final class of this room."""
 
 __all__ = [

@@ -1,7 +1,7 @@
 """The bodies that a scenario can hold, one class for each kind; each checks itself by building its system."""
 
 import abc
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, get_args
 
 from pydantic import model_validator
 
@@ -163,11 +163,6 @@ AnyBody = (
     | RightInvariantBody
 )
 BODIES: dict[str, type[AbstractBody]] = {
-    "suslov": SuslovBody,
-    "sleigh": SleighBody,
-    "multidimensional_sleigh": MultidimensionalSleighBody,
-    "rigid_body": RigidBodyBody,
-    "veselova": VeselovaBody,
-    "left_invariant": LeftInvariantBody,
-    "right_invariant": RightInvariantBody,
+    get_args(body.model_fields["kind"].annotation)[0]: body for body in get_args(AnyBody)
 }
+"""The class of each kind."""
