@@ -71,7 +71,7 @@ class Live:
         return float(self.total + self.energy() / self.first - 1)
 
     def run(self, steps: int) -> None:
-        """Take steps, and go on from elsewhere at the end of each crossing."""
+        """Take steps, and continue from elsewhere at the end of each crossing."""
         for _ in range(steps // BLOCK):
             _, code = kernels.advance(self.step.body, self.state, BLOCK, BLOCK, self.rows)
             if code != 0:

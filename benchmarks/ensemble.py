@@ -1,8 +1,8 @@
-"""Ensembles beside vectorised C (`c/ensemble.c`, built here), in one run, in turns; medians of ratios.
+"""Ensembles beside vectorized C (`c/ensemble.c`, built here), in one run, in turns; medians of ratios.
 
 Both sides are checked to end at the same states before anything is timed. "kernel" is the compiled loop in one thread,
-"call" the whole `ensemble` with its checks, in one thread and in all; the C code runs in one. Then ten million members
-are reduced block by block, and the peak of the memory is shown beside that of their starts.
+"call" the whole `ensemble` with its checks, in one thread and in all threads; the C code runs in one. Then ten million
+members are reduced block by block, and the peak of the memory is shown beside that of their starts.
 
     python benchmarks/ensemble.py
 """
@@ -36,7 +36,7 @@ def kernel_rows(posed: bool) -> kernels.MemberRows:
 
 
 def compare(found: ctypes.CDLL, name: str, posed: bool) -> None:
-    """Print nanoseconds per step and member of the kernel, the call in one thread and in all, and of C."""
+    """Print nanoseconds per step and member of the kernel, the call in one thread and in all threads, and of C."""
     discrete = nh.discretize(SYSTEMS[name], TIME_STEP)
     velocities = np.random.default_rng(0).normal(size=(MEMBERS, 2))
     step, run = discrete.route, getattr(found, name)

@@ -166,7 +166,7 @@ _HOMES = {
 _ROOMS = {"examples": "literature", "plot": "plotting", "testing": "testing"}
 
 _EXTRAS = {"discrete.definition": "jax", "discrete._step": "jax", "literature": "jax", "lagrange_dalembert": "jax"}
-"""What homes must have installed beyond the core."""
+"""Extras that rooms need beyond the core."""
 
 __version__ = version("nonholo")
 

@@ -119,7 +119,7 @@ SLEIGH = Body(
     ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
     ((0.0, 0.0, 1.0),),
 )
-"""A sleigh of mass 2 with its centre of mass at (1/2, -1/4)."""
+"""A sleigh of mass 2 with its center of mass at (1/2, -1/4)."""
 BALANCED_SLEIGH = Body(
     SE(2), ((0.75, 0.0, 0.0), (0.0, 0.625, -0.5), (0.0, -0.5, 2.0)), SLEIGH.subspace, SLEIGH.annihilator
 )

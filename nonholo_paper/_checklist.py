@@ -33,7 +33,7 @@ class Section:
 
         Example:
             >>> sections()[3].heading
-            'Section 4. The Suslov problem and its multidimensional generalisations'
+            'Section 4. The Suslov problem and its multidimensional generalizations'
         """
         number = self.key.removeprefix("section")
         return f"Section {number}. {self.title}" if number != self.key else self.title

@@ -30,7 +30,7 @@ class Finding:
     """A statement of the paper, its verdict, and how it is measured.
 
     Attributes:
-        label: Label of the equation, theorem or figure in the paper; "footnote-3"; of an unlabelled slip its row of the
+        label: Label of the equation, theorem or figure in the paper; "footnote-3"; of an unlabeled slip its row of the
             errata, "S6" or "C2"; otherwise a name of ours.
         kind: Kind of statement.
         source: Place in the paper: "Section 4, equation (ep3.26)".

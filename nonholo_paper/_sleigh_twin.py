@@ -1,6 +1,6 @@
 r"""The sleigh in 50 digits by its mass points: bodies, kinetic energy, Euler-Poincare-Suslov equations, displacements.
 
-A body is (m, J, a, b) with J about the centre of mass; of n dimensions it is a list of mass points. Only the
+A body is (m, J, a, b) with J about the center of mass; of n dimensions it is a list of mass points. Only the
 roots of the cubic come from a formula.
 """
 
@@ -17,7 +17,7 @@ Point = tuple[Number, Matrix]
 
 
 class Body(NamedTuple):
-    """A sleigh: mass, moment of inertia about the centre of mass, and where the centre of mass is."""
+    """A sleigh: mass, moment of inertia about the center of mass, and where the center of mass is."""
 
     m: Number
     J: Number
@@ -41,7 +41,7 @@ TURNS = [
 
 
 def points(body: Body) -> list[Point]:
-    """Return two mass points with the mass, centre of mass and moment of inertia of a sleigh."""
+    """Return two mass points with the mass, center of mass and moment of inertia of a sleigh."""
     m, J, a, b = body
     arm, angle = ctx.sqrt(J / m), ctx.mpf("0.7")
     dx, dy = arm * ctx.cos(angle), arm * ctx.sin(angle)
@@ -49,7 +49,7 @@ def points(body: Body) -> list[Point]:
 
 
 def solid(mass: Number, center: Sequence[Number], moments: Sequence[Number], turn: Matrix) -> list[Point]:
-    """Return mass points whose mass tensor about their centre has given moments along the columns of `turn`."""
+    """Return mass points whose mass tensor about their center has given moments along the columns of `turn`."""
     n = len(center)
     found = []
     for j, moment in enumerate(moments):

@@ -58,7 +58,7 @@ def compile_once() -> None:
 
 @contextlib.contextmanager
 def _lock(path: Path) -> Iterator[None]:
-    """Hold a lock on a file, once in a process, or go on without it after a long wait."""
+    """Hold a lock on a file, once in a process, or continue without it after a long wait."""
     if path in _held:
         yield
         return

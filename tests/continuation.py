@@ -17,7 +17,7 @@ _JUMP = 0.1  # a root that moves further in one continuation step, relative to 1
 
 @dataclasses.dataclass(frozen=True)
 class Problems:
-    """Bodies and momenta, one per row: top if mass is None, otherwise sleigh about its centre of mass."""
+    """Bodies and momenta, one per row: top if mass is None, otherwise sleigh about its center of mass."""
 
     systems: list
     B: np.ndarray
@@ -149,7 +149,7 @@ def newton(problems: Problems, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, n
 
 
 def followed(problems: Problems, steps: int = 100) -> tuple[np.ndarray, np.ndarray]:
-    """Return the roots that zero reaches along s r in so many equal steps, and whether they were followed surely."""
+    """Return the roots that zero reaches along s r in this many equal steps, and whether they were followed surely."""
     y = before = np.zeros_like(problems.r)
     sure = np.ones(len(y), dtype=bool)
     zero = np.linalg.det(problems.times(np.zeros(len(y))).slope(y))

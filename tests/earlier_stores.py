@@ -50,7 +50,7 @@ def _systems() -> dict[str, AbstractSystem]:
 
 
 def motions() -> dict[str, nh.Discretization]:
-    """Return the discretised systems of the stores by the names of the stores."""
+    """Return the discretized systems of the stores by the names of the stores."""
     systems = _systems()
     found = {name: nh.discretize(system, 0.1) for name, system in systems.items()}
     composed = ("suslov top", "LLSystem that is a top")

@@ -41,7 +41,7 @@ def by_pool() -> None:
 
 
 def by_jax() -> None:
-    """Print what a child says that was forked after JAX was used, and that its compiled runs go on."""
+    """Print what a child says that was forked after JAX was used, and that its compiled runs continue."""
     warnings.simplefilter("ignore")  # JAX warns of the fork
     nh.step(SLEIGH, np.array([0.1, 0.1]))
     child = os.fork()

@@ -144,7 +144,7 @@ def runs(item: pytest.Item, chosen: set[str]) -> bool:
 
 
 def changed_files(base: str | None = None) -> list[str] | None:
-    """Return the files that differ from the last tag or merge base; None when that cannot be told."""
+    """Return the files that differ from the last tag or merge base; None when that is unknown."""
     known = base or _git("describe", "--tags", "--abbrev=0") or _git("merge-base", "HEAD", "@{upstream}")
     if not known or _git("rev-parse", known + "^{commit}") == _git("rev-parse", "HEAD"):
         return None

@@ -57,7 +57,7 @@ def test_complex_momenta_have_no_side(value: str) -> None:
 
 
 def test_singular_matrices_of_groups_warn() -> None:
-    """What has no inverse gives NaN with the warning of NumPy, its neighbours in a stack their numbers."""
+    """What has no inverse gives NaN with the warning of NumPy, its neighbors in a stack their numbers."""
     boosts = nh.MatrixGroup(np.array([[[1.0, 0.0], [0.0, -1.0]]]), form=np.array([[0.0, 1.0], [1.0, 0.0]]))
     with pytest.warns(RuntimeWarning, match="invalid value"):
         found = boosts.cayley([[2.0], [0.5]])

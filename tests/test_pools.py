@@ -34,7 +34,7 @@ def test_a_fold_does_not_hang_a_pool(pool: str) -> None:
 
 
 def test_jax_after_a_fork(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What needs JAX refuses where it would wait for ever, in words."""
+    """What needs JAX refuses where it would wait forever, in words."""
     monkeypatch.setattr(_double_precision, "_orphaned", True)
     sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
     with pytest.raises(RuntimeError, match="forked from one that had used JAX"):
@@ -47,7 +47,7 @@ def test_jax_after_a_fork(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.profile("faults", instead="test_jax_after_a_fork")
 def test_jax_in_a_forked_child() -> None:
-    """What needs JAX refuses where it would wait for ever, in words; compiled runs go on."""
+    """What needs JAX refuses where it would wait forever, in words; compiled runs continue."""
     said, energy = lines_of("jax")
     assert "forked from one that had used JAX" in said
     assert "spawn" in said

@@ -12,7 +12,7 @@ from nonholo.base.progress import progress_bar, waiting
 
 @pytest.fixture(autouse=True)
 def _terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let standard error pass for a terminal without colours."""
+    """Let standard error pass for a terminal without colors."""
     for name, value in {"TERM": "xterm", "FORCE_COLOR": "1", "NO_COLOR": "1"}.items():
         monkeypatch.setenv(name, value)
 
@@ -46,7 +46,7 @@ def test_no_bar_unless_wanted(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_waiting_says_for_how_long(capsys: pytest.CaptureFixture[str]) -> None:
-    """Where there is nothing to count, what goes on and the time that has passed are shown, if wanted."""
+    """Where there is nothing to count, what is being done and the time that has passed are shown, if wanted."""
     for wanted in (True, False):
         with waiting("measuring", wanted):
             pass

@@ -71,7 +71,7 @@ def exudyn(problem: Problem) -> Scheme:
         model.run()
         return end_of(*model.states())
 
-    return Scheme("Exudyn, rolling-disc joint, generalised alpha, nothing stored", states, bare.run)
+    return Scheme("Exudyn, rolling-disc joint, generalized alpha, nothing stored", states, bare.run)
 
 
 def schemes(problem: Problem, skip: set[str]) -> tuple[list[Scheme], list[str]]:
@@ -91,7 +91,7 @@ def schemes(problem: Problem, skip: set[str]) -> tuple[list[Scheme], list[str]]:
 
 
 def check_same_map(problem: Problem) -> None:
-    """Refuse to go on unless the map solved step by step agrees with the library at every step."""
+    """Refuse to continue unless the map solved step by step agrees with the library at every step."""
     orbit = by_library(problem, END / STEPS, STEPS)
     run = next(iter(SCHEMES[problem.name].values()))
     velocities, poses = run(problem, END / STEPS, STEPS)

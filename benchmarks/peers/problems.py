@@ -39,7 +39,7 @@ def top_constants() -> tuple[np.ndarray, np.ndarray]:
 
 
 def quaternion_matrix(q: np.ndarray) -> np.ndarray:
-    """Return the rotation of a quaternion, scalar first, normalised first."""
+    """Return the rotation of a quaternion, scalar first, normalized first."""
     w, x, y, z = q / np.sqrt(np.sum(q * q))
     return np.array(
         [

@@ -7,7 +7,7 @@ r"""Schemes that call a solver at each step, written from their published descri
   [garcia-naranjo-jimenez-2016].
 - `midpoint_coordinates`: the principle with the midpoint rule in $(\theta, x, y)$, [cortes-martinez-2001],
   for the sleigh.
-- `midpoint_retraction`: a discretisation map on the constraint distribution, of the kind of
+- `midpoint_retraction`: a discretization map on the constraint distribution, of the kind of
   [vivek-martin-banavar-2025]; the choice of the symmetric Cayley map, $\eta = (\eta_k + \eta_{k+1})/2$,
   $g_{k+1} = g_k\,\mathrm{cay}(h\eta)$, is ours.
 
@@ -67,7 +67,7 @@ def moser_veselov(problem: Problem, h: float, steps: int) -> Run:
 
 
 def cayley_lagrange_dalembert(problem: Problem, h: float, steps: int) -> Run:
-    """Solve the trivialised discrete Euler-Poincare-Suslov equations of the top for the velocity of each step."""
+    """Solve the trivialized discrete Euler-Poincare-Suslov equations of the top for the velocity of each step."""
     inertia = problem.system.inertia_operator
     along, identity = inertia[:2, :2], np.eye(3)
 

@@ -140,9 +140,9 @@ def pydy_lsoda(problem: Problem) -> Solve:
     origin.set_vel(space, 0)
     blade.set_pos(origin, x * space.x + y * space.y)
     blade.set_vel(space, v * body.x)
-    centre = blade.locatenew("C", a * body.x)
-    centre.v2pt_theory(blade, space, body)
-    sledge = RigidBody("S", centre, body, m, (inertia(body, 0, 0, J), centre))
+    center = blade.locatenew("C", a * body.x)
+    center.v2pt_theory(blade, space, body)
+    sledge = RigidBody("S", center, body, m, (inertia(body, 0, 0, J), center))
     t = dynamicsymbols._t
     velocity = v * body.x
     kinematics = [

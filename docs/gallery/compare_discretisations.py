@@ -28,7 +28,7 @@ FINER = (1, 2, 4, 8)
 FLOOR = 1e-17
 FIRST_LOOPS = 100  # steps whose paths are drawn
 MUTED = "#c3c8d0"
-COLOURS = {"skew": "#0072b2", "exponential": "#009e73", "Cayley": "#cc79a7", "naive": "#d55e00"}
+COLORS = {"skew": "#0072b2", "exponential": "#009e73", "Cayley": "#cc79a7", "naive": "#d55e00"}
 TITLES = {
     "matrix": "matrix: $l((W - I)/h)$",
     "logarithmic": r"logarithmic: $l(\log W/h)$",
@@ -39,7 +39,7 @@ PICTURE = Path(__file__).parents[1] / "images" / "gallery" / "compare_discretisa
 
 
 class Figures(NamedTuple):
-    """What was measured of one discretisation.
+    """What was measured of one discretization.
 
     Attributes:
         energy: Relative energy errors along the run.
@@ -53,11 +53,11 @@ class Figures(NamedTuple):
 
 
 def body() -> nh.LLSystem:
-    """Return the body on SE(3): three different moments, centre of mass beside the reference point."""
-    centre = np.array([0.0, 0.3, 0.2])
+    """Return the body on SE(3): three different moments, center of mass beside the reference point."""
+    center = np.array([0.0, 0.3, 0.2])
     tensor = np.diag([0.5, 0.7, 1.0, 1.0])
-    tensor[:3, :3] += np.outer(centre, centre)
-    tensor[:3, 3] = tensor[3, :3] = centre
+    tensor[:3, :3] += np.outer(center, center)
+    tensor[:3, 3] = tensor[3, :3] = center
     return nh.LLSystem(nh.SE(3), tensor, nh.reference_point_subspace(3, [[1.0, 0.0, 0.0]]))
 
 
@@ -91,7 +91,7 @@ def constraint(name: str, system: nh.LLSystem) -> str | tuple[Callable[[Any], An
     return tuple(lambda W, row=row: row @ _cayley_coordinates(system, W) for row in np.asarray(system.annihilator))
 
 
-def discretised(first: str, second: str) -> nh.Discretization:
+def discretized(first: str, second: str) -> nh.Discretization:
     """Return the body with a difference and a constraint."""
     system = body()
     return nh.discretize(system, TIME_STEP, difference(first, system), constraint(second, system))
@@ -126,8 +126,8 @@ def momentum_errors(
 
 
 def measured(first: str, second: str, steps: int = 250) -> Figures:
-    """Measure one discretisation of the body."""
-    discrete = discretised(first, second)
+    """Measure one discretization of the body."""
+    discrete = discretized(first, second)
     energy = nh.simulate(discrete, restricted_velocity=VELOCITY, steps=steps).energy
     errors = momentum_errors(discrete, VELOCITY, 10)
     return Figures(energy / energy[0] - 1, reversal(discrete), float(np.log2(errors[-2] / errors[-1])))
@@ -136,7 +136,7 @@ def measured(first: str, second: str, steps: int = 250) -> Figures:
 def tracks(steps: int = 300) -> dict[str, nh.Orbit]:
     """Return the orbits with the matrix difference whose paths are drawn, and the continuous one."""
     found = {
-        name: nh.simulate(discretised("matrix", name), restricted_velocity=VELOCITY, steps=steps) for name in PATHS
+        name: nh.simulate(discretized("matrix", name), restricted_velocity=VELOCITY, steps=steps) for name in PATHS
     }
     times = np.linspace(0.0, steps * TIME_STEP, 10 * steps + 1)
     return found | {"flow": nh.flow(body(), restricted_velocity=VELOCITY, times=times)}
@@ -190,14 +190,14 @@ def draw(
 def _draw_energy(axes: Axes, first: str, energies: dict[str, np.ndarray]) -> None:
     for name, energy in energies.items():
         time = TIME_STEP * np.arange(1, len(energy))
-        axes.semilogy(time, np.maximum(np.abs(energy[1:]), FLOOR), color=COLOURS[name], label=name)
+        axes.semilogy(time, np.maximum(np.abs(energy[1:]), FLOOR), color=COLORS[name], label=name)
     axes.set(title=TITLES[first], xlabel="time", ylabel="relative energy error", ylim=(FLOOR / 2, 3.0))
 
 
 def _draw_paths(axes: Axes, paths: dict[str, np.ndarray]) -> None:
     axes.plot(*paths["flow"].T, color=MUTED, lw=2.5, label="continuous")
     for name in PATHS:
-        axes.plot(*paths[name].T, ".-", color=COLOURS[name], ms=4.5, lw=0.7, label=f"matrix, {name}")
+        axes.plot(*paths[name].T, ".-", color=COLORS[name], ms=4.5, lw=0.7, label=f"matrix, {name}")
     axes.set(title="path of the reference point", xlabel="x", ylabel="y")
     axes.set_aspect("equal", adjustable="datalim")
     axes.legend(loc="upper left", fontsize=10)
@@ -206,14 +206,14 @@ def _draw_paths(axes: Axes, paths: dict[str, np.ndarray]) -> None:
 def _draw_phases(axes: Axes, momenta: dict[str, np.ndarray]) -> None:
     axes.plot(*momenta["flow"].T, color=MUTED, lw=3.5)
     for name in PATHS:
-        axes.plot(*momenta[name].T, ".", color=COLOURS[name], ms=4)
+        axes.plot(*momenta[name].T, ".", color=COLORS[name], ms=4)
     axes.set(title="phase portrait", xlabel="$r_1$, momentum about axis 1", ylabel="$r_2$, about axis 2")
 
 
 def _draw_published(axes: Axes, errors: dict[str, np.ndarray], drifts: dict[str, float]) -> None:
     steps = TIME_STEP / np.array(FINER)
-    for (label, found), colour, mark in zip(errors.items(), ("#0072b2", "#e69f00"), "os", strict=True):
-        axes.loglog(steps, found, f"{mark}-", color=colour, label=f"{label}\nenergy within {drifts[label]:.0e}")
+    for (label, found), color, mark in zip(errors.items(), ("#0072b2", "#e69f00"), "os", strict=True):
+        axes.loglog(steps, found, f"{mark}-", color=color, label=f"{label}\nenergy within {drifts[label]:.0e}")
     axes.loglog(steps, 0.15 * errors[label][0] * (steps / steps[0]) ** 2, "--", color="#6b7078", label="slope 2")
     axes.set(title="Suslov top, after arXiv:1605.02666", xlabel="time step", ylabel="momentum error at t = 2")
     axes.set_xticks(steps, [f"{step:g}" for step in steps])

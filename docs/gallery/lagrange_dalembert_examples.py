@@ -31,7 +31,7 @@ from nonholo.literature import Example
 from nonholo.plotting import theme
 
 STEPS = {0.2: "#9ecae1", 0.1: theme.DISCRETE}
-"""Time steps, and the colour of their energy."""
+"""Time steps, and the color of their energy."""
 
 PICTURE = Path(__file__).parents[1] / "images" / "gallery" / "lagrange_dalembert_examples.png"
 MOST_POINTS = 4000

@@ -33,20 +33,20 @@ def numbers() -> dict[str, float]:
     return {
         "regular top, saddle among half-turns h_e": regular.equatorial_saddle,
         "regular top, saddle h*": regular.saddle,
-        "regular top, maximum h**": regular.centre,
+        "regular top, maximum h**": regular.center,
         "rod, saddle among half-turns h_e": rod.equatorial_saddle,
     }
 
 
 def draw_levels(axes: Axes, top: nh.Discretization, title: str) -> None:
-    """Draw levels in grey, critical ones in colour, and the critical points."""
+    """Draw levels in gray, critical ones in color, and the critical points."""
     found = nh.critical_energies(top)
     highest = max(point.energy for point in found.points)
     critical = {getattr(found, name): look for name, look in CRITICAL.items() if getattr(found, name) is not None}
     energies = [*highest * np.linspace(0.06, 0.96, 9), *critical]
     drawn = nh.plot.invariant_curves(top, axes=axes, energies=energies).levels
-    for level, (colour, label) in zip(drawn[9:], critical.values(), strict=True):
-        level.set(color=colour, linewidth=1.8, label=label, zorder=3)
+    for level, (color, label) in zip(drawn[9:], critical.values(), strict=True):
+        level.set(color=color, linewidth=1.8, label=label, zorder=3)
     for kind, look in LOOKS.items():
         points = [point.half_turn_vector for point in found.points if point.kind == kind]
         places = np.array([side * disc(z) for z in points for side in (1.0, -1.0)])

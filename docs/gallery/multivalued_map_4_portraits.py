@@ -44,9 +44,9 @@ def draw_region(axes: Axes) -> None:
         ("sharp bound", region.energy, theme.UNSTABLE),
         ("bound of the paper", region.bound_of_the_paper, theme.INK),
     )
-    for name, energy, colour in bounds:
+    for name, energy, color in bounds:
         pi, p1 = np.sqrt(2 * energy * whole) * np.cos(turn), np.sqrt(2 * energy * body.mass) * np.sin(turn)
-        axes.plot(pi, p1, color=colour, linewidth=1.8, label=name)
+        axes.plot(pi, p1, color=color, linewidth=1.8, label=name)
     axes.legend(loc="lower left")
     axes.set_title("Sleigh: single-valued below")
 

@@ -46,21 +46,21 @@ def numbers() -> dict[str, float]:
 
 def draw_run(axes: Axes) -> None:
     """Draw the direction of the momentum of all runs over the steps."""
-    for (rule, mark), colour in zip(MARKS.items(), theme.component_colours(len(MARKS)), strict=True):
+    for (rule, mark), color in zip(MARKS.items(), theme.component_colors(len(MARKS)), strict=True):
         momentum = of_top(rule).reduced_momentum
         look: Any = {"markersize": 6, "linewidth": 0.8, "markerfacecolor": "none", "markeredgewidth": 1.4}
         angle = np.degrees(np.unwrap(np.arctan2(momentum[:, 1], momentum[:, 0])))
-        axes.plot(angle, marker=mark, color=colour, label=rule, **look)
+        axes.plot(angle, marker=mark, color=color, label=rule, **look)
     axes.set(title="Top: direction of the momentum", xlabel="step", ylabel="degrees")
     axes.legend(loc="lower right")
 
 
 def draw_tracks(axes: Axes) -> None:
     """Draw the paths of the blade."""
-    for rule, colour in zip(OF_SLEIGH, theme.component_colours(len(OF_SLEIGH)), strict=True):
+    for rule, color in zip(OF_SLEIGH, theme.component_colors(len(OF_SLEIGH)), strict=True):
         x, y = of_sleigh(rule).position.T
         size = 9 if rule == "principal" else 5  # the others may lie on it
-        axes.plot(x, y, marker=MARKS[rule], color=colour, linewidth=1.0, markersize=size, label=rule)
+        axes.plot(x, y, marker=MARKS[rule], color=color, linewidth=1.0, markersize=size, label=rule)
     axes.set(title="Sleigh: paths of the blade", xlabel="x", ylabel="y")
     axes.set_aspect("equal", adjustable="datalim")
     axes.legend()

@@ -1,4 +1,4 @@
-r"""How far the discrete sleigh turns in all, over 62,500 bodies and time steps: the sweep of scenarios/, with theory.
+r"""How far the discrete sleigh turns in total, over 62,500 bodies and time steps: the sweep of scenarios/, with theory.
 
 Along the flow a sleigh turns by $\pi\sqrt{1 + J/(ma^2)}$. Run it to draw the picture of docs/how-to/run-a-sweep.md and
 to print what its text quotes; that takes a minute. J is in units of ma^2 throughout.
@@ -20,7 +20,7 @@ import nonholo as nh
 
 EXAMPLE = Path(__file__).parents[2] / "scenarios" / "sleigh_turning_sweep.toml"
 PICTURE = Path(__file__).parents[1] / "images" / "gallery" / "sleigh_turning.png"
-COLOURS = ("#1a1a1a", "#d55e00", "#0072b2")
+COLORS = ("#1a1a1a", "#d55e00", "#0072b2")
 LOOK: Any = {"font.size": 11, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False}
 
 
@@ -81,10 +81,10 @@ def _draw_map(axes: Axes, found: xarray.Dataset) -> None:
 def _draw_rows(axes: Axes, found: xarray.Dataset) -> None:
     J = found["inertia"].values
     axes.loglog(J, leading(J), color="#c3c8d0", lw=5, label=r"$J/(24\,(1 + J)^2)$, in units of $ma^2$")
-    for step, colour in zip((0.2, 1.0, 1.9), COLOURS, strict=True):
+    for step, color in zip((0.2, 1.0, 1.9), COLORS, strict=True):
         row = found.sel(time_step=step, method="nearest")
         h = row["time_step"].values.item()
-        axes.loglog(J, row["turning_deviation"] / h**2, color=colour, lw=1.3, label=f"$hu/a = {h:.2g}$")
+        axes.loglog(J, row["turning_deviation"] / h**2, color=color, lw=1.3, label=f"$hu/a = {h:.2g}$")
     axes.set(xlabel=r"$J/(ma^2)$", title="")
     axes.set_title(r"... divided by $(hu/a)^2$", loc="left")
     axes.legend(loc="lower center")

@@ -17,7 +17,7 @@ class Deltoid:
     r"""The discriminant curve of the discrete sleigh; momenta are restricted ones, $(p_\theta, p_1)$, physical.
 
     Attributes:
-        discrete: The discretised sleigh.
+        discrete: The discretized sleigh.
         cusps: The lower one and the two upper ones (for a > 0), where all three branches meet; shape (3, 2).
     """
 
@@ -84,10 +84,10 @@ def deltoid(discrete: Discretization) -> Deltoid:
     Reference: [fedorov-zenkov-2004], section 6, figure of the discriminant curve; docs/theory/chaplygin-sleigh.md.
 
     Args:
-        discrete: A discretised sleigh with a not zero.
+        discrete: A discretized sleigh with a not zero.
 
     Raises:
-        ValueError: Another system or discretisation, or a = 0 (then two values are real if h |pi| < J, none beyond).
+        ValueError: Another system or discretization, or a = 0 (then two values are real if h |pi| < J, none beyond).
 
     Example:
         >>> found = deltoid(nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=1.0), 1.0))

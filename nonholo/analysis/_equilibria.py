@@ -58,11 +58,11 @@ def equilibria(system: AbstractLLSystem | Discretization, energy: Array = 1.0) -
 
     Args:
         system: A left-invariant system, of three admissible directions at most if it is neither a top nor a sleigh, or
-            a discretisation with difference "matrix", constraint "skew" of a top or a sleigh.
+            a discretization with difference "matrix", constraint "skew" of a top or a sleigh.
         energy: Reduced constrained energy of the equilibrium that is looked at; rates grow as its square root.
 
     Raises:
-        ValueError: Another system or discretisation, an energy that is not positive, one that no multiple of an
+        ValueError: Another system or discretization, an energy that is not positive, one that no multiple of an
             equilibrium has, one at which no step with an angle up to 90 degrees has the momenta of the equilibrium.
 
     Example:
@@ -140,7 +140,7 @@ def _steps(discrete: Discretization) -> Float[np.ndarray, "S"]:
 
 def _checked(where: str, value: Any) -> tuple[AbstractLLSystem, Float[np.ndarray, "S"] | None]:
     """Return the body and the time steps of the substeps, one for order 2."""
-    remedy = "Pass a left-invariant system, or a discretisation of a top or a sleigh."
+    remedy = "Pass a left-invariant system, or a discretization of a top or a sleigh."
     body = value.system if isinstance(value, Discretization) else value
     if not isinstance(body, AbstractSystem) or body.is_spatial:
         raise error(where, "have a left-invariant constraint", type(body).__name__, remedy)

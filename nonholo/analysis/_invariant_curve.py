@@ -16,7 +16,7 @@ class InvariantCurve:
     r"""The displacements with one reduced constrained energy.
 
     Attributes:
-        discrete: The discretised system.
+        discrete: The discretized system.
         energy: The energy, in physical units.
         components: Connected curves, each of shape (K, c), as points of the variety in the canonical frame: unit
             vectors $(z_0, z_1, z_2)$ of a top, which mean the same with the other sign, or $(\Delta, \nu)$ of a
@@ -61,12 +61,12 @@ def invariant_curve(discrete: Discretization, energy: Array, resolution: int = 4
     Reference: [fedorov-zenkov-2004], equations (sus_int) and (quatern_int); docs/theory/momentum-locus.md.
 
     Args:
-        discrete: A top with n = 3 or a sleigh, discretised with "matrix" and "skew".
+        discrete: A top with n = 3 or a sleigh, discretized with "matrix" and "skew".
         energy: The energy, positive.
         resolution: Points for each arc.
 
     Raises:
-        ValueError: Another system, another discretisation, an energy that is not positive.
+        ValueError: Another system, another discretization, an energy that is not positive.
 
     Example:
         >>> top = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.5)

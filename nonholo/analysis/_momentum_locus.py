@@ -16,7 +16,7 @@ class MomentumLocus:
     r"""A mesh of the momentum locus and its singular points; momenta are physical, in the user's frame.
 
     Attributes:
-        discrete: The discretised system.
+        discrete: The discretized system.
         parameters: Of a top the step angle, 0 to pi, and the direction of $z$; of a sleigh the step angle, -pi to pi,
             and the translation along the chord; shape (R, C, 2).
         points: The same as coordinates of the variety: $(z_0, z_1, z_2)$, or the parameters again.
@@ -75,11 +75,11 @@ def momentum_locus(discrete: Discretization, resolution: int = 80) -> MomentumLo
     Reference: [fedorov-zenkov-2004], equations (Steiner) and (full); docs/theory/momentum-locus.md.
 
     Args:
-        discrete: A top with n = 3 or a sleigh, discretised with "matrix" and "skew".
+        discrete: A top with n = 3 or a sleigh, discretized with "matrix" and "skew".
         resolution: Rows of the mesh; it has twice as many columns, and one more.
 
     Raises:
-        ValueError: Another system, another discretisation, a resolution below 2.
+        ValueError: Another system, another discretization, a resolution below 2.
 
     Example:
         >>> top = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1)

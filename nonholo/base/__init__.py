@@ -1,1 +1,1 @@
-"""What every room stands on: types, checks, outcomes, limits, progress, compiled code, numerical functions."""
+"""The ground of every room: types, checks, outcomes, limits, progress, compiled code, numerical functions."""

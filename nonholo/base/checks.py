@@ -232,7 +232,7 @@ def _integer(where: str, value: Any, bounds: tuple[int, int], requirement: str, 
 
 
 def step_counts(steps: Any, save_every: Any) -> tuple[int, int]:
-    """Return the numbers of steps of a run, in all and between saved states."""
+    """Return the numbers of steps of a run, in total and between saved states."""
     steps = count("simulate(steps=...)", steps, "Pass the number of steps.")
     return steps, count("simulate(save_every=...)", save_every, "Pass the number of steps between saved states.")
 

@@ -1,4 +1,4 @@
-"""What is too much is refused before any work: more memory, disk or time than there is."""
+"""Limits, refused before any work: more memory, disk or time than there is."""
 
 import functools
 import math
@@ -42,7 +42,7 @@ def within_a_year(where: str, seconds: float, remedy: str) -> None:
 
 
 def bounded_count(where: str, value: Any, each: float, remedy: str) -> int:
-    """Return a positive integer, refused if so many things of `each` bytes do not fit into memory."""
+    """Return a positive integer, refused if this many things of `each` bytes do not fit into memory."""
     number = count(where, value, remedy)
     within_memory(where, number * each, remedy)
     return number

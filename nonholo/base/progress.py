@@ -37,7 +37,7 @@ def _go_on() -> None:
 
 
 class _Rate(ProgressColumn):
-    """How many are done in a second."""
+    """The number done in a second."""
 
     def render(self, task: Task) -> Text:
         speed = task.finished_speed or task.speed
@@ -68,7 +68,7 @@ def progress_bar(title: str, wanted: bool) -> Iterator[Callable[[int, int], None
 
 @contextlib.contextmanager
 def waiting(title: str, wanted: bool) -> Iterator[None]:
-    """Show what goes on, and for how long, where there is nothing to count.
+    """Show what is being done, and for how long, where there is nothing to count.
 
     Example:
         >>> with waiting("measuring", wanted=False):

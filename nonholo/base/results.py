@@ -8,7 +8,7 @@ from typing import Any
 
 
 class Outcome(enum.IntEnum):
-    """How a step or a run ended.
+    """The end of a step or a run.
 
     Arrays of outcomes hold the integer value; `message` says what happened, why it can be expected, and what to try.
 
@@ -29,7 +29,7 @@ class Outcome(enum.IntEnum):
 
     @property
     def message(self) -> str:
-        """What happened, why, and what to try."""
+        """The message: what happened, why, and what to try."""
         return _MESSAGES[self]
 
 
@@ -42,7 +42,7 @@ _MESSAGES = {
     Outcome.branch_unverified: (
         "A root was found, but it could not be verified to be the one that the branch rule means: it lies on another "
         "branch, it ties with one, or the path to it runs through a singular point. Try a smaller time_step. "
-        "From a displacement off the principal branch branch='nearest' goes on."
+        "From a displacement off the principal branch branch='nearest' continues."
     ),
     Outcome.not_converged: (
         "The iteration for the next state did not converge, though no fold was met. "
@@ -57,7 +57,7 @@ _MESSAGES = {
 
 
 class OutcomeError(RuntimeError):
-    """A run that cannot go on; `outcome` says why and `orbit`, where there is one, holds every good step.
+    """A run that cannot continue; `outcome` says why and `orbit`, where there is one, holds every good step.
 
     Example:
         >>> str(OutcomeError(Outcome.nonfinite, "Step 7"))

@@ -65,6 +65,6 @@ def describe(
     nonholo sweep sweep.toml            many motions: a grid or random draws
     nonholo info runs/my-001.zarr       what was run, and how exact it is
     nonholo export run.zarr -o run.csv  its poses, for other programs
-    nonholo resume run.zarr             go on with what stopped, run or sweep
+    nonholo resume run.zarr             resume what stopped, run or sweep
     nonholo paper                       the paper behind it, recomputed
     """

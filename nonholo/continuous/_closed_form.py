@@ -11,7 +11,7 @@ from nonholo.continuous._heteroclinic import Heteroclinic, heteroclinic
 from nonholo.continuous._integration import integrate_pose
 from nonholo.systems import AbstractSystem, NormalForm
 
-_LARGEST_RATIO = 1e150  # of turn to the Gudermannian; beyond it the centre of mass is as good as at the blade
+_LARGEST_RATIO = 1e150  # of turn to the Gudermannian; beyond it the center of mass is as good as at the blade
 
 
 def closed_form(

@@ -118,7 +118,7 @@ def spatial_reaction(
 
 
 def vector_field(system: AbstractSystem) -> Callable[[Array, Float[Array, "size"]], Float[Array, "size"]]:
-    r"""Return the equations of motion as a function (time, state) -> derivative, for a solver of your own.
+    r"""Return the equations of motion as a function (time, state) -> derivative, for your own solver.
 
     $$ r' = (\mathrm{ad}^*_\omega p)|_{\mathfrak{d}}, \qquad g' = g\,\hat\omega, \qquad
        p = \mathbb{I}\omega, \quad \omega \in \mathfrak{d}, \quad p|_{\mathfrak{d}} = r. $$

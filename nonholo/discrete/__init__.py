@@ -1,4 +1,4 @@
-"""The discrete mechanics: discretisations, the discrete Legendre transformation, the step and its start."""
+"""The discrete mechanics: discretizations, the discrete Legendre transformation, the step and its start."""
 
 from nonholo.discrete._composition import refuse_composition, weights
 from nonholo.discrete._consistency import consistency_defect

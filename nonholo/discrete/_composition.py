@@ -65,7 +65,7 @@ def checked_order(order: Any, difference: object, constraint: object) -> int:
 
 
 def refuse_composition(where: str, discrete: Scheme, remedy: str) -> None:
-    """Refuse a discretisation of an order above 2."""
+    """Refuse a discretization of an order above 2."""
     if discrete.order > 2:
         got = f"order {discrete.order}, a composition of {len(weights(discrete.order))} steps"
-        raise error(where, "have a discretisation of order 2", got, remedy)
+        raise error(where, "have a discretization of order 2", got, remedy)

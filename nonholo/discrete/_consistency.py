@@ -12,7 +12,7 @@ _SAMPLES = 16
 
 
 def consistency_defect(discrete: Discretization, discretization_map: Callable[[Array], Array] | None = None) -> float:
-    r"""Return how far a displacement variety is from consistency with a discretisation map; zero if it is consistent.
+    r"""Return how far a displacement variety is from consistency with a discretization map; zero if it is consistent.
 
     A discrete Lagrangian that comes from a continuous one by a map $\Psi$ from displacements to velocities,
     $l_d(W) = h\,l(\Psi(W))$, has the consistent variety $\{W : \langle a^j, \Psi(W)\rangle = 0\}$. What is returned is
@@ -23,7 +23,7 @@ def consistency_defect(discrete: Discretization, discretization_map: Callable[[A
     Reference: [fedorov-zenkov-2004], section 2, the remark on discretization mappings.
 
     Args:
-        discrete: The discretised system.
+        discrete: The discretized system.
         discretization_map: W -> coordinates of the velocity, for one JAX matrix, up to a factor. By default that of the
             difference: the projection of W - I to the algebra for "matrix", log W for "logarithmic".
 

@@ -19,7 +19,7 @@ def discrete_legendre(
     Reference: [fedorov-zenkov-2004], equation (disc.mom.dfn), whose second form has the wrong sign.
 
     Args:
-        discrete: The discretised system.
+        discrete: The discretized system.
         displacement: W, an element of the group; a leading axis of many is allowed.
         side: "left" or "right".
 

@@ -1,4 +1,4 @@
-"""A discretisation: a system, a time step, a discrete Lagrangian and a displacement variety."""
+"""A discretization: a system, a time step, a discrete Lagrangian and a displacement variety."""
 
 import dataclasses
 import functools
@@ -22,7 +22,7 @@ from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Discretiza
 @pytree
 @dataclasses.dataclass(frozen=True, eq=False)
 class Discretization(AbstractMotion):
-    """A discretised system, made by `discretize`.
+    """A discretized system, made by `discretize`.
 
     Attributes:
         system: What moves.
@@ -49,7 +49,7 @@ class Discretization(AbstractMotion):
 
     @functools.cached_property
     def route(self) -> AbstractRoute:
-        """How steps are computed; chosen on first use and kept."""
+        """The way in which steps are computed; chosen on first use and kept."""
         return make_route(self, self.wanted_route)
 
     @property
@@ -155,11 +155,11 @@ def _in_body(discrete: Discretization, cayley: np.ndarray, g: np.ndarray, side: 
 
 
 def as_discretization(where: str, value: Any, *, composed: bool = False) -> Discretization:
-    """Refuse what is not a discretised system on a group, and compositions unless they are welcome."""
+    """Refuse what is not a discretized system on a group, and compositions unless they are welcome."""
     if not isinstance(value, Discretization):
-        raise error(where, "be a discretised system on a group", shown(value), "Pass what `discretize` returned.")
+        raise error(where, "be a discretized system on a group", shown(value), "Pass what `discretize` returned.")
     if not composed:
-        refuse_composition(where, value, "Pass the discretisation of order 2 that is composed.")
+        refuse_composition(where, value, "Pass the discretization of order 2 that is composed.")
     return value
 
 
@@ -180,7 +180,7 @@ def discretize(
     constraint: Constraint | Callable[[Array], Array] | None = None,
     order: int = 2,
 ) -> Any:
-    r"""Discretise a system: choose the discrete Lagrangian and the variety that displacements lie on.
+    r"""Discretize a system: choose the discrete Lagrangian and the variety that displacements lie on.
 
     $$ l_d(W) = h\, l\bigl((W - I)/h\bigr) \ \text{(matrix)}, \qquad l_d(W) = h\, l(\log W/h)\ \text{(logarithmic)}, $$
 
@@ -206,7 +206,7 @@ def discretize(
             docs/theory/compositions.md for what momenta and displacements of its orbits are.
 
     Returns:
-        The discretisation; of a system in coordinates a `nonholo.lagrange_dalembert.CoordinateDiscretization`.
+        The discretization; of a system in coordinates a `nonholo.lagrange_dalembert.CoordinateDiscretization`.
 
     Raises:
         ValueError: A time step that is not positive and real, an unknown choice, a difference or a constraint that is

@@ -1,4 +1,4 @@
-"""Systems, discretisations and routes as JAX pytrees: declared with their classes, registered when JAX is imported."""
+"""Systems, discretizations and routes as JAX pytrees: declared with their classes, registered when JAX is imported."""
 
 import functools
 from typing import Any, NamedTuple, TypeVar

@@ -1,4 +1,4 @@
-"""How far one step forward and one back miss the state they began at."""
+"""The distance by which one step forward and one back miss the state they began at."""
 
 import numpy as np
 

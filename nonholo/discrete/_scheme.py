@@ -1,4 +1,4 @@
-"""What the equations of a step are made of: all of a discretisation that they and the routes see."""
+"""The parts of the equations of a step: all of a discretization that they and the routes see."""
 
 from collections.abc import Callable
 from typing import Protocol
@@ -15,7 +15,7 @@ class Scheme(Protocol):
 
     @property
     def system(self) -> System:
-        """What moves."""
+        """The system that moves."""
         ...
 
     @property

@@ -1,4 +1,4 @@
-"""Where a run starts: canonical restricted momentum from a start, with a displacement on the variety, all checked."""
+"""The start of a run: canonical restricted momentum from a start, with a displacement on the variety, all checked."""
 
 from typing import Any
 

@@ -64,7 +64,7 @@ def step(discrete: Discretization, momentum: Any, branch: BranchRule = "principa
     Reference: [fedorov-zenkov-2004], equation (disc.momentum.eqn).
 
     Args:
-        discrete: The discretised system.
+        discrete: The discretized system.
         momentum: P_k on the momentum locus, or its components along the constraint subspace.
         branch: As in `simulate`. With "principal" and "nearest" a step can be traced; "nearest" then starts at the
             principal displacement of the momentum, as it always does for components along the subspace.

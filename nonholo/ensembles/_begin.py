@@ -1,4 +1,4 @@
-"""What a sweep checks and makes before any work: the task, the design, one member tried, an empty store."""
+"""Checks and preparations of a sweep before any work: the task, the design, one member tried, an empty store."""
 
 import json
 import math

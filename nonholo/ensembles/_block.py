@@ -1,4 +1,4 @@
-"""What a task sees of a sweep: some members in order, their values by name, random numbers of their own."""
+"""The part of a sweep that a task sees: some members in order, their values by name, random numbers of their own."""
 
 import dataclasses
 from collections.abc import Iterator, Mapping
@@ -55,7 +55,7 @@ class MemberBlock(Mapping[str, Any]):
         return np.arange(self.first, self.first + self.count)
 
     def random(self, width: int, stream: str = "") -> Float[np.ndarray, "count width"]:
-        """Return uniform numbers in [0, 1), so many of each member, the same in any block; streams are independent."""
+        """Return uniform numbers in [0, 1) of each member, the same in any block; streams are independent."""
         remedy = "Pass how many numbers each member needs."
         width = bounded_count("MemberBlock.random(width=...)", width, 24.0 * self.count, remedy)
         text("MemberBlock.random(stream=...)", stream)

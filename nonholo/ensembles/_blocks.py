@@ -16,14 +16,14 @@ from nonholo.simulation import in_one_thread
 
 
 class Work(NamedTuple):
-    """What is sent to a worker: everything but the task is read from the store."""
+    """The message to a worker: everything but the task is read from the store."""
 
     store: SweepStore
     task: Task
 
 
 class Done(NamedTuple):
-    """What a worker tells of a block: its mark, what was wrong with an older one, the versions that it works with."""
+    """The report of a worker on a block: its mark, what was wrong with an older one, the versions it works with."""
 
     block: int
     mark: Mark

@@ -45,7 +45,7 @@ def check_cluster(address: str) -> None:
 
 
 def do_on_cluster(work: Work, blocks: Iterator[int], address: str, take: Callable[[Done], None]) -> None:
-    """Do every block; a loss of the scheduler, or of workers again and again, is told as such."""
+    """Do every block; a loss of the scheduler, or of workers again and again, is reported as what it is."""
     from distributed.comm.core import CommClosedError
     from distributed.scheduler import KilledWorker
 

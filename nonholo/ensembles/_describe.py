@@ -14,11 +14,11 @@ from nonholo.ensembles.designs import DISTRIBUTIONS, Design, Grid, RandomDesign
 from nonholo.io import fields_of
 
 NO_NAME = "a function without an importable name"
-"""What stands in a description for a function that no other process can import."""
+"""The mark in a description for a function that no other process can import."""
 
 
 def design_text(design: Design) -> dict[str, Any]:
-    """Return a design as plain data; values along axes are told by their hash, they have arrays of their own."""
+    """Return a design as plain data; values along axes are named by their hash and have their own arrays."""
     if isinstance(design, Grid):
         hashes = {name: _hash(values) for name, values in design.axes.items()}
         return {"kind": "Grid", "seed": design.seed, "axes": hashes}

@@ -39,11 +39,11 @@ class EnsembleTask:
     sleigh; angle between the first and the last spatial axis of a top with n = 3), "turning_deviation" (of a plane
     sleigh, relative to the total turn of its flow: the part that is missing), "branch_counts" (real values of the map
     over the first momentum), "lyapunov" (largest finite-time exponent of the momenta: growth of the most stretched
-    direction, 1/time). A function of your own gets the `Ensemble` of a block and returns a dictionary of arrays with a
+    direction, 1/time). A custom function gets the `Ensemble` of a block and returns a dictionary of arrays with a
     leading member axis; of a tuple (dimensions, array) the names label the other axes.
 
     Attributes:
-        discrete: The discretised system.
+        discrete: The discretized system.
         steps: Number of steps.
         start: Name of the start and its value for all members.
         reductions: What to keep.
@@ -160,7 +160,7 @@ class EnsembleTask:
         return {name: block[name] for name in block if name in self._fields}
 
     def members(self, block: MemberBlock) -> Members:
-        """Return the discretised systems of a block."""
+        """Return the discretized systems of a block."""
         return Members(self.discrete, self._parameters(block), block.count)
 
     def describe(self) -> dict[str, Any]:

@@ -61,7 +61,7 @@ def _is_plane_sleigh(system: AbstractSystem) -> bool:
 def _limit_angle(batch: Ensemble) -> Reduced:
     form = batch.members.discrete.system.normal_form
     if form is None or not have_kernel(batch.members):
-        got, remedy = shown(batch.members.discrete), "Write a reduction of your own."
+        got, remedy = shown(batch.members.discrete), "Write your own reduction."
         raise error("reduction 'limit_angle'", "have a plane sleigh or a top with n = 3", got, remedy)
     if form.is_sleigh:
         return {"heading_turn": ((), _heading_turn(batch), _told("total turn of the heading", "rad"))}
@@ -82,7 +82,7 @@ def _turning_deviation(batch: Ensemble) -> Reduced:
         got, remedy = shown(batch.members.discrete), "Keep another reduction."
         raise error("reduction 'turning_deviation'", "have a plane sleigh", got, remedy)
     mass, inertia, a = (batch.members.values(name) for name in ("mass", "inertia", "a"))
-    with np.errstate(divide="ignore", invalid="ignore"):  # a balanced sleigh turns for ever
+    with np.errstate(divide="ignore", invalid="ignore"):  # a balanced sleigh turns forever
         part = np.abs(_heading_turn(batch)) / np.where(a == 0, np.nan, turn_of_flow(mass, inertia, a))
     missing = np.where(batch.outcome == Outcome.successful, 1 - part, np.nan)
     return {"turning_deviation": ((), missing, _told("part of the flow's total turn that is missing", "1"))}
@@ -112,7 +112,7 @@ def _lyapunov(batch: Ensemble) -> Reduced:
     discrete = batch.members.discrete
     if discrete.order != 2 or not has_frame(discrete):
         requirement = "have a top or a sleigh with difference 'matrix' and order 2"
-        raise error("reduction 'lyapunov'", requirement, shown(discrete), "Write a reduction of your own.")
+        raise error("reduction 'lyapunov'", requirement, shown(discrete), "Write your own reduction.")
     slopes = np.stack([_jacobians(batch, member) for member in range(len(batch))])
     product, growth = np.broadcast_to(np.eye(slopes.shape[-1]), slopes[:, 0].shape), np.zeros(len(batch))
     for step in range(slopes.shape[1]):

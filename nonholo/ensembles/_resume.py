@@ -1,4 +1,4 @@
-"""`resume`: going on with what a store holds, an orbit or a sweep."""
+"""`resume`: resuming what a store holds, an orbit or a sweep."""
 
 import warnings
 from pathlib import Path
@@ -28,23 +28,23 @@ def resume(
     throw: bool = True,
     progress: bool = False,
 ) -> Any:
-    """Go on with the run or the sweep of a store, with the bits of one that was never stopped.
+    """Resume the run or the sweep of a store, with the bits of one that was never stopped.
 
     Every finished block is read first. A missing, cut or changed chunk is reported by name in a `RuntimeWarning`, and
     its block is computed again, an orbit's from its last checkpoint. What is finished and sound is only opened.
 
     Args:
         store: A store that `simulate(..., store=...)` or `sweep` began.
-        discrete: The discretisation of an orbit; needed only if its system or group is of your own making, which a
+        discrete: The discretization of an orbit; needed only if its system or group is custom, which a
             store cannot hold. Another one than that of the store is refused.
         events: The events of an orbit that looks for some: a store holds their names, directions and stops, but no
             functions. Others than those of the store are refused. To read a finished orbit `load_orbit` needs none.
-        task: The task of a sweep; needed if it is, or holds, a function of your own, which a store only names.
+        task: The task of a sweep; needed if it is, or holds, a custom function, which a store only names.
         trust: Import those functions by the names that the store gives. They run with your rights, whatever they are,
             so only for a store whose maker you trust; without it nothing runs that you did not pass.
         scheduler: As in `sweep`.
         workers: As in `sweep`.
-        throw: Raise if an orbit cannot go on; otherwise return the good steps and the outcome.
+        throw: Raise if an orbit cannot continue; otherwise return the good steps and the outcome.
         progress: Show a progress bar on standard error.
 
     Returns:
@@ -52,11 +52,11 @@ def resume(
 
     Raises:
         FileNotFoundError: There is nothing at the path.
-        ValueError: The path is no store of a run with checkpoints or of a sweep, or of another schema, discretisation,
+        ValueError: The path is no store of a run with checkpoints or of a sweep, or of another schema, discretization,
             events or task.
         BlockingIOError: Another process is writing the store; the message names it.
         OSError: The disk is full; the store stays valid.
-        OutcomeError: With `throw`, the orbit could not go on.
+        OutcomeError: With `throw`, the orbit could not continue.
 
     Example:
         >>> orbit = nh.resume("run.zarr")  # doctest: +SKIP
@@ -65,7 +65,7 @@ def resume(
     store = path("resume(store=...)", store)
     stored = io.format_of(store)
     if stored is None and store.exists():
-        got, remedy = f"'{store}', of which zarr.json does not say that", "Check the path, or run it again."
+        got, remedy = f"'{store}', whose zarr.json does not say so", "Check the path, or run it again."
         raise error("resume(store=...)", "be a store of a run or a sweep", got, remedy)
     if stored == io.SWEEP_FORMAT:
         given, owner, remedy = {"discrete": discrete, "events": events}, "an orbit", "Pass task=..., or nothing."
@@ -81,15 +81,15 @@ def resume(
         return simulation.resume_run(store, discrete=discrete, events=events, throw=throw, progress=progress)
     name, workers = checked_scheduler(scheduler, workers)
     opened = open_store(store)
-    return go_on(Work(opened, restored_task(opened, task, trust=trust)), name, workers, progress)
+    return continue_sweep(Work(opened, restored_task(opened, task, trust=trust)), name, workers, progress)
 
 
-def go_on(work: Work, scheduler: str, workers: int | None, progress: bool) -> xarray.Dataset:
+def continue_sweep(work: Work, scheduler: str, workers: int | None, progress: bool) -> xarray.Dataset:
     """Do every block that a store lacks, and open the result."""
     store = work.store
     with io.locked(store.path):
         store.prepare()
-        with io.telling_how_to_go_on(store.path, "The sweep", lambda: standing_of(store.path)):
+        with io.reporting_how_to_resume(store.path, "The sweep", lambda: standing_of(store.path)):
             _complete(work, scheduler, workers, progress)
     return opened_result(store)
 

@@ -8,7 +8,7 @@ import xarray
 from nonholo.base.checks import error, flags, path
 from nonholo.ensembles._begin import begun, check_same, check_task, restored_task
 from nonholo.ensembles._blocks import Work
-from nonholo.ensembles._resume import go_on
+from nonholo.ensembles._resume import continue_sweep
 from nonholo.ensembles._scheduling import checked_scheduler
 from nonholo.ensembles.designs import Design
 from nonholo.ensembles.stores import open_store, opened_result, standing_of
@@ -42,12 +42,12 @@ def sweep(
         workers: How many threads or processes; by default one for each core.
         block: Most members in a block, which is one chunk on disk and one piece of work; a store that is there keeps
             its own.
-        resume: Go on with the store of this very task and design, if there is one.
+        resume: Resume the store of this very task and design, if there is one.
         progress: Show a progress bar on standard error.
         scenario: Text that is kept in the store.
 
     Returns:
-        The result, one dimension for each axis of a grid, else `member`; read from the store as it is used.
+        The result, one dimension for each axis of a grid, else `member`; loaded lazily from the store.
 
     Raises:
         ValueError: A bad argument, a path with the suffix of another format, or a task that raises for every member
@@ -55,7 +55,7 @@ def sweep(
             difference.
         FileExistsError: There is something at the path.
         BlockingIOError: Another process is writing the store; the message names it.
-        OSError: The disk is full, or a worker process was killed; the store stays valid, and `resume` goes on.
+        OSError: The disk is full, or a worker process was killed; the store stays valid, and `resume` continues.
 
     Example:
         >>> from tempfile import TemporaryDirectory
@@ -76,7 +76,7 @@ def sweep(
         task = restored_task(opened, task)
     else:
         opened = begun(task, design, store, block, scenario, progress=progress)
-    return go_on(Work(opened, task), name, workers, progress)
+    return continue_sweep(Work(opened, task), name, workers, progress)
 
 
 def load_sweep(store: str | Path) -> xarray.Dataset:
@@ -96,7 +96,7 @@ def load_sweep(store: str | Path) -> xarray.Dataset:
     where = "load_sweep(store=...)"
     opened = open_store(path(where, store))
     if not opened.is_finished:
-        got, remedy = f"'{store}', at {standing_of(store)}", f"Go on with nonholo.resume('{store}')."
+        got, remedy = f"'{store}', at {standing_of(store)}", f"Resume with nonholo.resume('{store}')."
         raise error(where, "be a finished sweep", got, remedy)
     opened.check(where, range(opened.layout.blocks))
     return opened_result(opened)

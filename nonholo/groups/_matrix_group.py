@@ -174,7 +174,7 @@ class MatrixGroup(AbstractMatrixGroup):
         """Return how far the logarithm is from the algebra; infinite where there is no logarithm (JAX: undefined).
 
         With a form: the residual of g* g = I relative to |g*| |g|, or how far (g - g*)/2 is from the algebra relative
-        to |g|, whichever is larger; 2 for a negative determinant. Other components of the group are not told apart.
+        to |g|, whichever is larger; 2 for a negative determinant. Other components of the group are not distinguished.
         """
         g = self._matrix(g)
         xp = g.__array_namespace__()

@@ -124,7 +124,7 @@ class ProductGroup(AbstractMatrixGroup):
         return self._joined(lambda factor, block: factor.pose_from_matrix(block), self._blocks(g))
 
     def normalize_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... size"]:
-        """Return the normalised poses of the factors."""
+        """Return the normalized poses of the factors."""
         return self._joined(lambda factor, part: factor.normalize_pose(part), self._poses(pose))
 
     def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:

@@ -10,7 +10,7 @@ def normalized(q: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
 
 
 def matrix_from_quaternion(q: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:
-    """Return the active rotation matrix of a quaternion, which is normalised first."""
+    """Return the active rotation matrix of a quaternion, which is normalized first."""
     xp = q.__array_namespace__()
     unit = normalized(q)
     w, x, y, z = (unit[..., i] for i in range(4))
@@ -25,7 +25,7 @@ def matrix_from_quaternion(q: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:
 def quaternion_from_matrix(R: Float[Array, "... 3 3"]) -> Float[Array, "... 4"]:
     """Return the unit quaternion with non-negative scalar part; accurate for every angle.
 
-    The symmetric matrix 4 q q^T is read off R; its row with the largest diagonal entry, normalised, is q.
+    The symmetric matrix 4 q q^T is read off R; its row with the largest diagonal entry, normalized, is q.
     """
     xp = R.__array_namespace__()
     products = _four_times_outer(R)

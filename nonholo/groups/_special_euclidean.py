@@ -47,7 +47,7 @@ class SpecialEuclidean2(AbstractMatrixGroup):
         return xp.stack([angle, along * x + across * y, along * y - across * x], axis=-1)
 
     def cayley_increment(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
-        """Return, minus the identity, the motion with tan(angle / 2) = x[0] / 2 about the same centre as `exp(x)`."""
+        """Return, minus the identity, the motion with tan(angle / 2) = x[0] / 2 about the same center as `exp(x)`."""
         x = self._vector(x)
         return _rodrigues.cayley_increment(self.hat(x), x[..., 0] * x[..., 0])
 
@@ -80,7 +80,7 @@ class SpecialEuclidean2(AbstractMatrixGroup):
         return self.matrix_from_pose(np.array([np.cos(angle), np.sin(angle), *rng.normal(size=2)]))
 
     def matrix_from_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:
-        """Return the matrix of (cos, sin, x, y); the heading is normalised first."""
+        """Return the matrix of (cos, sin, x, y); the heading is normalized first."""
         pose = self._pose(pose)
         xp = pose.__array_namespace__()
         unit = self.normalize_pose(pose)

@@ -1,4 +1,4 @@
-"""Orbits as labelled data and as stores on disk: complete or absent, checked when read, with full provenance.
+"""Orbits as labeled data and as stores on disk: complete or absent, checked when read, with full provenance.
 
 Names load on first use, as `__init__.pyi` lists them: what makes datasets and stores loads xarray and zarr, which a run
 without them does not need.

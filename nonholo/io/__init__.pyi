@@ -40,8 +40,8 @@ from ._save import edit_attributes as edit_attributes
 from ._save import new_group as new_group
 from ._save import put_in_place as put_in_place
 from ._save import remove_partials as remove_partials
+from ._save import reporting_how_to_resume as reporting_how_to_resume
 from ._save import save_orbit as save_orbit
-from ._save import telling_how_to_go_on as telling_how_to_go_on
 from ._save import write_whole as write_whole
 from ._seals import seal_of as seal_of
 from ._stored_events import Seen as Seen

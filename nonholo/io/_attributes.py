@@ -1,4 +1,4 @@
-"""What a store says about itself: system, motion, conventions, versions; and the way back to objects."""
+"""The attributes of a store: system, motion, conventions, versions; and the way back to objects."""
 
 import dataclasses
 import hashlib
@@ -26,7 +26,7 @@ _MOTIONS: dict[str, Callable[..., AbstractMotion]] = {"Discretization": discreti
 _CONVENTIONS = (
     "W_k = g_k^-1 g_(k+1), P_k is the momentum at W_k, momenta are physical (L_d includes time_step). Arrays are in "
     "the user's body frame; quaternions are unit, scalar first, Hamilton's product, and take body coordinates to "
-    "space. The group canonical holds what runs go on from, in the canonical body frame of the system. "
+    "space. The group canonical holds what runs continue from, in the canonical body frame of the system. "
     "reduced_momentum: along the constraint subspace; for a right-invariant constraint (LR systems) that of the "
     "spatial momentum. cayley: coordinates y of the displacement along rows S, "
     "W = retract(2 y S), the Cayley map on SO(n), SE(n) and groups with a form, else exp; S are the rows of the "
@@ -67,7 +67,7 @@ def restore_motion(stored: dict[str, Any], motion: AbstractMotion | None) -> Abs
     """
     if motion is not None:
         where, remedy = "load_orbit(discrete=...)", "Pass that of the store, or None."
-        return _same(stored, instance(where, motion, AbstractMotion, "be a discretisation", remedy))
+        return _same(stored, instance(where, motion, AbstractMotion, "be a discretization", remedy))
     described, parameters = json.loads(stored["motion"]), json.loads(stored["parameters"])
     missing = unstored(described) or unstored(parameters)
     if missing:
@@ -90,7 +90,7 @@ def _same(stored: dict[str, Any], motion: AbstractMotion) -> AbstractMotion:
         theirs = stored[key] if key != "motion" else motion_text(stored, motion)
         if value != theirs:  # JSON text: floating-point numbers are compared exactly
             got = f"{key} {value} instead of {theirs}"
-            raise error("load_orbit(discrete=...)", "be the discretisation of the store", got, "Pass that one.")
+            raise error("load_orbit(discrete=...)", "be the discretization of the store", got, "Pass that one.")
     return motion
 
 

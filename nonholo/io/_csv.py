@@ -75,7 +75,7 @@ def store_to_csv(
     Args:
         store: A store of an orbit.
         target: A new file, or a stream of text such as `sys.stdout`.
-        every: Write one in so many of the saved states, the first one always.
+        every: Write every n-th of the saved states, beginning with the first.
         overwrite: Replace an older file.
         progress: Show a progress bar.
 
@@ -114,7 +114,7 @@ def table_lines(names: list[str], pieces: Iterable[Float[np.ndarray, "R c"]]) ->
 
 
 def _cut(stretches: Iterable[Stretch], most: int) -> Iterator[Stretch]:
-    """Cut stretches to so many states at most: decoded, and as text, they are many times larger."""
+    """Cut stretches to this many states at most: decoded, and as text, they are many times larger."""
     for time, pose, headings in stretches:
         for first in range(0, len(time), most):
             part = slice(first, first + most)

@@ -28,7 +28,7 @@ def unstored(described: dict[str, Any]) -> str | None:
         if value == _CALLABLE:
             return f"{name} is a callable"
         if isinstance(value, dict) and _is_own(value):
-            return f"{name} holds an object of your own"
+            return f"{name} holds a custom object"
     return None
 
 
@@ -36,7 +36,7 @@ def restore_system(kind: str, parameters: dict[str, Any]) -> AbstractSystem:
     """Build the system of a class of this version from its parameters."""
     found = getattr(systems, kind, None)
     if not (isinstance(found, type) and issubclass(found, AbstractSystem)):
-        remedy = "Upgrade nonholo or, for a system of your own, pass load_orbit(path, discrete=...)."
+        remedy = "Upgrade nonholo or, for a custom system, pass load_orbit(path, discrete=...)."
         raise error("load_orbit(path=...)", "hold a system of this version", repr(kind), remedy)
     return found(**{_ARGUMENTS.get(name, name): _restored(value) for name, value in parameters.items()})
 

@@ -31,8 +31,8 @@ def load_orbit(path: str | Path, *, discrete: Discretization | None = None) -> O
 
     Args:
         path: The store.
-        discrete: The discretisation that made the store; needed only if its difference or its constraint is callable,
-            or its system or group is of your own making, which a store cannot hold.
+        discrete: The discretization that made the store; needed only if its difference or its constraint is callable,
+            or its system or group is custom, which a store cannot hold.
 
     Raises:
         FileNotFoundError: There is nothing at the path.
@@ -53,7 +53,7 @@ def load_last_block(path: Path, discrete: Discretization) -> Orbit:
 def _loaded(root: Path, discrete: Discretization | None, *, last: bool) -> Orbit:
     stored = read_attributes(root)
     if "run" in stored and "outcome" not in stored:
-        remedy = f"Go on with nonholo.resume('{root}') (nonholo resume); `nonholo info` says how far it came."
+        remedy = f"Resume with nonholo.resume('{root}') (nonholo resume); `nonholo info` says how far it came."
         raise error(WHERE, "be a finished run", f"'{root}', which is not", remedy)
     try:
         shapes = json.loads(stored["arrays"])

@@ -1,4 +1,4 @@
-"""What a store says of itself, checked as data when it is read: types, ranges, names, and a checksum of what it is."""
+"""The metadata of a store, checked as data when it is read: types, ranges, names, and a checksum of what it is."""
 
 import errno
 import hashlib
@@ -164,7 +164,7 @@ def _has_controls(value: Any) -> bool:
 
 
 def require_identity(path: Path, made: str | None) -> None:
-    """Refuse to go on writing where another store has taken the place of the one that was opened.
+    """Refuse to continue writing where another store has taken the place of the one that was opened.
 
     Raises:
         OSError: There is another store, or none.

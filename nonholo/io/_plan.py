@@ -1,4 +1,4 @@
-"""How a stored run is cut into blocks, and what is kept of the state between two of them."""
+"""The blocks of a stored run, and what is kept of the state between two of them."""
 
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ from nonholo.io._stored_events import Seen, packed, packed_size, unpacked
 
 
 class Plan(NamedTuple):
-    """How a run is cut into blocks: block b holds the saved states b * rows to (b + 1) * rows - 1.
+    """The blocks of a run: block b holds the saved states b * rows to (b + 1) * rows - 1.
 
     Example:
         >>> plan = Plan(steps=100, every=10, rows=4)
@@ -41,7 +41,7 @@ class Plan(NamedTuple):
 
 
 class Checkpoint(NamedTuple):
-    """Where a run stands: the last good step, the outcome so far, the vector to go on from, what its events saw."""
+    """The state of a run: the last good step, the outcome so far, the vector to continue from, what its events saw."""
 
     done: int
     outcome: Outcome
@@ -50,7 +50,7 @@ class Checkpoint(NamedTuple):
 
     @property
     def is_last(self) -> bool:
-        """Whether the run ended here: it cannot go on, or an event ended it."""
+        """Whether the run ended here: it cannot continue, or an event ended it."""
         return self.outcome != Outcome.successful or self.is_stopped
 
     @property
@@ -66,7 +66,7 @@ def packed_checkpoint(reached: Checkpoint) -> Float[np.ndarray, "L"]:
 
 
 def unpacked_checkpoint(row: Float[np.ndarray, "L"], events: int | None) -> Checkpoint:
-    """Return the checkpoint in a row of numbers of a run that looks for so many events; None if it looks for none."""
+    """Return the checkpoint in a row of numbers of a run that looks for this many events; None if it looks for none."""
     done, outcome, numbers = int(row[0]), Outcome(int(row[1])), row[2:]
     if events is None:
         return Checkpoint(done, outcome, numbers)

@@ -76,15 +76,15 @@ def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scena
 
 
 @contextlib.contextmanager
-def telling_how_to_go_on(store: Path, what: str, standing: Callable[[], object]) -> Iterator[None]:
-    """Tell, if the writing of a store is stopped or fails, how far it came and how to go on."""
+def reporting_how_to_resume(store: Path, what: str, standing: Callable[[], object]) -> Iterator[None]:
+    """Tell, if the writing of a store is stopped or fails, how far it came and how to resume."""
     again = f"nonholo.resume({str(store)!r})"
     try:
         yield
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(f"Stopped at {standing()}. Go on with {again} (nonholo resume).") from None
+        raise KeyboardInterrupt(f"Stopped at {standing()}. Resume with {again} (nonholo resume).") from None
     except OSError as failure:
-        remedy = "Free space" if failure.errno in _FULL else "Remedy that"
+        remedy = "Free space" if failure.errno in _FULL else "Solve the problem"
         reason = f"{failure.strerror or failure}. {what} stands at {standing()}. {remedy}, then call {again}"
         raise OSError(failure.errno or errno.EIO, reason, str(store)) from failure
 
@@ -110,7 +110,7 @@ def check_target(path: str | Path, *, overwrite: bool = False, new: str | None =
     if not Path(path).exists():
         return
     if new:
-        raise _exists(path, "Choose another path, or go on with what is there: nonholo.resume(path).", new)
+        raise _exists(path, "Choose another path, or resume what is there: nonholo.resume(path).", new)
     if not overwrite:
         raise _exists(path, "Choose another path, or pass overwrite=True (--overwrite) to replace it.")
     if format_of(path) != FORMAT:
@@ -183,7 +183,7 @@ def is_coordinate(name: str) -> bool:
 def create_array(
     group: zarr.Group, name: str, variable: xarray.Variable, rows: int, chunk: int, *, is_coordinate: bool
 ) -> zarr.Array:
-    """Make the array of a variable for so many rows, so many in a chunk; rows that are not written are NaN.
+    """Make the array of a variable for this many rows, this many in a chunk; rows that are not written are NaN.
 
     Chunks are compressed, then get a checksum of what is on disk.
     """

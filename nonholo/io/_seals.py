@@ -21,7 +21,7 @@ from nonholo.io._stored_events import EVENTS
 CHECKPOINTS = "run/checkpoints"
 WHOLE = "whole"
 BEFORE = -1
-"""What is sealed where there are no blocks, and the number of the block that ends where the first one begins."""
+"""The seal where there are no blocks, and the number of the block that ends where the first one begins."""
 _CRC, _BITS = 4, 48  # bytes at the end of a chunk; bits of a seal, which a float64 holds
 
 
@@ -99,7 +99,7 @@ class Blocks(NamedTuple):
         return reached, seal
 
     def seal(self, block: int, reached: Checkpoint, chunks: int) -> int:
-        """Return the seal of a block that ends at a checkpoint; so many chunks of crossings were there before."""
+        """Return the seal of a block that ends at a checkpoint; this many chunks of crossings were there before."""
         return seal_of(self.path, block, itertools.starmap(self.file, self._chunks(block, reached, chunks)))
 
     def _chunks(self, block: int, reached: Checkpoint, chunks: int) -> list[tuple[str, int]]:

@@ -18,7 +18,7 @@ _PLACE = 4  # entries of a row before its state: event, step, fraction, directio
 
 
 class Seen(NamedTuple):
-    """What a run has seen of its events at a checkpoint.
+    """The state of the events of a run at a checkpoint.
 
     Attributes:
         counts: Crossings of each so far.
@@ -36,7 +36,7 @@ class Seen(NamedTuple):
 
 
 def seen_nothing(events: int) -> Seen:
-    """Return what is kept of so many events before the first state."""
+    """Return what is kept of this many events before the first state."""
     return Seen(np.zeros(events, dtype=np.int64), np.zeros(events), 0.0, -1, 0)
 
 
@@ -102,7 +102,7 @@ def known(rows: Float[np.ndarray, "D width"], after: int = 0) -> Float[np.ndarra
 
 
 def described(events: list[dict[str, Any]]) -> str:
-    """Name events with what they are told.
+    """Name events with their options.
 
     Example:
         >>> described([{"name": "cusp", "direction": 0, "stop": 0}, {"name": "east", "direction": 1, "stop": 3}])

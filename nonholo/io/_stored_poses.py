@@ -23,7 +23,7 @@ _WANTED = ("time", "canonical_pose", "turned")
 
 
 class StoredPoses(NamedTuple):
-    """What of a store tells where the body is: its system, the number of saved states, their arrays and the names."""
+    """The part of a store that holds the poses: its system, the number of saved states, their arrays and the names."""
 
     path: Path
     system: System
@@ -96,6 +96,7 @@ def _system(path: Path, stored: dict[str, Any]) -> System:
 
 def _warn(path: Path, done: int, steps: int) -> None:
     owner = owner_of(path)
-    now = f"It is being written by {owner}." if owner else f"Go on with nonholo.resume({str(path)!r}) (nonholo resume)."
+    resume = f"Resume with nonholo.resume({str(path)!r}) (nonholo resume)."
+    now = f"It is being written by {owner}." if owner else resume
     told = f"The run in '{path}' is not finished: its poses go up to step {done} of {steps}. {now}"
     warnings.warn(told, RuntimeWarning, stacklevel=4)

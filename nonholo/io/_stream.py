@@ -121,7 +121,7 @@ class Stream:
         return full - (full > 0 and done != self.plan.stop(full - 1))  # it failed, or was extended
 
     def saved(self, full: int) -> int:
-        """Return the number of saved states in so many full blocks."""
+        """Return the number of saved states in this many full blocks."""
         return min(full * self.plan.rows, 1 + self.plan.steps // self.plan.every)
 
     def finished_blocks(self) -> int:
@@ -147,7 +147,7 @@ class Stream:
         return not any(name.startswith(CANONICAL) for name in self._blocks.names())
 
     def _turn_before(self, row: int) -> np.ndarray | None:
-        """Return the heading or the quaternion of the state before a row, on which what follows goes on."""
+        """Return the heading or the quaternion of the state before a row, on which what follows continues."""
         turned = [name for name in HEADED if name in self._arrays]
         return np.ravel(self._arrays[turned[0]][row - 1 : row])[None] if turned and row > 0 else None
 
@@ -168,7 +168,7 @@ class Stream:
         check_rows(chunks, begin, seen, self.plan.begin(block))
 
     def lengthened(self, steps: int) -> "Stream":
-        """Return the stream with so many more steps to go; a last block that was not full is computed again."""
+        """Return the stream with this many more steps to go; a last block that was not full is computed again."""
         plan = self.plan._replace(steps=self.plan.steps + steps)
         longer = dataclasses.replace(self, plan=plan)
         run = json.loads(read_attributes(self.path)["run"]) | {"steps": plan.steps}
@@ -236,7 +236,7 @@ def open_stream(path: str | Path) -> Stream:
     """Return the stream of a store that a run was written to."""
     stored = read_attributes(path)
     if "run" not in stored:
-        remedy = "Run it again with simulate(..., store=...) to be able to go on."
+        remedy = "Run it again with simulate(..., store=...) to be able to resume."
         raise error("resume(store=...)", "have checkpoints", f"'{path}', which was saved whole", remedy)
     run = json.loads(stored["run"])
     plan = Plan(run["steps"], stored["save_every"], run["rows"])
@@ -244,7 +244,7 @@ def open_stream(path: str | Path) -> Stream:
 
 
 def writable_array(path: Path, name: str, shape: Sequence[int] | None = None) -> zarr.Array:
-    """Open an array of a store to go on with, of a known shape but for the number of rows."""
+    """Open an array of a store to continue, of a known shape but for the number of rows."""
     where = "resume(store=...)"
     try:
         array = zarr.open_array(path / name, mode="r+", zarr_format=3)
@@ -258,7 +258,7 @@ def writable_array(path: Path, name: str, shape: Sequence[int] | None = None) ->
 
 
 class Standing(NamedTuple):
-    """How far an unfinished run came: good steps that are kept, steps in all, and who is writing it, if anybody."""
+    """Progress of an unfinished run: good steps that are kept, steps in total, and who is writing it, if anybody."""
 
     done: int
     steps: int
@@ -286,8 +286,8 @@ def _create(part: Path, first: Orbit, plan: Plan, opening: Checkpoint, extra: di
         create_array(group, name, variable, rows, plan.rows, is_coordinate=is_coordinate(name))
     row = np.append(packed_checkpoint(opening), seal_of(part, BEFORE, []))
     group.create_group("run")
-    labelled = xarray.Variable(("block", "entry"), row[None])
-    checkpoints = create_array(group, CHECKPOINTS, labelled, plan.blocks + 1, 1, is_coordinate=True)
+    labeled = xarray.Variable(("block", "entry"), row[None])
+    checkpoints = create_array(group, CHECKPOINTS, labeled, plan.blocks + 1, 1, is_coordinate=True)
     checkpoints[0] = row
     if first.events is not None:
         create_crossings(group, first.events)

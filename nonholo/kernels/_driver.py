@@ -1,6 +1,6 @@
 """The compiled loop over steps: warm start, correction, certificate, restart from zero, compensated momentum.
 
-The state is one array, so that a run can stop after any step and go on with the same bits:
+The state is one array, so that a run can stop after any step and continue with the same bits:
 momentum (2), its compensation (2), the last three Cayley coordinates (6), pose (4).
 """
 

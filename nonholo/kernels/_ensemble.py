@@ -27,7 +27,7 @@ _LOOK = 1024  # steps between two looks at whether to stop
 
 
 class MemberRows(NamedTuple):
-    """What a run writes for each member; a member that fails leaves its later states as they are.
+    """The record of a run for each member; a member that fails leaves its later states as they are.
 
     Attributes:
         momenta: Scaled momenta, (members, states, 2).

@@ -1,4 +1,4 @@
-"""What scalar kernels need: a decorator for numba and JAX, and a square root for both."""
+"""Tools of scalar kernels: a decorator for numba and JAX, and a square root for both."""
 
 import math
 from typing import Any

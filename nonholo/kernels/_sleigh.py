@@ -17,7 +17,7 @@ from nonholo.kernels._scalar import COMPILED, scalar, sqrt
 
 
 class SleighBody(NamedTuple):
-    """Mass, moment of inertia about the centre of mass, offset along the blade."""
+    """Mass, moment of inertia about the center of mass, offset along the blade."""
 
     mass: float
     inertia: float
@@ -74,7 +74,7 @@ def increment(p: SleighBody, m1: float, m2: float, y1: float, y2: float) -> tupl
 def move(
     p: SleighBody, y1: float, y2: float, q0: float, q1: float, q2: float, q3: float
 ) -> tuple[float, float, float, float]:
-    """Return the pose (cos, sin, x, y) of g W, its heading renormalised."""
+    """Return the pose (cos, sin, x, y) of g W, its heading renormalized."""
     scale = 1 / (1 + y1 * y1)
     cos, sin = (1 - y1 * y1) * scale, 2 * y1 * scale
     along = 2 * y2 * scale

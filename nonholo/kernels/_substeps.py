@@ -1,4 +1,4 @@
-"""What one substep of a composition needs of each body: a root over given momenta, the push and the move at that root.
+"""Functions of bodies for a substep of a composition: a root over given momenta, the push and the move at that root.
 
 The same pieces for every body, chosen by its type; numba chooses when it compiles. Tops in space and sleighs in the
 plane have a loop of their own, in `_composition`.

@@ -106,7 +106,7 @@ def increment(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> tupl
 def move(
     p: SuslovBody, y1: float, y2: float, q0: float, q1: float, q2: float, q3: float
 ) -> tuple[float, float, float, float]:
-    """Return the quaternion of g W, renormalised: W turns about the body axis (-y2, y1, 0)."""
+    """Return the quaternion of g W, renormalized: W turns about the body axis (-y2, y1, 0)."""
     z0 = 1 / sqrt(1 + y1 * y1 + y2 * y2)
     x, y = -y2 * z0, y1 * z0
     r0, r1 = q0 * z0 - q1 * x - q2 * y, q0 * x + q1 * z0 - q3 * y
@@ -180,7 +180,7 @@ def _homogeneous_residual(p, m1, m2, z):  # noqa: ANN001, ANN202
 
 @scalar
 def _solve(p, m1, m2, z, g1, g2, g3):  # noqa: ANN001, ANN202
-    """Solve the linearised homogeneous equations with the third right-hand side along z; also the determinant."""
+    """Solve the linearized homogeneous equations with the third right-hand side along z; also the determinant."""
     z0, z1, z2 = z
     s = c_perp(p, z1, z2)
     a0 = p.b11 * z1 + p.b12 * z2 - 2 * z0 * m1

@@ -1,4 +1,4 @@
-"""Mechanics in coordinates: the discrete Lagrange-d'Alembert principle on R^n, and the flow it discretises."""
+"""Mechanics in coordinates: the discrete Lagrange-d'Alembert principle on R^n, and the flow it discretizes."""
 
 from nonholo.base.checks import needs
 

@@ -25,7 +25,7 @@ Step = Callable[[Any, Array, State, Array], tuple[State, Array, Array]]
 
 
 def checked_counts(steps: Any, save_every: Any, numbers: int) -> tuple[int, int]:
-    """Return numbers of steps, refused where memory cannot hold so many numbers for each saved state, or in a year."""
+    """Return numbers of steps, refused where memory cannot hold this many numbers of each saved state, or in a year."""
     steps, every = step_counts(steps, save_every)
     within_a_year("simulate(steps=...)", _LEAST * steps, "Pass fewer steps, or a larger time_step.")
     within_memory("simulate(steps=...)", 8.0 * numbers * (1 + steps // every), "Raise save_every.")

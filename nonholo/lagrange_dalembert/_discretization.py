@@ -12,7 +12,7 @@ from nonholo.systems import AbstractCoordinateDiscretization
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class CoordinateDiscretization(AbstractCoordinateDiscretization[CoordinateOrbit]):
-    """A discretised system in coordinates, made by `nonholo.discretize`.
+    """A discretized system in coordinates, made by `nonholo.discretize`.
 
     Attributes:
         system: What moves.
@@ -59,13 +59,13 @@ class CoordinateDiscretization(AbstractCoordinateDiscretization[CoordinateOrbit]
             body_velocity: Start with this velocity, which must satisfy the constraint.
             displacement: Start with $q_1 - q_0$, which must satisfy the discrete constraint.
             momentum: Start with this momentum; only its action on admissible velocities counts.
-            save_every: Keep every so many steps.
-            throw: Raise if the run cannot go on; otherwise return the good steps and the outcome.
+            save_every: Steps between saved states.
+            throw: Raise if the run cannot continue; otherwise return the good steps and the outcome.
             progress: Show a progress bar on standard error.
 
         Raises:
             ValueError: A bad argument, before any work.
-            OutcomeError: With `throw`, the run could not go on; the error's `orbit` holds every good step.
+            OutcomeError: With `throw`, the run could not continue; the error's `orbit` holds every good step.
 
         Example:
             >>> from nonholo.lagrange_dalembert import LagrangeDAlembert

@@ -34,7 +34,7 @@ class Root(NamedTuple):
 
 
 class _Path(NamedTuple):
-    """How far a root has been followed.
+    """The progress along the path of a root.
 
     Attributes:
         count: Number of attempts.
@@ -146,9 +146,9 @@ def _newton(correction: Correction, v: Array, multipliers: Array, offset: Array)
         i, before, root = carry
         dv, dm, size, sign, regularity = correction(root.velocity, root.multipliers, offset)
         done = size <= _TOLERANCE
-        going = (i == 0) | (size <= _CONTRACTION * before)
+        contracts = (i == 0) | (size <= _CONTRACTION * before)
         after = Root(root.velocity + dv, root.multipliers + dm, done, sign, regularity)
-        return jnp.where(going | done, i + 1, _ITERATIONS), size, after
+        return jnp.where(contracts | done, i + 1, _ITERATIONS), size, after
 
     zero = jnp.zeros(())
     start = (jnp.asarray(0), zero, Root(v, multipliers, jnp.asarray(False), zero, zero))

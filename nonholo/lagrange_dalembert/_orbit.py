@@ -67,11 +67,11 @@ class CoordinateOrbit:
         return len(self.time)
 
     def to_dataset(self) -> Any:
-        """Return the orbit as a labelled `xarray.Dataset`; multipliers that do not exist are NaN."""
-        return labelled(self, _VARIABLES)
+        """Return the orbit as a labeled `xarray.Dataset`; multipliers that do not exist are NaN."""
+        return labeled(self, _VARIABLES)
 
 
-def labelled(orbit: Any, labels: Labels) -> Any:
+def labeled(orbit: Any, labels: Labels) -> Any:
     """Return the arrays of an orbit as an `xarray.Dataset`; rows that do not exist are NaN."""
     import xarray
 

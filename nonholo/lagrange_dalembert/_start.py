@@ -1,4 +1,4 @@
-"""Where a motion starts: checks of a system at a point, and the velocity or displacement it sets out with."""
+"""The start of a motion: checks of a system at a point, and the velocity or displacement it sets out with."""
 
 from typing import Any
 
@@ -60,7 +60,7 @@ def consistent(system: LagrangeDAlembert, q: Float[np.ndarray, "n"], h: Any) -> 
     missed = np.abs(slope @ directions.T)
     if not missed.max() <= _CONSISTENT * np.linalg.norm(slope, axis=1).max() or np.linalg.matrix_rank(slope) < len(A):
         got = f"derivatives {slope.tolist()} beside the forms {A.tolist()} at {q.tolist()}"
-        remedy = "Discretise the same forms, or change the forms."
+        remedy = "Discretize the same forms, or change the forms."
         raise error(where, "have derivatives along q_next that span the constraint forms", got, remedy)
 
 

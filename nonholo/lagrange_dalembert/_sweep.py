@@ -18,7 +18,7 @@ State = tuple[Array, Array]
 
 
 class Motion(NamedTuple):
-    """What a solve needs of a system, each a function of the system and configuration and velocity.
+    """Functions of a system for a solver, each of the system and configuration and velocity.
 
     Attributes:
         rate: The rate of change of a state.

@@ -1,4 +1,4 @@
-"""What a system in coordinates is: a Lagrangian, constraint forms, and the rule that discretises both."""
+"""A system in coordinates: a Lagrangian, constraint forms, and the rule that discretizes both."""
 
 import dataclasses
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What an example is: a system in coordinates, a start, and what is known."""
+"""The form of an example: a system in coordinates, a start, and what is known."""
 
 import dataclasses
 from collections.abc import Callable, Mapping

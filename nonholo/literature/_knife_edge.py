@@ -20,7 +20,7 @@ def knife_edge_on_incline(
     speed: float = 0.0,
     turning: float = 1.0,
 ) -> Example:
-    r"""A blade on a slope that falls along x: contact point (x, y), which is the centre of mass, and heading phi.
+    r"""A blade on a slope that falls along x: contact point (x, y), which is the center of mass, and heading phi.
 
     $$ L = \tfrac m2(\dot x^2 + \dot y^2) + \tfrac J2\dot\varphi^2 + m G x, \qquad
        \dot x\sin\varphi - \dot y\cos\varphi = 0, \qquad G = g\sin\alpha. $$

@@ -77,7 +77,7 @@ def non_reversible(*, asymmetry: float = 0.5, turning: float = 2.6) -> Example:
     reverses the motion on each of its levels; when it rotates and $\epsilon \ne 0$ no reflection does. Energy is
     conserved all the same, and so is that of the pendulum. But without a reversal the energy error of the discrete map
     is not bounded: the energy of the oscillators drifts in proportion to time and $h^2$, while with $\epsilon = 0$ it
-    does not. This shows that good energy behaviour is owed to reversibility, not to the discrete principle.
+    does not. This shows that good energy behavior is owed to reversibility, not to the discrete principle.
 
     Reference: [modin-verdier-2020], whose construction of perturbed, coupled test problems this follows (with
     parameters of our own).

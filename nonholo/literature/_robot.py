@@ -41,14 +41,14 @@ def two_wheeled_robot(
        u = u_\infty\tanh\kappa(t - t_0), \quad \omega = \omega_0\,\mathrm{sech}\,\kappa(t - t_0), $$
 
     with $u_\infty = \mathrm{sgn}(\ell)\sqrt{2E/M}$, $|\omega_0| = \sqrt{2E/K}$, $\kappa = m\ell u_\infty/K$. With the
-    centre of mass on the axle both are constant and the robot drives on a circle.
+    center of mass on the axle both are constant and the robot drives on a circle.
 
     Reference: [neimark-fufaev-1972] for the equations; [bloch-2003], section 1.7, for the sleigh.
 
     Args:
         mass: m, with the wheels.
-        inertia: J, about the centre of mass.
-        offset: l, of the centre of mass in front of the axle.
+        inertia: J, about the center of mass.
+        offset: l, of the center of mass in front of the axle.
         half_width: c, half the distance of the wheels.
         wheel_radius: R.
         wheel_inertia: J_w, of one wheel about its axle.

@@ -42,7 +42,7 @@ def snakeboard(
 
     Args:
         mass: m.
-        half_length: r, from the centre to the wheels.
+        half_length: r, from the center to the wheels.
         rotor_inertia: J_0, less than m r^2.
         wheel_inertia: J_1, of one wheel pair.
         configuration: (x, y, theta, psi, phi) at the start, phi between -pi/2 and pi/2.

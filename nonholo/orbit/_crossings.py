@@ -1,4 +1,4 @@
-"""What events found: the crossings of each, and which one ended the motion."""
+"""Results of events: the crossings of each, and which one ended the motion."""
 
 import abc
 import dataclasses
@@ -56,7 +56,7 @@ FoundT = TypeVar("FoundT")
 
 
 class AbstractEventLog(abc.ABC, Generic[FoundT]):
-    """What events found, by name or position.
+    """The crossings of events, by name or position.
 
     Attributes:
         names: The names of the events.

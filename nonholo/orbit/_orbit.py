@@ -2,7 +2,7 @@ r"""Orbits store compact states in the canonical body frame of their system; mat
 
 A state is the momentum along the constraint subspace (spatial momentum for a right-invariant constraint), for a
 discrete orbit the chart coordinates of the displacement, and the compact pose. `AbstractMotion` is what a
-discretisation or a flow must know to decode them.
+discretization or a flow must know to decode them.
 """
 
 import abc
@@ -30,7 +30,7 @@ def as_orbit(where: str, value: Any, coordinates: str) -> "Orbit":
 
 
 class AbstractMotion(abc.ABC):
-    """A rule of motion of a system: a discretisation or the continuous flow."""
+    """A rule of motion of a system: a discretization or the continuous flow."""
 
     system: System
 
@@ -76,7 +76,7 @@ class Orbit:
     displacement that of the whole step.
 
     Attributes:
-        motion: The discretisation or flow that made it.
+        motion: The discretization or flow that made it.
         time: Times of the saved states, shape (K,).
         reduced_momentum: Compact momenta, canonical frame, shape (K, k).
         cayley: Chart coordinates of the displacements, canonical frame, shape (K, m), m = k where the constraint is
@@ -195,7 +195,8 @@ class Orbit:
     def pose(self) -> Float[np.ndarray, "K size"] | None:
         """Compact poses of the group in the user's body frame; None if not reconstructed.
 
-        A quaternion and its opposite are one pose; signs need not go on from row to row, as those of `to_dataset` do.
+        A quaternion and its opposite are one pose; signs need not continue from row to row, as those of `to_dataset`
+        do.
         """
         return None if self.canonical_pose is None else poses(self.system, self.canonical_pose)
 
@@ -247,7 +248,7 @@ class Orbit:
         return self.system.canonical.constrained_energy(self.reduced_momentum)
 
     def to_dataset(self, *, decoded: bool = False) -> Any:
-        """Return the orbit as a labelled `xarray.Dataset`, in the user's body frame.
+        """Return the orbit as a labeled `xarray.Dataset`, in the user's body frame.
 
         `nonholo.io.orbit_to_dataset` names its variables; with `decoded` there are matrices and multipliers too.
         """

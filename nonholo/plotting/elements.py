@@ -36,10 +36,10 @@ def draw_surface(axes: Any, momentum: Float[np.ndarray, "R C 3"]) -> Any:
     length = np.linalg.norm(normal, axis=-1, keepdims=True)
     light = np.abs(normal / np.where(length > 0, length, 1.0) @ (np.array([0.35, -0.45, 0.82])))
     shade = 0.55 + 0.45 * light[..., None]
-    colours = np.concatenate([shade * to_rgb(_SHEET), np.full(shade.shape, _OPACITY)], axis=-1)
+    colors = np.concatenate([shade * to_rgb(_SHEET), np.full(shade.shape, _OPACITY)], axis=-1)
     rows, columns = x.shape
     return axes.plot_surface(
-        x, y, z, facecolors=colours, rcount=rows, ccount=columns, linewidth=0, antialiased=False, shade=False
+        x, y, z, facecolors=colors, rcount=rows, ccount=columns, linewidth=0, antialiased=False, shade=False
     )
 
 

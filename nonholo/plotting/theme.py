@@ -1,6 +1,6 @@
 """The look of every picture: one palette, one style sheet, new axes. Nothing is drawn here.
 
-Colours are from the palette of Okabe and Ito, legible to colour-blind readers; the sheet is applied while drawing.
+Colors are from the palette of Okabe and Ito, legible to color-blind readers; the sheet is applied while drawing.
 """
 
 import functools
@@ -59,10 +59,10 @@ def axes_or_new(axes: Axes | None, size: tuple[float, float] = (6.0, 5.0)) -> Ax
 
 
 def time_scale(orbit: Orbit) -> Normalize:
-    """Return the map from times of an orbit to the colours of `TIME`.
+    """Return the map from times of an orbit to the colors of `TIME`.
 
-    The colours are spent on the transition and as long again, so that they do not fade in the uniform motion of a long
-    run; earlier and later times have the colours of the ends.
+    The colors are spent on the transition and as long again, so that they do not fade in the uniform motion of a long
+    run; earlier and later times have the colors of the ends.
     """
     first, last = float(orbit.time.min()), float(orbit.time.max())
     momentum = orbit.reduced_momentum
@@ -76,26 +76,26 @@ def time_scale(orbit: Orbit) -> Normalize:
     return Normalize(first, last if last > first else first + 1.0, clip=True)
 
 
-def component_colours(count: int) -> list[Any]:
-    """Return colours for so many lines: the palette, or shades from one end to the other if they are too many."""
+def component_colors(count: int) -> list[Any]:
+    """Return colors for this many lines: the palette, or shades from one end to the other if they are too many."""
     if count <= len(COMPONENTS):
         return list(COMPONENTS[:count])
     return [tuple(shade) for shade in matplotlib.colormaps["plasma"](np.linspace(0.0, 0.88, count))]
 
 
-def end_colours(orbit: Orbit) -> list[tuple[float, float, float, float]]:
-    """Return the colours of the first and the last state."""
+def end_colors(orbit: Orbit) -> list[tuple[float, float, float, float]]:
+    """Return the colors of the first and the last state."""
     first, last = TIME(time_scale(orbit)(orbit.time[[0, -1]]))
     return [tuple(first), tuple(last)]
 
 
 def mark_time(axes: Axes, orbit: Orbit) -> LineCollection | None:
-    """Lay the colours of time along the bottom of axes whose abscissa is time: the key to the other panels."""
+    """Lay the colors of time along the bottom of axes whose abscissa is time: the key to the other panels."""
     if len(orbit) < 2:
         return None
     scale = time_scale(orbit)
-    coloured = scale.inverse(np.linspace(0.0, 1.0, 129))
-    ends = np.unique(np.concatenate([orbit.time[[0, -1]], coloured]))
+    colored = scale.inverse(np.linspace(0.0, 1.0, 129))
+    ends = np.unique(np.concatenate([orbit.time[[0, -1]], colored]))
     ground = np.stack([ends, np.zeros_like(ends)], axis=-1)
     strip = LineCollection(pieces(ground), transform=axes.get_xaxis_transform())
     strip.set(

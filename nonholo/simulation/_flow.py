@@ -92,7 +92,7 @@ def flow(
         OutcomeError: The solver could not meet the tolerances; its `orbit` holds every good state.
 
     Example:
-        The sleigh ends up gliding straight ahead, turned by pi sqrt(1 + J/(m a^2)) in all:
+        The sleigh ends up gliding straight ahead, turned by pi sqrt(1 + J/(m a^2)) in total:
 
         >>> sleigh = nh.ChaplyginSleigh(mass=1.0, inertia=0.75, a=0.5)
         >>> orbit = nh.flow(sleigh, body_velocity=(1e-9, -2.0, 0.0), times=(0.0, 400.0), method="closed_form")

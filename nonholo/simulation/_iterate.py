@@ -50,7 +50,7 @@ def iterate(
     n > 3, the last bits of these products can depend on how many rows are decoded at once; the motion does not.)
 
     Args:
-        discrete: The discretised system, with a compiled step.
+        discrete: The discretized system, with a compiled step.
         steps: Number of steps N.
         block_steps: Steps of a block, a multiple of `save_every`; by default blocks of a few megabytes.
         body_velocity: As in `simulate`, and so are the others.
@@ -58,13 +58,13 @@ def iterate(
         displacement: See `simulate`.
         momentum: See `simulate`.
         configuration: See `simulate`.
-        save_every: Keep every so many steps.
+        save_every: Steps between saved states.
         branch: "principal".
         reconstruct: Also compute poses.
         backend: "auto" or "numba".
         events: As in `simulate`; the `events` of a block are those after the last step of the block before. The block
             in which an event stops the run is the last one.
-        throw: Raise if the run cannot go on, after its last good block; otherwise that block's outcome says so.
+        throw: Raise if the run cannot continue, after its last good block; otherwise that block's outcome says so.
         progress: Show a progress bar on standard error.
 
     Returns:
@@ -117,7 +117,7 @@ def _computed(
 
 
 def _given(run: CompiledRun, block: Orbit, done: int, steps: int, throw: bool) -> Iterator[Orbit]:
-    """Give a block, and raise if the run cannot go on after it."""
+    """Give a block, and raise if the run cannot continue after it."""
     if len(block) or not throw:
         yield block
     if throw and block.outcome != Outcome.successful:

@@ -1,4 +1,4 @@
-"""Going on with a run that was written to a store: the part of `resume` for orbits, and `extend`."""
+"""Resuming a run that was written to a store: the part of `resume` for orbits, and `extend`."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -10,7 +10,7 @@ from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.simulation.events import Watch
 from nonholo.simulation.runs import CompiledRun, closed_step, compiled_run
-from nonholo.simulation.stores import go_on, watch_of_store
+from nonholo.simulation.stores import continue_run, watch_of_store
 
 if TYPE_CHECKING:
     from nonholo.io import Stream
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 def resume_run(
     store: str | Path, *, discrete: Discretization | None, events: Any, throw: bool, progress: bool
 ) -> Orbit:
-    """Go on with the run of a store: what `resume` does once it has asked the store, and found no sweep."""
+    """Resume the run of a store: what `resume` does once it has asked the store, and found no sweep."""
     stream, run, watch = _opened("resume", store, discrete, events)
     with io.locked(stream.path):
-        return go_on(run, io.open_stream(stream.path), watch, throw=throw, progress=progress)
+        return continue_run(run, io.open_stream(stream.path), watch, throw=throw, progress=progress)
 
 
 def extend(
@@ -54,11 +54,11 @@ def extend(
         The whole orbit, as from `simulate(..., store=...)`.
 
     Raises:
-        ValueError: A bad number of steps, or a run that ended because it could not go on, or by an event; and as in
+        ValueError: A bad number of steps, or a run that ended because it could not continue, or by an event; and as in
             `resume`.
         BlockingIOError: Another process is writing the store; the message names it.
-        OSError: The disk is full; `resume` goes on.
-        OutcomeError: With `throw`, the run could not go on.
+        OSError: The disk is full; `resume` continues.
+        OutcomeError: With `throw`, the run could not continue.
 
     Example:
         >>> orbit = nh.extend("run.zarr", 1_000_000)  # doctest: +SKIP
@@ -72,7 +72,7 @@ def extend(
     with io.locked(stream.path):
         _refuse_ended(io.read_attributes(stream.path))
         longer = io.open_stream(stream.path).lengthened(steps)
-        return go_on(run, longer, watch, throw=throw, progress=progress)
+        return continue_run(run, longer, watch, throw=throw, progress=progress)
 
 
 def _refuse_ended(stored: dict[str, Any]) -> None:
@@ -80,10 +80,10 @@ def _refuse_ended(stored: dict[str, Any]) -> None:
     outcome, event = stored.get("outcome", Outcome.successful.name), stored.get("stopped_by")
     if event is not None:
         remedy = "Run it again without `stop`, or with a later one, to go past it."
-        raise error("extend(store=...)", "be a run that can go on", f"one that the event {event!r} ended", remedy)
+        raise error("extend(store=...)", "be a run that can continue", f"one that the event {event!r} ended", remedy)
     if outcome != Outcome.successful.name:
         remedy = f"{Outcome[outcome].message} More steps from there do not exist."
-        raise error("extend(store=...)", "be a run that can go on", f"outcome {outcome}", remedy)
+        raise error("extend(store=...)", "be a run that can continue", f"outcome {outcome}", remedy)
 
 
 def _opened(

@@ -87,19 +87,19 @@ def simulate(
 
     Branch rules. "nearest" is the root reached from the present W by continuation of the right-hand side along the
     segment from $P(W)|_d$ to $(Ad^*_W P(W))|_d$: started with a `displacement` off the principal branch, this is how
-    one goes on there. Every system with a left-invariant constraint has it. Of tops and sleighs with difference
+    one continues there. Every system with a left-invariant constraint has it. Of tops and sleighs with difference
     "matrix" all values are known: "smallest" and "largest" take the real one with that norm of the full momentum,
     "inner" and "outer" the one in that part of the invariant curve (n = 3 and det B > 2|c|^2, below the saddle's
     energy; of three there the nearest). A function `rule(found, present)` gets the `Branches` and the present W,
     and returns the index of a real one or None. A tie and a double root are `branch_unverified`.
 
-    A discretised `LagrangeDAlembert` runs the map of its `CoordinateDiscretization.simulate`. It starts at a
+    A discretized `LagrangeDAlembert` runs the map of its `CoordinateDiscretization.simulate`. It starts at a
     `configuration`, its q_0, and takes neither `restricted_velocity` nor `branch`, `reconstruct` and `backend`.
 
     Reference: [fedorov-zenkov-2004], equation (disc.momentum.eqn).
 
     Args:
-        discrete: The discretised system.
+        discrete: The discretized system.
         steps: Number of steps N; unthinned orbits have N + 1 states.
         body_velocity: Start with the principal W_0 that has the same momentum along the constraint (second order).
         restricted_velocity: The same, in rows of the constraint subspace.
@@ -107,20 +107,20 @@ def simulate(
             for compositions (order > 2), whose state is the restricted momentum.
         momentum: Start with this momentum, full (on the momentum locus) or along the constraint subspace.
         configuration: First pose, a matrix of the group; the identity by default.
-        save_every: Keep every so many steps.
+        save_every: Steps between saved states.
         branch: Which value of the map a step takes: "principal", "nearest", "smallest", "largest", "inner", "outer" or
             a function; see above. A velocity or restricted momentum starts at the principal W_0 with every rule.
         reconstruct: Also compute poses.
         backend: "numba" (closed forms, compiled), "jax" (the definition), or "auto" to choose.
         events: `Event`s, or functions of an orbit, whose changes of sign are found at every single step and located
             to rounding; see `Orbit.events`. A stopping event ends the run with the last saved state before it.
-        throw: Raise if the run cannot go on; otherwise return the good steps and the outcome.
+        throw: Raise if the run cannot continue; otherwise return the good steps and the outcome.
         progress: Show a progress bar on standard error.
         store: A new path. The saved states of a compiled run, and the crossings of its events, go there block by block,
-            in bounded memory; `resume` and `extend` go on with it. An orbit that would fill 1 GiB is not returned whole
+            in bounded memory; `resume` and `extend` continue it. An orbit that would fill 1 GiB is not returned whole
             but as its last block.
         checkpoint_every: Steps between two checkpoints of the store, a multiple of `save_every`; by default blocks of a
-            few megabytes. A run that is stopped loses at most so many steps.
+            few megabytes. A run that is stopped loses at most this many steps.
         scenario: A text that says how the orbit is made, kept in the store.
 
     Returns:
@@ -129,8 +129,8 @@ def simulate(
     Raises:
         ValueError: A bad argument, before any work.
         FileExistsError: There is something at the path `store`.
-        OSError: The disk is full; the store stays valid, and `resume` goes on.
-        OutcomeError: The start is not on the principal branch, or, with `throw`, the run could not go on; then the
+        OSError: The disk is full; the store stays valid, and `resume` continues.
+        OutcomeError: The start is not on the principal branch, or, with `throw`, the run could not continue; then the
             error's `orbit` holds every good step.
 
     Example:

@@ -1,4 +1,4 @@
-"""What a system is: a group, an inertia operator and the subspace that velocities are constrained to."""
+"""Systems: a group, an inertia operator and the subspace that velocities are constrained to."""
 
 from nonholo.systems import families
 from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, AbstractSystem, Equilibria, System

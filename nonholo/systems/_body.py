@@ -1,7 +1,7 @@
-r"""Bodies as people measure them: mass, centre of mass, inertia about it; and what a mass tensor says in those words.
+r"""Bodies as people measure them: mass, center of mass, inertia about it; and what a mass tensor says in those words.
 
-The mass tensor $J = \int r r^T dm$ and the inertia tensor $\mathrm{tr}(J)\,\mathrm{Id} - J$ are told apart here. Of a
-body with mass m, centre of mass a and mass tensor $J_C$ about it the tensor about the origin is $J_C + m\,aa^T$
+The mass tensor $J = \int r r^T dm$ and the inertia tensor $\mathrm{tr}(J)\,\mathrm{Id} - J$ are distinguished here. Of
+a body with mass m, center of mass a and mass tensor $J_C$ about it the tensor about the origin is $J_C + m\,aa^T$
 (Steiner), and the homogeneous one has the column $m\,a$ and the corner m besides.
 """
 
@@ -133,7 +133,7 @@ def _checked_space(where: str, group: AbstractMatrixGroup) -> tuple[int, bool]:
 
 
 def _about_center(where: str, inertia: Any, n: int) -> Array:
-    """Return the mass tensor about the centre of mass."""
+    """Return the mass tensor about the center of mass."""
     if n == 2:
         moment = scale(where, inertia, "Pass the moment of inertia about the center of mass, a number.")
         return moment / 2 * np.eye(2)

@@ -1,4 +1,4 @@
-"""The interface of systems in coordinates, which discretise, run and flow by themselves."""
+"""The interface of systems in coordinates, which discretize, run and flow by themselves."""
 
 import abc
 from typing import Any, Generic, TypeVar
@@ -10,7 +10,7 @@ DiscretizationT = TypeVar("DiscretizationT")
 
 
 class AbstractCoordinateDiscretization(abc.ABC, Generic[OrbitT]):
-    """A discretised system in coordinates: `nonholo.simulate` hands its arguments on to it."""
+    """A discretized system in coordinates: `nonholo.simulate` hands its arguments on to it."""
 
     @abc.abstractmethod
     def simulate(
@@ -33,7 +33,7 @@ class AbstractCoordinateSystem(abc.ABC, Generic[DiscretizationT, OrbitT]):
 
     @abc.abstractmethod
     def discretize(self, time_step: Any) -> DiscretizationT:
-        """Return the discretised system."""
+        """Return the discretized system."""
 
     @abc.abstractmethod
     def flow(

@@ -1,4 +1,4 @@
-r"""What tops and sleighs are, whatever class they were given as: five numbers in the axes of their constraint.
+r"""The normal form of tops and sleighs, whatever their class: five numbers in the axes of their constraint.
 
 A top on SO(n) turns in the planes $e_i\wedge e_n$ with velocities w; a sleigh on SE(n) in the planes $e_1\wedge e_j$,
 while its center of mass advances along $e_1$ with the velocity $u = v_1 + \alpha\cdot w$:

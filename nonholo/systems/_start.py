@@ -1,4 +1,4 @@
-"""Where a motion starts, whatever runs it: exactly one start, a pose of the group, an admissible velocity."""
+"""The start of a motion, whatever runs it: exactly one start, a pose of the group, an admissible velocity."""
 
 import dataclasses
 from typing import Any

@@ -47,7 +47,7 @@ def is_symmetric_pair(group: AbstractMatrixGroup, constraint_subspace: Any) -> b
 def symmetric_complement(group: AbstractMatrixGroup, constraint_subspace: Any) -> Float[np.ndarray, "s dim"] | None:
     r"""Return rows that span an $\mathfrak{h}$ of a symmetric pair with the constraint subspace, or None.
 
-    Every such $\mathfrak{h}$ lies in the normaliser $\mathfrak{n} = \{x : [x, \mathfrak{d}]\subset\mathfrak{d}\}$,
+    Every such $\mathfrak{h}$ lies in the normalizer $\mathfrak{n} = \{x : [x, \mathfrak{d}]\subset\mathfrak{d}\}$,
     contains $[\mathfrak{d}, \mathfrak{d}]$ and complements $\mathfrak{e} = \mathfrak{n}\cap\mathfrak{d}$, which must
     commute with $\mathfrak{d}$ and is then an abelian ideal of $\mathfrak{n}$. So $\mathfrak{h}$ is the graph of a map
     $\varphi$ from any complement $\mathfrak{h}_0 \supset [\mathfrak{d},\mathfrak{d}]$ to $\mathfrak{e}$; that it is a
@@ -68,23 +68,23 @@ def symmetric_complement(group: AbstractMatrixGroup, constraint_subspace: Any) -
     d = spanned(independent_rows(where, constraint_subspace, group.dim))
     constants, everything = _structure_constants(group), np.eye(group.dim)
     escape = _significant(_brackets(constants, everything, d) @ null_space(d).T)
-    normaliser = null_space(escape.reshape(group.dim, escape[0].size).T, _RANK)
+    normalizer = null_space(escape.reshape(group.dim, escape[0].size).T, _RANK)
     derived = spanned(_significant(_brackets(constants, d, d)).reshape(-1, group.dim), _RANK)
-    shared = _intersection(normaliser, d)
+    shared = _intersection(normalizer, d)
     fits = (
-        len(normaliser) + len(d) - len(shared) == group.dim
-        and len(spanned(np.concatenate([normaliser, derived]), _RANK)) == len(normaliser)
+        len(normalizer) + len(d) - len(shared) == group.dim
+        and len(spanned(np.concatenate([normalizer, derived]), _RANK)) == len(normalizer)
         and len(_intersection(derived, d)) == 0
         and not _significant(_brackets(constants, shared, d)).any()
     )
-    return _subalgebra(constants, normaliser, shared, derived) if fits else None
+    return _subalgebra(constants, normalizer, shared, derived) if fits else None
 
 
 def _subalgebra(
-    constants: np.ndarray, normaliser: np.ndarray, shared: np.ndarray, derived: np.ndarray
+    constants: np.ndarray, normalizer: np.ndarray, shared: np.ndarray, derived: np.ndarray
 ) -> np.ndarray | None:
-    """Solve for the graph of phi over a complement of `shared` in `normaliser`; None if there is none."""
-    rest = _intersection(normaliser, null_space(np.concatenate([derived, shared])))
+    """Solve for the graph of phi over a complement of `shared` in `normalizer`; None if there is none."""
+    rest = _intersection(normalizer, null_space(np.concatenate([derived, shared])))
     start = np.concatenate([derived, rest])
     if len(shared) == 0:
         return start

@@ -1,4 +1,4 @@
-"""Bodies in so many dimensions that full momenta and matrices are not made."""
+"""Bodies of high dimension, whose full momenta and matrices are not made."""
 
 import dataclasses
 

@@ -1,4 +1,4 @@
-"""The properties that groups, systems and discretisations must have, checked for ours and for users' own."""
+"""The properties that groups, systems and discretizations must have, checked for ours and for users' own."""
 
 from nonholo.testing._discretizations import check_discretization
 from nonholo.testing._groups import check_group

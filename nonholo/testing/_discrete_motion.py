@@ -1,4 +1,4 @@
-"""Measurements of a discretisation: its Lagrangian, its variety, its equations, what it keeps, its order."""
+"""Measurements of a discretization: its Lagrangian, its variety, its equations, what it keeps, its order."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Whether a discretisation follows its equations and keeps what it should."""
+"""Whether a discretization follows its equations and keeps what it should."""
 
 from typing import Any
 
@@ -66,7 +66,7 @@ def check_discretization(
     tolerance_factor: float = 1.0,
     throw: bool = True,
 ) -> Report:
-    r"""Check that a discretisation follows its equations, is of second order and keeps what is claimed of it.
+    r"""Check that a discretization follows its equations, is of second order and keeps what is claimed of it.
 
     $$ \langle P(W), x\rangle = \tfrac{d}{dt}l_d(e^{tx}W)\big|_0, \qquad
        P_{k+1} - \mathrm{Ad}^*_{W_k}P_k = \sum_j\lambda_j a^j, \qquad g_{k+1} = g_kW_k. $$
@@ -88,7 +88,7 @@ def check_discretization(
         What was measured.
 
     Raises:
-        ValueError: `discrete` is not a discretisation of order 2 of a system on a group.
+        ValueError: `discrete` is not a discretization of order 2 of a system on a group.
         AssertionError: With `throw`: names every check that failed, what is required and what was measured.
 
     Example:
@@ -98,10 +98,10 @@ def check_discretization(
         ('ok', True)
     """
     if not isinstance(discrete, Discretization):
-        remedy = "Pass `discretize(system, time_step)` of an LLSystem or a relative; coordinates are not covered."
-        requirement = "be a discretisation of a system on a group"
+        remedy = "Pass `discretize(system, time_step)` of an LLSystem or another system on a group; not in coordinates."
+        requirement = "be a discretization of a system on a group"
         raise error("check_discretization(discrete=...)", requirement, type(discrete).__name__, remedy)
-    refuse_composition("check_discretization(discrete=...)", discrete, "Check the discretisation of order 2.")
+    refuse_composition("check_discretization(discrete=...)", discrete, "Check the discretization of order 2.")
     flags("check_discretization", definition=definition, throw=throw)
     number = count("check_discretization(steps=...)", steps, "Pass the length of the orbit.")
     samples = OrbitSamples(discrete, seeded(rng), max(number, 4))
@@ -110,7 +110,7 @@ def check_discretization(
 
 
 def _conserved(discrete: Discretization) -> tuple[Check, ...]:
-    """Return the checks that depend on what the discretisation claims."""
+    """Return the checks that depend on what the discretization claims."""
     named = isinstance(discrete.difference, str) and discrete.constraint in ("skew", "exponential")
     back, energy = (None, ": not required"), (None, ": not required")
     if named:

@@ -1,4 +1,4 @@
-"""Whether a group is one, and does what systems and discretisations expect of it."""
+"""Whether a group is one, and does what systems and discretizations expect of it."""
 
 from typing import Any
 
@@ -31,7 +31,7 @@ def check_group(
     NumPy and JAX.
 
     Args:
-        group: A group of yours.
+        group: Your group.
         rng: Seed or generator of the samples; by default a fixed seed.
         compiled: Also compare with compiled JAX functions, which takes seconds.
         tolerance_factor: On every tolerance, for a basis of badly scaled matrices.
@@ -49,7 +49,7 @@ def check_group(
         True
     """
     if not isinstance(group, AbstractMatrixGroup):
-        remedy = "Pass SO(n), a MatrixGroup or a class of your own that implements AbstractMatrixGroup."
+        remedy = "Pass SO(n), a MatrixGroup or your own class that implements AbstractMatrixGroup."
         raise error("check_group(group=...)", "be a group", type(group).__name__, remedy)
     flags("check_group", compiled=compiled, throw=throw)
     samples = GroupSamples(group, seeded(rng))

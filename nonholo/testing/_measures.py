@@ -1,4 +1,4 @@
-"""How two arrays are compared and how a derivative is measured."""
+"""The comparison of two arrays and the measurement of a derivative."""
 
 from collections.abc import Callable
 from typing import Any

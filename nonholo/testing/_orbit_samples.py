@@ -1,4 +1,4 @@
-"""Short orbits of a discretisation, from one random admissible start, and the continuous motion to compare with.
+"""Short orbits of a discretization, from one random admissible start, and the continuous motion to compare with.
 
 The equations are homogeneous: n steps with an n-th of the velocity trace the path of one time step. So the order is
 measured at the given time step, which a discrete Lagrangian of the user's may contain.
@@ -29,7 +29,7 @@ class OrbitSamples:
     """Orbits and the functions that judge them.
 
     Args:
-        discrete: The discretisation.
+        discrete: The discretization.
         rng: Where the start comes from.
         steps: Number of steps of the orbit.
     """

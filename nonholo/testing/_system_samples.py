@@ -65,7 +65,7 @@ class SystemSamples:
 
     @functools.cached_property
     def rate(self) -> tuple[Float[np.ndarray, "4 k"], Float[np.ndarray, "4 N N"]]:
-        """What the vector field of the system says of restricted momentum and pose."""
+        """The rates of restricted momentum and pose by the vector field of the system."""
         k = len(self.S)
         state = np.concatenate([self.restricted, self.g.reshape(_COUNT, -1)], axis=-1)
         rate = vector_field(self.system)(0.0, state)

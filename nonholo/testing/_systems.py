@@ -44,7 +44,7 @@ def check_system(
         ('ok', True)
     """
     if not isinstance(system, AbstractSystem):
-        remedy = "Pass an LLSystem, a relative or a class of your own; systems in coordinates are not covered."
+        remedy = "Pass an LLSystem, another system on a group or your own class; not a system in coordinates."
         raise error("check_system(system=...)", "be a system on a group", _named(system), remedy)
     flags("check_system", throw=throw)
     samples = SystemSamples(system, seeded(rng))

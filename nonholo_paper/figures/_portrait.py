@@ -73,7 +73,7 @@ def _line(axes: Axes, end: Float[np.ndarray, "2"], **look: Any) -> None:
 
 
 def _arrow(axes: Axes, frame: Float[np.ndarray, "2 2"], angle: float) -> None:
-    """Put an arrow on an ellipse; angles decrease in size towards the attracting equilibrium, at zero."""
+    """Put an arrow on an ellipse; angles decrease in size toward the attracting equilibrium, at zero."""
     lean = np.copysign(_LEAN, angle)
     tail, head = (tuple(frame @ [np.cos(a), np.sin(a)]) for a in (angle + lean, angle - lean))
     look: Any = {"arrowstyle": "-|>", "mutation_scale": 13, "shrinkA": 0, "shrinkB": 0, "linewidth": 0}

@@ -1,4 +1,4 @@
-"""Figure Chsleigh: the sleigh, its pose and its centre of mass."""
+"""Figure Chsleigh: the sleigh, its pose and its center of mass."""
 
 import dataclasses
 import functools
@@ -32,8 +32,8 @@ class Sketch:
         axes: The axes.
         blade: The stroke of the blade.
         contact: The contact point.
-        mass: The centre of mass.
-        legs: From the contact point along the blade, then across it, to the centre of mass.
+        mass: The center of mass.
+        legs: From the contact point along the blade, then across it, to the center of mass.
     """
 
     axes: Axes
@@ -87,7 +87,7 @@ def _words(axes: Axes) -> None:
     for point, word, look in (
         ((0.5 * A + 0.25, 0.17), "$a$", named | {"color": theme.UNSTABLE}),
         ((A + 0.17, B / 2), "$b$", named | {"color": theme.UNSTABLE}),
-        ((A, B + 0.28), "centre of mass", plain),
+        ((A, B + 0.28), "center of mass", plain),
         ((-_BLADE - 0.05, 0.22), "blade", plain),
         ((0.02, -0.34), "$(x, y)$", plain),
     ):
@@ -104,12 +104,12 @@ def draw() -> Any:
     "Chsleigh.fig",
     "figure",
     "Section 5, figure of the sleigh",
-    r"$\theta$ and $(x, y)$ are the angle of the blade and the position of its contact point; the centre of mass has "
+    r"$\theta$ and $(x, y)$ are the angle of the blade and the position of its contact point; the center of mass has "
     r"the coordinates $(a, b)$ in the frame of the body.",
     tolerance=1e-12,
 )
 def sketch() -> Measured:
-    """Compare drawn points with the formula of the centre of mass, and with a pose and displacement of the library."""
+    """Compare drawn points with the formula of the center of mass, and with a pose and displacement of the library."""
     drawn = picture()
     contact, mass = (np.asarray(dots.get_offsets())[0] for dots in (drawn.contact, drawn.mass))
     along = np.diff(np.asarray(drawn.blade.get_xydata()), axis=0)[0]
@@ -131,7 +131,7 @@ FIGURE = Figure(
     "Chsleigh",
     ("Chsleigh.fig", "Caplag"),
     r"The sleigh, drawn with $\theta = 0.55$, $(x, y) = (2, 1.3)$, $a = 1.5$, $b = 0.65$. The blade (thick) touches "
-    r"the plane at $(x, y)$ and points along the first body axis, at the angle $\theta$ to the $x$ axis; the centre of "
+    r"the plane at $(x, y)$ and points along the first body axis, at the angle $\theta$ to the $x$ axis; the center of "
     r"mass is $a$ along it and $b$ across.",
     draw,
     sketch,

@@ -54,19 +54,19 @@ def picture() -> Geometry:
     """Draw it."""
     axes = MatplotlibFigure(figsize=(7.6, 6.2), layout="constrained").add_subplot()
     first, second = poses()
-    around, centre = np.linspace(0, 2 * np.pi, 361), first[:2, 2] + RADIUS * first[:2, 1]
+    around, center = np.linspace(0, 2 * np.pi, 361), first[:2, 2] + RADIUS * first[:2, 1]
     circle = axes.plot(
-        *(centre[:, None] + RADIUS * np.array([np.cos(around), np.sin(around)])), color=theme.LEVEL, linewidth=1.4
+        *(center[:, None] + RADIUS * np.array([np.cos(around), np.sin(around)])), color=theme.LEVEL, linewidth=1.4
     )[0]
     ends = np.stack([first[:2, 2], second[:2, 2]])
     for end in ends:
-        axes.plot(*np.stack([centre, end], axis=1), color=theme.LEVEL, linewidth=1.0, dashes=(4, 3))
+        axes.plot(*np.stack([center, end], axis=1), color=theme.LEVEL, linewidth=1.0, dashes=(4, 3))
     chord = axes.plot(*ends.T, color=theme.UNSTABLE, linewidth=1.8, zorder=3)[0]
     blades = tuple(_blade(axes, g, name) for g, name in ((first, "$X_k$"), (second, "$X_{k+1}$")))
     contacts = axes.scatter(*ends.T, s=46, facecolors="white", edgecolors=theme.INK, linewidths=1.6, zorder=8)
-    axes.scatter(*centre, s=16, color=theme.MUTED, zorder=3)
+    axes.scatter(*center, s=16, color=theme.MUTED, zorder=3)
     _angles(axes, ends)
-    _words(axes, ends, centre)
+    _words(axes, ends, center)
     axes.set(
         xlabel="$x$",
         ylabel="$y$",
@@ -89,7 +89,7 @@ def _blade(axes: Axes, g: Float[np.ndarray, "3 3"], name: str) -> Line2D:
 
 
 def _angles(axes: Axes, ends: Float[np.ndarray, "2 2"]) -> None:
-    """Mark the two equal angles between the chord and the blades; beyond the second point the chord goes on dashed."""
+    """Mark the two equal angles between the chord and the blades; beyond the second point the chord is dashed."""
     along = ends[1] - ends[0]
     beyond = ends[1] + 0.42 * along
     axes.plot(*np.stack([ends[1], beyond]).T, color=theme.UNSTABLE, linewidth=1.0, dashes=(4, 3), zorder=3)
@@ -103,11 +103,11 @@ def _angles(axes: Axes, ends: Float[np.ndarray, "2 2"]) -> None:
         axes.text(x, y, r"$\frac{\Delta\theta_k}{2}$", **named)
 
 
-def _words(axes: Axes, ends: Float[np.ndarray, "2 2"], centre: Float[np.ndarray, "2"]) -> None:
+def _words(axes: Axes, ends: Float[np.ndarray, "2 2"], center: Float[np.ndarray, "2"]) -> None:
     place: Any = {"textcoords": "offset points", "path_effects": theme.HALO, "zorder": 9}
     axes.annotate("$(x_k, y_k)$", ends[0], (-6, -20), ha="center", **place)
     axes.annotate("$(x_{k+1}, y_{k+1})$", ends[1], (12, -14), ha="left", **place)
-    axes.annotate(r"$\rho$", (ends[0] + centre) / 2, (-10, 0), ha="center", color=theme.MUTED, **place)
+    axes.annotate(r"$\rho$", (ends[0] + center) / 2, (-10, 0), ha="center", color=theme.MUTED, **place)
 
 
 def draw() -> Any:
@@ -130,7 +130,7 @@ def geometry() -> Measured:
     chord = np.diff(np.asarray(drawn.chord.get_xydata()), axis=0)[0]
     lines = [np.diff(np.asarray(blade.get_xydata()), axis=0)[0] for blade in drawn.blades]
     headings = [float(np.arctan2(line[1], line[0])) for line in lines]
-    centre = circle[:-1].mean(axis=0)
+    center = circle[:-1].mean(axis=0)
     before, after = ((heading, *contact) for heading, contact in zip(headings, contacts, strict=True))
     moved, seen = formulas.discrete_velocities(before, after), formulas.tangent_velocities(before, after)
     gaps = [
@@ -138,8 +138,8 @@ def geometry() -> Measured:
             np.arctan2(chord[1], chord[0]) - heading - sign * DELTA / 2
             for heading, sign in zip(headings, (1, -1), strict=True)
         ),
-        *(np.linalg.norm(contacts - centre, axis=1) - np.linalg.norm(circle - centre, axis=1).mean()),
-        *(line @ (contact - centre) for line, contact in zip(lines, contacts, strict=True)),
+        *(np.linalg.norm(contacts - center, axis=1) - np.linalg.norm(circle - center, axis=1).mean()),
+        *(line @ (contact - center) for line, contact in zip(lines, contacts, strict=True)),
         *(float(x - y) for x, y in zip(moved, seen, strict=True)),
         float(formulas.constraint_in_space(before, after)),
         float(formulas.radius(headings[1] - headings[0], moved[0])) - RADIUS,

@@ -56,7 +56,7 @@ def draw() -> Any:
     tolerance=1e-12,
 )
 def circles() -> Measured:
-    """Compare distances of drawn points and of the drawn curve from the centre with the radius."""
+    """Compare distances of drawn points and of the drawn curve from the center with the radius."""
     track, curve = picture()
     radius = float(formulas.radius(ANGLE, FIRST))
     dots, line = np.asarray(track.track.get_offsets()), np.asarray(curve.get_xydata())

@@ -71,7 +71,7 @@ def tracks() -> Measured:
 FIGURE = Figure(
     "cusps",
     ("cusps.fig",),
-    r"Discrete track of the sleigh (dots, coloured by time) and the continuous one from the same velocity (orange "
+    r"Discrete track of the sleigh (dots, colored by time) and the continuous one from the same velocity (orange "
     r"line): $m = J = 1$, $a = 0.6$, $b = 0$, time step 0.4, start with $\omega = 0.15$, $v_1 = -1$ at the origin, 30 "
     "steps. The discrete track has the cusp (star) too.",
     draw,

@@ -87,7 +87,7 @@ FIGURE = Figure(
     "generic_xy",
     ("generic_xy.fig",),
     r"Path of the blade for $m = J = 1$, $a = 0.6$ and $b = 0.4$ (left), $b = 0$ (right), energy 1/2, times from -7 to "
-    "7, coloured by time. Dark strokes: the blade; grey pins lead to the centre of mass. The sleigh arrives backwards, "
+    "7, colored by time. Dark strokes: the blade; gray pins lead to the center of mass. The sleigh arrives backwards, "
     "reverses in the cusp (star) and leaves forwards.",
     draw,
     cusp_of_the_track,

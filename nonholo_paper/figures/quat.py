@@ -35,14 +35,14 @@ class Foliation:
         curves: The invariant curves of the energies and of the saddles.
         line: The line of equilibria.
         saddles: The saddle points.
-        centres: The centres.
+        centers: The centers.
     """
 
     axes: Axes
     curves: tuple[LineCollection, ...]
     line: Line2D
     saddles: PathCollection
-    centres: PathCollection
+    centers: PathCollection
 
 
 @functools.cache
@@ -55,21 +55,21 @@ def picture() -> Foliation:
         draw_curve(axes, nh.invariant_curve(TOP, energy), color=theme.MUTED, linewidth=0.9) for energy in ENERGIES
     ]
     saddle, equatorial = float(found.saddle or 0), float(found.equatorial_saddle or 0)
-    for energy, colour in ((saddle, theme.DISCRETE), (equatorial, theme.COMPONENTS[2])):
-        curves.append(draw_curve(axes, nh.invariant_curve(TOP, energy, 1200), color=colour, linewidth=1.9, zorder=3))
+    for energy, color in ((saddle, theme.DISCRETE), (equatorial, theme.COMPONENTS[2])):
+        curves.append(draw_curve(axes, nh.invariant_curve(TOP, energy, 1200), color=color, linewidth=1.9, zorder=3))
     axes.plot([], [], color=theme.DISCRETE, label=f"$h^*$: energy {saddle:.3f}")
     axes.plot([], [], color=theme.COMPONENTS[2], label=f"$h_e$: energy {equatorial:.3f}")
     across = np.array([-J[1, 2], J[0, 2]]) / np.hypot(J[0, 2], J[1, 2])
     line = axes.plot(*np.outer(across, [-1, 1]), color=theme.INK, linewidth=2.2, zorder=4, label="equilibria")[0]
     dots: Any = {"s": 52, "zorder": 6, "linewidths": 1.5, "edgecolors": theme.UNSTABLE}
     saddles = axes.scatter(*critical("saddle").T, marker="X", facecolors="white", label="saddles", **dots)
-    centres = axes.scatter(*critical("maximum").T, facecolors=theme.UNSTABLE, label="centres", **dots)
+    centers = axes.scatter(*critical("maximum").T, facecolors=theme.UNSTABLE, label="centers", **dots)
     draw_rim(axes)
     axes.set(
         xlabel="$q_1$", ylabel="$q_2$", title="Invariant curves", xlim=(-1.14, 1.14), ylim=(-1.14, 1.14), aspect="equal"
     )
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    return Foliation(axes, tuple(curves), line, saddles, centres)
+    return Foliation(axes, tuple(curves), line, saddles, centers)
 
 
 def critical(kind: str) -> Float[np.ndarray, "L 2"]:
@@ -96,7 +96,7 @@ def sphere(q: Float[np.ndarray, "L 2"]) -> Any:
     "figure",
     "Section 6, figure of the invariant curves",
     "The invariant curves are ovals about the origin and outer ones. They meet at two opposite saddles and shrink to "
-    "two opposite centres. A straight segment is the line of equilibria.",
+    "two opposite centers. A straight segment is the line of equilibria.",
     tolerance=1e-6,
 )
 def foliation() -> Measured:
@@ -107,13 +107,13 @@ def foliation() -> Measured:
         points = np.concatenate([np.asarray(path.vertices) for path in curve.get_paths()])
         values = formulas.quartic(J, sphere(points))
         gaps.append(np.ptp(values) / values.max())
-    saddles, centres = (np.asarray(dots.get_offsets()) for dots in (drawn.saddles, drawn.centres))
-    gaps += [_slope(point) for point in (*saddles, *centres)]
+    saddles, centers = (np.asarray(dots.get_offsets()) for dots in (drawn.saddles, drawn.centers))
+    gaps += [_slope(point) for point in (*saddles, *centers)]
     ends = np.asarray(drawn.line.get_xydata())
     gaps.append(np.abs(suslov_momenta.slope(J, sphere(ends))).max())
-    gaps.append(float(len(centres) != 2))
+    gaps.append(float(len(centers) != 2))
     gaps.append(float(np.sum(np.linalg.norm(saddles, axis=1) < 0.99) != 2))
-    return Measured(float(max(gaps)), note="14 curves; two saddles and two centres inside, one more saddle on the rim")
+    return Measured(float(max(gaps)), note="14 curves; two saddles and two centers inside, one more saddle on the rim")
 
 
 def _slope(point: Float[np.ndarray, "2"]) -> float:

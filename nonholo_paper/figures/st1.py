@@ -39,8 +39,8 @@ def picture() -> tuple[Any, list[Any]]:
     axes = space("Circular section of the momentum surface", ("$M_1$", "$M_2$", "$M_3$"), (32.0, -60.0))
     draw_surface(axes, momenta()).set_rasterized(True)
     rims = []
-    for row, colour, label in ((0, theme.DISCRETE, f"$q_0 = {HIGH}$"), (-1, theme.UNSTABLE, f"$q_0 = {LOW}$")):
-        rims += axes.plot(*momenta()[row].T, color=colour, linewidth=2.0, zorder=5, label=label)
+    for row, color, label in ((0, theme.DISCRETE, f"$q_0 = {HIGH}$"), (-1, theme.UNSTABLE, f"$q_0 = {LOW}$")):
+        rims += axes.plot(*momenta()[row].T, color=color, linewidth=2.0, zorder=5, label=label)
     whole = locus().momentum.reshape(-1, 3)
     low, high = whole.min(axis=0), whole.max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))

@@ -9,14 +9,14 @@ Three = Sequence[Number]
 
 
 def center_of_mass(a: Number, b: Number, pose: Three) -> tuple[Number, Number]:
-    """Return the position of the centre of mass."""
+    """Return the position of the center of mass."""
     theta, x, y = pose
     cosine, sine = ctx.cos(theta), ctx.sin(theta)
     return x + a * cosine - b * sine, y + a * sine + b * cosine
 
 
 def energy_of_center_in_space(body: Body, pose: Three, speed: Three) -> Number:
-    """Return the kinetic energy of the centre of mass."""
+    """Return the kinetic energy of the center of mass."""
     m, _, a, b = body
     cosine, sine = ctx.cos(pose[0]), ctx.sin(pose[0])
     omega, dx, dy = speed
@@ -34,7 +34,7 @@ def printed_energy_of_center_in_space(body: Body, pose: Three, speed: Three) -> 
 
 
 def energy_of_center(body: Body, velocity: Three) -> Number:
-    """Return the kinetic energy of the centre of mass in body components."""
+    """Return the kinetic energy of the center of mass in body components."""
     m, _, a, b = body
     omega, v1, v2 = velocity
     return m / 2 * ((a**2 + b**2) * omega**2 + v1**2 + v2**2 - 2 * b * omega * v1 + 2 * a * omega * v2)
@@ -97,7 +97,7 @@ def energy_integral(body: Body, p_theta: Number, p_1: Number) -> Number:
     return m * p_theta**2 + 2 * b * m * p_theta * p_1 + (J + m * (a**2 + b**2)) * p_1**2
 
 
-def momentum_equation_centred(body: Body, p_theta: Number, p_1: Number) -> tuple[Number, Number]:
+def momentum_equation_centered(body: Body, p_theta: Number, p_1: Number) -> tuple[Number, Number]:
     """Return the derivatives of p_theta and p_1 for b = 0."""
     m, J, a, _ = body
     return -a * p_theta * p_1 / (J + m * a**2), m * a * p_theta**2 / (J + m * a**2) ** 2
@@ -110,7 +110,7 @@ def reconstruction(theta: Number, dx: Number, dy: Number) -> tuple[Number, Numbe
 
 
 def circle(start: Three, omega: Number, v1: Number, time: Number) -> tuple[Number, Number, Number]:
-    """Return the pose on a circle; `start` has its heading at time 0 and its centre."""
+    """Return the pose on a circle; `start` has its heading at time 0 and its center."""
     theta, x, y = start
     heading = theta + omega * time
     return heading, x + v1 / omega * ctx.sin(heading), y - v1 / omega * ctx.cos(heading)
@@ -240,6 +240,6 @@ def admissible_velocity_in_plane(omega: Number, v1: Number) -> Matrix:
 
 
 def rates_in_space(mass: Number, a1: Number, row: list, w: list, u: Number) -> list:
-    """Return the derivatives of the momenta about the foot of the centre, with row = (J_12, .., J_1n), and of p_1."""
+    """Return the derivatives of the momenta about the foot of the center, with row = (J_12, .., J_1n), and of p_1."""
     square, mixed = ctx.fdot(w, w), ctx.fdot(row, w)
     return [square * c - mixed * wj - mass * a1 * u * wj for c, wj in zip(row, w, strict=True)] + [mass * a1 * square]

@@ -33,7 +33,7 @@ def displacement(before: Three, after: Three, angle: Number) -> Matrix:
 
 
 def mass_tensor(body: Body) -> Matrix:
-    """Return the homogeneous mass tensor, with J about the centre of mass."""
+    """Return the homogeneous mass tensor, with J about the center of mass."""
     m, J, a, b = body
     rows = [[J / 2 + m * a**2, m * a * b, m * a], [m * a * b, J / 2 + m * b**2, m * b], [m * a, m * b, m]]
     return ctx.matrix(rows)

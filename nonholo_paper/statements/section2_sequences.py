@@ -138,7 +138,7 @@ def _forbidden(body: Body, X: Matrix) -> Number:
     "footnote-2",
     "footnote",
     "Section 2, footnote to the remark after equation (gen.constr)",
-    r"Discretisations of one system are not unique; another approach (cited, not followed) modifies canonical "
+    r"Discretizations of one system are not unique; another approach (cited, not followed) modifies canonical "
     r"transformations.",
     tolerance=1e-45,
 )

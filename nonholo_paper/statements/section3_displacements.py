@@ -190,7 +190,7 @@ def locus() -> Measured:
 
 
 def _sleigh() -> nh.ChaplyginSleigh:
-    """Return SLEIGH, whose inertia about its centre of mass is 5/4."""
+    """Return SLEIGH, whose inertia about its center of mass is 5/4."""
     return nh.ChaplyginSleigh(2.0, 1.25, 0.5, -0.25)
 
 

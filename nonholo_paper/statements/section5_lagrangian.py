@@ -16,8 +16,8 @@ VELOCITIES = [twin.numbers(511 + k, 3, -2, 2) for k in range(3)] + [
 POSES = poses(521, 3)
 
 
-def _centre(body: Body) -> list:
-    """Return the whole mass at the centre of mass."""
+def _center(body: Body) -> list:
+    """Return the whole mass at the center of mass."""
     return [(body.m, ctx.matrix([body.a, body.b, 1]))]
 
 
@@ -28,8 +28,8 @@ def _library(body: Body) -> nh.ChaplyginSleigh:
 @finding(
     "center-of-mass",
     "equation",
-    "Section 5, the position of the centre of mass",
-    r"The centre of mass, at body point $(a, b)$, is at $(x + a\cos\theta - b\sin\theta,\ y + a\sin\theta + "
+    "Section 5, the position of the center of mass",
+    r"The center of mass, at body point $(a, b)$, is at $(x + a\cos\theta - b\sin\theta,\ y + a\sin\theta + "
     r"b\cos\theta)$.",
     tolerance=1e-45,
 )
@@ -50,7 +50,7 @@ def center_of_mass() -> Measured:
     "Section 5, the words on J before equation (Caplag)",
     "“Let $m$ and $J$ denote the mass and moment of inertia of the sleigh relative to the contact point.”",
     verdict=Verdict.FALSE,
-    corrected="The formulas add $m(a^2 + b^2)$, so $J$ is the moment of inertia about the centre of mass.",
+    corrected="The formulas add $m(a^2 + b^2)$, so $J$ is the moment of inertia about the center of mass.",
     errata=("C2",),
     tolerance=1e-45,
 )
@@ -69,7 +69,7 @@ def meaning_of_inertia() -> Measured:
 @finding(
     "C3",
     "equation",
-    "Section 5, the two displays of the kinetic energy of the centre of mass",
+    "Section 5, the two displays of the kinetic energy of the center of mass",
     r"“$m[\dot x^2 + \dot y^2 + (a^2 + b^2)\dot\theta^2 + 2\dot\theta(a(-\dot x\sin\theta + \dot y\cos\theta) - "
     r"b(\dot x\cos\theta + \dot y\sin\theta))]$” and “$m[(a^2 + b^2)\omega^2 + v_1^2 + v_2^2 - 2b\,\omega v_1^2 + "
     r"2a\,\omega v_2]$”",
@@ -82,11 +82,11 @@ def meaning_of_inertia() -> Measured:
     tolerance=1e-45,
 )
 def energy_of_center() -> Measured:
-    """Compare both displays with half the mass times the square of the velocity of the centre."""
+    """Compare both displays with half the mass times the square of the velocity of the center."""
     right, wrong, wrong_in_space = [], [], []
     for body in BODIES:
         for v, (_, at) in zip(VELOCITIES, POSES, strict=True):
-            energy = kinetic(_centre(body))(twin.hat(PLANE, v))
+            energy = kinetic(_center(body))(twin.hat(PLANE, v))
             speed = pose(at[0], 0, 0) * ctx.matrix([v[1], v[2], 1])
             in_space = v[0], speed[0], speed[1]
             right.append(formulas.energy_of_center(body, v) - energy)

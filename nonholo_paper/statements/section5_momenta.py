@@ -104,17 +104,17 @@ def cont_sl_int() -> Measured:
     tolerance=1e-45,
 )
 def sleqns() -> Measured:
-    """Compare with the equations of bodies whose centre of mass is on the axis of the blade."""
-    centred = [body._replace(b=ctx.zero) for body in BODIES]
-    gaps = [_gaps(formulas.momentum_equation_centred(body, *p), _rates(body, p)) for body in centred for p in MOMENTA]
+    """Compare with the equations of bodies whose center of mass is on the axis of the blade."""
+    centered = [body._replace(b=ctx.zero) for body in BODIES]
+    gaps = [_gaps(formulas.momentum_equation_centered(body, *p), _rates(body, p)) for body in centered for p in MOMENTA]
     return Measured(max(map(worst, gaps)), note="8 bodies, 6 momenta")
 
 
 @finding(
     "b-irrelevant",
     "remark",
-    "Section 5, the position of the centre of mass",
-    r"$a$ is crucial to the behaviour of the sleigh, $b$ is irrelevant.",
+    "Section 5, the position of the center of mass",
+    r"$a$ is crucial to the behavior of the sleigh, $b$ is irrelevant.",
     tolerance=1e-45,
 )
 def b_irrelevant() -> Measured:
@@ -123,8 +123,8 @@ def b_irrelevant() -> Measured:
     for body in BODIES:
         for turning, p_1 in MOMENTA:
             rate = _rates(body, [turning - body.b * p_1, p_1])
-            centred = _rates(body._replace(b=ctx.zero), [turning, p_1])
-            gaps += _gaps([rate[0] + body.b * rate[1], rate[1]], centred)
+            centered = _rates(body._replace(b=ctx.zero), [turning, p_1])
+            gaps += _gaps([rate[0] + body.b * rate[1], rate[1]], centered)
     return Measured(worst(gaps), note="8 bodies, 6 momenta")
 
 
@@ -203,7 +203,7 @@ def footnote_arches() -> Measured:
     tolerance=1e-45,
 )
 def stability() -> Measured:
-    """Linearise across the line of equilibria; as printed, rates of upper equilibria would be negative."""
+    """Linearize across the line of equilibria; as printed, rates of upper equilibria would be negative."""
     gaps, library, printed = [], [], []
     for body in UNBALANCED:
         m, J, a, _ = body

@@ -61,7 +61,7 @@ def xyth() -> Measured:
     tolerance=1e-45,
 )
 def balanced_flow() -> Measured:
-    """Look for rates of the momenta at a = 0, and differentiate the circle; (x_0, y_0) is its centre."""
+    """Look for rates of the momenta at a = 0, and differentiate the circle; (x_0, y_0) is its center."""
     gaps = []
     for body, (omega, v1) in zip(BODIES, [twin.numbers(581 + k, 2, -3, 3) for k in range(8)], strict=True):
         balanced = points(body._replace(a=ctx.zero))

@@ -15,7 +15,7 @@ from nonholo_paper.formulas import sleigh_continuous as formulas
 
 
 class Solid(NamedTuple):
-    """A body in n dimensions: mass, centre, mass tensor about it as a diagonal turned by an orthogonal matrix."""
+    """A body in n dimensions: mass, center, mass tensor about it as a diagonal turned by an orthogonal matrix."""
 
     m: Number
     a: list
@@ -29,7 +29,7 @@ class Solid(NamedTuple):
 
     @property
     def tensor(self) -> Matrix:
-        """Return its mass tensor about the centre of mass."""
+        """Return its mass tensor about the center of mass."""
         return self.turn * ctx.diag(self.moments) * self.turn.T
 
 
@@ -122,14 +122,14 @@ def cont_sl_lagr() -> Measured:
     """Compare with the kinetic energy of mass points."""
     right, wrong, wrong_trace = [], [], []
     for k, body in enumerate(DIAGONAL):
-        n, centre = len(body.a), ctx.matrix(body.a)
+        n, center = len(body.a), ctx.matrix(body.a)
         omega, v, xi = _velocity(n, 630 + k)
         energy = kinetic(body.points)(xi)
-        tensor = formulas.homogeneous_mass_tensor(body.m, centre, body.moments)
+        tensor = formulas.homogeneous_mass_tensor(body.m, center, body.moments)
         right += [*(tensor - homogeneous(body.points)), formulas.trace_energy(xi, tensor) - energy]
-        right.append(formulas.block_energy(body.m, centre, body.tensor, omega, v) - energy)
+        right.append(formulas.block_energy(body.m, center, body.tensor, omega, v) - energy)
         wrong_trace.append(formulas.printed_trace_energy(xi, tensor) - energy)
-        wrong.append(formulas.printed_block_energy(body.m, centre, body.tensor, omega, v) - energy)
+        wrong.append(formulas.printed_block_energy(body.m, center, body.tensor, omega, v) - energy)
     return Measured(worst(right), worst(wrong) + worst(wrong_trace), "n = 2, 3, 4; both forms")
 
 
@@ -145,10 +145,10 @@ def cont_mom_se_n() -> Measured:
     """Compare with the derivatives of the kinetic energy of mass points, for diagonal and full mass tensors."""
     gaps = []
     for k, body in enumerate(SOLIDS):
-        n, centre = len(body.a), ctx.matrix(body.a)
+        n, center = len(body.a), ctx.matrix(body.a)
         omega, v, xi = _velocity(n, 640 + k)
-        M = formulas.angular_momentum(body.m, centre, body.tensor, omega, v)
-        p = formulas.linear_momentum(body.m, centre, omega, v)
+        M = formulas.angular_momentum(body.m, center, body.tensor, omega, v)
+        p = formulas.linear_momentum(body.m, center, omega, v)
         gaps += [paired(body.points, xi, _plane(n, i, j)) - M[i, j] for i in range(n) for j in range(i + 1, n)]
         gaps += [*(M + M.T), *(paired(body.points, xi, _along(n, i)) - p[i] for i in range(n))]
     return Measured(worst(gaps), note="6 bodies, n = 2, 3, 4")

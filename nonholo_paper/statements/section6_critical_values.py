@@ -93,11 +93,11 @@ def critical_values() -> Measured:
     exact, library, counts = [], [], []
     for name in (*GENERIC, "tilted"):
         J = data.body(name)
-        (low, saddle), (high, centre), (side, half_turn) = *critical_points(J), _equatorial(J)
-        for value, q in ((low, saddle), (high, centre), (side, half_turn)):
+        (low, saddle), (high, center), (side, half_turn) = *critical_points(J), _equatorial(J)
+        for value, q in ((low, saddle), (high, center), (side, half_turn)):
             exact += [value - data.energy(J, q), *_slopes(J, q)]
         known = nh.critical_energies(data.discrete(J))
-        expected = [known.saddle, known.centre, known.equatorial_saddle]
+        expected = [known.saddle, known.center, known.equatorial_saddle]
         library += [2 * a - b for a, b in zip((low, high, side), expected, strict=True)]
         counts.append(sum(x > 1e-6 for x in (side, low - side, high - low)))
     library += [2 - _saddles_of_a_long_body()]
@@ -124,7 +124,7 @@ def _saddles_of_a_long_body() -> int:
     tolerance=1e-45,
 )
 def regular_regime() -> Measured:
-    """Look for saddles and centres of regular bodies; printed: how far the squared sine of a rod's saddle exceeds 1."""
+    """Look for saddles and centers of regular bodies; printed: how far the squared sine of a rod's saddle exceeds 1."""
     facts = []
     for seed in range(60):
         J = data.random_body(seed, 3)
@@ -182,7 +182,7 @@ def _momentum(J: Matrix, q: Vector, tangent: Vector, e: Number) -> Matrix:
     errata=("S39",),
     tolerance=1e-45,
 )
-def stationary_centre() -> Measured:
+def stationary_center() -> Measured:
     """Take a critical point of an aligned body that is repeated; count such points, of generic bodies too."""
     J, half = data.body("aligned"), ctx.sqrt(ctx.mpf(1) / 2)
     q = [half, ctx.mpf(0), half]
@@ -196,7 +196,7 @@ def stationary_centre() -> Measured:
             W = data.rotation(point)
             change = data.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
             facts.append(twin.worst(change) > 1e-6)
-        centre = data.array(data.rotation(critical_points(J)[1][1]))
-        facts.append(not nh.branches(data.discrete(J), displacement=centre).is_real.any())
+        center = data.array(data.rotation(critical_points(J)[1][1]))
+        facts.append(not nh.branches(data.discrete(J), displacement=center).is_real.any())
     printed = float(twin.worst(right) < 1e-45)
-    return Measured(max(twin.worst(right), data.lacking(*facts)), printed, "printed: stationary centres of one body")
+    return Measured(max(twin.worst(right), data.lacking(*facts)), printed, "printed: stationary centers of one body")

@@ -61,7 +61,7 @@ def level_curves() -> Measured:
     facts = []
     for name in GENERIC:
         J, top = data.body(name), data.discrete(data.body(name))
-        (low, _), (high, centre) = critical_points(J)
+        (low, _), (high, center) = critical_points(J)
         energies = [2 * float(x) for x in (0.3 * low, 0.999 * low, (low + high) / 2, 1.001 * high)]
         facts += [
             len(nh.invariant_curve(top, E, 60).components) == k for E, k in zip(energies, (2, 2, 2, 0), strict=True)
@@ -69,7 +69,7 @@ def level_curves() -> Measured:
         facts += [data.energy(J, q) <= high for q in data.points()]
         inner = nh.invariant_curve(top, energies[0], 60).components[0]
         angle = np.unwrap(np.arctan2(inner[:, 2], inner[:, 1]))
-        facts += [abs(np.ptp(angle) - 2 * np.pi) < 0.3, data.energy(J, centre) > 0.99 * high]
+        facts += [abs(np.ptp(angle) - 2 * np.pi) < 0.3, data.energy(J, center) > 0.99 * high]
     return Measured(data.lacking(*facts), note="three bodies, four energies; 12 displacements")
 
 

@@ -131,7 +131,7 @@ def index_of_time() -> Measured:
     r"$z_0^2 + |z|^2 = 1$.",
     tolerance=1e-45,
 )
-def parametrisation() -> Measured:
+def parametrization() -> Measured:
     """Compare with the matrix exponential, and the library's exponential with both."""
     exact, library = [], []
     for angle, u in _arguments():
@@ -209,7 +209,7 @@ def half_angle_signs() -> Measured:
     r"In the limit of small steps the conditions (sp) become $\omega_{ij} = 0$ for $i, j < n$.",
     tolerance=1e-45,
 )
-def linearised() -> Measured:
+def linearized() -> Measured:
     """Differentiate the conditions along one-parameter groups of all rotations."""
     missed = []
     for n in DIMENSIONS:

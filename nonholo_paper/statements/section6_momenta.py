@@ -102,7 +102,7 @@ def full() -> Measured:
     "locus-of-degree-4",
     "remark",
     "Section 6, after equation (full)",
-    r"The momenta satisfy an equation of degree 4, a generalisation of (Steiner), and none of smaller degree; they "
+    r"The momenta satisfy an equation of degree 4, a generalization of (Steiner), and none of smaller degree; they "
     r"fill no linear subspace.",
     tolerance=1e-45,
 )

@@ -200,12 +200,12 @@ def constraint_in_space() -> Measured:
     for before, after in PAIRS:
         entries = formulas.step_angle(before, after), *formulas.discrete_velocities(before, after)
         gaps.append(formulas.constraint_in_space(before, after) - formulas.half_angle_constraint(*entries))
-        limit = ctx.diff(_towards(before, after), 0)
+        limit = ctx.diff(_toward(before, after), 0)
         gaps.append(limit - continuous.reconstruction(before[0], after[1], after[2])[1])
     return Measured(worst(gaps), note="18 admissible steps, 6 others")
 
 
-def _towards(start: list, velocity: list) -> Callable[[Number], Number]:
+def _toward(start: list, velocity: list) -> Callable[[Number], Number]:
     """Return the constraint of the step from a pose along a velocity, as a function of the time step."""
     return lambda e: formulas.constraint_in_space(start, [x + e * v for x, v in zip(start, velocity, strict=True)])
 

@@ -57,7 +57,7 @@ def om_k() -> Measured:
     r"\frac12\mathrm{tr}(\mathbb{J}\Omega_k^T + \Omega_k\mathbb{I})$” with the entry “$J2 + mb^2$” of $\mathbb{J}$, "
     r"where “$J$ is its scalar moment of inertia with respect to the origin $A$”",
     verdict=Verdict.MISPRINT,
-    corrected=r"The last product is $\Omega\mathbb{J}$, the entry $J/2 + mb^2$, and $J$ is about the centre of mass.",
+    corrected=r"The last product is $\Omega\mathbb{J}$, the entry $J/2 + mb^2$, and $J$ is about the center of mass.",
     errata=("C16",),
     tolerance=1e-45,
 )
@@ -241,10 +241,10 @@ def free_motion() -> Measured:
     """Compare transported momenta with the printed right sides, and with the momenta of the same step made again."""
     gaps = []
     for body, (before, after) in zip(BODIES[:6], PAIRS, strict=True):
-        centred = Body(body.m, body.J, ctx.zero, ctx.zero)
-        carried = twin.coadjoint(PLANE, _between(before, after), _momentum(centred, _between(before, after)))
+        centered = Body(body.m, body.J, ctx.zero, ctx.zero)
+        carried = twin.coadjoint(PLANE, _between(before, after), _momentum(centered, _between(before, after)))
         along, back = formulas.tangent_velocities(before, after)
         gaps += _gaps(carried, [body.J * ctx.sin(after[0] - before[0]), body.m * along, -body.m * back])
         following = [2 * y - x for x, y in zip(before, after, strict=True)]
-        gaps += _gaps(carried, _momentum(centred, _between(after, following)))
+        gaps += _gaps(carried, _momentum(centered, _between(after, following)))
     return Measured(worst(gaps), note="6 bodies and steps; for large angles the supplementary angle solves it too")

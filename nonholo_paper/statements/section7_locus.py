@@ -21,7 +21,7 @@ from nonholo_paper._twin import Matrix, Number, ctx, worst
 from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import sleigh_discrete as formulas
 
-CENTRED = [body._replace(b=ctx.zero) for body in BODIES]
+CENTERED = [body._replace(b=ctx.zero) for body in BODIES]
 DRAWN = list(zip(twin.numbers(751, 70, -4, 4), twin.numbers(752, 70, -4, 4), strict=True))
 SMALL = list(zip(twin.numbers(753, 90, -1, 1), twin.numbers(754, 90, -2.2, 0.4), strict=True))
 
@@ -46,7 +46,7 @@ def _shifted(body: Body, p: list) -> tuple[Number, Number]:
 def quartic() -> Measured:
     """Evaluate it at momenta of admissible displacements, and at zero and full turns with other momenta."""
     gaps = []
-    for body in CENTRED:
+    for body in CENTERED:
         for turn in TURNS:
             p = _momentum(body, admissible(turn))
             gaps.append(formulas.quartic(body, p[0], p[1], turn[0]))
@@ -66,7 +66,7 @@ def quartic() -> Measured:
 def det_delta_phi() -> Measured:
     """Evaluate it at momenta of admissible displacements, relative to the size of its terms."""
     gaps = []
-    for body in [*CENTRED[:3], *BODIES]:
+    for body in [*CENTERED[:3], *BODIES]:
         for turn in TURNS:
             turning, p_hat = _shifted(body, _momentum(body, admissible(turn)))
             size = 1 + body.J**2 + turning**2 + p_hat**2
@@ -242,7 +242,7 @@ def surface_deltoid() -> Measured:
 
 
 def _curve_gaps(J: Number) -> list:
-    """Return the defects of parametrisation, cusps, tangency at the origin, and the common sine on the segment."""
+    """Return the defects of parametrization, cusps, tangency at the origin, and the common sine on the segment."""
     c_1, c_2 = formulas.upper_cusp(J)
     gaps = [formulas.discriminant_curve(J, *formulas.deltoid(J, ctx.mpf(t))) for t in (-5, -1, 0, 0.3, 1, 2, 40)]
     for (p_theta, p_hat), root in (((0, -2 * J), 0), ((c_1, c_2), ctx.sqrt(3)), ((-c_1, c_2), -ctx.sqrt(3))):
@@ -280,14 +280,14 @@ def _library_counts(J: Number) -> float:
 def ell() -> Measured:
     """Compare momenta of turns on the spot and of half turns; printed is V_1 of a displacement with the other sign."""
     gaps, wrong = [], 0
-    for body in (body for body in CENTRED if body.a != 0):
+    for body in (body for body in CENTERED if body.a != 0):
         for angle in (0.3, 1.7, -2.9, 6):
             p = _momentum(body, admissible((ctx.mpf(angle), 0)))
             gaps += [x - y for x, y in zip(formulas.ellipse(body, ctx.mpf(angle)), _shifted(body, p), strict=True)]
         half_turn = ctx.matrix([[-1, 0, 0], [0, -1, 3], [0, 0, 1]])
         gaps.append(_shifted(body, _momentum(body, half_turn))[1])
         wrong += sum(_contradicts(body, p_theta, p_hat) for p_theta, p_hat in SMALL[:20])
-    body, angle, nu = CENTRED[0], ctx.mpf("3.5"), 10
+    body, angle, nu = CENTERED[0], ctx.mpf("3.5"), 10
     p = formulas.momentum(body, angle, nu * ctx.cos(angle / 2), nu * ctx.sin(angle / 2))
     outside = _outside(body, *_shifted(body, list(p))) > 0
     return Measured(max(worst(gaps), wrong), float(-nu * ctx.cos(angle / 2)) if outside else 0.0, "7 bodies with b = 0")
@@ -314,14 +314,14 @@ def _contradicts(body: Body, across: Number, along: Number) -> bool:
     "near-origin",
     "remark",
     "Section 7, after lemma (surface)",
-    r"In a neighbourhood of the point $O$, $p_\theta = 0$, $\hat p = 2ma^2$, the origin of the phase plane, the "
+    r"In a neighborhood of the point $O$, $p_\theta = 0$, $\hat p = 2ma^2$, the origin of the phase plane, the "
     r"projection is one-to-one.",
     tolerance=1e-45,
 )
 def near_origin() -> Measured:
     """Count points around O that are on the deltoid's side or have another number of real roots than one."""
     wrong = 0
-    for body in CENTRED:
+    for body in CENTERED:
         ours = body.m * body.a**2
         for dx, dy in ((0, 0), (1, 0), (-1, 1), (0, -1), (1, -1)):
             if ours == 0:

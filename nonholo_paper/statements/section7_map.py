@@ -378,11 +378,11 @@ def footnote_spiral() -> Measured:
     """Test for a = b = 0 that steps of constant angle, each cosine of it shorter, solve the equations; add them up."""
     gaps = []
     for body, angle in zip(BODIES[:3], (ctx.mpf("0.6"), ctx.mpf("-1.2"), ctx.mpf("2.5")), strict=True):
-        centred = Body(body.m, body.J, ctx.zero, ctx.zero)
+        centered = Body(body.m, body.J, ctx.zero, ctx.zero)
         shifts = [ctx.mpf("0.7") * ctx.cos(angle) ** k for k in range(6)]
         steps = [pose(angle, shift, 0) for shift in shifts]
         for W, following in itertools.pairwise(steps):
-            pairs = zip(_arriving(centred, W)[:2], _momentum(centred, following), strict=False)
+            pairs = zip(_arriving(centered, W)[:2], _momentum(centered, following), strict=False)
             gaps += [x - y for x, y in pairs]
         place = ctx.eye(3)
         for k, W in enumerate(steps):

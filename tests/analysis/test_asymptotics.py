@@ -108,8 +108,8 @@ def test_map_tends_to_the_flow_in_space() -> None:
 @pytest.mark.parametrize("name", ["top 5", "sleigh 3", "turning sleigh 3"])
 def test_limits_in_higher_dimensions(name: str) -> None:
     """The velocity limits are reached by long discrete orbits; for a_1 = 0 the advance u is kept."""
-    centre = [0.0 if name.startswith("turning") else 0.3, 0.2, -0.1]
-    sleigh = nh.MultidimensionalSleigh(1.3, centre, np.diag([0.5, 0.7, 0.4]) + 0.1)
+    center = [0.0 if name.startswith("turning") else 0.3, 0.2, -0.1]
+    sleigh = nh.MultidimensionalSleigh(1.3, center, np.diag([0.5, 0.7, 0.4]) + 0.1)
     system = nh.SuslovTop(mass_tensor(nh.SO(5), np.random.default_rng(0))) if name == "top 5" else sleigh
     start = 0.4 * np.array([1.0, -0.7, 0.5, 0.8])[: len(system.constraint_subspace)]
     orbit = nh.simulate(nh.discretize(system, 0.2), restricted_velocity=start, steps=20_000, save_every=20_000)
@@ -120,7 +120,7 @@ def test_limits_in_higher_dimensions(name: str) -> None:
 
 
 def test_motions_that_stay() -> None:
-    """From an equilibrium nothing changes; a balanced sleigh turns for ever, and a balanced top keeps its axis."""
+    """From an equilibrium nothing changes; a balanced sleigh turns forever, and a balanced top keeps its axis."""
     straight = nh.asymptotics(nh.simulate(nh.discretize(SLEIGH, 0.1), restricted_velocity=(0.0, -1.0), steps=3))
     assert straight.heading_turn == 0
     assert np.array_equal(straight.velocity_before, straight.velocity_after)

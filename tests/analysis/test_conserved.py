@@ -31,7 +31,7 @@ LEFT = {
     "balanced top in four dimensions": (SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])), 3, 0),
     "sleigh": (nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.2), 0, 0),
     "balanced sleigh": (nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.5), 2, 0),
-    "sleigh in space, centre of mass beside": (MultidimensionalSleigh(1.0, [0.0, 0.3, 0.2], _J), 1, 0),
+    "sleigh in space, center of mass beside": (MultidimensionalSleigh(1.0, [0.0, 0.3, 0.2], _J), 1, 0),
     "free top": (RigidBody(_UNEQUAL), 0, 3),
     "free top of revolution": (RigidBody(_ROUND), 1, 3),
     "free sphere": (RigidBody(np.eye(3)), 3, 3),

@@ -13,7 +13,7 @@ BODIES = {
     "generic": [[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]],
     "four real branches": [[1.25, 0.0, -0.5], [0.0, 1.0, -0.75], [-0.5, -0.75, 1.25]],
     "third minimum": [[3.0, 0.02, 0.1], [0.02, 0.1, 0.01], [0.1, 0.01, 0.2]],
-    "aligned, centre": [[3.0, 0.0, 0.4], [0.0, 1.5, 0.0], [0.4, 0.0, 0.8]],
+    "aligned, center": [[3.0, 0.0, 0.4], [0.0, 1.5, 0.0], [0.4, 0.0, 0.8]],
     "aligned, saddle": [[0.5, 0.0, 0.3], [0.0, 2.5, 0.0], [0.3, 0.0, 0.8]],
     "balanced": [[1.0, 0.1, 0.0], [0.1, 2.0, 0.0], [0.0, 0.0, 0.5]],
     "irregular": [[1.01, 0.5, 0.4], [0.5, 0.27, 0.2], [0.4, 0.2, 0.16]],
@@ -107,28 +107,28 @@ def test_no_energy_exceeds_the_highest_point() -> None:
 def test_time_step_scales_the_energies() -> None:
     """Critical energies are those of h = 1 divided by h^2: h P is the momentum in which the variety is fixed."""
     one, other = _found("generic", 1.0), _found("generic", 0.25)
-    for field in ("saddle", "centre", "equatorial_saddle"):
+    for field in ("saddle", "center", "equatorial_saddle"):
         assert getattr(other, field) == pytest.approx(16 * getattr(one, field), rel=1e-14)
 
 
 def test_aligned_closed_forms() -> None:
     """For c along e1: B11/(2 h^2) and B22/(2 h^2 kappa), kappa = 1 - |c|^2/D, are the two values off the equator."""
-    for name in ("aligned, centre", "aligned, saddle"):
+    for name in ("aligned, center", "aligned, saddle"):
         J = np.array(BODIES[name])
         b1, b2 = J[0, 0] + J[2, 2], J[1, 1] + J[2, 2]
         along, across = b1, b2 / (1 - J[0, 2] ** 2 / (b1 * b2))
         found = _found(name)
         expected = np.sort([along, across]) / (2 * STEP**2)
-        assert np.abs(np.array([found.saddle, found.centre]) - expected).max() <= 1e-13 * expected[1]
+        assert np.abs(np.array([found.saddle, found.center]) - expected).max() <= 1e-13 * expected[1]
         kind = found.points[-1] if along > across else next(p for p in found.points if p.energy == found.saddle)
         assert kind.stationary
 
 
-@pytest.mark.parametrize("name", ["aligned, centre", "aligned, saddle"])
-def test_a_saddle_or_a_centre_can_be_stationary(name: str) -> None:
-    """False in the paper: "neither saddles nor centres are stationary". If c is an eigenvector of B one of them is."""
+@pytest.mark.parametrize("name", ["aligned, center", "aligned, saddle"])
+def test_a_saddle_or_a_center_can_be_stationary(name: str) -> None:
+    """False in the paper: "neither saddles nor centers are stationary". If c is an eigenvector of B one of them is."""
     point = next(p for p in _found(name).points if p.stationary and p.half_turn_vector.any() and not p.on_equator)
-    assert {"aligned, centre": "maximum", "aligned, saddle": "saddle"}[name] == point.kind
+    assert {"aligned, center": "maximum", "aligned, saddle": "saddle"}[name] == point.kind
     top, z = nh.SuslovTop(BODIES[name]), point.half_turn_vector
     c, B, z0 = top.coupling, top.constrained_inertia, np.sqrt(1 - z @ z)
     force = (z @ z) * c - (c @ z) * z
@@ -150,12 +150,12 @@ def test_outer_ovals_surround_one_half_turn() -> None:
 def test_three_critical_values_in_either_order() -> None:
     """False in the paper: two critical values h* < h**. There is a third, h_e, below or above h*."""
     found = _found("generic")
-    assert 0 < found.equatorial_saddle < found.saddle < found.centre
+    assert 0 < found.equatorial_saddle < found.saddle < found.center
     above = nh.SuslovTop([[1.4, 1.34, 1.48], [1.34, 3.72, 1.78], [1.48, 1.78, 1.72]])
     found = nh.critical_energies(nh.discretize(above, STEP))
     assert np.linalg.det(above.constrained_inertia) > 2 * above.coupling @ above.coupling
     assert found.regular
-    assert found.saddle < found.equatorial_saddle < found.centre
+    assert found.saddle < found.equatorial_saddle < found.center
 
 
 def test_a_definite_form_is_not_enough() -> None:
@@ -163,7 +163,7 @@ def test_a_definite_form_is_not_enough() -> None:
     found = _found("irregular")
     assert not found.regular
     assert found.saddle is None
-    assert found.centre > 0
+    assert found.center > 0
     assert all(p.on_equator for p in found.points if p.kind == "saddle")
 
 
@@ -180,13 +180,13 @@ def test_balanced_top() -> None:
     """For c = 0 the values are the eigenvalues of B over 2 h^2, and all half-turns have energy zero."""
     found = _found("balanced")
     expected = np.linalg.eigvalsh(nh.SuslovTop(BODIES["balanced"]).constrained_inertia) / (2 * STEP**2)
-    assert np.abs(np.array([found.saddle, found.centre]) - expected).max() <= 1e-14 * expected[1]
+    assert np.abs(np.array([found.saddle, found.center]) - expected).max() <= 1e-14 * expected[1]
     assert found.equatorial_saddle is None
     assert all(p.stationary and not p.on_equator for p in found.points)
 
 
 def test_a_closed_curve_of_maxima() -> None:
-    """For B a multiple of the identity and c = 0 saddle and centre coincide, and no isolated point is listed."""
+    """For B a multiple of the identity and c = 0 saddle and center coincide, and no isolated point is listed."""
     found = nh.critical_energies(nh.discretize(nh.SuslovTop(np.diag([1.0, 1.0, 1.0])), 1.0))
     assert found.saddle == pytest.approx(1.0)
     assert found.centre == pytest.approx(1.0)
@@ -199,7 +199,7 @@ def test_the_forbidden_axis_does_not_matter() -> None:
     turn = nh.SO(3).random(rng)
     top = nh.SuslovTop(turn @ np.array(BODIES["generic"]) @ turn.T, axis=turn[:, 2])
     found, same = nh.critical_energies(nh.discretize(top, STEP)), _found("generic")
-    values = ("saddle", "centre", "equatorial_saddle")
+    values = ("saddle", "center", "equatorial_saddle")
     assert [getattr(found, v) for v in values] == pytest.approx([getattr(same, v) for v in values], rel=1e-13)
 
 
@@ -208,7 +208,7 @@ def test_the_forbidden_axis_does_not_matter() -> None:
     [
         (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), "single_valued_region"),
         (nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])), 0.1), "n = 3"),
-        (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), "discretised Suslov top"),
+        (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), "discretized Suslov top"),
         (nh.discretize(nh.SuslovTop(BODIES["generic"]), 0.1, difference="logarithmic"), "conserve the energy"),
     ],
 )

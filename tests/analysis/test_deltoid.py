@@ -69,7 +69,7 @@ def test_discriminant_is_the_product_of_differences(sleigh: nh.ChaplyginSleigh) 
 
 @pytest.mark.parametrize("sleigh", SLEIGHS.values(), ids=SLEIGHS)
 def test_resting_ellipse_has_no_translation(sleigh: nh.ChaplyginSleigh) -> None:
-    """It is the momentum of turns about the foot of the centre of mass, by the definition; V_1 = 0 there if b = 0."""
+    """It is the momentum of turns about the foot of the center of mass, by the definition; V_1 = 0 there if b = 0."""
     discrete = nh.discretize(sleigh, 0.4)
     angle = np.linspace(0.0, 2 * np.pi, 13)
     W = planar_variety(discrete.system).displacement(np.stack([angle, 0 * angle], axis=1))

@@ -96,7 +96,7 @@ def test_planar_geometry(body: Any, same: Any, axes: np.ndarray) -> None:
     assert np.allclose(sides.side * np.sign(sides.side[3]), others.side * np.sign(others.side[3]), atol=1e-12)
     assert np.allclose(sides.forward, others.forward, atol=1e-12)
     if not body.normal_form.is_sleigh:
-        for name in ("saddle", "centre", "equatorial_saddle", "fold", "line"):
+        for name in ("saddle", "center", "equatorial_saddle", "fold", "line"):
             values = getattr(nh.critical_energies(one), name), getattr(nh.critical_energies(two), name)
             assert np.isclose(*values, rtol=1e-12)
     else:

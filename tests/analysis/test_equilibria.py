@@ -41,7 +41,7 @@ def _spectrum(function: object, r: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_rates_are_those_of_the_vector_field(name: str) -> None:
-    """The linearised flow has the given rates, and zero along each direction of equilibria."""
+    """The linearized flow has the given rates, and zero along each direction of equilibria."""
     system, found = SYSTEMS[name], nh.equilibria(SYSTEMS[name], ENERGY)
     field, pose = nh.vector_field(system), system.group.identity.ravel()
 
@@ -58,7 +58,7 @@ def test_rates_are_those_of_the_vector_field(name: str) -> None:
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_multipliers_are_those_of_the_map(name: str) -> None:
-    """The linearised step has the given multipliers, reciprocals on the repelling half, and 1 along equilibria."""
+    """The linearized step has the given multipliers, reciprocals on the repelling half, and 1 along equilibria."""
     discrete = nh.discretize(SYSTEMS[name], STEP)
     system, found = discrete.system, nh.equilibria(discrete, ENERGY)
 

@@ -22,18 +22,18 @@ def _pose(angle: float, x: float, y: float) -> np.ndarray:
 
 
 def test_angular_momentum_is_about_the_body_origin() -> None:
-    """C13: M is not about the centre of mass, but about the contact point: sum of m r ^ v over mass points."""
+    """C13: M is not about the center of mass, but about the contact point: sum of m r ^ v over mass points."""
     rng = np.random.default_rng(0)
     masses, points = rng.uniform(0.5, 1.0, size=6), rng.normal(size=(6, 3)) + 1.0
-    centre = masses @ points / masses.sum()
-    about = np.einsum("k,ki,kj->ij", masses, points - centre, points - centre)
-    system = nh.MultidimensionalSleigh(masses.sum(), centre, about)
+    center = masses @ points / masses.sum()
+    about = np.einsum("k,ki,kj->ij", masses, points - center, points - center)
+    system = nh.MultidimensionalSleigh(masses.sum(), center, about)
     velocity = rng.normal(size=3) @ system.constraint_subspace
     speeds = np.column_stack([points, np.ones(6)]) @ system.group.hat(velocity)[:3].T
     M = (system.inertia_operator @ velocity)[:3]
-    origin, mass_centre = (np.cross(points - p, masses[:, None] * speeds).sum(axis=0) for p in (0 * centre, centre))
+    origin, mass_center = (np.cross(points - p, masses[:, None] * speeds).sum(axis=0) for p in (0 * center, center))
     assert np.abs(M - origin).max() <= 1e-13
-    assert np.abs(M - mass_centre).max() > 0.1
+    assert np.abs(M - mass_center).max() > 0.1
 
 
 @pytest.mark.parametrize("n", [2, 3, 4])

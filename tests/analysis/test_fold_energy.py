@@ -157,7 +157,7 @@ def test_the_inner_displacement_is_not_unique_below_the_saddle() -> None:
 
 @pytest.mark.parametrize("name", BODIES)
 def test_below_the_fold_every_principal_orbit_goes_on(name: str) -> None:
-    """At 0.9999 of the energy 50 principal orbits go on; in the regular regime there is one inner value."""
+    """At 0.9999 of the energy 50 principal orbits continue; in the regular regime there is one inner value."""
     top = _discrete(name, 0.5)
     level = 0.9999 * nh.critical_energies(top).fold
     for r in _momenta(top, level, np.linspace(0.1, 6.3, 50)):
@@ -260,12 +260,12 @@ def test_a_balanced_body_has_no_line() -> None:
     assert balanced.line is None
 
 
-def test_the_line_of_equilibria_ends_between_saddle_and_centre() -> None:
+def test_the_line_of_equilibria_ends_between_saddle_and_center() -> None:
     """Its top is the energy of the equilibrium that turns by 90 degrees; `equilibria` says the same."""
     for name in REGULAR:
         top = _discrete(name, 0.7)
         known = nh.critical_energies(top)
-        assert known.saddle <= known.line <= known.centre
+        assert known.saddle <= known.line <= known.center
         c = top.system.coupling
         z = -np.sqrt(0.5) * c / np.hypot(*c)
         W = np.block([[np.eye(2) - 2 * np.outer(z, z), np.sqrt(2) * z[:, None]], [-np.sqrt(2) * z, np.zeros(1)]])

@@ -17,7 +17,7 @@ NEWTON = 10  # iterations, which double the digits
 
 
 def _sleigh_orbit(r: tuple) -> Iterator[tuple]:
-    """Yield (t, h pi, h p_1) of the sleigh for ever, t = tan(D/2) by Newton's method on the cubic."""
+    """Yield (t, h pi, h p_1) of the sleigh forever, t = tan(D/2) by Newton's method on the cubic."""
     m, J, a = (mpmath.mpf(x) for x in (MASS, INERTIA, OFFSET))
     pi, p = r
     while True:
@@ -31,7 +31,7 @@ def _sleigh_orbit(r: tuple) -> Iterator[tuple]:
 
 
 def _top_orbit(r: tuple) -> Iterator[tuple]:
-    """Yield (y, h r/2) of the top for ever, y by Newton's method on B y + s y_perp = (1 + |y|^2) m, s = c . y_perp."""
+    """Yield (y, h r/2) of the top forever, y by Newton's method on B y + s y_perp = (1 + |y|^2) m, s = c . y_perp."""
     B = mpmath.matrix([[mpmath.mpf(x) for x in row] for row in TOP.system.constrained_inertia.tolist()])
     c = [mpmath.mpf(x) for x in TOP.system.coupling.tolist()]
     m = mpmath.matrix(r)

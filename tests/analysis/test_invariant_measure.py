@@ -90,7 +90,7 @@ def test_the_witness_is_the_jacobian_at_an_equilibrium(name: str) -> None:
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_the_witness_of_the_flow_is_its_divergence(name: str) -> None:
-    """It is the trace of the linearised field at the equilibrium, and the limit of log(witness)/h of the map."""
+    """It is the trace of the linearized field at the equilibrium, and the limit of log(witness)/h of the map."""
     system = SYSTEMS[name]
     found, field, pose = nh.invariant_measure(system, 0.4), nh.vector_field(system), system.group.identity.ravel()
     r, e = system.restrict(system.inertia_operator @ found.velocity), 1e-5

@@ -14,8 +14,8 @@ def _body(name: str, rng: np.random.Generator) -> AbstractLLSystem:
         return nh.SuslovTop(mass_tensor(nh.SO(int(n)), rng))
     if int(n) == 2:
         return nh.ChaplyginSleigh(*rng.uniform(0.3, 1.5, size=2), *rng.normal(size=2))
-    centre = rng.normal(size=int(n)) * ([0.0] + [1.0] * (int(n) - 1) if kind == "turning" else 1.0)
-    return nh.MultidimensionalSleigh(rng.uniform(0.3, 1.5), centre, mass_tensor(nh.SO(int(n)), rng))
+    center = rng.normal(size=int(n)) * ([0.0] + [1.0] * (int(n) - 1) if kind == "turning" else 1.0)
+    return nh.MultidimensionalSleigh(rng.uniform(0.3, 1.5), center, mass_tensor(nh.SO(int(n)), rng))
 
 
 NAMES = ["top 3", "top 4", "top 5", "top 6", "sleigh 2", "sleigh 3", "sleigh 4", "turning 3", "turning 4"]

@@ -1,4 +1,4 @@
-"""The sharp bound on the energy of the single-valued sleigh, against 30-digit minimisation and against the cubic."""
+"""The sharp bound on the energy of the single-valued sleigh, against 30-digit minimization and against the cubic."""
 
 import mpmath
 import numpy as np
@@ -59,10 +59,10 @@ def test_bound_is_sharp(ratio: float, sign: int) -> None:
     for momentum in rng.normal(size=(500, 2)):
         scale = np.sqrt(0.999 * found.energy / system.constrained_energy(momentum))
         assert _real_branches(discrete, scale * momentum) == 1
-    centre = found.cusps.mean(axis=0)
+    center = found.cusps.mean(axis=0)
     for contact in found.contact:
         assert system.constrained_energy(contact) == pytest.approx(found.energy, rel=1e-13)
-        assert _real_branches(discrete, contact + 1e-3 * (centre - contact)) == 3
+        assert _real_branches(discrete, contact + 1e-3 * (center - contact)) == 3
 
 
 @pytest.mark.profile("problems", keep=["0.501", "0.8258", "5.0"])
@@ -154,8 +154,8 @@ def test_extreme_offsets(a: float) -> None:
     [
         (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1), "two real branches"),
         (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, difference="logarithmic"), "three branches"),
-        (nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1), "discretised Chaplygin sleigh"),
-        (nh.ChaplyginSleigh(1.0, 1.0, 0.5), "discretised Chaplygin sleigh"),
+        (nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1), "discretized Chaplygin sleigh"),
+        (nh.ChaplyginSleigh(1.0, 1.0, 0.5), "discretized Chaplygin sleigh"),
     ],
 )
 def test_refusals(discrete: object, text: str) -> None:

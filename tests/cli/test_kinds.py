@@ -134,11 +134,11 @@ def test_table_says_what_to_expect_of_the_energy(nonholo: Command) -> None:
     assert "exact by theorem" in top.stdout
     other = nonholo("simulate", "veselova", "--no-plot", "--steps", 20)
     for shown in (other, nonholo("info", "runs/veselova-001.zarr")):
-        assert "not exact for this discretisation" in " ".join(shown.stdout.split())
+        assert "not exact for this discretization" in " ".join(shown.stdout.split())
 
 
 def test_group_and_large_matrices_in_the_table(nonholo: Command) -> None:
-    """The table names the group; matrices too wide for it are told by their shape."""
+    """The table names the group; matrices too wide for it are described by their shape."""
     tensor = np.diag([1.0, 2.0, 3.0, 4.0, 5.0]).tolist()
     setting = f"body={{kind='rigid_body', mass_tensor={tensor}}}"
     start = f"start={{restricted_velocity={[0.1] * 10}}}"
@@ -157,7 +157,7 @@ def test_own_group_is_read_and_written() -> None:
 
 
 def test_a_form_makes_the_energy_exact() -> None:
-    """With a form beside the basis a mass tensor is taken, and the discretisation is that of the theorem."""
+    """With a form beside the basis a mass tensor is taken, and the discretization is that of the theorem."""
     lorentz = "{ basis = [[[0,0,0],[0,0,1],[0,1,0]],[[0,0,1],[0,0,0],[1,0,0]],[[0,1,0],[-1,0,0],[0,0,0]]] }"
     text = OWN.replace(str(HEISENBERG), lorentz.replace(" }", ", form = [[1,0,0],[0,1,0],[0,0,-1]] }"))
     Path("my.toml").write_text(text.replace("inertia_operator = [[2, 0, 0], [0, 1, 0], [0, 0, 1]]", MASS_WITH_FORM))
@@ -200,7 +200,7 @@ def test_what_a_group_does_not_allow_is_told_with_its_key(nonholo: Command) -> N
     ],
 )
 def test_groups_that_are_none(group: str, told: str) -> None:
-    """A group that cannot be read is told with its key path and what a group looks like."""
+    """A group that cannot be read is reported with its key path and what a group looks like."""
     found = _problems(OWN.replace(HEISENBERG, group))
     assert any(told in problem for problem in found), found
 
@@ -227,7 +227,7 @@ def test_one_energy_and_one_constraint() -> None:
     ],
 )
 def test_physical_refusals_have_key_paths(kind: str, setting: str, told: str) -> None:
-    """What the library refuses about a body is told with the option and the key that it came from."""
+    """What the library refuses about a body is reported with the option and the key that it came from."""
     found = _problems(built_in()[kind], setting)
     assert len(found) == 1
     assert found[0].startswith(f"--set {setting}: body")

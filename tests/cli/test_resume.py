@@ -28,7 +28,7 @@ def stopped() -> Path:
 
 
 def test_info_says_how_far_a_run_came(stopped: Path, nonholo: Command) -> None:
-    """`info` of an unfinished run says how far it came and how to go on, as a table and as JSON."""
+    """`info` of an unfinished run says how far it came and how to resume, as a table and as JSON."""
     shown = nonholo("info", stopped)
     assert shown.exit_code == 0
     assert "199 of 500, 39.8 %" in shown.stdout
@@ -114,7 +114,7 @@ def test_long_run_is_gone_on_with(nonholo: Command, monkeypatch: pytest.MonkeyPa
     with failing_at(3):
         stopped = nonholo(*command)
     assert stopped.exit_code == 1
-    assert "Stopped at step 47 of 100. Go on with nonholo.resume(" in stopped.stderr
+    assert "Stopped at step 47 of 100. Resume with nonholo.resume(" in stopped.stderr
     assert nonholo("resume", "runs/sleigh-001.zarr").exit_code == 0
     monkeypatch.setattr(_stored_run, "_ROWS", 1000)
     assert nonholo(*command, "-o", "whole.zarr").exit_code == 0

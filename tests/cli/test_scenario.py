@@ -1,4 +1,4 @@
-"""Scenarios: everything wrong is told at once, with where it was said; settings pass the same checks."""
+"""Scenarios: everything wrong is reported at once, with where it was said; settings pass the same checks."""
 
 import tomllib
 from collections.abc import Callable
@@ -66,13 +66,13 @@ def test_kind_of_body(change: str, told: str) -> None:
 
 
 def test_unknown_table_and_no_table() -> None:
-    """A table that does not exist gets a suggestion; a value in place of a table is told."""
+    """A table that does not exist gets a suggestion; a value in place of a table is reported."""
     assert _problems(_GOOD + "\n[outptu]\nplot = true") == ["my.toml: outptu: is not a known key. Did you mean output?"]
     assert _problems("output = 1\n" + _GOOD) == ["my.toml: output: must be a table. Got 1"]
 
 
 def test_physical_refusals_have_key_paths() -> None:
-    """What the library refuses is told with the key that it came from."""
+    """What the library refuses is reported with the key that it came from."""
     top = '[body]\nkind = "suslov"\nmass_tensor = [[1,0,0.5],[0,1,0],[0,0,1]]\naxis = [0, 0, 1]\n'
     rest = _GOOD[_GOOD.index("[start]") :]
     found = _problems(top + rest)
@@ -96,7 +96,7 @@ def test_exactly_one_start_and_one_tensor() -> None:
     ids=["bracket", "twice"],
 )
 def test_broken_toml(text: str, told: str) -> None:
-    """A file that is not TOML is told with the place."""
+    """A file that is not TOML is reported with the place."""
     assert told in _problems(text)[0]
     assert "line" in _problems(text)[0]
 
@@ -110,7 +110,7 @@ def test_unreadable_files(tmp_path: Path) -> None:
 
 
 def test_settings_name_their_option() -> None:
-    """A wrong value from the command line is told with the option, the rest with the file."""
+    """A wrong value from the command line is reported with the option, the rest with the file."""
     found = _problems(_GOOD.replace("mass = 1", "mass = -1"), "body.a=nan", "start.velocity=1")
     assert found[0] == "my.toml: body.mass: must be greater than 0. Got -1"
     assert found[1] == "--set body.a=nan: body.a: must be a finite number. Got nan"

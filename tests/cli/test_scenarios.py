@@ -17,7 +17,7 @@ _FILES = sorted(path for path in _FOLDER.glob("*.toml") if not path.stem.endswit
 @pytest.mark.profile("routes", keep=["suslov*", "*sleigh", "long_run", "tilted_axis", "four_steps"])
 @pytest.mark.parametrize("path", _FILES, ids=lambda path: path.stem)
 def test_example_runs(path: Path, figures: Callable[..., dict[str, Any]]) -> None:
-    """Each example succeeds, with energy kept to rounding where the discretisation promises it."""
+    """Each example succeeds, with energy kept to rounding where the discretization promises it."""
     told = figures(path, *(["--steps", 20] if path.stem == "logarithmic_difference" else []))
     assert told["outcome"] == "successful"
     assert told["energy_drift"] < (1e-3 if path.stem == "logarithmic_difference" else 1e-12)
@@ -28,8 +28,8 @@ def test_balanced_sleigh_moves_on_a_circle(figures: Callable[..., dict[str, Any]
     """The balanced sleigh keeps one distance from one point."""
     position = nh.load_orbit(figures(_FOLDER / "balanced_sleigh.toml")["store"]).position
     x, y = position.T
-    centre = np.linalg.lstsq(np.column_stack([2 * x, 2 * y, np.ones_like(x)]), x**2 + y**2, rcond=None)[0][:2]
-    assert np.ptp(np.linalg.norm(position - centre, axis=1)) < 1e-12
+    center = np.linalg.lstsq(np.column_stack([2 * x, 2 * y, np.ones_like(x)]), x**2 + y**2, rcond=None)[0][:2]
+    assert np.ptp(np.linalg.norm(position - center, axis=1)) < 1e-12
 
 
 def _swept(nonholo: Callable[..., Result], name: str, members: int) -> Any:

@@ -122,7 +122,7 @@ def test_each_sweep_has_a_new_number(nonholo: Command) -> None:
 
 
 def test_existing_store_is_refused(nonholo: Command) -> None:
-    """An explicit path that exists is refused before anything runs, with how to go on."""
+    """An explicit path that exists is refused before anything runs, with how to resume."""
     Path("there.zarr").mkdir()
     result = nonholo("sweep", _written(GRID), "-o", "there.zarr")
     assert result.exit_code == 2
@@ -152,7 +152,7 @@ def test_members_scale_the_ranges_of_a_grid() -> None:
 
 
 def test_members_of_a_random_design(nonholo: Command) -> None:
-    """`--members 1e2` draws so many, of which the first are those of a smaller design."""
+    """`--members 1e2` draws this many, of which the first are those of a smaller design."""
     few, many = (_told(nonholo("sweep", _written(RANDOM), "--members", n, "--json", "--no-plot")) for n in (5, "1e2"))
     assert (few["members"], many["members"]) == (5, 100)
     first, second = (nh.load_sweep(told["store"]) for told in (few, many))
@@ -167,7 +167,7 @@ def test_members_of_lists_are_refused() -> None:
 
 
 def test_refusals_name_the_option() -> None:
-    """What the command line gave is told as an option, not as the file."""
+    """What the command line gave is reported as an option, not as the file."""
     option = "design.values.body.kind=[1]"
     assert _problems(GRID, option)[0].startswith(f"--set {option}: design.values.body.kind: cannot be varied")
 
@@ -203,7 +203,7 @@ def test_what_varies_may_be_left_out(nonholo: Command) -> None:
 
 
 def test_all_problems_at_once_are_refused() -> None:
-    """Mistakes in five tables are told together, each with its key path."""
+    """Mistakes in five tables are reported together, each with its key path."""
     text = (
         GRID.replace("mass = 1.0", "mass = -1")
         .replace("[0.3, 0.5]", "[0.3, true]")
@@ -239,7 +239,7 @@ def test_all_problems_at_once_are_refused() -> None:
     ],
 )
 def test_what_is_refused(old: str, new: str, told: str) -> None:
-    """What a sweep cannot do is told with its key path and what there is instead."""
+    """What a sweep cannot do is reported with its key path and what there is instead."""
     assert any(told in problem for problem in _problems(GRID.replace(old, new)))
 
 
@@ -255,7 +255,7 @@ def test_what_is_refused(old: str, new: str, told: str) -> None:
     ],
 )
 def test_distributions_that_are_refused(given: str, told: str) -> None:
-    """A distribution that cannot be drawn is told with its key path."""
+    """A distribution that cannot be drawn is reported with its key path."""
     (problem,) = _problems(RANDOM.replace("{uniform = [0.2, 1.0]}", given))
     assert problem.startswith("my.toml: design.values.body.a: ")
     assert told in problem
@@ -334,15 +334,15 @@ def stopped(monkeypatch: pytest.MonkeyPatch, nonholo: Command) -> Path:
         result = nonholo("sweep", _written(RANDOM), "-o", "s.zarr", "--scheduler", "synchronous")
     assert result.exit_code == 1
     assert "Stopped at 4 of 12 members" in result.stderr
-    assert "Go on with: nonholo resume s.zarr" in result.stderr
+    assert "Resume with: nonholo resume s.zarr" in result.stderr
     return Path("s.zarr")
 
 
 def test_info_of_a_stopped_sweep(stopped: Path, nonholo: Command) -> None:
-    """`info` says how far it came and how to go on."""
+    """`info` says how far it came and how to resume."""
     shown = nonholo("info", stopped).stdout
     assert "4 of 12, 33.3 %" in shown
-    assert "go on with: nonholo resume s.zarr" in shown.replace("\n", "")
+    assert "resume with: nonholo resume s.zarr" in shown.replace("\n", "")
 
 
 def test_info_names_who_writes(stopped: Path, nonholo: Command) -> None:
@@ -399,7 +399,7 @@ def test_resume_of_a_damaged_sweep(nonholo: Command) -> None:
 @pytest.mark.profile("faults", keep=["SIGTERM"])
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_stopping_signals(name: str) -> None:
-    """Ctrl-C, the end of a container and a closed terminal leave an unlocked store to go on with, and exit code 1."""
+    """Ctrl-C, the end of a container and a closed terminal leave an unlocked store to resume, and exit code 1."""
     text = RANDOM.replace("members = 12", "members = 2000000").replace("steps = 20", "steps = 500")
     program = f"{HEED_CTRL_C}\nfrom nonholo.cli import main; main()"
     command = [sys.executable, "-c", program, "sweep", _written(text), "-o", "s.zarr"]
@@ -408,7 +408,7 @@ def test_stopping_signals(name: str) -> None:
     process.send_signal(getattr(signal, name))
     told = process.communicate(timeout=120)[1]
     assert process.returncode == 1
-    assert "Go on with: nonholo resume s.zarr" in told
+    assert "Resume with: nonholo resume s.zarr" in told
     assert not list(Path("s.zarr/run").glob("lock*"))
     standing = standing_of("s.zarr")
     assert 0 < standing.done < standing.members

@@ -23,7 +23,7 @@ BOMBS = {
 @pytest.mark.parametrize("command", ["simulate", "sweep"])
 @pytest.mark.parametrize("name", BOMBS)
 def test_bombs_are_refused(name: str, command: str, nonholo: Callable[..., Result]) -> None:
-    """What would fill memory or stack is told as a problem of the scenario."""
+    """What would fill memory or stack is reported as a problem of the scenario."""
     text, told = BOMBS[name]
     Path("bomb.toml").write_bytes(text.encode(errors="surrogatepass"))
     found = nonholo(command, "bomb.toml")

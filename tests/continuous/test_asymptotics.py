@@ -54,13 +54,13 @@ def test_path_is_elementary_for_ratio_two() -> None:
 
 
 def test_balanced_sleigh_moves_on_a_circle() -> None:
-    """For a = 0 the contact point moves on the circle of radius |v1/omega| about a fixed centre, whatever b is."""
+    """For a = 0 the contact point moves on the circle of radius |v1/omega| about a fixed center, whatever b is."""
     orbit = _closed(
         nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.7), np.linspace(0.0, 50.0, 101), restricted_velocity=(0.4, -1.0)
     )
     facing = np.exp(1j * orbit.heading)
-    centre = orbit.position @ np.array([1.0, 1.0j]) + 1j * facing * (-1.0 / 0.4)
-    assert np.abs(centre - centre[0]).max() <= 1e-13
+    center = orbit.position @ np.array([1.0, 1.0j]) + 1j * facing * (-1.0 / 0.4)
+    assert np.abs(center - center[0]).max() <= 1e-13
     assert np.abs(orbit.heading - 0.4 * orbit.time).max() <= 1e-14
 
 
@@ -100,7 +100,7 @@ def test_top_ends_on_the_attracting_half_line(sign: int) -> None:
 
 @pytest.mark.parametrize("along", [0.7, -0.7])
 def test_top_at_its_poles_does_not_move(along: float) -> None:
-    """Started exactly on a permanent rotation, the repelling one too, the momentum is constant for ever."""
+    """Started exactly on a permanent rotation, the repelling one too, the momentum is constant forever."""
     top = nh.SuslovTop([[1.1, 0.0, 0.45], [0.0, 0.7, 0.0], [0.45, 0.0, 0.9]])
     orbit = _closed(top, [0.0, 50.0, 100.0], restricted_velocity=(along, 0.0))
     assert np.ptp(orbit.momentum, axis=0).max() == 0

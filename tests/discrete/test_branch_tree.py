@@ -107,7 +107,7 @@ def test_a_single_image_has_a_single_line() -> None:
         (SLEIGH, np.eye(2), 1, r"displacement=...\)` must have shape \(3, 3\)"),
         (SLEIGH, nh.SE(2).exp(np.array([0.3, 0.1, 0.2])), 1, "must lie on the displacement variety"),
         (nh.discretize(nh.RigidBody(np.diag([1.0, 2.0, 3.0])), 0.1), np.eye(3), 1, "must be a top or a sleigh"),
-        ("sleigh", np.eye(3), 1, "must be a discretised system"),
+        ("sleigh", np.eye(3), 1, "must be a discretized system"),
     ],
 )
 def test_bad_arguments_are_refused(discrete: nh.Discretization, W: np.ndarray, depth: int, words: str) -> None:

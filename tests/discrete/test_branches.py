@@ -63,7 +63,7 @@ def _half_angle_sine(R: np.ndarray) -> complex:
 
 
 def _reference(case: dict) -> tuple[Discretization, np.ndarray]:
-    """Return the discretised system of a case and its displacements from their Cayley coordinates."""
+    """Return the discretized system of a case and its displacements from their Cayley coordinates."""
     discrete = nh.discretize(_SYSTEMS[case["system"]](**case["parameters"]), case["time_step"])
     y = np.array(case["roots"]) @ [1, 1j]
     Y = np.einsum("mi,ij,jab->mab", y, discrete.system.constraint_subspace, discrete.system.group.basis)

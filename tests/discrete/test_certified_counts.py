@@ -80,7 +80,7 @@ def test_bad_guesses_cost_time_only(name: str, monkeypatch: pytest.MonkeyPatch) 
 
 
 _CUBIC = (_X - 2) * (_X * _X + 1)
-_BAD_CENTRES = {
+_BAD_CENTERS = {
     "a root missing": (_CUBIC, [acb(2)]),
     "a root three times": (_CUBIC, [acb(2), acb(2), acb(2)]),
     "a pair taken for real roots": (_CUBIC, [acb(2), acb(0.5), acb(-0.5)]),
@@ -91,10 +91,10 @@ _BAD_CENTRES = {
 }
 
 
-@pytest.mark.parametrize(("polynomial", "centres"), _BAD_CENTRES.values(), ids=_BAD_CENTRES)
-def test_a_wrong_guess_is_refused(polynomial: fmpz_poly, centres: list[acb]) -> None:
+@pytest.mark.parametrize(("polynomial", "centers"), _BAD_CENTERS.values(), ids=_BAD_CENTERS)
+def test_a_wrong_guess_is_refused(polynomial: fmpz_poly, centers: list[acb]) -> None:
     """Discs prove nothing unless they are disjoint, complete, finite, and those of pairs off the real axis."""
-    assert sharpened(polynomial, centres, 128) is None
+    assert sharpened(polynomial, centers, 128) is None
 
 
 def test_rough_guesses_are_improved() -> None:

@@ -347,7 +347,7 @@ def test_questions_about_one_step_are_refused() -> None:
     """`step`, `branches` and `discrete_legendre` are about a step of order 2 and refuse a composition."""
     discrete = nh.discretize(TOP, 0.1, order=4)
     for question in (nh.step, nh.discrete_legendre):
-        with pytest.raises(ValueError, match=r"order 4, a composition of 5 steps. Pass the discretisation of order 2"):
+        with pytest.raises(ValueError, match=r"order 4, a composition of 5 steps. Pass the discretization of order 2"):
             question(discrete, np.eye(3)[0])
     with pytest.raises(ValueError, match=r"order 4, a composition"):
         nh.branches(discrete, momentum=[0.1, 0.2])

@@ -19,12 +19,12 @@ def test_a_general_system_is_the_special_one(problem: Problem) -> None:
     found = nh.simulate(nh.discretize(general, 0.1), **start)
     for name in ("momentum", "displacement", "configuration", "multipliers", "chart", "energy", "body_velocity"):
         size = np.abs(getattr(expected, name)).max() or 1.0
-        # far from the centre of mass, and in the small multipliers, two or three digits cancel
+        # far from the center of mass, and in the small multipliers, two or three digits cancel
         assert np.abs(getattr(found, name) - getattr(expected, name)).max() <= 1e-12 * size
 
 
 def test_free_motion_in_the_plane_has_equal_differences() -> None:
-    """With the centre of mass at the reference point, heading and position advance by the same step each time."""
+    """With the center of mass at the reference point, heading and position advance by the same step each time."""
     body = nh.RigidBody(np.diag([0.4, 0.9, 2.0]), nh.SE(2))
     orbit = nh.simulate(nh.discretize(body, 0.5), body_velocity=(0.9, 1.0, -0.7), steps=200)
     assert np.ptp(np.diff(orbit.heading)) <= 1e-13
@@ -78,7 +78,7 @@ def test_what_the_riccati_equation_cannot_do_is_refused(bad: dict) -> None:
 @pytest.mark.parametrize("length", [1e-6, 1e4])
 @pytest.mark.parametrize("name", ["any d on SE(3)", "right-invariant on SE(3)", "free on SE(3)"])
 def test_units_of_length_do_not_matter(name: str, length: float) -> None:
-    """The same body in micrometres or in steps of ten kilometres takes the same path, and is as exact."""
+    """The same body in micrometers or in steps of ten kilometers takes the same path, and is as exact."""
     system, velocity = GENERAL[name]
     rescaled = np.diag([length, length, length, 1.0])
     coordinates = np.diag([1.0, 1.0, 1.0, length, length, length])
@@ -98,7 +98,7 @@ def test_units_of_length_do_not_matter(name: str, length: float) -> None:
     "name", ["suslov 4", "any d on SE(3)", "free on SO(4)", "veselova 3", "right-invariant on SE(3)"]
 )
 def test_however_far_beyond_the_fold_there_is_no_branch(name: str, scale: float) -> None:
-    """A momentum that no displacement has is told from an iteration that fails, by any factor."""
+    """A momentum that no displacement has is distinguished from an iteration that fails, by any factor."""
     system, velocity = GENERAL[name]
     orbit = nh.simulate(nh.discretize(system, 1.0), restricted_velocity=scale * velocity, steps=1, throw=False)
     assert orbit.outcome == nh.Outcome.no_real_branch

@@ -1,4 +1,4 @@
-"""The discrete map against the continuous motion it discretises: second order in momenta and pose."""
+"""The discrete map against the continuous motion it discretizes: second order in momenta and pose."""
 
 import numpy as np
 import pytest

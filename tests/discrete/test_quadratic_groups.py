@@ -168,7 +168,7 @@ def test_a_step_in_high_precision() -> None:
     ("name", "k"), [("SO(2,1) oblique", 2), ("Sp(4)", 3), ("Sp(4) oblique", 2), ("U(1,1)", 3), ("SO(2,1) x Sp(2)", 3)]
 )
 def test_the_checks_of_users_pass(name: str, k: int) -> None:
-    """System and discretisation pass all properties, among them the definition in JAX and the order of two."""
+    """System and discretization pass all properties, among them the definition in JAX and the order of two."""
     one = system(FORMS[name], k, np.random.default_rng(3))
     assert nh.testing.check_system(one).passed
     report = nh.testing.check_discretization(nh.discretize(one, 0.1))

@@ -43,18 +43,18 @@ def test_below_the_saddle_one_branch_is_inner(top: nh.SuslovTop, part: float) ->
     assert set(found.region[~found.is_real]) <= {""}
 
 
-def test_between_the_saddle_and_the_centre() -> None:
+def test_between_the_saddle_and_the_center() -> None:
     """From h* to h** the region is "between", wherever the displacement lies."""
     discrete = nh.discretize(_REGULAR, 0.5)
     critical = nh.critical_energies(discrete)
-    centre = next(p for p in critical.points if p.kind == "maximum")
+    center = next(p for p in critical.points if p.kind == "maximum")
     for part in (0.5, 0.99):
-        z = part * centre.half_turn_vector + (1 - part) * np.array([0.01, 0.0])
+        z = part * center.half_turn_vector + (1 - part) * np.array([0.01, 0.0])
         W = discrete.system.group.exp(
             2 * np.arcsin(np.linalg.norm(z)) / np.linalg.norm(z) * z @ _REGULAR.constraint_subspace
         )
         found = nh.displacements_over(discrete, discrete.system.restrict(nh.discrete_legendre(discrete, W)))
-        between = critical.saddle < found.energy < critical.centre
+        between = critical.saddle < found.energy < critical.center
         assert between == (part == 0.99)
         assert ("between" in found.region) == between
 

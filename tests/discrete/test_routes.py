@@ -1,4 +1,4 @@
-"""One route for each discretisation: by its normal form, whatever its class; each against the more general ones."""
+"""One route for each discretization: by its normal form, whatever its class; each against the more general ones."""
 
 import dataclasses
 from typing import Any

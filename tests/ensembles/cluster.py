@@ -1,4 +1,4 @@
-"""A Dask cluster of one's own on loopback, sweeps for it, and their client as a process that can be killed."""
+"""A private Dask cluster on loopback, sweeps for it, and their client as a process that can be killed."""
 
 import contextlib
 import json

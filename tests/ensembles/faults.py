@@ -32,7 +32,7 @@ SWEEPS: dict[str, tuple[Any, Any, int]] = {
 
 
 def go_on(name: str, path: Path, scheduler: str = "threads") -> xarray.Dataset:
-    """Begin a sweep, or go on with it."""
+    """Begin a sweep, or resume it."""
     task, design, block = SWEEPS[name]
     return nh.sweep(task, design, path, scheduler, block=block, workers=2, resume=True)
 
@@ -43,7 +43,7 @@ def done(path: Path) -> int:
 
 
 def kill_often(name: str, path: Path, scheduler: str, victims: list[str]) -> None:
-    """Go on with a sweep and kill client, worker or all, again and again; print how often that ended as it has to."""
+    """Resume a sweep and kill client, worker or all, again and again; print how often that ended as it has to."""
     chance = np.random.default_rng(len(victims))
     TOPS(nh.MemberBlock(0, 1, 0, nh.RandomDesign(1, TOP_DESIGN).values(0, 1)))  # compiled before the first fork
     ended = 0

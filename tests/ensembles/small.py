@@ -22,12 +22,12 @@ def simple(block: nh.MemberBlock) -> dict[str, Any]:
 
 
 def swept(path: Path, **options: Any) -> xarray.Dataset:
-    """Run the sweep, in this thread unless told otherwise."""
+    """Run the sweep, in this thread unless stated otherwise."""
     return nh.sweep(simple, DESIGN, path, **{"scheduler": "synchronous", "block": 2, **options}).load()
 
 
 def resumed(path: Path, **options: Any) -> xarray.Dataset:
-    """Go on with the sweep."""
+    """Resume the sweep."""
     return nh.resume(path, task=simple, **{"scheduler": "synchronous", **options}).load()
 
 

@@ -140,7 +140,7 @@ def test_addresses_without_a_scheduler_are_refused(
 
 
 def test_the_address_of_a_worker_is_refused(running: Cluster, tmp_path: Path) -> None:
-    """Workers listen too; whoever passes the address of one is told so."""
+    """Workers listen too; whoever passes the address of one is informed."""
     with distributed.Client(running.address, set_as_default=False) as client:
         client.wait_for_workers(1, timeout=120)
         worker = next(iter(client.scheduler_info()["workers"]))

@@ -81,7 +81,7 @@ def test_random_members_do_not_depend_on_the_rest(distribution: AbstractDistribu
     ids=["names", "seeds", "both"],
 )
 def test_names_and_seeds_are_independent(one: tuple[str, int], other: tuple[str, int]) -> None:
-    """Numbers of different names or seeds are not correlated, nor are those of neighbours: five standard errors."""
+    """Numbers of different names or seeds are not correlated, nor are those of neighbors: five standard errors."""
     first, second = (
         nh.RandomDesign(MEMBERS, {name: nh.Uniform(-1, 1)}, seed=seed).values(0, MEMBERS)[name]
         for name, seed in (one, other)
@@ -184,7 +184,7 @@ def test_blocks_know_their_members() -> None:
 
 @hypothesis.given(sizes=st.lists(st.integers(1, 7), min_size=1, max_size=4).map(tuple), block=st.integers(1, 50))
 def test_every_member_is_in_one_block(sizes: tuple[int, ...], block: int) -> None:
-    """Blocks cover every member once, hold at most so many, and their members follow each other in the arrays."""
+    """Blocks cover every member once, hold at most this many, and their members follow each other in the arrays."""
     layout = layout_of(sizes, block)
     numbers, seen = np.arange(np.prod(sizes)).reshape(sizes), np.zeros(sizes, dtype=int)
     for number in range(layout.blocks):

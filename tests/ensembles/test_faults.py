@@ -44,7 +44,7 @@ def _printed(code: str) -> str:
     ("name", "scheduler"), [("noisy", "threads"), ("tops", "threads"), ("noisy", "processes")], ids=str
 )
 def test_killed_sweeps_go_on(name: str, scheduler: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Killed at 20 random moments in all, and resumed, sweeps are the undisturbed ones and leave no rubbish."""
+    """Killed at 20 random moments in total, and resumed, sweeps are the undisturbed ones and leave no rubbish."""
     path, victims = tmp_path / "killed.zarr", KILLS[f"{name}-{scheduler}"]
     ended = int(_printed(f"kill_often({name!r}, Path({str(path)!r}), {scheduler!r}, {victims})"))
     task, design, block = faults.SWEEPS[name]
@@ -65,7 +65,7 @@ def test_killed_sweeps_go_on(name: str, scheduler: str, tmp_path: Path, capsys: 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="looks for processes in /proc")
 @pytest.mark.parametrize("scheduler", ["threads", "processes"])
 def test_interrupted_sweep_goes_on(scheduler: str, tmp_path: Path) -> None:
-    """Ctrl-C says how far the sweep came and how to go on, and nothing else; the store is valid."""
+    """Ctrl-C says how far the sweep came and how to resume, and nothing else; the store is valid."""
     path = tmp_path / "run.zarr"
     process = python(f"go_on('noisy', Path({str(path)!r}), {scheduler!r})", start_new_session=True)
     wait_for(lambda: faults.done(path) > 3)
@@ -80,7 +80,7 @@ def test_interrupted_sweep_goes_on(scheduler: str, tmp_path: Path) -> None:
     assert process.returncode == -signal.SIGINT
     now = standing_of(path)
     assert 0 < now.done < now.members
-    last = f"Stopped at {now.done} of 2400 members, 0 of them failed. Go on with nonholo.resume('{path}')"
+    last = f"Stopped at {now.done} of 2400 members, 0 of them failed. Resume with nonholo.resume('{path}')"
     assert complaint.splitlines()[-1].startswith(f"KeyboardInterrupt: {last}")
     assert complaint.count("Traceback") == 1, "workers have nothing to say"
     assert now.owner is None
@@ -118,7 +118,7 @@ def test_end_between_the_last_two_writes(tmp_path: Path, monkeypatch: pytest.Mon
 
 @pytest.mark.parametrize("scheduler", ["synchronous", "threads"])
 def test_full_disk_leaves_a_valid_store(scheduler: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A full disk is an error that names the store, the standing and the remedy; with room again the sweep goes on."""
+    """A full disk is an error that names the store, the standing and the remedy; with room again it continues."""
     path = tmp_path / "run.zarr"
     with monkeypatch.context() as patch:
         stop_at(patch, 2, OSError(errno.ENOSPC, "No space left on device"))
@@ -133,7 +133,7 @@ def test_full_disk_leaves_a_valid_store(scheduler: str, tmp_path: Path, monkeypa
 @pytest.mark.profile("faults", instead="test_full_disk_leaves_a_valid_store")
 @pytest.mark.parametrize("scheduler", ["threads", "processes"])
 def test_limit_of_the_system_on_file_sizes(scheduler: str, tmp_path: Path) -> None:
-    """A limit met while zarr writes ends in the same clean error, and the sweep goes on without it."""
+    """A limit met while zarr writes ends in the same clean error, and the sweep continues without it."""
     path = tmp_path / "run.zarr"
     told = _printed(f"""
 import resource
@@ -179,7 +179,7 @@ def test_second_process_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert standing_of(path).finished
 
 
-def test_stale_lock_is_recognised(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stale_lock_is_recognized(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A lock that a process left which has ended does not count, and neither do its half-written files."""
     path = tmp_path / "run.zarr"
     with monkeypatch.context() as patch:

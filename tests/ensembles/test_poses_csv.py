@@ -78,7 +78,7 @@ def test_refused_for_a_function(tmp_path: Path) -> None:
 
 
 def test_refused_without_the_system(tmp_path: Path) -> None:
-    """A store whose discretisation is no data is told to hold it, not to be passed a task."""
+    """A store whose discretization is no data is said to hold it, not to be passed a task."""
     nh.sweep(_task(SLEIGH), nh.Grid({"a": [0.1, 0.3]}), tmp_path / "s.zarr")
     document = json.loads((tmp_path / "s.zarr" / "zarr.json").read_text())
     told = json.loads(document["attributes"]["sweep"])

@@ -23,7 +23,7 @@ SLEIGHS = nh.Grid({"a": [0.1, 0.2]})
 
 
 def test_moved_store_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A store that was moved to another folder goes on there; another one in its old place is another one."""
+    """A store that was moved to another folder continues there; another one in its old place is another one."""
     path, moved = tmp_path / "run.zarr", tmp_path / "elsewhere" / "moved.zarr"
     with monkeypatch.context() as patch:
         stop_at(patch, 1, KeyboardInterrupt())
@@ -97,7 +97,7 @@ def _sleighs(path: Path, *, time_step: float = 0.1, values: Any = (0.1, 0.2), **
     ],
 )
 def test_another_sweep_is_refused(changes: dict[str, Any], match: str, tmp_path: Path) -> None:
-    """A store is not gone on with by another task or design: the difference is named, and nothing is changed."""
+    """A store is not resumed by another task or design: the difference is named, and nothing is changed."""
     path = tmp_path / "run.zarr"
     whole = _sleighs(path).load()
     with pytest.raises(ValueError, match=f"must hold this sweep.*where {match}"):
@@ -204,7 +204,7 @@ def test_orbits_are_resumed_as_ever(tmp_path: Path) -> None:
 
 
 def test_tasks_without_a_name_have_to_be_passed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A task that no process can import is asked for by `resume`, and goes on once it is passed."""
+    """A task that no process can import is asked for by `resume`, and continues once it is passed."""
     path, task = tmp_path / "run.zarr", lambda block: simple(block)
     mixed = nh.EnsembleTask(SLEIGH, steps=3, restricted_velocity=(1.0, 0.5), reductions=[lambda batch: batch.outcome])
     for store, each, design in ((path, task, DESIGN), (tmp_path / "mixed.zarr", mixed, SLEIGHS)):

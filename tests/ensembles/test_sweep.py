@@ -27,7 +27,7 @@ def _swept(task: Any, path: Path, design: Any = GRID, **options: Any) -> xarray.
     return nh.sweep(task, design, path / "run.zarr", **{"scheduler": "synchronous", **options}).load()
 
 
-def test_result_is_labelled(tmp_path: Path) -> None:
+def test_result_is_labeled(tmp_path: Path) -> None:
     """Members lie along the axes of the grid, other axes have the names of the task or names of their own."""
 
     def task(block: nh.MemberBlock) -> dict[str, Any]:
@@ -258,7 +258,7 @@ def test_bad_arguments_are_refused(options: dict[str, Any], match: str, tmp_path
 @pytest.mark.parametrize("block", [1, 7, 64])
 @pytest.mark.parametrize("scheduler", ["threads", "synchronous"])
 def test_bits_do_not_depend_on_blocks(scheduler: str, block: int, design: Any, tmp_path: Path) -> None:
-    """A task of one's own has the same result in blocks of any size, by any scheduler."""
+    """A custom task has the same result in blocks of any size, by any scheduler."""
     found = _swept(_calm, tmp_path, design, block=block, scheduler=scheduler)
     assert same(found, nh.sweep(_calm, design, tmp_path / "whole.zarr", "synchronous").load())
 

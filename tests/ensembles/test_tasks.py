@@ -78,7 +78,7 @@ def _path_length(batch: nh.Ensemble) -> dict[str, Any]:
 
 
 def test_functions_of_an_ensemble() -> None:
-    """A reduction of one's own sees the states that are saved, beside built-in ones."""
+    """A custom reduction sees the states that are saved, beside built-in ones."""
     task = _task(restricted_velocity=(1.0, 0.2), save_every=10, reductions=[_path_length, "final_state"])
     found = _called(task, nh.Grid({"a": [0.1, 0.5]}))
     batch = nh.ensemble(SLEIGH, steps=50, restricted_velocity=(1.0, 0.2), save_every=10, parameters={"a": [0.1, 0.5]})

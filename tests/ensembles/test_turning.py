@@ -1,4 +1,4 @@
-"""How far the discrete sleigh turns in all, as sweeps keep it, against the closed form of the flow."""
+"""How far the discrete sleigh turns in total, as sweeps keep it, against the closed form of the flow."""
 
 from pathlib import Path
 
@@ -87,7 +87,7 @@ def test_turn_of_each_step() -> None:
 
 
 def test_balanced_sleigh_has_no_deviation(tmp_path: Path) -> None:
-    """A balanced sleigh turns for ever, so its deviation is not defined."""
+    """A balanced sleigh turns forever, so its deviation is not defined."""
     discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 1.0), 0.1)
     options = {"steps": 20, "restricted_velocity": (0.5, -1.0), "reductions": "turning_deviation"}
     found = nh.sweep(nh.EnsembleTask(discrete, **options), nh.Grid({"a": [0.0, 1.0]}), tmp_path / "s.zarr")

@@ -70,7 +70,7 @@ def test_orbits_and_their_datasets(name: str) -> None:
     for quantity in ("body_velocity", "momentum", "restricted_momentum", "energy"):
         assert np.array_equal(found[quantity], getattr(orbit, quantity)), quantity
     if "quaternion" in found:
-        assert (np.diff(found["quaternion"], axis=0) ** 2).sum(axis=1).max() < 0.1, "signs have to go on"
+        assert (np.diff(found["quaternion"], axis=0) ** 2).sum(axis=1).max() < 0.1, "signs have to continue"
 
 
 @pytest.mark.parametrize("name", ["about e2", "about -e3", "askew", "sleigh", "sleigh in space", "Veselova"])
@@ -167,7 +167,7 @@ def test_tables(name: str, tmp_path: Path) -> None:
 
 
 def test_products_have_their_factors_by_name() -> None:
-    """Poses on a product are told by its factors: the plane motion by x, y and heading, what slides as shape."""
+    """Poses on a product are named by its factors: the plane motion by x, y and heading, what slides as shape."""
     group = nh.ProductGroup(nh.SE(2), nh.Translations(2), nh.SO(3))
     system = nh.LLSystem(group, constraint_subspace=np.eye(8)[:3], inertia_operator=np.eye(8))
     rng = np.random.default_rng(0)

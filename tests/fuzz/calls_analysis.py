@@ -1,4 +1,4 @@
-"""Calls of questions that are asked of systems, discretisations and orbits, and of the property checks."""
+"""Calls of questions that are asked of systems, discretizations and orbits, and of the property checks."""
 
 import numpy as np
 from fuzz.calls import Call, by_position, call

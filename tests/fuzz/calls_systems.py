@@ -66,7 +66,7 @@ def _methods() -> list[Call]:
     for name, system in (("top", nh.SuslovTop(J)), ("sleigh", nh.ChaplyginSleigh(1.0, 1.0, 0.5)), ("flat", flat)):
         r = array([0.2, -0.3, 0.1][: system.rank], "batch", complex=True)
         p = array(0.1 + np.arange(system.group.dim), "batch", complex=True)
-        either = array(r.value, "any", complex=True)  # r and p are told apart by their length
+        either = array(r.value, "any", complex=True)  # r and p are distinguished by their length
         found += [
             call(f"{name}.{method}", getattr(system, method), **{argument: value})
             for method, argument, value in (

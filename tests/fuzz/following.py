@@ -24,9 +24,9 @@ _FAR = 1.0  # a correction so large leads elsewhere
 _SURE = 1e-13  # a correction after which there are no more
 SHARP = 1e-7  # the last correction of a root; rounding makes more of it where bodies are very uneven
 _BLURRED = 1e-3  # on the way, the last correction relative to the step: more than rounding makes of it near half-turns
-_REST = 1e-6  # what is left of the way to s = 1 where the tangent alone goes on
+_REST = 1e-6  # what is left of the way to s = 1 where the tangent alone continues
 _SMALLEST = 1e-11
-_FOLD = 10.0  # so many of its last steps at most from a fold, where squares of determinants vanish linearly
+_FOLD = 10.0  # this many of its last steps at most from a fold, where squares of determinants vanish linearly
 
 
 @dataclasses.dataclass(frozen=True)
@@ -119,7 +119,7 @@ class Tangents:
         return cls((planes @ rates[..., None])[..., 0], planes, determinants)
 
     def continues(self, before: "Tangents") -> np.ndarray:
-        """Return where a plane goes on with another one, and the determinants have one sign."""
+        """Return where a plane continues with another one, and the determinants have one sign."""
         volumes = np.linalg.det(np.swapaxes(before.planes, 1, 2) @ self.planes)
         return (np.abs(volumes) > _TURNED) & (before.determinants * self.determinants * volumes > 0)
 

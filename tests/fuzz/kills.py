@@ -1,8 +1,8 @@
 """Kill runs and sweeps at random times: `python tests/fuzz/kills.py --trials 20 --restarts 10 [--json FILE]`.
 
-So many runs of orbits and of sweeps are killed by SIGKILL, two in five again in the resume, and resumed; others run in
-a process namespace of their own, as in a container, which ends with them, and are resumed in another one. The numbers
-must be those of a run that nobody disturbed, to the bit, no file may be left behind, and no lock held.
+This many runs of orbits and of sweeps are killed by SIGKILL, two in five again in the resume, and resumed; others run
+in a process namespace of their own, as in a container, which ends with them, and are resumed in another one. The
+numbers must be those of a run that nobody disturbed, to the bit, no file may be left behind, and no lock held.
 """
 
 # ruff: noqa: E402
@@ -38,13 +38,13 @@ SWEEPS: dict[str, Any] = {
     "tops": (faults.TOPS, nh.RandomDesign(20_000, faults.TOP_DESIGN, seed=4), 500),
 }
 FAMILIES = {"orbit": ("sleigh", "events"), "sweep": tuple(SWEEPS)}
-_SHORTER = 5  # so many times shorter than the runs of the tests of kills at chosen blocks
+_SHORTER = 5  # this many times shorter than the runs of the tests of kills at chosen blocks
 _AGAIN = 0.4
 _RESTARTS = ("unshare", "--pid", "--fork", "--kill-child", "--mount-proc")
 
 
 def go_on(family: str, name: str, store: Path) -> None:
-    """Begin a run or a sweep, or go on with it."""
+    """Begin a run or a sweep, or resume it."""
     if family == "sweep":
         task, design, block = SWEEPS[name]
         nh.sweep(task, design, store, "threads", block=block, workers=2, resume=True)
@@ -95,7 +95,7 @@ def kill_in_forks(family: str, name: str, store: Path, chance: random.Random, se
 
 
 def _killed(family: str, name: str, store: Path, seconds: float) -> bool:
-    """Go on in a child and kill it after a while; return whether it had not ended before."""
+    """Continue in a child and kill it after a while; return whether it had not ended before."""
     child = os.fork()
     if child == 0:
         os.setsid()
@@ -107,7 +107,7 @@ def _killed(family: str, name: str, store: Path, seconds: float) -> bool:
 
 
 def kill_by_restart(family: str, name: str, store: Path, chance: random.Random, seconds: float) -> int:
-    """Kill the namespace of a run once it has begun, and go on in another one; return 1 if that was before its end."""
+    """Kill the namespace of a run once it has begun, and resume in another one; return 1 if that was before its end."""
     command = [*_RESTARTS, sys.executable, __file__, "--go-on", family, name, str(store)]
     running = subprocess.Popen(command)  # noqa: S603
     while not store.exists() and running.poll() is None:
@@ -127,7 +127,7 @@ def can_restart() -> bool:
 
 
 def figures(family: str, count: int, seed: int, restarts: bool = False, names: tuple[str, ...] = ()) -> dict[str, Any]:
-    """Kill so many runs of a family; return how many were, and what of them is wrong."""
+    """Kill this many runs of a family; return how many were, and what of them is wrong."""
     chance, wrong, kills = random.Random(seed), [], 0  # noqa: S311
     kill = kill_by_restart if restarts else kill_in_forks
     with tempfile.TemporaryDirectory(prefix="fuzz-") as home:
@@ -184,7 +184,7 @@ def all_figures(trials: int, restarts: int, seed: int, only: str | None = None) 
 
 
 def main() -> int:
-    """Kill, go on, compare, print the figures."""
+    """Kill, resume, compare, print the figures."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--trials", type=int, default=20, help="of orbits, and of sweeps")
     parser.add_argument("--restarts", type=int, default=10, help="in namespaces that end")

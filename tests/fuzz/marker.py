@@ -14,7 +14,7 @@ def touch(*_: Any, **__: Any) -> dict[str, Any]:
 
 
 def answering() -> Callable[[str], str]:
-    """Return what hangs, dies or answers, as it is told."""
+    """Return what hangs, dies or answers, as asked."""
 
     def do(job: str) -> str:
         if job == "die":

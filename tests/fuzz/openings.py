@@ -33,7 +33,7 @@ class Trial(NamedTuple):
 
 
 def trials(family: str, kind: str, count: int, seed: int) -> list[Trial]:
-    """Return the trials of so many damaged stores: each is opened in every way."""
+    """Return the trials of this many damaged stores: each is opened in every way."""
     stores = FAMILIES[family]
     return [
         Trial(family, stores[i % len(stores)], kind, seed + i, opening)

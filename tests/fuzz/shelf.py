@@ -1,4 +1,4 @@
-"""Small stores, finished and not, that fuzzers open, damage and go on with."""
+"""Small stores, finished and not, that fuzzers open, damage and resume."""
 
 from pathlib import Path
 from typing import Any

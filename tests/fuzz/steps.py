@@ -189,7 +189,7 @@ def _check_refusals(
 
 
 def figures(steps: int, seed: int, families: tuple[str, ...] = tuple(FAMILIES)) -> dict[str, Any]:
-    """Run and check so many steps, shared by the families; return the counts of each and what was wrong."""
+    """Run and check this many steps, shared by the families; return the counts of each and what was wrong."""
     rows: dict[str, dict[str, int]] = {}
     broken = []
     for at, family in enumerate(families):

@@ -1,6 +1,6 @@
 """Fuzz stores: `python tests/fuzz/stores.py --trials 200 --seed 0 --workers 2 [--json FILE]`.
 
-So many stores of orbits, and of sweeps, have a file damaged, as many have their JSON edited. Each is then loaded,
+This many stores of orbits, and of sweeps, have a file damaged, as many have their JSON edited. Each is then loaded,
 shown, resumed, extended and exported. Right are the numbers of the whole store, to the bit, and refusals of ours.
 """
 

@@ -67,7 +67,7 @@ def prepared() -> Callable[[Trial], Verdict]:
 
 @contextlib.contextmanager
 def _folder(shelf_: Path | None) -> contextlib.AbstractContextManager[None]:
-    """Work in a folder of one's own below another one, with the stores if there are some."""
+    """Work in a private folder below another one, with the stores if there are some."""
     before = Path.cwd()
     with tempfile.TemporaryDirectory(prefix="fuzz-") as outside:
         inside = Path(outside) / "in" / "side"

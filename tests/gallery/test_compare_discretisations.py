@@ -1,4 +1,4 @@
-"""The comparison of discretisations: its figures on short runs, and the picture made of them."""
+"""The comparison of discretizations: its figures on short runs, and the picture made of them."""
 
 from pathlib import Path
 from types import ModuleType
@@ -38,7 +38,7 @@ def test_the_four_constraints_differ(script: ModuleType) -> None:
     """The body's subspace belongs to no symmetric pair, and its exponential is no Cayley image."""
     system = script.body()
     assert not nh.is_symmetric_pair(system.group, system.constraint_subspace)
-    assert script.discretised("matrix", "exponential").variety.exponential
+    assert script.discretized("matrix", "exponential").variety.exponential
 
 
 def test_the_published_pair(script: ModuleType) -> None:
@@ -55,7 +55,7 @@ def test_the_picture(script: ModuleType, tmp_path: Path) -> None:
     """Six panels with their curves, written as a file."""
     energy = np.zeros(5)
     table = {(a, b): script.Figures(energy, 0.0, 2.0) for a in script.DIFFERENCES for b in script.CONSTRAINTS}
-    orbit = nh.simulate(script.discretised("matrix", "skew"), restricted_velocity=script.VELOCITY, steps=5)
+    orbit = nh.simulate(script.discretized("matrix", "skew"), restricted_velocity=script.VELOCITY, steps=5)
     errors = {label: np.geomspace(1e-3, 1e-5, 4) for label in script.PUBLISHED}
     orbits = dict.fromkeys((*script.PATHS, "flow"), orbit)
     figure = script.draw(table, orbits, errors, dict.fromkeys(script.PUBLISHED, 1e-4))

@@ -456,7 +456,7 @@ PROBLEMS: list[tuple[str, str, str, Any, Any, list[tuple[float, float]]]] = [
 
 
 def draw_parameters(draw: np.random.RandomState, system: str, n: int, size: int) -> dict[str, Any]:
-    """Draw mass, centre of mass and mass tensor about it for a sleigh, else the mass tensor."""
+    """Draw mass, center of mass and mass tensor about it for a sleigh, else the mass tensor."""
     if system != "sleigh":
         return {"mass_tensor": draw_tensor(draw, size)}
     center = np.round(draw.uniform(0.15, 0.4, n) * draw.choice([-1, 1], n), 2).tolist()

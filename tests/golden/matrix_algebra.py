@@ -74,7 +74,7 @@ def suslov_top(name: str, mass_tensor: list[list[float]]) -> Body:
 
 
 def chaplygin_sleigh(name: str, mass: float, inertia: float, a: float, b: float) -> Body:
-    """Return the sleigh with its homogeneous mass tensor; inertia is about the centre of mass."""
+    """Return the sleigh with its homogeneous mass tensor; inertia is about the center of mass."""
     m, x, y = mpf(mass), mpf(a), mpf(b)
     half = mpf(inertia) / 2
     tensor = [

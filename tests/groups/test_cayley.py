@@ -39,7 +39,7 @@ def _motion(y: np.ndarray, v: np.ndarray) -> np.ndarray:
 
 
 def _by_definition(X: np.ndarray, digits: int) -> np.ndarray:
-    """Solve (I - X/2) W = I + X/2 with so many digits."""
+    """Solve (I - X/2) W = I + X/2 with this many digits."""
     with mpmath.workdps(digits):
         half, eye = mpmath.matrix(X.tolist()) / 2, mpmath.eye(len(X))
         return np.array((mpmath.inverse(eye - half) * (eye + half)).tolist(), dtype=np.float64)

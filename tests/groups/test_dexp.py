@@ -30,7 +30,7 @@ def test_dexp_inverse_is_the_derivative_of_the_logarithm(group: AbstractMatrixGr
 
 
 @pytest.mark.parametrize("group", RIGID, ids=str)
-def test_right_trivialised_derivative(group: AbstractMatrixGroup) -> None:
+def test_right_trivialized_derivative(group: AbstractMatrixGroup) -> None:
     """log(exp(x) exp(e d)) = x + e dexp_(-x)^-1 d."""
     (x, d), small = vectors(group, 2, 0.4), 1e-5
     ahead, behind = (group.log(group.exp(x) @ group.exp(e * d)) for e in (small, -small))

@@ -21,8 +21,8 @@ def test_pose_round_trip(group: AbstractMatrixGroup) -> None:
 
 
 @every_group
-def test_normalised_poses_stay(group: AbstractMatrixGroup) -> None:
-    """Normalisation changes poses of the group by rounding only."""
+def test_normalized_poses_stay(group: AbstractMatrixGroup) -> None:
+    """Normalization changes poses of the group by rounding only."""
     rng = np.random.default_rng(1)
     pose = np.stack([group.pose_from_matrix(group.random(rng)) for _ in range(20)])
     assert close(group.normalize_pose(pose), pose, 20)
@@ -40,7 +40,7 @@ def test_gathered_errors_are_removed(group: AbstractMatrixGroup) -> None:
 
 @pytest.mark.parametrize("group", [SO(2), SO(5)], ids=str)
 def test_the_nearest_rotation_is_the_polar_factor(group: AbstractMatrixGroup) -> None:
-    """Normalisation is the polar factor of the singular value decomposition."""
+    """Normalization is the polar factor of the singular value decomposition."""
     rng = np.random.default_rng(3)
     R = group.random(rng) + 1e-5 * rng.normal(size=(group.size, group.size))
     assert close(group.matrix_from_pose(R.reshape(-1)), scipy.linalg.polar(R)[0], 20)

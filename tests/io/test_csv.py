@@ -1,4 +1,4 @@
-"""Poses as CSV: every number is read back exactly, rows go on from one another, and a file is whole or not there."""
+"""Poses as CSV: every number is read back exactly, rows continue from one another, and a file is whole or not there."""
 
 import io
 import json
@@ -20,7 +20,7 @@ import nonholo as nh
 from nonholo.io import checksum, locked, store_to_csv
 
 EPS = np.finfo(float).eps
-SPINNING = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.3), 0.1)  # turns for ever
+SPINNING = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.3), 0.1)  # turns forever
 TILTED = nh.discretize(PROBLEMS[1].system, 0.1)
 FORWARDS = nh.discretize(nh.MultidimensionalSleigh(1.5, [0.3, 0.1, 0.2], np.diag([0.5, 0.7, 0.9])), 0.1)
 SPIN = {"restricted_velocity": (3.0, 0.5)}
@@ -135,12 +135,12 @@ def test_entries_from_ten_rows_on_are_told_apart(tmp_path: Path) -> None:
 
 
 def test_store_in_chunks_gives_the_text_of_the_orbit(store: Path, tmp_path: Path) -> None:
-    """Headings go on over the borders of chunks: the same bytes, however the motion is cut."""
+    """Headings continue over the borders of chunks: the same bytes, however the motion is cut."""
     assert _of_store(store) == _written(nh.simulate(SPINNING, steps=100, **SPIN), tmp_path)
 
 
 def test_quaternions_go_on_over_chunks(tmp_path: Path) -> None:
-    """Signs go on over the borders of chunks too, here of one state each."""
+    """Signs continue over the borders of chunks too, here of one state each."""
     top = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.5)
     start = {"restricted_velocity": (0.9, 0.4), "steps": 40}
     nh.simulate(top, store=tmp_path / "run.zarr", checkpoint_every=1, **start)
@@ -191,12 +191,12 @@ def test_callable_difference_is_no_obstacle(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("block", [0, 1, 5])
 def test_unfinished_store_gives_its_finished_blocks(block: int, tmp_path: Path) -> None:
-    """What a stopped run finished is exported, and a warning says how far it goes and how to go on."""
+    """What a stopped run finished is exported, and a warning says how far it goes and how to resume."""
     path, given = tmp_path / "run.zarr", {"save_every": 2, **SPIN}
     with stopped_at(block):
         nh.simulate(SPINNING, steps=99, store=path, checkpoint_every=16, **given)
     last = max(0, 16 * block - 2)
-    with pytest.warns(RuntimeWarning, match=rf"up to step {last} of 99\. Go on with nonholo\.resume\('.*run\.zarr'\)"):
+    with pytest.warns(RuntimeWarning, match=rf"up to step {last} of 99\. Resume with nonholo\.resume\('.*run\.zarr'\)"):
         text = _of_store(path)
     whole = _written(nh.simulate(SPINNING, steps=99, **given), tmp_path)
     assert text == "".join(whole.splitlines(keepends=True)[: 1 + 8 * block])

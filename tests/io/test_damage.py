@@ -99,7 +99,7 @@ def test_a_run_that_failed_before_a_row_is_sealed_too(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("group", ["run", "canonical"])
 def test_metadata_of_inner_groups_are_written_again(group: str, tmp_path: Path) -> None:
-    """They say nothing that is not known, so a run goes on where they are damaged."""
+    """They say nothing that is not known, so a run continues where they are damaged."""
     store = tmp_path / "run.zarr"
     with stopped_at(3):
         _run(store)

@@ -1,4 +1,4 @@
-"""Stores of before routes had names go on by the route that began them, to the bits of a run without a stop.
+"""Stores of before routes had names continue by the route that began them, to the bits of a run without a stop.
 
 `earlier_routes` was written by the last version of that kind, with the program `earlier_stores.py`.
 """

@@ -157,7 +157,7 @@ def test_groups_come_back(group: AbstractMatrixGroup) -> None:
 
 
 def test_charts_have_their_own_dimension(tmp_path: Path) -> None:
-    """Where the chart has more coordinates than the subspace the store is still labelled without contradiction."""
+    """Where the chart has more coordinates than the subspace the store is still labeled without contradiction."""
     orbit = _run(MOTIONS["left-invariant on SE(3)"]())
     nh.save_orbit(orbit, tmp_path / "o.zarr")
     with xarray.open_zarr(tmp_path / "o.zarr", group="canonical", chunks=None) as compact:
@@ -185,7 +185,7 @@ def test_right_invariant_orbits_without_poses(tmp_path: Path) -> None:
 
 
 def test_constraint_functions_must_be_given(tmp_path: Path) -> None:
-    """A variety given by functions cannot be stored: the refusal says to pass the discretisation, which then serves."""
+    """A variety given by functions cannot be stored: the refusal says to pass the discretization, which then serves."""
     own = nh.discretize(
         nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, constraint=lambda W: (W[0, 2] * W[0, 0]) * W[1, 1] * 0 + W[1, 2]
     )
@@ -206,7 +206,7 @@ def test_own_groups_must_be_given(tmp_path: Path) -> None:
     own = nh.discretize(nh.LLSystem(group, constraint_subspace=np.eye(5)[1:4], inertia_operator=np.eye(5)), 0.1)
     orbit = _made_up(own)
     nh.save_orbit(orbit, tmp_path / "o.zarr")
-    with pytest.raises(ValueError, match=r"whose group holds an object of your own\. Pass load_orbit\(path, discrete="):
+    with pytest.raises(ValueError, match=r"whose group holds a custom object\. Pass load_orbit\(path, discrete="):
         nh.load_orbit(tmp_path / "o.zarr")
     assert nh.load_orbit(tmp_path / "o.zarr", discrete=own).pose.tobytes() == orbit.pose.tobytes()
 

@@ -48,11 +48,11 @@ def test_decoded_motion(name: str, key: str) -> None:
 
 
 @pytest.mark.parametrize("name", _MOTIONS)
-def test_a_given_motion_is_recognised(name: str) -> None:
-    """The discretisation that made a store of schema 1 is accepted, another one is refused."""
+def test_a_given_motion_is_recognized(name: str) -> None:
+    """The discretization that made a store of schema 1 is accepted, another one is refused."""
     assert nh.load_orbit(_STORES / f"{name}.zarr", discrete=_MOTIONS[name]).motion is _MOTIONS[name]
     other = nh.discretize(_MOTIONS[name].system, 0.2)
-    with pytest.raises(ValueError, match="be the discretisation of the store"):
+    with pytest.raises(ValueError, match="be the discretization of the store"):
         nh.load_orbit(_STORES / f"{name}.zarr", discrete=other)
 
 

@@ -1,4 +1,4 @@
-"""Stores of schema 2 of orbits and 1 of sweeps, which had canonical poses alone, are read and gone on with.
+"""Stores of schema 2 of orbits and 1 of sweeps, which had canonical poses alone, are read and resumed.
 
 `schema_2` was written by the last version of that kind: finished stores, and runs and a sweep stopped half way. Its
 `expected.json` holds what that version made of the finished ones, and of the same runs without a stop.
@@ -56,7 +56,7 @@ def test_poses_as_csv() -> None:
 
 @pytest.mark.parametrize("name", ["stopped_top", "stopped_sleigh"])
 def test_stopped_runs_go_on(name: str, tmp_path: Path) -> None:
-    """A stopped run goes on in its own schema to the run without a stop, and can be extended."""
+    """A stopped run continues in its own schema to the run without a stop, and can be extended."""
     path, events = _copied(name, tmp_path), [nh.cusp] if name == "stopped_sleigh" else None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # other versions of packages
@@ -77,7 +77,7 @@ def _opened(path: Path) -> dict[str, Any]:
 
 @pytest.mark.parametrize("given", [None, "restricted_velocity[0]", "restricted_velocity_0"])
 def test_stopped_sweep_goes_on(given: str | None, tmp_path: Path) -> None:
-    """A stopped sweep goes on with the poses and names that it has, resumed or begun again under either name."""
+    """A stopped sweep continues with the poses and names that it has, resumed or begun again under either name."""
     path = _copied("stopped_sweep", tmp_path)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)

@@ -378,7 +378,7 @@ def test_unknown_system_and_lost_attributes(store: Path) -> None:
 
 
 def test_callable_difference_must_be_given(store: Path) -> None:
-    """A store made with a callable is refused, unless the discretisation is passed; a different one is refused."""
+    """A store made with a callable is refused, unless the discretization is passed; a different one is refused."""
     described = json.loads(read_attributes(store)["motion"]) | {"difference": "callable", "route": "definition"}
     _edit(store, motion=json.dumps(described))
     with pytest.raises(ValueError, match=r"difference is a callable.*discrete="):
@@ -387,7 +387,7 @@ def test_callable_difference_must_be_given(store: Path) -> None:
     own = nh.discretize(system, 0.1, difference=lambda W: W.sum())
     assert nh.load_orbit(store, discrete=own).motion is own
     other = nh.discretize(system, 0.2, difference=lambda W: W.sum())
-    with pytest.raises(ValueError, match="be the discretisation of the store"):
+    with pytest.raises(ValueError, match="be the discretization of the store"):
         nh.load_orbit(store, discrete=other)
 
 
@@ -417,7 +417,7 @@ def test_edited_attributes_are_refused(name: str, value: Any, told: str, store: 
 
 
 def test_another_body_is_noticed(store: Path) -> None:
-    """A mass that was edited belongs to no checksum: neither loading nor resuming goes on with another body."""
+    """A mass that was edited belongs to no checksum: neither loading nor resuming continues with another body."""
     parameters = json.loads(read_attributes(store)["parameters"]) | {"mass": 7.0}
     _edit(store, checksum=read_attributes(store)["checksum"], parameters=json.dumps(parameters))
     for opened in (nh.load_orbit, nh.resume):

@@ -321,7 +321,7 @@ def test_a_box_has_one_root() -> None:
 
 @pytest.mark.parametrize("share", [0.99, 1.01, 22.07])
 def test_the_general_step_sees_tiny_folds(share: float) -> None:
-    """A top that folds at a small angle: the general step went on to another branch."""
+    """A top that folds at a small angle: the general step continued to another branch."""
     tensor = np.array(
         [
             [1.0, 0.0007355764, 0.001473202, -0.001420035],

@@ -68,7 +68,7 @@ def test_the_equations_hold_with_their_sign(rule: str) -> None:
 @pytest.mark.profile("routes", keep=["midpoint*"])
 @pytest.mark.parametrize("rule", RULES)
 def test_momentum_and_energy_are_derivatives_of_the_action(rule: str) -> None:
-    """Momentum is -D1 L_d and energy -dL_d/dh at fixed end points (centred difference, error h^2 1e-8)."""
+    """Momentum is -D1 L_d and energy -dL_d/dh at fixed end points (centered difference, error h^2 1e-8)."""
     h = 0.1
     orbit = run(rule, h, 5)
     with jax.enable_x64(True):

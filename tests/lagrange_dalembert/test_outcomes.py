@@ -85,7 +85,7 @@ def test_leaving_the_domain_is_nonfinite() -> None:
     ids=["plain", "guess on the other branch", "only the other branch"],
 )
 def test_the_branch_is_followed_not_guessed(near: float, guess: float, outcome: nh.Outcome, root: float | None) -> None:
-    """Sin d = sin 1 has the roots 1 and pi - 1: a good guess of the wrong one is recognised by its orientation."""
+    """Sin d = sin 1 has the roots 1 and pi - 1: a good guess of the wrong one is recognized by its orientation."""
     with jax.enable_x64(True):
         one = jnp.ones(())
         p = jnp.array([np.sin(1.0) + FORCE / 2 - FORCE])

@@ -88,13 +88,13 @@ def test_the_map_satisfies_its_constraint_and_has_order_two(name: str) -> None:
 
 
 def test_the_disk_rolls_on_the_circle_of_the_midpoint_rule() -> None:
-    """Contact points are at the radius R theta'_h h / (2 sin(h phi'/2)) from one centre; 40 steps of rounding."""
+    """Contact points are at the radius R theta'_h h / (2 sin(h phi'/2)) from one center; 40 steps of rounding."""
     orbit, h, turning = run("rolling_disk", 40), 0.1, 0.5
     rolling = 1.5 / (np.cos(h * turning / 2) + 0.5)  # m R^2 = 1, I = 1/2, theta' = 1
     radius = rolling * h / (2 * np.sin(h * turning / 2))
     points = orbit.configuration[:, :2]
     assert np.abs(orbit.body_velocity[:, 2:] - [rolling, turning]).max() <= 1e-13
-    # the first step points along phi = h phi'/2: the disk's heading at (0, 0) is the circle's tangent, the centre above
+    # the first step points along phi = h phi'/2: the disk's heading at (0, 0) is the circle's tangent, the center above
     assert np.abs(np.hypot(points[:, 0], points[:, 1] - radius) - radius).max() <= 1e-13
 
 

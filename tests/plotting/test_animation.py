@@ -14,7 +14,7 @@ from nonholo.plotting.animation._top_scene import _box, _face, _way_out
 
 @pytest.mark.parametrize("kind", ["top_orbit", "sleigh_orbit"])
 def test_number_and_time_of_frames(kind: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
-    """A GIF has as many frames as asked for, all different, at the rate asked for, and progress is told."""
+    """A GIF has as many frames as asked for, all different, at the rate asked for, and progress is reported."""
     told = []
     path = nh.plot.animate(
         request.getfixturevalue(kind), tmp_path / "a.gif", frames=7, fps=20, progress=lambda *done: told.append(done)

@@ -8,7 +8,7 @@ import nonholo as nh
 
 
 def test_dots_are_the_contact_points(sleigh_orbit: nh.Orbit) -> None:
-    """The dots are the positions of all states, coloured by their times, from the first to the last."""
+    """The dots are the positions of all states, colored by their times, from the first to the last."""
     drawn = nh.plot.blade_track(sleigh_orbit)
     assert np.array_equal(drawn.track.get_offsets(), sleigh_orbit.position)
     assert np.array_equal(drawn.track.get_array(), sleigh_orbit.time)
@@ -17,12 +17,12 @@ def test_dots_are_the_contact_points(sleigh_orbit: nh.Orbit) -> None:
 
 
 def test_blades_lie_along_the_heading(sleigh_orbit: nh.Orbit) -> None:
-    """Each stroke is centred at a contact point and has its heading; the mass is where the body carries it."""
+    """Each stroke is centered at a contact point and has its heading; the mass is where the body carries it."""
     drawn = nh.plot.blade_track(sleigh_orbit)
     strokes = np.array(drawn.blades.get_segments())
-    centres = strokes.mean(axis=1)
-    nearest = np.linalg.norm(centres[:, None] - sleigh_orbit.position, axis=-1).argmin(axis=1)
-    assert np.allclose(centres, sleigh_orbit.position[nearest])
+    centers = strokes.mean(axis=1)
+    nearest = np.linalg.norm(centers[:, None] - sleigh_orbit.position, axis=-1).argmin(axis=1)
+    assert np.allclose(centers, sleigh_orbit.position[nearest])
     along = (strokes[:, 1] - strokes[:, 0]) / np.linalg.norm(strokes[:, 1] - strokes[:, 0], axis=1)[:, None]
     assert np.allclose(along, sleigh_orbit.configuration[nearest, :2, 0])
     carried = sleigh_orbit.configuration[nearest] @ [0.5, 0.3, 1.0]

@@ -39,12 +39,12 @@ def test_edges_lead_from_parents_to_images() -> None:
     assert np.allclose(np.array(picture.edges.get_segments()), expected, rtol=1e-12)
 
 
-def test_first_generation_has_the_colour_of_the_start_of_time() -> None:
-    """Generations have different colours and shrinking dots, so that later ones do not hide earlier ones."""
+def test_first_generation_has_the_color_of_the_start_of_time() -> None:
+    """Generations have different colors and shrinking dots, so that later ones do not hide earlier ones."""
     picture = nh.plot.branch_tree(SLEIGH, TREE)
-    colours = np.array([dots.get_facecolor()[0] for dots in picture.images])
+    colors = np.array([dots.get_facecolor()[0] for dots in picture.images])
     sizes = [float(dots.get_sizes()[0]) for dots in picture.images]
-    assert np.linalg.norm(np.diff(colours, axis=0), axis=1).min() > 0.1
+    assert np.linalg.norm(np.diff(colors, axis=0), axis=1).min() > 0.1
     assert np.all(np.diff(sizes) < 0)
 
 

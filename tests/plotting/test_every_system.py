@@ -125,7 +125,7 @@ def test_a_flow_beside_and_alone() -> None:
 
 @pytest.mark.parametrize(
     ("name", "words"),
-    [("dart", "exact by theorem, up to rounding"), ("Veselova", "not exact for this discretisation")],
+    [("dart", "exact by theorem, up to rounding"), ("Veselova", "not exact for this discretization")],
 )
 def test_the_energy_panel_says_what_to_expect(name: str, words: str) -> None:
     """The panel says whether a theorem makes the energy exact, and the measured error agrees with it."""

@@ -31,7 +31,7 @@ def test_surface_and_singular_points_are_those_of_the_locus() -> None:
 
 
 def test_orbit_in_space_is_its_momentum() -> None:
-    """Dots of a top are momenta; those of a sleigh p_1, p_2 and the angular momentum about the centre of mass."""
+    """Dots of a top are momenta; those of a sleigh p_1, p_2 and the angular momentum about the center of mass."""
     orbit = run(TOP)
     dots = nh.plot.momentum_locus(nh.momentum_locus(TOP, 12), orbit).orbit
     assert np.allclose(np.sort(np.stack(dots._offsets3d, axis=1), axis=0), np.sort(orbit.momentum, axis=0))
@@ -162,7 +162,7 @@ def test_branch_counts_draw_the_deltoid() -> None:
 
 def test_refuses_what_does_not_belong() -> None:
     """Orbits of another system, no locus, a zero normal and energies below zero are refused in words."""
-    with pytest.raises(ValueError, match=r"`plot.branch_counts\(orbit=...\)` must be an orbit of the same discretised"):
+    with pytest.raises(ValueError, match=r"`plot.branch_counts\(orbit=...\)` must be an orbit of the same discretized"):
         nh.plot.branch_counts(SLEIGH, run(TOP))
     with pytest.raises(ValueError, match=r"`plot.momentum_locus\(locus=...\)` must be a locus"):
         nh.plot.momentum_locus(TOP)

@@ -48,10 +48,10 @@ def test_arrows_point_to_the_stable_half(system: nh.SuslovTop | nh.ChaplyginSlei
     portrait = nh.plot.phase_portrait(system, energies=[0.5, 2.0])
     assert len(portrait.arrows) == 4
     inverse = np.linalg.inv(system.canonical.constrained_inertia)
-    towards = portrait.stable.get_offsets()[0]
+    toward = portrait.stable.get_offsets()[0]
     for arrow in portrait.arrows:
         tail, head = (np.asarray(point) for point in arrow._posA_posB)
-        assert (head - tail) @ inverse @ towards > 0
+        assert (head - tail) @ inverse @ toward > 0
 
 
 @pytest.mark.parametrize("system", BALANCED.values(), ids=BALANCED)
@@ -66,7 +66,7 @@ def test_balanced_systems_have_no_direction(system: nh.SuslovTop | nh.ChaplyginS
 
 
 def test_orbit_dots_are_its_momenta(sleigh_orbit: nh.Orbit) -> None:
-    """The dots are the canonical momenta of all states, coloured by their times; one ellipse goes through them."""
+    """The dots are the canonical momenta of all states, colored by their times; one ellipse goes through them."""
     portrait = nh.plot.phase_portrait(sleigh_orbit.system, sleigh_orbit)
     assert np.array_equal(portrait.orbit.get_offsets(), sleigh_orbit.reduced_momentum)
     assert np.array_equal(portrait.orbit.get_array(), sleigh_orbit.time)

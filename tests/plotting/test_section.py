@@ -14,7 +14,7 @@ def _crossings(steps: int) -> nh.Crossings:
 
 
 def test_dots_are_the_quantities_at_the_crossings() -> None:
-    """Each dot is a crossing, with the two quantities as its place and the time as its colour."""
+    """Each dot is a crossing, with the two quantities as its place and the time as its color."""
     found = _crossings(100)
     drawn = nh.plot.section(found, lambda states: states.position[:, 0], lambda states: states.heading)
     assert np.array_equal(drawn.points, np.stack([found.states.position[:, 0], found.states.heading], axis=1))

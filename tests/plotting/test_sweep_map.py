@@ -71,7 +71,7 @@ def test_geometric_axes(values: np.ndarray, told: bool) -> None:
 
 
 def test_each_value_is_in_its_cell(plane: xarray.Dataset) -> None:
-    """The colour of a cell is the value of the member in it; the cells of members that failed are empty."""
+    """The color of a cell is the value of the member in it; the cells of members that failed are empty."""
     picture = nh.plot.sweep_map(plane, "value")
     shown = picture.drawn.get_array()
     assert shown.shape == (4, 3)
@@ -90,9 +90,9 @@ def test_members_that_failed_are_named_and_counted(plane: xarray.Dataset) -> Non
     assert _legend(picture) == ["no real branch (3)", "branch unverified (3)"]
     rows = [np.flatnonzero(~mesh.get_array().mask.all(axis=1)).tolist() for mesh in picture.ended]
     assert rows == [[2], [3]]
-    colours = [mesh.get_cmap()(0) for mesh in picture.ended]
-    assert colours[0] == to_rgba("#cfd3da")
-    assert colours[0] != colours[1]
+    colors = [mesh.get_cmap()(0) for mesh in picture.ended]
+    assert colors[0] == to_rgba("#cfd3da")
+    assert colors[0] != colors[1]
 
 
 def test_labels_and_units(plane: xarray.Dataset) -> None:
@@ -124,7 +124,7 @@ def test_descending_values_are_sorted(tmp_path: Path) -> None:
 
 
 def test_outcomes_as_a_map(plane: xarray.Dataset) -> None:
-    """The quantity "outcome" shows success too, without a key of colours."""
+    """The quantity "outcome" shows success too, without a key of colors."""
     picture = nh.plot.sweep_map(plane, "outcome")
     assert _legend(picture) == ["successful (6)", "no real branch (3)", "branch unverified (3)"]
     assert picture.colorbar is None
@@ -142,7 +142,7 @@ def test_curve_along_one_axis(plane: xarray.Dataset) -> None:
 
 
 def test_part_of_a_space(space: xarray.Dataset) -> None:
-    """A third axis with one value left is told in the title."""
+    """A third axis with one value left is reported in the title."""
     picture = nh.plot.sweep_map(space.sel(c=[6.0]), "value")
     assert picture.axes.get_title(loc="left") == "A number, c = 6"
 
@@ -164,8 +164,8 @@ def test_dots_over_one_number(draws: xarray.Dataset) -> None:
     assert np.allclose(picture.ended[0].get_offsets()[:, 0], draws["a"].values[~good])
 
 
-def test_coloured_dots_over_two_numbers(draws: xarray.Dataset) -> None:
-    """Over x and y the quantity is the colour; few whole numbers have one colour each."""
+def test_colored_dots_over_two_numbers(draws: xarray.Dataset) -> None:
+    """Over x and y the quantity is the color; few whole numbers have one color each."""
     picture = nh.plot.sweep_map(draws, "whole", x="a", y="b")
     good = (draws["outcome"] == 0).values
     assert np.array_equal(picture.drawn.get_array(), draws["whole"].values[good])
@@ -176,8 +176,8 @@ def test_coloured_dots_over_two_numbers(draws: xarray.Dataset) -> None:
 
 
 @pytest.mark.parametrize(("quantity", "scale"), [("wide", LogNorm), ("a", Normalize)])
-def test_scale_of_the_colours(draws: xarray.Dataset, quantity: str, scale: type) -> None:
-    """Positive numbers over orders of magnitude are coloured by their logarithm, others evenly."""
+def test_scale_of_the_colors(draws: xarray.Dataset, quantity: str, scale: type) -> None:
+    """Positive numbers over orders of magnitude are colored by their logarithm, others evenly."""
     assert type(nh.plot.sweep_map(draws, quantity, x="a", y="b").drawn.norm) is scale
 
 

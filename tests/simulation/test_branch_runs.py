@@ -56,8 +56,8 @@ def _off_principal() -> np.ndarray:
 
 
 def test_the_principal_rule_refuses_that_start() -> None:
-    """And says how to go on from there."""
-    with pytest.raises(nh.OutcomeError, match=r"Start of the run: branch_unverified.*branch='nearest' goes on"):
+    """And says how to continue from there."""
+    with pytest.raises(nh.OutcomeError, match=r"Start of the run: branch_unverified.*branch='nearest' continues"):
         nh.simulate(TOP, displacement=_off_principal(), steps=3)
 
 

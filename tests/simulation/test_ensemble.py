@@ -304,7 +304,7 @@ def test_headings_are_unwrapped_along_each_member() -> None:
 
 
 def test_a_dataset_has_members_steps_and_parameters() -> None:
-    """The labelled dataset has the dimensions member and step, outcomes and the parameters that vary."""
+    """The labeled dataset has the dimensions member and step, outcomes and the parameters that vary."""
     discrete = nh.discretize(TOP, 0.1)
     found = nh.ensemble(
         discrete,
@@ -375,7 +375,7 @@ def test_mass_tensors_of_no_top_are_refused() -> None:
 
 
 def test_numba_without_closed_form_is_refused() -> None:
-    """A discretisation that only its definition can run refuses the compiled backend."""
+    """A discretization that only its definition can run refuses the compiled backend."""
     discrete = nh.discretize(SLEIGH, 0.1, difference="logarithmic")
     with pytest.raises(ValueError, match="closed form of the step"):
         nh.ensemble(discrete, restricted_velocity=[[0.1, 1.0]], steps=3, backend="numba")

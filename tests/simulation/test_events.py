@@ -203,7 +203,7 @@ def test_staying_at_zero_is_no_crossing() -> None:
 
 
 def test_headings_of_events_know_full_turns() -> None:
-    """Blocks of a long run, and states in a step, go on with the heading: it crosses 3000 turns once."""
+    """Blocks of a long run, and states in a step, continue the heading: it crosses 3000 turns once."""
     far = nh.Event(lambda orbit: orbit.heading - 6000 * np.pi, name="far")
     run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 50_000, "save_every": 10_000}
     found = nh.simulate(ROUND, **run, events=[far]).events["far"]

@@ -29,7 +29,7 @@ def test_starts_agree(discrete: nh.Discretization) -> None:
 
 @pytest.mark.parametrize("discrete", [TOP, SLEIGH], ids=["top", "sleigh"])
 def test_thinning_keeps_single_steps(discrete: nh.Discretization) -> None:
-    """save_every keeps every so many states; displacements and multipliers are still those of single steps."""
+    """save_every keeps one state in save_every; displacements and multipliers are still those of single steps."""
     whole = nh.simulate(discrete, restricted_velocity=(0.7, -0.3), steps=20)
     thin = nh.simulate(discrete, restricted_velocity=(0.7, -0.3), steps=20, save_every=6)
     assert len(thin) == 4
@@ -185,7 +185,7 @@ def test_bad_arguments_are_refused(arguments: dict, words: str) -> None:
         ({"order": 3}, "be one of 2, 4, 6, 8. Got 3"),
     ],
 )
-def test_bad_discretisations_are_refused(arguments: dict, words: str) -> None:
+def test_bad_discretizations_are_refused(arguments: dict, words: str) -> None:
     """`discretize` says what it accepts."""
     with pytest.raises(ValueError, match=words):
         nh.discretize(TOP.system, **{"time_step": 0.1, **arguments})

@@ -131,7 +131,7 @@ def test_blocks_do_not_change_crossings(name: str, tmp_path: Path) -> None:
 @pytest.mark.profile("faults", keep=["sleigh with a cusp"])
 @pytest.mark.parametrize("name", RUNS)
 def test_runs_cut_at_random_blocks_go_on(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Cut at random blocks, resumed and cut again (21 times in all), a run has the bits of the undisturbed one."""
+    """Cut at random blocks, resumed and cut again (21 times in total), a run has the bits of the undisturbed one."""
     discrete, events, start = RUNS[name]
     run = {"steps": 301, "save_every": 7, "checkpoint_every": 28, "events": events, **start}
     undisturbed = nh.simulate(discrete, **run, store=tmp_path / "whole.zarr")
@@ -166,7 +166,7 @@ def test_stopping_event_ends_the_store(stop: int, tmp_path: Path) -> None:
     attributes = json.loads((path / "zarr.json").read_text())["attributes"]
     assert (attributes["stopped_by"], attributes["outcome"]) == ("east", "successful")
     assert json.loads(attributes["crossings"]) == [len(found) for found in whole.events.found]
-    with pytest.raises(ValueError, match=r"go on.*event 'east' ended"):
+    with pytest.raises(ValueError, match=r"continue.*event 'east' ended"):
         nh.extend(path, 10, events=events)
 
 
@@ -219,7 +219,7 @@ def test_damaged_crossings_are_not_read(tmp_path: Path) -> None:
 
 
 def test_failed_run_keeps_its_crossings(tmp_path: Path) -> None:
-    """A stored run that cannot go on keeps the crossings up to there, and its outcome."""
+    """A stored run that cannot continue keeps the crossings up to there, and its outcome."""
     event = nh.Event(lambda orbit: orbit.configuration[:, 2, 2], name="level")
     run = {"steps": 500, "events": [event], "throw": False, **FOLDS}
     whole = nh.simulate(FOLDING, **run)
@@ -273,7 +273,7 @@ def opposite(orbit: nh.Orbit) -> np.ndarray:
     ],
 )
 def test_other_events_are_refused(going_on: Callable[..., object], events: Any, words: str, tmp_path: Path) -> None:
-    """A run with events goes on with the same events only; the message says what the store has and what was got."""
+    """A run with events continues with the same events only; the message says what the store has and what was got."""
     path = tmp_path / "run.zarr"
     begun(path, [TURNS, entry], steps=70)
     with pytest.raises(ValueError, match=words):
@@ -281,7 +281,7 @@ def test_other_events_are_refused(going_on: Callable[..., object], events: Any, 
 
 
 def test_events_of_a_store_without_are_refused(tmp_path: Path) -> None:
-    """A run that was begun without events cannot go on with some: what came before was not searched."""
+    """A run that was begun without events cannot continue with some: what came before was not searched."""
     path = tmp_path / "run.zarr"
     nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=70, store=path)
     with pytest.raises(ValueError, match=r"events of the store, no events\. Got 'east'"):
@@ -292,7 +292,7 @@ def test_events_of_a_store_without_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize("begun_with", [None, []])
 @pytest.mark.parametrize("going_with", [None, []])
 def test_no_events_are_an_empty_list_of_them(begun_with: Any, going_with: Any, tmp_path: Path) -> None:
-    """A run without events goes on without, however that is said."""
+    """A run without events continues without, however that is said."""
     path, run = tmp_path / "run.zarr", {"body_velocity": (4.0, 1.0, 0.0), "save_every": 7}
     nh.simulate(ROUND, steps=70, events=begun_with, store=path, **run)
     assert same_states(nh.extend(path, 70, events=going_with), nh.simulate(ROUND, steps=140, **run))
@@ -306,7 +306,7 @@ def test_bad_functions_leave_no_store(tmp_path: Path) -> None:
 
 
 def test_a_function_that_fails_on_the_way_leaves_a_valid_store(tmp_path: Path) -> None:
-    """Where a function fails at a later state the run stops there, and goes on with one that does not."""
+    """Where a function fails at a later state the run stops there, and continues with one that does not."""
 
     def brittle(orbit: nh.Orbit) -> np.ndarray:
         return np.where(orbit.time > 30, np.nan, east(orbit))

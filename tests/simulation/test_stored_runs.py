@@ -72,7 +72,7 @@ def test_blocks_are_the_orbit(discrete: nh.Discretization, start: dict[str, Any]
 @pytest.mark.parametrize("throw", [True, False])
 @pytest.mark.parametrize("block_steps", [1, 2, 3, 4, 5])
 def test_blocks_end_where_the_run_ends(throw: bool, block_steps: int) -> None:
-    """If a run cannot go on, its good states come first; then comes the error, or the outcome of the last block."""
+    """If a run cannot continue, its good states come first; then comes the error, or the outcome of the last block."""
     whole = nh.simulate(FOLDING, steps=500, throw=False, **FOLDS)
     assert 1 < len(whole) < 400, "this run has to end early"
     blocks, failures = [], []
@@ -108,14 +108,14 @@ def test_extended_run_is_the_long_run(lengths: tuple[int, ...], tmp_path: Path) 
 
 @pytest.mark.parametrize("block_steps", [1, 2, 3, 4, 5])
 def test_run_that_ends_early_is_kept(block_steps: int, tmp_path: Path) -> None:
-    """A stored run that cannot go on keeps its good steps and its outcome; extending it is refused with the reason."""
+    """A stored run that cannot continue keeps its good steps and outcome; extending it is refused with the reason."""
     whole = nh.simulate(FOLDING, steps=500, throw=False, **FOLDS)
     path = tmp_path / "run.zarr"
     with pytest.raises(nh.OutcomeError, match=f"Step {len(whole)} of 500"):
         nh.simulate(FOLDING, steps=500, store=path, checkpoint_every=block_steps, **FOLDS)
     assert _same(nh.load_orbit(path), whole)
     assert _same(nh.resume(path, throw=False), whole)
-    with pytest.raises(ValueError, match="be a run that can go on"):
+    with pytest.raises(ValueError, match="be a run that can continue"):
         nh.extend(path, 10)
 
 
@@ -130,9 +130,9 @@ def test_failed_run_that_was_not_cut_is_resumed_in_silence(tmp_path: Path, monke
 
 
 def test_interrupted_run_goes_on(tmp_path: Path) -> None:
-    """Ctrl-C says how far the run came and how to go on; resumed, it is the undisturbed run."""
+    """Ctrl-C says how far the run came and how to resume; resumed, it is the undisturbed run."""
     path = tmp_path / "run.zarr"
-    with stopped_at(5, match=r"Stopped at step 198 of 500\. Go on with nonholo\.resume"):
+    with stopped_at(5, match=r"Stopped at step 198 of 500\. Resume with nonholo\.resume"):
         _begun(path)
     with pytest.raises(ValueError, match="must be a finished run"):
         nh.load_orbit(path)
@@ -150,7 +150,7 @@ def test_scenario_is_kept_in_the_store(tmp_path: Path) -> None:
 
 
 def test_full_disk_leaves_a_valid_store(tmp_path: Path) -> None:
-    """A full disk is an error that names the store and the remedy; with room again the run goes on."""
+    """A full disk is an error that names the store and the remedy; with room again the run continues."""
     path = tmp_path / "run.zarr"
     full = OSError(errno.ENOSPC, "No space left on device")
     with stopped_at(3, full, r"No space left.*step 118 of 500\. Free space.*run\.zarr") as caught:
@@ -210,7 +210,7 @@ def test_killed_runs_go_on(name: str, kills: int, tmp_path: Path) -> None:
 
 
 def test_limit_of_the_system_on_file_sizes(tmp_path: Path) -> None:
-    """A limit met while zarr writes ends in the same clean error as a full disk, and the run goes on without it."""
+    """A limit met while zarr writes ends in the same clean error as a full disk, and the run continues without it."""
     path = tmp_path / "run.zarr"
     script = f"""
 import resource, signal, sys
@@ -231,7 +231,7 @@ except OSError as failure:
 
 
 def test_other_versions_are_told(tmp_path: Path) -> None:
-    """A run that goes on with another version of a package says that its last bits may change."""
+    """A run that continues with another version of a package says that its last bits may change."""
     path = tmp_path / "run.zarr"
     _begun(path)
     document = json.loads((path / "zarr.json").read_text())

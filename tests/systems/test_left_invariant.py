@@ -39,15 +39,15 @@ def _homogeneous(n: int) -> np.ndarray:
 
 
 def _sleigh(n: int, along: float | None = None, *, straight: bool = False) -> MultidimensionalSleigh:
-    """The sleigh of the mass points, its centre of mass moved along axis 1, its axis made principal."""
+    """The sleigh of the mass points, its center of mass moved along axis 1, its axis made principal."""
     masses, points = _points(n)
-    centre = masses @ points / masses.sum()
-    tensor = (masses[:, None] * (points - centre)).T @ (points - centre)
+    center = masses @ points / masses.sum()
+    tensor = (masses[:, None] * (points - center)).T @ (points - center)
     if along is not None:
-        centre[0] = along
+        center[0] = along
     if straight:
         tensor[0, 1:] = tensor[1:, 0] = 0.0
-    return MultidimensionalSleigh(masses.sum(), centre, tensor)
+    return MultidimensionalSleigh(masses.sum(), center, tensor)
 
 
 def _random_rows(k: int, dim: int) -> np.ndarray:
@@ -148,7 +148,7 @@ def test_equilibria_are_all_of_them(system: AbstractLLSystem) -> None:
 
 @pytest.mark.parametrize("system", [s for s in WITH_EQUILIBRIA if s.equilibria().attracting is not None], ids=_name)
 def test_attracting_half(system: AbstractLLSystem) -> None:
-    """Transverse eigenvalues of the linearisation are negative at the attracting velocity, positive at its negative."""
+    """Transverse eigenvalues of the linearization are negative at the attracting velocity, positive at its negative."""
     S, equilibria = system.constraint_subspace, system.equilibria()
     for sign in (1, -1):
         x = sign * equilibria.attracting @ np.linalg.pinv(S)
@@ -159,7 +159,7 @@ def test_attracting_half(system: AbstractLLSystem) -> None:
         values = np.sort(
             -sign * np.linalg.eigvals(np.linalg.solve(system.constrained_inertia, np.transpose(rates))).real
         )
-        along = len(equilibria.subspace)  # so many eigenvalues vanish, to the rounding of the quotient
+        along = len(equilibria.subspace)  # this many eigenvalues vanish, to the rounding of the quotient
         assert np.all(values[along:] > 1e-3 * values[-1])
         assert np.all(np.abs(values[:along]) < 1e-7 * values[-1])
 
@@ -219,7 +219,7 @@ def test_a_group_of_ones_own() -> None:
     inertia = np.diag([1.0, 2.0, 3.0])
     system = LLSystem(_HEISENBERG, constraint_subspace=np.eye(3)[:2], inertia_operator=inertia)
     assert system.constrained_inertia.tolist() == [[1, 0], [0, 2]]
-    assert system.equilibria().subspace.shape == (2, 3)  # [d, d] is the centre, on which momenta in d vanish
+    assert system.equilibria().subspace.shape == (2, 3)  # [d, d] is the center, on which momenta in d vanish
     with pytest.raises(ValueError, match=r"must be used on SO\(n\) or SE\(n\).*Pass inertia_operator= instead"):
         LLSystem(_HEISENBERG, inertia, np.eye(3)[:2])
 
@@ -350,6 +350,6 @@ def test_an_inertia_that_overflows_is_refused() -> None:
 
 @pytest.mark.parametrize("length", [1e-9, 1e9])
 def test_lengths_in_any_unit(length: float) -> None:
-    """Inertias that mix angles with lengths of nanometres are as positive as others."""
+    """Inertias that mix angles with lengths of nanometers are as positive as others."""
     sleigh = MultidimensionalSleigh(1.0, np.array([0.5, 0.2, 0.1]) * length, np.diag([0.6, 0.4, 0.2]) * length**2)
     assert np.all(np.linalg.eigvalsh(sleigh.constrained_inertia) > 0)

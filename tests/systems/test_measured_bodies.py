@@ -1,4 +1,4 @@
-"""Bodies by mass, centre of mass and inertia: what an engineer has, and what no body has."""
+"""Bodies by mass, center of mass and inertia: what an engineer has, and what no body has."""
 
 import warnings
 from typing import Any
@@ -24,7 +24,7 @@ def _cloud(n: int, flat: bool = False) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _measured(masses: np.ndarray, points: np.ndarray) -> tuple[float, Any, np.ndarray]:
-    """Return mass, inertia about the centre of mass and centre of mass by their sums over particles."""
+    """Return mass, inertia about the center of mass and center of mass by their sums over particles."""
     a = masses @ points / masses.sum()
     r = points - a
     if points.shape[1] == 2:

@@ -20,7 +20,7 @@ def test_the_inertia_operator(name: str) -> None:
 
 
 def test_tensors_that_do_not_fit_are_refused() -> None:
-    """A tensor that is not its own adjoint is told its residual; one that is symmetric in the wrong sense as well."""
+    """A tensor that is not its own adjoint is refused with its residual; so is one symmetric in the wrong sense."""
     J = np.array([[1.0, 0.0, 0.5], [0.0, 2.0, 0.0], [0.5, 0.0, 3.0]])  # symmetric, but J* has the entries -0.5
     with pytest.raises(ValueError, match=r"LLSystem\(mass_tensor=.*J\* = G\^-1 J\^T G = J.*residual of 1\. If G is"):
         nh.LLSystem(_GROUP, J, np.eye(3)[:2])

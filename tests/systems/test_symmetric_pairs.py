@@ -40,7 +40,7 @@ OTHERS = {
     "one translation": (nh.SE(2), _E3[1:2]),
     "knife edge that may turn about every axis": (nh.SE(3), reference_point_subspace(3, [[1, 0, 0]])),
     "sleigh without its runner": (nh.SE(3), _SLEIGH[:2]),
-    "centre of the Heisenberg algebra": (_HEISENBERG, _E3[2:]),  # normal, but without a complementary subalgebra
+    "center of the Heisenberg algebra": (_HEISENBERG, _E3[2:]),  # normal, but without a complementary subalgebra
     "random": (nh.SO(4), np.random.default_rng(0).normal(size=(3, 6))),
 }
 
@@ -66,7 +66,7 @@ def _outside(group: AbstractMatrixGroup, x: np.ndarray, y: np.ndarray, space: np
 
 @pytest.mark.parametrize("name", OTHERS)
 def test_no_complement(name: str) -> None:
-    """Subspaces without a symmetric pair are told so in every frame."""
+    """Subspaces without a symmetric pair are refused in every frame."""
     group, rows = OTHERS[name]
     assert not is_symmetric_pair(group, rows)
     assert not is_symmetric_pair(group, _turned(group, rows))

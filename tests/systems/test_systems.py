@@ -22,8 +22,8 @@ def test_inertia_operators_against_their_definitions() -> None:
     assert np.allclose(SYSTEMS[0].inertia_operator, inertia_from_mass_tensor(nh.SO(3), J), rtol=0, atol=1e-15)
     m, inertia, a, b = 2.0, 1.0, 0.5, 0.3
     omega, v1, v2 = velocity = np.array([0.7, -0.4, 0.9])
-    centre = np.array([v1 - omega * b, v2 + omega * a])
-    kinetic = (inertia * omega**2 + m * centre @ centre) / 2
+    center = np.array([v1 - omega * b, v2 + omega * a])
+    kinetic = (inertia * omega**2 + m * center @ center) / 2
     assert velocity @ SYSTEMS[3].inertia_operator @ velocity / 2 == pytest.approx(kinetic, rel=1e-15)
 
 
@@ -99,7 +99,7 @@ def test_repr_shows_both_tensors() -> None:
         (lambda: nh.SuslovTop(np.eye(3), axis=(0, 0, 2)), "unit vector. Got length 2"),
         (lambda: nh.SuslovTop.from_inertia(np.eye(3) + np.eye(3, k=1)), r"from_inertia.*symmetric"),
         (lambda: nh.ChaplyginSleigh(-1.0, 1.0, 0.5), r"mass=\.\.\.\)` must be positive. Got -1.0"),
-        (lambda: nh.ChaplyginSleigh(1.0, 0.0, 0.5), r"inertia=\.\.\.\)` must be positive. Got 0.0.*centre of mass"),
+        (lambda: nh.ChaplyginSleigh(1.0, 0.0, 0.5), r"inertia=\.\.\.\)` must be positive. Got 0.0.*center of mass"),
         (lambda: nh.ChaplyginSleigh(1.0, 1.0, np.inf), r"a=\.\.\.\)` must be finite"),
         (lambda: nh.ChaplyginSleigh(1.0, 1.0, "x"), "real numbers. Got 'x'"),
     ],

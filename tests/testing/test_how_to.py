@@ -1,4 +1,4 @@
-"""The page on systems of one's own says what is so: its code runs, its numbers and messages are right."""
+"""The page on custom systems says what is so: its code runs, its numbers and messages are right."""
 
 import pathlib
 import re

@@ -1,4 +1,4 @@
-"""The checks catch what is wrong, and name it: groups, systems and discretisations with one error each."""
+"""The checks catch what is wrong, and name it: groups, systems and discretizations with one error each."""
 
 import copy
 from collections.abc import Callable

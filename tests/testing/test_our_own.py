@@ -1,4 +1,4 @@
-"""Every kind of group, system and discretisation of the library passes the checks that users run on their own."""
+"""Every kind of group, system and discretization of the library passes the checks that users run on their own."""
 
 import numpy as np
 import pytest

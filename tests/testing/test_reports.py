@@ -21,7 +21,7 @@ def broken(_: object) -> float:
 
 CHECKS = [
     Check("small", "x = 0", 1e-3, lambda x: x),
-    Check("shown", "x is told", None, lambda x: x),
+    Check("shown", "x is reported", None, lambda x: x),
     Check("wheels", "wheels roll", 1e-3, unfit),
     Check("broken", "it runs", 1e-3, broken),
     Check("undefined", "x is a number", 1e-3, lambda _: np.nan),
@@ -64,7 +64,7 @@ def test_the_table() -> None:
     """One aligned line for each check, the verdict first, reasons in brackets."""
     lines = str(report(1e-4)).splitlines()
     assert lines[0] == "check_it(that): 2 of 3 checks FAILED"
-    assert len({line.index("x") for line in lines if line.endswith(("x = 0", "x is told"))}) == 1
+    assert len({line.index("x") for line in lines if line.endswith(("x = 0", "x is reported"))}) == 1
     assert lines[4].split() == ["wheels", "not", "checked", "wheels", "roll", "(no", "wheels)"]
 
 

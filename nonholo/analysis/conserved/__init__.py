@@ -1,4 +1,4 @@
-"""What a motion keeps or only lets fall: momenta, invariants, densities, a Lyapunov function."""
+"""Quantities that a motion keeps or only lets fall: momenta, invariants, densities, a Lyapunov function."""
 
 from nonholo.analysis.conserved._invariants import Invariants, invariants
 from nonholo.analysis.conserved._lyapunov import LyapunovFunction, lyapunov_function

@@ -1,4 +1,4 @@
-"""What an orbit should keep, measured: energy, constraint, group, reversibility."""
+"""Quantities that an orbit should keep, measured: energy, constraint, group, reversibility."""
 
 import dataclasses
 from typing import cast

@@ -20,10 +20,10 @@ from nonholo.systems import AbstractLLSystem, AbstractSystem
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class InvariantMeasure:
-    r"""What is known about densities $\rho(r)\,dr$ that a motion keeps; r are momenta along the constraint subspace.
+    r"""Statements about densities $\rho(r)\,dr$ that a motion keeps; r are momenta along the constraint subspace.
 
     Attributes:
-        motion: The system, meaning its flow, or its discretisation.
+        motion: The system, meaning its flow, or its discretization.
         every_density: Whether the momenta never change, so that every density is invariant: balanced bodies.
         velocity: A body velocity near whose momentum no continuous positive density is invariant; None for balanced
             bodies.
@@ -106,7 +106,7 @@ class InvariantMeasure:
         where = "InvariantMeasure.log_volume(orbit=...)"
         discrete = self._discrete(where)
         if not isinstance(orbit, Orbit) or orbit.motion is not discrete:
-            remedy = "Pass an orbit of the same discretisation to the measure of `orbit.motion`."
+            remedy = "Pass an orbit of the same discretization to the measure of `orbit.motion`."
             raise error(where, "be an orbit of the measure's motion", shown(orbit), remedy)
         if orbit.save_every != 1:
             got = f"save_every={orbit.save_every}"
@@ -133,11 +133,11 @@ def invariant_measure(motion: AbstractLLSystem | Discretization, energy: Array =
     Reference: [fedorov-zenkov-2004], sections 4 to 7; docs/theory/invariant-measure.md.
 
     Args:
-        motion: A top or a sleigh of any dimension, or its discretisation with "matrix" and "skew".
+        motion: A top or a sleigh of any dimension, or its discretization with "matrix" and "skew".
         energy: Energy of the equilibrium that is the witness.
 
     Raises:
-        ValueError: Another system or discretisation; an energy as in `equilibria`.
+        ValueError: Another system or discretization; an energy as in `equilibria`.
 
     Example:
         >>> top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -149,7 +149,7 @@ def invariant_measure(motion: AbstractLLSystem | Discretization, energy: Array =
     """
     system = motion.system if isinstance(motion, Discretization) else motion
     if not isinstance(system, AbstractSystem) or system.normal_form is None:
-        remedy = "Pass a SuslovTop, a sleigh, or a discretisation of one."
+        remedy = "Pass a SuslovTop, a sleigh, or a discretization of one."
         raise error("invariant_measure(motion=...)", "be a top or a sleigh", type(motion).__name__, remedy)
     spectrum = equilibria(motion, energy)
     if spectrum.attracting is None:

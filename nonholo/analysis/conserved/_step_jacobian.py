@@ -1,4 +1,4 @@
-r"""How one step of the discrete map changes volumes of restricted momenta.
+r"""The change of volumes of restricted momenta by one step of the discrete map.
 
 With $F(W) = P(W)|_\mathfrak{d}$ a step takes $r = F(W)$ to $r' = -F(W^{-1})$, so that along the displacement variety
 $\det(\partial r'/\partial r) = \det F'(W^{-1})/\det F'(W)$. Theory: docs/theory/invariant-measure.md.

@@ -47,7 +47,7 @@ class CriticalEnergies:
     Attributes:
         saddle: $h^*$: two opposite saddles off the equator. Below it, in the regular regime, the component of the
             level curve around the identity is separate, and each momentum has a displacement on it.
-        centre: $h^{**}$: two opposite maxima off the equator. Equal to `saddle` if a closed curve of maxima replaces
+        center: $h^{**}$: two opposite maxima off the equator. Equal to `saddle` if a closed curve of maxima replaces
             the four points.
         equatorial_saddle: $h_e$: the highest saddle among half-turns.
         fold: $h_f$: the least energy of a fold that can be reached from the identity through lower energies, always
@@ -61,7 +61,7 @@ class CriticalEnergies:
     """
 
     saddle: float | None
-    centre: float | None
+    center: float | None
     equatorial_saddle: float | None
     fold: float
     line: float | None
@@ -85,12 +85,12 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
         discrete: A `SuslovTop` with n = 3, difference "matrix" and constraint "skew" or "exponential".
 
     Raises:
-        ValueError: Another system or discretisation.
+        ValueError: Another system or discretization.
 
     Example:
         >>> top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
         >>> found = critical_energies(nh.discretize(top, 1.0))
-        >>> print(f"{found.equatorial_saddle:.6f} {found.saddle:.6f} {found.centre:.6f}")
+        >>> print(f"{found.equatorial_saddle:.6f} {found.saddle:.6f} {found.center:.6f}")
         0.347449 0.930510 1.262473
         >>> found.regular, found.fold == found.saddle, round(found.line, 6)
         (True, True, 1.008824)
@@ -106,7 +106,7 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
         points = points + off
     return CriticalEnergies(
         saddle=by_kind.get("saddle"),
-        centre=by_kind.get("maximum"),
+        center=by_kind.get("maximum"),
         equatorial_saddle=max(saddles, default=None),
         fold=_fold(form, land, unit, by_kind.get("saddle")),
         line=highest_energy(discrete),
@@ -118,13 +118,13 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
 def _checked(where: str, discrete: Any) -> NormalForm:
     remedy = "Pass `discretize(SuslovTop(J), time_step)` with n = 3."
     if not isinstance(discrete, Discretization):
-        raise error(where, "be a discretised Suslov top", shown(discrete), remedy)
+        raise error(where, "be a discretized Suslov top", shown(discrete), remedy)
     form = discrete.system.normal_form
     if form is None or form.is_sleigh or not form.is_planar:
         if form is not None and form.is_sleigh:
             remedy = "Its level curves are ellipses; `single_valued_region` gives the energy where branches merge."
-        raise error(where, "be a discretised Suslov top with n = 3", f"{type(discrete.system).__name__}", remedy)
-    refuse_composition(where, discrete, "Pass the discretisation of order 2 that is composed.")
+        raise error(where, "be a discretized Suslov top with n = 3", f"{type(discrete.system).__name__}", remedy)
+    refuse_composition(where, discrete, "Pass the discretization of order 2 that is composed.")
     if not discrete.conserves_energy:
         got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
         raise error(where, "conserve the energy", got, "Use the defaults of `discretize`.")
@@ -142,7 +142,7 @@ def _fold(form: NormalForm, land: Landscape, unit: float, saddle: float | None) 
 
 
 def _off_equator(land: Landscape, unit: float) -> list[CriticalPoint]:
-    r"""Return centre and saddle; each exists if $\varrho = 1/(2\kappa)$ is less than one."""
+    r"""Return center and saddle; each exists if $\varrho = 1/(2\kappa)$ is less than one."""
     found = []
     for inverse, vector, kind in zip(land.inverses, land.vectors.T, ("maximum", "saddle"), strict=True):
         length = float(np.hypot(*vector))

@@ -19,7 +19,7 @@ _NEAR_SADDLE = 200  # on each side: folds leave the saddle at every scale
 
 
 class Directions(NamedTuple):
-    r"""What the energy and the folds over directions u need.
+    r"""The numbers that the energy and the folds over directions u need.
 
     Attributes:
         b: $u\cdot Bu$.

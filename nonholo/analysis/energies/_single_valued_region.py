@@ -17,7 +17,7 @@ from nonholo.discrete import Discretization, refuse_composition
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class SingleValuedRegion:
-    """Where the discrete sleigh has one real branch, and where its branches merge.
+    """The region in which the discrete sleigh has one real branch, and where its branches merge.
 
     Attributes:
         energy: The sharp bound: below it every momentum has exactly one real branch, and at it one has more.
@@ -54,10 +54,10 @@ def single_valued_region(sleigh: Discretization) -> SingleValuedRegion:
     Reference: [fedorov-zenkov-2004], the theorem of section 7, which is not sharp.
 
     Args:
-        sleigh: A discretised `ChaplyginSleigh`, difference "matrix", constraint "skew" or "exponential".
+        sleigh: A discretized `ChaplyginSleigh`, difference "matrix", constraint "skew" or "exponential".
 
     Raises:
-        ValueError: Another system or discretisation, or a = 0 (then two branches are real however small the energy).
+        ValueError: Another system or discretization, or a = 0 (then two branches are real however small the energy).
 
     Example:
         >>> found = single_valued_region(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1))
@@ -84,14 +84,14 @@ def _checked(where: str, discrete: Any) -> tuple[Strip, float]:
     remedy = "Pass `discretize(ChaplyginSleigh(...), time_step)`."
     variety = planar_variety(discrete.system) if isinstance(discrete, Discretization) else None
     if not isinstance(variety, Strip):
-        raise error(where, "be a discretised Chaplygin sleigh", shown(discrete), remedy)
-    refuse_composition(where, discrete, "Pass the discretisation of order 2 that is composed.")
+        raise error(where, "be a discretized Chaplygin sleigh", shown(discrete), remedy)
+    refuse_composition(where, discrete, "Pass the discretization of order 2 that is composed.")
     if not discrete.conserves_energy:
         got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
         raise error(where, "be the map with three branches", got, "Use the defaults of `discretize`.")
     if variety.arm == 0:
         remedy = "A balanced sleigh has two real branches, with angles D and pi - D, at every |p_theta + b p_1| < J/h."
-        raise error(where, "have its centre of mass off the blade's normal", "a = 0", remedy)
+        raise error(where, "have its center of mass off the blade's normal", "a = 0", remedy)
     return variety, float(discrete.time_step)
 
 

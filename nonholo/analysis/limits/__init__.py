@@ -1,4 +1,4 @@
-"""What a motion comes from and tends to."""
+"""Limits that a motion comes from and tends to."""
 
 from nonholo.analysis.limits._asymptotics import Asymptotics, asymptotics, turn_of_flow
 from nonholo.analysis.limits._flow_obstruction import FlowObstruction, flow_obstruction

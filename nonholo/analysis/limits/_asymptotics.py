@@ -1,4 +1,4 @@
-r"""What a motion comes from and tends to: velocities, axes in body and in space, how far a sleigh turns.
+r"""Limits that a motion comes from and tends to: velocities, axes in body and in space, how far a sleigh turns.
 
 Theory: docs/theory/critical-energies-and-limits.md. Orbits are followed to their limits by `_followed`.
 """
@@ -33,9 +33,9 @@ class Asymptotics:
         axis_after: The same.
         spatial_axis_before: That axis in space; for an orbit alone.
         spatial_axis_after: The same.
-        heading_turn: How far a sleigh turns in all; its size alone for a system, with its sign for an orbit.
+        heading_turn: How far a sleigh turns in total; its size alone for a system, with its sign for an orbit.
         motion_turn: The same for its direction of motion, modulo full turns: the sleigh starts out backwards.
-        persists: Whether the orbit is known to go on for ever. It is for a flow, for a principal orbit of a plane
+        persists: Whether the orbit is known to continue forever. It is for a flow, for a principal orbit of a plane
             sleigh below its `principal_energy` of `single_valued_region` and of a top (n = 3) below its `fold` of
             `critical_energies`. Elsewhere the limits are those of an orbit that does, on whatever branches.
     """
@@ -55,9 +55,9 @@ def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
     r"""Return where the motions of a system, or one orbit of a flow or of a discrete map, come from and go to.
 
     Every motion goes from the repelling to the attracting equilibrium of its energy. For the discrete map this holds
-    for every real orbit that goes on for ever and is not stationary, whatever branches it takes, in every dimension, at
-    every energy; where no equilibrium has the energy (above `line` of `critical_energies`, `highest_energy` of
-    `equilibria`) none goes on for ever, and there are no limits. The heading of a sleigh turns by
+    for every real orbit that continues forever and is not stationary, whatever branches it takes, in every dimension,
+    at every energy; where no equilibrium has the energy (above `line` of `critical_energies`, `highest_energy` of
+    `equilibria`) none continues forever, and there are no limits. The heading of a sleigh turns by
 
     $$ \theta(\infty) - \theta(-\infty) = \mathrm{sgn}(\omega)\,\pi\sqrt{1 + J/(ma^2)} $$
 
@@ -94,7 +94,7 @@ def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
 
 
 def turn_of_flow(mass: Any, inertia: Any, a: Any) -> Any:
-    r"""Return how far sleighs turn in all along the flow, $\pi\sqrt{1 + J/(ma^2)}$; of numbers or arrays."""
+    r"""Return how far sleighs turn in total along the flow, $\pi\sqrt{1 + J/(ma^2)}$; of numbers or arrays."""
     return np.pi * np.sqrt(1 + inertia / mass / a / a)
 
 
@@ -146,7 +146,7 @@ def _in_space(orbit: Orbit, axes: tuple, found: Approach) -> tuple:
 
 
 def _resting(form: NormalForm, orbit: Orbit, velocity: Float[np.ndarray, "dim"]) -> Asymptotics:
-    """Return the limits of a motion with constant velocity: the heading of a balanced sleigh turns for ever."""
+    """Return the limits of a motion with constant velocity: the heading of a balanced sleigh turns forever."""
     axis = _axis(form, velocity)
     in_space = None if axis is None or orbit.canonical_pose is None else orbit.configuration[0] @ axis
     straight = form.is_sleigh and form.is_planar and form.arm != 0

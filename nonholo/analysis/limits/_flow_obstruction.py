@@ -1,4 +1,4 @@
-r"""Against a smooth flow: the linearising coordinates of the discrete map at both ends, whose difference is computed.
+r"""Against a smooth flow: the linearizing coordinates of the discrete map at both ends, whose difference is computed.
 
 Tops with n = 3 and sleighs in the plane. Theory: docs/theory/invariant-measure.md.
 """
@@ -58,13 +58,13 @@ def flow_obstruction(
     $|\log\mu|$. Smaller amplitudes, those of short steps, are beyond double precision.
 
     Args:
-        discrete: A top with n = 3 or a sleigh, discretised with "matrix" and "skew".
+        discrete: A top with n = 3 or a sleigh, discretized with "matrix" and "skew".
         energy: The energy of the level; on it orbits have to stay on their side.
         samples: Orbits, spread over one step.
         progress: Show a progress bar on standard error.
 
     Raises:
-        ValueError: Another system or discretisation, a balanced body, an energy that is not positive or so large that
+        ValueError: Another system or discretization, a balanced body, an energy that is not positive or so large that
             orbits change sides.
         OutcomeError: The branch ends on the way.
 
@@ -100,12 +100,12 @@ def _one_step(discrete: Discretization, energy: Any, number: int) -> Float[np.nd
     cosine = float(after @ system.restricted_velocity(first)) / level
     across = after - cosine * first
     angles = np.arctan2(np.sqrt(2 * system.constrained_energy(across) / level), cosine) * np.arange(number) / number
-    towards = across * np.sqrt(level / (2 * system.constrained_energy(across)))
-    return np.cos(angles)[:, None] * first + np.sin(angles)[:, None] * towards
+    toward = across * np.sqrt(level / (2 * system.constrained_energy(across)))
+    return np.cos(angles)[:, None] * first + np.sin(angles)[:, None] * toward
 
 
 def _ends(discrete: Discretization, multiplier: float, r: Float[np.ndarray, "2"]) -> tuple[float, float]:
-    """Return the linearising coordinates of a momentum at the repelling and at the attracting end."""
+    """Return the linearizing coordinates of a momentum at the repelling and at the attracting end."""
     point = simulate(discrete, momentum=r, steps=1)[:1]
     orbit, variety = both_ways("flow_obstruction(...)", point), planar_map("flow_obstruction(...)", discrete)[1]
     (_, forward), weight = variety.sides(variety.points(orbit.displacement))

@@ -25,7 +25,7 @@ class Ends(NamedTuple):
 
 
 class Approach(NamedTuple):
-    """What an orbit tends to.
+    """The limits of an orbit.
 
     Attributes:
         kept: The part of the body velocity that never changes.

@@ -20,18 +20,18 @@ def half_planes(discrete: Discretization, *, displacement: Any = None, momentum:
 
     of momenta $\bigl((Bc)\cdot r^\perp, -c\cdot r\bigr)$ and $(\pi, a p_1)$. Of one displacement and its momentum
     the sides agree where $Dz_0 + Q > 0$ (tops) or $2I\cos\tfrac\Delta2 + Q > 0$ (sleighs). An orbit of a top in the
-    regular regime below the saddle, or of a sleigh in its single-valued region, stays on one side for ever. It comes
+    regular regime below the saddle, or of a sleigh in its single-valued region, stays on one side forever. It comes
     from equilibria in $\Theta_-$ and tends to those in $\Theta_+$. Values are in the units of h = 1.
 
     Reference: [fedorov-zenkov-2004], theorem (discr_sus_dyn), which puts both ends in $\Theta_-$.
 
     Args:
-        discrete: A top with n = 3 or a sleigh, discretised with "matrix" and "skew".
+        discrete: A top with n = 3 or a sleigh, discretized with "matrix" and "skew".
         displacement: Displacements on the variety, leading axes free.
         momentum: Body momenta or their components along the constraint subspace, leading axes free.
 
     Raises:
-        ValueError: Another system or discretisation; none or both of displacement and momentum; a wrong shape.
+        ValueError: Another system or discretization; none or both of displacement and momentum; a wrong shape.
 
     Example:
         >>> top = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.2)

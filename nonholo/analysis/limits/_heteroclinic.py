@@ -51,7 +51,7 @@ def heteroclinic(
     Reference: [fedorov-zenkov-2004], theorem (discr_sus_dyn) and the theorem of section 7.
 
     Args:
-        discrete: A top or a sleigh of any dimension, discretised with "matrix" and "skew".
+        discrete: A top or a sleigh of any dimension, discretized with "matrix" and "skew".
         energy: The energy, where the constraint leaves two directions (n = 3, the plane); the orbit then passes
             through the momentum half way between the equilibria.
         momentum: A momentum on the orbit, full or along the constraint subspace.
@@ -60,7 +60,7 @@ def heteroclinic(
         side: With `energy`, which of the two half-planes of `half_planes`: 1 or -1.
 
     Raises:
-        ValueError: Another system or discretisation, a balanced body, a start on an equilibrium, none or several
+        ValueError: Another system or discretization, a balanced body, a start on an equilibrium, none or several
             starts, an energy for other systems, an orbit that needs more than a million steps.
         OutcomeError: The start is not on the principal branch, or that ends on the way, forwards or backwards.
 
@@ -94,7 +94,7 @@ def both_ways(where: str, point: Orbit) -> Orbit:
 def _checked(where: str, discrete: Discretization) -> AbstractLLSystem:
     system = cast("AbstractLLSystem", discrete.system)
     if system.normal_form is None or not discrete.conserves_energy:
-        remedy = "Discretise a SuslovTop or a sleigh with the defaults."
+        remedy = "Discretize a SuslovTop or a sleigh with the defaults."
         raise error(where, "be a top or a sleigh whose map keeps energy", shown(discrete), remedy)
     if system.equilibria().attracting is None:
         raise error(where, "have attracting equilibria", f"the balanced {system!r}", "Its velocity is constant.")

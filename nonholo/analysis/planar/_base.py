@@ -30,7 +30,7 @@ class Level(Protocol):
         ...
 
     def components(self, count: int) -> tuple[Float[np.ndarray, "K c"], ...]:
-        """Return the connected curves, with so many points for each arc."""
+        """Return the connected curves, with this many points for each arc."""
         ...
 
 

@@ -1,6 +1,6 @@
 """Level curves as arcs over intervals of directions: the two solutions of a quadratic, joined where they meet.
 
-An arc ends in a fold, where it goes on as the other solution, or on the equator, where its mirror image begins.
+An arc ends in a fold, where it continues as the other solution, or on the equator, where its mirror image begins.
 """
 
 import dataclasses

@@ -63,8 +63,8 @@ class SteinerSurface:
             return np.empty((0, 2, 3))
         ends = []
         for u, v in self._pairs():
-            centre, half = ((u @ self.forms) @ w for w in (u, v))
-            ends.append([centre - half, centre + half])
+            center, half = ((u @ self.forms) @ w for w in (u, v))
+            ends.append([center - half, center + half])
         return np.array(ends).reshape(-1, 2, 3) @ np.linalg.inv(self.to_forms).T
 
     def triple_point(self) -> Float[np.ndarray, "3"] | None:

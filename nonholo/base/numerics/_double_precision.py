@@ -23,7 +23,7 @@ def double_precision() -> Iterator[None]:
 
     Raises:
         RuntimeError: In a process that was forked from one that had used JAX: JAX would wait for threads that only the
-            parent has, for ever.
+            parent has, forever.
 
     Example:
         >>> with double_precision():
@@ -34,7 +34,7 @@ def double_precision() -> Iterator[None]:
     if _orphaned:
         raise RuntimeError(
             "`nonholo` must compute with JAX in a process that was not forked from one that had used JAX: it would "
-            f"wait for ever for threads of its parent. Got process {os.getpid()}, which was. "
+            f"wait forever for threads of its parent. Got process {os.getpid()}, which was. "
             "Start processes by multiprocessing.get_context('spawn'), or fork before JAX is used."
         )
     with jax.enable_x64(True):

@@ -138,7 +138,7 @@ def _square_root(A: Array) -> Array:
 
 
 def _repeated(function: Callable[[Any], Any], times: int, state: Any) -> Any:
-    """Return what a function makes of arrays after so many calls; JAX compiles it once."""
+    """Return what a function makes of arrays after this many calls; JAX compiles it once."""
     if isinstance(state, np.ndarray) or (isinstance(state, tuple) and isinstance(state[0], np.ndarray)):
         return functools.reduce(lambda x, _: function(x), range(times), state)
     from jax.lax import fori_loop

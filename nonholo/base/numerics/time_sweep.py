@@ -34,7 +34,7 @@ def sweep(
 ) -> tuple[State, Array]:
     """Carry a state from each time to the next; return all states but the first, and which solves succeeded.
 
-    `rate` takes time and state; `settled` takes the state at the end of an interval to the one that goes on.
+    `rate` takes time and state; `settled` takes the state at the end of an interval to the one that continues.
     """
 
     def scaled(fraction: Array, current: State, span: tuple[Array, Array]) -> State:

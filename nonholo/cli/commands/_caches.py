@@ -1,4 +1,4 @@
-"""Where JAX keeps compiled code between commands, so that only the first one has to wait for it."""
+"""The place where JAX keeps compiled code between commands, so that only the first one has to wait for it."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""What `nonholo resume` and `nonholo extend` do around the run, or around the sweep."""
+"""The work of `nonholo resume` and `nonholo extend` around the run, or around the sweep."""
 
 import contextlib
 import sys
@@ -16,15 +16,15 @@ from nonholo.ensembles import functions_of, resume, standing_of
 from nonholo.io import read_attributes
 from nonholo.orbit import Orbit
 
-_TOLD = 5  # warnings of a sweep that are told
+_TOLD = 5  # warnings of a sweep that are reported
 
 
-def go_on_and_report(store: Path, going_on: Callable[[bool], Orbit], *, json: bool) -> None:
+def continue_and_report(store: Path, continued: Callable[[bool], Orbit], *, json: bool) -> None:
     """Run, name what was damaged, report what the store holds now."""
     stopped = None
     with told_warnings(), store_errors(USAGE):
         try:
-            orbit = going_on(sys.stderr.isatty())
+            orbit = continued(sys.stderr.isatty())
         except OutcomeError as failure:
             orbit, stopped = cast(Orbit, failure.orbit), str(failure)
         except KeyboardInterrupt as failure:
@@ -34,14 +34,14 @@ def go_on_and_report(store: Path, going_on: Callable[[bool], Orbit], *, json: bo
         leave(f"Stopped early; the good steps are kept. {stopped}", FAILED)
 
 
-def go_on_with_sweep(store: Path, scheduler: str | None, workers: int | None, *, trust: bool, json: bool) -> None:
+def resume_sweep(store: Path, scheduler: str | None, workers: int | None, *, trust: bool, json: bool) -> None:
     """Do what a sweep lacks, report what the store holds now; name what is trusted first."""
     with store_errors(USAGE):
         done, imported = standing_of(store).done, functions_of(store)
     if trust and imported:
         warn(f"trusted, and run with your rights: {', '.join(imported)}")
     begun = time.perf_counter()
-    with store_errors(USAGE), going(store):
+    with store_errors(USAGE), reporting_stops(store):
         result = resume(store, scheduler=scheduler, workers=workers, trust=trust, progress=sys.stderr.isatty())
     figures = sweep_figures(store, result, time.perf_counter() - begun, done)
     show_sweep(store, figures, {"title": str(store)}, {}, json=json)
@@ -49,8 +49,8 @@ def go_on_with_sweep(store: Path, scheduler: str | None, workers: int | None, *,
 
 
 @contextlib.contextmanager
-def going(store: Path) -> Iterator[None]:
-    """Tell what stopped a sweep and how to go on, and at its end what it warned of."""
+def reporting_stops(store: Path) -> Iterator[None]:
+    """Tell what stopped a sweep and how to resume, and at its end what it warned of."""
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", RuntimeWarning)
         try:
@@ -70,4 +70,4 @@ def going(store: Path) -> Iterator[None]:
 
 def _where(store: Path) -> str:
     """Say how far a sweep came; before its store is there it has not begun."""
-    return f"at {standing_of(store)}. Go on with: nonholo resume {store}" if store.exists() else "before it began."
+    return f"at {standing_of(store)}. Resume with: nonholo resume {store}" if store.exists() else "before it began."

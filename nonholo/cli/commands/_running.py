@@ -28,7 +28,7 @@ Made = TypeVar("Made")
 
 
 class Ran(NamedTuple):
-    """What a run gave: its good steps if there are any, how long it took, and why it stopped early, if it did."""
+    """A run: its good steps if there are any, how long it took, and why it stopped early, if it did."""
 
     orbit: Orbit | None
     seconds: float
@@ -42,7 +42,7 @@ def run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progres
     """
     with waiting("compiling", progress):
         scenario, (discrete, starts) = loaded.scenario, _tried(loaded)
-    going = functools.partial(simulate, discrete, steps=scenario.run.steps, progress=progress, **scenario.options())
+    task = functools.partial(simulate, discrete, steps=scenario.run.steps, progress=progress, **scenario.options())
     text = effective_text(scenario.in_force(discrete) if isinstance(discrete, Discretization) else scenario)
     size = size_in_blocks(discrete, scenario.run.branch, scenario.run.steps, scenario.run.save_every)
     if size and starts:
@@ -53,8 +53,8 @@ def run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progres
         if overwrite and store is not None:
             check_target(store, overwrite=True)
             shutil.rmtree(store, ignore_errors=True)
-        return at_free_path(loaded.name, store, lambda path: _ran(going, store=path, scenario=text))
-    ran = _ran(going)
+        return at_free_path(loaded.name, store, lambda path: _ran(task, store=path, scenario=text))
+    ran = _ran(task)
     if ran.orbit is None:
         return None, ran
     orbit, replace = ran.orbit, overwrite and store is not None  # what has a number is never replaced
@@ -63,7 +63,7 @@ def run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progres
 
 
 def _tried(loaded: Loaded) -> tuple[Discretization, bool]:
-    """Return the discretised body of a scenario after a first step, which compiles, and whether there is a start."""
+    """Return the discretized body of a scenario after a first step, which compiles, and whether there is a start."""
     discrete = _discretized(loaded)
     try:
         first = simulate(discrete, steps=1, throw=False, **loaded.scenario.options())
@@ -75,10 +75,10 @@ def _tried(loaded: Loaded) -> tuple[Discretization, bool]:
     return discrete, len(first) > 0
 
 
-def _ran(going: Callable[..., Orbit], **kept: Any) -> Ran:
+def _ran(task: Callable[..., Orbit], **kept: Any) -> Ran:
     begun = time.perf_counter()
     try:
-        orbit = going(**kept)
+        orbit = task(**kept)
     except OutcomeError as failure:
         good = failure.orbit if isinstance(failure.orbit, Orbit) and len(failure.orbit) else None
         return Ran(good, time.perf_counter() - begun, str(failure))

@@ -1,4 +1,4 @@
-"""What `nonholo simulate` does, once the compilers know where to keep their code."""
+"""The work of `nonholo simulate`, once the compilers know where to keep their code."""
 
 import sys
 from pathlib import Path
@@ -49,9 +49,9 @@ def _run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progre
         with store_errors(FAILED), scenario_errors(), told_warnings():
             return run_and_keep(loaded, store, overwrite=overwrite, progress=progress)
     except KeyboardInterrupt as stop:
-        leave(str(stop) or "Stopped; so short a run keeps nothing.", FAILED)
+        leave(str(stop) or "Stopped. A run this short is not kept.", FAILED)
     except MemoryError:
-        leave("So many states do not fit in memory. Keep fewer of them: raise run.save_every.", USAGE)
+        leave("The states do not fit in memory. Keep fewer of them: raise run.save_every.", USAGE)
 
 
 def _report(loaded: Loaded, ran: Ran, orbit: Orbit, paths: dict[str, str | None], *, json: bool, quiet: bool) -> None:

@@ -1,4 +1,4 @@
-"""What `nonholo sweep` does, once the compilers know where to keep their code."""
+"""The work of `nonholo sweep`, once the compilers know where to keep their code."""
 
 import functools
 import sys
@@ -10,7 +10,7 @@ from typing import Any
 import typer
 import xarray
 
-from nonholo.cli.commands._resuming import going
+from nonholo.cli.commands._resuming import reporting_stops
 from nonholo.cli.commands._running import at_free_path, check_output
 from nonholo.cli.scenario.files import Loaded, Setting, parse_setting
 from nonholo.cli.scenario.problems import ScenarioError, problem_of_value
@@ -40,7 +40,7 @@ def sweep_and_keep(
         loaded = load_sweep_scenario(name, given + [parse_setting(text) for text in settings])
         task = _task(loaded)
     if output is not None and output.exists():
-        leave(f"'{output}' exists. Choose another path, or go on with what it holds: nonholo resume {output}", USAGE)
+        leave(f"'{output}' exists. Choose another path, or resume what it holds: nonholo resume {output}", USAGE)
     with store_errors(USAGE):
         check_output(output, overwrite=False)
     text, begun = sweep_text(loaded.scenario.in_force(task)), time.perf_counter()
@@ -75,5 +75,5 @@ def _task(loaded: Loaded[SweepScenario]) -> EnsembleTask:
 
 
 def _kept(run: Callable[..., xarray.Dataset], store: Path) -> xarray.Dataset:
-    with going(store):
+    with reporting_stops(store):
         return run(store=store)

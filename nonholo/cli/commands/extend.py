@@ -20,11 +20,11 @@ def extend(
 
     use_cache_folder()
     from nonholo import io
-    from nonholo.cli.commands._resuming import go_on_and_report
+    from nonholo.cli.commands._resuming import continue_and_report
     from nonholo.cli.screen.errors import USAGE, leave
-    from nonholo.simulation import extend as going_on
+    from nonholo.simulation import extend as continued
 
     if io.format_of(store) == io.SWEEP_FORMAT:
         again = f"nonholo info {store} --scenario > more.toml; nonholo sweep more.toml --set run.steps=..."
         leave(f"'{store}' holds a sweep, whose members are not extended. Run it again, longer: {again}", USAGE)
-    go_on_and_report(store, lambda progress: going_on(store, steps, progress=progress), json=json)
+    continue_and_report(store, lambda progress: continued(store, steps, progress=progress), json=json)

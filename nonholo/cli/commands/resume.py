@@ -1,4 +1,4 @@
-"""`nonholo resume`: go on with a run or a sweep that stopped."""
+"""`nonholo resume`: resume a run or a sweep that stopped."""
 
 from pathlib import Path
 from typing import Annotated
@@ -17,7 +17,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instea
 def resume(
     store: Store, scheduler: Scheduler = None, workers: Workers = None, trust: Trust = False, json: Json = False
 ) -> None:
-    """Go on from the last checkpoint of a run, or with the missing blocks of a sweep.
+    """Continue from the last checkpoint of a run, or with the missing blocks of a sweep.
 
     Damaged blocks are named and computed again. The result has the bits of one
     that was never stopped. --scheduler, --workers and --trust are for sweeps.
@@ -32,11 +32,11 @@ def resume(
 
     use_cache_folder()
     from nonholo import io
-    from nonholo.cli.commands._resuming import go_on_and_report, go_on_with_sweep
-    from nonholo.ensembles import resume as going_on
+    from nonholo.cli.commands._resuming import continue_and_report, resume_sweep
+    from nonholo.ensembles import resume as continued
 
     if io.format_of(store) == io.SWEEP_FORMAT:
-        go_on_with_sweep(store, scheduler, workers, trust=trust, json=json)
+        resume_sweep(store, scheduler, workers, trust=trust, json=json)
     else:
         options = {"scheduler": scheduler, "workers": workers, "trust": trust}
-        go_on_and_report(store, lambda progress: going_on(store, progress=progress, **options), json=json)
+        continue_and_report(store, lambda progress: continued(store, progress=progress, **options), json=json)

@@ -36,9 +36,9 @@ def simulate(
     """Run a scenario, keep the orbit and a picture, print how exact it was.
 
     Without -o each run gets a new store under runs/: nothing is overwritten.
-    A run that cannot go on keeps its good steps, says why, exits with code 1.
+    A run that cannot continue keeps its good steps, says why, exits with code 1.
     Long runs go to the store as they are computed: after Ctrl-C or a kill,
-    `nonholo resume STORE` goes on.
+    `nonholo resume STORE` continues.
 
     nonholo simulate suslov
     nonholo simulate sleigh --steps 1000 --time-step 0.05 --gif

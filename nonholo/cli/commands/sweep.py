@@ -13,7 +13,7 @@ Store = Annotated[
 ]
 Members = Annotated[
     float | None,
-    typer.Option(metavar="N", help="About so many members, such as 1e6: scales every range of a grid alike."),
+    typer.Option(metavar="N", help="Approximate number of members, such as 1e6: scales every range of a grid alike."),
 ]
 Scheduler = Annotated[
     str | None,
@@ -52,13 +52,13 @@ def sweep(
     \[keep] reductions = ["final_state"]       or energy_drift, ...
     \[output] color, x, y                      what the map shows
 
-    Ctrl-C stops it and says how to go on; members that fail do not stop it.
+    Ctrl-C stops it and says how to resume; members that fail do not stop it.
 
     nonholo sweep my.toml
     nonholo sweep my.toml --members 1e6 -o large.zarr
     nonholo sweep my.toml --set design.values.body.a=[0.1,0.2] --no-plot
     nonholo sweep my.toml --scheduler tcp://127.0.0.1:8786
-    nonholo resume large.zarr               go on with one that stopped
+    nonholo resume large.zarr               resume one that stopped
     """
     from nonholo.cli.commands._caches import use_cache_folder
 

@@ -39,7 +39,7 @@ def _checked_drawn(given: Any) -> Any:
 Along: TypeAlias = Annotated[Any, AfterValidator(_checked_along)]
 """Values along one axis of a grid."""
 Drawn: TypeAlias = Annotated[Any, AfterValidator(_checked_drawn)]
-"""What the members of a random design draw from."""
+"""The distributions that members of a random design draw from."""
 
 
 def is_range(given: Any) -> bool:

@@ -15,7 +15,7 @@ Keys = tuple[tuple[str, ...], ...]
 
 
 class AbstractBody(Section, abc.ABC):
-    """A body of any kind: its system is built once when it is read, so that what the library refuses is told."""
+    """A body of any kind: its system is built once when it is read, so that the library's refusals are reported."""
 
     one_of: ClassVar[Keys] = ()
     """Groups of keys of which exactly one must be there."""

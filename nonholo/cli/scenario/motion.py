@@ -1,4 +1,4 @@
-"""What a scenario may say: a body, its start, a run, its output. The file itself is read in `files`."""
+"""The contents of a scenario: a body, its start, a run, its output. The file itself is read in `files`."""
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Start(Section):
-    """Where the motion starts: one of four ways to say how fast, and a first pose."""
+    """The start of the motion: one of four ways to say how fast, and a first pose."""
 
     body_velocity: Vector | None = None
     restricted_velocity: Vector | None = None
@@ -28,7 +28,7 @@ class Start(Section):
 
 
 class Run(Section):
-    """The discretisation and the length of the run."""
+    """The discretization and the length of the run."""
 
     time_step: Positive
     steps: Count
@@ -39,7 +39,7 @@ class Run(Section):
     branch: Literal["principal", "nearest", "smallest", "largest", "inner", "outer"] = "principal"
 
     def discretized(self, system: "System") -> "Discretization":
-        """Return a discretised system."""
+        """Return a discretized system."""
         from nonholo.discrete import discretize
 
         return discretize(system, self.time_step, self.difference, self.constraint, self.order)
@@ -50,7 +50,7 @@ class Run(Section):
 
 
 class Output(Section):
-    """What is drawn beside the store."""
+    """The picture beside the store."""
 
     plot: bool = True
     gif: bool = False
@@ -66,7 +66,7 @@ class Scenario(Section):
     output: Output = Output()
 
     def discretization(self) -> "Discretization":
-        """Return the discretised body."""
+        """Return the discretized body."""
         return self.run.discretized(self.body.system())
 
     def in_force(self, discrete: "Discretization") -> Self:

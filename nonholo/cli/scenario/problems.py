@@ -1,4 +1,4 @@
-"""What is wrong with a scenario, in words: every problem with its file or option and its key path."""
+"""Problems of a scenario, in words: each one with its file or option and its key path."""
 
 import difflib
 import re

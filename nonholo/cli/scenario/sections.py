@@ -1,4 +1,4 @@
-"""What every table of a scenario is made of: checked numbers, no unknown keys, one of several keys."""
+"""The parts of every table of a scenario: checked numbers, no unknown keys, one of several keys."""
 
 from typing import Annotated
 

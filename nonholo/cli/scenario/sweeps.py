@@ -1,4 +1,4 @@
-"""What the scenario of a sweep may say: a body, a start and a run as for one motion, a design, what to keep."""
+"""The contents of the scenario of a sweep: a body, a start and a run as for one motion, a design, what to keep."""
 
 import math
 from collections.abc import Iterator
@@ -26,7 +26,7 @@ class GridValues(Section):
 
 
 class GridDesign(Section):
-    """Every combination of values along axes; with `members`, about so many of them."""
+    """Every combination of values along axes; with `members`, about this many of them."""
 
     kind: Literal["grid"]
     members: Count | None = None
@@ -97,14 +97,14 @@ Reduction = Annotated[str, AfterValidator(_reduction)]
 
 
 class Keep(Section):
-    """What is kept of each member."""
+    """The quantities kept of each member."""
 
     reductions: list[Reduction] = Field(default_factory=lambda: ["final_state"])
     poses: bool = True
 
 
 class SweepOutput(Section):
-    """What is drawn beside the store: a quantity by colour, over one or two values of the design."""
+    """The picture beside the store: a quantity by color, over one or two values of the design."""
 
     plot: bool = True
     color: str | None = None

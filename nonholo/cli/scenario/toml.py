@@ -12,7 +12,7 @@ _DEEPEST = 32  # arrays and tables in each other
 
 def read_text(path: Path) -> str:
     """Return the text of a file, refused with an OSError if it is none or too large; pipes and devices may not end."""
-    if path.exists() and not path.is_file():  # to open a pipe may take for ever
+    if path.exists() and not path.is_file():  # to open a pipe may take forever
         raise OSError("it is a folder, a device or a pipe")
     with path.open("rb") as file:
         found = file.read(_LARGEST + 1)

@@ -1,1 +1,1 @@
-"""What a person sees: errors in words, figures, pictures."""
+"""The view of the user: errors in words, figures, pictures."""

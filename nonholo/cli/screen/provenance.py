@@ -1,4 +1,4 @@
-"""What a store says about how it was made, with its invariants measured again."""
+"""The record in a store of how it was made, with its invariants measured again."""
 
 import json as jsonlib
 import sys
@@ -40,7 +40,7 @@ def show_standing(store: Path, stored: dict[str, Any], standing: Standing, *, js
         typer.echo(as_json({"store": str(store), "unfinished": now, "provenance": told}))
         return
     came = f"{standing.done} of {standing.steps}, {100 * standing.done / standing.steps:.1f} %"
-    next_one = f"written by {standing.owner}" if standing.owner else f"stopped; go on with: nonholo resume {store}"
+    next_one = f"written by {standing.owner}" if standing.owner else f"stopped; resume with: nonholo resume {store}"
     show({}, {"title": str(store), "steps": came, "run": next_one} | _made(told))
 
 

@@ -59,7 +59,7 @@ def _expected_energy(exact: bool | None) -> str:
     """Say how well energy should be conserved; None stands for a continuous flow."""
     if exact is None:
         return "tolerance of the solver"
-    return "exact by theorem" if exact else "not exact for this discretisation"
+    return "exact by theorem" if exact else "not exact for this discretization"
 
 
 def as_json(document: dict[str, Any]) -> str:

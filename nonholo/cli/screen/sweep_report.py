@@ -54,7 +54,7 @@ def sweep_figures(
 def show_sweep(
     store: Path, figures: dict[str, Any], heading: dict[str, str], more: dict[str, Any], *, json: bool
 ) -> None:
-    """Print figures of a sweep as a table or as one JSON object, with what else is to be told."""
+    """Print figures of a sweep as a table or as one JSON object, with what else is to be reported."""
     if json:
         typer.echo(as_json({"store": str(store), **more, **figures}))
         return
@@ -82,7 +82,7 @@ def _state(standing: SweepStanding) -> str:
 def _rows(store: Path, figures: dict[str, Any]) -> dict[str, str]:
     members, done = figures["members"], figures["done"]
     came = f"{members:,}" if done == members else f"{done:,} of {members:,}, {100 * done / members:.1f} %"
-    state = figures["state"] + (f"; go on with: nonholo resume {store}" if figures["state"] == "stopped" else "")
+    state = figures["state"] + (f"; resume with: nonholo resume {store}" if figures["state"] == "stopped" else "")
     speeds = {"members_per_second_of_one_worker": "members/s", "steps_per_second_of_one_worker": "steps/s"}
     told = [f"{figures[key]:,.3g} {unit}" for key, unit in speeds.items() if figures[key]]
     speed = figures["members_per_second"]

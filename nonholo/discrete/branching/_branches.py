@@ -34,7 +34,7 @@ def displacements_over(discrete: Discretization, restricted_momentum: Any, certi
     Reference: [fedorov-zenkov-2004], section 3, item 3; docs/theory/branches.md.
 
     Args:
-        discrete: A discretised SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference "matrix".
+        discrete: A discretized SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference "matrix".
         restricted_momentum: r, in physical units.
         certify: Also prove that these are all of them, with exact multiplicities and enclosures; needs the extra
             `certify` (python-flint). The statement is about the polynomial equations with the doubles of the canonical

@@ -114,7 +114,7 @@ def _square(z: Array) -> Array:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Frame:
-    r"""How a body in its canonical frame is brought to its equations.
+    r"""The way from a body in its canonical frame to its equations.
 
     Attributes:
         axes: Columns are principal axes of B.
@@ -123,7 +123,7 @@ class Frame:
         inertia: Largest eigenvalue of B_1, the unit of inertia.
         length: The unit of length; None for a top.
         lever: a_1 over `length`; None for a top.
-        offset: The centre of mass across axis 1; empty for a top.
+        offset: The center of mass across axis 1; empty for a top.
         turn: The axes of the normal form as seen from the canonical frame; None where they are the same.
         rows: Takes canonical momenta to those along the rows of the normal form; None where they are the same.
     """
@@ -203,7 +203,7 @@ class Frame:
 
 
 def has_frame(discrete: "Discretization") -> bool:
-    """Tell whether all branches of a discretisation are known."""
+    """Tell whether all branches of a discretization are known."""
     known = discrete.system.normal_form is not None
     return known and discrete.difference == "matrix" and discrete.constraint in ("skew", "exponential")
 
@@ -214,7 +214,7 @@ def frame_of(where: str, discrete: "Discretization") -> Frame:
         requirement = "be a top or a sleigh with difference 'matrix'"
         name = type(discrete.system).__name__
         got = f"{name}, difference {discrete.difference!r}, constraint {discrete.constraint!r}"
-        remedy = "Discretise one of them with constraint 'skew' or 'exponential'; of others only the principal "
+        remedy = "Discretize one of them with constraint 'skew' or 'exponential'; of others only the principal "
         raise error(where, requirement, got, remedy + "branch is computed (`step`, `simulate`).")
     return _frame(cast(NormalForm, discrete.system.normal_form))
 

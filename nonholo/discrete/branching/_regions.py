@@ -22,7 +22,7 @@ class Landscape:
         axes: Columns are the unit vectors along and across c, any if c = 0.
         inertia: B seen from these axes.
         sharpness: $|c|^2/\det B$; $\kappa = 1 - (c\cdot u^\perp)^2/\det B$ lies between one minus this, and one.
-        inverses: $1/\mu$ of $Bu = \mu\,(\mathrm{Id} - c^\perp c^{\perp T}/\det B)\,u$, of the centre and of the saddle,
+        inverses: $1/\mu$ of $Bu = \mu\,(\mathrm{Id} - c^\perp c^{\perp T}/\det B)\,u$, of the center and of the saddle,
             whose energies are $\mu/4$.
         vectors: Their u in these axes, as columns, not of length one.
     """
@@ -51,7 +51,7 @@ def landscape(form: NormalForm) -> Landscape:
 
 
 def is_regular(discrete: Discretization) -> bool:
-    r"""Tell whether a discretisation has regions: a top with n = 3 and $\det B > 2|c|^2$ that conserves its energy."""
+    r"""Tell whether a discretization has regions: a top with n = 3 and $\det B > 2|c|^2$ that conserves its energy."""
     return _regular_landscape(discrete) is not None
 
 
@@ -70,10 +70,10 @@ def regions(discrete: Discretization, displacement: Inexact[np.ndarray, "B N N"]
     square = land.axes.T @ (np.eye(2) - seen[:, :2, :2]) @ land.axes / 2  # z z^T
     height = np.einsum("bij,ij->b", square, land.inertia)
     ascent = np.einsum("bii->b", square) - land.sharpness * square[:, 1, 1]  # kappa rho, one half on the ridge
-    energy, (centre, saddle) = height * (1 - ascent), 1 / (4 * land.inverses)
+    energy, (center, saddle) = height * (1 - ascent), 1 / (4 * land.inverses)
     kinds = ["inner", "outer", "between"]
     below = energy < saddle
-    return np.select([below & (ascent < 0.5), below, energy < centre], kinds, default="")
+    return np.select([below & (ascent < 0.5), below, energy < center], kinds, default="")
 
 
 def _regular_landscape(discrete: Discretization) -> Landscape | None:

@@ -16,7 +16,7 @@ from nonholo.discrete.branching._candidates import candidates
 from nonholo.discrete.branching._equations import Equations
 
 _EPS = float(np.finfo(np.float64).eps)
-_CLOSE = 3e-7  # relative distance, about sqrt(eps), below which two roots cannot be told from a double one
+_CLOSE = 3e-7  # relative distance, about sqrt(eps), below which two roots cannot be distinguished from a double one
 _BLURRED = 3e-5  # the same for three roots, about eps^(1/3)
 _FOLDED = 1e-5  # least singular value that a root of multiplicity above one may have
 _ISOLATED = 1e-10  # least singular value of a root that has no other close by
@@ -75,22 +75,22 @@ def _newton(
     equations: Equations, x: Inexact[Array, "B m"], steps: int = 40, reach: float = np.inf
 ) -> tuple[Inexact[Array, "B m"], Bool[np.ndarray, "B"]]:
     """Return the roots that Newton's method reaches, moving no further than `reach` at first, and where it does."""
-    x, best, least, going = x.copy(), x.copy(), np.full(len(x), _REACHED), np.arange(len(x))
+    x, best, least, active = x.copy(), x.copy(), np.full(len(x), _REACHED), np.arange(len(x))
     for i in range(steps):
-        residual, sizes = equations.residual(x[going])
+        residual, sizes = equations.residual(x[active])
         error = (np.abs(residual) / (sizes + _TINY * sizes.max(axis=1, keepdims=True))).max(axis=1)
-        stagnates = (error > least[going] / 2) & (least[going] < _SETTLED)
-        better = going[error < least[going]]
-        best[better], least[going] = x[better], np.fmin(error, least[going])
+        stagnates = (error > least[active] / 2) & (least[active] < _SETTLED)
+        better = active[error < least[active]]
+        best[better], least[active] = x[better], np.fmin(error, least[active])
         on = np.isfinite(error) & ~stagnates & (error != 0)
-        going, residual = going[on], residual[on]
-        if len(going) == 0:
+        active, residual = active[on], residual[on]
+        if len(active) == 0:
             break
-        correction = (np.linalg.pinv(equations.slope(x[going]), rcond=_RANK) @ residual[:, :, None])[..., 0]
+        correction = (np.linalg.pinv(equations.slope(x[active]), rcond=_RANK) @ residual[:, :, None])[..., 0]
         if i == 0:
-            near = np.linalg.norm(correction, axis=1) <= reach * np.linalg.norm(x[going], axis=1)
-            going, correction = going[near], correction[near]
-        x[going] -= correction
+            near = np.linalg.norm(correction, axis=1) <= reach * np.linalg.norm(x[active], axis=1)
+            active, correction = active[near], correction[near]
+        x[active] -= correction
     return best, least < _REACHED
 
 
@@ -108,7 +108,7 @@ def _merged(equations: Equations, points: Inexact[Array, "B m"]) -> list[Root]:
         group = points[members]
         if len(group) > 1 and regularity[i] <= _FOLDED:
             sides = np.where((group @ points[i].conj()).real >= 0, 1.0, -1.0)
-            found.append(Root(_centred(equations, sides @ group / len(group)), len(group), False))
+            found.append(Root(_centered(equations, sides @ group / len(group)), len(group), False))
         elif regularity[i] > _ISOLATED:
             found.append(Root(points[i], 1, False))
     return found
@@ -124,7 +124,7 @@ def _distance(x: Inexact[Array, "... m"], y: Inexact[Array, "... m"]) -> Float[n
     return apart / np.maximum(1.0, np.linalg.norm(x, axis=-1))
 
 
-def _centred(equations: Equations, x: Array) -> Array:
+def _centered(equations: Equations, x: Array) -> Array:
     """Correct the mean of a multiple root across the direction in which it is not determined."""
     for _ in range(3):
         U, values, V = np.linalg.svd(equations.slope(x))
@@ -134,7 +134,7 @@ def _centred(equations: Equations, x: Array) -> Array:
 
 
 def _realified(equations: Equations, roots: list[Root]) -> list[Root]:
-    """Mark roots that cannot be told from their own conjugates as real, and make them so."""
+    """Mark roots that cannot be distinguished from their own conjugates as real, and make them so."""
     x = equations.points([root.point for root in roots])
     real = _distance(x, x.conj()) <= _blur(equations.regularity(x))
     found = [

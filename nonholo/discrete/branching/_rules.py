@@ -30,7 +30,7 @@ class Kick(NamedTuple):
     """A step of which all is known but its new displacement.
 
     Attributes:
-        discrete: The discretised system.
+        discrete: The discretized system.
         frame: The frame of its branches.
         point: The point over the present displacement.
         now: The equations that it solves.
@@ -71,11 +71,11 @@ class AbstractBranchRule(abc.ABC):
 
     @abc.abstractmethod
     def check(self, where: str, discrete: Discretization) -> None:
-        """Refuse a discretisation that does not have the rule."""
+        """Refuse a discretization that does not have the rule."""
 
     @abc.abstractmethod
     def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
-        """Refuse a start that the rule cannot go on from."""
+        """Refuse a start that the rule cannot continue from."""
 
     @abc.abstractmethod
     def following(self, kick: Kick) -> Following:
@@ -92,7 +92,7 @@ class Principal(AbstractBranchRule):
     needs_all_values: ClassVar[bool] = False
 
     def check(self, where: str, discrete: Discretization) -> None:
-        """Every discretisation has it."""
+        """Every discretization has it."""
 
     def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
         """Runs check their first displacement themselves."""
@@ -234,7 +234,7 @@ def branch_rule(owner: str, branch: BranchRule) -> AbstractBranchRule:
 
 
 def checked_rule(owner: str, discrete: Discretization, branch: BranchRule) -> AbstractBranchRule:
-    """Return a branch rule that a discretisation has, or refuse it with the reason."""
+    """Return a branch rule that a discretization has, or refuse it with the reason."""
     rule = branch_rule(owner, branch)
     rule.check(f"{owner}(branch=...)", discrete)
     return rule

@@ -1,7 +1,7 @@
 r"""The equations of `_branch_equations` with the doubles of a system taken as exact rational numbers.
 
 Everything of the dimension of an inertia is an integer here, after multiplication by one power of two. Axes are those
-of the body: nothing is diagonalised.
+of the body: nothing is diagonalized.
 
 Reference: docs/theory/branches.md, "Certificates".
 """
@@ -17,7 +17,7 @@ _ZERO = fmpq(0)
 
 
 class Lever(NamedTuple):
-    """What a sleigh has and a top has not, in units of length: a_1, h p_1/m, the centre of mass across axis 1."""
+    """Parameters of a sleigh that a top lacks, in units of length: a_1, h p_1/m, the center of mass across axis 1."""
 
     arm: fmpq
     push: fmpq

@@ -27,13 +27,13 @@ def isolated(polynomial: fmpz_poly) -> list[acb] | None:
     return next((balls for balls in found if balls is not None), None)
 
 
-def sharpened(polynomial: fmpz_poly, centres: list[acb], bits: int) -> list[acb] | None:
-    """Return the balls near centres, which are real or above the real axis, or None if they do not prove anything."""
+def sharpened(polynomial: fmpz_poly, centers: list[acb], bits: int) -> list[acb] | None:
+    """Return the balls near centers, which are real or above the real axis, or None if they do not prove anything."""
     with ctx.workprec(bits):
         value = acb_poly(polynomial)
         slope = value.derivative()
-        squares = [_around(value, slope, z.mid(), bits) for z in centres]
-    flat = [z.imag == 0 for z in centres]
+        squares = [_around(value, slope, z.mid(), bits) for z in centers]
+    flat = [z.imag == 0 for z in centers]
     if 2 * len(flat) - sum(flat) != polynomial.degree() or any(x.overlaps(y) for x, y in combinations(squares, 2)):
         return None
     placed = (_placed(square, real=on_axis) for square, on_axis in zip(squares, flat, strict=True))
@@ -48,16 +48,16 @@ def _placed(square: acb, *, real: bool) -> acb | None:
     return square if square.imag > 0 else None
 
 
-def _around(value: acb_poly, slope: acb_poly, centre: acb, bits: int) -> acb:
-    """Return a square around a disc that holds a root, near a centre, which stays real if it is."""
-    fine, step = arb(2.0 ** (-bits // 2)), value(centre) / slope(centre)
+def _around(value: acb_poly, slope: acb_poly, center: acb, bits: int) -> acb:
+    """Return a square around a disc that holds a root, near a center, which stays real if it is."""
+    fine, step = arb(2.0 ** (-bits // 2)), value(center) / slope(center)
     for _ in range(_STEPS):
-        if value.degree() * step.abs_upper() <= fine * centre.abs_lower():
+        if value.degree() * step.abs_upper() <= fine * center.abs_lower():
             break
-        centre = (centre - step).mid()
-        step = value(centre) / slope(centre)
+        center = (center - step).mid()
+        step = value(center) / slope(center)
     radius = value.degree() * step.abs_upper()
-    return centre + acb(arb(0, radius), arb(0, radius))
+    return center + acb(arb(0, radius), arb(0, radius))
 
 
 def _guessed(polynomial: fmpz_poly) -> list[acb]:
@@ -107,13 +107,13 @@ def _parabola(polynomial: fmpz_poly, middle: arb) -> list[acb]:
     c, b, a = polynomial(middle).mid(), slope(middle).mid(), slope.derivative()(middle).mid() / 2
     square = (b * b - 4 * a * c).mid()
     half = (abs(square).sqrt() / (2 * a)).mid()
-    centre = (middle - b / (2 * a)).mid()
-    return [acb(centre - half), acb(centre + half)] if square >= 0 else [acb(centre, abs(half))]
+    center = (middle - b / (2 * a)).mid()
+    return [acb(center - half), acb(center + half)] if square >= 0 else [acb(center, abs(half))]
 
 
 def _searched(polynomial: fmpz_poly, bits: int) -> list[acb]:
-    """Return the centres that FLINT finds, however long it takes."""
+    """Return the centers that FLINT finds, however long it takes."""
     with ctx.workprec(bits):
         found: Any = polynomial.complex_roots()
-        centres = [acb(z).mid() for z, _ in found]
-    return [z for z in centres if z.imag >= 0]
+        centers = [acb(z).mid() for z, _ in found]
+    return [z for z in centers if z.imag >= 0]

@@ -108,11 +108,11 @@ def _continue(residual: Residual, begun: tuple[Array, Array], target: Array) -> 
     evaluate = _evaluation(residual, before, target)
     eps, least = float(jnp.finfo(target.dtype).eps), jnp.finfo(target.dtype).tiny * 1e3
 
-    def going(path: _Path) -> Array:
+    def is_unfinished(path: _Path) -> Array:
         return (path.s < 1) & (path.size > jnp.maximum(_SMALLEST * path.s, least))
 
     def advance(path: _Path) -> _Path:
-        first, last = path.count < 0, ~going(path)
+        first, last = path.count < 0, ~is_unfinished(path)
         ahead = jnp.where(first, 0.0, jnp.where(last, 1.0, jnp.minimum(path.s + path.size, 1.0)))
         det, missed, correction, tangent = evaluate(path.iterate, ahead)
         found = path.iterate - correction
@@ -126,7 +126,7 @@ def _continue(residual: Residual, begun: tuple[Array, Array], target: Array) -> 
         s, now = jnp.where(reached, ahead, path.s), jnp.where(reached, det, path.now)
         size = jnp.where(reached, 2 * path.size, jnp.where(ended, path.size / 4, path.size))
         following = path._replace(s=s, size=size, root=root, tangent=tangent, now=now)
-        guess = jnp.where(going(following), root + jnp.minimum(size, 1 - s) * tangent, root)
+        guess = jnp.where(is_unfinished(following), root + jnp.minimum(size, 1 - s) * tangent, root)
         at_rest = jnp.all(jnp.abs(missed) < eps**0.65) & jnp.all(jnp.abs(correction) < eps**0.65 * (1 + jnp.abs(found)))
         return following._replace(
             start=jnp.where(first, det, path.start),
@@ -140,7 +140,7 @@ def _continue(residual: Residual, begun: tuple[Array, Array], target: Array) -> 
     nothing, no = jnp.zeros_like(root), jnp.asarray(False)
     begin = _Path(zero, _FIRST / 2 * one, root, nothing, zero, zero, root, root, jnp.asarray(-1), no)
     end = jax.lax.while_loop(
-        lambda path: (going(path) | (~path.converged & (path.count < _LAST))) & finite, advance, begin
+        lambda path: (is_unfinished(path) | (~path.converged & (path.count < _LAST))) & finite, advance, begin
     )
     lost = end.s < 1
     far = jnp.sum(end.root**2) > _FAR**2  # where the determinant vanishes without a fold

@@ -1,4 +1,4 @@
-"""How the steps of a discretisation are computed: one route for each way, chosen and built once.
+"""Ways to compute the steps of a discretization: one route for each way, chosen and built once.
 
 | route | what it computes |
 |---|---|

@@ -1,4 +1,4 @@
-"""What every route offers, and what all compiled ones do alike: units and axes of a kernel, runs, single steps."""
+"""The interface of every route, and what compiled ones share: units and axes of a kernel, runs, single steps."""
 
 import abc
 from typing import Any, ClassVar
@@ -16,7 +16,7 @@ Rows = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 class AbstractRoute(abc.ABC):
-    """How the steps of a discretisation are computed.
+    """A way to compute the steps of a discretization.
 
     A route sees a system, its displacement variety and a time step. Momenta, charts and poses that it takes and returns
     are canonical.
@@ -47,7 +47,7 @@ class AbstractRoute(abc.ABC):
     def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Rows:
         """Take one step from each row of momenta and poses of the user's frame; return both after it, and the outcomes.
 
-        Rows that cannot go on are NaN.
+        Rows that cannot continue are NaN.
         """
 
 
@@ -65,7 +65,7 @@ class AbstractCompiledRoute(AbstractRoute):
     @property
     @abc.abstractmethod
     def body(self) -> Any:
-        """What the kernel knows of the body, a `kernels.AnyBody`; made once."""
+        """The body as the kernel knows it, a `kernels.AnyBody`; made once."""
 
     @property
     @abc.abstractmethod

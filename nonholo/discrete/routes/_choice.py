@@ -1,4 +1,4 @@
-"""Which route a discretisation takes: the first of its system that computes what is asked for."""
+"""Which route a discretization takes: the first of its system that computes what is asked for."""
 
 from nonholo.discrete._scheme import Scheme
 from nonholo.discrete._variety import variety_of
@@ -15,10 +15,10 @@ _MATRIX = (*_SECULAR, "matrix")
 
 
 def make_route(scheme: Scheme, wanted: str | None = None) -> AbstractRoute:
-    """Return the route of a discretisation.
+    """Return the route of a discretization.
 
     Args:
-        scheme: The discretisation, or what has its parts.
+        scheme: The discretization, or what has its parts.
         wanted: None for the best one; or the name of one, which then, or where it is not known for the system the next
             more general one, is taken. Stores name the route that began them.
     """

@@ -33,7 +33,7 @@ class ComposedRoute(AbstractCompiledRoute):
 
     @property
     def single(self) -> AbstractCompiledRoute:
-        """What is composed."""
+        """The discretization that is composed."""
         return self.composed
 
     @property
@@ -48,7 +48,7 @@ class ComposedRoute(AbstractCompiledRoute):
 
     @property
     def system(self) -> System:
-        """What moves."""
+        """The system that moves."""
         return self.single.system
 
     @property

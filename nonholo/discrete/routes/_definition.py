@@ -18,7 +18,7 @@ from nonholo.systems import System
 @pytree
 @dataclasses.dataclass(frozen=True, eq=False)
 class DefinitionRoute(AbstractRoute):
-    """What `_definition` and `_composition_definition` need; a `Scheme`."""
+    """The data of `_definition` and `_composition_definition`; a `Scheme`."""
 
     system: System
     time_step: Array

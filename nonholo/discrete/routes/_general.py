@@ -1,4 +1,4 @@
-r"""From a discretisation to the body of the general kernel, with the ball in which a root is certainly principal.
+r"""From a discretization to the body of the general kernel, with the ball in which a root is certainly principal.
 
 Let $\kappa$ be the coordinates of $K = (W - W^{-1})/2 \in \mathfrak{d}$ and $x = \mathbb{I}_\mathfrak{d}^{1/2}\kappa$.
 The equations read $x + \phi(x) = \tilde m$ with an even $\phi$. Where $\phi$ has a Lipschitz constant $L < 1$ on

@@ -17,7 +17,7 @@ _TURNED = np.diag([-1.0, 1.0])  # the normal form of a sleigh turns in e1 ^ e2, 
 
 
 class ScalarStep(NamedTuple):
-    """What JAX needs of a step in closed form.
+    """The data of a step in closed form for JAX.
 
     Attributes:
         body: The body of the kernel.
@@ -70,7 +70,7 @@ class ScalarRoute(AbstractCompiledRoute):
 
     @property
     def step(self) -> ScalarStep:
-        """What JAX needs of it."""
+        """Its data for JAX."""
         return ScalarStep(self.body, self.scale, self._axes.rows)
 
     def encode(self, momenta: np.ndarray) -> np.ndarray:

@@ -18,7 +18,7 @@ from nonholo.systems import NormalForm, System
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class SecularRoute(AbstractCompiledRoute):
-    r"""Momenta in the axes that diagonalise B, a chart, and the rows of a pose matrix.
+    r"""Momenta in the axes that diagonalize B, a chart, and the rows of a pose matrix.
 
     The kernel's momenta of a sleigh are $h\,(\pi, p_1)/2$ with $\pi = p|_{e_1\wedge e_j} - \alpha_j p_1$ along those
     axes.

@@ -58,7 +58,7 @@ class Grid(AbstractDesign):
     """Every combination of values along axes.
 
     Names are parameters of the system ("a", "mass", "mass_tensor", ...), "time_step", a start ("body_velocity",
-    "restricted_velocity", "momentum") or one component of it ("restricted_velocity_0"); for a function of your own
+    "restricted_velocity", "momentum") or one component of it ("restricted_velocity_0"); for a custom function
     whatever it reads. A component may be written "restricted_velocity[0]"; the result calls it as Python and xarray
     can. Values are numbers, or along the first axis vectors or matrices. The result has a dimension for each axis.
 

@@ -1,4 +1,4 @@
-"""What a random design draws from: functions of uniform numbers, so that members can be drawn in any order."""
+"""Distributions of a random design: functions of uniform numbers, so that members can be drawn in any order."""
 
 import abc
 import dataclasses

@@ -10,7 +10,7 @@ _WORDS = 4  # numbers for each value of Philox's counter
 
 
 def uniform_numbers(seed: int, stream: str, first: int, count: int, width: int) -> Float[np.ndarray, "count width"]:
-    """Return numbers in [0, 1) of the members `first` to `first + count - 1`, so many of each.
+    """Return numbers in [0, 1) of the members `first` to `first + count - 1`, this many of each.
 
     The generator is Philox, whose counter is set to the first member, so nothing before it is drawn.
 

@@ -1,4 +1,4 @@
-"""How a design is cut: one block of members is one chunk of each array, and its members follow each other."""
+"""The cuts of a design: one block of members is one chunk of each array, and its members follow each other."""
 
 import math
 from typing import NamedTuple
@@ -53,7 +53,7 @@ class Layout(NamedTuple):
 
 
 def layout_of(sizes: tuple[int, ...], block: int) -> Layout:
-    """Cut a design in blocks of at most so many members: whole last dimensions, a part of one, one of those before."""
+    """Cut a design in blocks of `block` members at most: whole last dimensions, a part of one, one of those before."""
     chunk, room = [], block
     for size in reversed(sizes):
         chunk.append(max(1, min(size, room)))

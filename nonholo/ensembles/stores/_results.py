@@ -1,4 +1,4 @@
-"""What a task returns, checked and named; a task that raises is asked again for halves, until who fails is known."""
+"""The result of a task, checked and named; a task that raises is asked again for halves, until who fails is known."""
 
 import dataclasses
 from collections.abc import Callable, Mapping
@@ -37,7 +37,7 @@ class Output:
 
     @property
     def fill(self) -> Any:
-        """What stands where there is no number."""
+        """The entry where there is no number."""
         kind = np.dtype(self.dtype)
         return np.nan if kind.kind in "fc" else np.iinfo(kind).min if kind.kind == "i" else np.iinfo(kind).max
 

@@ -1,4 +1,4 @@
-"""How far a sweep came, from the marks of its blocks; and its result."""
+"""The progress of a sweep, from the marks of its blocks; and its result."""
 
 import collections
 import math
@@ -13,11 +13,11 @@ from nonholo.io import owner_of
 
 
 class SweepStanding(NamedTuple):
-    """How far a sweep came.
+    """The progress of a sweep.
 
     Attributes:
         done: Members of finished blocks.
-        members: Members in all.
+        members: Members in total.
         outcomes: How many ended how, by name.
         rate: Members in a second of work of one worker; NaN before the first block.
         messages: Some of those for which the task raised, with what it said.
@@ -57,7 +57,7 @@ def standing_of(path: str | Path) -> SweepStanding:
 
 
 def opened_result(store: SweepStore) -> xarray.Dataset:
-    """Return the result as a dataset that is read as it is used, by the metadata of its arrays, which were checked."""
+    """Return the result as a dataset that is loaded lazily, by the metadata of its arrays, which were checked."""
     try:
         dataset = xarray.open_zarr(store.path, chunks=None, consolidated=False)
     except Exception as failure:

@@ -40,7 +40,7 @@ _CODECS = BloscCodec(cname="lz4", clevel=5, shuffle="bitshuffle"), Crc32cCodec()
 
 
 class Mark(NamedTuple):
-    """What is known of a finished block; older marks have no seal."""
+    """The mark of a finished block; older marks have no seal."""
 
     members: int
     outcomes: dict[str, int]
@@ -71,12 +71,12 @@ class SweepStore:
 
     @functools.cached_property
     def layout(self) -> Layout:
-        """How members are cut in blocks."""
+        """The cut of members into blocks."""
         return Layout(*(tuple(sizes) for sizes in self._told["layout"]))
 
     @functools.cached_property
     def outputs(self) -> dict[str, Output]:
-        """What each array holds."""
+        """The contents of each array."""
         return {name: Output(tuple(d), tuple(s), t, a) for name, (d, s, t, a) in self._told["outputs"].items()}
 
     @functools.cached_property
@@ -283,7 +283,7 @@ def create_store(
 
 
 def _exists(path: Path) -> FileExistsError:
-    remedy = "Choose another path, or go on with it: nonholo.resume(store), sweep(..., resume=True)."
+    remedy = "Choose another path, or resume it: nonholo.resume(store), sweep(..., resume=True)."
     return FileExistsError(f"`sweep(store=...)` must be new. Got '{path}', which exists. {remedy}")
 
 

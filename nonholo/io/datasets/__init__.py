@@ -1,4 +1,4 @@
-"""Orbits as labelled data in the user's body frame: datasets, tables, names of the columns."""
+"""Orbits as labeled data in the user's body frame: datasets, tables, names of the columns."""
 
 from nonholo.io.datasets._dataset import CANONICAL, HEADED, stored_variables
 from nonholo.io.datasets._pose_columns import Stretch, column_names, rows_of

@@ -1,4 +1,4 @@
-"""An orbit as labelled data in the user's body frame, and the variables of its store, compact states beside it."""
+"""An orbit as labeled data in the user's body frame, and the variables of its store, compact states beside it."""
 
 import numpy as np
 import xarray
@@ -12,8 +12,8 @@ from nonholo.systems import System
 
 CANONICAL = "canonical/"
 """The group of a store that holds compact states."""
-_MOST = 1000  # components of a momentum, or numbers of a pose, that are told
-HEADED = ("heading", "quaternion")  # whose rows go on from the row before
+_MOST = 1000  # components of a momentum, or numbers of a pose, that are reported
+HEADED = ("heading", "quaternion")  # whose rows continue from the row before
 
 # name: dimensions after `step`, and what the numbers are
 _COMPACT = {
@@ -47,7 +47,7 @@ _SPATIAL = {  # of a right-invariant constraint
 
 
 def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
-    r"""Return an orbit as a labelled dataset in the user's body frame; attributes say how it was made.
+    r"""Return an orbit as a labeled dataset in the user's body frame; attributes say how it was made.
 
     Variables along `step`, with the coordinate `time`: `energy`, `restricted_momentum`, `body_velocity`, `momentum` and
     the pose.

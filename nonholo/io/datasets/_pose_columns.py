@@ -50,7 +50,7 @@ def rows_of(
 ) -> Iterator[Float[np.ndarray, "R c"]]:
     """Return one in `every` of the states as rows of the columns; rows do not depend on how the motion is cut.
 
-    The first row goes on from the one `before`, if there is one.
+    The first row continues from the one `before`, if there is one.
     """
     position, turn = layout(system.group)
     n, first = len(position), 0
@@ -87,7 +87,7 @@ def _entries(size: int) -> list[str]:
 
 
 def _headed(stretches: Iterable[Stretch], row: Float[np.ndarray, "1 c"] | None) -> Iterator[Stretch]:
-    """Give stretches on SE(2) headings, each going on from the one before, the first from that at the end of a row."""
+    """Give stretches on SE(2) headings, each continuing the one before, the first that at the end of a row."""
     before = None if row is None else float(row[0, -1])
     for stretch in stretches:
         headings = unwrapped(stretch.pose, before) if stretch.headings is None else stretch.headings

@@ -17,7 +17,7 @@ _ENTRIES = ("row", "column")
 
 
 def pose_variables(orbit: Orbit, before: Float[np.ndarray, "1 c"] | None = None) -> Variables:
-    """Return the poses of an orbit by name; headings and signs of quaternions go on from row to row.
+    """Return the poses of an orbit by name; headings and signs of quaternions continue from row to row.
 
     Args:
         orbit: With poses.
@@ -37,7 +37,7 @@ def pose_variables(orbit: Orbit, before: Float[np.ndarray, "1 c"] | None = None)
 
 
 def separate_variables(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N N"]) -> Variables:
-    """Return poses as matrices by name; headings and signs of quaternions go on along the axis K, from the first one.
+    """Return poses as matrices by name; headings and signs of quaternions continue along the axis K, from the first.
 
     The translations in a product are its `shape`; of two factors with one name the second has a number.
 
@@ -60,7 +60,7 @@ def separate_variables(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N
 
 
 def _joined_turns(turn: list[str], rows: np.ndarray) -> np.ndarray:
-    """Return rows whose headings or quaternions go on from each to the next."""
+    """Return rows whose headings or quaternions continue from each to the next."""
     if turn == HEADING:
         rows[..., -1] = np.unwrap(rows[..., -1], axis=-1)
     if turn == QUATERNION:

@@ -27,14 +27,14 @@ _MANY = 24  # terms from which they are faster
 
 
 class SecularBody(NamedTuple):
-    """A top or a sleigh in the axes that diagonalise its constrained inertia.
+    """A top or a sleigh in the axes that diagonalize its constrained inertia.
 
     Attributes:
         b: Eigenvalues of B, of a sleigh without the part of the arm.
         c: Coupling with the sign of a sleigh's: minus that of a top.
         mass: Mass of a sleigh, 1 for a top.
-        arm: Distance of the centre of mass from the contact point along the blade; 0 for a top.
-        offset: Position of the centre of mass across the blade; zeros for a top.
+        arm: Distance of the center of mass from the contact point along the blade; 0 for a top.
+        offset: Position of the center of mass across the blade; zeros for a top.
         least: The least of b.
         slides: Whether it is a sleigh.
     """
@@ -56,7 +56,7 @@ def secular_top(b: np.ndarray, coupling: np.ndarray) -> SecularBody:
 
 
 def secular_sleigh(b: np.ndarray, coupling: np.ndarray, mass: float, arm: float, offset: np.ndarray) -> SecularBody:
-    """Pack a sleigh: eigenvalues of B about the centre of mass, coupling and offset in their axes."""
+    """Pack a sleigh: eigenvalues of B about the center of mass, coupling and offset in their axes."""
     b, c, offset = (np.array(x, dtype=np.float64) for x in (b, coupling, offset))
     return SecularBody(b, c, float(mass), float(arm), offset, float(b.min()), True)
 

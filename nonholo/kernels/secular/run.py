@@ -1,7 +1,7 @@
 """Runs of the secular step: compensated momenta, rows of the pose, one step from each of many states.
 
-The state of a run is one array, so that it can stop after any step and go on with the same bits: momenta (k) and their
-compensations (k), the last three pairs of unknowns (6), the certain radius, the rows of the pose.
+The state of a run is one array, so that it can stop after any step and continue with the same bits: momenta (k) and
+their compensations (k), the last three pairs of unknowns (6), the certain radius, the rows of the pose.
 """
 
 import math

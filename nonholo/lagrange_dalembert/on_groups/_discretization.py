@@ -23,7 +23,7 @@ from nonholo.systems import AbstractCoordinateDiscretization, one_start
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class GroupDiscretization(AbstractCoordinateDiscretization):
-    """A discretised `GroupLagrangeDAlembert`, made by its `discretize`.
+    """A discretized `GroupLagrangeDAlembert`, made by its `discretize`.
 
     Attributes:
         system: What moves.
@@ -72,13 +72,13 @@ class GroupDiscretization(AbstractCoordinateDiscretization):
             body_velocity: Start with this velocity, which must satisfy the constraint.
             displacement: Start with $W_0$, which must satisfy the discrete constraint.
             momentum: Start with this body momentum; only its action on admissible velocities counts.
-            save_every: Keep every so many steps.
-            throw: Raise if the run cannot go on; otherwise return the good steps and the outcome.
+            save_every: Steps between saved states.
+            throw: Raise if the run cannot continue; otherwise return the good steps and the outcome.
             progress: Show a progress bar on standard error.
 
         Raises:
             ValueError: A bad argument, before any work.
-            OutcomeError: With `throw`, the run could not go on; the error's `orbit` holds every good step.
+            OutcomeError: With `throw`, the run could not continue; the error's `orbit` holds every good step.
 
         Example:
             >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian

@@ -1,7 +1,7 @@
 r"""The equations on a group: momenta as derivatives of l_d, constraints in body coordinates, the scaled matrix.
 
 A displacement is described by v with $W = e^{hv}$, not by the matrix, so that the default rule loses no digits in
-log W and goes on beyond angles of pi.
+log W and continues beyond angles of pi.
 """
 
 import jax

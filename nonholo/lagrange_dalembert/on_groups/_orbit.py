@@ -7,7 +7,7 @@ import numpy as np
 
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.lagrange_dalembert._orbit import SHARED, Labels, labelled
+from nonholo.lagrange_dalembert._orbit import SHARED, Labels, labeled
 
 _VARIABLES: Labels = {
     "configuration": (("row", "column"), "pose"),
@@ -60,5 +60,5 @@ class GroupOrbit:
         return len(self.time)
 
     def to_dataset(self) -> Any:
-        """Return the orbit as a labelled `xarray.Dataset`; multipliers that do not exist are NaN."""
-        return labelled(self, _VARIABLES)
+        """Return the orbit as a labeled `xarray.Dataset`; multipliers that do not exist are NaN."""
+        return labeled(self, _VARIABLES)

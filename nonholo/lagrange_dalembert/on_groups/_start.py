@@ -1,4 +1,4 @@
-"""Where a motion on a group starts: checks of a system at a pose, and the velocity that it sets out with."""
+"""The start of a motion on a group: checks of a system at a pose, and the velocity that it sets out with."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""What a system on a group is whose Lagrangian is left-invariant and whose constraints need not be."""
+"""A system on a group whose Lagrangian is left-invariant and whose constraints need not be."""
 
 import dataclasses
 from collections.abc import Callable
@@ -194,7 +194,7 @@ def mass_tensor_lagrangian(
         8.0
     """
     checked_group("mass_tensor_lagrangian(group=...)", group)
-    where, instead = "mass_tensor_lagrangian(mass_tensor=...)", "Write a discrete Lagrangian of your own."
+    where, instead = "mass_tensor_lagrangian(mass_tensor=...)", "Write your own discrete Lagrangian."
     tensor = group_mass_tensor(where, group, mass_tensor, instead)
 
     def discrete_lagrangian(W: Array, time_step: Array) -> Array:

@@ -22,7 +22,7 @@ from nonholo.plotting.animation._top_scene import top_motion, top_scene
 from nonholo.plotting.parts import drawable, transition
 from nonholo.plotting.sheets import sheet_of
 
-_COLOURS = 96
+_COLORS = 96
 _SHOWN_FOR_PALETTE = 6
 
 
@@ -135,9 +135,9 @@ def _palette(samples: list[Image.Image]) -> Image.Image:
     sheet = Image.new("RGB", (width, height * len(samples)))
     for row, sample in enumerate(samples):
         sheet.paste(sample, (0, row * height))
-    common = sheet.quantize(colors=_COLOURS, method=Image.Quantize.MEDIANCUT).getpalette() or []
-    # thin lines are too few pixels to be given a colour of their own, so theirs are added
+    common = sheet.quantize(colors=_COLORS, method=Image.Quantize.MEDIANCUT).getpalette() or []
+    # thin lines are too few pixels to be given a color of their own, so theirs are added
     lines = np.vstack([theme.TIME(np.linspace(0, 1, 24)), to_rgba_array(["white", theme.UNSTABLE, theme.INK])])
     palette = Image.new("P", (1, 1))
-    palette.putpalette(common[: 3 * _COLOURS] + (255 * lines[:, :3]).round().astype(int).ravel().tolist())
+    palette.putpalette(common[: 3 * _COLORS] + (255 * lines[:, :3]).round().astype(int).ravel().tolist())
     return palette

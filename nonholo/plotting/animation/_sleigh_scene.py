@@ -1,4 +1,4 @@
-"""An animated sleigh: its body, blade, centre of mass and track on the plane."""
+"""An animated sleigh: its body, blade, center of mass and track on the plane."""
 
 from collections.abc import Callable
 from typing import cast
@@ -45,7 +45,7 @@ def sleigh_scene(orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Figure, Cal
     _ground(axes, points, poses, outline)
     trail = LineCollection([], cmap=theme.TIME, norm=theme.time_scale(orbit), linewidth=2, zorder=2)
     axes.add_collection(trail)
-    body, stroke, centre = _parts(axes)
+    body, stroke, center = _parts(axes)
 
     def show(frame: int) -> None:
         set_clock(frame)
@@ -55,7 +55,7 @@ def sleigh_scene(orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Figure, Cal
         g = poses[frame]
         body.set_xy(_moved(g, outline))
         stroke.set_data(*_moved(g, _stroke(blade)).T)
-        centre.set_data(*_moved(g, blade.center[None]).T)
+        center.set_data(*_moved(g, blade.center[None]).T)
 
     return figure, show
 
@@ -102,5 +102,5 @@ def _parts(axes: Axes) -> tuple[Polygon, Line2D, Line2D]:
     body = Polygon(np.zeros((1, 2)), closed=True, zorder=3, **look)
     axes.add_patch(body)
     blade = axes.plot([], [], color=theme.INK, linewidth=4, zorder=5)[0]
-    centre = axes.plot([], [], "o", markersize=6, markerfacecolor="white", markeredgecolor=theme.INK, zorder=6)[0]
-    return body, blade, centre
+    center = axes.plot([], [], "o", markersize=6, markerfacecolor="white", markeredgecolor=theme.INK, zorder=6)[0]
+    return body, blade, center

@@ -20,7 +20,7 @@ _TURN = np.radians(22.0)  # most between two frames
 _PIECE = np.radians(4.0)
 _THINNEST = 0.12  # of the drawn box, over its longest side
 _BOX = "#a8d4f2"
-_LIGHT = np.array([-0.4, 0.6, 0.7]) / np.linalg.norm([-0.4, 0.6, 0.7])  # right, up, towards the eye
+_LIGHT = np.array([-0.4, 0.6, 0.7]) / np.linalg.norm([-0.4, 0.6, 0.7])  # right, up, toward the eye
 _BODY_AXES: tuple[dict[str, Any], ...] = (
     {"color": theme.MUTED, "linewidth": 1.6},
     {"color": theme.MUTED, "linewidth": 1.6},
@@ -74,7 +74,7 @@ def _trace(axes: Axes, orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Calla
     step = np.linalg.norm(np.diff(points, axis=0), axis=1).max(initial=0.0)
     pieces = max(1, int(np.ceil(step / _PIECE)))
     path = arcs(points, pieces)
-    colours = np.repeat(theme.TIME(theme.time_scale(orbit)(part.time[1:])), pieces, axis=0).reshape(-1, 4)
+    colors = np.repeat(theme.TIME(theme.time_scale(orbit)(part.time[1:])), pieces, axis=0).reshape(-1, 4)
     sides = {-1: LineCollection([], zorder=2), 1: LineCollection([], zorder=6)}
     for collection in sides.values():
         axes.add_collection(collection, autolim=False)
@@ -82,7 +82,7 @@ def _trace(axes: Axes, orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Calla
     def show(frame: int) -> None:
         past = pieces * int(shown[frame] - shown[0])
         for side, collection in sides.items():
-            set_curve(collection, view, path[: past + 1], colours[:past], width=1.8, side=side)
+            set_curve(collection, view, path[: past + 1], colors[:past], width=1.8, side=side)
 
     return show, view
 
@@ -95,7 +95,7 @@ def _box(mass_tensor: Float[np.ndarray, "3 3"]) -> tuple[Float[np.ndarray, "3"],
 
 
 def _way_out(half: Float[np.ndarray, "3"], direction: Float[np.ndarray, "3"]) -> float:
-    """Return how many times a vector, in principal axes, goes from the centre to the surface of the box."""
+    """Return how many times a vector, in principal axes, goes from the center to the surface of the box."""
     size = np.abs(direction)
     return float(np.min(np.divide(half, size, out=np.full(3, np.inf), where=size > 1e-12 * size.max(initial=1e-300))))
 

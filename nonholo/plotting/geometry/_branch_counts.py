@@ -1,4 +1,4 @@
-"""How many real values the discrete sleigh has, over the plane of its restricted momenta."""
+"""The number of real values of the discrete sleigh, over the plane of its restricted momenta."""
 
 import dataclasses
 from typing import Any
@@ -21,7 +21,7 @@ _MOST_DOTS = 1500
 
 @dataclasses.dataclass(frozen=True)
 class BranchCounts:
-    """What `branch_counts` drew; None where there was nothing to draw.
+    """The artists of `branch_counts`; None where there was nothing to draw.
 
     Attributes:
         axes: The axes.
@@ -30,7 +30,7 @@ class BranchCounts:
         cusps: Where all three meet.
         resting: Turns without translation.
         level: The energy ellipse of the orbit.
-        orbit: The momenta of the orbit, coloured by time.
+        orbit: The momenta of the orbit, colored by time.
     """
 
     axes: Axes
@@ -50,12 +50,12 @@ def branch_counts(discrete: Discretization, orbit: Orbit | None = None, axes: Ax
     ellipse of turns without translation (for b = 0: $V_1 = 0$) is drawn dashed, the energy ellipse of the orbit solid.
 
     Args:
-        discrete: A discretised sleigh with a not zero.
+        discrete: A discretized sleigh with a not zero.
         orbit: An orbit of it.
         axes: Where to draw; a new figure by default.
 
     Raises:
-        ValueError: Another system or discretisation, a = 0, an orbit of another discretised system.
+        ValueError: Another system or discretization, a = 0, an orbit of another discretized system.
 
     Example:
         >>> picture = nh.plot.branch_counts(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.5))
@@ -85,6 +85,6 @@ def _level(axes: Axes, orbit: Orbit) -> Line2D:
 def _orbit(axes: Axes, orbit: Orbit) -> PathCollection:
     momentum = momenta_on_plane(orbit)
     chosen = evenly_in_box(momentum, _MOST_DOTS)
-    colours: Any = {"c": orbit.time[chosen], "cmap": theme.TIME, "norm": theme.time_scale(orbit)}
+    colors: Any = {"c": orbit.time[chosen], "cmap": theme.TIME, "norm": theme.time_scale(orbit)}
     size = theme.dot_size(len(orbit)) + 6
-    return axes.scatter(*momentum[chosen].T, s=size, linewidths=0, zorder=6, label="orbit", **colours)
+    return axes.scatter(*momentum[chosen].T, s=size, linewidths=0, zorder=6, label="orbit", **colors)

@@ -22,7 +22,7 @@ _LARGEST, _SMALLEST = 150.0, 26.0  # areas of the dots of the first and the last
 
 @dataclasses.dataclass(frozen=True)
 class BranchTreePicture:
-    """What `branch_tree` drew.
+    """The artists of `branch_tree`.
 
     Attributes:
         plane: The axes of the momenta.
@@ -47,7 +47,7 @@ class BranchTreePicture:
 def branch_tree(discrete: Discretization, tree: BranchTree, axes: tuple[Axes, Axes] | None = None) -> BranchTreePicture:
     r"""Draw the tree of all images: the real ones in the plane of restricted momenta, and how many there are.
 
-    Dots are coloured by generation, later ones are smaller. All lie on one ellipse, that of their energy, and the
+    Dots are colored by generation, later ones are smaller. All lie on one ellipse, that of their energy, and the
     images of one displacement coincide in this plane, since they differ in the forbidden component alone: a dot stands
     for all of them. Lines lead from dot to dot. Beside it the number of distinct images, complex ones included,
     and of the real ones among them, in each generation; the dashed line is the power $m^k$ that they have if no two
@@ -77,9 +77,9 @@ def branch_tree(discrete: Discretization, tree: BranchTree, axes: tuple[Axes, Ax
     if momentum.shape[1] == 2:
         level = ellipse(system, float(system.constrained_energy(restricted[0])))
         plane.plot(*level.T, color=theme.LEVEL, linewidth=1.1, zorder=1)
-    colours = theme.TIME(np.linspace(_EARLY, _LATE, len(tree.counts)))
-    edges = _edges(plane, tree, momentum[:, :2], colours)
-    images = tuple(_images(plane, tree, momentum[:, :2], *one) for one in enumerate(colours))
+    colors = theme.TIME(np.linspace(_EARLY, _LATE, len(tree.counts)))
+    edges = _edges(plane, tree, momentum[:, :2], colors)
+    images = tuple(_images(plane, tree, momentum[:, :2], *one) for one in enumerate(colors))
     name_axes(plane, system)
     plane.set_title("Real images")
     plane.legend(title="generation", loc="upper left", bbox_to_anchor=(1.0, 1.0))
@@ -105,22 +105,22 @@ def _new_axes() -> tuple[Axes, Axes]:
 
 
 def _edges(
-    axes: Axes, tree: BranchTree, momentum: Float[np.ndarray, "T 2"], colours: Float[np.ndarray, "L 4"]
+    axes: Axes, tree: BranchTree, momentum: Float[np.ndarray, "T 2"], colors: Float[np.ndarray, "L 4"]
 ) -> LineCollection:
     parent = np.maximum(tree.parent, 0)
     drawn = np.flatnonzero((tree.parent >= 0) & tree.is_real & tree.is_real[parent])
     ends = np.stack([momentum[parent[drawn]], momentum[drawn]], axis=1)
-    edges = LineCollection(list(ends), colors=colours[tree.level[drawn]], linewidths=0.7, zorder=2)
+    edges = LineCollection(list(ends), colors=colors[tree.level[drawn]], linewidths=0.7, zorder=2)
     axes.add_collection(edges)
     return edges
 
 
 def _images(
-    axes: Axes, tree: BranchTree, momentum: Float[np.ndarray, "T 2"], level: int, colour: Float[np.ndarray, "4"]
+    axes: Axes, tree: BranchTree, momentum: Float[np.ndarray, "T 2"], level: int, color: Float[np.ndarray, "4"]
 ) -> PathCollection:
     chosen = tree.is_real & (tree.level == level)
     size = np.geomspace(_LARGEST, _SMALLEST, len(tree.counts))[level]
-    look: Any = {"color": colour, "edgecolors": "white", "linewidths": 0.6, "zorder": 4 + level / 100}
+    look: Any = {"color": color, "edgecolors": "white", "linewidths": 0.6, "zorder": 4 + level / 100}
     return axes.scatter(*momentum[chosen].T, s=size, label=str(level), **look)
 
 

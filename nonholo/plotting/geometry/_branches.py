@@ -20,13 +20,13 @@ from nonholo.plotting.geometry._deltoid_plane import draw_deltoid, name_inside
 from nonholo.plotting.geometry._deltoid_plane import dress as dress_momenta
 from nonholo.plotting.sheets import AbstractSheet, on_plane, sheet_of
 
-_BEYOND = 0.3  # how far a tangent goes on beyond its ends, in its length
+_BEYOND = 0.3  # how far a tangent continues beyond its ends, in its length
 _AWAY = 12.0  # from a dot to its label, in points
 
 
 @dataclasses.dataclass(frozen=True)
 class BranchesPicture:
-    """What `branches` drew; None where there was nothing to draw.
+    """The artists of `branches`; None where there was nothing to draw.
 
     Attributes:
         axes: The axes.
@@ -73,14 +73,14 @@ def branches(
     Reference: docs/theory/branches.md, docs/theory/chaplygin-sleigh.md.
 
     Args:
-        discrete: A top with n = 3 or a sleigh, discretised with "matrix" and "skew".
+        discrete: A top with n = 3 or a sleigh, discretized with "matrix" and "skew".
         momentum: As in `nh.branches`.
         displacement: As in `nh.branches`.
         plane: "displacements" or "momenta"; by default "momenta" for a sleigh that has a deltoid.
         axes: Where to draw; a new figure by default.
 
     Raises:
-        ValueError: Another system or discretisation; a top, or a sleigh with a = 0, on the plane of momenta; as
+        ValueError: Another system or discretization; a top, or a sleigh with a = 0, on the plane of momenta; as
             `nh.branches`.
 
     Example:

@@ -24,7 +24,7 @@ _POINTS = 300
 
 @dataclasses.dataclass(frozen=True)
 class InvariantCurvesPicture:
-    """What `invariant_curves` drew; None where there was nothing to draw.
+    """The artists of `invariant_curves`; None where there was nothing to draw.
 
     Attributes:
         axes: The axes.
@@ -32,7 +32,7 @@ class InvariantCurvesPicture:
         own: The curve of the orbit's energy.
         stable: Attracting equilibria on the curves, filled.
         unstable: Repelling equilibria, empty.
-        orbit: The displacements of the orbit, coloured by time.
+        orbit: The displacements of the orbit, colored by time.
     """
 
     axes: Axes
@@ -55,13 +55,13 @@ def invariant_curves(
     right edge upside down. An orbit jumps along its curve, from the repelling to the attracting equilibrium.
 
     Args:
-        discrete: A top with n = 3 or a sleigh, discretised with "matrix" and "skew".
+        discrete: A top with n = 3 or a sleigh, discretized with "matrix" and "skew".
         orbit: An orbit of it.
         axes: Where to draw; a new figure by default.
         energies: Energies of the curves; by default nine.
 
     Raises:
-        ValueError: Another system or discretisation, an orbit of another one, energies that are not positive.
+        ValueError: Another system or discretization, an orbit of another one, energies that are not positive.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.5)

@@ -21,7 +21,7 @@ _MARGIN = 0.06
 
 @dataclasses.dataclass(frozen=True)
 class LocusSection:
-    """What `locus_section` drew; None where there was nothing to draw.
+    """The artists of `locus_section`; None where there was nothing to draw.
 
     Attributes:
         axes: The axes.

@@ -25,7 +25,7 @@ _WHISKER = 0.22  # of the length of its segment
 
 @dataclasses.dataclass(frozen=True)
 class MomentumLocusPicture:
-    """What `momentum_locus` drew; None where there was nothing to draw.
+    """The artists of `momentum_locus`; None where there was nothing to draw.
 
     Attributes:
         axes: The axes in space.
@@ -36,7 +36,7 @@ class MomentumLocusPicture:
         triple_point: Where three segments meet.
         curves: The components of the curve of one energy.
         rest: Momentum zero, the momentum of the identity.
-        orbit: The momenta of a discrete orbit, coloured by time.
+        orbit: The momenta of a discrete orbit, colored by time.
     """
 
     axes: Axes3D
@@ -62,7 +62,7 @@ def momentum_locus(
 
     Lines along which the surface meets itself are solid between their pinch points and dashed beyond: there the
     equation of the surface still holds, but no real displacement has such a momentum. Axes are components of the body
-    momentum, each with its own scale; for a sleigh the angular momentum is that about the centre of mass.
+    momentum, each with its own scale; for a sleigh the angular momentum is that about the center of mass.
 
     Reference: [fedorov-zenkov-2004], equation (Steiner).
 
@@ -74,7 +74,7 @@ def momentum_locus(
         view: Elevation and azimuth of the eye in degrees.
 
     Raises:
-        ValueError: No locus, an orbit of another discretisation.
+        ValueError: No locus, an orbit of another discretization.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.5)

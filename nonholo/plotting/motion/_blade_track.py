@@ -33,13 +33,13 @@ _REMEDY = "Use `body_axis_track` for a top."
 
 @dataclasses.dataclass(frozen=True)
 class BladeTrack:
-    """What `blade_track` drew; None where there was nothing to draw.
+    """The artists of `blade_track`; None where there was nothing to draw.
 
     Attributes:
         axes: The axes.
-        track: The contact points, coloured by time: dots if discrete, a line if a flow.
+        track: The contact points, colored by time: dots if discrete, a line if a flow.
         blades: Strokes along the blade at some of the states.
-        masses: The centres of mass at the same states.
+        masses: The centers of mass at the same states.
         cusps: The points where the blade reverses.
         ends: The first and the last contact point.
         flow: The continuous curve.
@@ -61,7 +61,7 @@ def blade_track(orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = Non
     r"""Draw the path of the contact point of a sleigh, the blade now and then, and the cusp.
 
     The cusp is where the velocity along the blade changes sign, $v_1 = 0$; between two states it is interpolated. It is
-    shown enlarged in a corner. A grey pin leads from the blade to the centre of mass.
+    shown enlarged in a corner. A gray pin leads from the blade to the center of mass.
 
     Reference: [fedorov-zenkov-2004], sketch chsleigh.
 
@@ -89,7 +89,7 @@ def blade_track(orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = Non
     position = blade.contact(orbit)
     cusps, view = _cusps(position, blade.speed(orbit)), square_about(position)
     track, blades, masses, line = _draw(axes, orbit, orbit, flow, view)
-    stars, ends = _marks(axes, position, cusps, theme.end_colours(orbit))
+    stars, ends = _marks(axes, position, cusps, theme.end_colors(orbit))
     axes.set(xlim=view[0], ylim=view[1], xlabel="$x$", ylabel="$y$", title="Track of the blade", aspect="equal")
     theme.legend_above(axes)
     enlarged = _enlarged(axes, orbit, flow, cusps, (position, view)) if enlarge and len(cusps) else None
@@ -121,7 +121,7 @@ def _cusps(position: Float[np.ndarray, "K 2"], speed: Float[np.ndarray, "K"]) ->
 def _draw(
     axes: Axes, part: Orbit, whole: Orbit, flow: Orbit | None, view: Square, blades: int = 18, length: float = 0.032
 ) -> tuple[PathCollection | LineCollection, LineCollection, PathCollection, Line2D | None]:
-    """Draw a part of the orbit with the colours of the whole; the length of blades is in parts of the view."""
+    """Draw a part of the orbit with the colors of the whole; the length of blades is in parts of the view."""
     track = _track(axes, part, whole)
     strokes, masses = _blades(axes, part, blades, length * np.ptp(view[0]))
     return track, strokes, masses, None if flow is None else _flow(axes, flow)
@@ -130,13 +130,13 @@ def _draw(
 def _track(axes: Axes, part: Orbit, whole: Orbit) -> PathCollection | LineCollection:
     position = _contact(part)
     chosen = evenly_spread(position, _MOST_DOTS)
-    colours: dict[str, Any] = {"cmap": theme.TIME, "norm": theme.time_scale(whole), "zorder": 3}
+    colors: dict[str, Any] = {"cmap": theme.TIME, "norm": theme.time_scale(whole), "zorder": 3}
     if is_discrete(part):
         x, y = position[chosen].T
         return axes.scatter(
-            x, y, c=part.time[chosen], s=theme.dot_size(len(part)), linewidths=0, label="discrete orbit", **colours
+            x, y, c=part.time[chosen], s=theme.dot_size(len(part)), linewidths=0, label="discrete orbit", **colors
         )
-    path = LineCollection(theme.pieces(position[chosen]), linewidth=2, **colours)
+    path = LineCollection(theme.pieces(position[chosen]), linewidth=2, **colors)
     path.set(array=part.time[chosen[1:]], label="flow")
     axes.add_collection(path)
     return path
@@ -155,12 +155,12 @@ def _blades(axes: Axes, orbit: Orbit, count: int, length: float) -> tuple[LineCo
     blades = LineCollection(
         [*zip(points - half, points + half, strict=True)], colors=theme.INK, linewidth=1.5, zorder=5
     )
-    centre = (poses @ np.append(blade.center, 1.0))[:, :2]
-    pins = LineCollection([*zip(points, centre, strict=True)], colors=theme.MUTED, linewidth=0.7, zorder=2)
+    center = (poses @ np.append(blade.center, 1.0))[:, :2]
+    pins = LineCollection([*zip(points, center, strict=True)], colors=theme.MUTED, linewidth=0.7, zorder=2)
     axes.add_collection(pins)
     axes.add_collection(blades)
     masses = axes.scatter(
-        *centre.T, s=9, facecolors="white", edgecolors=theme.MUTED, linewidths=0.8, zorder=2.2, label="centre of mass"
+        *center.T, s=9, facecolors="white", edgecolors=theme.MUTED, linewidths=0.8, zorder=2.2, label="center of mass"
     )
     return blades, masses
 

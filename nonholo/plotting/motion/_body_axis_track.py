@@ -42,13 +42,13 @@ _REMEDY = "Use `blade_track` for a sleigh, `point_track` for other motions of SE
 
 @dataclasses.dataclass(frozen=True)
 class BodyAxisTrack:
-    """What `body_axis_track` drew; None where there was nothing to draw.
+    """The artists of `body_axis_track`; None where there was nothing to draw.
 
     Attributes:
         axes: The axes.
         view: The projection.
         points: The drawn points of the path in space.
-        path: The path, coloured by time, what lies behind the sphere fainter.
+        path: The path, colored by time, what lies behind the sphere fainter.
         dots: The states of a discrete orbit.
         axis_before: Unit vector in space of the angular velocity that the motion comes from, if the orbit starts there.
         axis_after: Unit vector in space of the angular velocity that the motion settles to, if the orbit gets there.
@@ -121,7 +121,7 @@ def body_axis_track(
     path, dots = draw_path(axes, eye, shown, points, orbit)
     draw_named_axes(axes, eye, _named(before, after, fixed, orbit))
     words = ("start" if part.start == 0 else "", "end" if part.stop == len(orbit) else "")
-    mark_ends(axes, eye, points, words, theme.end_colours(orbit))
+    mark_ends(axes, eye, points, words, theme.end_colors(orbit))
     axes.set_title(_title(orbit, body_axis))
     theme.legend_above(axes)
     return BodyAxisTrack(axes, eye, points, path, dots, before, after, fixed, curve)
@@ -201,11 +201,11 @@ def _named(
     fixed: Float[np.ndarray, "3"] | None,
     orbit: Orbit,
 ) -> list[tuple[Float[np.ndarray, "3"], str, str]]:
-    """Return the axes to draw, with their names and colours."""
+    """Return the axes to draw, with their names and colors."""
     names = ("rotation axis\nbefore", "rotation axis\nafter")
     if before is not None and after is not None and np.linalg.norm(before - after) < 1e-6:
         before, names = None, ("", "rotation axis")
     third = "spatial\nmomentum" if is_free(orbit.system) else "no rotation\nabout this axis"
-    colours = (theme.UNSTABLE, theme.STABLE, theme.STABLE)
-    every = zip((before, after, fixed), (*names, third), colours, strict=True)
-    return [(axis, name, colour) for axis, name, colour in every if axis is not None]
+    colors = (theme.UNSTABLE, theme.STABLE, theme.STABLE)
+    every = zip((before, after, fixed), (*names, third), colors, strict=True)
+    return [(axis, name, color) for axis, name, color in every if axis is not None]

@@ -21,14 +21,14 @@ _EPS = float(np.finfo(np.float64).eps)
 _VISIBLE = 1e-3  # half-width of the band, in units of the axis, from which it is wider than a hairline
 _EXPECTED = {
     True: "exact by theorem, up to rounding",
-    False: "not exact for this discretisation",
+    False: "not exact for this discretization",
     None: "error of the solver",
 }
 
 
 @dataclasses.dataclass(frozen=True)
 class EnergyError:
-    """What `energy_error` drew.
+    """The artists of `energy_error`.
 
     Attributes:
         axes: The axes.
@@ -54,7 +54,7 @@ def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
 
     in units of 1e-16, or of a larger power of ten where rounding is not what is seen. The shaded band is the machine
     epsilon 2.2e-16 of double precision to either side. At rest, where E_0 = 0, the error is absolute. A line of
-    text says whether a theorem makes the energy of this discretisation exact (`Discretization.conserves_energy`).
+    text says whether a theorem makes the energy of this discretization exact (`Discretization.conserves_energy`).
 
     Args:
         orbit: The orbit.

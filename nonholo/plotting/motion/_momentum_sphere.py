@@ -32,13 +32,13 @@ _FINEST = np.radians(3.0)  # no need to draw states that are closer than this
 
 @dataclasses.dataclass(frozen=True)
 class MomentumSphere:
-    """What `momentum_sphere` drew; None where there was nothing to draw.
+    """The artists of `momentum_sphere`; None where there was nothing to draw.
 
     Attributes:
         axes: The axes.
         view: The projection.
         points: The drawn points, on the unit sphere where the energy is that of the first state.
-        path: The path, coloured by time, what lies behind the sphere fainter.
+        path: The path, colored by time, what lies behind the sphere fainter.
         dots: The states of a discrete orbit.
         stable: The attracting equilibrium, filled.
         unstable: The repelling equilibrium, empty.
@@ -92,7 +92,7 @@ def momentum_sphere(orbit: Orbit, axes: Axes | None = None, view: tuple[float, f
     path, dots = draw_path(axes, eye, shown, points, orbit)
     _rows(axes, eye, to_sphere)
     words = ("start" if part.start == 0 else "", "end" if part.stop == len(orbit) else "")
-    mark_ends(axes, eye, points, words, theme.end_colours(orbit))
+    mark_ends(axes, eye, points, words, theme.end_colors(orbit))
     stable, unstable = _equilibria(axes, eye, attracting)
     axes.set_title("Momentum on its energy sphere")
     if stable is not None:
@@ -145,7 +145,7 @@ def _rows(axes: Axes, eye: View, to_sphere: Float[np.ndarray, "3 3"]) -> None:
         (pole, tip), depth = eye(np.array([[1.0], [1.16]]) * direction)
         alpha = float(opacity(depth[:1])[0])
         axes.plot(*np.stack([pole, tip], axis=1), color=theme.MUTED, linewidth=1.4, alpha=alpha, zorder=6)
-        name_beside(axes, f"$r_{index + 1}$", tip, away=tip, colour=theme.MUTED)
+        name_beside(axes, f"$r_{index + 1}$", tip, away=tip, color=theme.MUTED)
 
 
 def _equilibria(

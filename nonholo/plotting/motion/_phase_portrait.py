@@ -27,7 +27,7 @@ _MOST_DOTS = 1500
 
 @dataclasses.dataclass(frozen=True)
 class PhasePortrait:
-    """What `phase_portrait` drew; None where there was nothing to draw.
+    """The artists of `phase_portrait`; None where there was nothing to draw.
 
     Attributes:
         axes: The axes.
@@ -36,7 +36,7 @@ class PhasePortrait:
         unstable: Repelling equilibria, empty.
         neutral: Equilibria of a balanced system, which neither attract nor repel.
         arrows: The direction of motion along the levels.
-        orbit: The orbit, coloured by time: dots if discrete, a line if a flow.
+        orbit: The orbit, colored by time: dots if discrete, a line if a flow.
         images: Real images of some of its states, of all branches, that are not states of the orbit; diamonds.
         edges: From each image to its images.
     """
@@ -175,13 +175,13 @@ def _arrow(axes: Axes, half_axes: Float[np.ndarray, "2 2"], u: Float[np.ndarray,
 def _orbit(axes: Axes, orbit: Orbit) -> PathCollection | LineCollection:
     momentum = momenta_on_plane(orbit)
     chosen = evenly_in_box(momentum, _MOST_DOTS)
-    colours = {"cmap": theme.TIME, "norm": theme.time_scale(orbit), "zorder": 6}
+    colors = {"cmap": theme.TIME, "norm": theme.time_scale(orbit), "zorder": 6}
     if is_discrete(orbit):
         x, y = momentum[chosen].T
         stays = np.ptp(momentum, axis=0).max() <= 1e-6 * np.abs(momentum).max()
         size = 60 if stays else theme.dot_size(len(orbit))
-        return axes.scatter(x, y, c=orbit.time[chosen], s=size, linewidths=0, label="discrete orbit", **colours)
-    path = LineCollection(theme.pieces(momentum[chosen]), linewidth=2, **colours)
+        return axes.scatter(x, y, c=orbit.time[chosen], s=size, linewidths=0, label="discrete orbit", **colors)
+    path = LineCollection(theme.pieces(momentum[chosen]), linewidth=2, **colors)
     path.set(array=orbit.time[chosen[1:]], label="flow")
     axes.add_collection(path)
     return path

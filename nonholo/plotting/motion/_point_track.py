@@ -24,13 +24,13 @@ _ARM = 0.055  # of a body axis, in parts of the picture
 
 @dataclasses.dataclass(frozen=True)
 class PointTrack:
-    """What `point_track` drew; None where there was nothing to draw.
+    """The artists of `point_track`; None where there was nothing to draw.
 
     Attributes:
         axes: The axes, three-dimensional from SE(3) on.
         coordinates: The coordinates of space that are shown, counted from 0.
         points: The drawn positions.
-        track: The path, coloured by time: dots if discrete, a line if a flow.
+        track: The path, colored by time: dots if discrete, a line if a flow.
         frames: The body axes now and then, one collection for each axis.
         flow: The continuous path.
     """
@@ -80,7 +80,7 @@ def point_track(orbit: Orbit, axes: Any = None, flow: Orbit | None = None) -> Po
     track = _track(axes, points, orbit, orbit.time[chosen])
     curve = None if flow is None else _flow(axes, flow.position[:, shown])
     frames = _frames(axes, orbit, shown, _ARM * np.ptp(view[0]))
-    _ends(axes, points, theme.end_colours(orbit))
+    _ends(axes, points, theme.end_colors(orbit))
     theme.legend_above(axes)
     return PointTrack(axes, tuple(shown.tolist()), points, track, frames, curve)
 
@@ -120,12 +120,12 @@ def _dress(axes: Any, points: Float[np.ndarray, "L d"], shown: np.ndarray) -> Fl
 
 
 def _track(axes: Any, points: Float[np.ndarray, "L d"], orbit: Orbit, time: Float[np.ndarray, "L"]) -> Artist:
-    colours = {"cmap": theme.TIME, "norm": theme.time_scale(orbit), "zorder": 3}
+    colors = {"cmap": theme.TIME, "norm": theme.time_scale(orbit), "zorder": 3}
     if is_discrete(orbit):
         own = {"depthshade": False} if points.shape[1] == 3 else {}
         size = theme.dot_size(len(orbit))
-        return axes.scatter(*points.T, c=time, s=size, linewidths=0, label="discrete orbit", **own, **colours)
-    path = _pieces(points[:-1], points[1:], linewidth=2, **colours)
+        return axes.scatter(*points.T, c=time, s=size, linewidths=0, label="discrete orbit", **own, **colors)
+    path = _pieces(points[:-1], points[1:], linewidth=2, **colors)
     path.set(array=time[1:], label="flow")
     axes.add_collection(path)
     return path
@@ -140,9 +140,9 @@ def _frames(axes: Any, orbit: Orbit, shown: np.ndarray, length: float) -> tuple[
     """Draw the body axes that belong to the coordinates shown."""
     some = orbit.chosen(evenly_spread(orbit.position, _BODIES))
     foot, drawn = some.position[:, shown], []
-    for axis, colour in zip(shown, theme.COMPONENTS, strict=False):
+    for axis, color in zip(shown, theme.COMPONENTS, strict=False):
         tip = foot + length * some.configuration[:, shown, axis]
-        look = {"colors": colour, "linewidth": 1.4, "zorder": 5, "label": f"body axis {axis + 1}"}
+        look = {"colors": color, "linewidth": 1.4, "zorder": 5, "label": f"body axis {axis + 1}"}
         drawn.append(axes.add_collection(_pieces(foot, tip, **look)))
     return tuple(drawn)
 

@@ -13,19 +13,19 @@ from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.simulation import Crossings
 
-_FEW, _LARGE, _SMALL = 500, 14.0, 4.0  # up to so many dots are large; areas of dots
+_FEW, _LARGE, _SMALL = 500, 14.0, 4.0  # up to this many dots are large; areas of dots
 
 Quantity = Callable[[Orbit], Float[np.ndarray, "C"]]
 
 
 @dataclasses.dataclass(frozen=True)
 class Section:
-    """What `section` drew.
+    """The artists of `section`.
 
     Attributes:
         axes: The axes.
         points: The drawn points.
-        dots: One dot for each crossing, coloured by its time.
+        dots: One dot for each crossing, colored by its time.
     """
 
     axes: Axes
@@ -41,7 +41,7 @@ def section(
     axes: Axes | None = None,
     labels: tuple[str, str] = ("", ""),
 ) -> Section:
-    """Draw a Poincare section: one dot for each crossing of an event, coloured from early to late.
+    """Draw a Poincare section: one dot for each crossing of an event, colored from early to late.
 
     Args:
         crossings: What an event found: `orbit.events["name"]` or `nh.crossings(orbit, event)`.

@@ -1,4 +1,4 @@
-"""What an orbit does in time: velocity, momentum, heading and speed. These are panels of the overview."""
+"""An orbit in time: velocity, momentum, heading and speed. These are panels of the overview."""
 
 import dataclasses
 import itertools
@@ -67,12 +67,12 @@ def heading_and_speed(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> Ti
     right = axes.twinx()
     lines = []
     for one, name, values in ((axes, r"heading  $\theta/\pi$", _heading), (right, "speed  $v_1$", _speed)):
-        colour = theme.COMPONENTS[len(lines)]
-        lines.append(_line(one, orbit.time, values(orbit), colour))
+        color = theme.COMPONENTS[len(lines)]
+        lines.append(_line(one, orbit.time, values(orbit), color))
         if flow is not None:
             _flow(one, flow.time, values(flow), named=one is right)
-        one.set_ylabel(name, color=colour)
-        one.tick_params(axis="y", labelcolor=colour)
+        one.set_ylabel(name, color=color)
+        one.tick_params(axis="y", labelcolor=color)
         one.margins(y=0.12)
     right.spines["right"].set_visible(True)
     right.axhline(0.0, color=theme.COMPONENTS[1], linewidth=0.7, dashes=(4, 3), zorder=1)
@@ -91,11 +91,11 @@ def _speed(orbit: Orbit) -> Float[np.ndarray, "K"]:
 
 
 def _line(
-    axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K"], colour: str, label: str | None = None
+    axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K"], color: str, label: str | None = None
 ) -> Line2D:
     chosen = evenly_in_box(np.stack([time, values], axis=1), _MOST_POINTS)
     marker = "o" if len(time) == 1 else None
-    look: dict[str, Any] = {"color": colour, "linewidth": 2.0, "marker": marker, "label": label, "zorder": 3}
+    look: dict[str, Any] = {"color": color, "linewidth": 2.0, "marker": marker, "label": label, "zorder": 3}
     return axes.plot(time[chosen], values[chosen], **look)[0]
 
 
@@ -106,10 +106,10 @@ def _flow(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K
 
 def _components(orbit: Orbit, axes: Axes, values: Float[np.ndarray, "K m"], names: list[str]) -> tuple[Line2D, ...]:
     """Draw one line for each column, thin and without names where there are too many to tell apart."""
-    colours = theme.component_colours(len(names))
+    colors = theme.component_colors(len(names))
     few = len(names) <= len(theme.COMPONENTS)
-    rows = zip(values.T, colours, names, strict=True)
-    lines = tuple(_line(axes, orbit.time, row, colour, label=name if few else None) for row, colour, name in rows)
+    rows = zip(values.T, colors, names, strict=True)
+    lines = tuple(_line(axes, orbit.time, row, color, label=name if few else None) for row, color, name in rows)
     if not few:
         for line in lines:
             line.set_linewidth(1.0)

@@ -28,7 +28,7 @@ def overview(
     The path is that of a body axis on SO(3), of the blade of a sleigh, of the reference point on SE(n); other groups,
     and orbits without poses, have none. Momenta along the constraint are drawn as a phase portrait where they are two,
     on their energy sphere where they are three, against time otherwise. With a right-invariant constraint velocity and
-    energy need poses, and are left out without them. Colour is time in all panels; the strip under a panel against time
+    energy need poses, and are left out without them. Color is time in all panels; the strip under a panel against time
     is the key.
 
     Args:

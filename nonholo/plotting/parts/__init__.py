@@ -1,4 +1,4 @@
-"""What several pictures share: what may be drawn of an orbit, which of its states, spheres, enlarged corners."""
+"""The common parts of pictures: what may be drawn of an orbit, which of its states, spheres, enlarged corners."""
 
 from nonholo.plotting.parts._enlargement import Square, corner_axes, detail, square_about
 from nonholo.plotting.parts._sphere import View, arcs, best_view, draw_curve, draw_globe, given_view, opacity, set_curve

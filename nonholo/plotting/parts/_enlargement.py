@@ -25,8 +25,8 @@ def square_about(points: Float[np.ndarray, "K 2"]) -> Square:
     """
     low, high = points.min(axis=0), points.max(axis=0)
     reach = 0.57 * float((high - low).max()) or 1.0
-    centre = (low + high) / 2
-    return np.stack([centre - reach, centre + reach], axis=1)
+    center = (low + high) / 2
+    return np.stack([center - reach, center + reach], axis=1)
 
 
 def detail(

@@ -32,13 +32,13 @@ class View:
 
     @property
     def frame(self) -> Float[np.ndarray, "3 3"]:
-        """Rows: to the right, upwards, towards the eye."""
+        """Rows: to the right, upwards, toward the eye."""
         azimuth, elevation = np.radians([self.azimuth, self.elevation])
         ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
         return np.array([[-sa, ca, 0.0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]])
 
     def __call__(self, points: Float[np.ndarray, "... 3"]) -> tuple[np.ndarray, np.ndarray]:
-        """Return the flat points and their distances towards the eye."""
+        """Return the flat points and their distances toward the eye."""
         seen = points @ self.frame.T
         return seen[..., :2], seen[..., 2]
 
@@ -91,17 +91,17 @@ def _wires() -> list[Float[np.ndarray, "K 3"]]:
 
 
 def draw_curve(
-    axes: Axes, view: View, points: Float[np.ndarray, "K 3"], colours: Any, width: float, **options: Any
+    axes: Axes, view: View, points: Float[np.ndarray, "K 3"], colors: Any, width: float, **options: Any
 ) -> LineCollection:
     """Draw a curve on the sphere; parts behind are fainter and thinner, nearer parts are drawn last."""
     collection = LineCollection([], **options)
     axes.add_collection(collection, autolim=False)
-    set_curve(collection, view, points, colours, width)
+    set_curve(collection, view, points, colors, width)
     return collection
 
 
 def set_curve(
-    collection: LineCollection, view: View, points: Float[np.ndarray, "K 3"], colours: Any, width: float, side: int = 0
+    collection: LineCollection, view: View, points: Float[np.ndarray, "K 3"], colors: Any, width: float, side: int = 0
 ) -> None:
     """Give a collection a new curve.
 
@@ -109,7 +109,7 @@ def set_curve(
         collection: What to change.
         view: The projection.
         points: The curve.
-        colours: One colour, or one for each piece.
+        colors: One color, or one for each piece.
         width: Width of what lies in front.
         side: 1 for the pieces in front only, -1 for those behind only, 0 for all.
     """
@@ -118,7 +118,7 @@ def set_curve(
     order = np.argsort(depth)
     order = order[depth[order] * side >= 0]
     front = _in_front(depth)[order]
-    rgb = np.broadcast_to(np.asarray(colours)[..., :3], (len(depth), 3))[order]
+    rgb = np.broadcast_to(np.asarray(colors)[..., :3], (len(depth), 3))[order]
     alpha = (_BEHIND + (1 - _BEHIND) * front)[:, None]
     segments = np.stack([ends[:-1], ends[1:]], axis=1)[order]
     collection.set(segments=segments, colors=np.hstack([rgb, alpha]), linewidths=width * (0.6 + 0.4 * front))
@@ -130,12 +130,12 @@ def _in_front(depth: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K"]:
 
 
 def opacity(depth: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K"]:
-    """Return the opacity of points at these distances towards the eye."""
+    """Return the opacity of points at these distances toward the eye."""
     return _BEHIND + (1 - _BEHIND) * _in_front(depth)
 
 
 def arcs(points: Float[np.ndarray, "K 3"], pieces: int) -> Float[np.ndarray, "L 3"]:
-    """Join points of the sphere by arcs of great circles, each of so many pieces."""
+    """Join points of the sphere by arcs of great circles, each of this many pieces."""
     share = np.arange(pieces)[:, None] / pieces
     chords = (1 - share) * points[:-1, None] + share * points[1:, None]
     joined = np.concatenate([chords.reshape(-1, 3), points[-1:]])

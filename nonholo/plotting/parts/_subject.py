@@ -1,4 +1,4 @@
-"""What may be drawn, and refusals in words: orbits that are not empty, of the right system, with poses if needed.
+"""Subjects of pictures, and refusals in words: orbits that are not empty, of the right system, with poses if needed.
 
 Also the few questions that several pictures ask of an orbit. No mechanics.
 """
@@ -70,12 +70,12 @@ def is_same_body(system: System, other: System) -> bool:
 
 
 def own_orbit(where: str, orbit: Any, discrete: Discretization) -> None:
-    """Refuse an orbit that belongs to another discretised system."""
+    """Refuse an orbit that belongs to another discretized system."""
     if orbit is None:
         return
     same = time_step(drawable(where, orbit)) == float(discrete.time_step)
     if not (same and is_same_body(orbit.system, discrete.system)):
-        raise error(where, "be an orbit of the same discretised system", shown(orbit), "Run `nh.simulate` with it.")
+        raise error(where, "be an orbit of the same discretized system", shown(orbit), "Run `nh.simulate` with it.")
 
 
 def known_equilibria(system: System) -> Equilibria | None:

@@ -19,8 +19,8 @@ def evenly_spread(points: Float[np.ndarray, "K d"], most: int) -> Int[np.ndarray
     if len(points) <= most:
         return np.arange(len(points))
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    travelled = np.concatenate([[0.0], np.cumsum(steps)])
-    picked = np.searchsorted(travelled, np.linspace(0.0, travelled[-1], most))
+    traveled = np.concatenate([[0.0], np.cumsum(steps)])
+    picked = np.searchsorted(traveled, np.linspace(0.0, traveled[-1], most))
     return np.unique(np.concatenate([[0], picked, [len(points) - 1]]))
 
 
@@ -31,7 +31,7 @@ def evenly_in_box(points: Float[np.ndarray, "K d"], most: int) -> Int[np.ndarray
 
 
 def some_states(orbit: Orbit, most: int) -> Orbit:
-    """Return the orbit at about so many states, evenly in momentum and, as momentum may be conserved, in time."""
+    """Return the orbit at about this many states, evenly in momentum and, as momentum may be conserved, in time."""
     evenly_in_time = np.linspace(0, len(orbit) - 1, min(most, len(orbit))).round().astype(int)
     return orbit.chosen(np.union1d(evenly_spread(orbit.reduced_momentum, most), evenly_in_time))
 

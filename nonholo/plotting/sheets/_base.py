@@ -1,4 +1,4 @@
-"""How a body with two admissible directions is drawn: one interface of discs (tops) and strips (sleighs).
+"""Drawings of a body with two admissible directions: one interface of discs (tops) and strips (sleighs).
 
 Points are those of `nonholo.analysis.planar`.
 """
@@ -37,11 +37,11 @@ class AbstractSheet(abc.ABC):
     component_names: ClassVar[tuple[str, str, str]]
     """Names of the components of a body momentum."""
     signs: ClassVar[Float[np.ndarray, "2"]]
-    """What takes momenta along the rows of the normal form to the plane of momenta."""
+    """The map from momenta along the rows of the normal form to the plane of momenta."""
 
     @property
     def to_plane(self) -> Float[np.ndarray, "2 2"]:
-        """What takes canonical momenta to the plane of momenta; exactly the identity for tops and sleighs by name."""
+        """The map from canonical momenta to the plane of momenta; exactly the identity for tops and sleighs by name."""
         to_form = self.variety.form.frame_map
         return self.signs[:, None] * (np.eye(2) if to_form is None else to_form)
 

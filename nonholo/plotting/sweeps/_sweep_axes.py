@@ -1,4 +1,4 @@
-"""What maps of sweeps share: members that succeeded, how the others ended, scales, names. Nothing is run here."""
+"""Common parts of maps of sweeps: members that succeeded, how the others ended, scales, names. Nothing is run here."""
 
 import dataclasses
 from typing import Any
@@ -29,7 +29,7 @@ _ENDED = {
 }
 _OTHER = "#a0522d"
 _WIDE = 30.0  # quotient of the ends of the middle nine tenths from which a scale is logarithmic: 19 for even numbers
-_FEW = 9  # different integers that get a colour each
+_FEW = 9  # different integers that get a color each
 
 
 @dataclasses.dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Subject:
 
     @property
     def title(self) -> str:
-        """What the quantity means."""
+        """The meaning of the quantity."""
         told = str(self.values.attrs.get("long_name") or label(self.values))
         return told[:1].upper() + told[1:]
 
@@ -85,25 +85,25 @@ def label(values: xarray.DataArray) -> str:
 
 
 def ends(codes: xarray.DataArray, *, successful: bool = False) -> list[tuple[int, str, str]]:
-    """Return the outcomes that occur, but for success, with their names and colours."""
+    """Return the outcomes that occur, but for success, with their names and colors."""
     flags = [int(flag) for flag in np.atleast_1d(codes.attrs.get("flag_values", []))]
     names = dict(zip(flags, str(codes.attrs.get("flag_meanings", "")).split(), strict=False))
     found, counts = np.unique(codes.values, return_counts=True)
     return [
-        (int(code), f"{names.get(int(code), str(code)).replace('_', ' ')} ({count:,})", _colour(names, int(code)))
+        (int(code), f"{names.get(int(code), str(code)).replace('_', ' ')} ({count:,})", _color(names, int(code)))
         for code, count in zip(found, counts, strict=True)
         if successful or code != 0
     ]
 
 
-def _colour(names: dict[int, str], code: int) -> str:
+def _color(names: dict[int, str], code: int) -> str:
     return _ENDED.get(names.get(code, ""), _OTHER)
 
 
 def key_to(axes: Axes, ended: list[tuple[int, str, str]]) -> tuple[PathCollection, ...]:
     """Put a square into the legend for each outcome."""
     look: Any = {"marker": "s", "s": 42, "linewidths": 0.6, "edgecolors": theme.MUTED}
-    return tuple(axes.scatter([], [], color=colour, label=name, **look) for _, name, colour in ended)
+    return tuple(axes.scatter([], [], color=color, label=name, **look) for _, name, color in ended)
 
 
 def mark_below(
@@ -113,13 +113,13 @@ def mark_below(
     look: Any = {"marker": marker, "s": 18 if marker == "s" else 50, "linewidths": 0.8, "clip_on": False, "zorder": 5}
     axes.update_datalim(np.stack([across, across], axis=-1), updatey=False)
     axes.autoscale_view()
-    groups = [(across[codes == code], colour) for code, _, colour in ended]
+    groups = [(across[codes == code], color) for code, _, color in ended]
     where = axes.get_xaxis_transform()
-    return tuple(axes.scatter(x, np.zeros(len(x)), transform=where, color=colour, **look) for x, colour in groups)
+    return tuple(axes.scatter(x, np.zeros(len(x)), transform=where, color=color, **look) for x, color in groups)
 
 
 def scale_of(subject: Subject) -> Normalize:
-    """Return how numbers become colours: whole numbers one each if they are few, by logarithm if they range widely."""
+    """Return how numbers become colors: whole numbers one each if they are few, by logarithm if they range widely."""
     finite = subject.values.values[np.isfinite(subject.values.values)]
     distinct = np.unique(finite)
     if subject.whole and 0 < len(distinct) <= _FEW:
@@ -131,8 +131,8 @@ def scale_of(subject: Subject) -> Normalize:
     return Normalize(finite.min(), finite.max()) if len(finite) else Normalize(0.0, 1.0)
 
 
-def colour_key(axes: Axes, drawn: ScalarMappable, subject: Subject) -> Colorbar:
-    """Put the key to the colours beside the axes."""
+def color_key(axes: Axes, drawn: ScalarMappable, subject: Subject) -> Colorbar:
+    """Put the key to the colors beside the axes."""
     figure: Any = axes.get_figure(root=False)
     bar = figure.colorbar(drawn, ax=axes, label=label(subject.values), pad=0.02)
     bar.outline.set_visible(False)

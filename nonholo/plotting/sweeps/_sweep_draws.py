@@ -14,7 +14,7 @@ from nonholo.plotting import theme
 from nonholo.plotting.sweeps._sweep_axes import (
     OUTCOME,
     Subject,
-    colour_key,
+    color_key,
     ends,
     is_wide,
     key_to,
@@ -35,7 +35,7 @@ def draw_draws(axes: Axes, result: xarray.Dataset, subject: Subject, x: str | No
     if y is not None and x is None:
         raise error("plot.sweep_map(y=...)", "come with x", shown(y), "Pass x, or x and y.")
     if x is not None and y is not None:
-        drawn = _coloured_dots(axes, subject, _number(result, "x", x), _number(result, "y", y))
+        drawn = _colored_dots(axes, subject, _number(result, "x", x), _number(result, "y", y))
     elif subject.values.name == OUTCOME:
         drawn = _outcomes(axes, subject)
     elif x is not None:
@@ -57,7 +57,7 @@ def _number(result: xarray.Dataset, argument: str, name: str) -> xarray.DataArra
 
 
 def _thinned(*arrays: xarray.DataArray) -> list[np.ndarray]:
-    """Return the values of evenly spaced members, of at most so many."""
+    """Return the values of evenly spaced members, of at most this many."""
     return [array.values[:: -(-len(array) // _MOST)] for array in arrays]
 
 
@@ -72,19 +72,19 @@ def _dots_over(axes: Axes, subject: Subject, x: xarray.DataArray) -> Drawn:
     return drawn, shown, None
 
 
-def _coloured_dots(axes: Axes, subject: Subject, x: xarray.DataArray, y: xarray.DataArray) -> Drawn:
+def _colored_dots(axes: Axes, subject: Subject, x: xarray.DataArray, y: xarray.DataArray) -> Drawn:
     """Draw members as dots over x and y, those that did not succeed below the others."""
     across, up, values, codes = _thinned(x, y, subject.values, subject.codes)
     of_outcome, look = subject.values.name == OUTCOME, _look(across)
     ended = ends(subject.codes, successful=of_outcome)
-    groups = [(codes == code, colour) for code, _, colour in ended]
-    shown = tuple(axes.scatter(across[of], up[of], color=colour, **look) for of, colour in groups)
+    groups = [(codes == code, color) for code, _, color in ended]
+    shown = tuple(axes.scatter(across[of], up[of], color=color, **look) for of, color in groups)
     drawn = bar = None
     if not of_outcome:
         good = codes == 0
-        colours: Any = {"c": values[good], "cmap": theme.TIME, "norm": scale_of(subject)}
-        drawn = axes.scatter(across[good], up[good], **colours, **look)
-        bar = colour_key(axes, drawn, subject)
+        colors: Any = {"c": values[good], "cmap": theme.TIME, "norm": scale_of(subject)}
+        drawn = axes.scatter(across[good], up[good], **colors, **look)
+        bar = color_key(axes, drawn, subject)
     axes.set(xlabel=label(x), ylabel=label(y), xscale=_scale(across), yscale=_scale(up))
     key_to(axes, ended)
     return drawn, shown, bar
@@ -109,7 +109,7 @@ def _outcomes(axes: Axes, subject: Subject) -> Drawn:
     """Count how members ended, one bar each."""
     ended = ends(subject.codes, successful=True)
     counts = [int((subject.codes.values == code).sum()) for code, _, _ in ended]
-    bars = axes.barh([name for _, name, _ in ended], counts, color=[colour for _, _, colour in ended], height=0.6)
+    bars = axes.barh([name for _, name, _ in ended], counts, color=[color for _, _, color in ended], height=0.6)
     axes.set(xlabel="members", ylim=(len(ended) - 0.5, -0.5))
     return bars, (), None
 

@@ -16,7 +16,7 @@ from nonholo.plotting.sweeps._sweep_axes import (
     OUTCOME,
     Subject,
     borders,
-    colour_key,
+    color_key,
     ends,
     is_geometric,
     is_wide,
@@ -33,13 +33,13 @@ _MARKED = 60  # members along a curve that get a dot each
 
 @dataclasses.dataclass(frozen=True)
 class SweepMap:
-    """What `sweep_map` drew; None where there was nothing to draw.
+    """The artists of `sweep_map`; None where there was nothing to draw.
 
     Attributes:
         axes: The axes.
         drawn: The members that succeeded: a mesh, a line, dots, or the bars of a histogram.
         ended: For each other outcome what shows it; the legend counts its members.
-        colorbar: The key to the colours.
+        colorbar: The key to the colors.
     """
 
     axes: Axes
@@ -123,7 +123,7 @@ def _map(axes: Axes, subject: Subject, x: str, y: str) -> SweepMap:
     if subject.values.name != OUTCOME:
         look: Any = {"cmap": theme.TIME, "norm": scale_of(subject), "rasterized": True, "zorder": 1}
         drawn = axes.pcolormesh(*edges, np.ma.masked_invalid(values.values), **look)
-        bar = colour_key(axes, drawn, subject)
+        bar = color_key(axes, drawn, subject)
     for name, values_along, side in ((x, values[x], "x"), (y, values[y], "y")):
         _dress_axis(axes, side, name, values_along)
     key_to(axes, ended)
@@ -132,16 +132,16 @@ def _map(axes: Axes, subject: Subject, x: str, y: str) -> SweepMap:
 
 
 def _ended(axes: Axes, edges: Any, codes: xarray.DataArray, ended: list[tuple[int, str, str]]) -> tuple[QuadMesh, ...]:
-    """Fill the cells of each outcome with its colour."""
+    """Fill the cells of each outcome with its color."""
     return tuple(
         axes.pcolormesh(
             *edges,
             np.ma.masked_where(codes.values != code, np.ones(codes.shape)),
-            cmap=ListedColormap([colour]),
+            cmap=ListedColormap([color]),
             rasterized=True,
             zorder=1,
         )
-        for code, _, colour in ended
+        for code, _, color in ended
     )
 
 

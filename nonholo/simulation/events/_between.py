@@ -50,7 +50,7 @@ def _turned(states: Orbit, poses: np.ndarray | None) -> np.ndarray | None:
 
 
 def with_headings(states: Orbit, first: float | None) -> Orbit:
-    """Return states of the plane with headings that go on from the given one; others as they are."""
+    """Return states of the plane with headings that continue from the given one; others as they are."""
     if states.system.group != SE(2) or states.canonical_pose is None or states.turned is not None or not len(states):
         return states
     return dataclasses.replace(states, turned=unwrapped(states.canonical_pose, before=first))

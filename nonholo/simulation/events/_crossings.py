@@ -36,7 +36,7 @@ def crossings(orbit: Orbit, event: Any) -> Crossings:
         >>> len(level), bool(np.abs(level.states.configuration[:, 2, 2]).max() < 1e-15)
         (6, True)
     """
-    orbit = as_orbit("crossings(orbit=...)", orbit, "pass states and functions of your own otherwise.")
+    orbit = as_orbit("crossings(orbit=...)", orbit, "pass states and your own functions otherwise.")
     if not isinstance(orbit.motion, Discretization) or orbit.save_every != 1:
         got = f"save_every {orbit.save_every}" if isinstance(orbit.motion, Discretization) else "a flow"
         raise error("crossings(orbit=...)", "have every single step of a discrete run", got, "Pass events= to the run.")
@@ -47,7 +47,7 @@ def crossings(orbit: Orbit, event: Any) -> Crossings:
 def _forward_speed(orbit: Orbit) -> Float[np.ndarray, "K"]:
     system = orbit.system
     if not system.has_blade:
-        got, remedy = type(system).__name__, "Write an event of your own: a function of the orbit."
+        got, remedy = type(system).__name__, "Write your own event: a function of the orbit."
         raise error("cusp", "watch a sleigh", got, remedy)
     return system.restricted_velocity(orbit.restricted_momentum)[:, -1]
 

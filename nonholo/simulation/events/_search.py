@@ -17,7 +17,7 @@ _ROUNDING = 2.0**-54  # of a step, beside its end
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Watch:
-    """What is known of a motion that is searched stretch by stretch.
+    """The state of the search of a motion, stretch by stretch.
 
     Attributes:
         events: What is looked for, by name.
@@ -39,11 +39,11 @@ class Watch:
 
     @property
     def left(self) -> list[float]:
-        """How many more crossings of every event end the motion; infinite if none do."""
+        """The number of further crossings of every event that ends the motion; infinite if none does."""
         done = self.counts or (0,) * len(self.events)
         return [event.last - count for event, count in zip(self.events.values(), done, strict=True)]
 
-    def gone_on(
+    def after_stretch(
         self, found: tuple[Crossings, ...], values: np.ndarray | None, heading: float | None, stopped_by: str | None
     ) -> "Watch":
         """Return what is known after another stretch."""
@@ -79,7 +79,7 @@ def search(watch: Watch, stretch: Orbit, begun: int) -> tuple[Watch, int]:
         stopped, found, kept = _cut(watch, found, [event for event, end in enumerate(ends) if end == last])
     found = tuple(dataclasses.replace(part, step=part.step + begun) for part in found)
     heading = float(stretch.turned[-1]) if stretch.turned is not None else None
-    return watch.gone_on(found, values[:, -1:] if len(stretch) else watch.values, heading, stopped), kept
+    return watch.after_stretch(found, values[:, -1:] if len(stretch) else watch.values, heading, stopped), kept
 
 
 def _values(watch: Watch, stretch: Orbit) -> Float[np.ndarray, "E K"]:

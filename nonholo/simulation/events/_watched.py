@@ -15,7 +15,7 @@ from nonholo.simulation.events._event import Event, checked_events
 from nonholo.simulation.events._search import Watch, search
 from nonholo.simulation.runs import CompiledRun, FirstState, Runner, opened
 
-_FIRST, _GROWTH = 16, 4  # steps of the first attempt of a run that cannot be gone on with, and factor to the next
+_FIRST, _GROWTH = 16, 4  # steps of the first attempt of a run that cannot be resumed, and factor to the next
 
 
 def watched(owner: str, discrete: Discretization, events: Any, branch: str, reconstruct: bool) -> Watch:
@@ -53,7 +53,7 @@ def run_compiled(
 def run_with_events(run: Runner, watch: Watch, steps: int, every: int, progress: bool) -> tuple[Orbit, int]:
     """Run a step that is not compiled, keeping every state; return the orbit with what was found, and the last step.
 
-    Such a run cannot be gone on with. If an event may end it, it is tried with few steps, then again with more.
+    Such a run cannot be resumed. If an event may end it, it is tried with few steps, then again with more.
     """
     length, ends = min(steps, _FIRST), any(event.stop for event in watch.events.values())
     while True:

@@ -81,7 +81,7 @@ def _compensated(total: jax.Array, lost: jax.Array, term: jax.Array) -> tuple[ja
 def _root(body: kernels.Body, m: jax.Array, guess: jax.Array) -> tuple[jax.Array, jax.Array]:
     """Correct guesses until all have converged or it takes too long; tell which are certain."""
 
-    def going(carry: tuple[jax.Array, jax.Array, jax.Array]) -> jax.Array:
+    def is_unfinished(carry: tuple[jax.Array, jax.Array, jax.Array]) -> jax.Array:
         count, _, further = carry
         return (count < kernels.CORRECTIONS) & further.any()
 
@@ -91,5 +91,7 @@ def _root(body: kernels.Body, m: jax.Array, guess: jax.Array) -> tuple[jax.Array
         y = jnp.where(further, y + d, y)
         return count + 1, y, further & ~kernels.converged(*d, *y)
 
-    _, y, further = jax.lax.while_loop(going, correct, (jnp.asarray(0), guess, jnp.ones(m.shape[1], dtype=bool)))
+    _, y, further = jax.lax.while_loop(
+        is_unfinished, correct, (jnp.asarray(0), guess, jnp.ones(m.shape[1], dtype=bool))
+    )
     return y, ~further & kernels.certified(body, *m, *y)

@@ -1,4 +1,4 @@
-"""An ensemble as a labelled `xarray.Dataset`: what the io room writes of an orbit, with a leading member axis."""
+"""An ensemble as a labeled `xarray.Dataset`: what the io room writes of an orbit, with a leading member axis."""
 
 from typing import Any
 

@@ -45,17 +45,17 @@ def ensemble(
     becomes of it does not depend on the others. Tops with n = 3 and plane sleighs run in compiled blocks of 32 members,
     other systems one after another. All cores are used (`NUMBA_NUM_THREADS` sets how many), with the same result.
 
-    A member that cannot go on keeps its good states: see `Ensemble` for what is where, and `outcome` for why.
+    A member that cannot continue keeps its good states: see `Ensemble` for what is where, and `outcome` for why.
 
     Args:
-        discrete: The discretised system.
+        discrete: The discretized system.
         steps: Number of steps N.
         body_velocity: One row for each member, (M, dim); with `parameters` one row for all, (dim,), will do. Members
             start at the identity with the principal W_0 that has the same momentum along the constraint.
         restricted_velocity: The same, in rows of the constraint subspace, (M, k).
         momentum: Start with these momenta, full ones (M, dim) on the momentum locus or those along the constraint
             subspace, (M, k). A member whose full momentum is not on it has outcome `off_momentum_locus`.
-        save_every: Keep the first state and every so many steps; by default only the last state.
+        save_every: Steps between saved states, the first one included; by default only the last state is kept.
         parameters: Arrays with a leading member axis by name: fields of the system that are numbers or tensors (mass,
             inertia, a, b, mass_tensor, ...), and "time_step".
         reduce: A function of an `Ensemble`, a block of the members in order, that returns an array or a dictionary of
@@ -75,7 +75,7 @@ def ensemble(
         ValueError: A bad argument, before any work.
 
     Example:
-        Sleighs with the centre of mass ahead of the blade by different lengths, all pushed backwards, turn round:
+        Sleighs with the center of mass ahead of the blade by different lengths, all pushed backwards, turn round:
 
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), time_step=0.05)
         >>> batch = nh.ensemble(

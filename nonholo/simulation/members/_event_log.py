@@ -1,4 +1,4 @@
-"""What events found in the members of an ensemble: how often, and the first and the last time."""
+"""Results of events in the members of an ensemble: how often, and the first and the last time."""
 
 import dataclasses
 from typing import TYPE_CHECKING

@@ -37,7 +37,7 @@ class Flat(NamedTuple):
 
 
 def watched_block(events: dict[str, Event], block: Ensemble, every: int | None) -> Ensemble:
-    """Return what an ensemble that keeps every so many states has, with events, of one that kept every single step."""
+    """Return what an ensemble that keeps every n-th state has, with events, of one that kept every single step."""
     end, stopped = np.array(block.steps_done), np.full(len(block), -1)
     counts = np.zeros((len(events), len(block)), dtype=np.int64)
     firsts, lasts = ([_nowhere(block) for _ in events] for _ in range(2))

@@ -17,7 +17,7 @@ from nonholo.systems import ChaplyginSleigh, SuslovTop, System
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class ScalarMembers:
-    """What the kernels of tops (n = 3) and plane sleighs see; an axis of length 1 where all members agree.
+    """The bodies that the kernels of tops (n = 3) and plane sleighs see; an axis of length 1 where all members agree.
 
     Attributes:
         body: The type of their bodies.
@@ -42,7 +42,7 @@ class ScalarMembers:
 
 
 class Family(NamedTuple):
-    """What an ensemble knows of a family.
+    """The functions of a family for an ensemble.
 
     Attributes:
         numbers: What the kernels see of members.
@@ -99,7 +99,7 @@ def family_of(system: System) -> Family | None:
 
 
 def run_in_lanes(discrete: Discretization) -> bool:
-    """Tell whether the members of an ensemble of a discretisation are computed side by side."""
+    """Tell whether the members of an ensemble of a discretization are computed side by side."""
     return discrete.route.is_scalar and family_of(discrete.system) is not None
 
 

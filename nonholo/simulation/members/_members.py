@@ -1,4 +1,4 @@
-"""The members of an ensemble: one discretised system, and the parameters in which each member differs from it."""
+"""The members of an ensemble: one discretized system, and the parameters in which each member differs from it."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -16,10 +16,10 @@ _ARGUMENTS = {"given_inertia": "inertia_operator"}  # fields that the constructo
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Members:
-    """Discretised systems that differ by parameters.
+    """Discretized systems that differ by parameters.
 
     Attributes:
-        discrete: The discretised system of all members, but for the parameters.
+        discrete: The discretized system of all members, but for the parameters.
         parameters: Values by name, a field of the system or "time_step", with a leading member axis.
         count: The number M of members.
     """
@@ -43,7 +43,7 @@ class Members:
         return np.asarray(self.discrete.time_step if name == STEP else getattr(self.discrete.system, name))[None]
 
     def of(self, member: int) -> Discretization:
-        """Return the discretised system of one member."""
+        """Return the discretized system of one member."""
         if not self.parameters:
             return self.discrete
         own = {name: values[member] for name, values in self.parameters.items()}

@@ -1,4 +1,4 @@
-"""What `ensemble` returns: compact states of all members, decoded on access as those of an orbit are."""
+"""The result of `ensemble`: compact states of all members, decoded on access as those of an orbit are."""
 
 import dataclasses
 import importlib
@@ -26,10 +26,10 @@ class Ensemble:
 
     With `save_every=None` K = 1, and the state is the last good one of each member, after `steps_done` steps. Otherwise
     row j is the state after j `save_every` steps; a member that ends early has NaN in its later rows. A member whose
-    start has no principal root has nothing but NaN. `outcome` tells them apart.
+    start has no principal root has only NaN. `outcome` tells them apart.
 
     Attributes:
-        members: The discretised system and the parameters.
+        members: The discretized system and the parameters.
         steps: Number of steps N that were asked for.
         save_every: Steps between saved states; None if only the last one is kept.
         reduced_momentum: Compact momenta, canonical frame, shape (M, K, k).
@@ -169,7 +169,7 @@ class Ensemble:
         return np.unwrap(np.arctan2(self.canonical_pose[..., 1], self.canonical_pose[..., 0]), axis=1)
 
     def to_dataset(self) -> Any:
-        """Return the states as a labelled `xarray.Dataset` with dimensions `member` and `step`."""
+        """Return the states as a labeled `xarray.Dataset` with dimensions `member` and `step`."""
         return importlib.import_module("nonholo.simulation.members._dataset").ensemble_to_dataset(self)
 
     def _decoded(self, name: str) -> np.ndarray:

@@ -39,7 +39,7 @@ def in_one_thread() -> Iterator[None]:
 
 
 class Plan(NamedTuple):
-    """What to do with every member.
+    """The work on every member.
 
     Attributes:
         steps: Number of steps.

@@ -1,4 +1,4 @@
-"""Where the members of an ensemble start, and the numbers of tops and plane sleighs for all members in one go."""
+"""The starts of the members of an ensemble, and the numbers of tops and plane sleighs for all members in one go."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What a run of the discrete map is: its options and limits, its first state, its compiled step, runs without one."""
+"""Runs of the discrete map: their options and limits, first states, compiled steps, runs without one."""
 
 from nonholo.simulation.runs._compiled import CompiledRun, closed_step, compiled_run, opened
 from nonholo.simulation.runs._first_state import FirstState, first_state

@@ -19,10 +19,10 @@ _SOON, _LATE = 0.1, 0.3  # seconds: from one to the next they are doubled and ha
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class CompiledRun:
-    """A discretisation with its compiled route, and what a run of it keeps.
+    """A discretization with its compiled route, and what a run of it keeps.
 
     Attributes:
-        discrete: The discretisation.
+        discrete: The discretization.
         route: Its compiled route.
         every: Steps between saved states.
         reconstruct: Whether poses are kept.
@@ -54,7 +54,7 @@ class CompiledRun:
     def stretch(
         self, state: RunState, begun: int, stop: int, report: Callable[[int], object], *, opening: bool
     ) -> tuple[Orbit, RunState, int]:
-        """Go on from step `begun`, a multiple of `every`, to step `stop`; return rows, state and step of the last good.
+        """Continue from step `begun`, a multiple of `every`, to step `stop`; return rows, state and last good step.
 
         The rows of an opening stretch begin with the first state.
         """

@@ -1,4 +1,4 @@
-"""What no run may ask for: more time or more memory than there is."""
+"""Limits of runs: no more time or memory than there is."""
 
 from nonholo.base.limits import within_a_year, within_memory
 from nonholo.discrete import Discretization

@@ -15,7 +15,7 @@ from nonholo.discrete import (
 
 @dataclasses.dataclass(frozen=True)
 class RunOptions:
-    """How a run goes, whatever its start.
+    """The options of a run, whatever its start.
 
     Attributes:
         steps: Number of steps.
@@ -23,7 +23,7 @@ class RunOptions:
         rule: Which value of the map a step takes.
         backend: "auto", "numba" or "jax".
         reconstruct: Whether poses are kept.
-        throw: Whether a run that cannot go on raises.
+        throw: Whether a run that cannot continue raises.
         progress: Whether a progress bar is shown.
     """
 
@@ -48,7 +48,7 @@ class RunOptions:
         throw: bool,
         progress: bool,
     ) -> "RunOptions":
-        """Return checked options that a discretisation can be run with."""
+        """Return checked options that a discretization can be run with."""
         as_discretization("simulate(discrete=...)", discrete, composed=True)
         steps, every = step_counts(steps, save_every)
         rule = checked_rule("simulate", discrete, branch)

@@ -10,7 +10,7 @@ Rows: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]  # momenta, charts, 
 
 
 class RunState(NamedTuple):
-    """What a run goes on from, with the same bits as if it had not stopped.
+    """The state that a run continues from, with the same bits as if it had not stopped.
 
     Attributes:
         row: Momenta, chart and pose of its first state; with events those of the last state that was searched.

@@ -2,11 +2,18 @@
 
 from nonholo.simulation.stores._same_events import watch_of_store
 from nonholo.simulation.stores._stored_run import (
-    go_on,
+    continue_run,
     refuse_without_store,
     rows_of_block,
     run_into_store,
     size_in_blocks,
 )
 
-__all__ = ["go_on", "refuse_without_store", "rows_of_block", "run_into_store", "size_in_blocks", "watch_of_store"]
+__all__ = [
+    "continue_run",
+    "refuse_without_store",
+    "rows_of_block",
+    "run_into_store",
+    "size_in_blocks",
+    "watch_of_store",
+]

@@ -1,4 +1,4 @@
-"""Whether the events given to go on with a stored run are those of the store, which holds no functions."""
+"""Whether the events given to resume a stored run are those of the store, which holds no functions."""
 
 import json
 from typing import TYPE_CHECKING, Any
@@ -41,7 +41,7 @@ def _refuse_other_functions(where: str, stream: "Stream", run: CompiledRun, watc
     try:
         first = stream.checkpoint(0)
     except io.DamagedError:
-        return  # whoever needs it to go on says so
+        return  # whoever needs it to continue says so
     if first.seen is None:
         return
     found, _ = search(watch, run.first(RunState.of(first.vector, run.sizes)), 0)

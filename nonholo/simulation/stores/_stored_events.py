@@ -1,4 +1,4 @@
-"""What a store and its checkpoints say of the events of a run."""
+"""The events of a run in a store and its checkpoints."""
 
 import dataclasses
 from typing import Any
@@ -23,7 +23,7 @@ def seen_by(watch: Watch, chunks: int) -> Seen:
     return Seen(np.array(watch.counts, dtype=np.int64), values, watch.heading or 0.0, stopped, chunks)
 
 
-def gone_on_from(watch: Watch | None, seen: Seen | None) -> tuple[Watch | None, int]:
+def watch_at_checkpoint(watch: Watch | None, seen: Seen | None) -> tuple[Watch | None, int]:
     """Return what was known of a motion at a checkpoint, and how many chunks of crossings there were."""
     if watch is None or seen is None:
         return watch, 0

@@ -15,7 +15,7 @@ from nonholo.io import Checkpoint, Plan
 from nonholo.orbit import AbstractMotion, Orbit
 from nonholo.simulation.events import Watch, computed_block, searched_first
 from nonholo.simulation.runs import CompiledRun, FirstState, RunOptions, RunState, opened
-from nonholo.simulation.stores._stored_events import descriptions, gone_on_from, seen_by
+from nonholo.simulation.stores._stored_events import descriptions, seen_by, watch_at_checkpoint
 
 if TYPE_CHECKING:
     from nonholo.io import Stream
@@ -49,7 +49,7 @@ def run_into_store(
     within_disk("simulate(store=...)", _bytes(run, steps), store, remedy)
     stream = io.create_stream(store, first, plan, opening, events, scenario)
     with io.locked(stream.path):
-        return go_on(run, stream, watch, throw=options.throw, progress=options.progress)
+        return continue_run(run, stream, watch, throw=options.throw, progress=options.progress)
 
 
 def _bytes(run: CompiledRun, steps: int) -> float:
@@ -58,7 +58,7 @@ def _bytes(run: CompiledRun, steps: int) -> float:
 
 
 def rows_of_block(where: str, run: CompiledRun, steps: int, block_steps: int | None) -> int:
-    """Return the number of saved states in a block of so many steps; by default blocks of a few megabytes."""
+    """Return the number of saved states in a block of this many steps; by default blocks of a few megabytes."""
     if block_steps is None:
         widest = max(1, *run.sizes)
         return max(1, min(1 + steps // run.every, _ROWS, _NUMBERS // widest, _STEPS // run.every))
@@ -90,11 +90,11 @@ def refuse_without_store(**given: Any) -> None:
             raise error(f"simulate({name}=...)", "come with a store", got, remedy)
 
 
-def go_on(run: CompiledRun, stream: "Stream", watch: Watch | None, *, throw: bool, progress: bool) -> Orbit:
+def continue_run(run: CompiledRun, stream: "Stream", watch: Watch | None, *, throw: bool, progress: bool) -> Orbit:
     """Compute what a locked store lacks, block after block, and return the orbit."""
     stream.prepare()
     _warn_of_other_versions(stream)
-    with io.telling_how_to_go_on(stream.path, "The run", lambda: f"step {_standing(stream)}"):
+    with io.reporting_how_to_resume(stream.path, "The run", lambda: f"step {_standing(stream)}"):
         reached = _completed(run, stream, watch, progress)
     orbit = _loaded(run, stream, reached)
     return finished(orbit, float(run.discrete.time_step), reached.done, stream.plan.steps, throw)
@@ -156,8 +156,8 @@ def _computed(
     report: Callable[[int], object],
 ) -> Checkpoint:
     """Compute a block and write it."""
-    going, chunks = gone_on_from(watch, begin.seen)
-    made = computed_block(run, RunState.of(begin.vector, run.sizes), going, stream.plan, block, report)
+    current, chunks = watch_at_checkpoint(watch, begin.seen)
+    made = computed_block(run, RunState.of(begin.vector, run.sizes), current, stream.plan, block, report)
     seen = None if made.watch is None else seen_by(made.watch, stream.chunks_after(chunks, made.orbit.events))
     reached = Checkpoint(made.done, made.orbit.outcome, made.state.vector, seen)
     stream.write(block, made.orbit, reached)

@@ -1,6 +1,6 @@
 r"""Tops and sleighs in very many dimensions, whose mass tensor is an arrowhead: a diagonal and one row and column.
 
-Every mass tensor takes this form in the axes that diagonalise the constrained inertia, so nothing is lost; and nothing
+Every mass tensor takes this form in the axes that diagonalize the constrained inertia, so nothing is lost; and nothing
 of size n x n is ever made.
 """
 
@@ -127,8 +127,8 @@ class ArrowheadSleigh(AbstractLLSystem):
         ValueError: A wrong shape, a mass or an inertia that is not positive.
 
     Example:
-        >>> centre = np.linspace(0.5, 0.0, 1000)
-        >>> nh.MultidimensionalSleigh.arrowhead(1.0, centre, np.linspace(1, 2, 1000), np.full(999, 0.01)).rank
+        >>> center = np.linspace(0.5, 0.0, 1000)
+        >>> nh.MultidimensionalSleigh.arrowhead(1.0, center, np.linspace(1, 2, 1000), np.full(999, 0.01)).rank
         1000
     """
 
@@ -145,8 +145,8 @@ class ArrowheadSleigh(AbstractLLSystem):
         mass = scale(f"{owner}(mass=...)", self.mass, "Pass the mass of the body.")
         diagonal, coupling = _arrow(owner, self.diagonal, self.coupling)
         where = f"{owner}(center_of_mass=...)"
-        centre = array(where, self.center_of_mass, diagonal.shape, "Pass n body coordinates.")
-        for field, value in zip(dataclasses.fields(self), (mass, centre, diagonal, coupling), strict=True):
+        center = array(where, self.center_of_mass, diagonal.shape, "Pass n body coordinates.")
+        for field, value in zip(dataclasses.fields(self), (mass, center, diagonal, coupling), strict=True):
             object.__setattr__(self, field.name, value)
         _refuse_negative(f"{owner}(diagonal=...)", self.inertia_along)
 
@@ -178,7 +178,7 @@ class ArrowheadSleigh(AbstractLLSystem):
 
     @property
     def inertia_along(self) -> WideInertia:
-        r"""The diagonal of $B_1$, the mass, and the offset of the centre of mass across the blade."""
+        r"""The diagonal of $B_1$, the mass, and the offset of the center of mass across the blade."""
         a = self.center_of_mass
         return WideInertia(self.diagonal[1:] + self.diagonal[0] + self.mass * a[0] ** 2, self.mass, a[1:])
 

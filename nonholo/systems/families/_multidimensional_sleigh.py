@@ -35,7 +35,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
     Args:
         mass: m.
         center_of_mass: a, n body coordinates from the reference point.
-        mass_tensor: $J_C$, symmetric (n, n), about the centre of mass.
+        mass_tensor: $J_C$, symmetric (n, n), about the center of mass.
 
     Raises:
         ValueError: A mass that is not positive, a wrong shape, an asymmetry, a value that is not finite, an inertia
@@ -60,13 +60,13 @@ class MultidimensionalSleigh(AbstractLLSystem):
         owner = "MultidimensionalSleigh"
         mass = scale(f"{owner}(mass=...)", self.mass, "Pass the mass of the body.")
         where, remedy = f"{owner}(center_of_mass=...)", "Pass n body coordinates."
-        centre = array(where, self.center_of_mass, (None,), remedy)
-        n = centre.shape[0]
+        center = array(where, self.center_of_mass, (None,), remedy)
+        n = center.shape[0]
         if n < 3:
             raise error(where, "have at least 3 coordinates", f"{n}", "In the plane use `ChaplyginSleigh`.")
-        where, remedy = f"{owner}(mass_tensor=...)", "Pass the mass tensor about the centre of mass."
+        where, remedy = f"{owner}(mass_tensor=...)", "Pass the mass tensor about the center of mass."
         tensor = symmetric(where, array(where, self.mass_tensor, (n, n), remedy), remedy)
-        for field, value in zip(dataclasses.fields(self), (mass, centre, tensor), strict=True):
+        for field, value in zip(dataclasses.fields(self), (mass, center, tensor), strict=True):
             object.__setattr__(self, field.name, value)
         positive_definite(where, self.constrained_inertia, "the inertia along the constraint", remedy)
 
@@ -74,7 +74,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
     def arrowhead(mass: Any, center_of_mass: Any, diagonal: Any, coupling: Any) -> "ArrowheadSleigh":
         r"""Build a sleigh in many dimensions: $J_C = \mathrm{diag}(d)$ plus c in the first row and column.
 
-        No n x n array is made. Every mass tensor has this form in the axes that diagonalise its block A.
+        No n x n array is made. Every mass tensor has this form in the axes that diagonalize its block A.
 
         Args:
             mass: m.
@@ -97,7 +97,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
     def __repr__(self) -> str:
         tensor = np.array2string(np.asarray(self.mass_tensor), prefix=" " * 39)
         head = f"mass={self.mass}, center_of_mass={np.asarray(self.center_of_mass).tolist()}"
-        return f"MultidimensionalSleigh({head},\n  mass tensor about the centre of mass = {tensor})"
+        return f"MultidimensionalSleigh({head},\n  mass tensor about the center of mass = {tensor})"
 
     @property
     def group(self) -> AbstractMatrixGroup:

@@ -15,7 +15,7 @@ from nonholo.systems._mass import body_tensor, checked_group, group_mass_tensor,
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class RigidBody(AbstractLLSystem):
-    r"""A free body on SO(n) (the top of Euler; discretised, of Moser and Veselov) or on SE(n).
+    r"""A free body on SO(n) (the top of Euler; discretized, of Moser and Veselov) or on SE(n).
 
     $$ l(\omega) = \tfrac12\mathrm{tr}(\hat\omega\,\mathbb{J}\,\hat\omega^T), \qquad \mathfrak{d} = \mathfrak{g},
        \qquad \dot p = \mathrm{ad}^*_\omega p; $$

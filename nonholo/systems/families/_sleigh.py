@@ -20,14 +20,14 @@ class ChaplyginSleigh(AbstractLLSystem):
 
     $$ l = \tfrac12\bigl[(J + m(a^2 + b^2))\omega^2 + m(v_1^2 + v_2^2) - 2mb\,\omega v_1 + 2ma\,\omega v_2\bigr]. $$
 
-    Reference: [fedorov-zenkov-2004], section 5 (whose J is about the centre of mass, as its formulas show).
+    Reference: [fedorov-zenkov-2004], section 5 (whose J is about the center of mass, as its formulas show).
 
     Args:
         mass: m.
-        inertia: J, about the centre of mass.
-        a: Coordinate of the centre of mass along the blade, from the contact point; the sleigh settles to move with the
+        inertia: J, about the center of mass.
+        a: Coordinate of the center of mass along the blade, from the contact point; the sleigh settles to move with the
             sign of a; a = 0 is balanced.
-        b: Coordinate of the centre of mass across the blade.
+        b: Coordinate of the center of mass across the blade.
 
     Raises:
         ValueError: A mass or inertia that is not positive, a value that is not finite.
@@ -49,7 +49,7 @@ class ChaplyginSleigh(AbstractLLSystem):
     has_blade: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        about = "Pass the moment of inertia about the centre of mass."
+        about = "Pass the moment of inertia about the center of mass."
         object.__setattr__(self, "mass", scale("ChaplyginSleigh(mass=...)", self.mass, "Pass the mass of the body."))
         object.__setattr__(self, "inertia", scale("ChaplyginSleigh(inertia=...)", self.inertia, about))
         object.__setattr__(self, "a", number("ChaplyginSleigh(a=...)", self.a))
@@ -90,7 +90,7 @@ class ChaplyginSleigh(AbstractLLSystem):
 
     @property
     def frame(self) -> Float[Array, "3 3"]:
-        """The translation to the foot of the centre of mass on the line through the contact point across the blade."""
+        """The translation to the foot of the center of mass on the line through the contact point across the blade."""
         xp = (self.b * self.mass).__array_namespace__()
         zero, one = xp.zeros_like(self.b), xp.ones_like(self.b)
         rows = ((one, zero, zero), (zero, one, self.b), (zero, zero, one))

@@ -89,7 +89,7 @@ class SuslovTop(AbstractLLSystem):
     def arrowhead(diagonal: Any, coupling: Any) -> "ArrowheadTop":
         r"""Build a top in many dimensions, n up to millions: $J = \mathrm{diag}(d)$ plus c in the last row and column.
 
-        No n x n array is made. Every mass tensor has this form in the axes that diagonalise B.
+        No n x n array is made. Every mass tensor has this form in the axes that diagonalize B.
 
         Args:
             diagonal: d, n numbers, n >= 3.
