@@ -89,6 +89,9 @@ def end_colors(orbit: Orbit) -> list[tuple[float, float, float, float]]:
     return [tuple(first), tuple(last)]
 
 
+component_colours, end_colours = component_colors, end_colors  # names they had, which still work
+
+
 def mark_time(axes: Axes, orbit: Orbit) -> LineCollection | None:
     """Lay the colors of time along the bottom of axes whose abscissa is time: the key to the other panels."""
     if len(orbit) < 2:

@@ -189,7 +189,7 @@ def test_a_closed_curve_of_maxima() -> None:
     """For B a multiple of the identity and c = 0 saddle and center coincide, and no isolated point is listed."""
     found = nh.critical_energies(nh.discretize(nh.SuslovTop(np.diag([1.0, 1.0, 1.0])), 1.0))
     assert found.saddle == pytest.approx(1.0)
-    assert found.centre == pytest.approx(1.0)
+    assert found.center == pytest.approx(1.0)
     assert len(found.points) == 1
 
 
@@ -222,3 +222,9 @@ def test_results_are_frozen() -> None:
     """Results are values."""
     with pytest.raises(dataclasses.FrozenInstanceError):
         _found("generic").saddle = 1.0
+
+
+def test_both_names_of_the_center() -> None:
+    """`centre` is another name of `center`."""
+    energies = _found("generic")
+    assert energies.centre == energies.center > energies.saddle

@@ -68,6 +68,11 @@ class CriticalEnergies:
     regular: bool
     points: tuple[CriticalPoint, ...]
 
+    @property
+    def centre(self) -> float | None:
+        """The same as `center`."""
+        return self.center
+
 
 def critical_energies(discrete: Discretization) -> CriticalEnergies:
     r"""Return the critical values of the energy on the displacement variety of a top in three dimensions.

@@ -1,0 +1,65 @@
+"""The words of the house: the list tells the words it names, in names and prose, and leaves alone what is quoted."""
+
+import re
+from pathlib import Path
+
+import pytest
+import words
+
+AMERICAN = {
+    "discretised": "discretized",
+    "neighbouring": "neighboring",
+    "centred": "centered",
+    "CENTRE": "CENTER",
+    "component_colours": "component_colors",
+    "Linearisation": "Linearization",
+    "labelled": "labeled",
+    "grey": "gray",
+    "towards": "toward",
+}
+OTHERS = "CancelledError otherwise precise raise optimistix labelleft four generalist analysis fulfilled promised arise"
+
+
+def _complaints(text: str, name: str = "a.py") -> list[str]:
+    return [complaint for _, complaint in words.words(name, text, words.TABLE["spelling"] | words.TABLE["phrases"])]
+
+
+def test_nothing_on_the_list_is_written() -> None:
+    """No file of the repository has a word of the list."""
+    assert words.complaints() == []
+
+
+@pytest.mark.parametrize(("word", "american"), AMERICAN.items())
+def test_words_are_noticed(word: str, american: str) -> None:
+    """A British word is noticed, inside a name too, once, and its American form is none."""
+    assert len(_complaints(f"x {word} y")) == 1
+    assert _complaints(f"x {american} y") == []
+
+
+def test_phrases_are_noticed_over_line_ends() -> None:
+    """Phrases are noticed wherever lines end."""
+    assert len(_complaints("a run that cannot be gone\n    on with, of your\nown; told")) == 2
+
+
+@pytest.mark.parametrize("word", OTHERS.split())
+def test_other_words_are_left_alone(word: str) -> None:
+    """Words that only look like one of the list are none."""
+    assert _complaints(f"x {word} y") == []
+
+
+def test_quotations_are_left_alone() -> None:
+    """The words of others, titles of works in the references and past releases of the changelog are theirs."""
+    assert _complaints("“behaviour” “the centre”") == []
+    assert _complaints("| [key] | A. Author, *The geometric discretisation* |", "docs/references.md") == []
+    assert len(_complaints("| [key] | A. Author, *The geometric discretisation* |", "docs/house.md")) == 1
+    assert len(_complaints("## [Unreleased]\ncolour\n## [0.1.0] - 2025\ncolour\n", "CHANGELOG.md")) == 1
+
+
+def test_every_exception_is_needed() -> None:
+    """Each exception of the list stands in its file and has a word of the list in it."""
+    for name, fragments in words.TABLE["allowed"].items():
+        text = (words.ROOT / Path(name)).read_text("utf-8")
+        for fragment in fragments:
+            assert fragment in text
+            patterns = words.TABLE["spelling"] | words.TABLE["phrases"]
+            assert any(re.search(pattern, fragment, re.IGNORECASE) for pattern in patterns)

@@ -1,0 +1,63 @@
+"""`python tests/words.py`: the words of the house, listed in words.toml, in code, tests and pages."""
+
+import re
+import sys
+import tomllib
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
+FOLDERS = ("nonholo", "nonholo_paper", "docs", "tests", "benchmarks", "scenarios")
+READ = (".py", ".pyi", ".md", ".toml", ".j2", ".cff", ".c", ".css")
+OLD_STORES = ("tests/io/schema_", "tests/io/earlier_routes/")
+NOT_READ = ("tests/words.toml", "tests/test_words.py", *OLD_STORES)
+QUOTED = {"docs/references.md": r"\*[^*\n]+\*", "CHANGELOG.md": r"(?s)\n## \[\d.*"}  # titles of works, past releases
+QUOTATION = r"“[^”]*”"
+
+
+def files(root: Path) -> list[str]:
+    """Return the files of a checkout whose words count."""
+    paths = [path for folder in FOLDERS for path in (root / folder).rglob("*")] + list(root.glob("*"))
+    names = {path.relative_to(root).as_posix() for path in paths if path.suffix in READ and path.is_file()}
+    return sorted(name for name in names if not name.startswith(NOT_READ))
+
+
+def stems(root: Path) -> list[str]:
+    """Return the names of files, without endings, that have a word of the list in them: they are cited as they are."""
+    names = {Path(name).stem for name in files(root)}
+    return sorted(name for name in names if any(re.search(word, name, re.IGNORECASE) for word in TABLE["spelling"]))
+
+
+def protected(name: str, text: str, cited: Sequence[str] = ()) -> list[tuple[int, int]]:
+    """Return the stretches of a text that are left alone: quotations, names of files, what the list allows."""
+    quoted = [QUOTATION, QUOTED.get(name, QUOTATION)]
+    fixed = map(re.escape, (*cited, *TABLE["allowed"].get(name, ())))
+    return [match.span() for pattern in (*quoted, *fixed) for match in re.finditer(pattern, text)]
+
+
+def words(name: str, text: str, patterns: dict[str, str], cited: Sequence[str] = ()) -> Iterator[tuple[int, str]]:
+    """Yield the places of words on the list, with what to write instead."""
+    matches = [(m, instead) for pattern, instead in patterns.items() for m in re.finditer(pattern, text, re.IGNORECASE)]
+    spans = protected(name, text, cited) if matches else []
+    for match, instead in matches:
+        if not any(start <= match.start() < end for start, end in spans):
+            yield match.start(), f"'{' '.join(match[0].split())}': write {match.expand(instead)}"
+
+
+def complaints(root: Path = ROOT) -> list[str]:
+    """Return a line for each word on the list, with its place and what to write instead."""
+    texts = {name: (root / name).read_text("utf-8") for name in files(root)}
+    vocabulary = "\n".join(set(re.findall(r"\w+", "\n".join(texts.values()))))
+    spelling = {word: to for word, to in TABLE["spelling"].items() if re.search(word, vocabulary, re.IGNORECASE)}
+    patterns, cited = spelling | TABLE["phrases"], stems(root)
+    return [
+        f"{name}:{text.count(chr(10), 0, at) + 1}: {complaint}"
+        for name, text in texts.items()
+        for at, complaint in words(name, text, patterns, cited)
+    ]
+
+
+if __name__ == "__main__":
+    print("\n".join(lines := complaints()))  # noqa: T201
+    sys.exit(bool(lines))
