@@ -34,8 +34,8 @@ def error(where: str, requirement: str, got: str, remedy: str) -> ValueError:
         >>> str(error("simulate(steps=...)", "be a positive integer", "0", "Pass steps=1 or more."))
         '`simulate(steps=...)` must be a positive integer. Got 0. Pass steps=1 or more.'
     """
-    told = f"`{where}` must {requirement}. Got {got}. {remedy}"
-    return ValueError("\n".join(map(printable, told.split("\n"))))
+    message = f"`{where}` must {requirement}. Got {got}. {remedy}"
+    return ValueError("\n".join(map(printable, message.split("\n"))))
 
 
 def printable(text: str) -> str:

@@ -72,10 +72,10 @@ def _machine() -> float:
         return math.inf
     for file in ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"):
         try:
-            told = Path(file).read_text().strip()
+            content = Path(file).read_text().strip()
         except OSError:
             continue
-        return whole if told in _UNLIMITED else min(whole, float(told))
+        return whole if content in _UNLIMITED else min(whole, float(content))
     return whole
 
 

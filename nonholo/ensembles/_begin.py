@@ -103,8 +103,8 @@ def check_same(store: SweepStore, task: Any, design: Design) -> None:
         task = task.on_route_of(theirs["task"])
         theirs["task"]["motion"] = io.motion_text(theirs["task"], task.discrete)
     ours = json.loads(json.dumps(_described(task, design)))
-    for told in (ours, theirs):
-        told["design"] = with_component_names(told["design"])
+    for entry in (ours, theirs):
+        entry["design"] = with_component_names(entry["design"])
     found = list(differences(ours, theirs))
     if found:
         remedy = "Pass that task and design, or choose another path."
@@ -113,8 +113,8 @@ def check_same(store: SweepStore, task: Any, design: Design) -> None:
 
 def functions_of(store: str | Path) -> list[str]:
     """Return the names of the functions that the task of a store would import: all but reductions of the library."""
-    told = open_store(store).description["task"]
-    names = told["reductions"] if told["kind"] == "EnsembleTask" else [told["name"]]
+    entry = open_store(store).description["task"]
+    names = entry["reductions"] if entry["kind"] == "EnsembleTask" else [entry["name"]]
     return [name for name in names if name not in REDUCTIONS]
 
 
@@ -128,9 +128,9 @@ def restored_task(store: SweepStore, task: Any, *, trust: bool = False) -> Task:
         check_same(store, task, store.design)
         return _as_begun(store, task)
     _refuse_untrusted(store, functions_of(store.path), trust=trust)
-    told = store.description["task"]
+    entry = store.description["task"]
     try:
-        made = ensemble_task_from(told) if told["kind"] == "EnsembleTask" else function_from(told["name"])
+        made = ensemble_task_from(entry) if entry["kind"] == "EnsembleTask" else function_from(entry["name"])
         return _as_begun(store, made)
     except (ImportError, ValueError) as failure:
         remedy = f"Pass it: nonholo.resume('{store.path}', task=...)."
@@ -156,8 +156,8 @@ def _refuse_untrusted(store: SweepStore, names: list[str], *, trust: bool) -> No
 
 
 def _described(task: Any, design: Design) -> dict[str, Any]:
-    told = task.describe() if isinstance(task, EnsembleTask) else {"kind": "function", "name": function_name(task)}
-    return {"task": told, "design": design_text(design)}
+    entry = task.describe() if isinstance(task, EnsembleTask) else {"kind": "function", "name": function_name(task)}
+    return {"task": entry, "design": design_text(design)}
 
 
 def _drawn(name: str, shape: tuple[int, ...]) -> Output:

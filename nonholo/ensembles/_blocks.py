@@ -73,4 +73,4 @@ def _mark(results: Results, members: int, seconds: float) -> Mark:
     codes, counts = np.unique(results.arrays[OUTCOME], return_counts=True)
     outcomes = {outcome_name(int(code)): int(count) for code, count in zip(codes, counts, strict=True)}
     writer = f"{socket.gethostname()}:{os.getpid()}"
-    return Mark(members, outcomes, seconds, time.time(), writer, [list(told) for told in results.messages])
+    return Mark(members, outcomes, seconds, time.time(), writer, [list(message) for message in results.messages])

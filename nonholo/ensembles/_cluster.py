@@ -53,8 +53,8 @@ def do_on_cluster(work: Work, blocks: Iterator[int], address: str, take: Callabl
         try:
             _do_blocks(work, blocks, client, take)
         except KilledWorker as failure:
-            told = "Workers were killed, or ran out of memory, again and again at the same block"
-            raise ChildProcessError(told) from failure
+            message = "Workers were killed, or ran out of memory, again and again at the same block"
+            raise ChildProcessError(message) from failure
         except Exception as failure:
             if client.status == "running" and not isinstance(failure, CommClosedError | CancelledError):
                 raise
@@ -97,21 +97,21 @@ def _restored(sent: bytes) -> Work:
     except (OSError, ValueError):
         is_seen = False
     if not is_seen:
-        told = f"The worker {worker} does not see this store: choose a path on a file system that all workers share"
-        raise FileNotFoundError(errno.ENOENT, told, str(work.store.path))
+        message = f"The worker {worker} does not see this store: choose a path on a file system that all workers share"
+        raise FileNotFoundError(errno.ENOENT, message, str(work.store.path))
     return work
 
 
 def _batches(running: Any, client: Any) -> Iterator[list[Any]]:
     """Yield what is finished, as soon as it is; warn when there is nobody to do the rest."""
-    seen, told = time.monotonic(), False
+    seen, warned = time.monotonic(), False
     while running.count():
         if running.has_ready():
             yield running.next_batch(block=False)
-            seen, told = time.monotonic(), False
-        elif not told and time.monotonic() - seen > _PATIENCE:
-            seen, told = time.monotonic(), not client.ncores()
-            if told:
+            seen, warned = time.monotonic(), False
+        elif not warned and time.monotonic() - seen > _PATIENCE:
+            seen, warned = time.monotonic(), not client.ncores()
+            if warned:
                 address = client.scheduler.address
                 text = f"The scheduler at {address} has no workers. The sweep waits for some: dask worker {address}"
                 warnings.warn(text, RuntimeWarning, stacklevel=2)

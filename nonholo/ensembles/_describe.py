@@ -29,11 +29,11 @@ def design_text(design: Design) -> dict[str, Any]:
 def design_from(text: dict[str, Any], axis: Callable[[str], np.ndarray]) -> Design:
     """Return the design of a description, with the names that it has there: arrays and random draws go by them."""
     if text["kind"] == "Grid":
-        along = {name: _sound(name, axis(name), told) for name, told in text["axes"].items()}
+        along = {name: _sound(name, axis(name), digest) for name, digest in text["axes"].items()}
         design: Design = Grid(along, seed=text["seed"])
         object.__setattr__(design, "values_along", along)
         return design
-    drawn = {name: _distribution(dict(told)) for name, told in text["distributions"].items()}
+    drawn = {name: _distribution(dict(entry)) for name, entry in text["distributions"].items()}
     design = RandomDesign(text["members"], drawn, seed=text["seed"])
     object.__setattr__(design, "distributions", drawn)
     return design
@@ -42,7 +42,7 @@ def design_from(text: dict[str, Any], axis: Callable[[str], np.ndarray]) -> Desi
 def with_component_names(text: dict[str, Any]) -> dict[str, Any]:
     """Return the description of a design with the names that results have now; older ones have brackets."""
     named = "axes" if text["kind"] == "Grid" else "distributions"
-    return text | {named: {component_name(name): told for name, told in text[named].items()}}
+    return text | {named: {component_name(name): entry for name, entry in text[named].items()}}
 
 
 def function_name(function: Callable[..., Any]) -> str:
@@ -92,9 +92,9 @@ def _short(value: Any) -> str:
     return text if len(text) <= 200 else f"{text[:200]}..."
 
 
-def _sound(name: str, values: np.ndarray, told: str) -> np.ndarray:
+def _sound(name: str, values: np.ndarray, digest: str) -> np.ndarray:
     """Return the values along an axis, which its description tells by their hash."""
-    if _hash(values) != told:
+    if _hash(values) != digest:
         remedy = "The store is damaged: copy it again from its source, or run it again."
         raise error("load_sweep(store=...)", f"hold the axis {name} of its design", "another one", remedy)
     return values
@@ -104,5 +104,5 @@ def _hash(values: np.ndarray) -> str:
     return hashlib.sha256(np.ascontiguousarray(values).tobytes() + repr(values.shape).encode()).hexdigest()
 
 
-def _distribution(told: dict[str, Any]) -> Any:
-    return DISTRIBUTIONS[told.pop("kind")](**told)
+def _distribution(entry: dict[str, Any]) -> Any:
+    return DISTRIBUTIONS[entry.pop("kind")](**entry)

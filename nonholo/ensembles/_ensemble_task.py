@@ -105,8 +105,8 @@ class EnsembleTask:
         try:
             batch = ensemble(self.discrete, parameters=parameters or None, **run, **starts)
         except ValueError as failure:  # its members are counted from the first one of the block
-            told = _MEMBER.sub(lambda number: f"This is member {block.first + int(number[1])}.", str(failure))
-            raise ValueError(told) from failure
+            message = _MEMBER.sub(lambda number: f"This is member {block.first + int(number[1])}.", str(failure))
+            raise ValueError(message) from failure
         found: dict[str, Any] = {OUTCOME: batch.outcome}
         for reduction in self.reductions:
             more = REDUCTIONS[reduction].function(batch) if isinstance(reduction, str) else reduction(batch)
@@ -178,15 +178,15 @@ class EnsembleTask:
         }
 
 
-def ensemble_task_from(told: dict[str, Any]) -> EnsembleTask:
+def ensemble_task_from(entry: dict[str, Any]) -> EnsembleTask:
     """Return the task of a description, whose functions are imported; refuse one of which data are not enough."""
-    missing = unstored(json.loads(told["motion"])) or unstored(json.loads(told["parameters"]))
+    missing = unstored(json.loads(entry["motion"])) or unstored(json.loads(entry["parameters"]))
     if missing:
         raise ValueError(f"one whose {missing}")
-    reductions = [name if name in REDUCTIONS else function_from(name) for name in told["reductions"]]
-    start = dict([told["start"]]) if told["start"] else {}
-    options = {name: told[name] for name in ("steps", "save_every", "reconstruct")}
-    motion: Any = io.restore_motion(told, None)
+    reductions = [name if name in REDUCTIONS else function_from(name) for name in entry["reductions"]]
+    start = dict([entry["start"]]) if entry["start"] else {}
+    options = {name: entry[name] for name in ("steps", "save_every", "reconstruct")}
+    motion: Any = io.restore_motion(entry, None)
     return EnsembleTask(motion, reductions=reductions, **options, **start)
 
 

@@ -28,13 +28,13 @@ class Reduction(NamedTuple):
 def _final_state(batch: Ensemble) -> Reduced:
     ended = _ended(batch)
     found: Reduced = {
-        "final_time": ((), ended.time[:, 0], _told("time of the last good state", "time unit")),
-        "final_momentum": (("component",), ended.restricted_momentum[:, 0], _told("restricted momentum")),
-        "final_energy": ((), ended.energy[:, 0], _told("reduced constrained energy")),
-        "steps_done": ((), batch.steps_done, _told("good steps", "1")),
+        "final_time": ((), ended.time[:, 0], _labels("time of the last good state", "time unit")),
+        "final_momentum": (("component",), ended.restricted_momentum[:, 0], _labels("restricted momentum")),
+        "final_energy": ((), ended.energy[:, 0], _labels("reduced constrained energy")),
+        "steps_done": ((), batch.steps_done, _labels("good steps", "1")),
     }
     if (pose := ended.pose) is not None:
-        found["final_pose"] = ("pose_component",), pose[:, 0], _told("compact pose")
+        found["final_pose"] = ("pose_component",), pose[:, 0], _labels("compact pose")
     return found
 
 
@@ -42,7 +42,7 @@ def final_state_of_schema_1(batch: Ensemble) -> Reduced:
     """Return what "final_state" had in stores of schema 1: the pose in the canonical frame."""
     found, ended = _final_state(batch), _ended(batch)
     if ended.canonical_pose is not None:
-        found["final_pose"] = ("pose_component",), ended.canonical_pose[:, 0], _told("compact pose, canonical frame")
+        found["final_pose"] = ("pose_component",), ended.canonical_pose[:, 0], _labels("compact pose, canonical frame")
     return found
 
 
@@ -50,7 +50,7 @@ def _energy_drift(batch: Ensemble) -> Reduced:
     begun, ended = batch.first_energy, _ended(batch).energy[:, 0]
     with np.errstate(invalid="ignore"):  # 0/0 at rest, where energy cannot drift
         drift = np.where(ended == begun, 0.0, np.abs((ended - begun) / begun))
-    return {"energy_drift": ((), np.where(np.isfinite(ended), drift, np.nan), _told("relative error of energy", "1"))}
+    return {"energy_drift": ((), np.where(np.isfinite(ended), drift, np.nan), _labels("relative error of energy", "1"))}
 
 
 def _is_plane_sleigh(system: AbstractSystem) -> bool:
@@ -64,8 +64,8 @@ def _limit_angle(batch: Ensemble) -> Reduced:
         got, remedy = shown(batch.members.discrete), "Write your own reduction."
         raise error("reduction 'limit_angle'", "have a plane sleigh or a top with n = 3", got, remedy)
     if form.is_sleigh:
-        return {"heading_turn": ((), _heading_turn(batch), _told("total turn of the heading", "rad"))}
-    return {"axis_angle": ((), _axis_angle(batch), _told("angle between the axes in space", "rad"))}
+        return {"heading_turn": ((), _heading_turn(batch), _labels("total turn of the heading", "rad"))}
+    return {"axis_angle": ((), _axis_angle(batch), _labels("angle between the axes in space", "rad"))}
 
 
 def _heading_turn(batch: Ensemble) -> Float[np.ndarray, "M"]:
@@ -85,7 +85,7 @@ def _turning_deviation(batch: Ensemble) -> Reduced:
     with np.errstate(divide="ignore", invalid="ignore"):  # a balanced sleigh turns forever
         part = np.abs(_heading_turn(batch)) / np.where(a == 0, np.nan, turn_of_flow(mass, inertia, a))
     missing = np.where(batch.outcome == Outcome.successful, 1 - part, np.nan)
-    return {"turning_deviation": ((), missing, _told("part of the flow's total turn that is missing", "1"))}
+    return {"turning_deviation": ((), missing, _labels("part of the flow's total turn that is missing", "1"))}
 
 
 def _axis_angle(batch: Ensemble) -> Float[np.ndarray, "M"]:
@@ -105,7 +105,7 @@ def _branch_counts(batch: Ensemble) -> Reduced:
     each = [(batch.members.of(member), r) for member, r in enumerate(batch.first_momentum)]
     found = [displacements_over(discrete, discrete.system.from_canonical(r)) for discrete, r in each]
     counts = np.array([int(values.multiplicity[values.is_real].sum()) for values in found])
-    return {"real_branches": ((), counts, _told("real values of the map over the first momentum", "1"))}
+    return {"real_branches": ((), counts, _labels("real values of the map over the first momentum", "1"))}
 
 
 def _lyapunov(batch: Ensemble) -> Reduced:
@@ -123,7 +123,7 @@ def _lyapunov(batch: Ensemble) -> Reduced:
     elapsed = batch.steps_done * batch.members.time_step
     with np.errstate(invalid="ignore", divide="ignore"):
         exponent = np.where(elapsed > 0, growth / elapsed, np.nan)
-    return {"lyapunov": ((), exponent, _told("largest finite-time Lyapunov exponent of momenta", "1 / time unit"))}
+    return {"lyapunov": ((), exponent, _labels("largest finite-time Lyapunov exponent of momenta", "1 / time unit"))}
 
 
 def _jacobians(batch: Ensemble, member: int) -> Float[np.ndarray, "steps k k"]:
@@ -145,7 +145,7 @@ def _ended(batch: Ensemble) -> Ensemble:
     return dataclasses.replace(batch, save_every=None, steps_done=done, **states)
 
 
-def _told(meaning: str, units: str = "") -> dict[str, str]:
+def _labels(meaning: str, units: str = "") -> dict[str, str]:
     return {"long_name": meaning} | ({"units": units} if units else {})
 
 

@@ -124,5 +124,5 @@ def _other_versions(store: SweepStore, finished: Done) -> str:
     )
 
 
-def _warn(told: str) -> None:
-    warnings.warn(told, RuntimeWarning, stacklevel=2)
+def _warn(message: str) -> None:
+    warnings.warn(message, RuntimeWarning, stacklevel=2)

@@ -70,8 +70,8 @@ def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scena
     target = path.resolve()
     check_target(target, overwrite=overwrite)
     with new_beside(path) as part:
-        told = attributes(orbit) | ({} if scenario is None else attributes_of_text(scenario))
-        _write(stored_variables(orbit), told, part)
+        metadata = attributes(orbit) | ({} if scenario is None else attributes_of_text(scenario))
+        _write(stored_variables(orbit), metadata, part)
         put_in_place(part, target, overwrite=overwrite)
 
 
@@ -133,20 +133,20 @@ def _exists(path: str | Path, remedy: str, where: str = "save_orbit(path=...)") 
     return FileExistsError(f"`{where}` must be new. Got '{path}', which exists. {remedy}")
 
 
-def _write(variables: dict[str, xarray.Variable], told: dict[str, Any], path: Path) -> None:
+def _write(variables: dict[str, xarray.Variable], metadata: dict[str, Any], path: Path) -> None:
     shapes = {name: variable.shape for name, variable in variables.items()}
-    group = new_group(path, told | {"arrays": json.dumps(shapes)}, OrbitMetadata)
+    group = new_group(path, metadata | {"arrays": json.dumps(shapes)}, OrbitMetadata)
     group.create_group(CANONICAL.rstrip("/"))
     arrays = {name: _write_array(group, name, variable) for name, variable in variables.items()}
     edit_attributes(path, {"seal": seal_of_whole(path, arrays)})
     consolidate(path)
 
 
-def new_group(path: Path, told: dict[str, Any], kind: type[BaseModel]) -> zarr.Group:
+def new_group(path: Path, metadata: dict[str, Any], kind: type[BaseModel]) -> zarr.Group:
     """Make a store with attributes, refused if they could not be read again, and their checksum."""
-    told |= {"checksum": checksum(told)}
-    check_metadata("store=...", str(path), json.loads(json.dumps(told)), kind)
-    return zarr.create_group(path, zarr_format=3, attributes=told)
+    metadata |= {"checksum": checksum(metadata)}
+    check_metadata("store=...", str(path), json.loads(json.dumps(metadata)), kind)
+    return zarr.create_group(path, zarr_format=3, attributes=metadata)
 
 
 def consolidate(path: Path) -> None:

@@ -27,10 +27,10 @@ _CRC, _BITS = 4, 48  # bytes at the end of a chunk; bits of a seal, which a floa
 
 def seal_of(root: Path, record: int | str, chunks: Iterable[Path]) -> int:
     """Return one number of the places and the checksums of chunks, and of what they belong to."""
-    told = hashlib.sha256(f"{record}".encode())
+    seal = hashlib.sha256(f"{record}".encode())
     for chunk in chunks:
-        told.update(f"\n{chunk.relative_to(root).as_posix()} {_crc(chunk).hex()}".encode())
-    return int.from_bytes(told.digest()[: _BITS // 8])
+        seal.update(f"\n{chunk.relative_to(root).as_posix()} {_crc(chunk).hex()}".encode())
+    return int.from_bytes(seal.digest()[: _BITS // 8])
 
 
 def _crc(chunk: Path) -> bytes:

@@ -112,5 +112,5 @@ def described(events: list[dict[str, Any]]) -> str:
 
 
 def _described(event: dict[str, Any]) -> str:
-    told = ", ".join(f"{name}={event[name]}" for name in ("direction", "stop") if event[name])
-    return f"{event['name']!r}" + (f" ({told})" if told else "")
+    options = ", ".join(f"{name}={event[name]}" for name in ("direction", "stop") if event[name])
+    return f"{event['name']!r}" + (f" ({options})" if options else "")

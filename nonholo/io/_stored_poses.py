@@ -98,5 +98,5 @@ def _warn(path: Path, done: int, steps: int) -> None:
     owner = owner_of(path)
     resume = f"Resume with nonholo.resume({str(path)!r}) (nonholo resume)."
     now = f"It is being written by {owner}." if owner else resume
-    told = f"The run in '{path}' is not finished: its poses go up to step {done} of {steps}. {now}"
-    warnings.warn(told, RuntimeWarning, stacklevel=4)
+    message = f"The run in '{path}' is not finished: its poses go up to step {done} of {steps}. {now}"
+    warnings.warn(message, RuntimeWarning, stacklevel=4)

@@ -133,12 +133,12 @@ class Stream:
         """Cut the arrays to the good states, add the outcome and consolidate the metadata."""
         require_identity(self.path, self.made)
         shapes = self._fit(1 + end.done // self.plan.every)
-        told: dict[str, Any] = {"outcome": end.outcome.name, "arrays": json.dumps(shapes)}
+        metadata: dict[str, Any] = {"outcome": end.outcome.name, "arrays": json.dumps(shapes)}
         if self.events is not None and end.seen is not None:
             cut_crossings(self._arrays[EVENTS], end.seen.chunks)
-            told["crossings"] = json.dumps(end.seen.counts.tolist())
-            told["stopped_by"] = self.events[end.seen.stopped] if end.is_stopped else None
-        edit_attributes(self.path, told)
+            metadata["crossings"] = json.dumps(end.seen.counts.tolist())
+            metadata["stopped_by"] = self.events[end.seen.stopped] if end.is_stopped else None
+        edit_attributes(self.path, metadata)
         consolidate(self.path)
 
     @functools.cached_property
@@ -276,11 +276,11 @@ def standing(path: str | Path) -> Standing | None:
 
 def _create(part: Path, first: Orbit, plan: Plan, opening: Checkpoint, extra: dict[str, str]) -> None:
     variables, rows = stored_variables(first), 1 + plan.steps // plan.every
-    told = {name: value for name, value in attributes(first).items() if name != "outcome"}
+    metadata = {name: value for name, value in attributes(first).items() if name != "outcome"}
     run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.canonical_pose is not None, "sealed": True}
     shapes = {name: (rows, *variable.shape[1:]) for name, variable in variables.items()}
-    told |= {"run": json.dumps(run), "arrays": json.dumps(shapes), **extra}
-    group = new_group(part, told, OrbitMetadata)
+    metadata |= {"run": json.dumps(run), "arrays": json.dumps(shapes), **extra}
+    group = new_group(part, metadata, OrbitMetadata)
     group.create_group(CANONICAL.rstrip("/"))
     for name, variable in variables.items():
         create_array(group, name, variable, rows, plan.rows, is_coordinate=is_coordinate(name))

@@ -98,9 +98,9 @@ class EventLog(AbstractEventLog[Crossings]):
     stopped_by: str | None = None
 
     def __repr__(self) -> str:
-        told = ", ".join(f"{name}: {len(found)}" for name, found in zip(self.names, self.found, strict=True))
+        counts = ", ".join(f"{name}: {len(found)}" for name, found in zip(self.names, self.found, strict=True))
         ended = f", stopped by {self.stopped_by}" if self.stopped_by else ""
-        return f"<EventLog of crossings: {told}{ended}>"
+        return f"<EventLog of crossings: {counts}{ended}>"
 
 
 def joined_states(parts: Sequence[Orbit]) -> Orbit:

@@ -9,20 +9,20 @@ from pathlib import Path
 from typing import cast
 
 from nonholo.base.results import OutcomeError
-from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors, told_warnings, warn
+from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, store_errors, warn
 from nonholo.cli.screen.provenance import show_provenance
 from nonholo.cli.screen.sweep_report import leave_if_all_raised, show_sweep, sweep_figures
 from nonholo.ensembles import functions_of, resume, standing_of
 from nonholo.io import read_attributes
 from nonholo.orbit import Orbit
 
-_TOLD = 5  # warnings of a sweep that are reported
+_MOST_WARNINGS = 5  # warnings of a sweep that are reported
 
 
 def continue_and_report(store: Path, continued: Callable[[bool], Orbit], *, json: bool) -> None:
     """Run, name what was damaged, report what the store holds now."""
     stopped = None
-    with told_warnings(), store_errors(USAGE):
+    with reporting_warnings(), store_errors(USAGE):
         try:
             orbit = continued(sys.stderr.isatty())
         except OutcomeError as failure:
@@ -51,7 +51,7 @@ def resume_sweep(store: Path, scheduler: str | None, workers: int | None, *, tru
 @contextlib.contextmanager
 def reporting_stops(store: Path) -> Iterator[None]:
     """Tell what stopped a sweep and how to resume, and at its end what it warned of."""
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", RuntimeWarning)
         try:
             yield
@@ -62,10 +62,10 @@ def reporting_stops(store: Path) -> Iterator[None]:
                 raise
             leave(f"{failure.strerror or failure} (nonholo resume {store})", FAILED)
         finally:
-            for warning in told[:_TOLD]:
+            for warning in caught[:_MOST_WARNINGS]:
                 warn(str(warning.message))
-            if len(told) > _TOLD:
-                warn(f"and {len(told) - _TOLD} more of this kind.")
+            if len(caught) > _MOST_WARNINGS:
+                warn(f"and {len(caught) - _MOST_WARNINGS} more of this kind.")
 
 
 def _where(store: Path) -> str:

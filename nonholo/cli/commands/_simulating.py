@@ -9,7 +9,7 @@ import typer
 from nonholo.base.progress import waiting
 from nonholo.cli.commands._running import Ran, check_output, run_and_keep
 from nonholo.cli.scenario.files import Loaded, Setting, load_scenario, parse_setting
-from nonholo.cli.screen.errors import FAILED, USAGE, leave, scenario_errors, store_errors, told_warnings
+from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, scenario_errors, store_errors
 from nonholo.cli.screen.pictures import beside, draw, warn_of_older
 from nonholo.cli.screen.report import as_json, duration, figures, show
 from nonholo.orbit import Orbit
@@ -26,7 +26,7 @@ def simulate_and_keep(
     quiet: bool,
 ) -> None:
     """Load, run, save, draw, report; options of the command line come before the settings of `--set`."""
-    with scenario_errors(), told_warnings():
+    with scenario_errors(), reporting_warnings():
         given = [Setting(f"{opt} {value}", key, value) for key, (opt, value) in chosen.items() if value is not None]
         loaded = load_scenario(name, given + [parse_setting(text) for text in settings])
     with store_errors(USAGE):
@@ -46,7 +46,7 @@ def simulate_and_keep(
 
 def _run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progress: bool) -> tuple[Path | None, Ran]:
     try:
-        with store_errors(FAILED), scenario_errors(), told_warnings():
+        with store_errors(FAILED), scenario_errors(), reporting_warnings():
             return run_and_keep(loaded, store, overwrite=overwrite, progress=progress)
     except KeyboardInterrupt as stop:
         leave(str(stop) or "Stopped. A run this short is not kept.", FAILED)

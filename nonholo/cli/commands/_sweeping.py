@@ -16,7 +16,7 @@ from nonholo.cli.scenario.files import Loaded, Setting, parse_setting
 from nonholo.cli.scenario.problems import ScenarioError, problem_of_value
 from nonholo.cli.scenario.sweep_files import load_sweep_scenario, sweep_text
 from nonholo.cli.scenario.sweeps import SweepScenario
-from nonholo.cli.screen.errors import USAGE, leave, scenario_errors, store_errors, told_warnings
+from nonholo.cli.screen.errors import USAGE, leave, reporting_warnings, scenario_errors, store_errors
 from nonholo.cli.screen.pictures import beside
 from nonholo.cli.screen.sweep_picture import draw_sweep
 from nonholo.cli.screen.sweep_report import leave_if_all_raised, show_sweep, sweep_figures
@@ -35,7 +35,7 @@ def sweep_and_keep(
     quiet: bool,
 ) -> None:
     """Load, run, draw, report; options of the command line come before the settings of `--set`."""
-    with scenario_errors(), told_warnings():
+    with scenario_errors(), reporting_warnings():
         given = [_setting(option, key, value) for key, (option, value) in chosen.items() if value is not None]
         loaded = load_sweep_scenario(name, given + [parse_setting(text) for text in settings])
         task = _task(loaded)

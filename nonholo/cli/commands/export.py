@@ -31,7 +31,7 @@ def export(
     from nonholo.cli.commands._caches import use_cache_folder
 
     use_cache_folder()
-    from nonholo.cli.screen.errors import FAILED, USAGE, store_errors, told_warnings
+    from nonholo.cli.screen.errors import FAILED, USAGE, reporting_warnings, store_errors
     from nonholo.io import SWEEP_FORMAT, check_file, format_of, read_attributes, store_to_csv
 
     is_sweep = format_of(store) == SWEEP_FORMAT
@@ -42,7 +42,7 @@ def export(
             read_attributes(store)
         if output:
             check_file(output, overwrite=overwrite)
-    with store_errors(FAILED), told_warnings(), _ending_with_the_reader():
+    with store_errors(FAILED), reporting_warnings(), _ending_with_the_reader():
         if is_sweep:
             from nonholo.ensembles import sweep_to_csv
 

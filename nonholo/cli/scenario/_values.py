@@ -84,13 +84,13 @@ def _count(given: Any) -> int:
 def _list(given: Any) -> "np.ndarray":
     import numpy as np
 
-    told = f"must be a list of numbers, vectors or matrices of one shape, or a range such as {_RANGE}"
+    requirement = f"must be a list of numbers, vectors or matrices of one shape, or a range such as {_RANGE}"
     if not isinstance(given, list) or not given or not _are_numbers(given):
-        raise ValueError(f"{told}. Got {given!r}")
+        raise ValueError(f"{requirement}. Got {given!r}")
     try:
         return np.array(given, dtype=float)
     except ValueError:
-        raise ValueError(f"{told}. Got {given!r}") from None
+        raise ValueError(f"{requirement}. Got {given!r}") from None
 
 
 def _are_numbers(given: Any) -> bool:
@@ -155,5 +155,5 @@ def _distributions() -> "dict[str, Callable[[Any, Any], AbstractDistribution]]":
 def _known(given: dict[str, Any], keys: list[str], needed: list[str], example: str) -> None:
     unknown, missing = [key for key in given if key not in keys], [key for key in needed if key not in given]
     if unknown or missing:
-        told = f"without {', '.join(missing)}" if missing else f"with {', '.join(unknown)}"
-        raise ValueError(f"must have the keys of {example}. Got a table {told}")
+        fault = f"without {', '.join(missing)}" if missing else f"with {', '.join(unknown)}"
+        raise ValueError(f"must have the keys of {example}. Got a table {fault}")

@@ -76,7 +76,7 @@ def _complete_one(own: dict[str, Any], name: str, given: Any) -> None:
         given["size"] = len(own[name])
     if name in own or _COMPONENT.fullmatch(name):
         return
-    with contextlib.suppress(ValueError):  # told as a problem of the design
+    with contextlib.suppress(ValueError):  # reported as a problem of the design
         own[name] = _typical(given)
 
 
@@ -89,7 +89,7 @@ def _complete_start(own: dict[str, Any], held: dict[str, Any]) -> None:
     wanted = [(owner, component) for component in range(len(parts))]
     if parts.keys() != set(wanted):
         return
-    with contextlib.suppress(ValueError):  # told as a problem of the design
+    with contextlib.suppress(ValueError):  # reported as a problem of the design
         own[owner] = [_typical(parts[part]) for part in wanted]
 
 
@@ -125,8 +125,8 @@ def _refused_values(scenario: SweepScenario) -> list[tuple[str, str]]:
         for name in getattr(values, table):
             whole = _COMPONENT.sub(r"\1", name) if table == "start" else name
             if whole not in names:
-                told = f"cannot be varied. {suggestion(name, list(names))}"
-                found.append((f"design.values.{table}.{name}", told))
+                problem = f"cannot be varied. {suggestion(name, list(names))}"
+                found.append((f"design.values.{table}.{name}", problem))
             elif whole != name and getattr(scenario.start, whole) is None:
                 found.append((f"start.{whole}", f"is missing: {name} is varied, the other components are given here"))
     return found

@@ -28,7 +28,7 @@ _warn_once = functools.cache(warn)  # of a body, which a command may make severa
 
 
 @contextlib.contextmanager
-def told_warnings() -> Iterator[None]:
+def reporting_warnings() -> Iterator[None]:
     """Print warnings of the library as they come, those of a body once."""
 
     def show(message: Warning | str, category: type[Warning], *_: object) -> None:

@@ -90,8 +90,8 @@ def _rows(figures: dict[str, Any]) -> list[tuple[str, str, str]]:
         "largest_step_angle": ("largest step angle", " degrees", "well below 90 degrees"),
     }
     rows = [(figures[name], *entry) for name, entry in expected.items()]
-    told = [(label, f"{value:.3g}{unit}", note) for value, label, unit, note in rows if value is not None]
-    return [*told, ("outcome", figures["outcome"], "successful")]
+    lines = [(label, f"{value:.3g}{unit}", note) for value, label, unit, note in rows if value is not None]
+    return [*lines, ("outcome", figures["outcome"], "successful")]
 
 
 def _label(name: str) -> str:

@@ -46,7 +46,7 @@ def sweep_figures(
         "members_per_second_of_one_worker": rate,
         "steps_per_second_of_one_worker": rate * steps if rate and steps and not standing.failed else None,
         "bytes": sum(file.stat().st_size for file in store.rglob("*") if file.is_file()),
-        "messages": [list(told) for told in standing.messages[:_MESSAGES]],
+        "messages": [list(message) for message in standing.messages[:_MESSAGES]],
         "state": _state(standing),
     }
 
@@ -69,8 +69,8 @@ def show_sweep(
 def leave_if_all_raised(figures: dict[str, Any]) -> None:
     """End the command with a failure if not one member has a result."""
     if figures["outcomes"].get("raised") == figures["members"]:
-        told = f": {figures['messages'][0][1]}" if figures["messages"] else ""
-        leave(f"Every member raised{told}", FAILED)
+        reason = f": {figures['messages'][0][1]}" if figures["messages"] else ""
+        leave(f"Every member raised{reason}", FAILED)
 
 
 def _state(standing: SweepStanding) -> str:
@@ -84,7 +84,7 @@ def _rows(store: Path, figures: dict[str, Any]) -> dict[str, str]:
     came = f"{members:,}" if done == members else f"{done:,} of {members:,}, {100 * done / members:.1f} %"
     state = figures["state"] + (f"; resume with: nonholo resume {store}" if figures["state"] == "stopped" else "")
     speeds = {"members_per_second_of_one_worker": "members/s", "steps_per_second_of_one_worker": "steps/s"}
-    told = [f"{figures[key]:,.3g} {unit}" for key, unit in speeds.items() if figures[key]]
+    rates = [f"{figures[key]:,.3g} {unit}" for key, unit in speeds.items() if figures[key]]
     speed = figures["members_per_second"]
     time = {"time": f"{duration(figures['seconds'])}, {speed:,.3g} members/s"} if speed else {}
     rows = {"members": came} | ({} if state == "finished" else {"sweep": state})
@@ -92,7 +92,7 @@ def _rows(store: Path, figures: dict[str, Any]) -> dict[str, str]:
         rows[f"  {name}"] = f"{count:,}  ({100 * count / done:.3g} %)"
     for name, (least, most, meaning) in figures["ranges"].items():
         rows[name] = f"{least:.6g} to {most:.6g}  {meaning}"
-    return rows | time | {"one worker": ", ".join(told) or "unknown", "size on disk": size_text(figures["bytes"])}
+    return rows | time | {"one worker": ", ".join(rates) or "unknown", "size on disk": size_text(figures["bytes"])}
 
 
 def _ranges(result: xarray.Dataset) -> dict[str, tuple[float, float, str]]:
@@ -106,9 +106,9 @@ def _ranges(result: xarray.Dataset) -> dict[str, tuple[float, float, str]]:
             kept = values.where(good).values
             kept = kept[np.isfinite(kept)]
             if kept.size:
-                told = str(values.attrs.get("long_name", ""))
+                meaning = str(values.attrs.get("long_name", ""))
                 least, most, _ = found.get(str(name), (math.inf, -math.inf, ""))
-                found[str(name)] = (min(least, float(kept.min())), max(most, float(kept.max())), told)
+                found[str(name)] = (min(least, float(kept.min())), max(most, float(kept.max())), meaning)
     return found
 
 

@@ -51,12 +51,12 @@ def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: b
 
 def _task(store: SweepStore) -> EnsembleTask:
     """Return the task without its reductions, of which poses need none."""
-    told = store.description["task"]
-    if "final_state" not in told.get("reductions", ()) or "final_pose" not in store.outputs:
+    entry = store.description["task"]
+    if "final_state" not in entry.get("reductions", ()) or "final_pose" not in store.outputs:
         remedy = "Keep 'final_state' with reconstruct=True; nonholo.load_sweep(store) has other results."
         raise error(_WHERE, "hold poses", f"'{store.path}', which holds none", remedy)
     try:
-        return ensemble_task_from(told | {"reductions": []})
+        return ensemble_task_from(entry | {"reductions": []})
     except ValueError as failure:
         remedy = "nonholo.load_sweep(store) has the poses as they are kept."
         got = f"'{store.path}', {str(failure).rstrip('.')}"

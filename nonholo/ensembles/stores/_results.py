@@ -13,7 +13,7 @@ from nonholo.ensembles._names import OUTCOME, array_name
 
 ABSENT, RAISED = -128, 100
 """Outcomes of members that are not computed yet, and for which the task raised; the others are those of `Outcome`."""
-_TOLD = 20  # failures of a block whose messages are kept
+_MOST_MESSAGES = 20  # failures of a block whose messages are kept
 _PROBES = 8
 
 Task: TypeAlias = Callable[[MemberBlock], Any]
@@ -59,7 +59,7 @@ def attempted(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> Res
     middle = block.count // 2
     halves = [attempted(task, part, outputs) for part in (block.part(0, middle), block.part(middle, block.count))]
     arrays = {name: np.concatenate([half.arrays[name] for half in halves]) for name in outputs}
-    return Results(arrays, (halves[0].messages + halves[1].messages)[:_TOLD])
+    return Results(arrays, (halves[0].messages + halves[1].messages)[:_MOST_MESSAGES])
 
 
 def probed(task: Task, block_at: Callable[[int, int], MemberBlock], members: int) -> dict[str, Output]:
@@ -91,8 +91,8 @@ def _check_two(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> No
 
 def _outputs(named: dict[str, Any]) -> dict[str, Output]:
     found = {name: _output(*entry) for name, entry in named.items()}
-    told = {"long_name": "how the member ended", **flags()}
-    return {**found, OUTCOME: Output((), (), "int8", told)}
+    labels = {"long_name": "how the member ended", **flags()}
+    return {**found, OUTCOME: Output((), (), "int8", labels)}
 
 
 def flags() -> dict[str, Any]:

@@ -50,7 +50,7 @@ def standing_of(path: str | Path) -> SweepStanding:
     for mark in marks:
         outcomes.update(mark.outcomes)
     done, seconds = sum(mark.members for mark in marks), sum(mark.seconds for mark in marks)
-    messages = [told for mark in marks for told in mark.messages]
+    messages = [message for mark in marks for message in mark.messages]
     rate = done / seconds if seconds else math.nan
     owner = owner_of(store.path)
     return SweepStanding(done, math.prod(store.layout.sizes), dict(outcomes), rate, messages, owner, store.is_finished)

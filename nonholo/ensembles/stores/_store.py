@@ -72,22 +72,22 @@ class SweepStore:
     @functools.cached_property
     def layout(self) -> Layout:
         """The cut of members into blocks."""
-        return Layout(*(tuple(sizes) for sizes in self._told["layout"]))
+        return Layout(*(tuple(sizes) for sizes in self._content["layout"]))
 
     @functools.cached_property
     def outputs(self) -> dict[str, Output]:
         """The contents of each array."""
-        return {name: Output(tuple(d), tuple(s), t, a) for name, (d, s, t, a) in self._told["outputs"].items()}
+        return {name: Output(tuple(d), tuple(s), t, a) for name, (d, s, t, a) in self._content["outputs"].items()}
 
     @functools.cached_property
     def design(self) -> Design:
         """The design; values along axes are read from their arrays."""
-        return design_from(self._told["design"], self._axis)
+        return design_from(self._content["design"], self._axis)
 
     @property
     def description(self) -> dict[str, Any]:
         """The task and the design as plain data."""
-        return {"task": self._told["task"], "design": self._told["design"]}
+        return {"task": self._content["task"], "design": self._content["design"]}
 
     @property
     def schema(self) -> int:
@@ -143,7 +143,7 @@ class SweepStore:
         return mark._replace(
             outcomes={printable(name): count for name, count in mark.outcomes.items()},
             writer=printable(mark.writer),
-            messages=[[member, printable(str(told).replace("\n", " "))] for member, told in mark.messages],
+            messages=[[member, printable(str(message).replace("\n", " "))] for member, message in mark.messages],
         )
 
     def marks(self) -> Iterator[tuple[int, Mark]]:
@@ -223,13 +223,13 @@ class SweepStore:
         except io.DamagedError as flaw:
             got = f"{flaw}, in '{self.path}'"
             raise error("resume(store=...)", f"hold the axis {name}", got, _AGAIN) from None
-        told = list(axis_dimensions(name, found)), _AXIS
-        if (list(array.metadata.dimension_names or ()), array.metadata.attributes) != told:  # type: ignore[union-attr]
+        expected = list(axis_dimensions(name, found)), _AXIS
+        if (list(array.metadata.dimension_names or ()), array.metadata.attributes) != expected:  # type: ignore[union-attr]
             raise error("resume(store=...)", f"hold the axis {name}", f"another one in '{self.path}'", _AGAIN)
         return found
 
     @functools.cached_property
-    def _told(self) -> dict[str, Any]:
+    def _content(self) -> dict[str, Any]:
         return json.loads(attributes_of(self.path)["sweep"])
 
     @functools.cached_property
@@ -243,10 +243,10 @@ class SweepStore:
         """Refuse an array that is not the one of the description, of which the attributes have a checksum."""
         output, chunk = self.outputs[name], self.layout.chunk
         shape, chunks = (*self.layout.sizes, *output.shape), (*chunk, *(max(1, size) for size in output.shape))
-        told = [list(shape), list(chunks), output.dtype, json.dumps(output.attributes)]
+        expected = [list(shape), list(chunks), output.dtype, json.dumps(output.attributes)]
         found = [list(array.shape), list(array.chunks), str(array.dtype), json.dumps(array.metadata.attributes)]
         dimensions = [*self.design.sizes, *output.dimensions]
-        if [*found, list(array.metadata.dimension_names or ())] != [*told, dimensions]:  # type: ignore[union-attr]
+        if [*found, list(array.metadata.dimension_names or ())] != [*expected, dimensions]:  # type: ignore[union-attr]
             got = f"another one in '{self.path}'"
             raise error("resume(store=...)", f"hold the array {name} of its description", got, _AGAIN)
 
@@ -269,8 +269,8 @@ def create_store(
     target, made = path.resolve(), uuid.uuid4().hex
     if target.exists():
         raise _exists(path)
-    told = description | {"layout": layout, "outputs": {name: dataclasses.astuple(o) for name, o in outputs.items()}}
-    about = {"format": FORMAT, "schema": SCHEMA, "made": made, "finished": False, "sweep": json.dumps(told)}
+    content = description | {"layout": layout, "outputs": {name: dataclasses.astuple(o) for name, o in outputs.items()}}
+    about = {"format": FORMAT, "schema": SCHEMA, "made": made, "finished": False, "sweep": json.dumps(content)}
     with io.new_beside(path) as part:
         group = io.new_group(part, about | {"versions": io.versions_text()} | extra, io.SweepMetadata)
         _create_arrays(group, design, layout, outputs)

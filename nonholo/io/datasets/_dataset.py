@@ -114,8 +114,8 @@ def is_known(system: System, name: str, *, posed: bool, discrete: bool) -> bool:
 def labels_of(system: System, name: str) -> tuple[tuple[str, ...], dict[str, str]]:
     """Return the dimensions of a quantity after those of the states, and its attributes."""
     axes, meaning, units = _LABELS[name]
-    told = _SPATIAL.get(name, meaning) if system.is_spatial else meaning
-    return axes, {"long_name": told, "units": units}
+    long_name = _SPATIAL.get(name, meaning) if system.is_spatial else meaning
+    return axes, {"long_name": long_name, "units": units}
 
 
 def _is_known(orbit: Orbit, name: str) -> bool:
@@ -134,7 +134,7 @@ def _posed(orbit: Orbit, before: np.ndarray | None) -> dict[str, xarray.Variable
     if orbit.canonical_pose is None or orbit.canonical_pose.shape[1] > _MOST:
         return {}
     variables = pose_variables(orbit, before).items()
-    return {name: xarray.Variable(("step", *axes), values, told) for name, (axes, values, told) in variables}
+    return {name: xarray.Variable(("step", *axes), values, labels) for name, (axes, values, labels) in variables}
 
 
 def _has_multipliers(orbit: Orbit) -> bool:
@@ -149,5 +149,5 @@ def _padded(rows: np.ndarray, count: int) -> np.ndarray:
 
 
 def _variable(orbit: Orbit, name: str, values: np.ndarray | None = None) -> xarray.Variable:
-    axes, told = labels_of(orbit.system, name)
-    return xarray.Variable(("step", *axes), getattr(orbit, name) if values is None else values, told)
+    axes, labels = labels_of(orbit.system, name)
+    return xarray.Variable(("step", *axes), getattr(orbit, name) if values is None else values, labels)

@@ -74,9 +74,9 @@ def _named(group: AbstractMatrixGroup, rows: Float[np.ndarray, "... c"]) -> Vari
     where, turned = rows[..., : len(position)], rows[..., len(position) :]
     found: Variables = {}
     if position and set(position) <= set("xyz"):
-        found |= {name: ((), where[..., i], _told("position", "length unit")) for i, name in enumerate(position)}
+        found |= {name: ((), where[..., i], _labels("position", "length unit")) for i, name in enumerate(position)}
     elif position:
-        found["position"] = _AXIS, where, _told("position", "length unit")
+        found["position"] = _AXIS, where, _labels("position", "length unit")
     return found | _turn(group, turn, turned)
 
 
@@ -84,14 +84,14 @@ def _turn(group: AbstractMatrixGroup, turn: list[str], turned: np.ndarray) -> Va
     if not turn:
         return {}
     if turn == HEADING:
-        return {"heading": ((), turned[..., 0], _told("angle of the body", "rad"))}
+        return {"heading": ((), turned[..., 0], _labels("angle of the body", "rad"))}
     if turn == QUATERNION:
-        told = _told("unit quaternion w, x, y, z of the body, Hamilton's product", "1")
-        return {"quaternion": (("quaternion_component",), turned, told)}
+        labels = _labels("unit quaternion w, x, y, z of the body, Hamilton's product", "1")
+        return {"quaternion": (("quaternion_component",), turned, labels)}
     size = round(np.sqrt(turned.shape[-1]))
     name, meaning = ("rotation", "rotation") if group.is_rigid else ("configuration", "pose")
-    return {name: (_ENTRIES, turned.reshape(*turned.shape[:-1], size, size), _told(f"{meaning} as a matrix", "1"))}
+    return {name: (_ENTRIES, turned.reshape(*turned.shape[:-1], size, size), _labels(f"{meaning} as a matrix", "1"))}
 
 
-def _told(meaning: str, units: str) -> dict[str, str]:
+def _labels(meaning: str, units: str) -> dict[str, str]:
     return {"long_name": meaning, "units": units}

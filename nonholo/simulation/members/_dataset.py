@@ -23,20 +23,20 @@ def ensemble_to_dataset(ensemble: Ensemble) -> xarray.Dataset:
     variables: dict[str, Any] = {"time": (_EACH, ensemble.time, {"long_name": "time", "units": "time unit"})}
     for name in ("energy", "restricted_momentum"):
         if io.is_known(system, name, posed=posed, discrete=True):
-            axes, told = io.labels_of(system, name)
-            variables[name] = (*_EACH, *axes), getattr(ensemble, name), told
+            axes, labels = io.labels_of(system, name)
+            variables[name] = (*_EACH, *axes), getattr(ensemble, name), labels
     if posed:
         poses = io.separate_variables(system.group, ensemble.configuration)
-        variables |= {name: ((*_EACH, *axes), values, told) for name, (axes, values, told) in poses.items()}
+        variables |= {name: ((*_EACH, *axes), values, labels) for name, (axes, values, labels) in poses.items()}
     variables["outcome"] = "member", ensemble.outcome, {"long_name": "how the member ended, a nonholo.Outcome"}
     variables["steps_done"] = "member", ensemble.steps_done, {"long_name": "good steps"}
     for name, values in members.parameters.items():
         axes = _AXES[: values.ndim - 1] if values.ndim != 2 else (f"{name}_component",)
         variables[name] = ("member", *axes), values, {"long_name": "parameter of the member"}
-    return xarray.Dataset(variables, attrs=_told(ensemble)).set_coords("time")
+    return xarray.Dataset(variables, attrs=_attributes(ensemble)).set_coords("time")
 
 
-def _told(ensemble: Ensemble) -> dict[str, Any]:
+def _attributes(ensemble: Ensemble) -> dict[str, Any]:
     none = slice(0, 0)
     shared = Orbit(
         ensemble.members.discrete,

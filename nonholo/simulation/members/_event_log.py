@@ -49,5 +49,5 @@ class MemberEvents(AbstractEventLog[MemberCrossings]):
     stopped_by: Int[np.ndarray, "M"]
 
     def __repr__(self) -> str:
-        told = ", ".join(f"{name}: {found.count.sum()}" for name, found in zip(self.names, self.found, strict=True))
-        return f"<MemberEvents of crossings: {told}, {np.sum(self.stopped_by >= 0)} members stopped>"
+        counts = ", ".join(f"{name}: {found.count.sum()}" for name, found in zip(self.names, self.found, strict=True))
+        return f"<MemberEvents of crossings: {counts}, {np.sum(self.stopped_by >= 0)} members stopped>"

@@ -104,8 +104,8 @@ def _warn_of_other_versions(stream: "Stream") -> None:
     """Say so if what is still to compute may differ in its last bits from a run with the versions of the store."""
     others = io.other_versions(io.read_attributes(stream.path))
     if others and not stream.is_finished:
-        told = f"The store '{stream.path}' was begun with {others}: what follows may differ from it in the last bits."
-        warnings.warn(told, RuntimeWarning, stacklevel=4)
+        message = f"The store '{stream.path}' was begun with {others}: the last bits of what follows may differ."
+        warnings.warn(message, RuntimeWarning, stacklevel=4)
 
 
 def _standing(stream: "Stream") -> str:
@@ -137,8 +137,8 @@ def _sound(stream: "Stream", block: int) -> Checkpoint | None:
     try:
         return stream.sound(block) if _is_final(stream, block, stream.checkpoint(block + 1)) else None
     except io.DamagedError as flaw:
-        told = f"The store '{stream.path}' is damaged: {flaw}. Block {block} is computed again from its checkpoint."
-        warnings.warn(told, RuntimeWarning, stacklevel=5)
+        message = f"The store '{stream.path}' is damaged: {flaw}. Block {block} is computed again from its checkpoint."
+        warnings.warn(message, RuntimeWarning, stacklevel=5)
         return None
 
 
