@@ -22,8 +22,8 @@ STEPS = (0.4, 0.2, 0.1, 0.05, 0.025)
 
 def turn(time_step: float) -> float:
     """Return the whole turn of the discrete sleigh in degrees."""
-    found = nh.heteroclinic(nh.discretize(SLEIGH, time_step), energy=ENERGY)
-    return float(np.degrees(found.limits.heading_turn))
+    connection = nh.heteroclinic(nh.discretize(SLEIGH, time_step), energy=ENERGY)
+    return float(np.degrees(connection.limits.heading_turn))
 
 
 def numbers() -> dict[str, float]:

@@ -90,12 +90,12 @@ def deltoid(discrete: Discretization) -> Deltoid:
         ValueError: Another system or discretization, or a = 0 (then two values are real if h |pi| < J, none beyond).
 
     Example:
-        >>> found = deltoid(nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=1.0), 1.0))
-        >>> found.cusps
+        >>> curve = deltoid(nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=1.0), 1.0))
+        >>> curve.cusps
         array([[ 0.        , -4.        ],
                [ 1.29903811, -1.75      ],
                [-1.29903811, -1.75      ]])
-        >>> found.real_branches([[0.0, -2.5], [0.0, 0.0]]).tolist()
+        >>> curve.real_branches([[0.0, -2.5], [0.0, 0.0]]).tolist()
         [3, 1]
     """
     checked, variety = planar_map("deltoid(discrete=...)", discrete)

@@ -67,8 +67,8 @@ def equilibria(system: AbstractLLSystem | Discretization, energy: Array = 1.0) -
 
     Example:
         >>> sleigh = nh.ChaplyginSleigh(mass=2.0, inertia=1.5, a=0.5)
-        >>> found = equilibria(nh.discretize(sleigh, time_step=0.5), energy=1.0)
-        >>> found.velocity, found.rates, found.multipliers
+        >>> states = equilibria(nh.discretize(sleigh, time_step=0.5), energy=1.0)
+        >>> states.velocity, states.rates, states.multipliers
         (array([0., 1., 0.]), array([-0.5]), array([0.77777778]))
     """
     body, step = _checked("equilibria(system=...)", system)

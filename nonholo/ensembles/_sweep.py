@@ -62,8 +62,8 @@ def sweep(
         >>> def sums(block):
         ...     return {"total": block["x"] + block["y"]}
         >>> with TemporaryDirectory() as folder:
-        ...     found = nh.sweep(sums, nh.Grid({"x": [1.0, 2.0], "y": [10.0, 20.0, 30.0]}), f"{folder}/sums.zarr")
-        ...     found["total"].sel(x=2.0).values
+        ...     result = nh.sweep(sums, nh.Grid({"x": [1.0, 2.0], "y": [10.0, 20.0, 30.0]}), f"{folder}/sums.zarr")
+        ...     result["total"].sel(x=2.0).values
         array([12., 22., 32.])
     """
     name, workers = checked_scheduler(scheduler, workers)
@@ -91,7 +91,7 @@ def load_sweep(store: str | Path) -> xarray.Dataset:
             names the array and the chunk.
 
     Example:
-        >>> found = nh.load_sweep("sweep.zarr")  # doctest: +SKIP
+        >>> result = nh.load_sweep("sweep.zarr")  # doctest: +SKIP
     """
     where = "load_sweep(store=...)"
     opened = open_store(path(where, store))

@@ -25,8 +25,8 @@ class Crossings:
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
         >>> orbit = nh.simulate(sleigh, body_velocity=(0.1, -1.0, 0.0), steps=100, events=[nh.cusp])
-        >>> found = orbit.events["cusp"]
-        >>> found.step, found.time.round(3), bool(np.all(abs(found.states.body_velocity[:, 1]) < 1e-15))
+        >>> cusps = orbit.events["cusp"]
+        >>> cusps.step, cusps.time.round(3), bool(np.all(abs(cusps.states.body_velocity[:, 1]) < 1e-15))
         (array([71]), array([7.169]), True)
     """
 

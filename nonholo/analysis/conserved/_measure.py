@@ -86,8 +86,8 @@ class InvariantMeasure:
             ValueError: A flow, a wrong shape, a value that is not finite.
 
         Example:
-            >>> found = invariant_measure(nh.discretize(nh.ChaplyginSleigh(1.0, 0.75, 0.5), 0.5))
-            >>> float(np.round(found.jacobian(nh.SE(2).exp(np.array([0.0, 0.4, 0.0]))), 12))
+            >>> measure = invariant_measure(nh.discretize(nh.ChaplyginSleigh(1.0, 0.75, 0.5), 0.5))
+            >>> float(np.round(measure.jacobian(nh.SE(2).exp(np.array([0.0, 0.4, 0.0]))), 12))
             0.818181818182
         """
         where = "InvariantMeasure.jacobian(displacement=...)"
@@ -141,8 +141,8 @@ def invariant_measure(motion: AbstractLLSystem | Discretization, energy: Array =
 
     Example:
         >>> top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
-        >>> found = invariant_measure(nh.discretize(top, 0.2))
-        >>> found.every_density, round(found.witness, 6)
+        >>> measure = invariant_measure(nh.discretize(top, 0.2))
+        >>> measure.every_density, round(measure.witness, 6)
         (False, 0.946804)
         >>> invariant_measure(nh.SuslovTop(np.diag([1.0, 2.0, 3.0]))).every_density
         True

@@ -94,10 +94,10 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
 
     Example:
         >>> top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
-        >>> found = critical_energies(nh.discretize(top, 1.0))
-        >>> print(f"{found.equatorial_saddle:.6f} {found.saddle:.6f} {found.center:.6f}")
+        >>> energies = critical_energies(nh.discretize(top, 1.0))
+        >>> print(f"{energies.equatorial_saddle:.6f} {energies.saddle:.6f} {energies.center:.6f}")
         0.347449 0.930510 1.262473
-        >>> found.regular, found.fold == found.saddle, round(found.line, 6)
+        >>> energies.regular, energies.fold == energies.saddle, round(energies.line, 6)
         (True, True, 1.008824)
     """
     form = _checked("critical_energies(discrete=...)", discrete)

@@ -60,8 +60,8 @@ def single_valued_region(sleigh: Discretization) -> SingleValuedRegion:
         ValueError: Another system or discretization, or a = 0 (then two branches are real however small the energy).
 
     Example:
-        >>> found = single_valued_region(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1))
-        >>> print(f"{found.energy:.10f} {found.principal_energy:.10f} {found.bound_of_the_paper:.10f}")
+        >>> region = single_valued_region(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1))
+        >>> print(f"{region.energy:.10f} {region.principal_energy:.10f} {region.bound_of_the_paper:.10f}")
         50.0000000000 78.1250000000 12.5000000000
     """
     strip, h = _checked("single_valued_region(sleigh=...)", sleigh)

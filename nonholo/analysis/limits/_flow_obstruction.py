@@ -69,8 +69,8 @@ def flow_obstruction(
         OutcomeError: The branch ends on the way.
 
     Example:
-        >>> found = flow_obstruction(nh.discretize(nh.ChaplyginSleigh(1.0, 0.2, 1.0), 1.0), energy=1.125)
-        >>> print(f"{found.amplitude:.1e}")
+        >>> obstruction = flow_obstruction(nh.discretize(nh.ChaplyginSleigh(1.0, 0.2, 1.0), 1.0), energy=1.125)
+        >>> print(f"{obstruction.amplitude:.1e}")
         4.5e-03
     """
     where = "flow_obstruction(discrete=...)"

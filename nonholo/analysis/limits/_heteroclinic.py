@@ -66,10 +66,10 @@ def heteroclinic(
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=0.75, a=0.5), 0.2)
-        >>> found = heteroclinic(sleigh, energy=0.5)
-        >>> found.orbit.body_velocity[[0, -1], 1].round(12)
+        >>> connection = heteroclinic(sleigh, energy=0.5)
+        >>> connection.orbit.body_velocity[[0, -1], 1].round(12)
         array([-1.,  1.])
-        >>> bool(np.ptp(found.orbit.energy) < 1e-14)
+        >>> bool(np.ptp(connection.orbit.energy) < 1e-14)
         True
     """
     where = "heteroclinic(discrete=...)"

@@ -49,8 +49,8 @@ def displacements_over(discrete: Discretization, restricted_momentum: Any, certi
         A top has four values, here two of them complex:
 
         >>> top = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.5)
-        >>> found = displacements_over(top, [0.1, -0.05])
-        >>> found.is_real, found.principal
+        >>> values = displacements_over(top, [0.1, -0.05])
+        >>> values.is_real, values.principal
         (array([ True,  True, False, False]), 0)
         >>> certified = displacements_over(top, [0.1, -0.05], certify=True)
         >>> certified.is_real, bool(certified.radius.max() < 1e-14)
@@ -85,9 +85,9 @@ def branches(
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), time_step=0.1)
-        >>> found = branches(sleigh, momentum=[1.0, 0.2])
+        >>> values = branches(sleigh, momentum=[1.0, 0.2])
         >>> after = nh.step(sleigh, np.array([1.0, 0.2]))
-        >>> bool(np.allclose(found.momentum[found.principal], after.momentum))
+        >>> bool(np.allclose(values.momentum[values.principal], after.momentum))
         True
     """
     frame = _checked("branches", discrete)

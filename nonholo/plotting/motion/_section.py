@@ -57,10 +57,10 @@ def section(
         >>> top = nh.discretize(nh.VeselovaTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.1)
         >>> level = nh.Event(lambda states: states.configuration[:, 2, 2], direction=1, stop=20)
         >>> orbit = nh.simulate(top, restricted_velocity=(1.0, -0.6), steps=10_000, events=[level])
-        >>> drawn = nh.plot.section(
+        >>> picture = nh.plot.section(
         ...     orbit.events[0], lambda states: states.body_velocity[:, 0], lambda states: states.body_velocity[:, 1]
         ... )
-        >>> drawn.points.shape
+        >>> picture.points.shape
         (20, 2)
     """
     if not isinstance(crossings, Crossings) or not len(crossings):

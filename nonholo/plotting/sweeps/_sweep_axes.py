@@ -49,8 +49,8 @@ class Subject:
     @property
     def title(self) -> str:
         """The meaning of the quantity."""
-        told = str(self.values.attrs.get("long_name") or label(self.values))
-        return told[:1].upper() + told[1:]
+        name = str(self.values.attrs.get("long_name") or label(self.values))
+        return name[:1].upper() + name[1:]
 
 
 def subject_of(result: Any, quantity: str | None) -> Subject:
