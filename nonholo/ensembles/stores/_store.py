@@ -173,8 +173,8 @@ class SweepStore:
         if mark is None:
             raise io.DamagedError(f"no mark {self._mark_file(block).name}")
         if mark.seal not in (None, self._seal(block)):
-            told = f"a chunk of another place in block {block}, which {self._mark_file(block).name} seals"
-            raise io.DamagedError(told)
+            flaw = f"a chunk of another place in block {block}, which {self._mark_file(block).name} seals"
+            raise io.DamagedError(flaw)
         return mark
 
     def _seal(self, block: int) -> int:
