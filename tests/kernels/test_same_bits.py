@@ -48,7 +48,9 @@ def _compiled_functions(*rooms: str) -> dict[str, ast.FunctionDef]:
     """Return the functions that numba compiles in some rooms, by their places."""
     found = {}
     for room in rooms:
-        for file in (Path(nonholo.__file__).parent / room).rglob("*.py"):
+        files = list((Path(nonholo.__file__).parent / room).rglob("*.py"))
+        assert files, room
+        for file in files:
             for node in ast.walk(ast.parse(file.read_text())):
                 if isinstance(node, ast.FunctionDef) and any(map(_compiles, node.decorator_list)):
                     found[f"{file}:{node.name}"] = node
@@ -58,7 +60,7 @@ def _compiled_functions(*rooms: str) -> dict[str, ast.FunctionDef]:
 @pytest.mark.profile("routes", instead="test_bits_of_a_fresh_cache")
 def test_every_compiled_function_is_run() -> None:
     """The live motions call each function that numba compiles: a new one needs a motion that does."""
-    functions = _compiled_functions("continuous", "kernels", "numerics")
+    functions = _compiled_functions("continuous", "kernels", "base/numerics")
     assert set(functions) - set(_printed("calls", NUMBA_DISABLE_JIT="1")) == set()
 
 
@@ -79,7 +81,7 @@ def test_compiled_functions_round_as_ieee_says() -> None:
 
     Outside kernels one may: the pose of a top in closed form takes an exponential of the library.
     """
-    functions = _compiled_functions("kernels", "numerics")
+    functions = _compiled_functions("kernels", "base/numerics")
     assert len(functions) > 100
     assert _scalar.COMPILED == {"error_model": "numpy"}
     loose = {place: [ast.unparse(n) for n in ast.walk(f) if _inexact(n)] for place, f in functions.items()}
