@@ -3,6 +3,7 @@
 from nonholo.discrete._scheme import Scheme
 from nonholo.discrete._variety import variety_of
 from nonholo.discrete.routes._base import AbstractRoute
+from nonholo.discrete.routes._closed_forms import closed_form
 from nonholo.discrete.routes._composed import ComposedRoute
 from nonholo.discrete.routes._definition import DefinitionRoute
 from nonholo.discrete.routes._matrix import MatrixRoute
@@ -31,8 +32,8 @@ def _single(scheme: Scheme, wanted: str | None) -> AbstractRoute:
     system, step, difference, constraint = scheme.system, scheme.time_step, scheme.difference, scheme.constraint
     form = system.normal_form
     if difference == "matrix" and constraint in ("skew", "exponential"):
-        if wanted in _SCALAR and form is not None and ScalarRoute.covers(form):
-            return ScalarRoute(system, form, step)
+        if wanted in _SCALAR and form is not None and (closed := closed_form(form)):
+            return ScalarRoute(system, form, closed, step)
         if wanted in _SECULAR and form is not None and SecularRoute.covers(form):
             return SecularRoute(system, form, step)
         if wanted in _MATRIX and not (variety := variety_of(system, constraint)).exponential:
