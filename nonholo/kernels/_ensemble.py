@@ -15,9 +15,7 @@ from numba.extending import overload
 from nonholo.base.compiled import njit
 from nonholo.kernels import _driver
 from nonholo.kernels._interface import Body, certified, correction, increment, move, principal
-from nonholo.kernels._scalar import COMPILED
-from nonholo.kernels._sleigh import SleighBody
-from nonholo.kernels._suslov import SuslovBody
+from nonholo.kernels._scalar import COMPILED, scalar
 
 LANES = 32
 _M, _K, _Y, _U, _V, _Q = 0, 64, 128, 192, 256, 320  # momenta, compensations, three charts (2 rows each), pose (4)
@@ -53,19 +51,28 @@ def _shared(p: Any, table: Any, j: Any) -> Any:
     return p
 
 
-def _own_top(p: Any, table: Any, j: Any) -> Any:
-    return SuslovBody(table[j], table[32 + j], table[64 + j], table[96 + j], table[128 + j], table[160 + j])
+def _reader(count: int) -> Any:
+    """Return the function that reads this many fields of a member, one after another: numba knows how many."""
+    if count == 1:
+        return scalar(lambda table, j: (table[j],))
+    before, row = _reader(count - 1), LANES * (count - 1)
+    return scalar(lambda table, j: (*before(table, j), table[row + j]))
 
 
-def _own_sleigh(p: Any, table: Any, j: Any) -> Any:
-    return SleighBody(table[j], table[32 + j], table[64 + j])
+def _own(body: type[Body]) -> Any:
+    read = _reader(len(body._fields))  # pyright: ignore
+
+    def own(p: Any, table: Any, j: Any) -> Any:
+        return body(*read(table, j))
+
+    return own
 
 
 @overload(member, jit_options=COMPILED, strict=False)
 def _compiled_member(p: Any, table: Any, j: Any) -> Any:
     if isinstance(table, numba.types.NoneType):
         return _shared
-    return _own_top if p.instance_class is SuslovBody else _own_sleigh
+    return _own(p.instance_class)
 
 
 def table_of(tables: np.ndarray | None, block: int) -> np.ndarray | None:

@@ -1,7 +1,7 @@
 """The compiled runs, whatever the body: what each kind of body has, in one table."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, get_args
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -28,24 +28,28 @@ class _Runs(NamedTuple):
     step_each: Callable[..., Rows] | None
 
 
+def _runs(body: AnyBody) -> _Runs:
+    return _RUNS.get(type(body), _SCALAR)
+
+
 def sizes(body: AnyBody) -> tuple[int, int, int]:
     """Return the numbers of momenta, chart coordinates and pose entries of a state."""
-    return _RUNS[type(body)].sizes(body)
+    return _runs(body).sizes(body)
 
 
 def start(body: AnyBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
     """Return the outcome of the first root and the state of a run that begins with scaled momenta and a pose."""
-    return _RUNS[type(body)].start(body, np.array(momentum), np.array(pose))
+    return _runs(body).start(body, np.array(momentum), np.array(pose))
 
 
 def chart_of(body: AnyBody, state: np.ndarray) -> np.ndarray:
     """Return the chart coordinates of the displacement in a state."""
-    return _RUNS[type(body)].chart_of(body, state)
+    return _runs(body).chart_of(body, state)
 
 
 def advance(body: AnyBody, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
     """Take up to `steps` steps into rows of momenta, charts and poses; return how many were good and the outcome."""
-    return _RUNS[type(body)].advance(body, state, steps, every, *rows)
+    return _runs(body).advance(body, state, steps, every, *rows)
 
 
 def step_each(
@@ -55,7 +59,7 @@ def step_each(
     principal_only: bool,
 ) -> Rows:
     """Take one step from each row of momenta, charts and, for right-invariant constraints, poses as matrices."""
-    each = _RUNS[type(body)].step_each
+    each = _runs(body).step_each
     if each is None:
         raise TypeError(f"`step_each` needs a plain body. Got {type(body).__name__}. Use `whole_steps`.")
     return each(body, *states, guesses, principal_only)
@@ -106,7 +110,6 @@ def _composed_advance(body: ComposedBody, state: np.ndarray, steps: int, every: 
 
 _SCALAR = _Runs(lambda _: (2, 2, 4), _scalar_start, lambda _, state: state[4:6], _driver.advance, _scalar_each)
 _RUNS: dict[type, _Runs] = {
-    **dict.fromkeys(get_args(Body), _SCALAR),
     SecularBody: _Runs(_secular_sizes, secular_run.start, secular_run.chart_in, secular_run.advance, _secular_each),
     GeneralBody: _Runs(_general_sizes, general_run.start, _general_chart, general_run.advance, _general_each),
     ComposedBody: _Runs(lambda body: sizes(body.body), _composition.start, _composed_chart, _composed_advance, None),

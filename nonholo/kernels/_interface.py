@@ -1,54 +1,58 @@
-"""The functions every structured step offers, chosen by the type of its body.
+"""The functions every structured step offers: those of the file that defines its body.
 
-Plain Python (and so JAX) picks at call time, numba at compile time, from the same table.
+Plain Python (and so JAX) picks them at call time, numba when it compiles.
 """
 
+import sys
 from collections.abc import Callable
+from types import ModuleType
 from typing import Any, TypeAlias
 
 from numba.extending import overload
 
-from nonholo.kernels import _sleigh, _suslov
 from nonholo.kernels._scalar import COMPILED
 
-Body: TypeAlias = _suslov.SuslovBody | _sleigh.SleighBody
+Body: TypeAlias = tuple[Any, ...]
+"""A named tuple of scalars, with two momenta, two Cayley coordinates and up to four numbers of a pose."""
 
-_MODULES = {_suslov.SuslovBody: _suslov, _sleigh.SleighBody: _sleigh}
+
+def _file_of(body: type) -> ModuleType:
+    return sys.modules[body.__module__]
 
 
 def residual(p: Body, m1: Any, m2: Any, y1: Any, y2: Any) -> tuple[Any, Any]:
     """Return the equations for the Cayley coordinates y of the displacement with scaled momenta m."""
-    return _MODULES[type(p)].residual(p, m1, m2, y1, y2)
+    return _file_of(type(p)).residual(p, m1, m2, y1, y2)
 
 
 def correction(p: Body, m1: Any, m2: Any, y1: Any, y2: Any) -> tuple[Any, Any]:
     """Return the Newton correction of y."""
-    return _MODULES[type(p)].correction(p, m1, m2, y1, y2)
+    return _file_of(type(p)).correction(p, m1, m2, y1, y2)
 
 
 def certified(p: Body, m1: Any, m2: Any, y1: Any, y2: Any) -> Any:
     """Tell whether a root y is certainly the principal one."""
-    return _MODULES[type(p)].certified(p, m1, m2, y1, y2)
+    return _file_of(type(p)).certified(p, m1, m2, y1, y2)
 
 
 def increment(p: Body, m1: Any, m2: Any, y1: Any, y2: Any) -> tuple[Any, Any]:
     """Return the change of the scaled momenta in one step."""
-    return _MODULES[type(p)].increment(p, m1, m2, y1, y2)
+    return _file_of(type(p)).increment(p, m1, m2, y1, y2)
 
 
 def move(p: Body, y1: Any, y2: Any, q0: Any, q1: Any, q2: Any, q3: Any) -> tuple[Any, Any, Any, Any]:
     """Return the compact pose after one displacement."""
-    return _MODULES[type(p)].move(p, y1, y2, q0, q1, q2, q3)
+    return _file_of(type(p)).move(p, y1, y2, q0, q1, q2, q3)
 
 
 def principal(p: Body, m1: float, m2: float) -> tuple[int, float, float]:
     """Return the outcome and the root reached from momentum zero along s m."""
-    return _MODULES[type(p)].principal(p, m1, m2)
+    return _file_of(type(p)).principal(p, m1, m2)
 
 
 def _compile(function: Callable[..., Any]) -> None:
     def choose(p: Any, *_: Any) -> Any:
-        return getattr(_MODULES[p.instance_class], function.__name__)
+        return getattr(_file_of(p.instance_class), function.__name__)
 
     overload(function, jit_options=COMPILED, strict=False)(choose)
 
@@ -58,7 +62,7 @@ for _function in (residual, correction, certified, increment, move):
 
 
 def _choose_principal(p: Any, *_: Any) -> Any:
-    solver = _MODULES[p.instance_class].principal
+    solver = _file_of(p.instance_class).principal
     return lambda p, m1, m2: solver(p, m1, m2)
 
 

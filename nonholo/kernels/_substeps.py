@@ -5,7 +5,7 @@ plane have a loop of their own, in `_composition`.
 """
 
 from collections.abc import Callable
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 from numba.extending import overload
@@ -110,17 +110,15 @@ def _general_charted(p: GeneralBody, m: np.ndarray, root: np.ndarray, chart: np.
     assign(chart, root * p.stretch)
 
 
-def chosen(
-    secular: Callable[..., Any], general: Callable[..., Any], two: Callable[..., Any] | None = None
-) -> Callable[..., Any]:
+def chosen(secular: Callable[..., Any], general: Callable[..., Any], two: Any = None) -> Callable[..., Any]:
     """Return the function that calls the piece for the type of its first argument, for numba and for plain Python."""
-    table = {**dict.fromkeys(get_args(Body), two), SecularBody: secular, GeneralBody: general}
+    table: dict[type, Any] = {SecularBody: secular, GeneralBody: general}
 
     def piece(p: Any, *rest: Any) -> Any:
-        return table[type(p)](p, *rest)
+        return table.get(type(p), two)(p, *rest)
 
     def choose(p: Any, *_: Any) -> Any:
-        return table[p.instance_class].py_func  # a call of the compiled one would be optimized once more
+        return table.get(p.instance_class, two).py_func  # a call of the compiled one would be optimized once more
 
     overload(piece, jit_options=COMPILED, strict=False)(choose)
     return piece
@@ -138,11 +136,10 @@ charted = chosen(_secular_charted, _general_charted, _two_charted)
 
 def at_rest(body: Body | SecularBody | GeneralBody) -> np.ndarray:
     """Return the unknowns at the identity."""
-    return _AT_REST[type(body)](body)
+    return _AT_REST.get(type(body), lambda _: np.zeros(2))(body)
 
 
 _AT_REST: dict[type, Callable[[Any], np.ndarray]] = {
-    **dict.fromkeys(get_args(Body), lambda _: np.zeros(2)),
     SecularBody: lambda body: np.array((body.mass * body.arm * body.arm, 0.0)),
     GeneralBody: lambda body: np.zeros(len(body.stretch)),
 }

@@ -48,7 +48,9 @@ def _compiled_functions(*rooms: str) -> dict[str, ast.FunctionDef]:
     """Return the functions that numba compiles in some rooms, by their places."""
     found = {}
     for room in rooms:
-        for file in (Path(nonholo.__file__).parent / room).rglob("*.py"):
+        files = list((Path(nonholo.__file__).parent / room).rglob("*.py"))
+        assert files, room
+        for file in files:
             for node in ast.walk(ast.parse(file.read_text())):
                 if isinstance(node, ast.FunctionDef) and any(map(_compiles, node.decorator_list)):
                     found[f"{file}:{node.name}"] = node

@@ -3,6 +3,7 @@
 from nonholo.discrete._scheme import Scheme
 from nonholo.discrete._variety import variety_of
 from nonholo.discrete.routes._base import AbstractRoute
+from nonholo.discrete.routes._closed_forms import closed_form
 from nonholo.discrete.routes._composed import ComposedRoute
 from nonholo.discrete.routes._definition import DefinitionRoute
 from nonholo.discrete.routes._matrix import MatrixRoute
@@ -41,8 +42,8 @@ def _of_form(scheme: Scheme, wanted: str | None) -> AbstractRoute | None:
     form = scheme.system.normal_form
     if form is None:
         return None
-    if wanted in _SCALAR and ScalarRoute.covers(form):
-        return ScalarRoute(scheme.system, form, scheme.time_step)
+    if wanted in _SCALAR and (closed := closed_form(form)):
+        return ScalarRoute(scheme.system, form, closed, scheme.time_step)
     if wanted in _SECULAR and SecularRoute.covers(form):
         return SecularRoute(scheme.system, form, scheme.time_step)
     return None

@@ -1,4 +1,4 @@
-"""The route in closed form, which JAX can trace too: tops in space and sleighs in the plane."""
+"""The route in closed form, which JAX can trace too."""
 
 import dataclasses
 import functools
@@ -7,13 +7,11 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from nonholo import kernels
-from nonholo.base.checks import is_traced
 from nonholo.base.types import Array, Float
 from nonholo.discrete.routes._axes import Axes
 from nonholo.discrete.routes._base import AbstractCompiledRoute
+from nonholo.discrete.routes._closed_forms import ClosedForm
 from nonholo.systems import NormalForm, System
-
-_TURNED = np.diag([-1.0, 1.0])  # the normal form of a sleigh turns in e1 ^ e2, its kernel by omega
 
 
 class ScalarStep(NamedTuple):
@@ -36,32 +34,22 @@ class ScalarRoute(AbstractCompiledRoute):
 
     system: System
     form: NormalForm
+    closed: ClosedForm
     time_step: Array
     order: ClassVar[int] = 2
     name: ClassVar[str] = "scalar"
     is_scalar: ClassVar[bool] = True
     needs_pose: ClassVar[bool] = True
 
-    @staticmethod
-    def covers(form: NormalForm) -> bool:
-        """Tell whether a body is one of this route; a plane sleigh needs a moment about its center of mass."""
-        if not form.is_planar or form.is_diagonal:
-            return False
-        return not form.is_sleigh or is_traced(form.stiffness) or bool(form.stiffness[0, 0] > 0)
-
     @functools.cached_property
     def body(self) -> kernels.Body:
         """The numbers of the body."""
-        form = self.form
-        if not form.is_sleigh:
-            return kernels.suslov_body(form.stiffness, form.coupling)
-        numbers = (form.mass, form.stiffness[0, 0], form.arm)
-        return kernels.SleighBody(*(x if is_traced(x) else float(x) for x in numbers))
+        return self.closed.body(self.form)
 
     @property
     def scale(self) -> Array:
-        """Half the time step for a top, the time step for a sleigh."""
-        return self.time_step if self.form.is_sleigh else self.time_step / 2
+        """The part of the time step that is the unit of the kernel's momenta."""
+        return self.time_step * self.closed.share
 
     @property
     def single(self) -> "ScalarRoute":
@@ -105,8 +93,8 @@ class ScalarRoute(AbstractCompiledRoute):
 
     @functools.cached_property
     def _axes(self) -> Axes:
-        rows = self.form.frame_map
-        if self.form.is_sleigh:
-            rows = _TURNED if rows is None else _TURNED @ rows
+        rows, own = self.form.frame_map, self.closed.rows
+        if own is not None:
+            rows = own if rows is None else own @ rows
         same = rows is None or np.array_equal(rows, np.eye(2))
         return Axes(self.system.group, self.form.frame, None if same else rows)

@@ -20,7 +20,6 @@ class ScalarMembers:
     """The bodies that the kernels of tops (n = 3) and plane sleighs see; an axis of length 1 where all members agree.
 
     Attributes:
-        body: The type of their bodies.
         table: Makes the fields of their bodies, which only a run needs: for tops they take longer than all else.
         scale: Factors from canonical momenta to those of the kernel, (m,).
         inertia: Inertias along the constraint in the canonical frame, (m, 2, 2).
@@ -28,7 +27,6 @@ class ScalarMembers:
         pose: First poses, (m, 4).
     """
 
-    body: type[kernels.Body]
     table: Callable[[], Float[np.ndarray, "f _"]]
     scale: Float[np.ndarray, "_"]
     inertia: Float[np.ndarray, "_ 2 2"]
@@ -45,11 +43,13 @@ class Family(NamedTuple):
     """The functions of a family for an ensemble.
 
     Attributes:
+        body: The type of the bodies that its kernel runs.
         numbers: What the kernels see of members.
         keeps_frame: Parameters that leave the user's frame where it is.
         is_doubtful: Tells which members have to be built to know that they can be; all others can.
     """
 
+    body: type[kernels.Body]
     numbers: Callable[[Members], ScalarMembers]
     keeps_frame: frozenset[str]
     is_doubtful: Callable[[Members], Bool[np.ndarray, "M"]]
@@ -61,7 +61,7 @@ def _sleighs(members: Members) -> ScalarMembers:
     inertia = np.moveaxis(np.array([[J + m * a * a, zero], [zero, m]]), -1, 0)
     frame_map = np.moveaxis(np.array([[one, b], [zero, one]]), -1, 0)
     pose = np.stack([one, zero, zero, b], axis=-1)
-    return ScalarMembers(kernels.SleighBody, lambda: np.stack([m, J, a]), members.time_step, inertia, frame_map, pose)
+    return ScalarMembers(lambda: np.stack([m, J, a]), members.time_step, inertia, frame_map, pose)
 
 
 def _tops(members: Members) -> ScalarMembers:
@@ -72,7 +72,7 @@ def _tops(members: Members) -> ScalarMembers:
     B = J[:, :2, :2] + J[:, 2:, 2:] * np.eye(2)
     pose = system.group.pose_from_matrix(F)[None]
     table = functools.partial(kernels.suslov_table, B, J[:, :2, 2])
-    return ScalarMembers(kernels.SuslovBody, table, members.time_step / 2, B, np.asarray(system.frame_map)[None], pose)
+    return ScalarMembers(table, members.time_step / 2, B, np.asarray(system.frame_map)[None], pose)
 
 
 def _doubtful_sleighs(members: Members) -> Bool[np.ndarray, "M"]:
@@ -88,8 +88,8 @@ def _doubtful_tensors(members: Members) -> Bool[np.ndarray, "M"]:
 
 
 _FAMILIES = {
-    ChaplyginSleigh: Family(_sleighs, frozenset({"mass", "inertia", "a"}), _doubtful_sleighs),
-    SuslovTop: Family(_tops, frozenset({"mass_tensor"}), _doubtful_tensors),
+    ChaplyginSleigh: Family(kernels.SleighBody, _sleighs, frozenset({"mass", "inertia", "a"}), _doubtful_sleighs),
+    SuslovTop: Family(kernels.SuslovBody, _tops, frozenset({"mass_tensor"}), _doubtful_tensors),
 }
 
 
@@ -100,12 +100,18 @@ def family_of(system: System) -> Family | None:
 
 def run_in_lanes(discrete: Discretization) -> bool:
     """Tell whether the members of an ensemble of a discretization are computed side by side."""
-    return discrete.route.is_scalar and family_of(discrete.system) is not None
+    route, family = discrete.route.compiled, family_of(discrete.system)
+    return route is not None and route.is_scalar and family is not None and isinstance(route.body, family.body)
 
 
 def have_kernel(members: Members) -> bool:
     """Tell whether members are tops (n = 3) or plane sleighs with a step in closed form."""
     return run_in_lanes(members.discrete)
+
+
+def body_of(members: Members) -> type[kernels.Body]:
+    """Return the type of the bodies of members that have a kernel."""
+    return _FAMILIES[type(members.discrete.system)].body
 
 
 def scalar_members(members: Members) -> ScalarMembers:

@@ -17,7 +17,7 @@ from nonholo.base.results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.simulation._simulate import simulate
-from nonholo.simulation.members._families import have_kernel, scalar_members
+from nonholo.simulation.members._families import body_of, have_kernel, scalar_members
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._result import Ensemble
 
@@ -84,7 +84,7 @@ def _run_scalar(members: Members, momenta: np.ndarray, plan: Plan, threads: int,
     poses = np.array(np.broadcast_to(scalar.pose, (count, 4)), order="C")  # never read-only: compiled once
     rows = _rows(count, states, posed)
     fields, one = scalar.fields, members.parameters.keys() <= {"time_step"}
-    advance = functools.partial(_advance_by_jax if backend == "jax" else _advance, scalar.body)
+    advance = functools.partial(_advance_by_jax if backend == "jax" else _advance, body_of(members))
 
     def work(part: slice, stop: np.ndarray) -> None:
         pieces = kernels.MemberRows(*(array[part] for array in rows))
@@ -107,7 +107,7 @@ def _rows(count: int, states: int, posed: bool) -> kernels.MemberRows:
 
 
 def _advance(
-    body: type[kernels.Body],
+    body: Callable[..., kernels.Body],
     fields: np.ndarray,
     one: bool,
     momenta: np.ndarray,
@@ -123,7 +123,7 @@ def _advance(
 
 
 def _advance_by_jax(
-    body: type[kernels.Body],
+    body: Callable[..., kernels.Body],
     fields: np.ndarray,
     one: bool,
     momenta: np.ndarray,
