@@ -2,7 +2,7 @@
 
 # ruff: noqa: E402
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent / "tests"))  # before `pythonpath` is read
@@ -52,6 +52,19 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if others:
         config.hook.pytest_deselected(items=others)
         items[:] = [item for item in items if runs(item, chosen)]
+    if hasattr(config, "workerinput"):
+        items.sort(key=_turn({item.path: None for item in items}))
+
+
+_WITHOUT_KERNELS = {"docs", "groups", "lagrange_dalembert", "literature", "nonholo", "paper", "plotting", "testing"}
+
+
+def _turn(files: Iterable[Path]) -> Callable[[pytest.Item], int]:
+    """Deal files that need few kernels between the others: two workers in kernels wait for what one of them compiles."""
+    light = [file for file in files if _WITHOUT_KERNELS & set(file.parts[len(Path(__file__).parts) - 1 :][:2])]
+    heavy = [file for file in files if file not in set(light)]
+    turns = {file: 2 * place for place, file in enumerate(heavy)} | {file: 2 * j + 1 for j, file in enumerate(light)}
+    return lambda item: turns[item.path]
 
 
 @pytest.fixture(autouse=True)

@@ -472,6 +472,7 @@ def test_template_runs(nonholo: Command) -> None:
     assert Path(told["picture"]).exists()
 
 
+@pytest.mark.profile("paper", instead="test_a_sweep_holds_the_orbits_of_simulate")
 def test_the_page_runs() -> None:
     """The Python blocks of the page on sweeps hold what its text says."""
     page = Path(__file__).parents[2] / "docs" / "how-to" / "run-a-sweep.md"

@@ -35,7 +35,7 @@ def _start(system: AbstractSystem) -> dict:
     }
 
 
-@pytest.mark.profile("routes", keep=["right-invariant on SE(2)"])
+@pytest.mark.profile("routes", keep=["rod"])
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_diffrax_arrives_at_the_same_states(name: str) -> None:
     """Both integrators follow the same motion to 1e-8, a hundred of the errors of their steps, there and back."""

@@ -54,7 +54,7 @@ def test_momentum_tends_to_the_continuous_one() -> None:
         assert np.abs(P - system.inertia_operator @ velocity).max() < h
 
 
-@pytest.mark.profile("routes", instead="test_callables_in_place_of_names")
+@pytest.mark.profile("routes", instead="test_a_compiled_step_against_the_definition")
 def test_any_discrete_lagrangian() -> None:
     """A user's L_d(W) that repeats the matrix difference gives the orbit of difference="matrix"."""
     for problem in (PROBLEMS[1], PROBLEMS[7]):

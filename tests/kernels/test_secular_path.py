@@ -81,7 +81,7 @@ def agreements(count: int, seed: int) -> tuple[int, int, int]:
     return reached, folded, past
 
 
-@pytest.mark.profile("problems", keep=["100"])
+@pytest.mark.profile("problems", instead="test_random_steps_are_right")
 @pytest.mark.parametrize("count", [100, 400])
 def test_random_problems(count: int) -> None:
     """Tops and sleighs, rods among them: the same root, or refused where the path turns back."""
@@ -89,7 +89,7 @@ def test_random_problems(count: int) -> None:
     assert min(reached, folded) > count // 4
 
 
-@pytest.mark.profile("long", instead="test_random_problems")
+@pytest.mark.profile("long", instead="test_random_steps_are_right")
 def test_many_random_problems() -> None:
     """10,000 of them, many with paths through angle pi."""
     reached, folded, past = agreements(10_000, 5)
