@@ -60,7 +60,7 @@ _WITHOUT_KERNELS = {"docs", "groups", "lagrange_dalembert", "literature", "nonho
 
 
 def _turn(files: Iterable[Path]) -> Callable[[pytest.Item], int]:
-    """Deal files that need few kernels between the others: two workers in kernels wait for what one of them compiles."""
+    """Deal files that need few kernels between the others: of two workers in kernels one waits while one compiles."""
     light = [file for file in files if _WITHOUT_KERNELS & set(file.parts[len(Path(__file__).parts) - 1 :][:2])]
     heavy = [file for file in files if file not in set(light)]
     turns = {file: 2 * place for place, file in enumerate(heavy)} | {file: 2 * j + 1 for j, file in enumerate(light)}
