@@ -114,6 +114,7 @@ def test_step_derivatives_against_differences(problem: Problem) -> None:
         assert np.abs(jax.jit(jax.jacrev(after))(jnp.asarray(r)) - forward).max() < 1e-13
 
 
+@pytest.mark.profile("routes", instead="test_step_derivatives_against_differences")
 def test_derivative_with_respect_to_the_body() -> None:
     """The mass tensor and the time step are differentiable numbers."""
     J, r = np.array(PROBLEMS[0].system.mass_tensor), np.array([0.5, -0.3])

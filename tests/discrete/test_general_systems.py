@@ -138,7 +138,7 @@ def test_slope_two_on_other_groups(build: object) -> None:
             assert abs(-np.polyfit(np.log(steps), np.log(column), 1)[0] - 2) <= 0.1
 
 
-@pytest.mark.profile("routes", instead="test_the_disk_rolls_on_the_circle_of_the_midpoint_rule")
+@pytest.mark.profile("routes", instead="test_the_disk_keeps_its_energy")
 def test_the_rolling_disk_rolls_on_a_circle() -> None:
     """Heading and wheel angle advance uniformly, and the wheel rolls on a circle of their ratio times its radius."""
     system, velocity = _rolling_disk()

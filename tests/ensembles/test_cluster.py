@@ -179,7 +179,7 @@ def _answer(server: socket.socket) -> None:
         connection.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
 
 
-@pytest.mark.profile("faults", instead="test_killed_sweeps_go_on")
+@pytest.mark.profile("faults", instead="test_interruption_after_each_block")
 @pytest.mark.parametrize("nanny", [False, True], ids=["alone", "nanny"])
 def test_a_killed_worker_is_replaced(nanny: bool, tmp_path: Path, undisturbed: xarray.Dataset) -> None:
     """The sweep waits while there is no worker, and ends with the same bits on the one that comes next."""
@@ -193,7 +193,7 @@ def test_a_killed_worker_is_replaced(nanny: bool, tmp_path: Path, undisturbed: x
     assert len(set(done(tmp_path / "a.zarr"))) == 2
 
 
-@pytest.mark.profile("faults", instead="test_killed_sweeps_go_on")
+@pytest.mark.profile("faults", instead="test_interruption_after_each_block")
 @pytest.mark.parametrize("trial", range(3))
 def test_killed_clients_go_on(running: Cluster, trial: int, tmp_path: Path, undisturbed: xarray.Dataset) -> None:
     """After a client is killed at a random moment threads end its sweep with the same bits, and workers are free."""

@@ -38,7 +38,7 @@ def _printed(code: str) -> str:
     return told
 
 
-@pytest.mark.profile("faults", keep=["noisy-threads"])
+@pytest.mark.profile("faults", instead="test_interruption_after_each_block")
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="looks for processes in /proc")
 @pytest.mark.parametrize(
     ("name", "scheduler"), [("noisy", "threads"), ("tops", "threads"), ("noisy", "processes")], ids=str

@@ -97,6 +97,7 @@ def test_many_random_problems() -> None:
     assert past > 100
 
 
+@pytest.mark.profile("problems", instead="test_orbits_of_sleighs_at_angle_pi")
 def test_a_path_through_angle_pi() -> None:
     """A rod on SO(4) whose principal path turns past pi steps there, to a displacement that `branches` has too."""
     system = nh.SuslovTop(PAST_PI)
@@ -112,7 +113,7 @@ def test_a_path_through_angle_pi() -> None:
     assert np.abs(orbit.displacement[0] - W).max() < 1e-12
 
 
-@pytest.mark.profile("routes", instead="test_a_path_through_angle_pi")
+@pytest.mark.profile("routes", instead="test_a_half_turn")
 def test_the_end_of_a_chart_is_no_fold() -> None:
     """`step` by the definition and the general kernel follow in Cayley coordinates: beyond pi they are unsure."""
     discrete = nh.discretize(nh.SuslovTop(PAST_PI), 1.0)

@@ -87,6 +87,7 @@ def test_the_map_satisfies_its_constraint_and_has_order_two(name: str) -> None:
     assert abs(-np.polyfit(np.log(counts), np.log(errors), 1)[0] - 2.0) <= 0.1
 
 
+@pytest.mark.profile("routes", instead="test_the_disk_keeps_its_energy")
 def test_the_disk_rolls_on_the_circle_of_the_midpoint_rule() -> None:
     """Contact points are at the radius R theta'_h h / (2 sin(h phi'/2)) from one center; 40 steps of rounding."""
     orbit, h, turning = run("rolling_disk", 40), 0.1, 0.5
@@ -98,7 +99,7 @@ def test_the_disk_rolls_on_the_circle_of_the_midpoint_rule() -> None:
     assert np.abs(np.hypot(points[:, 0], points[:, 1] - radius) - radius).max() <= 1e-13
 
 
-@pytest.mark.profile("routes", instead="test_the_disk_rolls_on_the_circle_of_the_midpoint_rule")
+@pytest.mark.profile("routes", instead="test_the_disk_keeps_its_energy")
 def test_the_knife_edge_draws_the_cycloid_of_the_midpoint_rule() -> None:
     """The speed of each step is w + G h / sin(h phi') sin(phi) at the heading of its middle."""
     orbit, h = run("knife_edge_on_incline", 40), 0.1
