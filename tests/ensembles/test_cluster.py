@@ -92,6 +92,7 @@ def test_functions_without_a_module(running: Cluster, tmp_path: Path) -> None:
     assert (found["result"].values == 3.0 * found["x"].values).all()
 
 
+@pytest.mark.profile("faults", instead="test_workers_without_the_store_are_refused")
 def test_functions_that_workers_lack_are_refused(
     running: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -118,6 +119,7 @@ def test_workers_without_the_store_are_refused(
         nh.sweep(slow, DESIGN, tmp_path / "a.zarr", running.address)
 
 
+@pytest.mark.profile("faults", keep=["nobody", "another"])
 @pytest.mark.parametrize("listens", ["nobody", "another", "somebody silent"])
 def test_addresses_without_a_scheduler_are_refused(
     listens: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

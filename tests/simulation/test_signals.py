@@ -68,7 +68,7 @@ def processor_time(process: int) -> float:
 
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="processor times of other processes are read there")
-@pytest.mark.profile("faults", keep=["simulate", "iterate"])
+@pytest.mark.profile("faults", keep=["simulate"])
 @pytest.mark.parametrize("call", CALLS)
 def test_ctrl_c(call: str, tmp_path) -> None:  # noqa: ANN001
     """The call raises `KeyboardInterrupt` after two seconds of the processor at most."""
