@@ -2,10 +2,11 @@
 
 # ruff: noqa: E402
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent / "tests"))  # before `pythonpath` is read
+_TESTS = Path(__file__).parent / "tests"
+sys.path.insert(0, str(_TESTS))  # before `pythonpath` is read
 import compilers
 
 compilers.use_caches()
@@ -42,6 +43,13 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
     """Run a single file in one process, so that it starts at once and a debugger works."""
     paths = [argument.split("::")[0] for argument in config.args]
     return 0 if len(paths) == 1 and paths[0].endswith(".py") else None
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collect_file(file_path: Path) -> Generator[None, list[pytest.Collector], list[pytest.Collector]]:
+    """Read each file of tests once: it has no doctests."""
+    collected = yield
+    return [node for node in collected if type(node) is pytest.Module or not file_path.is_relative_to(_TESTS)]
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
