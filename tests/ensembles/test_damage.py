@@ -51,12 +51,16 @@ def test_damaged_draws_are_computed_again(name: str, tmp_path: Path) -> None:
         assert same(nh.resume(path, task=task).load(), whole)
 
 
-@pytest.mark.parametrize("damage", ["flipped", "cut", "empty"])
+@pytest.mark.parametrize("damage", ["flipped", "cut", "empty", "edited"])
 def test_damaged_mark_is_named_and_its_block_computed_again(damage: str, tmp_path: Path) -> None:
     """A block whose mark cannot be trusted is computed again."""
     path = tmp_path / "run.zarr"
     whole = swept(path)
-    _damage(path / "run" / "blocks" / "2.json", damage)
+    mark = path / "run" / "blocks" / "2.json"
+    if damage == "edited":
+        mark.write_text(mark.read_text().replace('"writer": "', '"writer": "another '))
+    else:
+        _damage(mark, damage)
     assert standing_of(path).done == 4
     with pytest.warns(RuntimeWarning, match=r"the mark 2\.json is damaged. Block 2 is computed again"):
         assert same(resumed(path), whole)
