@@ -1,4 +1,4 @@
-"""Numerical integration of momentum and pose by the compiled DOP853, in matrices whatever the group."""
+"""Numerical integration of the pose by the compiled DOP853, in matrices whatever the group."""
 
 from typing import TypeAlias
 
@@ -10,13 +10,13 @@ from nonholo.continuous._equations import body_of
 from nonholo.continuous._heteroclinic import Heteroclinic
 from nonholo.continuous._turning import Turning
 from nonholo.groups import SE, AbstractMatrixGroup
-from nonholo.kernels import BodyFlow, SpaceFlow, solve
+from nonholo.kernels import SpaceFlow, solve
 from nonholo.systems import AbstractSystem
 
 Solved: TypeAlias = tuple[Float[np.ndarray, "K k"], Float[np.ndarray, "K size"], Float[np.ndarray, "K"] | None, Outcome]
 
 
-def integrate(
+def by_runge_kutta(
     system: AbstractSystem,
     reduced_momentum: Float[np.ndarray, "k"],
     pose: Float[np.ndarray, "size"],
@@ -25,18 +25,13 @@ def integrate(
 ) -> Solved:
     """Return momenta, poses, on SE(2) the heading without ambiguity of full turns, and the outcome.
 
-    Times elapse from zero. After a failure only the good states are returned.
+    The constraint is fixed in space. Times elapse from zero. After a failure only the good states are returned.
     """
-    group = system.group
-    planar = group == SE(2)
+    group, planar = system.group, system.group == SE(2)
     g, turned = group.matrix_from_pose(pose).ravel(), np.arctan2(pose[1:2], pose[0:1]) if planar else np.zeros(0)
-    if system.is_spatial:
-        k, motion = 0, space_flow(system, reduced_momentum, planar)
-    else:
-        k, motion = len(reduced_momentum), body_flow(system, planar)
-    rows = solve(motion, np.concatenate([reduced_momentum[:k], g, turned]), elapsed, tolerances)
-    momenta = rows[:, :k] if k else np.tile(reduced_momentum, (len(rows), 1))
-    poses = _poses(group, rows[:, k : k + len(g)])
+    motion = space_flow(system, reduced_momentum, planar)
+    rows = solve(motion, np.concatenate([g, turned]), elapsed, tolerances)
+    momenta, poses = np.tile(reduced_momentum, (len(rows), 1)), _poses(group, rows[:, : len(g)])
     outcome = Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
     return momenta, poses, on_same_turn(rows[:, -1], poses) if planar else None, outcome
 
@@ -54,14 +49,6 @@ def integrate_pose(
     turning = Turning(across, along, float(motion.start), float(motion.rate))
     rows = solve(turning, group.matrix_from_pose(pose).ravel(), elapsed, tolerances)
     return _poses(group, rows), Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
-
-
-def body_flow(system: AbstractSystem, planar: bool) -> BodyFlow:
-    """Return what the compiled rates need of a system with a constraint fixed in the body."""
-    group, (S, inertia, to_velocity) = system.group, body_of(system)
-    dual = group.coordinates.dual_matrix(to_velocity @ inertia.T)
-    velocities, momenta, rows = map(np.ascontiguousarray, (group.hat(to_velocity), dual, group.hat(S)))
-    return BodyFlow(velocities, momenta, rows, planar)
 
 
 def space_flow(system: AbstractSystem, momentum: Float[np.ndarray, "k"], planar: bool) -> SpaceFlow:

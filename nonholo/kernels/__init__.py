@@ -5,12 +5,13 @@ from nonholo.kernels._dop853 import RATES, solve
 from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
-from nonholo.kernels._flow import BodyFlow, SpaceFlow
+from nonholo.kernels._flow import SpaceFlow
 from nonholo.kernels._interface import Body, certified, correction, increment, move, residual
 from nonholo.kernels._nearest import NearestBody
 from nonholo.kernels._nearest import advance as advance_to_nearest
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
+from nonholo.kernels._taylor import SERIES_LANES, Quadratic, solve_series
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.secular import SecularBody, secular_sleigh, secular_top
 
@@ -18,14 +19,15 @@ __all__ = [
     "CORRECTIONS",
     "LANES",
     "RATES",
+    "SERIES_LANES",
     "SETTLED",
     "AnyBody",
     "Body",
-    "BodyFlow",
     "ComposedBody",
     "GeneralBody",
     "MemberRows",
     "NearestBody",
+    "Quadratic",
     "SecularBody",
     "SleighBody",
     "SpaceFlow",
@@ -44,6 +46,7 @@ __all__ = [
     "secular_top",
     "sizes",
     "solve",
+    "solve_series",
     "start",
     "step_each",
     "suslov_body",

@@ -1,10 +1,7 @@
-r"""The continuous motions in matrices: rates of momentum, pose and, in the plane, of the heading.
+r"""The continuous motion in matrices under a constraint fixed in space: rates of pose and, in the plane, heading.
 
-With matrices of the group's algebra and the pairing $\langle P, X\rangle = \sum_{ab} P_{ab}X_{ab}$,
-
-$$ X = \sum_i r_i V_i, \quad P = \sum_i r_i M_i, \qquad r_i' = \langle [X^T, P], D_i\rangle, \qquad g' = g X $$
-
-for a constraint fixed in the body, and for one fixed in space, where the momenta r along the $D_i$ are constant,
+With matrices of the group's algebra and the pairing $\langle P, X\rangle = \sum_{ab} P_{ab}X_{ab}$ the momenta r along
+the $D_i$ are constant,
 
 $$ \sum_j \mathrm{tr}(D_i\,g\mathbb{J}g^T D_j^*)\,w_j = r_i, \qquad g' = X g, \quad X = \sum_j w_j D_j . $$
 """
@@ -17,22 +14,6 @@ from nonholo.base.compiled import njit
 from nonholo.kernels._dop853 import RATES
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._small import eliminate, multiply, paired, transpose
-
-
-class BodyFlow(NamedTuple):
-    """A constraint fixed in the body; the state is (r, g row by row, heading if planar).
-
-    Attributes:
-        velocities: V_i, (k, N, N).
-        momenta: M_i, (k, N, N).
-        rows: D_i, (k, N, N).
-        planar: Whether the state ends with a heading.
-    """
-
-    velocities: np.ndarray
-    momenta: np.ndarray
-    rows: np.ndarray
-    planar: bool
 
 
 class SpaceFlow(NamedTuple):
@@ -51,27 +32,6 @@ class SpaceFlow(NamedTuple):
     duals: np.ndarray
     tensor: np.ndarray
     planar: bool
-
-
-@njit(**COMPILED)
-def body_rate(p: BodyFlow, time: float, state: np.ndarray, out: np.ndarray) -> None:
-    """Write the rate of a motion with a constraint fixed in the body."""
-    k, N = len(p.rows), p.rows.shape[1]
-    X, P = np.zeros((N, N)), np.zeros((N, N))
-    add_combination(p.velocities, state, X)
-    add_combination(p.momenta, state, P)
-    multiply(state[k : k + N * N].copy().reshape(N, N), X, out[k : k + N * N].reshape(N, N))
-    if p.planar:
-        out[k + N * N] = X[1, 0]
-    across, torque, other = np.empty((N, N)), np.empty((N, N)), np.empty((N, N))
-    transpose(X, across)
-    multiply(across, P, torque)
-    multiply(P, across, other)
-    for i in range(N):
-        for j in range(N):
-            torque[i, j] -= other[i, j]
-    for i in range(k):
-        out[i] = paired(p.rows[i], torque)
 
 
 @njit(**COMPILED)
@@ -105,5 +65,4 @@ def add_combination(matrices: np.ndarray, weights: np.ndarray, total: np.ndarray
                 total[i, j] += weights[k] * matrices[k, i, j]
 
 
-RATES[BodyFlow] = body_rate
 RATES[SpaceFlow] = space_rate

@@ -1,0 +1,176 @@
+"""Taylor series of the flow: their equations, what their steps depend on, accuracy over long times, singular starts."""
+
+import mpmath
+import numpy as np
+import pytest
+from bodies import GENERAL, mass_tensor
+from problems import PROBLEMS
+
+import nonholo as nh
+from nonholo.continuous import _series
+from nonholo.kernels import solve_series
+from nonholo.systems import AbstractSystem
+
+RNG = np.random.default_rng(31)
+HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
+SYSTEMS: dict[str, AbstractSystem] = {
+    **{problem.name: problem.system for problem in PROBLEMS},
+    **{name: system for name, (system, _) in GENERAL.items() if not system.is_spatial},
+    "top on SO(7)": nh.SuslovTop(mass_tensor(nh.SO(7), RNG)),
+    "free body on SE(3)": nh.RigidBody(mass_tensor(nh.SE(3), RNG), nh.SE(3)),
+    "Heisenberg": nh.LLSystem(
+        HEISENBERG, constraint_subspace=[[1.0, 0.0, 0.2], [0.0, 1.0, 0.0]], inertia_operator=np.diag([1.0, 2.0, 3.0])
+    ),
+    "product": nh.LLSystem(
+        nh.ProductGroup(nh.SE(2), nh.SO(3), nh.Translations(2)),
+        constraint_subspace=RNG.normal(size=(4, 8)),
+        inertia_operator=np.diag(np.arange(1.0, 9.0)),
+    ),
+    "nothing moves": nh.LLSystem(
+        nh.SO(3), constraint_subspace=np.empty((0, 3)), inertia_operator=np.diag([1.0, 2.0, 2.5])
+    ),
+}
+TOP = nh.SuslovTop.from_inertia([[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3))
+SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
+START = {"restricted_velocity": (0.8, -0.5)}
+
+
+def _rate(f: _series.Quadratic, x: np.ndarray) -> np.ndarray:
+    """Return the rate that the quadratic equations state."""
+    w = f.velocities @ x[: len(f.velocities)]
+    products = w[f.left] * np.concatenate([w, [1.0], x])[f.right] if len(w) else np.zeros(0)
+    rate = np.zeros_like(x)
+    np.add.at(rate, f.targets, f.factors * products[f.products])
+    return rate
+
+
+@pytest.mark.parametrize("compact", [True, False])
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_the_quadratic_equations_are_the_vector_field(
+    name: str, compact: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At random momenta and poses, whether the poses are compact or matrices."""
+    monkeypatch.setattr(_series, "_COMPACT", 1000 if compact else 0)
+    system = SYSTEMS[name].canonical
+    group, k, rng = system.group, len(system.constraint_subspace), np.random.default_rng(5)
+    r, g = rng.normal(size=k), group.random(rng)
+    pose = group.pose_from_matrix(g) if compact else g.ravel()
+    heading = np.ones(1 if group == nh.SE(2) else 0)
+    rate = _rate(_series.quadratic.__wrapped__(system), np.concatenate([r, pose, heading]))
+    expected = nh.vector_field(system)(0.0, np.concatenate([r, g.ravel()]))
+    velocity = system.restricted_velocity(r) @ system.constraint_subspace
+    moved = group.pose_rate(pose, velocity) if compact else expected[k:]
+    scale = 1e-13 * (1 + np.abs(expected).max(initial=0.0))
+    assert np.abs(rate - np.concatenate([expected[:k], moved, velocity[: len(heading)]])).max() <= scale
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_the_route_through_matrices_arrives_at_the_same_states(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Compact poses and matrices, two systems of equations, agree to 1e-12; so do diffrax and the definition."""
+    system = SYSTEMS[name]
+    start = {"restricted_velocity": np.cos(1.0 + np.arange(len(system.constraint_subspace)))}
+    found = []
+    for compact in (1000, 0):
+        monkeypatch.setattr(_series, "_COMPACT", compact)
+        _series.quadratic.cache_clear()
+        found.append(nh.flow(system, **start, times=(0.0, -1.0, -7.0)))
+    _series.quadratic.cache_clear()
+    for value in ("momentum", "configuration"):
+        one, other = (getattr(orbit, value) for orbit in found)
+        assert np.abs(one - other).max(initial=0.0) <= 1e-12 * (1 + np.abs(one).max(initial=0.0))
+
+
+@pytest.mark.parametrize("system", [TOP, SLEIGH], ids=["top", "sleigh"])
+def test_states_do_not_depend_on_the_other_times(system: AbstractSystem) -> None:
+    """A state has the same bits alone and among thousands."""
+    alone = nh.flow(system, **START, times=(0.0, 20.0, 50.0))
+    among = nh.flow(system, **START, times=np.arange(50 * 256 + 1) / 256)
+    for value in ("reduced_momentum", "canonical_pose"):
+        assert np.array_equal(getattr(alone, value), getattr(among, value)[[0, 20 * 256, 50 * 256]])
+
+
+@pytest.mark.parametrize("size", [2.0**-400, 2.0**-40, 2.0**300])
+def test_units_of_time_change_no_bit(size: float) -> None:
+    """A motion slower or quicker by a power of two takes the same path to the last bit."""
+    path, other = (
+        nh.flow(TOP, restricted_velocity=np.array([0.8, -0.5]) * factor, times=np.array([0.0, 3.0, 20.0]) / factor)
+        for factor in (1.0, size)
+    )
+    assert np.array_equal(path.configuration, other.configuration)
+    assert np.array_equal(path.restricted_momentum * size, other.restricted_momentum)
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-8, 1e-12])
+def test_the_error_is_what_was_asked_for(rtol: float) -> None:
+    """Over ten units of time the error is at most 30 times that of a step, and the end costs less than it."""
+    for system in (TOP, SLEIGH):
+        exact, found = (nh.flow(system, **START, times=(0.0, 10.0), rtol=r).configuration[-1] for r in (1e-14, rtol))
+        assert 0 < np.abs(found - exact).max() <= 30 * rtol
+
+
+def test_fifty_digits() -> None:
+    """A top on its way between its axes is right to 1e-14, against mpmath's own Taylor series in 50 digits."""
+    system = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]).canonical
+    start = np.concatenate([[0.9, -0.4], np.eye(3).ravel()])
+    S, tensor = system.constraint_subspace, mpmath.matrix(system.inertia_operator.tolist())
+    with mpmath.workdps(50):
+        rows = mpmath.matrix(S.tolist())
+        inverse = (rows * tensor * rows.T) ** -1
+
+        def field(_time: mpmath.mpf, state: list) -> list:
+            velocity = rows.T * (inverse * mpmath.matrix(state[:2]))
+            momentum = tensor * velocity
+            torque = mpmath.matrix(_cross(momentum, velocity))
+            g = mpmath.matrix(3, 3)
+            for i in range(9):
+                g[i // 3, i % 3] = state[2 + i]
+            moved = g * mpmath.matrix(_hat(velocity))
+            return [*(rows * torque), *(moved[i // 3, i % 3] for i in range(9))]
+
+        expected = np.array([float(x) for x in mpmath.odefun(field, 0, [mpmath.mpf(x) for x in start.tolist()])(2)])
+    orbit = nh.flow(system, momentum=start[:2], times=(0.0, 2.0))
+    assert np.abs(orbit.reduced_momentum[-1] - expected[:2]).max() <= 1e-14
+    assert np.abs(orbit.configuration[-1].ravel() - expected[2:]).max() <= 1e-14
+
+
+def _cross(p: mpmath.matrix, w: mpmath.matrix) -> list:
+    return [p[1] * w[2] - p[2] * w[1], p[2] * w[0] - p[0] * w[2], p[0] * w[1] - p[1] * w[0]]
+
+
+def _hat(w: mpmath.matrix) -> list:
+    return [[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]]
+
+
+@pytest.mark.parametrize("name", ["balanced top", "free body on SE(3)", "top on SO(7)"])
+def test_nothing_gathers_over_a_long_time(name: str) -> None:
+    """Over 1e4 units of time energy and group are kept to 1e-13 by the series alone: nothing is projected."""
+    system = SYSTEMS[name].canonical
+    group, k = system.group, len(system.constraint_subspace)
+    r = system.restricted_momentum(np.cos(1.0 + np.arange(k)) / 2)
+    compact = group.pose_size <= 40
+    pose = group.pose_from_matrix(group.identity) if compact else group.identity.ravel()
+    rows = solve_series(_series.quadratic(system), np.concatenate([r, pose]), np.linspace(0.0, 1e4, 11), 1e-16)
+    velocities = system.restricted_velocity(rows[:, :k])
+    energies = (velocities * rows[:, :k]).sum(axis=-1)
+    assert np.abs(energies / energies[0] - 1).max() <= 1e-13
+    if group == nh.SO(3):
+        assert np.abs((rows[:, k:] ** 2).sum(axis=-1) - 1).max() <= 1e-13
+    else:
+        g = group.matrix_from_pose(rows[:, k:]) if compact else rows[:, k:].reshape(-1, group.size, group.size)
+        g = g[:, : group.n, : group.n]
+        assert np.abs(g @ g.swapaxes(-1, -2) - np.eye(group.n)).max() <= 1e-13
+
+
+def test_a_sleigh_through_its_cusps() -> None:
+    """Where the blade reverses the path has no velocity; so at the very start, and at rest."""
+    still = nh.flow(SLEIGH, restricted_velocity=(0.0, 0.0), times=(0.0, 1.0, 1e140))
+    assert np.array_equal(still.configuration, np.broadcast_to(np.eye(3), (3, 3, 3)))
+    for velocity in ((0.8, 0.0), (1e-120, 0.0), (0.8, 1e-9), (0.0, 0.7)):
+        length = 10.0 / max(velocity)
+        orbits = [
+            nh.flow(SLEIGH, restricted_velocity=velocity, times=np.linspace(-length, length, 9), method=method)
+            for method in (None, "closed_form")
+        ]
+        reach = np.abs(orbits[1].position).max() + 1
+        assert np.abs(orbits[0].position - orbits[1].position).max() <= 1e-12 * reach
+        assert np.abs(orbits[0].heading - orbits[1].heading).max() <= 1e-12
