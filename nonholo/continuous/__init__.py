@@ -2,6 +2,6 @@
 
 from nonholo.continuous._closed_form import closed_form
 from nonholo.continuous._equations import ContinuousFlow, vector_field
-from nonholo.continuous._methods import solver_of, usual_tolerance
+from nonholo.continuous._methods import solver_of
 
-__all__ = ["ContinuousFlow", "closed_form", "solver_of", "usual_tolerance", "vector_field"]
+__all__ = ["ContinuousFlow", "closed_form", "solver_of", "vector_field"]

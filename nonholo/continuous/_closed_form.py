@@ -7,8 +7,9 @@ from nonholo.base.numerics import sinc
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.continuous._blade_path import blade_path
+from nonholo.continuous._equations import body_of
 from nonholo.continuous._heteroclinic import Heteroclinic, heteroclinic
-from nonholo.continuous._integration import integrate_pose
+from nonholo.continuous._series import pose_by_series
 from nonholo.systems import AbstractSystem, NormalForm
 
 _LARGEST_RATIO = 1e150  # of turn to the Gudermannian; beyond it the center of mass is as good as at the blade
@@ -23,8 +24,8 @@ def closed_form(
 ) -> tuple[Float[np.ndarray, "K k"], Float[np.ndarray, "K size"], Float[np.ndarray, "K"] | None, Outcome]:
     """Return momenta, poses, on SE(2) the heading without ambiguity of full turns, and the outcome.
 
-    The system is a canonical one. Heading and path of a sleigh are exact; other poses are a quadrature within the
-    tolerances.
+    The system is a canonical one. Heading and path of a sleigh are exact; other poses are a quadrature by Taylor
+    series.
     """
     if system.is_spatial or system.rank != 2:
         remedy = "Leave method out to integrate numerically."
@@ -33,8 +34,8 @@ def closed_form(
     if form is not None and form.is_sleigh:
         poses, turned = _sleigh_poses(system, form, motion, reduced_momentum, pose, elapsed)
         return motion.momentum(elapsed), poses, turned, Outcome.successful
-    poses, outcome = integrate_pose(system, motion, pose, elapsed, tolerances)
-    return motion.momentum(elapsed)[: len(poses)], poses, None, outcome
+    poses, turned, outcome = pose_by_series(system.group, motion, body_of(system)[2], pose, elapsed, tolerances)
+    return motion.momentum(elapsed)[: len(poses)], poses, turned, outcome
 
 
 def _sleigh_poses(

@@ -2,7 +2,7 @@ r"""The Euler-Poincare-Suslov equations: rates of momentum, forces of constraint
 
 With rows $S$ of the constraint subspace and $\omega = S^T w$ the momentum $p = \mathbb{I}\omega$ obeys
 $p' = \mathrm{ad}^*_\omega p + \sum_j \lambda_j a^j$; since $S a^j = 0$, the restricted momentum $r = S p$ obeys
-$r' = S\,\mathrm{ad}^*_\omega p$, without multipliers. Solutions live in `_closed_form` and `_integration`.
+$r' = S\,\mathrm{ad}^*_\omega p$, without multipliers. Solutions live in `_closed_form` and `_series`.
 """
 
 import dataclasses

@@ -1,4 +1,4 @@
-"""Momentum and pose by diffrax: a route of its own beside `_integration`. Imported on first use: it loads slowly."""
+"""Momentum and pose by diffrax: a route of its own beside `_series`. Imported on first use: it loads slowly."""
 
 import functools
 from collections.abc import Callable
@@ -12,7 +12,7 @@ from nonholo.base.numerics.time_sweep import State, padded, reached, sweep
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.continuous._equations import Body, body_of, momentum_rate, spatial_velocity
-from nonholo.continuous._integration import on_same_turn
+from nonholo.continuous._series import on_same_turn
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems import AbstractSystem
 

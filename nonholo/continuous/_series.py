@@ -1,23 +1,39 @@
-"""The motion of a body with a constraint fixed in it by Taylor series: its equations are quadratic."""
+r"""Continuous motions by Taylor series: their equations are quadratic in velocity and pose.
+
+With a constraint fixed in the body momenta r and poses obey
+$$ r' = S\,\mathrm{ad}^*_\omega\mathbb{I}\omega, \qquad g' = g\,\hat\omega, \qquad \omega = S^T w,
+   \quad w = (S\mathbb{I}S^T)^{-1} r, $$
+and with one fixed in space, where r is constant, tensor in space and pose
+$$ \mathbb{J}_g' = X\mathbb{J}_g + \mathbb{J}_g X^T, \qquad g' = X g, \qquad X = \sum_j w_j D_j,
+   \quad \sum_j \mathrm{tr}(D_i\mathbb{J}_g D_j^*)\,w_j = r_i . $$
+"""
 
 import functools
+from typing import NamedTuple, TypeAlias, cast
 
 import numpy as np
 
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.continuous._integration import Solved, on_same_turn
+from nonholo.continuous._heteroclinic import Heteroclinic
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.kernels import SERIES_LANES, Quadratic, solve_series
 from nonholo.systems import AbstractSystem
+
+Solved: TypeAlias = tuple[Float[np.ndarray, "K k"], Float[np.ndarray, "K size"], Float[np.ndarray, "K"] | None, Outcome]
 
 _COMPACT = 40
 """Poses of more numbers are integrated as matrices, whose rates need not be tried."""
 _GUARD = 1 / 64
 """The error of a step as a share of what was asked for, so that rounding is all that is left at the default."""
 
-Rates = tuple[np.ndarray, np.ndarray, np.ndarray]
-r"""Of a pose: $c_{am}$ and the places (a, b, m) and values of $C_{abm}$ in $x_m' = \sum_a w_a(c_{am} + C_{abm}x_b)$."""
+
+class _Rates(NamedTuple):
+    r"""Rates $x_m' = \sum_a w_a(c_{am} + \sum_b C_{abm}x_b)$: where C is not zero its (a, b, m) and values, and c."""
+
+    places: np.ndarray
+    values: np.ndarray
+    lone: np.ndarray
 
 
 def by_series(
@@ -32,84 +48,164 @@ def by_series(
     Times elapse from zero. After a failure only the good states are returned. The unit of time is the power of two
     that brings the velocities near to one, so that no coefficient over- or underflows without need.
     """
-    group, k, planar = system.group, len(reduced_momentum), system.group == SE(2)
-    compact = group.pose_size <= _COMPACT
+    velocity = system.restricted_velocity(reduced_momentum, system.group.matrix_from_pose(pose))
+    unit = _power_of_two(velocity)
+    f, head = quadratic(system), reduced_momentum / unit
+    if system.is_spatial:
+        f, head = f._replace(momentum=head), np.zeros(f.tensor.size)
+    heads, poses, turned, outcome = _solved(system.group, f, head, pose, elapsed * unit, tolerances)
+    momenta = np.tile(reduced_momentum, (len(heads), 1)) if system.is_spatial else heads * unit
+    return momenta, poses, turned, outcome
+
+
+def pose_by_series(
+    group: AbstractMatrixGroup,
+    motion: Heteroclinic,
+    to_velocity: Float[np.ndarray, "2 dim"],
+    pose: Float[np.ndarray, "size"],
+    elapsed: Float[np.ndarray, "K"],
+    tolerances: tuple[float, float],
+) -> tuple[Float[np.ndarray, "K size"], Float[np.ndarray, "K"] | None, Outcome]:
+    r"""Return the poses of a body whose momentum is known in closed form, its headings in the plane, and the outcome.
+
+    In place of the momenta stand sech s and tanh s, whose rates are $-\nu\,\mathrm{sech}\,s\tanh s$ and
+    $\nu\,\mathrm{sech}^2 s$.
+    """
+    velocities = np.stack([motion.across, motion.along]) @ to_velocity
+    unit = _power_of_two(np.append(velocities, motion.rate))
+    torques = np.zeros((2, 2, 2))
+    torques[0, 1, 0], torques[0, 0, 1] = -motion.rate / unit, motion.rate / unit
+    decay = np.exp(-abs(motion.start))
+    head = np.array([2 * decay / (1 + decay * decay), np.tanh(motion.start)])
+    f = _body_equations(group, velocities / unit, np.eye(2), torques)
+    _, poses, turned, outcome = _solved(group, f, head, pose, elapsed * unit, tolerances)
+    return poses, turned, outcome
+
+
+def _power_of_two(velocities: np.ndarray) -> float:
+    return float(np.ldexp(1.0, np.frexp(np.abs(velocities).max(initial=0.0))[1]))
+
+
+def _solved(
+    group: AbstractMatrixGroup,
+    f: Quadratic,
+    head: np.ndarray,
+    pose: np.ndarray,
+    elapsed: np.ndarray,
+    tolerances: tuple[float, float],
+) -> Solved:
+    """Return what stands before the pose, poses, headings in the plane, and the outcome."""
+    compact, planar = group.pose_size <= _COMPACT and not len(f.forms), group == SE(2)
     g = pose if compact else group.matrix_from_pose(pose).ravel()
     turned = np.arctan2(pose[1:2], pose[0:1]) if planar else np.zeros(0)
-    unit = np.ldexp(1.0, np.frexp(np.abs(system.restricted_velocity(reduced_momentum)).max(initial=0.0))[1])
-    start = np.concatenate([reduced_momentum / unit, g, turned])
-    rows = solve_series(quadratic(system), start, elapsed * unit, tolerances[0] * _GUARD)
-    found = rows[:, k : k + len(g)]
+    rows = solve_series(f, np.concatenate([head, g, turned]), elapsed, tolerances[0] * _GUARD)
+    found = rows[:, len(head) : len(head) + len(g)]
     poses = group.normalize_pose(found if compact else group.pose_from_matrix(found.reshape(-1, *group.identity.shape)))
     outcome = Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
-    return rows[:, :k] * unit, poses, on_same_turn(rows[:, -1], poses) if planar else None, outcome
+    return rows[:, : len(head)], poses, on_same_turn(rows[:, -1], poses) if planar else None, outcome
+
+
+def on_same_turn(headings: Float[np.ndarray, "K"], poses: Float[np.ndarray, "K 4"]) -> Float[np.ndarray, "K"]:
+    """Return the angles of the poses, each on the turn that the integrated heading tells."""
+    angles = np.arctan2(poses[:, 1], poses[:, 0])
+    return angles + 2 * np.pi * np.rint((headings - angles) / (2 * np.pi))
 
 
 @functools.lru_cache(maxsize=16)
 def quadratic(system: AbstractSystem) -> Quadratic:
-    """Return the equations of momentum, pose and, in the plane, heading."""
+    """Return the equations of a system; of one with a constraint in space without its momenta."""
     group, S = system.group, system.constraint_subspace
-    k, compact = len(S), group.pose_size <= _COMPACT
-    torques = _torques(group, S, S @ system.inertia_operator.T)
-    lone, places, values = _compact_rates(group, S) if compact else _matrix_rates(group.hat(S))
-    if group == SE(2):
-        lone = np.concatenate([lone, S[:, :1]], axis=1)
-    (a, i), (c, b, m), (d, o, n) = np.nonzero(lone), places, np.nonzero(torques)
-    # places in z: velocities from 0, the one at k, momenta and pose from k + 1
-    left, right = np.concatenate([d, a, c]), np.concatenate([o, np.full(len(a), k), b + 2 * k + 1])
-    targets, factors = np.concatenate([n, i + k, m + k]), np.concatenate([torques[d, o, n], lone[a, i], values])
+    if system.is_spatial:
+        return _space_equations(group, S, cast(np.ndarray, system.homogeneous_mass_tensor))
+    inertia = system.inertia_operator
+    return _body_equations(group, S, np.linalg.inv(S @ inertia @ S.T), _torques(group, S, S @ inertia.T))
+
+
+def _body_equations(
+    group: AbstractMatrixGroup, S: np.ndarray, velocities: np.ndarray, torques: np.ndarray
+) -> Quadratic:
+    """Return equations of momenta with rates torques[a, b] w_a w_b, w = V r, and of a pose that moves along rows S."""
+    rates = _compact_rates(group, S) if group.pose_size <= _COMPACT else _matrix_rates(group.hat(S), False)
+    return _assembled(velocities, _with_heading(group, S, rates), len(S), torques)
+
+
+def _space_equations(group: AbstractMatrixGroup, S: np.ndarray, tensor: np.ndarray) -> Quadratic:
+    """Return the equations of the tensor in space and of a pose that moves along rows S in space."""
+    hats = group.hat(S)
+    (places, values, _), N = _matrix_rates(hats, True), len(tensor)
+    a, b, m = places
+    # X J moves columns as X g does; J X^T is its transpose
+    transposed = np.stack([a, b % N * N + b // N, m % N * N + m // N])
+    both = np.concatenate([places, transposed, np.stack([a, b + N * N, m + N * N])], axis=1)
+    rates = _Rates(both, np.tile(values, 3), np.zeros((len(S), 2 * N * N)))
+    made = _assembled(np.eye(len(S)), _with_heading(group, S, rates), 0, np.zeros((0, 0, 0)))
+    forms = np.einsum("apq,brp->abqr", hats, group.form_adjoint(hats))
+    return made._replace(forms=forms.reshape(len(S), len(S), N * N), tensor=np.ascontiguousarray(tensor))
+
+
+def _with_heading(group: AbstractMatrixGroup, S: np.ndarray, rates: _Rates) -> _Rates:
+    return rates._replace(lone=np.concatenate([rates.lone, S[:, :1]], axis=1)) if group == SE(2) else rates
+
+
+def _assembled(
+    velocities: np.ndarray,
+    rates: _Rates,
+    head: int,
+    torques: np.ndarray,
+) -> Quadratic:
+    """Return equations of `head` momenta, with rates torques[a, b] w_a w_b, and of what moves by `rates`."""
+    k, ((a, b, m), values, lone) = len(velocities), rates
+    (c, i), (d, o, n) = np.nonzero(lone), np.nonzero(torques)
+    # places in z: the velocities, 1, the state
+    left, right = np.concatenate([d, c, a]), np.concatenate([o, np.full(len(c), k), b + k + 1 + head])
+    targets, factors = np.concatenate([n, i + head, m + head]), np.concatenate([torques[d, o, n], lone[c, i], values])
     pairs, products = np.unique(np.stack([left, right], axis=-1), axis=0, return_inverse=True)
-    pairs = np.concatenate([pairs, np.zeros((-len(pairs) % SERIES_LANES, 2), dtype=np.int64)])
-    blocks, closed = _blocks(k, lone, places)
-    velocities = np.linalg.solve(S @ system.inertia_operator @ S.T, np.eye(k))
-    integers = (np.ascontiguousarray(x, dtype=np.int64) for x in (*pairs.T, targets, products.ravel()))
-    return Quadratic(velocities, *integers, factors, blocks, closed)
+    pairs = np.concatenate([pairs, np.zeros((-len(pairs) % SERIES_LANES if k else 0, 2), dtype=np.int64)])
+    momenta = np.arange(head)  # all in one block
+    edges = np.stack([np.concatenate([momenta, b + head]), np.concatenate([np.roll(momenta, 1), m + head])])
+    blocks, closed = _blocks(head + lone.shape[1], edges, i + head)
+    integers = (np.ascontiguousarray(x, dtype=np.int64) for x in (pairs[:, 0], pairs[:, 1], targets, products.ravel()))
+    left, right, targets, products = integers
+    nothing = np.zeros((0, 0, 0)), np.zeros((0, 0)), np.zeros(0)
+    return Quadratic(velocities, left, right, targets, products, factors, blocks, closed, *nothing)
 
 
 def _torques(group: AbstractMatrixGroup, S: np.ndarray, momenta: np.ndarray) -> Float[np.ndarray, "k k k"]:
     """Return the coefficients of w_a w_b, a <= b, in the rates of the momenta along S."""
-    torques = np.stack(
-        [group.coad(np.broadcast_to(row, momenta.shape), momenta) @ S.T for row in S] or [np.zeros((0, 0))]
-    )
-    both = torques + torques.transpose(1, 0, 2) if len(S) else torques.reshape(0, 0, 0)
+    torques = np.zeros((len(S), len(S), len(S)))
+    for a, row in enumerate(S):
+        torques[a] = group.coad(np.broadcast_to(row, momenta.shape), momenta) @ S.T
     halves = np.triu(np.ones((len(S), len(S)))) - np.eye(len(S)) / 2
-    return both * halves[..., None]
+    return (torques + torques.transpose(1, 0, 2)) * halves[..., None]
 
 
-def _compact_rates(group: AbstractMatrixGroup, S: np.ndarray) -> Rates:
+def _compact_rates(group: AbstractMatrixGroup, S: np.ndarray) -> _Rates:
     """Return the rates of a compact pose, which is bilinear in velocity and (1, pose)."""
     units = np.eye(group.pose_size)
-    lone = np.stack([group.pose_rate(np.zeros(len(units)), row) for row in S]) if len(S) else np.zeros((0, len(units)))
-    both = [
-        group.pose_rate(units, np.broadcast_to(row, (len(units), group.dim))) - c
-        for row, c in zip(S, lone, strict=True)
-    ]
-    rates = np.stack(both) if both else np.zeros((0, len(units), len(units)))
+    lone, rates = np.zeros((len(S), len(units))), np.zeros((len(S), len(units), len(units)))
+    for a, row in enumerate(S):
+        lone[a] = group.pose_rate(np.zeros(len(units)), row)
+        rates[a] = group.pose_rate(units, np.broadcast_to(row, (len(units), group.dim))) - lone[a]
     places = np.nonzero(rates)
-    return lone, np.stack(places), rates[places]
+    return _Rates(np.stack(places), rates[places], lone)
 
 
-def _matrix_rates(hats: Float[np.ndarray, "k N N"]) -> Rates:
-    """Return the rates of a matrix row by row, g' = g X: each row moves for itself."""
-    k, N, _ = hats.shape
-    a, i, j = np.nonzero(hats)
-    rows = N * np.arange(N)[:, None]
-    places = np.stack([np.broadcast_to(a, (N, len(a))), rows + i, rows + j]).reshape(3, -1)
-    return np.zeros((k, N * N)), places, np.tile(hats[a, i, j], N)
+def _matrix_rates(hats: Float[np.ndarray, "k N N"], spatial: bool) -> _Rates:
+    """Return the rates of a matrix: of g' = g X, or in space of g' = X g."""
+    (k, N, _), (a, i, j) = hats.shape, np.nonzero(hats)
+    other, where = np.arange(N)[:, None], np.broadcast_to(a, (N, len(a)))
+    places = (where, N * j + other, N * i + other) if spatial else (where, N * other + i, N * other + j)
+    return _Rates(np.stack(places).reshape(3, -1), np.tile(hats[a, i, j], N), np.zeros((k, N * N)))
 
 
-def _blocks(k: int, lone: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the block of each component of momenta, pose and heading, and whether a block moves itself.
-
-    Two components are in a block if each moves the other. One that nothing moves is as good as one that moves itself.
-    """
+def _blocks(size: int, edges: np.ndarray, lone: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the block of each component, where those are that move each other, and which blocks nothing else moves."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    (_, sources, targets), size = places, lone.shape[1]
-    ones = np.ones(len(sources))
-    count, labels = connected_components(coo_array((ones, (sources, targets)), (size, size)), connection="strong")
-    driven = np.zeros(count + 1, dtype=np.bool_)
-    driven[1 + labels[np.concatenate([targets, np.nonzero(lone)[1]])]] = True
-    driven[1 + labels[targets[labels[sources] == labels[targets]]]] = False
-    return np.concatenate([np.zeros(k, dtype=np.int64), 1 + labels]).astype(np.int64), ~driven
+    matrix = coo_array((np.ones(edges.shape[1]), tuple(edges)), (size, size))
+    count, labels = connected_components(matrix, connection="strong")
+    closed, (sources, targets) = np.ones(count, dtype=np.bool_), labels[edges]
+    closed[targets[sources != targets]] = False
+    closed[labels[lone]] = False
+    return labels.astype(np.int64), closed

@@ -1,11 +1,9 @@
 """The compiled steps: scalar arithmetic written once for numba and JAX, the matrix step for any body, the loops."""
 
 from nonholo.kernels._composition import ComposedBody, whole_steps
-from nonholo.kernels._dop853 import RATES, solve
 from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
-from nonholo.kernels._flow import SpaceFlow
 from nonholo.kernels._interface import Body, certified, correction, increment, move, residual
 from nonholo.kernels._nearest import NearestBody
 from nonholo.kernels._nearest import advance as advance_to_nearest
@@ -18,7 +16,6 @@ from nonholo.kernels.secular import SecularBody, secular_sleigh, secular_top
 __all__ = [
     "CORRECTIONS",
     "LANES",
-    "RATES",
     "SERIES_LANES",
     "SETTLED",
     "AnyBody",
@@ -30,7 +27,6 @@ __all__ = [
     "Quadratic",
     "SecularBody",
     "SleighBody",
-    "SpaceFlow",
     "SuslovBody",
     "advance",
     "advance_members",
@@ -45,7 +41,6 @@ __all__ = [
     "secular_sleigh",
     "secular_top",
     "sizes",
-    "solve",
     "solve_series",
     "start",
     "step_each",

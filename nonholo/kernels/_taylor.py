@@ -1,10 +1,13 @@
-r"""Quadratic equations by Taylor series: momenta and pose of a motion whose constraint is fixed in the body.
+r"""Quadratic equations by Taylor series: momenta and poses of continuous motions.
 
-With velocities $w = Vr$ the state x = (r, pose, ...) obeys $x_m' = \sum_q C_{mq}\,w_{a(q)}\,z_{b(q)}$, where z is (w, 1,
-x): Taylor coefficients of the products are Cauchy products. Order and step are those of Jorba and Zou, A software
-package for the numerical integration of ODEs by means of high-order Taylor methods (2005): the last two terms of a step
-are within the tolerance of the first. Steps do not depend on the times that are asked for, which are read from the
-series. Rounding errors of the sum over steps are carried along (Kahan), and so are those of the time.
+With velocities w the state x obeys $x_m' = \sum_q C_{mq}\,w_{a(q)}\,z_{b(q)}$, where z is (w, 1, x). If the constraint
+is fixed in the body, x begins with momenta r, and w = V r. If it is fixed in space, x begins with the inertia tensor
+$\mathbb{J}_g = g\mathbb{J}g^T$, and $B(\mathbb{J}_g)\,w = r$ with a linear map B and constant r: a division of
+series. Taylor coefficients of products are Cauchy products.
+
+Order and step are those of [jorba-zou-2005]: the last two terms of a step are within the tolerance of the first. Steps
+do not depend on the times that are asked for, which are read from the series. What rounding takes from state and time
+is carried along (Kahan).
 """
 
 import math
@@ -15,13 +18,15 @@ import numpy as np
 from nonholo.base.compiled import njit
 from nonholo.base.types import Float
 from nonholo.kernels._scalar import COMPILED
+from nonholo.kernels._small import eliminate, multiply, transpose
 
 SERIES_LANES = 8
-"""Products are so many at a time: pad their number to a multiple of it."""
+"""The number of products is padded to a multiple of it."""
 
 _ATTEMPTS = 10_000  # steps between two looks at the keyboard
 _SMALLEST_STEP = 1e-13  # of an interval between requested times; below it a solve is given up
-_REPAIRS = 30  # of a step; one or two do
+_REPAIRS = 50  # of a step; one or two do
+_FAR = 2.0**-32  # of a step whose powers overflow
 _BITS = 20  # of the exponent of a root
 
 
@@ -36,7 +41,10 @@ class Quadratic(NamedTuple):
         products: Their columns q, (Q,).
         factors: Their values, (Q,).
         blocks: The block of each component of x, whose errors are measured together, (size,).
-        closed: Whether each block moves itself, or is only driven by others, (blocks,).
+        closed: Whether nothing outside moves a block, (blocks,).
+        forms: The coefficients of B, (k, k, N N), or (0, 0, 0) if the constraint is fixed in the body.
+        tensor: J, (N, N).
+        momentum: r, (k,), of a constraint fixed in space.
     """
 
     velocities: np.ndarray
@@ -47,12 +55,17 @@ class Quadratic(NamedTuple):
     factors: np.ndarray
     blocks: np.ndarray
     closed: np.ndarray
+    forms: np.ndarray
+    tensor: np.ndarray
+    momentum: np.ndarray
 
 
 class _Room(NamedTuple):
-    """Coefficients of x (order + 1, size), both factors of all products, the right ones backward, and their sums."""
+    """Coefficients of x and w, of B, of both factors of all products, the right ones backward, and sums of these."""
 
     series: np.ndarray
+    velocities: np.ndarray
+    inertia: np.ndarray
     left: np.ndarray
     right: np.ndarray
     sums: np.ndarray
@@ -87,10 +100,12 @@ def advance(
 
     `state` holds x and what rounding took from it, `place` the time and what rounding took from that.
     """
-    size, lanes = state.shape[1], len(f.left)
-    series, left = np.empty((order + 1, size)), np.zeros((order + 1, lanes))
-    room = _Room(series, left, np.zeros((order + 1, lanes)), np.empty(lanes))
+    series, k, lanes = np.empty((order + 1, state.shape[1])), len(f.velocities), len(f.left)
+    factors = np.empty((order, lanes)), np.empty((order, lanes)), np.empty(lanes)
+    room = _Room(series, np.empty((order, k)), np.empty((order, len(f.forms), len(f.forms))), *factors)
     for _ in range(_ATTEMPTS):
+        if len(f.forms) > 0:
+            _see_tensor(f.tensor, state)
         _expand(f, state[0], order, room)
         step = _step(f, series, tolerance, abs(times[-1] - place[0]))
         if not step > _SMALLEST_STEP * abs(times[reached] - times[reached - 1]):
@@ -109,30 +124,73 @@ def advance(
 
 
 @njit(**COMPILED)
+def _see_tensor(tensor: np.ndarray, state: np.ndarray) -> None:
+    """Write the inertia tensor in space, which its own equations carry through one step, from the pose behind it."""
+    N = len(tensor)
+    g, half = state[0, N * N : 2 * N * N].copy().reshape(N, N), np.empty((N, N))
+    across, seen = np.empty((N, N)), np.empty((N, N))
+    multiply(g, tensor, half)
+    transpose(g, across)
+    multiply(half, across, seen)
+    for i in range(N * N):
+        state[0, i], state[1, i] = seen[i // N, i % N], 0.0
+
+
+@njit(**COMPILED)
 def _expand(f: Quadratic, start: np.ndarray, order: int, room: _Room) -> None:
     """Write the Taylor coefficients of the solution from a state."""
-    series, left, right, sums = room
-    k, size = len(f.velocities), len(start)
-    w = np.empty(k)
-    for m in range(size):
+    series = room.series
+    for m in range(len(start)):
         series[0, m] = start[m]
     for j in range(order):
-        for a in range(k):
-            w[a] = 0.0
-            for i in range(k):
-                w[a] += f.velocities[a, i] * series[j, i]
-        row = order - 1 - j
-        for q in range(len(f.left)):
-            left[j, q] = w[f.left[q]]
-            b = f.right[q]
-            right[row, q] = w[b] if b < k else series[j, b - k - 1] if b > k else (1.0 if j == 0 else 0.0)
-        _multiply(left, right, j, row, sums)
-        for m in range(size):
+        if len(f.forms) > 0:
+            _divide(f, j, room)
+        else:
+            for a in range(len(f.velocities)):
+                room.velocities[j, a] = 0.0
+                for i in range(len(f.velocities)):
+                    room.velocities[j, a] += f.velocities[a, i] * series[j, i]
+        _gather(f, j, order - 1 - j, room)
+        _multiply(room.left, room.right, j, order - 1 - j, room.sums)
+        for m in range(len(start)):
             series[j + 1, m] = 0.0
         for i in range(len(f.factors)):
-            series[j + 1, f.targets[i]] += f.factors[i] * sums[f.products[i]]
-        for m in range(size):
+            series[j + 1, f.targets[i]] += f.factors[i] * room.sums[f.products[i]]
+        for m in range(len(start)):
             series[j + 1, m] /= j + 1
+
+
+@njit(**COMPILED)
+def _divide(f: Quadratic, order: int, room: _Room) -> None:
+    """Write the coefficient of w in B w = r: B_0 w_j = r_j - B_1 w_(j-1) - ... - B_j w_0."""
+    k, inertia, w = len(f.momentum), room.inertia, np.zeros((len(f.momentum), 1))
+    for a in range(k):
+        for b in range(k):
+            inertia[order, a, b] = 0.0
+            for e in range(f.forms.shape[2]):
+                inertia[order, a, b] += f.forms[a, b, e] * room.series[order, e]
+        w[a, 0] = f.momentum[a] if order == 0 else 0.0
+        for i in range(1, order + 1):
+            for b in range(k):
+                w[a, 0] -= inertia[i, a, b] * room.velocities[order - i, b]
+    eliminate(inertia[0].copy(), w)
+    for a in range(k):
+        room.velocities[order, a] = w[a, 0]
+
+
+@njit(**COMPILED)
+def _gather(f: Quadratic, order: int, row: int, room: _Room) -> None:
+    """Write the factors of the products of an order."""
+    k = len(f.velocities)
+    for q in range(len(f.left)):
+        b = f.right[q]
+        room.left[order, q] = room.velocities[order, f.left[q]]
+        if b < k:
+            room.right[row, q] = room.velocities[order, b]
+        elif b == k:
+            room.right[row, q] = 1.0 if order == 0 else 0.0
+        else:
+            room.right[row, q] = room.series[order, b - k - 1]
 
 
 @njit(**COMPILED)
@@ -156,10 +214,10 @@ def _step(f: Quadratic, series: np.ndarray, tolerance: float, longest: float) ->
     for late in range(order - 1, order + 1):
         share = 0.0
         for block in range(len(f.closed)):
-            if f.closed[block] and not sizes[late, block] == 0:
+            if f.closed[block] and sizes[late, block] != 0:
                 ratio = sizes[late, block] / sizes[0, block]
-                share = ratio if not ratio <= share else share
-        if not share == 0:
+                share = share if ratio <= share else ratio
+        if share != 0:
             step = min(step, _root(tolerance / share, late)) if math.isfinite(share) else np.nan
     for block in range(len(f.closed)):
         if not f.closed[block]:
@@ -190,10 +248,10 @@ def _repaired(sizes: np.ndarray, tolerance: float, step: float) -> float:
             largest = max(largest, sizes[j] * power)
             late = max(late, sizes[j] * power) if j >= order - 1 else late
             power *= step
-        if not late > tolerance * largest:
-            break
-        step *= _root(tolerance * largest / late, order)
-    return step
+        if late <= tolerance * largest:
+            return step
+        step *= _root(tolerance * largest / late, order) if math.isfinite(late) else _FAR
+    return np.nan
 
 
 @njit(**COMPILED)

@@ -8,7 +8,7 @@ import numpy as np
 from nonholo.base.checks import error, flow_times, flow_tolerances, shown
 from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome, OutcomeError
-from nonholo.continuous import ContinuousFlow, solver_of, usual_tolerance
+from nonholo.continuous import ContinuousFlow, solver_of
 from nonholo.orbit import Orbit
 from nonholo.simulation.events import Event, Solve, check_functions, checked_events, flow_with_events
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, OrbitT, Start, System, refuse_in_coordinates
@@ -60,9 +60,8 @@ def flow(
        g' = g\,\hat\omega, \qquad p = \mathbb{I}\omega. $$
 
     By default by Taylor series: the equations are quadratic in velocity and pose. Steps do not depend on the requested
-    times, where the series are evaluated, and are exact to rounding unless `rtol` allows more. A constraint fixed in
-    space is left to an adaptive Runge-Kutta method of order 8. With "closed_form" the momentum
-    along the constraint is $r_\perp\,\mathrm{sech}\,s + r_\parallel\tanh s$, $s = s_0 + \nu t$, exact at all times.
+    times, where the series are evaluated, and are exact to rounding unless `rtol` allows more. With "closed_form" the
+    momentum along the constraint is $r_\perp\,\mathrm{sech}\,s + r_\parallel\tanh s$, $s = s_0 + \nu t$, exact.
     Exact are also heading and path of the sleigh (a hypergeometric function); the pose of the top is a quadrature.
 
     For a `LagrangeDAlembert` these are the equations of its `flow`, with q in place of the pose: it starts at a
@@ -77,8 +76,8 @@ def flow(
         restricted_velocity: The same, in rows of the constraint subspace.
         momentum: Start with this momentum, full or along the constraint subspace.
         configuration: First pose, a matrix of the group; the identity by default.
-        rtol: Relative error of a step, at least 1e-14, which is the default of the series; that of the others is 1e-10.
-        atol: Absolute error of a step of the other methods. Smaller components are not resolved: a solution that starts
+        rtol: Relative error of a step, at least 1e-14, which is the default; with "diffrax" 1e-10.
+        atol: Absolute error of a step with "diffrax". Smaller components are not resolved there: a solution that starts
             so near a repelling equilibrium leaves it at the wrong time.
         method: None (numerical), "closed_form", or "diffrax": numerical too, by JAX, from the extra `jax`.
         events: `Event`s, or functions of an orbit, whose changes of sign from one requested time to the next are found,
@@ -110,7 +109,7 @@ def flow(
     if not isinstance(system, AbstractSystem):
         raise error("flow(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
     solver, time = solver_of(method), flow_times(times)
-    tolerances = flow_tolerances(usual_tolerance(system, method) if rtol is None else rtol, atol)
+    tolerances = flow_tolerances((1e-10 if method == "diffrax" else 1e-14) if rtol is None else rtol, atol)
     solve = functools.partial(solver, system.canonical, tolerances=tolerances)
     first = _first_state(
         system, time, Start.of("flow", configuration, restricted_velocity=restricted_velocity, **starts)
