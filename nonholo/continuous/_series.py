@@ -131,16 +131,15 @@ def _body_equations(
 
 def _space_equations(group: AbstractMatrixGroup, S: np.ndarray, tensor: np.ndarray) -> Quadratic:
     """Return the equations of the tensor in space and of a pose that moves along rows S in space."""
-    hats = group.hat(S)
-    (places, values, _), N = _matrix_rates(hats, True), len(tensor)
-    a, b, m = places
+    hats, N = group.hat(S), len(tensor)
+    (a, b, m), values, _ = _matrix_rates(hats, True)
     # X J moves columns as X g does; J X^T is its transpose
-    transposed = np.stack([a, b % N * N + b // N, m % N * N + m // N])
-    both = np.concatenate([places, transposed, np.stack([a, b + N * N, m + N * N])], axis=1)
-    rates = _Rates(both, np.tile(values, 3), np.zeros((len(S), 2 * N * N)))
+    sources = np.concatenate([b, b % N * N + b // N, b + N * N])
+    targets = np.concatenate([m, m % N * N + m // N, m + N * N])
+    rates = _Rates(np.stack([np.tile(a, 3), sources, targets]), np.tile(values, 3), np.zeros((len(S), 2 * N * N)))
+    forms = np.einsum("apq,brp->abqr", hats, group.form_adjoint(hats)).reshape(len(S), len(S), N * N)
     made = _assembled(np.eye(len(S)), _with_heading(group, S, rates), 0, np.zeros((0, 0, 0)))
-    forms = np.einsum("apq,brp->abqr", hats, group.form_adjoint(hats))
-    return made._replace(forms=forms.reshape(len(S), len(S), N * N), tensor=np.ascontiguousarray(tensor))
+    return made._replace(forms=forms, tensor=np.ascontiguousarray(tensor))
 
 
 def _with_heading(group: AbstractMatrixGroup, S: np.ndarray, rates: _Rates) -> _Rates:
@@ -165,9 +164,8 @@ def _assembled(
     edges = np.stack([np.concatenate([momenta, b + head]), np.concatenate([np.roll(momenta, 1), m + head])])
     blocks, closed = _blocks(head + lone.shape[1], edges, i + head)
     integers = (np.ascontiguousarray(x, dtype=np.int64) for x in (pairs[:, 0], pairs[:, 1], targets, products.ravel()))
-    left, right, targets, products = integers
     nothing = np.zeros((0, 0, 0)), np.zeros((0, 0)), np.zeros(0)
-    return Quadratic(velocities, left, right, targets, products, factors, blocks, closed, *nothing)
+    return Quadratic(velocities, *integers, factors, blocks, closed, *nothing)
 
 
 def _torques(group: AbstractMatrixGroup, S: np.ndarray, momenta: np.ndarray) -> Float[np.ndarray, "k k k"]:

@@ -26,6 +26,7 @@ SERIES_LANES = 8
 _ATTEMPTS = 10_000  # steps between two looks at the keyboard
 _SMALLEST_STEP = 1e-13  # of an interval between requested times; below it a solve is given up
 _REPAIRS = 50  # of a step; one or two do
+_ENOUGH = 0.99  # of the step that the last terms allow, since roots have three digits
 _FAR = 2.0**-32  # of a step whose powers overflow
 _BITS = 20  # of the exponent of a root
 
@@ -61,11 +62,12 @@ class Quadratic(NamedTuple):
 
 
 class _Room(NamedTuple):
-    """Coefficients of x and w, of B, of both factors of all products, the right ones backward, and sums of these."""
+    """Coefficients of x, w and B, of z at one order, of both factors of products (the right ones backward); sums."""
 
     series: np.ndarray
     velocities: np.ndarray
     inertia: np.ndarray
+    places: np.ndarray
     left: np.ndarray
     right: np.ndarray
     sums: np.ndarray
@@ -102,7 +104,8 @@ def advance(
     """
     series, k, lanes = np.empty((order + 1, state.shape[1])), len(f.velocities), len(f.left)
     factors = np.empty((order, lanes)), np.empty((order, lanes)), np.empty(lanes)
-    room = _Room(series, np.empty((order, k)), np.empty((order, len(f.forms), len(f.forms))), *factors)
+    inertia, places = np.empty((order, len(f.forms), len(f.forms))), np.empty(k + 1 + state.shape[1])
+    room = _Room(series, np.empty((order, k)), inertia, places, *factors)
     for _ in range(_ATTEMPTS):
         if len(f.forms) > 0:
             _see_tensor(f.tensor, state)
@@ -123,12 +126,12 @@ def advance(
     return reached, True
 
 
-@njit(**COMPILED)
+@njit(inline="always", **COMPILED)
 def _see_tensor(tensor: np.ndarray, state: np.ndarray) -> None:
     """Write the inertia tensor in space, which its own equations carry through one step, from the pose behind it."""
     N = len(tensor)
-    g, half = state[0, N * N : 2 * N * N].copy().reshape(N, N), np.empty((N, N))
-    across, seen = np.empty((N, N)), np.empty((N, N))
+    g = state[0, N * N : 2 * N * N].copy().reshape(N, N)
+    half, across, seen = np.empty((N, N)), np.empty((N, N)), np.empty((N, N))
     multiply(g, tensor, half)
     transpose(g, across)
     multiply(half, across, seen)
@@ -160,7 +163,7 @@ def _expand(f: Quadratic, start: np.ndarray, order: int, room: _Room) -> None:
             series[j + 1, m] /= j + 1
 
 
-@njit(**COMPILED)
+@njit(inline="always", **COMPILED)
 def _divide(f: Quadratic, order: int, room: _Room) -> None:
     """Write the coefficient of w in B w = r: B_0 w_j = r_j - B_1 w_(j-1) - ... - B_j w_0."""
     k, inertia, w = len(f.momentum), room.inertia, np.zeros((len(f.momentum), 1))
@@ -178,22 +181,21 @@ def _divide(f: Quadratic, order: int, room: _Room) -> None:
         room.velocities[order, a] = w[a, 0]
 
 
-@njit(**COMPILED)
+@njit(inline="always", **COMPILED)
 def _gather(f: Quadratic, order: int, row: int, room: _Room) -> None:
     """Write the factors of the products of an order."""
-    k = len(f.velocities)
+    z, k = room.places, len(f.velocities)
+    for a in range(k):
+        z[a] = room.velocities[order, a]
+    z[k] = 1.0 if order == 0 else 0.0
+    for m in range(room.series.shape[1]):
+        z[k + 1 + m] = room.series[order, m]
     for q in range(len(f.left)):
-        b = f.right[q]
-        room.left[order, q] = room.velocities[order, f.left[q]]
-        if b < k:
-            room.right[row, q] = room.velocities[order, b]
-        elif b == k:
-            room.right[row, q] = 1.0 if order == 0 else 0.0
-        else:
-            room.right[row, q] = room.series[order, b - k - 1]
+        room.left[order, q] = z[f.left[q]]
+        room.right[row, q] = z[f.right[q]]
 
 
-@njit(**COMPILED)
+@njit(inline="always", **COMPILED)
 def _multiply(left: np.ndarray, right: np.ndarray, order: int, row: int, sums: np.ndarray) -> None:
     """Write coefficients of the products: the sums over i from 0 to an order of left[i] right[row + i]."""
     for q in range(len(sums)):
@@ -225,7 +227,7 @@ def _step(f: Quadratic, series: np.ndarray, tolerance: float, longest: float) ->
     return step
 
 
-@njit(**COMPILED)
+@njit(inline="always", **COMPILED)
 def _sizes(f: Quadratic, series: np.ndarray) -> np.ndarray:
     """Return the largest coefficient in each block: of all orders where it is driven, else of those that are needed."""
     order = len(series) - 1
@@ -238,7 +240,7 @@ def _sizes(f: Quadratic, series: np.ndarray) -> np.ndarray:
     return sizes
 
 
-@njit(**COMPILED)
+@njit(inline="always", **COMPILED)
 def _repaired(sizes: np.ndarray, tolerance: float, step: float) -> float:
     """Return a step, shortened until the last terms of a driven block are within the tolerance of its largest one."""
     order = len(sizes) - 1
@@ -250,7 +252,7 @@ def _repaired(sizes: np.ndarray, tolerance: float, step: float) -> float:
             power *= step
         if late <= tolerance * largest:
             return step
-        step *= _root(tolerance * largest / late, order) if math.isfinite(late) else _FAR
+        step *= _ENOUGH * _root(tolerance * largest / late, order) if math.isfinite(late) else _FAR
     return np.nan
 
 

@@ -96,7 +96,7 @@ class ChaplyginSleigh(AbstractLLSystem):
         rows = ((one, zero, zero), (zero, one, self.b), (zero, zero, one))
         return xp.stack([xp.stack(row) for row in rows])
 
-    @property
+    @functools.cached_property
     def canonical(self) -> "ChaplyginSleigh":
         """The same sleigh with b = 0: the offset across the blade does not enter the reduced motion."""
         return ChaplyginSleigh(self.mass, self.inertia, self.a)

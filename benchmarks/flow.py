@@ -1,0 +1,94 @@
+"""The continuous flow beside heyoka's Taylor method: integration alone, the whole call of `nh.flow`, and errors.
+
+Both are warm, in double precision, one orbit with pose; heyoka's `propagate_until` in its default mode, at the
+tolerance of the row, or `propagate_grid` where samples are stored. Ends are checked against a reference of 18 digits
+before anything is timed; runs are taken in turns.
+
+    python benchmarks/flow.py [--rounds 31]
+"""
+
+import argparse
+import statistics
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from peers.problems import PROBLEMS, Problem, error, in_turns, last, median_ratio, reference
+from peers.solvers import decoded, heyoka_taylor, missing, rates, start
+
+import nonholo as nh
+from nonholo.continuous import solver_of
+
+ENDS, TOLERANCES, SAMPLES = (20.0, 100.0, 1000.0), (1e-6, 1e-10, 1e-13, 1e-14), 1_000_000
+
+
+def _integration(problem: Problem, times: np.ndarray, tolerance: float) -> Callable[[], Any]:
+    """Return the integration without the checks and the orbit of `nh.flow`."""
+    first = nh.flow(problem.system, body_velocity=problem.velocity, times=times[:1])
+    solve = solver_of(None)
+    return lambda: solve(
+        problem.system.canonical, first.reduced_momentum[0], first.canonical_pose[0], times, (tolerance, 1e-12)
+    )
+
+
+def rows(problem: Problem, end: float, rounds: int) -> list[tuple[str, ...]]:
+    """Return times and errors at one end, tolerance by tolerance."""
+    problem, times, found = problem._replace(end=end), np.array([0.0, end]), []
+    wanted = reference(problem, end)
+    for tolerance in TOLERANCES:
+        start_of = {"body_velocity": problem.velocity, "times": times, "rtol": tolerance}
+        taylor = heyoka_taylor(problem)
+        runs: dict[str, Callable[[], Any]] = {
+            "heyoka": lambda solve=taylor, tolerance=tolerance: solve(tolerance),
+            "integration": _integration(problem, times, tolerance),
+            "call": lambda given=start_of: nh.flow(problem.system, **given),
+        }
+        errors = error(problem, runs["heyoka"](), wanted), error(problem, last(runs["call"]()), wanted)
+        assert max(errors) < 1e4 * tolerance + 1e-11, errors
+        taken = in_turns(runs, rounds)
+        row = [f"{statistics.median(seconds) * 1e6:.1f}" for seconds in taken.values()]
+        ratios = [f"{median_ratio(taken[name], taken['heyoka']):.2f}" for name in ("integration", "call")]
+        found.append((problem.name, f"{end:g}", f"{tolerance:.0e}", *row, *ratios, *(f"{one:.1e}" for one in errors)))
+    return found
+
+
+def samples(problem: Problem, rounds: int) -> tuple[str, ...]:
+    """Return times of a million stored samples."""
+    import heyoka
+
+    grid, first = np.linspace(0.0, problem.end, SAMPLES + 1), start(problem)
+    z = heyoka.make_vars(*(f"z{i}" for i in range(len(first))))
+    equations = list(zip(z, rates(problem, heyoka.cos, heyoka.sin)(z), strict=True))
+    integrator = heyoka.taylor_adaptive(equations, first, tol=1e-14)
+
+    def peer() -> Any:
+        integrator.time = 0.0
+        integrator.state[:] = first
+        return decoded(integrator.propagate_grid(grid)[-1][-1])
+
+    runs = {"heyoka": peer, "call": lambda: nh.flow(problem.system, body_velocity=problem.velocity, times=grid)}
+    wanted = reference(problem, problem.end)
+    assert max(error(problem, runs["heyoka"](), wanted), error(problem, last(runs["call"]()), wanted)) < 1e-11
+    taken = in_turns(runs, rounds)
+    ns = [f"{statistics.median(seconds) / SAMPLES * 1e9:.0f} ns" for seconds in taken.values()]
+    return problem.name, "a sample of a million", *ns, f"{median_ratio(taken['call'], taken['heyoka']):.2f}"
+
+
+def main() -> None:
+    """Print both tables."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rounds", type=int, default=31)
+    rounds = parser.parse_args().rounds
+    if reason := missing("heyoka"):
+        raise SystemExit(f"heyoka: {reason}")
+    print("| body | T | rtol | heyoka us | integration us | call us | ratio | ratio of call | error heyoka | error |")
+    for problem in PROBLEMS:
+        for end in ENDS if problem.system.group == nh.SO(3) else ENDS[:1]:
+            for row in rows(problem, end, rounds):
+                print("|", " | ".join(row), "|", flush=True)
+    for problem in PROBLEMS:
+        print("|", " | ".join(samples(problem, max(3, rounds // 10))), "|", flush=True)
+
+
+if __name__ == "__main__":
+    main()
