@@ -163,9 +163,10 @@ def _assembled(
     momenta = np.arange(head)  # all in one block
     edges = np.stack([np.concatenate([momenta, b + head]), np.concatenate([np.roll(momenta, 1), m + head])])
     blocks, closed = _blocks(head + lone.shape[1], edges, i + head)
-    integers = (np.ascontiguousarray(x, dtype=np.int64) for x in (pairs[:, 0], pairs[:, 1], targets, products.ravel()))
+    integers = pairs[:, 0], pairs[:, 1], targets, products.ravel()
+    left, right, targets, products = (np.ascontiguousarray(x, dtype=np.int64) for x in integers)
     nothing = np.zeros((0, 0, 0)), np.zeros((0, 0)), np.zeros(0)
-    return Quadratic(velocities, *integers, factors, blocks, closed, *nothing)
+    return Quadratic(velocities, left, right, targets, products, factors, blocks, closed, *nothing)
 
 
 def _torques(group: AbstractMatrixGroup, S: np.ndarray, momenta: np.ndarray) -> Float[np.ndarray, "k k k"]:
@@ -173,8 +174,7 @@ def _torques(group: AbstractMatrixGroup, S: np.ndarray, momenta: np.ndarray) -> 
     torques = np.zeros((len(S), len(S), len(S)))
     for a, row in enumerate(S):
         torques[a] = group.coad(np.broadcast_to(row, momenta.shape), momenta) @ S.T
-    halves = np.triu(np.ones((len(S), len(S)))) - np.eye(len(S)) / 2
-    return (torques + torques.transpose(1, 0, 2)) * halves[..., None]
+    return (torques + torques.transpose(1, 0, 2)) * (np.tri(len(S)).T - np.eye(len(S)) / 2)[..., None]
 
 
 def _compact_rates(group: AbstractMatrixGroup, S: np.ndarray) -> _Rates:
