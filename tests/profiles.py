@@ -65,8 +65,9 @@ PROFILES = {
     ),
     "bounds": Profile(
         "kernels with every index checked, which compiles them once more",
-        ("kernels", "base"),
-        f"NUMBA_BOUNDSCHECK=1 {PYTHON} -m pytest -q tests/kernels tests/base tests/simulation/test_ensemble.py",
+        ("kernels", "base", "continuous"),
+        f"NUMBA_BOUNDSCHECK=1 {PYTHON} -m pytest -q tests/kernels tests/base tests/continuous "
+        "tests/simulation/test_ensemble.py",
     ),
     "site": Profile(
         "the pages and the docstrings of public names as a site; broken links and unknown names are errors",
@@ -86,6 +87,8 @@ PROFILES = {
         "hand-made errors in all rooms that the default run must notice", (), f"{PYTHON} tests/mutants.py"
     ),
 }
+SOAKS = {"long", "fuzz"}
+"""Profiles that take half an hour each: before a release, or after a change of what they guard."""
 
 MARKED = [DEFAULT, *(name for name, profile in PROFILES.items() if not profile.command)]
 _DALEMBERT = "nonholo.lagrange_dalembert."
@@ -177,8 +180,10 @@ def room_of(file: str) -> str | None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Print the commands of the profiles that a change concerns.")
-    parser.add_argument("--all", action="store_true", help="of all profiles")
+    parser.add_argument("--all", action="store_true", help="of all profiles but the two that take half an hour each")
+    parser.add_argument("--soak", action="store_true", help="of all profiles")
     parser.add_argument("--base", help="the commit to compare with; by default the last tag or the merge base")
     given = parser.parse_args()
-    for line in commands(list(PROFILES) if given.all else touched(changed_files(given.base))):
+    wide = [name for name in PROFILES if given.soak or name not in SOAKS]
+    for line in commands(wide if given.all or given.soak else touched(changed_files(given.base))):
         print(line)  # noqa: T201
