@@ -1,7 +1,7 @@
 """The parts of the equations of a step: all of a discretization that they and the routes see."""
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from nonholo.base.types import Array
 from nonholo.discrete._variety import Constraint, Variety
@@ -10,6 +10,7 @@ from nonholo.systems import System
 Difference = str | Callable[[Array], Array]
 
 
+@runtime_checkable
 class Scheme(Protocol):
     """A system, a time step, a discrete Lagrangian and a displacement variety."""
 

@@ -26,8 +26,7 @@ SERIES_LANES = 8
 _ATTEMPTS = 10_000  # steps between two looks at the keyboard
 _SMALLEST_STEP = 1e-13  # of an interval between requested times; below it a solve is given up
 _REPAIRS = 50  # of a step; one or two do
-_ENOUGH = 0.99  # of the step that the last terms allow, since roots have three digits
-_FAR = 2.0**-32  # of a step whose powers overflow
+_ENOUGH, _FAR = 0.99, 2.0**-32  # of the step that the last terms allow (roots have three digits), or that overflows
 _BITS = 20  # of the exponent of a root
 
 

@@ -54,7 +54,10 @@ def stop_at(monkeypatch: pytest.MonkeyPatch, block: int, failure: BaseException)
 
 
 # a test run in the background ignores Ctrl-C, and so would all that it starts
-HEED_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
+HEED_CTRL_C = (
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    "signal.signal(signal.SIGHUP, signal.SIG_DFL)"  # children of a shell or of nohup may ignore them
+)
 
 
 def python(code: str, **options: Any) -> subprocess.Popen[str]:

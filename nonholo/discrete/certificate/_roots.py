@@ -73,7 +73,7 @@ def _parted(values: list[complex]) -> tuple[list[complex], list[float]]:
     """Return the values that lie alone, none below the real axis, and the real middles of two that are close."""
     real = sorted(z.real for z in values if z.imag == 0)
     middles = [(x + y) / 2 for x, y in pairwise(real) if y - x <= _CLOSE * abs(y)]
-    alone: list[complex] = [x for x in real if all(abs(x - y) > _CLOSE * abs(x) for y in middles)]
+    alone = [complex(x) for x in real if all(abs(x - y) > _CLOSE * abs(x) for y in middles)]
     for z in values:
         if z.imag > _CLOSE * abs(z):
             alone.append(z)

@@ -3,7 +3,7 @@
 import dataclasses
 import functools
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -49,7 +49,7 @@ class Family(NamedTuple):
         is_doubtful: Tells which members have to be built to know that they can be; all others can.
     """
 
-    body: type[kernels.Body]
+    body: type[Any]
     numbers: Callable[[Members], ScalarMembers]
     keeps_frame: frozenset[str]
     is_doubtful: Callable[[Members], Bool[np.ndarray, "M"]]
@@ -109,7 +109,7 @@ def have_kernel(members: Members) -> bool:
     return run_in_lanes(members.discrete)
 
 
-def body_of(members: Members) -> type[kernels.Body]:
+def body_of(members: Members) -> type[Any]:
     """Return the type of the bodies of members that have a kernel."""
     return _FAMILIES[type(members.discrete.system)].body
 
