@@ -12,8 +12,8 @@ from nonholo.base.types import Array, Float
 from nonholo.discrete._composition import checked_order, refuse_composition, weights
 from nonholo.discrete._legendre import legendre, legendre_of_chart
 from nonholo.discrete._pytrees import pytree
-from nonholo.discrete._scheme import Difference
-from nonholo.discrete._variety import Constraint, Variety, checked_constraint, equations_of, variety_of
+from nonholo.discrete._scheme import Difference, Scheme
+from nonholo.discrete._variety import Constraint, checked_constraint, equations_of
 from nonholo.discrete.routes import AbstractRoute, make_route
 from nonholo.orbit import AbstractMotion, Orbit
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, DiscretizationT, System, refuse_in_coordinates
@@ -21,7 +21,7 @@ from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Discretiza
 
 @pytree
 @dataclasses.dataclass(frozen=True, eq=False)
-class Discretization(AbstractMotion):
+class Discretization(Scheme, AbstractMotion):
     """A discretized system, made by `discretize`.
 
     Attributes:
@@ -56,11 +56,6 @@ class Discretization(AbstractMotion):
     def route_name(self) -> str:
         """How stores call the route."""
         return self.route.name
-
-    @property
-    def variety(self) -> Variety:
-        """The displacement variety in the canonical frame."""
-        return variety_of(self.system, self.constraint)
 
     @property
     def conserves_energy(self) -> bool:

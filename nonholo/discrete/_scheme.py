@@ -1,45 +1,35 @@
 """The parts of the equations of a step: all of a discretization that they and the routes see."""
 
 from collections.abc import Callable
-from typing import Protocol, runtime_checkable
 
 from nonholo.base.types import Array
-from nonholo.discrete._variety import Constraint, Variety
+from nonholo.discrete._variety import Constraint, Variety, variety_of
 from nonholo.systems import System
 
 Difference = str | Callable[[Array], Array]
 
 
-@runtime_checkable
-class Scheme(Protocol):
-    """A system, a time step, a discrete Lagrangian and a displacement variety."""
+class Scheme:
+    """A system, a time step, a discrete Lagrangian and a displacement variety.
 
-    @property
-    def system(self) -> System:
-        """The system that moves."""
-        ...
+    A class of its own, not a protocol: to try whether an object obeys one would ask it for its variety, whose matrices
+    fill the memory for wide bodies.
 
-    @property
-    def time_step(self) -> Array:
-        """The time step h."""
-        ...
+    Attributes:
+        system: What moves.
+        time_step: The time step h.
+        difference: The discrete Lagrangian: "matrix", "logarithmic" or a callable.
+        constraint: The name of the variety, or its functions.
+        order: 2, or that of a composition.
+    """
 
-    @property
-    def difference(self) -> Difference:
-        """The discrete Lagrangian: "matrix", "logarithmic" or a callable."""
-        ...
-
-    @property
-    def constraint(self) -> Constraint:
-        """The name of the variety, or its functions."""
-        ...
+    system: System
+    time_step: Array
+    difference: Difference
+    constraint: Constraint
+    order: int
 
     @property
     def variety(self) -> Variety:
         """The displacement variety in the canonical frame."""
-        ...
-
-    @property
-    def order(self) -> int:
-        """The order: 2, or that of a composition."""
-        ...
+        return variety_of(self.system, self.constraint)

@@ -8,8 +8,8 @@ import numpy as np
 from nonholo.base.checks import needs
 from nonholo.base.types import Array, Float
 from nonholo.discrete._pytrees import pytree
-from nonholo.discrete._scheme import Difference
-from nonholo.discrete._variety import Constraint, Variety, variety_of
+from nonholo.discrete._scheme import Difference, Scheme
+from nonholo.discrete._variety import Constraint
 from nonholo.discrete.routes._base import AbstractRoute, Rows
 from nonholo.orbit import Orbit
 from nonholo.systems import System
@@ -17,8 +17,8 @@ from nonholo.systems import System
 
 @pytree
 @dataclasses.dataclass(frozen=True, eq=False)
-class DefinitionRoute(AbstractRoute):
-    """The data of `_definition` and `_composition_definition`; a `Scheme`."""
+class DefinitionRoute(Scheme, AbstractRoute):
+    """The data of `_definition` and `_composition_definition`."""
 
     system: System
     time_step: Array
@@ -31,11 +31,6 @@ class DefinitionRoute(AbstractRoute):
     is_scalar: ClassVar[bool] = False
     needs_pose: ClassVar[bool] = True
     compiled: ClassVar[None] = None
-
-    @property
-    def variety(self) -> Variety:
-        """The displacement variety in the canonical frame."""
-        return variety_of(self.system, self.constraint)
 
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
         """Return the displacements that follow, one step of order 2 from each state."""
