@@ -3,5 +3,6 @@
 from nonholo.continuous._closed_form import closed_form
 from nonholo.continuous._equations import ContinuousFlow, vector_field
 from nonholo.continuous._methods import solver_of
+from nonholo.continuous._solution import Solved
 
-__all__ = ["ContinuousFlow", "closed_form", "solver_of", "vector_field"]
+__all__ = ["ContinuousFlow", "Solved", "closed_form", "solver_of", "vector_field"]

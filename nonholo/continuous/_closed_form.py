@@ -1,5 +1,8 @@
 """Closed forms of the continuous motion: momenta along two directions, heading and path of the sleigh."""
 
+import functools
+from collections.abc import Callable
+
 import numpy as np
 
 from nonholo.base.checks import error
@@ -10,6 +13,7 @@ from nonholo.continuous._blade_path import blade_path
 from nonholo.continuous._equations import body_of
 from nonholo.continuous._heteroclinic import Heteroclinic, heteroclinic
 from nonholo.continuous._series import pose_by_series
+from nonholo.continuous._solution import Solved, States
 from nonholo.systems import AbstractSystem, NormalForm
 
 _LARGEST_RATIO = 1e150  # of turn to the Gudermannian; beyond it the center of mass is as good as at the blade
@@ -21,31 +25,36 @@ def closed_form(
     pose: Float[np.ndarray, "size"],
     elapsed: Float[np.ndarray, "K"],
     tolerances: tuple[float, float],
-) -> tuple[Float[np.ndarray, "K k"], Float[np.ndarray, "K size"], Float[np.ndarray, "K"] | None, Outcome]:
-    """Return momenta, poses, on SE(2) the heading without ambiguity of full turns, and the outcome.
+) -> Solved:
+    """Solve the equations of a canonical system with two directions; times elapse from zero.
 
-    The system is a canonical one. Heading and path of a sleigh are exact; other poses are a quadrature by Taylor
-    series.
+    Heading and path of a sleigh are exact; other poses are a quadrature by Taylor series.
     """
     if system.is_spatial or system.rank != 2:
         remedy = "Leave method out to integrate numerically."
         raise error("flow(method='closed_form')", "have a closed-form solution", type(system).__name__, remedy)
     motion, form = heteroclinic(system, reduced_momentum), system.normal_form
     if form is not None and form.is_sleigh:
-        poses, turned = _sleigh_poses(system, form, motion, reduced_momentum, pose, elapsed)
-        return motion.momentum(elapsed), poses, turned, Outcome.successful
-    poses, turned, outcome = pose_by_series(system.group, motion, body_of(system)[2], pose, elapsed, tolerances)
-    return motion.momentum(elapsed)[: len(poses)], poses, turned, outcome
+        at = functools.partial(_sleigh_states, system, form, motion, reduced_momentum, pose)
+        return Solved(at(elapsed), Outcome.successful, at)
+    posed = pose_by_series(system.group, motion, body_of(system)[2], pose, elapsed, tolerances)
+    reached = elapsed[: len(posed.states.poses)]
+    at = functools.partial(_with_momenta, motion, posed.at)
+    return posed._replace(states=posed.states._replace(momenta=motion.momentum(reached)), at=at)
 
 
-def _sleigh_poses(
+def _with_momenta(motion: Heteroclinic, series: Callable[[np.ndarray], States], elapsed: np.ndarray) -> States:
+    return series(elapsed)._replace(momenta=motion.momentum(elapsed))
+
+
+def _sleigh_states(
     system: AbstractSystem,
     form: NormalForm,
     motion: Heteroclinic,
     reduced_momentum: np.ndarray,
     pose: np.ndarray,
     elapsed: np.ndarray,
-) -> tuple[Float[np.ndarray, "K 4"], Float[np.ndarray, "K"]]:
+) -> States:
     group, foot = system.group, _foot(form)
     first = pose if foot is None else group.pose_from_matrix(group.matrix_from_pose(pose) @ foot)
     facing = _facing(first)
@@ -60,7 +69,7 @@ def _sleigh_poses(
     rows = np.stack((heading.real, heading.imag, place.real, place.imag), axis=-1)
     if foot is not None:
         rows = group.pose_from_matrix(group.matrix_from_pose(rows) @ group.inverse(foot))
-    return rows, np.angle(_facing(pose)) + turn
+    return States(motion.momentum(elapsed), rows, np.angle(_facing(pose)) + turn)
 
 
 def _facing(pose: np.ndarray) -> complex:

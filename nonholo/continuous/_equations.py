@@ -7,12 +7,13 @@ $r' = S\,\mathrm{ad}^*_\omega p$, without multipliers. Solutions live in `_close
 
 import dataclasses
 from collections.abc import Callable
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import error, number, shown, trailing
+from nonholo.base.checks import array, error, number, shown, trailing
 from nonholo.base.types import Array, Float
+from nonholo.continuous._solution import States
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractMotion, Orbit
 from nonholo.systems import AbstractSystem, inertia_form
@@ -52,11 +53,38 @@ def reaction(
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class ContinuousFlow(AbstractMotion):
-    """The continuous motion of a system, as the orbits of `flow` know it."""
+    """The continuous motion of a system, as the orbits of `flow` know it.
+
+    Attributes:
+        system: What moves.
+        span: The first and the last time at which the motion is known; None of one that was loaded.
+        solution: Gives its states at times since the first.
+    """
 
     system: AbstractSystem
+    span: tuple[float, float] | None = dataclasses.field(default=None, repr=False, metadata={"stored": False})
+    solution: Callable[[Array], States] | None = dataclasses.field(default=None, repr=False, metadata={"stored": False})
     conserves_energy: ClassVar[None] = None
     route_name: ClassVar[None] = None
+
+    def at(self, states: Orbit, times: Any) -> Orbit:
+        """Return the states at any times of the span."""
+        where = "Orbit.at(times=...)"
+        if self.span is None or self.solution is None:
+            remedy = "Solve it again: flow(orbit.system, ...)."
+            raise error("Orbit.at(...)", "know more than its states", "a flow from a file", remedy)
+        time = array(where, times, () if np.ndim(times) == 0 else (None,), "Pass times.").reshape(-1)
+        first, last = self.span
+        outside = ~((time >= min(self.span)) & (time <= max(self.span)))
+        if outside.any():
+            got = f"{time[np.argmax(outside)]:.17g}"
+            raise error(where, f"lie between {first:.17g} and {last:.17g}", got, "Ask the flow for later times.")
+        order = np.argsort(time if last >= first else -time, kind="stable")
+        found = States(
+            *(None if rows is None else rows[np.argsort(order)] for rows in self.solution(time[order] - first))
+        )
+        kept = dataclasses.replace(states, time=time, reduced_momentum=found.momenta, canonical_pose=found.poses)
+        return dataclasses.replace(kept, turned=found.turned, save_every=1, events=None)
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         r"""Return the momenta $p = \mathbb{I}\omega$."""

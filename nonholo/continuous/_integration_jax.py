@@ -12,7 +12,7 @@ from nonholo.base.numerics.time_sweep import State, padded, reached, sweep
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.continuous._equations import Body, body_of, momentum_rate, spatial_velocity
-from nonholo.continuous._series import on_same_turn
+from nonholo.continuous._solution import Solved, States, on_same_turn
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems import AbstractSystem
 
@@ -25,11 +25,8 @@ def integrate_by_diffrax(
     pose: Float[np.ndarray, "size"],
     elapsed: Float[np.ndarray, "K"],
     tolerances: tuple[float, float],
-) -> tuple[Float[np.ndarray, "K k"], Float[np.ndarray, "K size"], Float[np.ndarray, "K"] | None, Outcome]:
-    """Return momenta, poses, on SE(2) the heading without ambiguity of full turns, and the outcome.
-
-    Times elapse from zero. After a failure only the good states are returned.
-    """
+) -> Solved:
+    """Solve the equations of a system; times elapse from zero."""
     planar = system.group == SE(2)
     turned = np.arctan2(pose[1:2], pose[0:1]) if planar else np.zeros(0)
     start = (reduced_momentum, pose, turned)
@@ -40,7 +37,17 @@ def integrate_by_diffrax(
     rows, outcome = _solve(rate, system.group, start, known, elapsed, tolerances)
     momenta, poses, headings = rows
     poses = system.group.normalize_pose(poses)
-    return momenta, poses, on_same_turn(headings[:, 0], poses) if planar else None, outcome
+    at = functools.partial(_solved_again, system, reduced_momentum, pose, tolerances)
+    return Solved(States(momenta, poses, on_same_turn(headings[:, 0], poses) if planar else None), outcome, at)
+
+
+def _solved_again(
+    system: AbstractSystem, momentum: np.ndarray, pose: np.ndarray, tolerances: tuple[float, float], elapsed: np.ndarray
+) -> States:
+    times = np.unique(np.append(np.abs(elapsed), 0.0))
+    backward = np.copysign(1.0, elapsed.sum())
+    states = integrate_by_diffrax(system, momentum, pose, backward * times, tolerances).states
+    return states.chosen(np.searchsorted(times, np.abs(elapsed)))
 
 
 def _motion_rate(group: AbstractMatrixGroup, time: Array, state: State, body: Body) -> State:

@@ -8,19 +8,19 @@ $$ \mathbb{J}_g' = X\mathbb{J}_g + \mathbb{J}_g X^T, \qquad g' = X g, \qquad X =
    \quad \sum_j \mathrm{tr}(D_i\mathbb{J}_g D_j^*)\,w_j = r_i . $$
 """
 
+import dataclasses
 import functools
-from typing import NamedTuple, TypeAlias, cast
+from typing import NamedTuple, cast
 
 import numpy as np
 
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.continuous._heteroclinic import Heteroclinic
+from nonholo.continuous._solution import Solved, States, on_same_turn
 from nonholo.groups import SE, AbstractMatrixGroup
-from nonholo.kernels import SERIES_LANES, Quadratic, solve_series
+from nonholo.kernels import SERIES_LANES, Quadratic, order_for, revisit_series, solve_series
 from nonholo.systems import AbstractSystem
-
-Solved: TypeAlias = tuple[Float[np.ndarray, "K k"], Float[np.ndarray, "K size"], Float[np.ndarray, "K"] | None, Outcome]
 
 _COMPACT = 40
 """Poses of more numbers are integrated as matrices, whose rates need not be tried."""
@@ -36,6 +36,51 @@ class _Rates(NamedTuple):
     lone: np.ndarray
 
 
+@dataclasses.dataclass(frozen=True, eq=False)
+class Series:
+    """A solved motion: its equations, and from where their series can be expanded again.
+
+    Attributes:
+        group: Of the poses.
+        equations: The quadratic equations.
+        head: The number of components before the pose.
+        compact: Whether poses are integrated as compact ones, not as matrices.
+        momentum: r, if the constraint is fixed in space, where it is constant; else None.
+        unit: The unit of time, inverted: a power of two that brings the velocities near to one, so that no coefficient
+            over- or underflows without need.
+        tolerance: Of a step.
+        end: The last time that was asked for.
+        nodes: Beginnings of steps.
+    """
+
+    group: AbstractMatrixGroup
+    equations: Quadratic
+    head: int
+    compact: bool
+    momentum: Float[np.ndarray, "k"] | None
+    unit: float
+    tolerance: float
+    end: float
+    nodes: Float[np.ndarray, "steps 2 state"]
+
+    def __call__(self, elapsed: Float[np.ndarray, "K"]) -> States:
+        """Return the states at times since the start, which lie in the order in which the motion was solved."""
+        rows = np.empty((len(elapsed), len(self.equations.blocks)))
+        limits = self.end * self.unit, order_for(self.tolerance), self.tolerance
+        revisit_series(self.equations, self.nodes, elapsed * self.unit, *limits, rows)
+        return self.decoded(rows)
+
+    def decoded(self, rows: Float[np.ndarray, "K size"]) -> States:
+        """Return momenta, poses and headings."""
+        group, head, unit = self.group, rows[:, : self.head], self.unit
+        end = len(self.equations.blocks) - (group == SE(2))
+        found = rows[:, self.head : end]
+        matrices = found.reshape(-1, *group.identity.shape) if not self.compact else None
+        poses = group.normalize_pose(found if matrices is None else group.pose_from_matrix(matrices))
+        momenta = head * unit if self.momentum is None else np.tile(self.momentum, (len(rows), 1))
+        return States(momenta, poses, on_same_turn(rows[:, -1], poses) if group == SE(2) else None)
+
+
 def by_series(
     system: AbstractSystem,
     reduced_momentum: Float[np.ndarray, "k"],
@@ -43,19 +88,13 @@ def by_series(
     elapsed: Float[np.ndarray, "K"],
     tolerances: tuple[float, float],
 ) -> Solved:
-    """Return momenta, poses, on SE(2) the heading without ambiguity of full turns, and the outcome.
-
-    Times elapse from zero. After a failure only the good states are returned. The unit of time is the power of two
-    that brings the velocities near to one, so that no coefficient over- or underflows without need.
-    """
+    """Solve the equations of a system; times elapse from zero."""
     velocity = system.restricted_velocity(reduced_momentum, system.group.matrix_from_pose(pose))
     unit = _power_of_two(velocity)
-    f, head = quadratic(system), reduced_momentum / unit
+    f, head, constant = quadratic(system), reduced_momentum / unit, None
     if system.is_spatial:
-        f, head = f._replace(momentum=head), np.zeros(f.tensor.size)
-    heads, poses, turned, outcome = _solved(system.group, f, head, pose, elapsed * unit, tolerances)
-    momenta = np.tile(reduced_momentum, (len(heads), 1)) if system.is_spatial else heads * unit
-    return momenta, poses, turned, outcome
+        f, head, constant = f._replace(momentum=head), np.zeros(f.tensor.size), reduced_momentum
+    return _solved(system.group, f, head, constant, unit, pose, elapsed, tolerances)
 
 
 def pose_by_series(
@@ -65,8 +104,8 @@ def pose_by_series(
     pose: Float[np.ndarray, "size"],
     elapsed: Float[np.ndarray, "K"],
     tolerances: tuple[float, float],
-) -> tuple[Float[np.ndarray, "K size"], Float[np.ndarray, "K"] | None, Outcome]:
-    r"""Return the poses of a body whose momentum is known in closed form, its headings in the plane, and the outcome.
+) -> Solved:
+    r"""Solve for the poses of a body whose momentum is known in closed form.
 
     In place of the momenta stand sech s and tanh s, whose rates are $-\nu\,\mathrm{sech}\,s\tanh s$ and
     $\nu\,\mathrm{sech}^2 s$.
@@ -78,8 +117,7 @@ def pose_by_series(
     decay = np.exp(-abs(motion.start))
     head = np.array([2 * decay / (1 + decay * decay), np.tanh(motion.start)])
     f = _body_equations(group, velocities / unit, np.eye(2), torques)
-    _, poses, turned, outcome = _solved(group, f, head, pose, elapsed * unit, tolerances)
-    return poses, turned, outcome
+    return _solved(group, f, head, None, unit, pose, elapsed, tolerances)
 
 
 def _power_of_two(velocities: np.ndarray) -> float:
@@ -90,25 +128,19 @@ def _solved(
     group: AbstractMatrixGroup,
     f: Quadratic,
     head: np.ndarray,
+    constant: np.ndarray | None,
+    unit: float,
     pose: np.ndarray,
     elapsed: np.ndarray,
     tolerances: tuple[float, float],
 ) -> Solved:
-    """Return what stands before the pose, poses, headings in the plane, and the outcome."""
-    compact, planar = group.pose_size <= _COMPACT and not len(f.forms), group == SE(2)
+    compact, tolerance = group.pose_size <= _COMPACT and not len(f.forms), tolerances[0] * _GUARD
     g = pose if compact else group.matrix_from_pose(pose).ravel()
-    turned = np.arctan2(pose[1:2], pose[0:1]) if planar else np.zeros(0)
-    rows = solve_series(f, np.concatenate([head, g, turned]), elapsed, tolerances[0] * _GUARD)
-    found = rows[:, len(head) : len(head) + len(g)]
-    poses = group.normalize_pose(found if compact else group.pose_from_matrix(found.reshape(-1, *group.identity.shape)))
+    turned = np.arctan2(pose[1:2], pose[0:1]) if group == SE(2) else np.zeros(0)
+    rows, nodes = solve_series(f, np.concatenate([head, g, turned]), elapsed * unit, tolerance)
+    series = Series(group, f, len(head), compact, constant, unit, tolerance, float(elapsed[-1]), nodes)
     outcome = Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
-    return rows[:, : len(head)], poses, on_same_turn(rows[:, -1], poses) if planar else None, outcome
-
-
-def on_same_turn(headings: Float[np.ndarray, "K"], poses: Float[np.ndarray, "K 4"]) -> Float[np.ndarray, "K"]:
-    """Return the angles of the poses, each on the turn that the integrated heading tells."""
-    angles = np.arctan2(poses[:, 1], poses[:, 0])
-    return angles + 2 * np.pi * np.rint((headings - angles) / (2 * np.pi))
+    return Solved(series.decoded(rows), outcome, series, nodes[:, 0, -1] / unit)
 
 
 @functools.lru_cache(maxsize=16)

@@ -9,7 +9,7 @@ from nonholo.kernels._nearest import NearestBody
 from nonholo.kernels._nearest import advance as advance_to_nearest
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
-from nonholo.kernels._taylor import SERIES_LANES, Quadratic, solve_series
+from nonholo.kernels._taylor import SERIES_LANES, Quadratic, order_for, revisit_series, solve_series
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.secular import SecularBody, secular_sleigh, secular_top
 
@@ -37,7 +37,9 @@ __all__ = [
     "correction",
     "increment",
     "move",
+    "order_for",
     "residual",
+    "revisit_series",
     "secular_sleigh",
     "secular_top",
     "sizes",

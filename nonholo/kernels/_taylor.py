@@ -23,7 +23,8 @@ from nonholo.kernels._small import eliminate, multiply, transpose
 SERIES_LANES = 8
 """The number of products is padded to a multiple of it."""
 
-_ATTEMPTS = 10_000  # steps between two looks at the keyboard
+_STEPS = 2048  # between two looks at the keyboard
+_NUMBERS = 1 << 24  # in the nodes of a solve, 128 MiB
 _SMALLEST_STEP = 1e-13  # of an interval between requested times; below it a solve is given up
 _REPAIRS = 50  # of a step; one or two do
 _ENOUGH, _FAR = 0.99, 2.0**-32  # of the step that the last terms allow (roots have three digits), or that overflows
@@ -74,16 +75,31 @@ class _Room(NamedTuple):
 
 def solve_series(
     f: Quadratic, start: Float[np.ndarray, "size"], times: Float[np.ndarray, "K"], tolerance: float
-) -> Float[np.ndarray, "reached size"]:
-    """Return the states at the times, which rise or fall, up to the first that cannot be reached."""
-    order = max(8, math.ceil(1 - math.log(tolerance) / 2))
+) -> tuple[Float[np.ndarray, "reached size"], Float[np.ndarray, "steps 2 state"]]:
+    """Return the states at the times, which rise or fall, up to the first that cannot be reached, and the nodes.
+
+    Nodes are the beginnings of steps: the state and its time, above what rounding took from them. When they fill much
+    memory every second one is left out.
+    """
     rows = np.empty((len(times), len(start)))
     rows[0] = start
-    state, place = np.stack((start, np.zeros_like(start))), np.array([times[0], 0.0])
-    reached, going = 1, True
+    state = np.zeros((2, len(start) + 1))
+    state[0] = *start, times[0]
+    block = max(16, min(_STEPS, _NUMBERS // (8 * state.size)))
+    nodes: list[np.ndarray] = []
+    reached, going, stride = 1, True, 1
     while going and reached < len(times):
-        reached, going = advance(f, times, order, tolerance, reached, state, place, rows)
-    return rows[:reached]
+        room = np.empty((block, *state.shape))
+        reached, steps, going = advance(f, times, order_for(tolerance), tolerance, reached, state, rows, room)
+        nodes.append(room[:steps:stride].copy())
+        if len(nodes) * block * state.size > stride * _NUMBERS:
+            nodes, stride = [part[::2].copy() for part in nodes], 2 * stride
+    return rows[:reached], np.concatenate(nodes) if nodes else state[None]
+
+
+def order_for(tolerance: float) -> int:
+    """Return the order of the series."""
+    return max(8, math.ceil(1 - math.log(tolerance) / 2))
 
 
 @njit(nogil=True, **COMPILED)
@@ -94,35 +110,69 @@ def advance(
     tolerance: float,
     reached: int,
     state: np.ndarray,
-    place: np.ndarray,
     rows: np.ndarray,
-) -> tuple[int, bool]:
-    """Take some steps; return how many rows are filled and whether a step was possible.
+    nodes: np.ndarray,
+) -> tuple[int, int, bool]:
+    """Take a step from each node, which is written; return how many rows and nodes are filled and whether one failed.
 
-    `state` holds x and what rounding took from it, `place` the time and what rounding took from that.
+    `state` holds x and time, and what rounding took from them.
     """
-    series, k, lanes = np.empty((order + 1, state.shape[1])), len(f.velocities), len(f.left)
+    room, going, at = _room(f, order), True, 0
+    while at < len(nodes) and going and reached < len(times):
+        nodes[at] = state
+        at += 1
+        step = _prepare(f, state, order, tolerance, times[-1], room)
+        going = step > _SMALLEST_STEP * abs(times[reached] - times[reached - 1])
+        while going and reached < len(times) and abs(_since(state, times[reached])) <= step:
+            _evaluate(room.series, _since(state, times[reached]), state, rows[reached])
+            going = math.isfinite(rows[reached].sum())
+            reached += going
+        if going and reached < len(times):
+            _move(room.series, math.copysign(step, times[-1] - times[0]), state)
+    return reached, at, going
+
+
+@njit(nogil=True, **COMPILED)
+def revisit_series(
+    f: Quadratic, nodes: np.ndarray, times: np.ndarray, end: float, order: int, tolerance: float, rows: np.ndarray
+) -> None:
+    """Write the states at times in the order of the nodes, the bits as if they had been requested with `end`."""
+    room, at, step, state = _room(f, order), -1, 0.0, nodes[0].copy()
+    direction = math.copysign(1.0, end - nodes[0, 0, -1])
+    for i in range(len(times)):
+        after = max(at, 0)
+        while after + 1 < len(nodes) and direction * _since(nodes[after + 1], times[i]) > 0:
+            after += 1
+        if after != at:
+            at = after
+            state[:] = nodes[at]
+            step = _prepare(f, state, order, tolerance, end, room)
+        while abs(_since(state, times[i])) > step:  # nodes between were left out
+            _move(room.series, direction * step, state)
+            step = _prepare(f, state, order, tolerance, end, room)
+        _evaluate(room.series, _since(state, times[i]), state, rows[i])
+
+
+@njit(inline="always", **COMPILED)
+def _since(state: np.ndarray, time: float) -> float:
+    return time - state[0, -1] - state[1, -1]
+
+
+@njit(inline="always", **COMPILED)
+def _room(f: Quadratic, order: int) -> _Room:
+    k, size, lanes = len(f.velocities), len(f.blocks), len(f.left)
     factors = np.empty((order, lanes)), np.empty((order, lanes)), np.empty(lanes)
-    inertia, places = np.empty((order, len(f.forms), len(f.forms))), np.empty(k + 1 + state.shape[1])
-    room = _Room(series, np.empty((order, k)), inertia, places, *factors)
-    for _ in range(_ATTEMPTS):
-        if len(f.forms) > 0:
-            _see_tensor(f.tensor, state)
-        _expand(f, state[0], order, room)
-        step = _step(f, series, tolerance, abs(times[-1] - place[0]))
-        if not step > _SMALLEST_STEP * abs(times[reached] - times[reached - 1]):
-            return reached, False
-        step = math.copysign(step, times[-1] - times[0])
-        while reached < len(times) and abs(times[reached] - place[0] - place[1]) <= abs(step):
-            _evaluate(series, times[reached] - place[0] - place[1], state, rows[reached])
-            if not math.isfinite(rows[reached].sum()):
-                return reached, False
-            reached += 1
-        if reached == len(times):
-            break
-        _move(series, step, state)
-        place[0], place[1] = _added(place[0], place[1], step)
-    return reached, True
+    inertia = np.empty((order, len(f.forms), len(f.forms)))
+    return _Room(np.empty((order + 1, size)), np.empty((order, k)), inertia, np.empty(k + 1 + size), *factors)
+
+
+@njit(inline="always", **COMPILED)
+def _prepare(f: Quadratic, state: np.ndarray, order: int, tolerance: float, end: float, room: _Room) -> float:
+    """Write the series from a state, and return the length of the step."""
+    if len(f.forms) > 0:
+        _see_tensor(f.tensor, state)
+    _expand(f, state[0], order, room)
+    return _step(f, room.series, tolerance, abs(end - state[0, -1]))
 
 
 @njit(inline="always", **COMPILED)
@@ -142,7 +192,8 @@ def _see_tensor(tensor: np.ndarray, state: np.ndarray) -> None:
 def _expand(f: Quadratic, start: np.ndarray, order: int, room: _Room) -> None:
     """Write the Taylor coefficients of the solution from a state."""
     series = room.series
-    for m in range(len(start)):
+    size = series.shape[1]
+    for m in range(size):
         series[0, m] = start[m]
     for j in range(order):
         if len(f.forms) > 0:
@@ -154,11 +205,11 @@ def _expand(f: Quadratic, start: np.ndarray, order: int, room: _Room) -> None:
                     room.velocities[j, a] += f.velocities[a, i] * series[j, i]
         _gather(f, j, order - 1 - j, room)
         _multiply(room.left, room.right, j, order - 1 - j, room.sums)
-        for m in range(len(start)):
+        for m in range(size):
             series[j + 1, m] = 0.0
         for i in range(len(f.factors)):
             series[j + 1, f.targets[i]] += f.factors[i] * room.sums[f.products[i]]
-        for m in range(len(start)):
+        for m in range(size):
             series[j + 1, m] /= j + 1
 
 
@@ -281,9 +332,10 @@ def _evaluate(series: np.ndarray, time: float, state: np.ndarray, out: np.ndarra
 
 @njit(**COMPILED)
 def _move(series: np.ndarray, step: float, state: np.ndarray) -> None:
-    """Carry the state to the end of a step."""
-    change = np.empty(series.shape[1])
-    _evaluate(series, step, np.zeros_like(state), change)
+    """Carry state and time to the end of a step."""
+    change = np.empty(state.shape[1])
+    change[-1] = step
+    _evaluate(series, step, np.zeros_like(state), change[:-1])
     for m in range(len(change)):
         state[0, m], state[1, m] = _added(state[0, m], state[1, m], change[m])
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import instance, selection
+from nonholo.base.checks import error, instance, selection, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.groups import SE
@@ -43,6 +43,11 @@ class AbstractMotion(abc.ABC):
     @abc.abstractmethod
     def route_name(self) -> str | None:
         """How stores call the way in which steps are computed; None for a flow."""
+
+    def at(self, states: "Orbit", times: Any) -> "Orbit":
+        """Return the states at any times in between, where they are known."""
+        got = f"a discrete orbit with {len(states)} states; not {shown(times)}"
+        raise error("Orbit.at(...)", "be asked of a flow", got, "Slice the orbit, or run with another time step.")
 
     @abc.abstractmethod
     def full_momentum(self, states: "Orbit") -> Float[np.ndarray, "K dim"]:
@@ -129,6 +134,26 @@ class Orbit:
         states = selection("Orbit.chosen(states=...)", states)
         kept = {name: None if (rows := getattr(self, name)) is None else rows[states] for name in STATES}
         return dataclasses.replace(self, **kept)
+
+    def at(self, times: Any) -> "Orbit":
+        """Return the states of a flow at any of its times, from its Taylor series or closed form, without a new run.
+
+        Args:
+            times: One or many, in any order, between the first and the last time of the flow.
+
+        Returns:
+            An orbit with these times. Its numbers are those that `flow` returns when it is asked for them.
+
+        Raises:
+            ValueError: Times outside, a discrete orbit, or a flow from a file, whose states alone are known.
+
+        Example:
+            >>> sleigh = nh.ChaplyginSleigh(mass=1.0, inertia=0.75, a=0.5)
+            >>> orbit = nh.flow(sleigh, body_velocity=(1.0, 0.5, 0.0), times=(0.0, 10.0))
+            >>> orbit.at(3.7).position.round(6)
+            array([[0.746477, 2.997487]])
+        """
+        return self.motion.at(self, times)
 
     @property
     def system(self) -> System:

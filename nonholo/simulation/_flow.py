@@ -1,6 +1,7 @@
 """`flow`: an orbit of the continuous equations, from a checked start to a decoded result."""
 
 import functools
+from collections.abc import Callable
 from typing import Any, cast, overload
 
 import numpy as np
@@ -8,9 +9,9 @@ import numpy as np
 from nonholo.base.checks import error, flow_times, flow_tolerances, shown
 from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome, OutcomeError
-from nonholo.continuous import ContinuousFlow, solver_of
+from nonholo.continuous import ContinuousFlow, Solved, solver_of
 from nonholo.orbit import Orbit
-from nonholo.simulation.events import Event, Solve, check_functions, checked_events, flow_with_events
+from nonholo.simulation.events import Event, check_functions, checked_events, flow_with_events
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, OrbitT, Start, System, refuse_in_coordinates
 
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
@@ -80,9 +81,9 @@ def flow(
         atol: Absolute error of a step with "diffrax". Smaller components are not resolved there: a solution that starts
             so near a repelling equilibrium leaves it at the wrong time.
         method: None (numerical), "closed_form", or "diffrax": numerical too, by JAX, from the extra `jax`.
-        events: `Event`s, or functions of an orbit, whose changes of sign from one requested time to the next are found,
-            and located on the solution; see `Orbit.events`. Two of them between two times are not seen: ask for more
-            times. A stopping event ends the orbit with the last requested time before it.
+        events: `Event`s, or functions of an orbit, whose changes of sign from one requested time or step of the series
+            to the next are found, and located on the solution; see `Orbit.events`. Two of them between two such times
+            are not seen: ask for more times. A stopping event ends the orbit with the last requested time before it.
 
     Returns:
         The orbit. It has no displacements, and its multipliers are the forces at its times. Of a system in coordinates
@@ -130,17 +131,21 @@ def _first_state(system: System, time: np.ndarray, start: Start) -> Orbit:
 
 
 def _flowed(
-    first: Orbit, time: np.ndarray, tolerances: tuple[float, float], solve: Solve, events: dict[str, Event] | None
+    first: Orbit,
+    time: np.ndarray,
+    tolerances: tuple[float, float],
+    solve: Callable[..., Solved],
+    events: dict[str, Event] | None,
 ) -> Orbit:
     """Return the orbit from a first state, with what events found."""
     if events is not None:
         check_functions(events, first)
-    poses = cast(np.ndarray, first.canonical_pose)
-    momenta, poses, turned, outcome = solve(first.reduced_momentum[0], poses[0], time - time[0])
-    reached = len(momenta)
-    orbit = Orbit(first.motion, time[:reached], momenta, None, poses, outcome, turned=turned)
+    solved = solve(first.reduced_momentum[0], cast(np.ndarray, first.canonical_pose)[0], time - time[0])
+    states, outcome, reached = solved.states, solved.outcome, len(solved.states.momenta)
+    motion = ContinuousFlow(first.system, (time[0], time[reached - 1]), solved.at)
+    orbit = Orbit(motion, time[:reached], states.momenta, None, states.poses, outcome, turned=states.turned)
     if events is not None:
-        orbit = flow_with_events(events, orbit, solve)
+        orbit = flow_with_events(events, orbit, time[0] + solved.steps)
     if orbit.outcome != Outcome.successful:
         rtol, atol = tolerances
         where = f"Flow from time {time[reached - 1]:g} to {time[reached]:g} (rtol {rtol:g}, atol {atol:g})"

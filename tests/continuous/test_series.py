@@ -1,5 +1,8 @@
 """Taylor series of the flow: their equations, what their steps depend on, accuracy over long times, singular starts."""
 
+import pickle
+from pathlib import Path
+
 import mpmath
 import numpy as np
 import pytest
@@ -8,7 +11,7 @@ from problems import PROBLEMS
 
 import nonholo as nh
 from nonholo.continuous import _series
-from nonholo.kernels import Quadratic, solve_series
+from nonholo.kernels import Quadratic, _taylor, solve_series
 from nonholo.systems import AbstractSystem
 
 RNG = np.random.default_rng(31)
@@ -167,7 +170,7 @@ def test_nothing_gathers_over_a_long_time(name: str) -> None:
     r = system.restricted_momentum(np.cos(1.0 + np.arange(k)) / 2)
     compact = group.pose_size <= 40
     pose = group.pose_from_matrix(group.identity) if compact else group.identity.ravel()
-    rows = solve_series(_series.quadratic(system), np.concatenate([r, pose]), np.linspace(0.0, 1e4, 11), 1e-16)
+    rows, _ = solve_series(_series.quadratic(system), np.concatenate([r, pose]), np.linspace(0.0, 1e4, 11), 1e-16)
     velocities = system.restricted_velocity(rows[:, :k])
     energies = (velocities * rows[:, :k]).sum(axis=-1)
     assert np.abs(energies / energies[0] - 1).max() <= 1e-13
@@ -192,3 +195,63 @@ def test_a_sleigh_through_its_cusps() -> None:
         reach = np.abs(orbits[1].position).max() + 1
         assert np.abs(orbits[0].position - orbits[1].position).max() <= 1e-12 * reach
         assert np.abs(orbits[0].heading - orbits[1].heading).max() <= 1e-12
+
+
+@pytest.mark.parametrize("few", [False, True])
+@pytest.mark.parametrize("name", ["sleigh", "balanced top", "top on SO(7)", "right-invariant on SE(2)"])
+def test_states_between_are_those_that_had_been_requested(
+    name: str, few: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`Orbit.at` gives the same bits in any order, forward and backward, also where most nodes were left out."""
+    if few:
+        monkeypatch.setattr(_taylor, "_NUMBERS", 1000)
+    k, rng = len(SYSTEMS[name].constraint_subspace), np.random.default_rng(2)
+    start = {"restricted_velocity": np.cos(np.arange(k))}
+    for first, last in ((1.0, 40.0), (40.0, 1.0)):
+        times = np.sort(np.append(rng.uniform(1.0, 40.0, 50), [1.0, 40.0]))[:: 1 if last > first else -1]
+        wanted, ends = (nh.flow(SYSTEMS[name], **start, times=t) for t in (times, (first, last)))
+        mixed = rng.permutation(len(times))
+        found = ends[-1:].at(times[mixed])
+        assert np.array_equal(found.reduced_momentum, wanted.reduced_momentum[mixed])
+        assert np.array_equal(found.pose, wanted.pose[mixed])
+        assert found.turned is None or np.array_equal(found.turned, wanted.turned[mixed])
+        one = pickle.loads(pickle.dumps(ends)).at(times[7])  # noqa: S301
+        assert len(one) == 1
+        assert np.array_equal(one.configuration[0], wanted.configuration[7])
+
+
+@pytest.mark.parametrize("method", ["closed_form", "diffrax"])
+def test_states_between_by_other_methods(method: str) -> None:
+    """Closed forms are evaluated, diffrax solves again; times may repeat."""
+    for system in (SLEIGH, TOP):
+        ends = nh.flow(system, **START, times=(2.0, -6.0), method=method, rtol=1e-12)
+        wanted = nh.flow(system, **START, times=(2.0, 2.0 - 1e-3, -4.0, -6.0))
+        found = ends.at((-4.0, 2.0, -4.0, -6.0, 2.0 - 1e-3))
+        at = [2, 0, 2, 3, 1]
+        assert np.abs(found.momentum - wanted.momentum[at]).max() <= 1e-9
+        assert np.abs(found.configuration - wanted.configuration[at]).max() <= 1e-9
+
+
+def test_states_between_that_nobody_knows(tmp_path: Path) -> None:
+    """Times outside, what is no time, discrete orbits, flows from files."""
+    orbit = nh.flow(SLEIGH, **START, times=(0.0, 1.0))
+    for times in (1.0 + 1e-12, [0.5, -0.1], np.nan, "0.5", [[0.5]], None):
+        with pytest.raises(ValueError, match=r"Orbit.at\(times=...\)"):
+            orbit.at(times)
+    assert len(orbit.at([])) == 0
+    nh.save_orbit(orbit, tmp_path / "flow.zarr")
+    loaded = nh.load_orbit(tmp_path / "flow.zarr")
+    for other in (loaded, nh.simulate(nh.discretize(SLEIGH, 0.1), **START, steps=3)):
+        with pytest.raises(ValueError, match=r"Orbit.at\(...\)"):
+            other.at(0.1)
+
+
+def test_a_failed_flow_is_known_up_to_where_it_came() -> None:
+    """Past the last good state nothing is."""
+    with pytest.raises(nh.OutcomeError) as failure:
+        nh.flow(TOP, restricted_velocity=(1e140, 2e140), times=(0.0, 1e-141, 2e-141, 1.0))
+    orbit = failure.value.orbit
+    assert len(orbit) == 3
+    assert len(orbit.at(1.5e-141)) == 1
+    with pytest.raises(ValueError, match="lie between"):
+        orbit.at(3e-141)

@@ -80,3 +80,18 @@ def test_a_flow_that_stops_in_time_does_not_fail() -> None:
     assert len(caught.value.orbit.events[0]) == 1
     orbit = nh.flow(top, **flow, times=times, events=[nh.Event(lambda orbit: orbit.time - 1.5e-141, stop=True)])
     assert (orbit.outcome, len(orbit)) == (nh.Outcome.successful, 2)
+
+
+def test_events_between_requested_times_are_seen() -> None:
+    """Every step of the series is looked at: a sine of time, between two times and between many."""
+    top = nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]), axis=(0, 0, 1))
+    for times in ((0.0, 100.0), np.linspace(0.0, 100.0, 300)):
+        orbit = nh.flow(top, restricted_velocity=(0.4, 0.9), times=times, events=[lambda orbit: np.sin(orbit.time)])
+        found = orbit.events[0]
+        assert np.abs(found.time - np.pi * np.arange(1, 32)).max() <= 1e-13
+        begin, gap = orbit.time[found.step], orbit.time[found.step + 1] - orbit.time[found.step]
+        assert np.abs(begin + found.fraction * gap - found.time).max() <= 1e-13
+    fifth = nh.Event(lambda orbit: np.sin(orbit.time), stop=5)
+    orbit = nh.flow(top, restricted_velocity=(0.4, 0.9), times=(0.0, 1.0, 15.0, 16.0, 17.0), events=[fifth])
+    assert orbit.time.tolist() == [0.0, 1.0, 15.0]
+    assert orbit.events[0].step.tolist() == [1, 1, 1, 1, 2]

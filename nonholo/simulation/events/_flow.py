@@ -1,26 +1,38 @@
-"""Events of a flow: sought between the requested times, located by solving from the time before."""
+"""Events of a flow: sought between its steps and the requested times, located on the solution."""
 
 import dataclasses
-from collections.abc import Callable
-from typing import Any, cast
 
 import numpy as np
 
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.orbit import Orbit, joined_states
+from nonholo.orbit import Crossings, EventLog, Orbit
 from nonholo.simulation.events._between import Between
 from nonholo.simulation.events._event import Event, values_at
 from nonholo.simulation.events._search import Watch, search
 
-Solve = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[Any, Any, Any, Outcome]]
 
+def flow_with_events(events: dict[str, Event], orbit: Orbit, steps: Float[np.ndarray, "steps"]) -> Orbit:
+    """Return the states of a flow up to the event that ends it, with what was found.
 
-def flow_with_events(events: dict[str, Event], orbit: Orbit, solve: Solve) -> Orbit:
-    """Return the states of a flow up to the event that ends it, with what was found."""
-    watch, kept = search(Watch(events, _between_times(orbit.time, solve)), orbit, 0)
+    Args:
+        events: What is looked for, by name.
+        orbit: The flow.
+        steps: Times at which steps of its solver begin: there, too, its states are looked at.
+    """
+    forward = 1.0 if orbit.time[-1] >= orbit.time[0] else -1.0
+    requested = forward * orbit.time
+    inside = steps[(forward * steps > requested[0]) & (forward * steps < requested[-1])]
+    times = np.unique(np.concatenate([requested, forward * inside]))
+    seen = orbit.at(forward * times) if len(inside) else orbit
+    watch, kept = search(Watch(events, _between_times(seen, forward)), seen, 0)
     outcome = Outcome.successful if watch.stopped_by else orbit.outcome
-    return dataclasses.replace(orbit.chosen(slice(0, kept)), outcome=outcome, events=watch.log())
+    count = int(np.searchsorted(requested, times[kept - 1], "right"))
+    log = watch.log()
+    found = tuple(_of_requested(part, requested, forward) for part in log.found)
+    return dataclasses.replace(
+        orbit.chosen(slice(0, count)), outcome=outcome, events=EventLog(log.names, found, log.stopped_by)
+    )
 
 
 def check_functions(events: dict[str, Event], first: Orbit) -> None:
@@ -29,29 +41,22 @@ def check_functions(events: dict[str, Event], first: Orbit) -> None:
         values_at(name, event, first)
 
 
-def _between_times(time: Float[np.ndarray, "K"], solve: Solve) -> Between:
-    """Return the function of states at requested times and fractions that solves for a part of the way to the next."""
-    spans, forward = np.diff(time), np.sign(time[-1] - time[0])
+def _between_times(seen: Orbit, forward: float) -> Between:
+    """Return the function of states and fractions that gives those on a part of the way to the next."""
+    times, spans = forward * seen.time, np.diff(seen.time)
 
     def between(states: Orbit, fractions: Float[np.ndarray, "K"]) -> Orbit:
-        at = np.searchsorted(forward * time, forward * states.time)
-        parts = [_solved(states[i : i + 1], span, solve) for i, span in enumerate(fractions * spans[at])]
-        return joined_states(parts) if parts else states
+        if not len(states):
+            return states
+        begin = np.searchsorted(times, forward * states.time)
+        return seen.at(forward * np.minimum(forward * (states.time + fractions * spans[begin]), times[-1]))
 
     return between
 
 
-def _solved(state: Orbit, span: float, solve: Solve) -> Orbit:
-    """Return what one state becomes after a time; NaN if the solver fails."""
-    begun = state.reduced_momentum[0], cast(np.ndarray, state.canonical_pose)[0]
-    momenta, poses, turned, outcome = solve(*begun, np.array([0.0, span]))
-    lost = np.nan if outcome != Outcome.successful else 0.0
-    if turned is not None and state.turned is not None:
-        turned = turned[-1:] + 2 * np.pi * np.rint((state.turned - turned[:1]) / (2 * np.pi))
-    return dataclasses.replace(
-        state,
-        time=state.time + span,
-        reduced_momentum=momenta[-1:] + lost,
-        canonical_pose=poses[-1:] + lost,
-        turned=turned,
-    )
+def _of_requested(crossings: Crossings, requested: np.ndarray, forward: float) -> Crossings:
+    """Return crossings with the numbers of the requested times before them."""
+    times = forward * crossings.time
+    step = np.searchsorted(requested, times, "right") - 1
+    gaps = np.append(np.diff(requested), np.inf)
+    return dataclasses.replace(crossings, step=step, fraction=(times - requested[step]) / gaps[step])

@@ -1,0 +1,49 @@
+"""What a solver of the continuous equations returns."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
+
+
+class States(NamedTuple):
+    """Compact states of a motion in the canonical frame.
+
+    Attributes:
+        momenta: Along the constraint subspace, (K, k).
+        poses: (K, size).
+        turned: On SE(2) the heading without ambiguity of full turns, (K,).
+    """
+
+    momenta: Float[np.ndarray, "K k"]
+    poses: Float[np.ndarray, "K size"]
+    turned: Float[np.ndarray, "K"] | None
+
+    def chosen(self, at: np.ndarray) -> "States":
+        """Return the states at some places."""
+        return States(self.momenta[at], self.poses[at], None if self.turned is None else self.turned[at])
+
+
+class Solved(NamedTuple):
+    """A solved motion.
+
+    Attributes:
+        states: At the requested times; after a failure only the good ones.
+        outcome: How it ended.
+        at: Gives the states at times since the start, up to the last good one, in the order of the requested times.
+        steps: Where the steps of the solver begin; empty if that says nothing of the motion.
+    """
+
+    states: States
+    outcome: Outcome
+    at: Callable[[Float[np.ndarray, "K"]], States]
+    steps: Float[np.ndarray, "steps"] = np.zeros(0)
+
+
+def on_same_turn(headings: Float[np.ndarray, "K"], poses: Float[np.ndarray, "K 4"]) -> Float[np.ndarray, "K"]:
+    """Return the angles of the poses, each on the turn that the integrated heading tells."""
+    angles = np.arctan2(poses[:, 1], poses[:, 0])
+    return angles + 2 * np.pi * np.rint((headings - angles) / (2 * np.pi))
