@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import array, error, number, shown, trailing
+from nonholo.base.checks import array, error, number, shape_of, shown, trailing
 from nonholo.base.types import Array, Float
 from nonholo.continuous._solution import States
 from nonholo.groups import AbstractMatrixGroup
@@ -73,16 +73,14 @@ class ContinuousFlow(AbstractMotion):
         if self.span is None or self.solution is None:
             remedy = "Solve it again: flow(orbit.system, ...)."
             raise error("Orbit.at(...)", "know more than its states", "a flow from a file", remedy)
-        time = array(where, times, () if np.ndim(times) == 0 else (None,), "Pass times.").reshape(-1)
+        time = array(where, times, (None,) if shape_of(times) else (), "Pass times.").reshape(-1)
         first, last = self.span
         outside = ~((time >= min(self.span)) & (time <= max(self.span)))
         if outside.any():
             got = f"{time[np.argmax(outside)]:.17g}"
             raise error(where, f"lie between {first:.17g} and {last:.17g}", got, "Ask the flow for later times.")
         order = np.argsort(time if last >= first else -time, kind="stable")
-        found = States(
-            *(None if rows is None else rows[np.argsort(order)] for rows in self.solution(time[order] - first))
-        )
+        found = self.solution(time[order] - first).chosen(np.argsort(order))
         kept = dataclasses.replace(states, time=time, reduced_momentum=found.momenta, canonical_pose=found.poses)
         return dataclasses.replace(kept, turned=found.turned, save_every=1, events=None)
 
