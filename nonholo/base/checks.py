@@ -65,10 +65,11 @@ def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "
         raise error(where, "be real", "complex numbers", remedy)
     if not _fits(raw.shape, shape):
         raise error(where, f"have shape {_shown(shape)}", f"shape {raw.shape}", remedy)
-    with _in_memory(where, raw, remedy), np.errstate(over="ignore"):
-        result = np.array(raw, dtype=np.float64)
-        _check_finite(where, result, remedy)
-        _check_size(where, result)
+    try:
+        result = np.array(as_floats(raw), dtype=np.float64)
+        _check_size(where, result, remedy)
+    except MemoryError:
+        raise _too_large(where, raw, remedy) from None
     result.setflags(write=False)
     return result
 
@@ -102,13 +103,9 @@ def shown(value: Any) -> str:
     return text if len(text) <= 200 else f"{text[:200]}..."
 
 
-@contextlib.contextmanager
-def _in_memory(where: str, value: np.ndarray, remedy: str) -> Iterator[None]:
-    """Refuse numbers of which there are too many to look at, such as one that is repeated without end."""
-    try:
-        yield
-    except MemoryError:
-        raise error(where, "fit into memory", f"shape {value.shape}", remedy) from None
+def _too_large(where: str, value: np.ndarray, remedy: str) -> ValueError:
+    """Return the error of numbers of which there are too many to look at, such as one that is repeated without end."""
+    return error(where, "fit into memory", f"shape {value.shape}", remedy)
 
 
 def _check_finite(where: str, value: np.ndarray, remedy: str) -> None:
@@ -119,9 +116,11 @@ def _check_finite(where: str, value: np.ndarray, remedy: str) -> None:
         raise error(where, "be finite", f"{value[position]}{place}", remedy)
 
 
-def _check_size(where: str, value: np.ndarray) -> None:
-    """Refuse numbers whose squares overflow."""
-    if value.size and (most := np.abs(value).max()) > LARGEST:
+def _check_size(where: str, value: np.ndarray, remedy: str) -> None:
+    """Refuse numbers that are not finite, or whose squares overflow."""
+    most = np.abs(value).max(initial=0.0)
+    if not most <= LARGEST:
+        _check_finite(where, value, remedy)
         raise error(where, f"have no number beyond {LARGEST:g}", f"{most:g}", "Use other units.")
 
 
@@ -161,9 +160,11 @@ def trailing(where: str, value: Any, shape: tuple[int, ...], remedy: str, *, rea
         return as_floats(raw)
     if real and raw.dtype.kind == "c":
         raise error(where, "be real", "complex numbers", remedy)
-    with _in_memory(where, raw, remedy):
+    try:
         result = as_floats(raw)
         _check_finite(where, result if result.ndim == len(shape) else np.where(np.isnan(result), 0, result), remedy)
+    except MemoryError:
+        raise _too_large(where, raw, remedy) from None
     return result
 
 

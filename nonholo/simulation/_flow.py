@@ -123,7 +123,7 @@ def _first_state(system: System, time: np.ndarray, start: Start) -> Orbit:
     group = system.group
     within_memory("flow(times=...)", 32.0 * len(time) * (system.rank + group.pose_size), "Ask for fewer times.")
     g = start.pose(group)
-    reduced, pose = start.momentum(system, g), group.pose_from_matrix(g @ system.frame)
+    reduced, pose = start.momentum(system, g), start.canonical_pose(system, g)
     first = Orbit(ContinuousFlow(system), time[:1], reduced[None], None, pose[None])
     if start.name == "momentum":
         _check_momentum(start.value, first.momentum[0])

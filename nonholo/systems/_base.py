@@ -12,6 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo.base.checks import error, shape_of, trailing
+from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._equilibria import Equilibria, equilibria_of, transverse_rates
@@ -67,7 +68,7 @@ class AbstractSystem(abc.ABC):
     def frame(self) -> Float[np.ndarray, "N N"]:
         """The canonical body frame as seen from the user's: a group element that maps the constraint to itself."""
 
-    @property
+    @kept
     def frame_map(self) -> Float[Array, "k k"]:
         """C with r_canonical = C r for momenta along the constraint subspace (and y = y_canonical C for charts)."""
         if self.canonical is self:
@@ -115,7 +116,12 @@ class AbstractSystem(abc.ABC):
         form = self.normal_form
         return self.frame_map if form is None or form.frame_map is None else form.frame_map @ self.frame_map
 
-    @property
+    @kept
+    def frame_pose(self) -> Float[np.ndarray, "size"]:
+        """The frame as a compact pose: the canonical pose of a body at the identity."""
+        return self.group.pose_from_matrix(self.frame)
+
+    @kept
     def rank(self) -> int:
         """The number k of rows of the constraint subspace."""
         inertia = self.inertia_along
@@ -323,7 +329,7 @@ class AbstractLRSystem(AbstractSystem):
 
     is_spatial: ClassVar[bool] = True
 
-    @property
+    @kept
     def inertia_along(self) -> Float[Array, "k k"]:
         """The inertia along the rows of the constraint subspace of a body at the identity."""
         return form_along(self)
@@ -333,7 +339,7 @@ class AbstractLRSystem(AbstractSystem):
         """The system itself."""
         return self
 
-    @property
+    @kept
     def frame(self) -> Float[np.ndarray, "N N"]:
         """The identity."""
         return self.group.identity

@@ -52,6 +52,10 @@ class Start:
             return group.identity
         return in_group(f"{self.owner}(configuration=...)", group, self.configuration)
 
+    def canonical_pose(self, system: System, g: Float[np.ndarray, "N N"]) -> Float[np.ndarray, "size"]:
+        """Return the checked pose as a compact one in the canonical frame."""
+        return system.frame_pose if self.configuration is None else system.group.pose_from_matrix(g @ system.frame)
+
     def momentum(self, system: System, g: Float[np.ndarray, "N N"] | None) -> Float[np.ndarray, "k"]:
         """Return the canonical momentum along the constraint that a velocity or a momentum has at a pose."""
         along = {"momentum": _of_momentum, "body_velocity": _of_velocity}.get(self.name, _of_coordinates)
@@ -86,7 +90,7 @@ def inadmissible(where: str, residual: np.ndarray, nearest: np.ndarray) -> Value
 def of_finite_energy(owner: str, system: System, g: np.ndarray | None, along: np.ndarray) -> np.ndarray:
     """Return canonical components of a momentum along the constraint, refused if its energy is not finite."""
     with np.errstate(over="ignore", invalid="ignore"):
-        energy = system.constrained_energy(along, g)
+        energy = along @ system.restricted_velocity(along, g) / 2
     if not np.isfinite(energy):
         raise error(f"{owner}(...)", "start with a finite energy", f"{energy}", "Start slower, or use other units.")
     return system.to_canonical(along)
@@ -111,14 +115,10 @@ def _of_coordinates(start: Start, system: System, g: np.ndarray | None) -> np.nd
 
 def _admissible(where: str, system: System, g: np.ndarray | None, body_velocity: Any) -> np.ndarray:
     velocity = array(where, body_velocity, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
-    to_body = _to_body(system, g)
-    carried = np.linalg.solve(to_body, velocity)
+    pose = system.group.identity if g is None else g
+    carried = system.carried(pose) @ velocity if system.is_spatial else velocity
     forbidden = system.annihilator @ carried
     if np.abs(forbidden).max(initial=0.0) > _TOLERANCE * np.abs(carried).max():
-        raise inadmissible(where, forbidden, to_body @ (carried - np.linalg.pinv(system.annihilator) @ forbidden))
+        nearest = carried - np.linalg.pinv(system.annihilator) @ forbidden
+        raise inadmissible(where, forbidden, system.carried(system.group.inverse(pose)) @ nearest)
     return velocity
-
-
-def _to_body(system: System, g: np.ndarray | None) -> np.ndarray:
-    """Return the matrix from velocities in which the constraint is constant to body velocities."""
-    return system.carried(system.group.identity if g is None else system.group.inverse(g))

@@ -131,9 +131,8 @@ class AbstractCompiledRoute(AbstractRoute):
 
     def first_root(self, momenta: np.ndarray) -> tuple[Outcome, np.ndarray]:
         """Return the outcome of the principal root over canonical momenta, and its canonical chart coordinates."""
-        one, group = self.single, self.system.group
-        pose = one.encode_poses(group.pose_from_matrix(self.system.frame))
-        code, state = one.start(one.encode(momenta), pose)
+        one = self.single
+        code, state = one.start(one.encode(momenta), one.encode_poses(self.system.frame_pose))
         return Outcome(code), one.from_kernel(one.chart_of(state))
 
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:

@@ -72,7 +72,7 @@ def _poses(needed: bool, states: Orbit) -> np.ndarray:
         return states.canonical_pose
     if not needed:
         return np.empty((len(states), 0))
-    return np.broadcast_to(system.group.pose_from_matrix(system.frame), (len(states), system.group.pose_size))
+    return np.broadcast_to(system.frame_pose, (len(states), system.group.pose_size))
 
 
 def _advanced(

@@ -20,8 +20,7 @@ def first_state(discrete: Discretization, start: Start, *, posed: bool, compiled
     """Return the checked first state of a run that keeps poses or not."""
     g = _first_pose(discrete, start, needed=posed or not compiled or discrete.route.needs_pose)
     reduced, demanded = initial_state(discrete, start, g)
-    pose = np.empty(0) if g is None else discrete.system.group.pose_from_matrix(g @ discrete.system.frame)
-    return FirstState(reduced, pose, demanded)
+    return FirstState(reduced, np.empty(0) if g is None else start.canonical_pose(discrete.system, g), demanded)
 
 
 def _first_pose(discrete: Discretization, start: Start, *, needed: bool) -> np.ndarray | None:

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from nonholo.base.checks import array, error, is_traced, positive_definite, symmetric
+from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, form_along
@@ -154,19 +155,19 @@ class LLSystem(AbstractLLSystem):
         subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
         return f"LLSystem({self.group!r},\n  {lines_of(shown | subspace)})"
 
-    @property
+    @kept
     def homogeneous_mass_tensor(self) -> Float[Array, "N N"] | None:
         """The mass tensor; None if the inertia operator was given."""
         return self.mass_tensor
 
-    @property
+    @kept
     def inertia_operator(self) -> Float[Array, "dim dim"]:
         """The inertia operator, that of the mass tensor if there is one."""
         if self.mass_tensor is None:
             return self.given_inertia
         return inertia_from_mass_tensor(self.group, self.mass_tensor)
 
-    @property
+    @kept
     def inertia_along(self) -> Float[Array, "k k"]:
         """The inertia along the rows of the constraint subspace."""
         return form_along(self)
@@ -176,7 +177,7 @@ class LLSystem(AbstractLLSystem):
         """The system itself."""
         return self
 
-    @property
+    @kept
     def frame(self) -> Float[np.ndarray, "N N"]:
         """The identity."""
         return self.group.identity

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from nonholo.base.checks import positive_definite
+from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLRSystem
@@ -66,12 +67,12 @@ class LRSystem(AbstractLRSystem):
         subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
         return f"LRSystem({self.group!r},\n  {lines_of(shown | subspace)})"
 
-    @property
+    @kept
     def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
         """The mass tensor itself."""
         return self.mass_tensor
 
-    @property
+    @kept
     def inertia_operator(self) -> Float[Array, "dim dim"]:
         """The inertia operator of the mass tensor."""
         return inertia_from_mass_tensor(self.group, self.mass_tensor)
@@ -114,28 +115,28 @@ class VeselovaTop(AbstractLRSystem):
     def __repr__(self) -> str:
         return f"VeselovaTop({self.group!r},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
 
-    @property
+    @kept
     def group(self) -> AbstractMatrixGroup:
         """The rotation group SO(n)."""
         return SO(self.mass_tensor.shape[-1])
 
-    @property
+    @kept
     def homogeneous_mass_tensor(self) -> Float[Array, "n n"]:
         """The mass tensor itself."""
         return self.mass_tensor
 
-    @property
+    @kept
     def inertia_operator(self) -> Float[Array, "dim dim"]:
         """The inertia operator of the mass tensor."""
         return inertia_from_mass_tensor(self.group, self.mass_tensor)
 
-    @property
+    @kept
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         r"""Rows $e_i\wedge e_n$, fixed in space."""
         n = self.mass_tensor.shape[-1]
         return plane_rows(self.group, [(i, n - 1) for i in range(n - 1)])
 
-    @property
+    @kept
     def annihilator(self) -> Float[np.ndarray, "s dim"]:
         """The remaining coordinate rows."""
         return complement(self.constraint_subspace)

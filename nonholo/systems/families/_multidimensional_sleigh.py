@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from nonholo.base.checks import array, error, positive_definite, scale, symmetric
+from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem
@@ -99,12 +100,12 @@ class MultidimensionalSleigh(AbstractLLSystem):
         head = f"mass={self.mass}, center_of_mass={np.asarray(self.center_of_mass).tolist()}"
         return f"MultidimensionalSleigh({head},\n  mass tensor about the center of mass = {tensor})"
 
-    @property
+    @kept
     def group(self) -> AbstractMatrixGroup:
         """The group of rigid motions SE(n)."""
         return SE(self.center_of_mass.shape[-1])
 
-    @property
+    @kept
     def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
         """The mass tensor about the reference point in homogeneous coordinates."""
         xp = (self.mass * self.center_of_mass @ self.mass_tensor).__array_namespace__()
@@ -112,12 +113,12 @@ class MultidimensionalSleigh(AbstractLLSystem):
         lever = xp.concatenate([a, xp.ones_like(a[:1])])
         return xp.pad(xp.asarray(self.mass_tensor), ((0, 1), (0, 1))) + self.mass * lever[:, None] * lever
 
-    @property
+    @kept
     def inertia_operator(self) -> Float[Array, "dim dim"]:
         """The inertia operator in the coordinates of so(n), then the velocity of the reference point."""
         return inertia_from_mass_tensor(self.group, self.homogeneous_mass_tensor)
 
-    @property
+    @kept
     def inertia_along(self) -> Float[Array, "n n"]:
         r"""The matrix of $w\cdot Bw + m\,a_1^2|w|^2 + m(v_1 + \alpha\cdot w)^2$ in (w, v_1), twice the energy."""
         J, a, m = self.mass_tensor, self.center_of_mass, self.mass
@@ -127,7 +128,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
         turning = J[1:, 1:] + (J[0, 0] + m * a[0] ** 2) * xp.eye(J.shape[-1] - 1, dtype=J.dtype)
         return xp.pad(turning, ((0, 1), (0, 1))) + m * lever[:, None] * lever
 
-    @property
+    @kept
     def constraint_subspace(self) -> Float[np.ndarray, "n dim"]:
         r"""Rows $e_1\wedge e_j$, j = 2..n, then the velocity along body axis 1."""
         n, group = self.center_of_mass.shape[-1], self.group
@@ -135,7 +136,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
         along[0, -n] = 1.0
         return np.concatenate([plane_rows(group, [(0, j) for j in range(1, n)]), along])
 
-    @property
+    @kept
     def annihilator(self) -> Float[np.ndarray, "s dim"]:
         """The remaining coordinate rows."""
         return complement(self.constraint_subspace)
@@ -145,7 +146,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
         """The sleigh itself."""
         return self
 
-    @property
+    @kept
     def frame(self) -> Float[np.ndarray, "N N"]:
         """The identity."""
         return self.group.identity

@@ -6,6 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo.base.checks import positive_definite
+from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, form_along
@@ -90,27 +91,27 @@ class RigidBody(AbstractLLSystem):
     def __repr__(self) -> str:
         return f"RigidBody({self.group!r},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
 
-    @property
+    @kept
     def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
         """The mass tensor itself."""
         return self.mass_tensor
 
-    @property
+    @kept
     def inertia_operator(self) -> Float[Array, "dim dim"]:
         """The inertia operator of the mass tensor."""
         return inertia_from_mass_tensor(self.group, self.mass_tensor)
 
-    @property
+    @kept
     def inertia_along(self) -> Float[Array, "k k"]:
         """The inertia along the rows of the constraint subspace."""
         return form_along(self)
 
-    @property
+    @kept
     def constraint_subspace(self) -> Float[np.ndarray, "dim dim"]:
         """All coordinate rows."""
         return np.eye(self.group.dim)
 
-    @property
+    @kept
     def annihilator(self) -> Float[np.ndarray, "0 dim"]:
         """No rows."""
         return np.empty((0, self.group.dim))
@@ -120,7 +121,7 @@ class RigidBody(AbstractLLSystem):
         """The body itself."""
         return self
 
-    @property
+    @kept
     def frame(self) -> Float[np.ndarray, "N N"]:
         """The identity."""
         return self.group.identity

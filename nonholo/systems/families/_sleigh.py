@@ -7,6 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo.base.checks import number, scale
+from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, form_along
@@ -59,7 +60,7 @@ class ChaplyginSleigh(AbstractLLSystem):
         shown = (f"{name}={getattr(self, name)}" for name in ("mass", "inertia", "a", "b"))
         return f"ChaplyginSleigh({', '.join(shown)})"
 
-    @property
+    @kept
     def homogeneous_mass_tensor(self) -> Float[Array, "3 3"]:
         """The mass tensor about the contact point in homogeneous coordinates; the moment J is shared by both axes."""
         m, a, b = self.mass, self.a, self.b
@@ -68,27 +69,27 @@ class ChaplyginSleigh(AbstractLLSystem):
         rows = ((half + m * a * a, m * a * b, m * a), (m * a * b, half + m * b * b, m * b), (m * a, m * b, m))
         return xp.stack([xp.stack(row) for row in rows])
 
-    @property
+    @kept
     def inertia_operator(self) -> Float[Array, "3 3"]:
         """The inertia operator in the coordinates (omega, v1, v2)."""
         return inertia_from_mass_tensor(self.group, self.homogeneous_mass_tensor)
 
-    @property
+    @kept
     def inertia_along(self) -> Float[Array, "k k"]:
         """The inertia along the rows of the constraint subspace."""
         return form_along(self)
 
-    @property
+    @kept
     def constraint_subspace(self) -> Float[np.ndarray, "2 3"]:
         """Rows (omega) and (v1)."""
         return np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
-    @property
+    @kept
     def annihilator(self) -> Float[np.ndarray, "1 3"]:
         """The velocity across the blade."""
         return np.array([[0.0, 0.0, 1.0]])
 
-    @property
+    @kept
     def frame(self) -> Float[Array, "3 3"]:
         """The translation to the foot of the center of mass on the line through the contact point across the blade."""
         xp = (self.b * self.mass).__array_namespace__()

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from nonholo.base.checks import array, error, is_traced, positive_definite, symmetric
+from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem
@@ -110,46 +111,46 @@ class SuslovTop(AbstractLLSystem):
         head = f"n={self.group.size}" if self.axis is None else f"axis={np.asarray(self.axis).tolist()}"
         return f"SuslovTop({head},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
 
-    @property
+    @kept
     def group(self) -> AbstractMatrixGroup:
         """The rotation group SO(n)."""
         return SO(self.mass_tensor.shape[-1])
 
-    @property
+    @kept
     def homogeneous_mass_tensor(self) -> Float[Array, "n n"]:
         """The mass tensor itself."""
         return self.mass_tensor
 
-    @property
+    @kept
     def inertia_operator(self) -> Float[Array, "dim dim"]:
         r"""The operator $\omega \mapsto J\omega + \omega J$; for n = 3 it is $\mathrm{tr}(J)\,\mathrm{Id} - J$."""
         if self.axis is None:
             return inertia_from_mass_tensor(self.group, self.mass_tensor)
         return inertia_tensor(self.mass_tensor)
 
-    @property
+    @kept
     def inertia_along(self) -> Float[Array, "k k"]:
         r"""The matrix $B = A + d\,\mathrm{Id}$; for n = 3 in the rows of the constraint subspace."""
         return self.normal_form.stiffness
 
-    @property
+    @kept
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         r"""Rows $e_i\wedge e_n$; n = 3: S(0, 1, 0) and S(-1, 0, 0), S the shortest rotation taking e3 to the axis."""
         n = self.mass_tensor.shape[-1]
         rows = plane_rows(self.group, [(i, n - 1) for i in range(n - 1)])
         return rows if self.axis is None else rows @ self.frame.T
 
-    @property
+    @kept
     def annihilator(self) -> Float[np.ndarray, "s dim"]:
         r"""The forbidden planes $e_i\wedge e_j$, i < j < n; for n = 3 the forbidden axis."""
         return complement(self.constraint_subspace) if self.axis is None else np.array(self.axis)[None, :]
 
-    @property
+    @kept
     def frame(self) -> Float[np.ndarray, "n n"]:
         """The shortest rotation taking e3 to the forbidden axis; the identity for n > 3."""
         return self.group.identity if self.axis is None else rotation_to(self.axis)
 
-    @property
+    @kept
     def canonical(self) -> "SuslovTop":
         """The same top in body axes whose last one is the forbidden axis."""
         if self.axis is None or np.array_equal(self.axis, _E3):
