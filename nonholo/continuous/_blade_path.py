@@ -6,7 +6,7 @@ can lose every digit (at $\Lambda = 2$, or for large ones), so it is evaluated h
 """
 
 import numpy as np
-from scipy.special import digamma
+import scipy  # its parts load on first use
 
 from nonholo.base.types import Float
 
@@ -79,7 +79,7 @@ def _near(ratio: float, s: np.ndarray) -> np.ndarray:
 
 def _far(ratio: float, s: np.ndarray, q: np.ndarray) -> np.ndarray:
     r"""Return $e^{2i\Lambda\arctan q}\,[s + C + R(q)]$: the asymptotic straight line and what is left of it."""
-    constant = -1 / ratio - np.euler_gamma - digamma(ratio / 2) - np.log(4) - 0.5j * np.pi
+    constant = -1 / ratio - np.euler_gamma - scipy.special.digamma(ratio / 2) - np.log(4) - 0.5j * np.pi
     return np.exp(2j * ratio * np.arctan(q)) * (s + constant + _remainder(ratio, q))
 
 

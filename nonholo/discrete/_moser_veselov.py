@@ -3,7 +3,7 @@ r"""The free top by a matrix equation: one step of Moser and Veselov as the solu
 from typing import Any
 
 import numpy as np
-import scipy.linalg
+import scipy  # its parts load on first use
 
 from nonholo.base.checks import array, error, scale, shape_of, symmetric
 from nonholo.base.types import Array, Float

@@ -1,7 +1,7 @@
 r"""Rotations of n-dimensional space and their skew-symmetric logarithms; coordinates of so(n)."""
 
 import numpy as np
-import scipy.linalg
+import scipy  # its parts load on first use
 
 from nonholo.base import numerics
 from nonholo.base.checks import error

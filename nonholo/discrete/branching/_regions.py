@@ -7,7 +7,7 @@ The energy landscape is shared with `analysis`, which names all its critical poi
 import dataclasses
 
 import numpy as np
-import scipy.linalg
+import scipy  # its parts load on first use
 
 from nonholo.base.types import Float, Inexact
 from nonholo.discrete._discretization import Discretization

@@ -5,7 +5,7 @@ import math
 import operator
 
 import numpy as np
-from scipy.optimize import elementwise
+import scipy  # its parts load on first use
 
 from nonholo.base.types import Bool, Float, Int
 from nonholo.orbit import Crossings, EventLog, Orbit, joined_crossings, joined_states
@@ -149,5 +149,5 @@ def _roots(
         return np.empty(0)
     count = np.arange(len(base), dtype=np.float64)
     whole = np.zeros(len(base)), np.ones(len(base))
-    found = elementwise.find_root(value, whole, args=(count,), tolerances={"xatol": _ROUNDING})
+    found = scipy.optimize.elementwise.find_root(value, whole, args=(count,), tolerances={"xatol": _ROUNDING})
     return np.maximum(found.x, _ROUNDING)
