@@ -10,6 +10,7 @@ $$ \mathbb{J}_g' = X\mathbb{J}_g + \mathbb{J}_g X^T, \qquad g' = X g, \qquad X =
 
 import dataclasses
 import functools
+import math
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -22,6 +23,7 @@ from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.kernels import SERIES_LANES, Quadratic, order_for, revisit_series, solve_series
 from nonholo.systems import AbstractSystem
 
+_PLANE = SE(2)
 _COMPACT = 40
 """Poses of more numbers are integrated as matrices, whose rates need not be tried."""
 _GUARD = 1 / 64
@@ -73,12 +75,12 @@ class Series:
     def decoded(self, rows: Float[np.ndarray, "K size"]) -> States:
         """Return momenta, poses and headings."""
         group, head, unit = self.group, rows[:, : self.head], self.unit
-        end = len(self.equations.blocks) - (group == SE(2))
+        end = len(self.equations.blocks) - (group == _PLANE)
         found = rows[:, self.head : end]
         matrices = found.reshape(-1, *group.identity.shape) if not self.compact else None
         poses = group.normalize_pose(found if matrices is None else group.pose_from_matrix(matrices))
         momenta = head * unit if self.momentum is None else np.tile(self.momentum, (len(rows), 1))
-        return States(momenta, poses, on_same_turn(rows[:, -1], poses) if group == SE(2) else None)
+        return States(momenta, poses, on_same_turn(rows[:, -1], poses) if group == _PLANE else None)
 
 
 def by_series(
@@ -89,11 +91,13 @@ def by_series(
     tolerances: tuple[float, float],
 ) -> Solved:
     """Solve the equations of a system; times elapse from zero."""
-    velocity = system.restricted_velocity(reduced_momentum, system.group.matrix_from_pose(pose))
-    unit = _power_of_two(velocity)
-    f, head, constant = quadratic(system), reduced_momentum / unit, None
+    f, constant = quadratic(system), None
     if system.is_spatial:
-        f, head, constant = f._replace(momentum=head), np.zeros(f.tensor.size), reduced_momentum
+        unit = _power_of_two(system.restricted_velocity(reduced_momentum, system.group.matrix_from_pose(pose)))
+        f, head, constant = f._replace(momentum=reduced_momentum / unit), np.zeros(f.tensor.size), reduced_momentum
+    else:
+        unit = _power_of_two(f.velocities @ reduced_momentum)
+        head = reduced_momentum / unit
     return _solved(system.group, f, head, constant, unit, pose, elapsed, tolerances)
 
 
@@ -121,7 +125,7 @@ def pose_by_series(
 
 
 def _power_of_two(velocities: np.ndarray) -> float:
-    return float(np.ldexp(1.0, np.frexp(np.abs(velocities).max(initial=0.0))[1]))
+    return math.ldexp(1.0, math.frexp(np.abs(velocities).max(initial=0.0))[1])
 
 
 def _solved(
@@ -136,7 +140,7 @@ def _solved(
 ) -> Solved:
     compact, tolerance = group.pose_size <= _COMPACT and not len(f.forms), tolerances[0] * _GUARD
     g = pose if compact else group.matrix_from_pose(pose).ravel()
-    turned = np.arctan2(pose[1:2], pose[0:1]) if group == SE(2) else np.zeros(0)
+    turned = np.arctan2(pose[1:2], pose[0:1]) if group == _PLANE else np.zeros(0)
     rows, nodes = solve_series(f, np.concatenate([head, g, turned]), elapsed * unit, tolerance)
     series = Series(group, f, len(head), compact, constant, unit, tolerance, float(elapsed[-1]), nodes)
     outcome = Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
@@ -175,7 +179,7 @@ def _space_equations(group: AbstractMatrixGroup, S: np.ndarray, tensor: np.ndarr
 
 
 def _with_heading(group: AbstractMatrixGroup, S: np.ndarray, rates: _Rates) -> _Rates:
-    return rates._replace(lone=np.concatenate([rates.lone, S[:, :1]], axis=1)) if group == SE(2) else rates
+    return rates._replace(lone=np.concatenate([rates.lone, S[:, :1]], axis=1)) if group == _PLANE else rates
 
 
 def _assembled(
@@ -197,7 +201,7 @@ def _assembled(
     blocks, closed = _blocks(head + lone.shape[1], edges, i + head)
     integers = pairs[:, 0], pairs[:, 1], targets, products.ravel()
     left, right, targets, products = (np.ascontiguousarray(x, dtype=np.int64) for x in integers)
-    nothing = np.zeros((0, 0, 0)), np.zeros((0, 0)), np.zeros(0)
+    nothing = np.zeros(0), np.zeros((0, 0)), np.zeros(0)
     return Quadratic(velocities, left, right, targets, products, factors, blocks, closed, *nothing)
 
 

@@ -10,6 +10,7 @@ from nonholo.kernels._nearest import advance as advance_to_nearest
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
 from nonholo.kernels._taylor import SERIES_LANES, Quadratic, order_for, revisit_series, solve_series
+from nonholo.kernels._taylor_members import solve_members
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.secular import SecularBody, secular_sleigh, secular_top
 
@@ -43,6 +44,7 @@ __all__ = [
     "secular_sleigh",
     "secular_top",
     "sizes",
+    "solve_members",
     "solve_series",
     "start",
     "step_each",

@@ -8,12 +8,16 @@ series. Taylor coefficients of products are Cauchy products.
 Order and step are those of [jorba-zou-2005]: the last two terms of a step are within the tolerance of the first. Steps
 do not depend on the times that are asked for, which are read from the series. What rounding takes from state and time
 is carried along (Kahan).
+
+Several motions can be expanded side by side, in lanes: number m of a lane stands at m L + lane. How many there are
+tells the length of a tuple, which the compiler knows; with one lane the loops over lanes vanish.
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numba.extending import overload
 
 from nonholo.base.compiled import njit
 from nonholo.base.types import Float
@@ -29,21 +33,23 @@ _SMALLEST_STEP = 1e-13  # of an interval between requested times; below it a sol
 _REPAIRS = 50  # of a step; one or two do
 _ENOUGH, _FAR = 0.99, 2.0**-32  # of the step that the last terms allow (roots have three digits), or that overflows
 _BITS = 20  # of the exponent of a root
+ONE = (0,)
+"""A single lane."""
 
 
 class Quadratic(NamedTuple):
     """Equations as the module states them, with products padded to full lanes by such as nobody reads.
 
     Attributes:
-        velocities: V, (k, k).
+        velocities: V, (k, k L).
         left: a, the velocity in each product, (P,).
         right: b, the place in z of the other factor, (P,).
         targets: Rows m of the coefficients C that are not zero, (Q,).
         products: Their columns q, (Q,).
-        factors: Their values, (Q,).
+        factors: Their values, (Q L,).
         blocks: The block of each component of x, whose errors are measured together, (size,).
         closed: Whether nothing outside moves a block, (blocks,).
-        forms: The coefficients of B, (k, k, N N), or (0, 0, 0) if the constraint is fixed in the body.
+        forms: The coefficients of B, (k, k, N N), or none, (0,), if the constraint is fixed in the body.
         tensor: J, (N, N).
         momentum: r, (k,), of a constraint fixed in space.
     """
@@ -61,8 +67,11 @@ class Quadratic(NamedTuple):
     momentum: np.ndarray
 
 
-class _Room(NamedTuple):
-    """Coefficients of x, w and B, of z at one order, of both factors of products (the right ones backward); sums."""
+class Room(NamedTuple):
+    """Coefficients of x, w and B, of z at one order, of both factors of products (the right ones backward); sums.
+
+    Also the largest coefficients of each block, and for each lane a number and the length of the step.
+    """
 
     series: np.ndarray
     velocities: np.ndarray
@@ -71,6 +80,9 @@ class _Room(NamedTuple):
     left: np.ndarray
     right: np.ndarray
     sums: np.ndarray
+    sizes: np.ndarray
+    ratios: np.ndarray
+    steps: np.ndarray
 
 
 def solve_series(
@@ -117,18 +129,15 @@ def advance(
 
     `state` holds x and time, and what rounding took from them.
     """
-    room, going, at = _room(f, order), True, 0
+    room, going, at = make_room(f, order, ONE), True, 0
     while at < len(nodes) and going and reached < len(times):
         nodes[at] = state
         at += 1
-        step = _prepare(f, state, order, tolerance, times[-1], room)
-        going = step > _SMALLEST_STEP * abs(times[reached] - times[reached - 1])
-        while going and reached < len(times) and abs(_since(state, times[reached])) <= step:
-            _evaluate(room.series, _since(state, times[reached]), state, rows[reached])
-            going = math.isfinite(rows[reached].sum())
-            reached += going
+        prepare(f, state, order, tolerance, times[-1:], room, ONE)
+        reached, going = read(room, state, times, 1.0, reached, rows, 0, ONE)
         if going and reached < len(times):
-            _move(room.series, math.copysign(step, times[-1] - times[0]), state)
+            room.steps[0] = math.copysign(room.steps[0], times[-1] - times[0])
+            move(room.series, room.steps, state, ONE)
     return reached, at, going
 
 
@@ -137,42 +146,90 @@ def revisit_series(
     f: Quadratic, nodes: np.ndarray, times: np.ndarray, end: float, order: int, tolerance: float, rows: np.ndarray
 ) -> None:
     """Write the states at times in the order of the nodes, the bits as if they had been requested with `end`."""
-    room, at, step, state = _room(f, order), -1, 0.0, nodes[0].copy()
+    room, at, state = make_room(f, order, ONE), -1, nodes[0].copy()
     direction = math.copysign(1.0, end - nodes[0, 0, -1])
+    ends = np.array([end])
     for i in range(len(times)):
         after = max(at, 0)
-        while after + 1 < len(nodes) and direction * _since(nodes[after + 1], times[i]) > 0:
+        while after + 1 < len(nodes) and direction * since(nodes[after + 1], times[i], 0, ONE) > 0:
             after += 1
         if after != at:
             at = after
             state[:] = nodes[at]
-            step = _prepare(f, state, order, tolerance, end, room)
-        while abs(_since(state, times[i])) > step:  # nodes between were left out
-            _move(room.series, direction * step, state)
-            step = _prepare(f, state, order, tolerance, end, room)
-        _evaluate(room.series, _since(state, times[i]), state, rows[i])
+            prepare(f, state, order, tolerance, ends, room, ONE)
+        while abs(since(state, times[i], 0, ONE)) > room.steps[0]:  # nodes between were left out
+            room.steps[0] *= direction
+            move(room.series, room.steps, state, ONE)
+            prepare(f, state, order, tolerance, ends, room, ONE)
+        evaluate(room.series, since(state, times[i], 0, ONE), state, rows[i], 0, ONE)
 
 
 @njit(inline="always", **COMPILED)
-def _since(state: np.ndarray, time: float) -> float:
-    return time - state[0, -1] - state[1, -1]
+def since(state: np.ndarray, time: float, lane: int, lanes: tuple[int, ...]) -> float:
+    """Return how long after the state of a lane a time is."""
+    at = state.shape[1] - len(lanes) + lane
+    return time - state[0, at] - state[1, at]
 
 
 @njit(inline="always", **COMPILED)
-def _room(f: Quadratic, order: int) -> _Room:
-    k, size, lanes = len(f.velocities), len(f.blocks), len(f.left)
-    factors = np.empty((order, lanes)), np.empty((order, lanes)), np.empty(lanes)
-    inertia = np.empty((order, len(f.forms), len(f.forms)))
-    return _Room(np.empty((order + 1, size)), np.empty((order, k)), inertia, np.empty(k + 1 + size), *factors)
+def read(
+    room: Room,
+    state: np.ndarray,
+    times: np.ndarray,
+    unit: float,
+    reached: int,
+    rows: np.ndarray,
+    lane: int,
+    lanes: tuple[int, ...],
+) -> tuple[int, bool]:
+    """Write the rows whose times lie within the step of a lane; return how many are filled, and whether all went well.
+
+    Times are in other units than the state's: `unit` is the factor to them.
+    """
+    step = room.steps[lane]
+    going = step > _SMALLEST_STEP * unit * abs(times[reached] - times[reached - 1])
+    while going and reached < len(times) and abs(since(state, times[reached] * unit, lane, lanes)) <= step:
+        evaluate(room.series, since(state, times[reached] * unit, lane, lanes), state, rows[reached], lane, lanes)
+        going = math.isfinite(rows[reached].sum())
+        reached += going
+    return reached, going
 
 
 @njit(inline="always", **COMPILED)
-def _prepare(f: Quadratic, state: np.ndarray, order: int, tolerance: float, end: float, room: _Room) -> float:
-    """Write the series from a state, and return the length of the step."""
-    if len(f.forms) > 0:
+def make_room(f: Quadratic, order: int, lanes: tuple[int, ...]) -> Room:
+    """Return room for the series of some lanes."""
+    L = len(lanes)
+    k, size, products = len(f.velocities), len(f.blocks) * L, len(f.left) * L
+    factors = np.empty((order, products)), np.empty((order, products)), np.empty(products)
+    inertia, places = np.empty((order, len(f.forms), len(f.forms))), np.empty((k + 1) * L + size)
+    sizes = np.empty((order + 1, len(f.closed) * L))
+    return Room(
+        np.empty((order + 1, size)),
+        np.empty((order, k * L)),
+        inertia,
+        places,
+        *factors,
+        sizes,
+        np.empty(L),
+        np.empty(L),
+    )
+
+
+@njit(inline="always", **COMPILED)
+def prepare(
+    f: Quadratic,
+    state: np.ndarray,
+    order: int,
+    tolerance: float,
+    ends: np.ndarray,
+    room: Room,
+    lanes: tuple[int, ...],
+) -> None:
+    """Write the series from the states of all lanes, and the lengths of their steps, NaN where there is none."""
+    if len(lanes) == 1 and len(f.forms) > 0:
         _see_tensor(f.tensor, state)
-    _expand(f, state[0], order, room)
-    return _step(f, room.series, tolerance, abs(end - state[0, -1]))
+    _expand(f, state[0], order, room, lanes)
+    _write_steps(f, state, ends, tolerance, room, lanes)
 
 
 @njit(inline="always", **COMPILED)
@@ -189,32 +246,43 @@ def _see_tensor(tensor: np.ndarray, state: np.ndarray) -> None:
 
 
 @njit(**COMPILED)
-def _expand(f: Quadratic, start: np.ndarray, order: int, room: _Room) -> None:
+def _expand(f: Quadratic, start: np.ndarray, order: int, room: Room, lanes: tuple[int, ...]) -> None:
     """Write the Taylor coefficients of the solution from a state."""
-    series = room.series
-    size = series.shape[1]
+    series, size = room.series, room.series.shape[1]
     for m in range(size):
         series[0, m] = start[m]
     for j in range(order):
-        if len(f.forms) > 0:
-            _divide(f, j, room)
-        else:
-            for a in range(len(f.velocities)):
-                room.velocities[j, a] = 0.0
-                for i in range(len(f.velocities)):
-                    room.velocities[j, a] += f.velocities[a, i] * series[j, i]
-        _gather(f, j, order - 1 - j, room)
+        _write_velocities(f, j, room, lanes)
+        _gather(f, j, order - 1 - j, room, lanes)
         _multiply(room.left, room.right, j, order - 1 - j, room.sums)
-        for m in range(size):
-            series[j + 1, m] = 0.0
-        for i in range(len(f.factors)):
-            series[j + 1, f.targets[i]] += f.factors[i] * room.sums[f.products[i]]
+        _collect(f, j, room, lanes)
         for m in range(size):
             series[j + 1, m] /= j + 1
 
 
-@njit(inline="always", **COMPILED)
-def _divide(f: Quadratic, order: int, room: _Room) -> None:
+def _write_velocities(f: Any, order: Any, room: Any, lanes: Any) -> Any:
+    """Write a coefficient of w: with numba one of the two that follow, by the axes of the forms."""
+    (_divide if f.forms.ndim == 3 else _apply)(f, order, room, lanes)
+
+
+@overload(_write_velocities, jit_options=COMPILED)
+def _choose(f: Any, order: Any, room: Any, lanes: Any) -> Any:
+    """Choose when a kernel is compiled: one that has both is five times slower."""
+    return _divide if f.types[f.fields.index("forms")].ndim == 3 else _apply
+
+
+def _apply(f: Any, order: Any, room: Any, lanes: Any) -> Any:
+    """Write the coefficient of w = V r."""
+    w, L, k = room.velocities, len(lanes), len(f.velocities)
+    for a in range(k * L):
+        w[order, a] = 0.0
+    for a in range(k):
+        for i in range(k):
+            for lane in range(L):
+                w[order, a * L + lane] += f.velocities[a, i * L + lane] * room.series[order, i * L + lane]
+
+
+def _divide(f: Any, order: Any, room: Any, lanes: Any) -> Any:
     """Write the coefficient of w in B w = r: B_0 w_j = r_j - B_1 w_(j-1) - ... - B_j w_0."""
     k, inertia, w = len(f.momentum), room.inertia, np.zeros((len(f.momentum), 1))
     for a in range(k):
@@ -232,17 +300,32 @@ def _divide(f: Quadratic, order: int, room: _Room) -> None:
 
 
 @njit(inline="always", **COMPILED)
-def _gather(f: Quadratic, order: int, row: int, room: _Room) -> None:
+def _collect(f: Quadratic, order: int, room: Room, lanes: tuple[int, ...]) -> None:
+    """Write the coefficients of the rates: the products with their factors."""
+    rates, L = room.series, len(lanes)
+    for m in range(rates.shape[1]):
+        rates[order + 1, m] = 0.0
+    for i in range(len(f.targets)):
+        target, product = f.targets[i] * L, f.products[i] * L
+        for lane in range(L):
+            rates[order + 1, target + lane] += f.factors[i * L + lane] * room.sums[product + lane]
+
+
+@njit(inline="always", **COMPILED)
+def _gather(f: Quadratic, order: int, row: int, room: Room, lanes: tuple[int, ...]) -> None:
     """Write the factors of the products of an order."""
-    z, k = room.places, len(f.velocities)
+    z, L, k = room.places, len(lanes), len(f.velocities) * len(lanes)
     for a in range(k):
         z[a] = room.velocities[order, a]
-    z[k] = 1.0 if order == 0 else 0.0
+    for lane in range(L):
+        z[k + lane] = 1.0 if order == 0 else 0.0
     for m in range(room.series.shape[1]):
-        z[k + 1 + m] = room.series[order, m]
+        z[k + L + m] = room.series[order, m]
     for q in range(len(f.left)):
-        room.left[order, q] = z[f.left[q]]
-        room.right[row, q] = z[f.right[q]]
+        left, right = f.left[q] * L, f.right[q] * L
+        for lane in range(L):
+            room.left[order, q * L + lane] = z[left + lane]
+            room.right[row, q * L + lane] = z[right + lane]
 
 
 @njit(inline="always", **COMPILED)
@@ -259,41 +342,63 @@ def _multiply(left: np.ndarray, right: np.ndarray, order: int, row: int, sums: n
 
 
 @njit(**COMPILED)
-def _step(f: Quadratic, series: np.ndarray, tolerance: float, longest: float) -> float:
-    """Return the length of a step, not much longer than is left; NaN where the series is not finite."""
-    order, step = len(series) - 1, 2 * longest
-    sizes = _sizes(f, series)
+def _write_steps(
+    f: Quadratic, state: np.ndarray, ends: np.ndarray, tolerance: float, room: Room, lanes: tuple[int, ...]
+) -> None:
+    """Write the lengths of the steps, not much longer than is left; NaN where the series is not finite."""
+    L, order, steps, roots = len(lanes), len(room.series) - 1, room.steps, room.ratios
+    _measure(f, room, lanes)
+    for lane in range(L):
+        steps[lane] = 2 * abs(ends[lane] - state[0, state.shape[1] - L + lane])
     for late in range(order - 1, order + 1):
-        share = 0.0
-        for block in range(len(f.closed)):
-            if f.closed[block] and sizes[late, block] != 0:
-                ratio = sizes[late, block] / sizes[0, block]
-                share = share if ratio <= share else ratio
-        if share != 0:
-            step = min(step, _root(tolerance / share, late)) if math.isfinite(share) else np.nan
+        _compare(f, late, room, lanes)
+        for lane in range(L):
+            steps[lane] = steps[lane] if math.isfinite(roots[lane]) else np.nan
+            roots[lane] = tolerance / roots[lane] if roots[lane] != 0 else math.inf
+        _take_roots(roots, late, lanes)
+        for lane in range(L):
+            steps[lane] = min(steps[lane], roots[lane])
     for block in range(len(f.closed)):
         if not f.closed[block]:
-            step = _repaired(sizes[:, block], tolerance, step)
-    return step
+            for lane in range(L):
+                steps[lane] = _repaired(room.sizes[:, block * L + lane], tolerance, steps[lane])
 
 
 @njit(inline="always", **COMPILED)
-def _sizes(f: Quadratic, series: np.ndarray) -> np.ndarray:
-    """Return the largest coefficient in each block: of all orders where it is driven, else of those that are needed."""
+def _compare(f: Quadratic, late: int, room: Room, lanes: tuple[int, ...]) -> None:
+    """Write for each lane the largest ratio of a late coefficient to the first one of its block."""
+    L, sizes, ratios = len(lanes), room.sizes, room.ratios
+    for lane in range(L):
+        ratios[lane] = 0.0
+    for block in range(len(f.closed)):
+        if f.closed[block]:
+            for lane in range(L):
+                last, first = sizes[late, block * L + lane], sizes[0, block * L + lane]
+                ratio = last / first if last != 0 else 0.0
+                ratios[lane] = ratios[lane] if ratio <= ratios[lane] else ratio
+
+
+@njit(inline="always", **COMPILED)
+def _measure(f: Quadratic, room: Room, lanes: tuple[int, ...]) -> None:
+    """Write the largest coefficient in each block: of all orders where it is driven, else of those that are needed."""
+    L, series, sizes = len(lanes), room.series, room.sizes
     order = len(series) - 1
-    sizes = np.zeros((order + 1, len(f.closed)))
-    for m in range(series.shape[1]):
+    for j in range(order + 1):
+        for i in range(sizes.shape[1]):
+            sizes[j, i] = 0.0
+    for m in range(len(f.blocks)):
         block = f.blocks[m]
         for j in range(order + 1):
             if j == 0 or j >= order - 1 or not f.closed[block]:
-                sizes[j, block] = max(sizes[j, block], abs(series[j, m]))
-    return sizes
+                for lane in range(L):
+                    sizes[j, block * L + lane] = max(sizes[j, block * L + lane], abs(series[j, m * L + lane]))
 
 
 @njit(inline="always", **COMPILED)
 def _repaired(sizes: np.ndarray, tolerance: float, step: float) -> float:
     """Return a step, shortened until the last terms of a driven block are within the tolerance of its largest one."""
     order = len(sizes) - 1
+    ratio = np.empty(1)
     for _ in range(_REPAIRS):
         power, largest, late = 1.0, 0.0, 0.0
         for j in range(order + 1):
@@ -302,41 +407,60 @@ def _repaired(sizes: np.ndarray, tolerance: float, step: float) -> float:
             power *= step
         if late <= tolerance * largest:
             return step
-        step *= _ENOUGH * _root(tolerance * largest / late, order) if math.isfinite(late) else _FAR
+        ratio[0] = tolerance * largest / late
+        _take_roots(ratio, order, ONE)
+        step *= _ENOUGH * ratio[0] if math.isfinite(late) else _FAR
     return np.nan
 
 
-@njit(**COMPILED)
-def _root(x: float, degree: int) -> float:
-    """Return the root of a positive number to three digits, by square roots: x^(1/d), 1/d written in bits."""
-    share, root = 1.0 / degree, 1.0
+@njit(inline="always", **COMPILED)
+def _take_roots(x: np.ndarray, degree: int, lanes: tuple[int, ...]) -> None:
+    """Write roots of positive numbers to three digits, by square roots: x^(1/d), 1/d written in bits."""
+    share = 1.0 / degree
+    roots = np.ones(len(lanes))
     for _ in range(_BITS):
-        x, share = math.sqrt(x), 2 * share
+        share *= 2
+        for lane in range(len(lanes)):
+            x[lane] = math.sqrt(x[lane])
         if share >= 1:
-            root, share = root * x, share - 1
-    return root
+            share -= 1
+            for lane in range(len(lanes)):
+                roots[lane] *= x[lane]
+    for lane in range(len(lanes)):
+        x[lane] = roots[lane]
 
 
-@njit(**COMPILED)
-def _evaluate(series: np.ndarray, time: float, state: np.ndarray, out: np.ndarray) -> None:
-    """Write the state some time after the beginning of a step."""
-    order = len(series) - 1
+@njit(inline="always", **COMPILED)
+def evaluate(
+    series: np.ndarray, time: float, state: np.ndarray, out: np.ndarray, lane: int, lanes: tuple[int, ...]
+) -> None:
+    """Write the state of a lane some time after the beginning of its step."""
+    L, order = len(lanes), len(series) - 1
     for m in range(len(out)):
-        out[m] = series[order, m]
+        out[m] = series[order, m * L + lane]
     for j in range(order - 1, 0, -1):
         for m in range(len(out)):
-            out[m] = out[m] * time + series[j, m]
+            out[m] = out[m] * time + series[j, m * L + lane]
     for m in range(len(out)):
-        out[m] = state[0, m] + (out[m] * time + state[1, m])
+        out[m] = state[0, m * L + lane] + (out[m] * time + state[1, m * L + lane])
 
 
-@njit(**COMPILED)
-def _move(series: np.ndarray, step: float, state: np.ndarray) -> None:
-    """Carry state and time to the end of a step."""
-    change = np.empty(state.shape[1])
-    change[-1] = step
-    _evaluate(series, step, np.zeros_like(state), change[:-1])
-    for m in range(len(change)):
+@njit(inline="always", **COMPILED)
+def move(series: np.ndarray, steps: np.ndarray, state: np.ndarray, lanes: tuple[int, ...]) -> None:
+    """Carry states and times of all lanes to the ends of their steps."""
+    L, size, order = len(lanes), series.shape[1], len(series) - 1
+    change = np.empty(size + L)
+    for m in range(0, size, L):
+        for lane in range(L):
+            change[m + lane] = series[order, m + lane]
+        for j in range(order - 1, 0, -1):
+            for lane in range(L):
+                change[m + lane] = change[m + lane] * steps[lane] + series[j, m + lane]
+        for lane in range(L):
+            change[m + lane] *= steps[lane]
+    for lane in range(L):
+        change[size + lane] = steps[lane]
+    for m in range(size + L):
         state[0, m], state[1, m] = _added(state[0, m], state[1, m], change[m])
 
 

@@ -1,0 +1,103 @@
+"""Many motions by Taylor series, as many as there are lanes at a time.
+
+A lane whose motion has reached its last time takes the next one. Each motion takes the steps that it would take alone,
+with the same bits.
+"""
+
+import math
+
+import numpy as np
+
+from nonholo.base.compiled import njit
+from nonholo.base.types import Bool, Float, Int
+from nonholo.kernels._scalar import COMPILED
+from nonholo.kernels._taylor import Quadratic, make_room, move, order_for, prepare, read
+
+_LANES = (0,) * 8
+_LOOK = 64  # steps between two looks at whether to stop
+
+
+def solve_members(
+    f: Quadratic,
+    numbers: tuple[Float[np.ndarray, "m k k"], Float[np.ndarray, "m Q"]],
+    starts: Float[np.ndarray, "M size"],
+    times: tuple[Float[np.ndarray, "K"], Float[np.ndarray, "M"]],
+    tolerance: float,
+    rows: Float[np.ndarray, "M K size"],
+    stop: Bool[np.ndarray, "1"],
+) -> Int[np.ndarray, "M"]:
+    """Write the states of members at the times, up to the first that cannot be reached; return how many each has.
+
+    Args:
+        f: Equations of all members, with a constraint fixed in the body.
+        numbers: Velocities and factors of each member, or with an axis of length 1 those of all.
+        starts: First states.
+        times: Requested times, which rise or fall, and the factor of each member to them.
+        tolerance: Of a step.
+        rows: Where the states go; the others are left as they are.
+        stop: Ends the work when it becomes true.
+    """
+    reached = np.zeros(len(starts), dtype=np.int64)
+    spread = f._replace(velocities=np.tile(f.velocities, len(_LANES)), factors=np.zeros(len(f.factors) * len(_LANES)))
+    _advance_members(spread, *numbers, starts, *times, order_for(tolerance), tolerance, rows, reached, stop)
+    return reached
+
+
+@njit(nogil=True, **COMPILED)
+def _advance_members(
+    f: Quadratic,
+    velocities: np.ndarray,
+    factors: np.ndarray,
+    starts: np.ndarray,
+    times: np.ndarray,
+    units: np.ndarray,
+    order: int,
+    tolerance: float,
+    rows: np.ndarray,
+    reached: np.ndarray,
+    stop: np.ndarray,
+) -> None:
+    L, following, size = len(_LANES), 0, starts.shape[1]
+    room, state, ends = make_room(f, order, _LANES), np.zeros((2, (size + 1) * L)), np.zeros(L)
+    members, direction = np.full(L, -1), math.copysign(1.0, times[-1] - times[0])
+    active, looked = L, 0
+    while active > 0 and not (looked % _LOOK == 0 and stop[0]):
+        looked += 1
+        active = 0
+        for lane in range(L):
+            if members[lane] < 0 and following < len(starts):
+                members[lane], reached[following] = following, 1
+                rows[following, 0] = starts[following]
+                own = following if len(velocities) > 1 else 0
+                _load(f, velocities[own], factors[own], starts[following], lane, state)
+                state[0, size * L + lane] = times[0] * units[following]
+                ends[lane] = times[-1] * units[following]
+                following += 1
+            active += members[lane] >= 0
+        prepare(f, state, order, tolerance, ends, room, _LANES)
+        for lane in range(L):
+            at = members[lane]
+            going = at >= 0 and reached[at] < len(times)
+            if going:
+                reached[at], going = read(room, state, times, units[at], reached[at], rows[at], lane, _LANES)
+            if going and reached[at] < len(times):
+                room.steps[lane] *= direction
+            else:
+                members[lane], room.steps[lane] = -1, 0.0
+        move(room.series, room.steps, state, _LANES)
+
+
+@njit(inline="always", **COMPILED)
+def _load(
+    f: Quadratic, velocities: np.ndarray, factors: np.ndarray, start: np.ndarray, lane: int, state: np.ndarray
+) -> None:
+    """Give a lane to a motion: its numbers and its first state."""
+    L, size = len(_LANES), len(start)
+    for a in range(len(velocities)):
+        for i in range(len(velocities)):
+            f.velocities[a, i * L + lane] = velocities[a, i]
+    for i in range(len(factors)):
+        f.factors[i * L + lane] = factors[i]
+    for m in range(size):
+        state[0, m * L + lane], state[1, m * L + lane] = start[m], 0.0
+    state[1, size * L + lane] = 0.0
