@@ -64,6 +64,7 @@ if TYPE_CHECKING:
     from nonholo.simulation import Ensemble as Ensemble
     from nonholo.simulation import Event as Event
     from nonholo.simulation import EventLog as EventLog
+    from nonholo.simulation import FlowEnsemble as FlowEnsemble
     from nonholo.simulation import crossings as crossings
     from nonholo.simulation import cusp as cusp
     from nonholo.simulation import ensemble as ensemble
@@ -93,6 +94,7 @@ _HOMES = {
     "Discretization": "discrete",
     "Ensemble": "simulation",
     "EnsembleTask": "ensembles",
+    "FlowEnsemble": "simulation",
     "Event": "simulation",
     "EventLog": "simulation",
     "Grid": "ensembles",

@@ -26,7 +26,7 @@ from nonholo.systems import AbstractSystem
 _PLANE = SE(2)
 _COMPACT = 40
 """Poses of more numbers are integrated as matrices, whose rates need not be tried."""
-_GUARD = 1 / 64
+GUARD = 1 / 64
 """The error of a step as a share of what was asked for, so that rounding is all that is left at the default."""
 
 
@@ -93,10 +93,10 @@ def by_series(
     """Solve the equations of a system; times elapse from zero."""
     f, constant = quadratic(system), None
     if system.is_spatial:
-        unit = _power_of_two(system.restricted_velocity(reduced_momentum, system.group.matrix_from_pose(pose)))
+        unit = power_of_two(system.restricted_velocity(reduced_momentum, system.group.matrix_from_pose(pose)))
         f, head, constant = f._replace(momentum=reduced_momentum / unit), np.zeros(f.tensor.size), reduced_momentum
     else:
-        unit = _power_of_two(f.velocities @ reduced_momentum)
+        unit = power_of_two(f.velocities @ reduced_momentum)
         head = reduced_momentum / unit
     return _solved(system.group, f, head, constant, unit, pose, elapsed, tolerances)
 
@@ -115,16 +115,22 @@ def pose_by_series(
     $\nu\,\mathrm{sech}^2 s$.
     """
     velocities = np.stack([motion.across, motion.along]) @ to_velocity
-    unit = _power_of_two(np.append(velocities, motion.rate))
+    unit = power_of_two(np.append(velocities, motion.rate))
     torques = np.zeros((2, 2, 2))
     torques[0, 1, 0], torques[0, 0, 1] = -motion.rate / unit, motion.rate / unit
     decay = np.exp(-abs(motion.start))
     head = np.array([2 * decay / (1 + decay * decay), np.tanh(motion.start)])
-    f = _body_equations(group, velocities / unit, np.eye(2), torques)
+    f = body_equations(group, velocities / unit, np.eye(2), torques)
     return _solved(group, f, head, None, unit, pose, elapsed, tolerances)
 
 
-def _power_of_two(velocities: np.ndarray) -> float:
+def is_compact(group: AbstractMatrixGroup) -> bool:
+    """Tell whether poses are integrated as compact ones where the constraint is fixed in the body."""
+    return group.pose_size <= _COMPACT
+
+
+def power_of_two(velocities: np.ndarray) -> float:
+    """Return the next power of two above the largest velocity."""
     return math.ldexp(1.0, math.frexp(np.abs(velocities).max(initial=0.0))[1])
 
 
@@ -138,7 +144,7 @@ def _solved(
     elapsed: np.ndarray,
     tolerances: tuple[float, float],
 ) -> Solved:
-    compact, tolerance = group.pose_size <= _COMPACT and not len(f.forms), tolerances[0] * _GUARD
+    compact, tolerance = is_compact(group) and not len(f.forms), tolerances[0] * GUARD
     g = pose if compact else group.matrix_from_pose(pose).ravel()
     turned = np.arctan2(pose[1:2], pose[0:1]) if group == _PLANE else np.zeros(0)
     rows, nodes = solve_series(f, np.concatenate([head, g, turned]), elapsed * unit, tolerance)
@@ -153,15 +159,18 @@ def quadratic(system: AbstractSystem) -> Quadratic:
     group, S = system.group, system.constraint_subspace
     if system.is_spatial:
         return _space_equations(group, S, cast(np.ndarray, system.homogeneous_mass_tensor))
-    inertia = system.inertia_operator
-    return _body_equations(group, S, np.linalg.inv(S @ inertia @ S.T), _torques(group, S, S @ inertia.T))
+    return body_equations(group, S, *body_numbers(system))
 
 
-def _body_equations(
-    group: AbstractMatrixGroup, S: np.ndarray, velocities: np.ndarray, torques: np.ndarray
-) -> Quadratic:
+def body_numbers(system: AbstractSystem) -> tuple[Float[np.ndarray, "k k"], Float[np.ndarray, "k k k"]]:
+    """Return V and the coefficients of products of velocities in the rates of momenta."""
+    S, inertia = system.constraint_subspace, system.inertia_operator
+    return np.linalg.inv(S @ inertia @ S.T), _torques(system.group, S, S @ inertia.T)
+
+
+def body_equations(group: AbstractMatrixGroup, S: np.ndarray, velocities: np.ndarray, torques: np.ndarray) -> Quadratic:
     """Return equations of momenta with rates torques[a, b] w_a w_b, w = V r, and of a pose that moves along rows S."""
-    rates = _compact_rates(group, S) if group.pose_size <= _COMPACT else _matrix_rates(group.hat(S), False)
+    rates = _compact_rates(group, S) if is_compact(group) else _matrix_rates(group.hat(S), False)
     return _assembled(velocities, _with_heading(group, S, rates), len(S), torques)
 
 

@@ -43,7 +43,9 @@ class Solved(NamedTuple):
     steps: Float[np.ndarray, "steps"] = np.zeros(0)
 
 
-def on_same_turn(headings: Float[np.ndarray, "K"], poses: Float[np.ndarray, "K 4"]) -> Float[np.ndarray, "K"]:
+def on_same_turn(
+    headings: Float[np.ndarray, "... K"], poses: Float[np.ndarray, "... K 4"]
+) -> Float[np.ndarray, "... K"]:
     """Return the angles of the poses, each on the turn that the integrated heading tells."""
-    angles = np.arctan2(poses[:, 1], poses[:, 0])
+    angles = np.arctan2(poses[..., 1], poses[..., 0])
     return angles + 2 * np.pi * np.rint((headings - angles) / (2 * np.pi))

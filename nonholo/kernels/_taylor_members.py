@@ -11,7 +11,7 @@ import numpy as np
 from nonholo.base.compiled import njit
 from nonholo.base.types import Bool, Float, Int
 from nonholo.kernels._scalar import COMPILED
-from nonholo.kernels._taylor import Quadratic, make_room, move, order_for, prepare, read
+from nonholo.kernels._taylor import Quadratic, Room, make_room, move, order_for, prepare, read
 
 _LANES = (0,) * 8
 _LOOK = 64  # steps between two looks at whether to stop
@@ -57,41 +57,37 @@ def _advance_members(
     reached: np.ndarray,
     stop: np.ndarray,
 ) -> None:
-    L, following, size = len(_LANES), 0, starts.shape[1]
-    room, state, ends = make_room(f, order, _LANES), np.zeros((2, (size + 1) * L)), np.zeros(L)
-    members, direction = np.full(L, -1), math.copysign(1.0, times[-1] - times[0])
-    active, looked = L, 0
-    while active > 0 and not (looked % _LOOK == 0 and stop[0]):
+    L, following = len(_LANES), 0
+    room, state, ends = make_room(f, order, _LANES), np.zeros((2, (starts.shape[1] + 1) * L)), np.zeros(L)
+    members, direction, looked = np.full(L, -1), math.copysign(1.0, times[-1] - times[0]), 0
+    while following < len(starts) or members.max() >= 0:
+        if looked % _LOOK == 0 and stop[0]:
+            break
         looked += 1
-        active = 0
         for lane in range(L):
             if members[lane] < 0 and following < len(starts):
-                members[lane], reached[following] = following, 1
-                rows[following, 0] = starts[following]
                 own = following if len(velocities) > 1 else 0
-                _load(f, velocities[own], factors[own], starts[following], lane, state)
-                state[0, size * L + lane] = times[0] * units[following]
-                ends[lane] = times[-1] * units[following]
+                span = times[0] * units[following], times[-1] * units[following]
+                ends[lane] = _load(f, velocities[own], factors[own], starts[following], span, lane, state)
+                rows[following, 0], reached[following], members[lane] = starts[following], 1, following
                 following += 1
-            active += members[lane] >= 0
         prepare(f, state, order, tolerance, ends, room, _LANES)
         for lane in range(L):
-            at = members[lane]
-            going = at >= 0 and reached[at] < len(times)
-            if going:
-                reached[at], going = read(room, state, times, units[at], reached[at], rows[at], lane, _LANES)
-            if going and reached[at] < len(times):
-                room.steps[lane] *= direction
-            else:
-                members[lane], room.steps[lane] = -1, 0.0
+            room.steps[lane] *= direction * _continue(room, state, times, units, lane, members, reached, rows)
         move(room.series, room.steps, state, _LANES)
 
 
 @njit(inline="always", **COMPILED)
 def _load(
-    f: Quadratic, velocities: np.ndarray, factors: np.ndarray, start: np.ndarray, lane: int, state: np.ndarray
-) -> None:
-    """Give a lane to a motion: its numbers and its first state."""
+    f: Quadratic,
+    velocities: np.ndarray,
+    factors: np.ndarray,
+    start: np.ndarray,
+    span: tuple[float, float],
+    lane: int,
+    state: np.ndarray,
+) -> float:
+    """Give a lane to a motion: its numbers, its first state and time; return its last time."""
     L, size = len(_LANES), len(start)
     for a in range(len(velocities)):
         for i in range(len(velocities)):
@@ -100,4 +96,26 @@ def _load(
         f.factors[i * L + lane] = factors[i]
     for m in range(size):
         state[0, m * L + lane], state[1, m * L + lane] = start[m], 0.0
-    state[1, size * L + lane] = 0.0
+    state[0, size * L + lane], state[1, size * L + lane] = span[0], 0.0
+    return span[1]
+
+
+@njit(inline="always", **COMPILED)
+def _continue(
+    room: Room,
+    state: np.ndarray,
+    times: np.ndarray,
+    units: np.ndarray,
+    lane: int,
+    members: np.ndarray,
+    reached: np.ndarray,
+    rows: np.ndarray,
+) -> bool:
+    """Write what the motion in a lane reaches in this step; tell whether it takes the step, else free the lane."""
+    at, going = members[lane], members[lane] >= 0 and reached[members[lane]] < len(times)
+    if going:
+        reached[at], going = read(room, state, times, units[at], reached[at], rows[at], lane, _LANES)
+    if going and reached[at] < len(times):
+        return True
+    members[lane], room.steps[lane] = -1, 0.0
+    return False

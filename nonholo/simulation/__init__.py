@@ -8,6 +8,7 @@ from nonholo.simulation._simulate import simulate
 from nonholo.simulation.events import Event, crossings, cusp
 from nonholo.simulation.members import (
     Ensemble,
+    FlowEnsemble,
     Members,
     applied,
     ensemble,
@@ -24,6 +25,7 @@ __all__ = [
     "Ensemble",
     "Event",
     "EventLog",
+    "FlowEnsemble",
     "Members",
     "applied",
     "closed_step",

@@ -5,7 +5,6 @@ import math
 import operator
 
 import numpy as np
-import scipy  # its parts load on first use
 
 from nonholo.base.types import Bool, Float, Int
 from nonholo.orbit import Crossings, EventLog, Orbit, joined_crossings, joined_states
@@ -147,7 +146,9 @@ def _roots(
 
     if not len(base):
         return np.empty(0)
+    from scipy.optimize import elementwise  # loads slowly
+
     count = np.arange(len(base), dtype=np.float64)
     whole = np.zeros(len(base)), np.ones(len(base))
-    found = scipy.optimize.elementwise.find_root(value, whole, args=(count,), tolerances={"xatol": _ROUNDING})
+    found = elementwise.find_root(value, whole, args=(count,), tolerances={"xatol": _ROUNDING})
     return np.maximum(found.x, _ROUNDING)

@@ -2,6 +2,7 @@
 
 from nonholo.simulation.members._ensemble import ensemble
 from nonholo.simulation.members._families import have_kernel, run_in_lanes, scalar_members
+from nonholo.simulation.members._flows import FlowEnsemble
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._result import Ensemble
 from nonholo.simulation.members._run import in_one_thread
@@ -9,6 +10,7 @@ from nonholo.simulation.members._start import applied
 
 __all__ = [
     "Ensemble",
+    "FlowEnsemble",
     "Members",
     "applied",
     "ensemble",

@@ -1,7 +1,7 @@
 """`ensemble`: many motions at once, from checked starts and parameters to decoded results or a user's reduction."""
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -12,22 +12,26 @@ from nonholo.discrete import PRINCIPAL, Discretization, as_discretization
 from nonholo.simulation.events import Event, watched_events
 from nonholo.simulation.members._events import joined_blocks, watched_block
 from nonholo.simulation.members._families import check_systems
+from nonholo.simulation.members._flows import ensemble_of_flows
 from nonholo.simulation.members._members import Members, checked_parameters
 from nonholo.simulation.members._reduce import Reduced, joined
 from nonholo.simulation.members._result import Ensemble
-from nonholo.simulation.members._run import Plan, Report, run_members, states_of
+from nonholo.simulation.members._run import Plan, Report, counting, run_members, states_of
 from nonholo.simulation.members._start import checked_rows, first_momenta
 from nonholo.simulation.runs import refuse_too_large, refuse_too_long
-from nonholo.systems import Start
+from nonholo.systems import AbstractSystem, Start, System
+
+Motions: TypeAlias = tuple[Members, np.ndarray, np.ndarray | None]
 
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
 _BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
 
 
 def ensemble(
-    discrete: Discretization,
+    discrete: Discretization | System,
     *,
-    steps: int,
+    steps: int | None = None,
+    times: Any = None,
     body_velocity: Any = None,
     restricted_velocity: Any = None,
     momentum: Any = None,
@@ -37,19 +41,23 @@ def ensemble(
     reconstruct: bool = True,
     backend: str = "auto",
     events: Any = None,
+    rtol: float | None = None,
     progress: bool = False,
 ) -> Any:
-    r"""Run many members of one system, that differ in where they start, in parameters, or in both.
+    r"""Run or solve many members of one system, that differ in where they start, in parameters, or in both.
 
     Each member takes the steps that `simulate` would take from its start, on the principal branch and verified; what
     becomes of it does not depend on the others. Tops with n = 3 and plane sleighs run in compiled blocks of 32 members,
     other systems one after another. All cores are used (`NUMBA_NUM_THREADS` sets how many), with the same result.
 
+    Of a system in place of a discretization the flows are solved, by the series of `flow`, with the same bits.
+
     A member that cannot continue keeps its good states: see `Ensemble` for what is where, and `outcome` for why.
 
     Args:
-        discrete: The discretized system.
+        discrete: The discretized system, or a system whose flow is asked for.
         steps: Number of steps N.
+        times: Of a system instead: the times of the states, as in `flow`.
         body_velocity: One row for each member, (M, dim); with `parameters` one row for all, (dim,), will do. Members
             start at the identity with the principal W_0 that has the same momentum along the constraint.
         restricted_velocity: The same, in rows of the constraint subspace, (M, k).
@@ -66,10 +74,11 @@ def ensemble(
         events: `Event`s, or functions, whose changes of sign are found at every single step of each member; see
             `Ensemble.events`. A function sees an `Orbit`: the states of many members one after another, or those of
             one member where parameters differ. A member that an event stops has no states after that.
+        rtol: Of a system: the relative error of a step, as in `flow`.
         progress: Show a progress bar on standard error.
 
     Returns:
-        The `Ensemble`; with `reduce` what it returned, blocks joined along the member axis.
+        The `Ensemble`, of flows a `FlowEnsemble`; with `reduce` what it returned, blocks joined along the member axis.
 
     Raises:
         ValueError: A bad argument, before any work.
@@ -84,31 +93,43 @@ def ensemble(
         >>> batch.restricted_momentum[:, 0, 1].round(3)
         array([1., 1., 1.])
     """
+    flags("ensemble", reconstruct=reconstruct, progress=progress)
+    if reduce is not None and not callable(reduce):
+        raise error("ensemble(reduce=...)", "be a function", f"a {type(reduce).__name__}", "Pass a function, or None.")
+    starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
+    if isinstance(discrete, AbstractSystem):
+        _refuse("a flow", steps=steps, save_every=save_every, events=events, backend=backend, reconstruct=reconstruct)
+        return ensemble_of_flows(discrete, Start.of("ensemble", **starts), times, parameters, rtol, reduce, progress)
+    _refuse("a discretization", times=times, rtol=rtol)
     discrete = as_discretization("ensemble(discrete=...)", discrete, composed=True)
     steps = count("ensemble(steps=...)", steps, "Pass the number of steps.")
     if save_every is not None:
         save_every = count("ensemble(save_every=...)", save_every, "Pass the steps between saved states, or None.")
     _check_backend(discrete, backend)
-    flags("ensemble", reconstruct=reconstruct, progress=progress)
-    if reduce is not None and not callable(reduce):
-        raise error("ensemble(reduce=...)", "be a function", f"a {type(reduce).__name__}", "Pass a function, or None.")
-    starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
     plan = Plan(steps, save_every, bool(reconstruct), backend)
     motions = _motions(discrete, Start.of("ensemble", **starts), parameters, plan, whole=reduce is None)
     watched = None if events is None else watched_events("ensemble", discrete, events, PRINCIPAL.name, plan.posed)
     with progress_bar("members", progress) as show:
-        report = _counting(show, len(motions[0]))
-        if reduce is not None:
-            return joined(len(motions[0]), _blocks(*motions, plan, watched, reduce, report))
-        if watched is None:
-            return _block(*motions, plan, watched, report)
-        blocks = _blocks(*motions, plan, watched, lambda block: block, report)
-        return joined_blocks(motions[0], [block for _, block in blocks])
+        return _joined(motions, plan, watched, reduce, counting(show, len(motions[0])))
 
 
-def _motions(
-    discrete: Discretization, start: Start, parameters: Any, plan: Plan, *, whole: bool
-) -> tuple[Members, np.ndarray, np.ndarray | None]:
+def _joined(
+    motions: Motions,
+    plan: Plan,
+    watched: dict[str, Event] | None,
+    reduce: Callable[[Ensemble], Any] | None,
+    report: Report,
+) -> Any:
+    """Run all members, block by block where only what is found of them is kept, and join that."""
+    if reduce is not None:
+        return joined(len(motions[0]), _blocks(*motions, plan, watched, reduce, report))
+    if watched is None:
+        return _block(*motions, plan, watched, report)
+    blocks = _blocks(*motions, plan, watched, lambda block: block, report)
+    return joined_blocks(motions[0], [block for _, block in blocks])
+
+
+def _motions(discrete: Discretization, start: Start, parameters: Any, plan: Plan, *, whole: bool) -> Motions:
     """Return checked members, their first momenta along the constraint, and full ones that they have to have."""
     checked = checked_parameters(discrete, parameters)
     rows = checked_rows(discrete.system, checked, start)
@@ -122,22 +143,18 @@ def _motions(
     return members, first_momenta(members, start.name, rows), full
 
 
+def _refuse(of: str, **given: Any) -> None:
+    for name, value in given.items():
+        if value is not None and value != {"backend": "auto", "reconstruct": True}.get(name):
+            remedy = "A discretization has steps, a system times and rtol."
+            raise error(f"ensemble({name}=...)", f"be left out for {of}", shown(value), remedy)
+
+
 def _check_backend(discrete: Discretization, backend: str) -> None:
     choice("ensemble(backend=...)", backend, ("auto", "numba", "jax"))
     if backend == "numba" and discrete.route.compiled is None:
         remedy = "Pass backend='jax', or difference='matrix'."
         raise error("ensemble(backend=...)", "have a closed form of the step", shown(discrete.difference), remedy)
-
-
-def _counting(show: Callable[[int, int], None], total: int) -> Report:
-    done = 0
-
-    def report(more: int) -> None:
-        nonlocal done
-        done += more
-        show(done, total)
-
-    return report
 
 
 def _block(

@@ -9,6 +9,7 @@ import numpy as np
 from nonholo.base.checks import error, natural
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
+from nonholo.discrete import Discretization
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
 from nonholo.simulation.members._event_log import MemberEvents
@@ -77,16 +78,14 @@ class Ensemble:
         return self._orbit(member, kept)
 
     def _orbit(self, member: int, kept: slice | np.ndarray) -> Orbit:
-        pose = None if self.canonical_pose is None else self.canonical_pose[member, kept]
-        return Orbit(
-            self.members.of(member),
-            self.time[member, kept],
-            self.reduced_momentum[member, kept],
-            self.cayley[member, kept],
-            pose,
-            Outcome(int(self.outcome[member])),
-            self.save_every or self.steps or 1,
-        )
+        states = self._states(self.members.of(member), self.time[member, kept], (member, kept))
+        every = self.save_every or self.steps or 1
+        return dataclasses.replace(states, outcome=Outcome(int(self.outcome[member])), save_every=every)
+
+    def _states(self, discrete: Discretization, time: np.ndarray, rows: Any) -> Orbit:
+        """Return some rows of the states as an orbit."""
+        pose = None if self.canonical_pose is None else self.canonical_pose[rows]
+        return Orbit(discrete, time, self.reduced_momentum[rows], self.cayley[rows], pose)
 
     @property
     def time(self) -> Float[np.ndarray, "M K"]:
@@ -176,9 +175,8 @@ class Ensemble:
         """Return a quantity of orbits, NaN after a member's end; in one go where it is the same function for all."""
         sound = np.asarray(np.isfinite(self.reduced_momentum).all(-1) & np.isfinite(self.cayley).all(-1))
         if self._is_shared(name):
-            pose = None if self.canonical_pose is None else self.canonical_pose[sound]
-            states = np.zeros(sound.sum()), self.reduced_momentum[sound], self.cayley[sound], pose
-            return _spread(getattr(Orbit(self.members.discrete, *states), name), sound)
+            states = self._states(self.members.discrete, np.zeros(sound.sum()), sound)
+            return _spread(getattr(states, name), sound)
         each = (getattr(self._orbit(member, sound[member]), name) for member in range(len(self)))
         return np.stack([_spread(found, rows) for found, rows in zip(each, sound, strict=True)])
 

@@ -38,6 +38,23 @@ def in_one_thread() -> Iterator[None]:
         _THREADS.reset(token)
 
 
+def threads_to_use() -> int:
+    """Return one `in_one_thread`, else as many as numba may use."""
+    return _THREADS.get() or int(numba.config.NUMBA_NUM_THREADS)  # pyright: ignore
+
+
+def counting(show: Callable[[int, int], None], total: int) -> Report:
+    """Return a function that adds up how many members are done, and shows it."""
+    done = 0
+
+    def report(more: int) -> None:
+        nonlocal done
+        done += more
+        show(done, total)
+
+    return report
+
+
 class Plan(NamedTuple):
     """The work on every member.
 
@@ -70,7 +87,7 @@ def run_members(
         threads: How many; by default one `in_one_thread`, else all that numba may use.
         report: Called with the number of members that are done.
     """
-    threads = threads or _THREADS.get() or int(numba.config.NUMBA_NUM_THREADS)  # pyright: ignore
+    threads = threads or threads_to_use()
     if have_kernel(members):
         return _run_scalar(members, momenta, plan, threads, report)
     return _run_each(members, momenta, plan, threads, report)
@@ -92,7 +109,7 @@ def _run_scalar(members: Members, momenta: np.ndarray, plan: Plan, threads: int,
 
     if backend == "jax":
         threads = 1  # XLA has its own
-    _in_threads(work, _parts(count, threads, backend), threads, report)
+    in_threads(work, _parts(count, threads, backend), threads, report)
     reduced = rows.momenta / scalar.scale[:, None, None]
     found = rows.poses if posed else None
     return Ensemble(members, steps, every, reduced, rows.charts, found, rows.codes, rows.done, momenta)
@@ -157,7 +174,7 @@ def _run_each(members: Members, momenta: np.ndarray, plan: Plan, threads: int, r
                 codes[member] = found[member].outcome
 
     compiled = plan.backend != "jax" and members.discrete.route.compiled is not None
-    _in_threads(work, [slice(i, i + 1) for i in range(count)], threads if compiled else 1, report)
+    in_threads(work, [slice(i, i + 1) for i in range(count)], threads if compiled else 1, report)
     orbits = [found[member] for member in range(count)]
     reduced = _filled([orbit.reduced_momentum for orbit in orbits], states)
     charts = _filled([orbit.canonical_chart for orbit in orbits], states)
@@ -206,7 +223,7 @@ def _parts(count: int, threads: int, backend: str) -> list[slice]:
     return [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]
 
 
-def _in_threads(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int, report: Report) -> None:
+def in_threads(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int, report: Report) -> None:
     """Do all pieces of work, which release the interpreter's lock, and report each."""
     for part in _finished(work, parts, threads):
         report(part.stop - part.start)

@@ -1,0 +1,72 @@
+"""Taylor series of many motions: side by side where the constraint is fixed in the body, else one by one."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from nonholo.base.types import Bool, Float, Int
+from nonholo.continuous._series import GUARD, body_equations, body_numbers, by_series, is_compact, power_of_two
+from nonholo.continuous._solution import States, on_same_turn
+from nonholo.groups import SE
+from nonholo.kernels import solve_members
+from nonholo.systems import AbstractSystem
+
+
+def members_by_series(
+    systems: Sequence[AbstractSystem],
+    momenta: Float[np.ndarray, "M k"],
+    poses: Float[np.ndarray, "M size"],
+    elapsed: Float[np.ndarray, "K"],
+    tolerance: float,
+    stop: Bool[np.ndarray, "1"],
+) -> tuple[States, Int[np.ndarray, "M"]]:
+    """Return the states of members at times since the start, NaN where there is none, and how many each has.
+
+    Args:
+        systems: Canonical systems that differ in numbers only, one for each member or one for all.
+        momenta: First momenta.
+        poses: First poses.
+        elapsed: Times since the start.
+        tolerance: Relative error of a step.
+        stop: Ends the work when it becomes true.
+    """
+    first = systems[0]
+    if first.is_spatial or not is_compact(first.group):
+        return _one_by_one(systems, momenta, poses, elapsed, tolerance, stop)
+    velocities, torques = (np.stack(x) for x in zip(*map(body_numbers, systems), strict=True))
+    used = (torques != 0).any(axis=0)
+    f = body_equations(first.group, first.constraint_subspace, velocities[0], used.astype(np.float64))
+    own, plane, k = torques[:, used], first.group == SE(2), momenta.shape[1]
+    factors = np.hstack([own, np.tile(f.factors[own.shape[1] :], (len(systems), 1))])
+    units = np.array([power_of_two(w) for w in (velocities @ momenta[..., None])[..., 0]])
+    heading = np.arctan2(poses[:, 1:2], poses[:, :1]) if plane else np.zeros((len(poses), 0))
+    starts = np.hstack([momenta / units[:, None], poses, heading])
+    rows = np.full((len(momenta), len(elapsed), starts.shape[1]), np.nan)
+    reached = solve_members(f, (velocities, factors), starts, (elapsed, units), tolerance * GUARD, rows, stop)
+    found = first.group.normalize_pose(rows[..., k : k + poses.shape[1]])
+    turned = on_same_turn(rows[..., -1], found) if plane else None
+    return States(rows[..., :k] * units[:, None, None], found, turned), reached
+
+
+def _one_by_one(
+    systems: Sequence[AbstractSystem],
+    momenta: np.ndarray,
+    poses: np.ndarray,
+    elapsed: np.ndarray,
+    tolerance: float,
+    stop: np.ndarray,
+) -> tuple[States, np.ndarray]:
+    reached = np.zeros(len(momenta), dtype=np.int64)
+    r, g = (np.full((len(momenta), len(elapsed), rows.shape[1]), np.nan) for rows in (momenta, poses))
+    turned = np.full((len(momenta), len(elapsed)), np.nan) if systems[0].group == SE(2) else None
+    for member in range(len(momenta)):
+        if stop[0]:
+            break
+        states = by_series(
+            systems[member % len(systems)], momenta[member], poses[member], elapsed, (tolerance, 1.0)
+        ).states
+        reached[member] = good = len(states.momenta)
+        r[member, :good], g[member, :good] = states.momenta, states.poses
+        if turned is not None:
+            turned[member, :good] = states.turned
+    return States(r, g, turned), reached

@@ -1,0 +1,136 @@
+"""Ensembles of flows: each member is the flow of its start and parameters, whoever runs beside it."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from bodies import mass_tensor
+
+import nonholo as nh
+from nonholo.systems import AbstractSystem
+
+RNG = np.random.default_rng(8)
+TIMES = np.array([0.0, 0.3, 7.0, 20.0])
+TOP = nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]) + 0.1, (2 / 3, -1 / 3, 2 / 3))
+SLEIGH = nh.ChaplyginSleigh(1.0, 0.75, 0.5, 0.3)
+SYSTEMS: dict[str, AbstractSystem] = {
+    "top": TOP,
+    "sleigh": SLEIGH,
+    "top on SO(4)": nh.SuslovTop(mass_tensor(nh.SO(4), RNG)),
+    "top on SO(7), matrices": nh.SuslovTop(mass_tensor(nh.SO(7), RNG)),
+    "general on SE(3)": nh.LLSystem(nh.SE(3), mass_tensor(nh.SE(3), RNG), RNG.normal(size=(3, 6))),
+    "right-invariant": nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])),
+    "right-invariant in the plane": nh.LRSystem(
+        nh.SE(2), mass_tensor(nh.SE(2), RNG), [[1.0, 0.2, 0.0], [0.0, 1.0, 0.3]]
+    ),
+}
+
+
+def _same(member: nh.Orbit, alone: nh.Orbit, bits: bool) -> bool:
+    pairs = [
+        (getattr(member, name), getattr(alone, name))
+        for name in ("reduced_momentum", "canonical_pose", "turned")
+        if getattr(alone, name) is not None
+    ]
+    return all(np.array_equal(a, b) if bits else np.abs(a - b).max() < 1e-12 for a, b in pairs)
+
+
+@pytest.mark.parametrize("backward", [False, True])
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_members_are_flows(name: str, backward: bool) -> None:
+    """More members than lanes, at rest and fast; from one canonical momentum the bits of a flow alone."""
+    system, times = SYSTEMS[name], TIMES[::-1] if backward else TIMES
+    w = np.random.default_rng(1).normal(size=(19, system.rank)) * np.geomspace(1e-3, 3.0, 19)[:, None]
+    w[4] = 0.0
+    batch = nh.ensemble(system, restricted_velocity=w, times=times)
+    assert isinstance(batch, nh.FlowEnsemble)
+    assert (batch.outcome == nh.Outcome.successful).all()
+    scalar = name in ("top", "sleigh")  # whose starts are made for all members at once
+    for member, start in enumerate(w):
+        alone = nh.flow(system, restricted_velocity=start, times=times)
+        assert _same(batch.orbit(member), alone, bits=not scalar)
+        assert np.abs(batch.configuration[member] - alone.configuration).max() < 1e-12
+        assert np.abs(batch.momentum[member] - alone.momentum).max() < 1e-12
+    few = nh.ensemble(system, restricted_velocity=w[7:9], times=times)
+    assert np.array_equal(few.reduced_momentum, batch.reduced_momentum[7:9])
+    assert np.array_equal(few.canonical_pose, batch.canonical_pose[7:9])
+
+
+def test_members_with_their_own_parameters() -> None:
+    """Arms of both signs and none, in any company; the sum of kinds is that of flows."""
+    own = {"a": [0.1, -0.2, 0.0, 0.5], "b": [0.0, 0.1, 0.2, 0.3], "mass": [1.0, 2.0, 3.0, 4.0]}
+    batch = nh.ensemble(SLEIGH, body_velocity=(1.0, 0.5, 0.0), times=TIMES, parameters=own)
+    for member, (a, b, mass) in enumerate(zip(*own.values(), strict=True)):
+        alone = nh.flow(nh.ChaplyginSleigh(mass, 0.75, a, b), body_velocity=(1.0, 0.5, 0.0), times=TIMES)
+        assert _same(batch.orbit(member), alone, bits=False)
+        assert np.abs(batch.heading[member] - alone.heading).max() < 1e-12
+        assert np.abs(batch.energy[member] / alone.energy[0] - 1).max() < 1e-14
+    tensors = np.stack([np.diag([1.0, 2.0, 3.0, 4.0]), mass_tensor(nh.SO(4), RNG)])
+    batch = nh.ensemble(
+        SYSTEMS["top on SO(4)"], restricted_velocity=np.ones((2, 3)), times=TIMES, parameters={"mass_tensor": tensors}
+    )
+    for member, tensor in enumerate(tensors):
+        alone = nh.flow(nh.SuslovTop(tensor), restricted_velocity=(1.0, 1.0, 1.0), times=TIMES)
+        assert _same(batch.orbit(member), alone, bits=True)
+
+
+def test_reduction_block_by_block(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a function makes of blocks is joined in order."""
+    from nonholo.simulation.members import _flows
+
+    w = np.random.default_rng(2).normal(size=(50, 2))
+    whole = nh.ensemble(TOP, restricted_velocity=w, times=TIMES)
+    monkeypatch.setattr(_flows, "_NUMBERS", 64)
+    last = nh.ensemble(TOP, restricted_velocity=w, times=TIMES, reduce=lambda batch: batch.momentum[:, -1])
+    assert np.array_equal(last, whole.momentum[:, -1])
+    data = whole.to_dataset()
+    assert data.sizes["member"] == 50
+    assert np.array_equal(data["energy"], whole.energy)
+
+
+def test_a_member_that_cannot_go_on_has_no_later_states() -> None:
+    """The others are not disturbed."""
+    w = [[0.4, 0.9], [1e140, 2e140], [0.3, -0.2]]
+    batch = nh.ensemble(TOP, restricted_velocity=w, times=(0.0, 1e-141, 1.0))
+    assert batch.outcome.tolist() == [nh.Outcome.successful, nh.Outcome.not_converged, nh.Outcome.successful]
+    assert batch.steps_done.tolist() == [2, 1, 2]
+    assert np.isnan(batch.reduced_momentum[1, 2]).all()
+    assert np.isfinite(batch.reduced_momentum[::2]).all()
+    assert len(batch.orbit(1)) == 2
+    with pytest.raises(ValueError, match="discrete orbit"):
+        _ = batch.displacement
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"steps": 5}, r"ensemble\(steps=...\)` must be left out for a flow"),
+        ({"save_every": 1}, r"ensemble\(save_every=...\)` must be left out"),
+        ({"backend": "jax"}, r"ensemble\(backend=...\)` must be left out"),
+        ({"events": [nh.cusp]}, r"ensemble\(events=...\)` must be left out"),
+        ({"reconstruct": False}, r"ensemble\(reconstruct=...\)` must be left out"),
+        ({"times": None}, r"flow\(times=...\)"),
+        ({"times": (1.0, 1.0)}, r"flow\(times=...\)"),
+        ({"rtol": 1e-16}, r"flow\(rtol=...\)"),
+        ({"parameters": {"time_step": [0.1, 0.2]}}, "A flow has no time step"),
+        ({"parameters": {"mass": [1.0, 2.0, 3.0]}}, "one value for each member"),
+        ({"parameters": {"mass": [1.0, -2.0]}}, "This is member 1"),
+        ({"reduce": 3}, "be a function"),
+    ],
+)
+def test_refused_arguments(given: dict[str, Any], message: str) -> None:
+    """Before any work, by name."""
+    with pytest.raises(ValueError, match=message):
+        nh.ensemble(SLEIGH, **{"restricted_velocity": np.ones((2, 2)), "times": (0.0, 1.0), **given})
+
+
+def test_other_refused_starts() -> None:
+    """Full momenta of no velocity; too many states; times for a discretization, which needs steps."""
+    with pytest.raises(ValueError, match="belong to admissible velocities"):
+        nh.ensemble(SLEIGH, momentum=[[1.0, 1.0, 0.5], [0.0, 0.0, 1.0]], times=(0.0, 1.0))
+    with pytest.raises(ValueError, match=r"ensemble\(times=...\)"):
+        nh.ensemble(SLEIGH, restricted_velocity=np.ones((10**6, 2)), times=np.arange(1e6))
+    with pytest.raises(ValueError, match="left out for a discretization"):
+        nh.ensemble(nh.discretize(SLEIGH, 0.1), restricted_velocity=np.ones((2, 2)), times=(0.0, 1.0))
+    with pytest.raises(ValueError, match=r"ensemble\(steps=...\)"):
+        nh.ensemble(nh.discretize(SLEIGH, 0.1), restricted_velocity=np.ones((2, 2)))
