@@ -18,8 +18,10 @@ from peers.solvers import decoded, heyoka_taylor, missing, rates, start
 
 import nonholo as nh
 from nonholo.continuous import solver_of
+from nonholo.simulation import in_one_thread
 
 ENDS, TOLERANCES, SAMPLES = (20.0, 100.0, 1000.0), (1e-6, 1e-10, 1e-13, 1e-14), 1_000_000
+MEMBERS = 20_000
 
 
 def _integration(problem: Problem, times: np.ndarray, tolerance: float) -> Callable[[], Any]:
@@ -74,8 +76,44 @@ def samples(problem: Problem, rounds: int) -> tuple[str, ...]:
     return problem.name, "a sample of a million", *ns, f"{median_ratio(taken['call'], taken['heyoka']):.2f}"
 
 
+def ensembles(problem: Problem, rounds: int) -> tuple[str, ...]:
+    """Return times of many live starts, in one thread on both sides; heyoka's batch mode at its recommended size."""
+    import heyoka
+
+    z = heyoka.make_vars(*(f"z{i}" for i in range(len(start(problem)))))
+    equations = list(zip(z, rates(problem, heyoka.cos, heyoka.sin)(z), strict=True))
+    lanes = heyoka.recommended_simd_size()
+    integrator = heyoka.taylor_adaptive_batch(equations, np.tile(start(problem)[:, None], lanes), tol=1e-16)
+    velocities = np.random.default_rng(0).normal(size=(MEMBERS, 2)) * 0.5
+    firsts = np.tile(start(problem)[:, None], MEMBERS)
+    firsts[:2] = velocities.T
+    ends = np.empty_like(firsts)
+
+    def peer() -> np.ndarray:
+        for begin in range(0, MEMBERS, lanes):
+            part = slice(begin, begin + lanes)
+            integrator.set_time(0.0)
+            integrator.state[:] = firsts[:, part]
+            integrator.propagate_until(np.full(lanes, problem.end))
+            ends[:, part] = integrator.state
+        return ends
+
+    full = np.pad(velocities, ((0, 0), (0, 1)))
+    with in_one_thread():
+        runs = {
+            "heyoka": peer,
+            "call": lambda: nh.ensemble(problem.system, body_velocity=full, times=(0.0, problem.end)),
+        }
+        batch = runs["call"]()
+        found = batch.body_velocity[:, -1, :2] - runs["heyoka"]()[:2].T
+        assert np.abs(found).max() < 1e-11, np.abs(found).max()
+        taken = in_turns(runs, rounds)
+    us = [f"{statistics.median(seconds) / MEMBERS * 1e6:.1f} us" for seconds in taken.values()]
+    return problem.name, f"a member of {MEMBERS:,}", *us, f"{median_ratio(taken['call'], taken['heyoka']):.2f}"
+
+
 def main() -> None:
-    """Print both tables."""
+    """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=31)
     rounds = parser.parse_args().rounds
@@ -88,6 +126,7 @@ def main() -> None:
                 print("|", " | ".join(row), "|", flush=True)
     for problem in PROBLEMS:
         print("|", " | ".join(samples(problem, max(3, rounds // 10))), "|", flush=True)
+        print("|", " | ".join(ensembles(problem, max(3, rounds // 10))), "|", flush=True)
 
 
 if __name__ == "__main__":

@@ -37,8 +37,9 @@ def solve_members(
         rows: Where the states go; the others are left as they are.
         stop: Ends the work when it becomes true.
     """
-    reached = np.zeros(len(starts), dtype=np.int64)
-    spread = f._replace(velocities=np.tile(f.velocities, len(_LANES)), factors=np.zeros(len(f.factors) * len(_LANES)))
+    reached, used = np.zeros(len(starts), dtype=np.int64), f.products.max(initial=-1) + 1
+    spread = f._replace(left=f.left[:used], right=f.right[:used], velocities=np.tile(f.velocities, len(_LANES)))
+    spread = spread._replace(factors=np.zeros(len(f.factors) * len(_LANES)))
     _advance_members(spread, *numbers, starts, *times, order_for(tolerance), tolerance, rows, reached, stop)
     return reached
 
