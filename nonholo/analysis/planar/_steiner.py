@@ -122,10 +122,8 @@ def _singular(pencil: Float[np.ndarray, "2 3 3"]) -> list[np.ndarray]:
     turns = np.pi * np.arange(7) / 7
     turned = [np.cos(a) * pencil[1] + np.sin(a) * pencil[0] for a in turns]
     best = turns[np.argmax(np.abs(np.linalg.det(turned)))]
-    base, step = (
-        np.cos(best) * pencil[0] - np.sin(best) * pencil[1],
-        np.cos(best) * pencil[1] + np.sin(best) * pencil[0],
-    )
+    base = np.cos(best) * pencil[0] - np.sin(best) * pencil[1]
+    step = np.cos(best) * pencil[1] + np.sin(best) * pencil[0]
     adjugates = [_mixed(S, S) / 2 for S in (base, step)]
     middle = (np.trace(adjugates[1] @ base), np.trace(adjugates[0] @ step))
     roots = np.roots([np.linalg.det(step), *middle, np.linalg.det(base)])
