@@ -19,7 +19,7 @@ from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.animation._sleigh_scene import sleigh_motion, sleigh_scene
 from nonholo.plotting.animation._top_scene import top_motion, top_scene
-from nonholo.plotting.parts import drawable, posed, transition
+from nonholo.plotting.parts import drawable, posed, window
 from nonholo.plotting.sheets import sheet_of
 
 _COLORS = 96
@@ -112,11 +112,9 @@ def _shown_states(orbit: Orbit, motion: float, total: int) -> Int[np.ndarray, "F
     `motion` is how far the body moves between two saved states, in units of what the eye can follow.
     """
     stride = max(1, int(1 / motion)) if motion > 0 else len(orbit)
-    span = stride * total
-    if len(orbit) <= span:
+    if len(orbit) <= stride * total:
         return np.linspace(0, len(orbit) - 1, total).round().astype(int)
-    first = min(max(0, transition(orbit) - span // 2), len(orbit) - span)
-    return np.arange(first, first + span, stride)
+    return np.arange(len(orbit))[window(orbit, motion, 1.0, total)]
 
 
 def _photograph(canvas: FigureCanvasAgg, show: Callable[[int], None], frame: int) -> Image.Image:

@@ -128,10 +128,8 @@ def _growth(axes: Axes, tree: BranchTree) -> tuple[Line2D, Line2D, Line2D]:
     counts = axes.plot(level, tree.counts, "o", color=theme.DISCRETE, markersize=7, label="distinct images")[0]
     look: Any = {"markerfacecolor": "white", "markeredgewidth": 1.6, "linestyle": "none"}
     reals = axes.plot(level, real, "o", color=theme.UNSTABLE, markersize=7, label="real ones", **look)[0]
-    axes.set_yscale("log")
+    axes.set(xlabel="generation k", ylabel="number of images", yscale="log", title="Growth")
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.yaxis.set_minor_locator(NullLocator())
-    axes.set(xlabel="generation k", ylabel="number of images")
-    axes.set_title("Growth")
     axes.legend(loc="upper left")
     return counts, bound, reals

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
 
-from nonholo.analysis import InvariantCurve, invariant_curve
+from nonholo.analysis import invariant_curve
 from nonholo.analysis.planar import planar_map
 from nonholo.base.checks import energies as checked_energies
 from nonholo.base.types import Float
@@ -81,7 +81,9 @@ def invariant_curves(
         for curve in curves:
             own = sheet.draw_level(axes, curve, color=theme.DISCRETE, linewidth=1.8, zorder=3, label="its energy")
         path = draw_orbit(axes, orbit, sheet.places(sheet.variety.points(orbit.displacement)))
-    stable, unstable = _equilibria(axes, sheet, checked, curves)
+    stable = unstable = None
+    if cast(AbstractLLSystem, checked.system).equilibria().attracting is not None:
+        stable, unstable = draw_equilibria(axes, *sheet.attracting(curves), 40 if len(curves) == 1 else 22)
     axes.set_title("Displacements")
     sheet.dress(axes, curves, np.empty((0, 2)))
     return InvariantCurvesPicture(axes, levels, own, stable, unstable, path)
@@ -91,12 +93,3 @@ def _energies(sheet: AbstractSheet, discrete: Discretization, energies: Any) -> 
     if energies is not None:
         return checked_energies("plot.invariant_curves(energies=...)", energies)
     return sheet.energies(float(discrete.time_step))
-
-
-def _equilibria(
-    axes: Axes, sheet: AbstractSheet, discrete: Discretization, curves: list[InvariantCurve]
-) -> tuple[Any, Any]:
-    """Draw the line of equilibria, and its points on the curves."""
-    if cast(AbstractLLSystem, discrete.system).equilibria().attracting is None:
-        return None, None
-    return draw_equilibria(axes, *sheet.attracting(curves), 40 if len(curves) == 1 else 22)

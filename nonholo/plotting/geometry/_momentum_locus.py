@@ -16,12 +16,13 @@ from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.elements import draw_surface, spans
-from nonholo.plotting.geometry._locus_view import best_view
-from nonholo.plotting.parts import draw_in_time, evenly_in_box, own_orbit
+from nonholo.plotting.parts import View, draw_in_time, evenly_in_box, own_orbit
 from nonholo.plotting.sheets import AbstractSheet, sheet_of
 
 _MOST_DOTS = 600
 _WHISKER = 0.22  # of the length of its segment
+_VIEW = (25.0, -52.0)  # elevation and azimuth
+_AZIMUTHS = np.arange(-70.0, -24.0, 5.0)  # of a top
 
 
 @dataclasses.dataclass(frozen=True)
@@ -133,7 +134,7 @@ def _dress(axes: Any, locus: MomentumLocus, sheet: AbstractSheet, view: tuple[fl
     span = spans(drawn)[2]
     if np.ptp(drawn[..., 2]) < span:
         axes.set_zlim(-span / 4, span / 4)
-    axes.view_init(*(best_view(locus) if view is None else pair("plot.momentum_locus(view=...)", view)))
+    axes.view_init(*(_best_view(locus) if view is None else pair("plot.momentum_locus(view=...)", view)))
     axes.set_box_aspect((1.0, 1.0, 0.85), zoom=1.0)
     axes.computed_zorder = False
     axes.grid(False)
@@ -144,3 +145,17 @@ def _dress(axes: Any, locus: MomentumLocus, sheet: AbstractSheet, view: tuple[fl
     title = f"Momentum locus: {sheet.locus_kind(locus)}"
     axes.text2D(0.03, 0.97, title, transform=axes.transAxes, fontsize="large", fontweight="bold")
     axes.legend(loc="upper right", bbox_to_anchor=(1.02, 1.0))
+
+
+def _best_view(locus: MomentumLocus) -> tuple[float, float]:
+    """Return a view that sees the double segments of a top well apart."""
+    if len(locus.double_lines) < 3:
+        return _VIEW
+    along = np.diff(locus.double_lines, axis=1)[:, 0] / spans(locus.momentum)
+
+    def apart(azimuth: float) -> float:
+        flat = View(azimuth, _VIEW[0])(along)[0]
+        flat = flat / np.linalg.norm(flat, axis=1, keepdims=True)
+        return float(1 - np.abs(flat @ flat.T - np.eye(3)).max())
+
+    return _VIEW[0], float(max(_AZIMUTHS, key=apart))

@@ -4,7 +4,7 @@
 """
 
 import dataclasses
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,6 +16,8 @@ from nonholo.base.types import Float
 from nonholo.groups import SO
 from nonholo.orbit import Orbit
 from nonholo.plotting import parts, theme
+
+Axis: TypeAlias = Float[np.ndarray, "3"] | None  # a unit vector
 
 _MOST_DOTS = 1200
 _FINEST = np.radians(4.0)  # no need to draw states that are closer than this
@@ -44,9 +46,9 @@ class BodyAxisTrack:
     points: Float[np.ndarray, "L 3"]
     path: LineCollection
     dots: PathCollection | None
-    axis_before: Float[np.ndarray, "3"] | None
-    axis_after: Float[np.ndarray, "3"] | None
-    fixed_axis: Float[np.ndarray, "3"] | None
+    axis_before: Axis
+    axis_after: Axis
+    fixed_axis: Axis
     flow: LineCollection | None
 
 
@@ -123,7 +125,7 @@ def _title(orbit: Orbit, chosen: Any) -> str:
     return "Body axis 3 in space" if parts.forbidden_axis(orbit.system) is None else "Forbidden body axis in space"
 
 
-def _fixed_axis(orbit: Orbit) -> Float[np.ndarray, "3"] | None:
+def _fixed_axis(orbit: Orbit) -> Axis:
     """Return the direction in space that the constraint, or the lack of one, singles out."""
     system = orbit.system
     if parts.is_free(system):
@@ -140,12 +142,12 @@ def _part(orbit: Orbit) -> slice:
     return parts.window(orbit, parts.turn_per_state(orbit), _FINEST, _MOST_DOTS)
 
 
-def rotation_axes(orbit: Orbit) -> tuple[Float[np.ndarray, "3"] | None, Float[np.ndarray, "3"] | None]:
+def rotation_axes(orbit: Orbit) -> tuple[Axis, Axis]:
     """Return unit vectors in space of the permanent rotations left and reached; None where the orbit is not close."""
     return _rotation_axis(orbit, int(orbit.time.argmin()), 1), _rotation_axis(orbit, int(orbit.time.argmax()), -1)
 
 
-def _rotation_axis(orbit: Orbit, state: int, repelling: int) -> Float[np.ndarray, "3"] | None:
+def _rotation_axis(orbit: Orbit, state: int, repelling: int) -> Axis:
     velocity, equilibria = parts.permanent_velocity(orbit, state), parts.known_equilibria(orbit.system)
     attracting = None if equilibria is None else equilibria.attracting
     if velocity is None or (attracting is not None and repelling * (velocity @ attracting) > 0):
@@ -153,7 +155,7 @@ def _rotation_axis(orbit: Orbit, state: int, repelling: int) -> Float[np.ndarray
     return orbit[state : state + 1].configuration[0] @ velocity / np.linalg.norm(velocity)
 
 
-def known_axes(*axes: Float[np.ndarray, "3"] | None) -> Float[np.ndarray, "A 3"]:
+def known_axes(*axes: Axis) -> Float[np.ndarray, "A 3"]:
     """Return those of the axes that are known, in rows."""
     return np.array([axis for axis in axes if axis is not None]).reshape(-1, 3)
 
@@ -164,12 +166,7 @@ def _flow(axes: Axes, eye: parts.View, flow: Orbit, gamma: Float[np.ndarray, "3"
     return parts.draw_curve(axes, eye, points, np.array(to_rgb(theme.CONTINUOUS)), width=1.0, zorder=5.5)
 
 
-def _named(
-    before: Float[np.ndarray, "3"] | None,
-    after: Float[np.ndarray, "3"] | None,
-    fixed: Float[np.ndarray, "3"] | None,
-    orbit: Orbit,
-) -> list[tuple[Float[np.ndarray, "3"], str, str]]:
+def _named(before: Axis, after: Axis, fixed: Axis, orbit: Orbit) -> list[tuple[Float[np.ndarray, "3"], str, str]]:
     """Return the axes to draw, with their names and colors."""
     names = ("rotation axis\nbefore", "rotation axis\nafter")
     if before is not None and after is not None and np.linalg.norm(before - after) < 1e-6:

@@ -107,8 +107,7 @@ def _curve(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K
 
 def _dress(axes: Axes, error: Float[np.ndarray, "K"], unit: float, relative: bool) -> None:
     exponent = math.floor(math.log10(unit) + 0.5)
-    axes.set(xlabel="time", ylabel=rf"$\Delta E{'/E' if relative else ''}$   [$10^{{{exponent}}}$]")
     reach = 1.4 * max(float(np.abs(error).max()), 1.6 * _EPS / unit)
-    axes.set_ylim(-reach, reach)
-    axes.set_title("Energy error")
+    ylabel = rf"$\Delta E{'/E' if relative else ''}$   [$10^{{{exponent}}}$]"
+    axes.set(xlabel="time", ylabel=ylabel, ylim=(-reach, reach), title="Energy error")
     theme.legend_above(axes)

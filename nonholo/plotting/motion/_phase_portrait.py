@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch
 
 from nonholo.base.checks import energies as checked_energies
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import error, instance, shown
 from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import parts, theme
@@ -108,8 +108,7 @@ def phase_portrait(
 
 def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
     where = "phase_portrait(system=...)"
-    if not isinstance(system, AbstractSystem):
-        raise error(where, "be a system", shown(system), "Pass `orbit.system` first, then the orbit.")
+    instance(where, system, AbstractSystem, "be a system", "Pass `orbit.system` first, then the orbit.")
     if system.is_spatial:
         remedy = "Its momenta along the constraint are conserved: draw `overview` instead."
         raise error(where, "have a left-invariant constraint", shown(system), remedy)

@@ -20,8 +20,10 @@ _MOST_LINES = 60  # momenta in one panel
 
 def velocity_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> None:
     """Draw the components of the body velocity that the constraint leaves free, against time."""
-    free = np.flatnonzero(np.abs(_allowed(orbit)).max(axis=0, initial=0.0) > 0)
-    names = _velocity_names(orbit.system.group)
+    system = orbit.system
+    allowed = np.eye(system.group.dim) if system.is_spatial else system.constraint_subspace
+    free = np.flatnonzero(np.abs(allowed).max(axis=0, initial=0.0) > 0)
+    names = _velocity_names(system.group)
     axes.set_title("Body velocity")
     _draw(axes, orbit, flow, lambda states: states.body_velocity[:, free], [names[i] for i in free])
 
@@ -95,11 +97,6 @@ def _draw(
     axes.margins(y=0.12)
     theme.mark_time(axes, orbit)
     theme.legend_above(axes)
-
-
-def _allowed(orbit: Orbit) -> Float[np.ndarray, "m dim"]:
-    """Return rows that span all body velocities the orbit could have."""
-    return np.eye(orbit.system.group.dim) if orbit.system.is_spatial else orbit.system.constraint_subspace
 
 
 def _velocity_names(group: AbstractMatrixGroup) -> list[str]:

@@ -21,7 +21,6 @@ from nonholo.plotting.parts._thinning import (
     evenly_in_box,
     evenly_spread,
     some_states,
-    transition,
     turn_per_state,
     window,
 )
@@ -62,7 +61,6 @@ __all__ = [
     "some_states",
     "square_about",
     "time_step",
-    "transition",
     "turn_per_state",
     "view_of",
     "window",
