@@ -10,7 +10,6 @@ from matplotlib.collections import LineCollection, PathCollection
 from nonholo.analysis import invariant_curve
 from nonholo.analysis.planar import planar_map
 from nonholo.base.checks import energies as checked_energies
-from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
@@ -73,7 +72,8 @@ def invariant_curves(
     sheet = cast(AbstractSheet, sheet_of(checked.system))
     own_orbit(f"{where}(orbit=...)", orbit, checked)
     axes = theme.axes_or_new(axes, (6.2, 6.0))
-    curves = [invariant_curve(checked, energy, _POINTS) for energy in _energies(sheet, checked, energies)]
+    asked = sheet.energies(float(checked.time_step)) if energies is None else energies
+    curves = [invariant_curve(checked, energy, _POINTS) for energy in checked_energies(f"{where}(energies=...)", asked)]
     levels = tuple(sheet.draw_level(axes, curve, color=theme.LEVEL, linewidth=1.1, zorder=1) for curve in curves)
     own = path = None
     if orbit is not None:
@@ -87,9 +87,3 @@ def invariant_curves(
     axes.set_title("Displacements")
     sheet.dress(axes, curves, np.empty((0, 2)))
     return InvariantCurvesPicture(axes, levels, own, stable, unstable, path)
-
-
-def _energies(sheet: AbstractSheet, discrete: Discretization, energies: Any) -> Float[np.ndarray, "L"]:
-    if energies is not None:
-        return checked_energies("plot.invariant_curves(energies=...)", energies)
-    return sheet.energies(float(discrete.time_step))
