@@ -22,7 +22,7 @@ def draw_in_time(
     *,
     zorder: float,
     size: float | None = None,
-    label: str = "discrete orbit",
+    label: str | None = None,
     whole: Orbit | None = None,
 ) -> Any:
     """Draw some states at their points in the colors of time: dots of a discrete orbit, a line of a flow.
@@ -34,14 +34,15 @@ def draw_in_time(
         states: Which of them to draw.
         zorder: The layer.
         size: Area of the dots; by default by their number.
-        label: Name of the dots.
+        label: Name of the dots; where it is given there are dots of any orbit.
         whole: The orbit whose colors these are, where `orbit` is a part of it.
     """
     points, time = points[states], orbit.time[states]
     colors = {"cmap": theme.TIME, "norm": theme.time_scale(orbit if whole is None else whole), "zorder": zorder}
-    if is_discrete(orbit):
+    if label is not None or is_discrete(orbit):
         size = theme.dot_size(len(orbit)) if size is None else size
-        return axes.scatter(*points.T, c=time, s=size, linewidths=0, label=label, **_flat(points), **colors)
+        colors |= {"c": time, "label": label or "discrete orbit"}
+        return axes.scatter(*points.T, s=size, linewidths=0, **_flat(points), **colors)
     path = segments(points[:-1], points[1:], linewidth=2, **colors)
     path.set(array=time[1:], label="flow")
     axes.add_collection(path)
