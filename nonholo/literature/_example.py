@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import array
+from nonholo.base.checks import array, scale
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
@@ -52,6 +52,12 @@ def rate(index: int) -> Callable[[Array, Array], Array]:
         return v[..., index]
 
     return component
+
+
+def positives(owner: str, **values: Any) -> list[float]:
+    """Return the parameters of a body, all positive."""
+    remedy = "Pass a positive number."
+    return [float(scale(f"examples.{owner}({name}=...)", value, remedy)) for name, value in values.items()]
 
 
 def numbers(owner: str, name: str, value: Any, size: int, what: str) -> Float[np.ndarray, "size"]:

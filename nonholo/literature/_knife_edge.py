@@ -87,8 +87,7 @@ def knife_edge_on_incline(
         "From rest the blade draws a cycloid.",
     )
     v = np.array([u0 * np.cos(q[2]), u0 * np.sin(q[2]), omega])
-    name = "knife_edge_on_incline"
-    return Example(name, _system(m, J, G), ("x", "y", "phi"), q, v, facts, conserved, exact)
+    return Example("knife_edge_on_incline", _system(m, J, G), ("x", "y", "phi"), q, v, facts, conserved, exact)
 
 
 @functools.cache

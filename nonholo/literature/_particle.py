@@ -58,10 +58,7 @@ def particle(
         x = c * t / root0 if b == 0 else c / b * (np.arcsinh(y) - np.arcsinh(y0))
         return np.stack([q[0] + x, y, q[2] + z], axis=-1)
 
-    conserved = {
-        "y'": rate(1),
-        "x' sqrt(1 + y^2)": lambda q, v: v[..., 0] * np.sqrt(1 + q[..., 1] ** 2),
-    }
+    conserved = {"y'": rate(1), "x' sqrt(1 + y^2)": lambda q, v: v[..., 0] * np.sqrt(1 + q[..., 1] ** 2)}
     facts = ("y' and x' sqrt(1 + y^2) are constant.", "The discrete energy settles to a constant; it does not drift.")
     v = np.array([a, b, y0 * a])
     return Example("particle", _system(m), ("x", "y", "z"), q, v, facts, conserved, exact)

@@ -5,10 +5,10 @@ import functools
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import number, scale
+from nonholo.base.checks import number
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.literature._example import Example, numbers
+from nonholo.literature._example import Example, numbers, positives
 
 _NAMES = ("x", "y", "theta", "right", "left")
 
@@ -67,18 +67,12 @@ def two_wheeled_robot(
         >>> float(np.ptp(ready.conserved["axle"](orbit.configuration, orbit.body_velocity)).round(9))
         0.0
     """
-    where, remedy = "examples.two_wheeled_robot", "Pass a positive number."
-    given = {
-        "mass": mass,
-        "inertia": inertia,
-        "half_width": half_width,
-        "wheel_radius": wheel_radius,
-        "wheel_inertia": wheel_inertia,
-    }
-    m, J, c, R, Jw = (float(scale(f"{where}({name}=...)", value, remedy)) for name, value in given.items())
+    name = "two_wheeled_robot"
+    wheels = {"half_width": half_width, "wheel_radius": wheel_radius, "wheel_inertia": wheel_inertia}
+    m, J, c, R, Jw = positives(name, mass=mass, inertia=inertia, **wheels)
     given = {"offset": offset, "speed": speed, "turning": turning}
-    ell, u, omega = (float(number(f"{where}({name}=...)", value)) for name, value in given.items())
-    q = numbers("two_wheeled_robot", "configuration", configuration, 5, "x, y, theta, right and left")
+    ell, u, omega = (float(number(f"examples.{name}({what}=...)", value)) for what, value in given.items())
+    q = numbers(name, "configuration", configuration, 5, "x, y, theta, right and left")
     M, K = m + 2 * Jw / R**2, J + m * ell**2 + 2 * Jw * c**2 / R**2
     v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, (u + c * omega) / R, (u - c * omega) / R])
 
@@ -97,7 +91,7 @@ def two_wheeled_robot(
         "The discrete energy settles to a constant; it does not drift.",
     )
     system = _system(m, J + m * ell**2, ell, c, R, Jw)
-    return Example("two_wheeled_robot", system, _NAMES, q, v, facts, conserved)
+    return Example(name, system, _NAMES, q, v, facts, conserved)
 
 
 @functools.cache

@@ -5,10 +5,9 @@ import functools
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import scale
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.literature._example import Example, numbers, rate
+from nonholo.literature._example import Example, numbers, positives, rate
 
 
 def rolling_disk(
@@ -48,9 +47,8 @@ def rolling_disk(
         >>> bool(np.abs(ready.exact(np.array([2.0]))[0, :2]).max() < 1e-15)
         True
     """
-    remedy = "Pass a positive number."
-    given = {"mass": mass, "radius": radius, "rolling_inertia": rolling_inertia, "turning_inertia": turning_inertia}
-    body = [float(scale(f"examples.rolling_disk({name}=...)", value, remedy)) for name, value in given.items()]
+    inertias = {"rolling_inertia": rolling_inertia, "turning_inertia": turning_inertia}
+    body = positives("rolling_disk", mass=mass, radius=radius, **inertias)
     R = body[1]
     q = numbers("rolling_disk", "configuration", configuration, 4, "x, y, theta and phi")
     roll, turn = numbers("rolling_disk", "rates", rates, 2, "theta' and phi'")
@@ -60,9 +58,8 @@ def rolling_disk(
         # the chord of the arc: its length is that of the arc times sinc, also for phi' = 0
         chord = R * roll * t * np.sinc(turn * t / (2 * np.pi))
         middle = q[3] + turn * t / 2
-        return np.stack(
-            [q[0] + chord * np.cos(middle), q[1] + chord * np.sin(middle), q[2] + roll * t, q[3] + turn * t], axis=-1
-        )
+        x, y = q[0] + chord * np.cos(middle), q[1] + chord * np.sin(middle)
+        return np.stack([x, y, q[2] + roll * t, q[3] + turn * t], axis=-1)
 
     conserved = {"theta'": rate(2), "phi'": rate(3)}
     facts = ("theta' and phi' are constant, also in the midpoint rule.", "The contact point moves on a circle.")

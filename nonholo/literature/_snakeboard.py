@@ -5,10 +5,10 @@ import functools
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import error, scale
+from nonholo.base.checks import error
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.literature._example import Example, numbers, rate
+from nonholo.literature._example import Example, numbers, positives, rate
 
 _NAMES = ("x", "y", "theta", "psi", "phi")
 
@@ -58,9 +58,8 @@ def snakeboard(
         >>> [round(float(f(ready.configuration, ready.body_velocity)), 6) for f in ready.conserved.values()]
         [0.05, 1.957408, 1.487535]
     """
-    where, remedy = "examples.snakeboard", "Pass a positive number."
-    given = {"mass": mass, "half_length": half_length, "rotor_inertia": rotor_inertia, "wheel_inertia": wheel_inertia}
-    m, r, J0, J1 = (float(scale(f"{where}({name}=...)", value, remedy)) for name, value in given.items())
+    where, inertias = "examples.snakeboard", {"rotor_inertia": rotor_inertia, "wheel_inertia": wheel_inertia}
+    m, r, J0, J1 = positives("snakeboard", mass=mass, half_length=half_length, **inertias)
     if m * r * r <= J0:
         raise error(f"{where}(rotor_inertia=...)", f"be less than m r^2 = {m * r * r:g}", f"{J0:g}", "Lighten it.")
     q = numbers("snakeboard", "configuration", configuration, 5, "x, y, theta, psi and phi")
@@ -77,11 +76,7 @@ def snakeboard(
         along = v[..., 0] * np.cos(q[..., 2]) + v[..., 1] * np.sin(q[..., 2])
         return along * np.sqrt(m + (m - J0 / r**2) * np.tan(q[..., 4]) ** 2)
 
-    conserved = {
-        "phi'": rate(4),
-        "theta' + psi'": spin,
-        "momentum along the constraint": momentum,
-    }
+    conserved = {"phi'": rate(4), "theta' + psi'": spin, "momentum along the constraint": momentum}
     facts = (
         "phi' and theta' + psi' are constant, also in the midpoint rule.",
         "The momentum along the constraint is constant.",

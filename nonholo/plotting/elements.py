@@ -38,9 +38,8 @@ def draw_surface(axes: Any, momentum: Float[np.ndarray, "R C 3"]) -> Any:
     shade = 0.55 + 0.45 * light[..., None]
     colors = np.concatenate([shade * to_rgb(_SHEET), np.full(shade.shape, _OPACITY)], axis=-1)
     rows, columns = x.shape
-    return axes.plot_surface(
-        x, y, z, facecolors=colors, rcount=rows, ccount=columns, linewidth=0, antialiased=False, shade=False
-    )
+    look = {"rcount": rows, "ccount": columns, "linewidth": 0, "antialiased": False, "shade": False}
+    return axes.plot_surface(x, y, z, facecolors=colors, **look)
 
 
 def spans(momentum: Float[np.ndarray, "R C 3"]) -> Float[np.ndarray, "3"]:

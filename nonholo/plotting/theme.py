@@ -100,10 +100,9 @@ def mark_time(axes: Axes, orbit: Orbit) -> LineCollection | None:
     colored = scale.inverse(np.linspace(0.0, 1.0, 129))
     ends = np.unique(np.concatenate([orbit.time[[0, -1]], colored]))
     ground = np.stack([ends, np.zeros_like(ends)], axis=-1)
+    look: Any = {"cmap": TIME, "norm": scale, "linewidth": 4, "capstyle": "butt", "clip_on": False, "zorder": 5}
     strip = LineCollection(pieces(ground), transform=axes.get_xaxis_transform())
-    strip.set(
-        array=(ends[:-1] + ends[1:]) / 2, cmap=TIME, norm=scale, linewidth=4, capstyle="butt", clip_on=False, zorder=5
-    )
+    strip.set(array=(ends[:-1] + ends[1:]) / 2, **look)
     axes.add_collection(strip, autolim=False)
     return strip
 

@@ -5,21 +5,22 @@ from typing import Any
 import numpy as np
 
 from nonholo.analysis import invariants
-from nonholo.discrete import discrete_legendre
+from nonholo.discrete import Discretization, discrete_legendre
 from nonholo.simulation import simulate
 from nonholo.testing._measures import derivative, gap, largest, relative
 from nonholo.testing._orbit_samples import COUNTS, PATH, STEP, OrbitSamples
-from nonholo.testing._report import NotApplicableError
+from nonholo.testing._report import Check, need
 
 _EXACT = 1e-11  # errors below it are rounding, and have no order
+_SECOND = "errors against the flow fall with the square of the step: |slope - 2|"
 _AGREE = ("momentum", "displacement", "configuration")
 
 
-def inertia_at_identity(s: OrbitSamples) -> float:
+def inertia(s: OrbitSamples) -> float:
     """Return how far the second derivative of the discrete Lagrangian along the constraint is from the inertia."""
     eye, D, h = s.group.identity, s.directions, s.discrete.time_step
     expected = D @ s.system.inertia_operator @ D.T
-    _need(len(D), "the constraint forbids all motion")
+    need(len(D), "the constraint forbids all motion")
     slope = derivative(lambda t: s.momentum(s.group.exp(t * D))) @ D.T * h
     return max(relative(slope, expected), largest(s.momentum(eye) @ D.T) * h / largest(expected))
 
@@ -42,7 +43,7 @@ def self_adjointness(s: OrbitSamples) -> float:
     return relative(s.lagrangian(np.linalg.inv(s.W)), s.lagrangian(s.W))
 
 
-def identity_on_variety(s: OrbitSamples) -> float:
+def identity(s: OrbitSamples) -> float:
     """Return the forbidden part of the identity and the distance of the chart's origin from it."""
     eye, variety = s.group.identity, s.discrete.variety
     origin = gap(variety.displaced(np.zeros(len(variety.chart))), eye)
@@ -51,14 +52,14 @@ def identity_on_variety(s: OrbitSamples) -> float:
 
 def tangent_space(s: OrbitSamples) -> float:
     """Return the rate at which admissible motions through the identity leave the variety."""
-    _need(len(s.S) * len(s.A), "nothing is forbidden, or everything")
+    need(len(s.S) * len(s.A), "nothing is forbidden, or everything")
     g = np.broadcast_to(s.pose, (len(s.S), *s.pose.shape))
     return largest(derivative(lambda t: s.forbidden(s.group.exp(t * s.directions), g)))
 
 
 def transversality(s: OrbitSamples) -> float:
     """Return how many forbidden directions the equations of the variety do not see."""
-    _need(len(s.A), "nothing is forbidden")
+    need(len(s.A), "nothing is forbidden")
     back = s.group.adjoint(np.linalg.inv(s.pose)) if s.spatial else np.eye(s.group.dim)
     g = np.broadcast_to(s.pose, (len(s.A), *s.pose.shape))
     slope = derivative(lambda t: s.forbidden(s.group.exp(t * s.A @ back.T), g))
@@ -118,7 +119,7 @@ def reversal(s: OrbitSamples) -> float:
 
 def compiled_reversal(s: OrbitSamples) -> float:
     """Return how far one compiled step forward and back misses its start."""
-    _need(s.discrete.route.compiled is not None, "the step is not compiled")
+    need(s.discrete.route.compiled is not None, "the step is not compiled")
     found = invariants(s.orbit).reversal_defect
     return float("nan") if found is None else found
 
@@ -147,7 +148,7 @@ def order_of_poses(s: OrbitSamples) -> float:
 
 def definition(s: OrbitSamples) -> float:
     """Compare three compiled steps with the definition, solved by JAX."""
-    _need(s.discrete.route.compiled is not None, "the step that runs is the definition")
+    need(s.discrete.route.compiled is not None, "the step that runs is the definition")
     slow = simulate(s.discrete, steps=3, backend="jax", **s.first)
     return max(relative(getattr(s.orbit[:4], name), getattr(slow, name)) for name in _AGREE)
 
@@ -166,6 +167,38 @@ def _off_two(errors: list[float]) -> float:
     return abs(_slope(errors) - 2) if errors[-1] > _EXACT else 0.0
 
 
-def _need(condition: object, otherwise: str) -> None:
-    if not condition:
-        raise NotApplicableError(otherwise)
+def claimed(discrete: Discretization) -> tuple[Check, ...]:
+    """Return the checks that depend on what the discretization claims."""
+    named = isinstance(discrete.difference, str) and discrete.constraint in ("skew", "exponential")
+    claims = (
+        ("reversal", "inverse displacements solve the equations backwards", named, 1e-11, reversal),
+        ("compiled reversal", "one compiled step and one back lead home", named, 1e-11, compiled_reversal),
+        ("energy", "the constrained energy is constant", discrete.conserves_energy, 1e-12, energy_drift),
+    )
+    return tuple(
+        Check(name, words if is_claimed else f"{words}: not required", tolerance if is_claimed else None, measured)
+        for name, words, is_claimed, tolerance, measured in claims
+    )
+
+
+MOTION = (
+    Check("inertia", "h times the second derivative of l_d at I, along d, is I; P(I) = 0", 1e-8, inertia),
+    Check("orbit", f"a run with steps of norm {STEP} goes through, or with a part of that: the divisor", 32.0, runs),
+    Check("left momentum", "<P(W), x> = d/dt l_d(exp(t x) W)", 1e-8, left_momentum),
+    Check("right momentum", "<Ad*_W P(W), x> = d/dt l_d(W exp(t x))", 1e-8, right_momentum),
+    Check("self-adjoint", "l_d(W^-1) = l_d(W): not required", None, self_adjointness),
+    Check("identity", "the identity lies on the variety", 1e-13, identity),
+    Check("tangent space", "motions along d leave the variety to second order", 1e-8, tangent_space),
+    Check("transversality", "motions along the annihilator leave the variety", 0.0, transversality),
+    Check("start", "P(W_0) along d is the momentum of the velocity", 1e-11, start),
+    Check("variety", "displacements lie on the variety", 1e-11, on_variety),
+    Check("group", "residual(g_k) = 0", 1e-11, on_group),
+    Check("reconstruction", "g_(k+1) = g_k W_k", 1e-12, reconstruction),
+    Check("momentum equation", "P_(k+1) - Ad*_(W_k) P_k vanishes on d", 1e-11, momentum_equation),
+    Check("multipliers", "P_(k+1) - Ad*_(W_k) P_k = sum lambda_j a^j", 1e-11, multipliers),
+    Check("finer orbits", f"one path in {COUNTS} steps goes through, or a part of it: the divisor", 32.0, runs_finer),
+    Check("order of the start", "the first step is exact to second order: 3 - slope", 0.3, order_of_start),
+    Check("order of momenta", _SECOND, 0.15, order_of_momenta),
+    Check("order of poses", _SECOND, 0.15, order_of_poses),
+)
+DEFINITION = Check("definition", "compiled steps solve the equations that JAX solves", 1e-11, definition)

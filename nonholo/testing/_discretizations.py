@@ -4,57 +4,10 @@ from typing import Any
 
 from nonholo.base.checks import count, error, flags
 from nonholo.discrete import Discretization, refuse_composition
-from nonholo.testing import _discrete_motion as measure
+from nonholo.testing._discrete_motion import DEFINITION, MOTION, claimed
 from nonholo.testing._measures import seeded
-from nonholo.testing._orbit_samples import COUNTS, STEP, OrbitSamples
-from nonholo.testing._report import Check, Report, run_checks
-
-_CHECKS = (
-    Check(
-        "inertia",
-        "h times the second derivative of l_d at I, along d, is I; P(I) = 0",
-        1e-8,
-        measure.inertia_at_identity,
-    ),
-    Check(
-        "orbit",
-        f"a run with steps of norm {STEP} goes through, or with a part of that: the divisor",
-        32.0,
-        measure.runs,
-    ),
-    Check("left momentum", "<P(W), x> = d/dt l_d(exp(t x) W)", 1e-8, measure.left_momentum),
-    Check("right momentum", "<Ad*_W P(W), x> = d/dt l_d(W exp(t x))", 1e-8, measure.right_momentum),
-    Check("self-adjoint", "l_d(W^-1) = l_d(W): not required", None, measure.self_adjointness),
-    Check("identity", "the identity lies on the variety", 1e-13, measure.identity_on_variety),
-    Check("tangent space", "motions along d leave the variety to second order", 1e-8, measure.tangent_space),
-    Check("transversality", "motions along the annihilator leave the variety", 0.0, measure.transversality),
-    Check("start", "P(W_0) along d is the momentum of the velocity", 1e-11, measure.start),
-    Check("variety", "displacements lie on the variety", 1e-11, measure.on_variety),
-    Check("group", "residual(g_k) = 0", 1e-11, measure.on_group),
-    Check("reconstruction", "g_(k+1) = g_k W_k", 1e-12, measure.reconstruction),
-    Check("momentum equation", "P_(k+1) - Ad*_(W_k) P_k vanishes on d", 1e-11, measure.momentum_equation),
-    Check("multipliers", "P_(k+1) - Ad*_(W_k) P_k = sum lambda_j a^j", 1e-11, measure.multipliers),
-    Check(
-        "finer orbits",
-        f"one path in {COUNTS} steps goes through, or a part of it: the divisor",
-        32.0,
-        measure.runs_finer,
-    ),
-    Check("order of the start", "the first step is exact to second order: 3 - slope", 0.3, measure.order_of_start),
-    Check(
-        "order of momenta",
-        "errors against the flow fall with the square of the step: |slope - 2|",
-        0.15,
-        measure.order_of_momenta,
-    ),
-    Check(
-        "order of poses",
-        "errors against the flow fall with the square of the step: |slope - 2|",
-        0.15,
-        measure.order_of_poses,
-    ),
-)
-_DEFINITION = Check("definition", "compiled steps solve the equations that JAX solves", 1e-11, measure.definition)
+from nonholo.testing._orbit_samples import OrbitSamples
+from nonholo.testing._report import Report, run_checks
 
 
 def check_discretization(
@@ -105,34 +58,13 @@ def check_discretization(
     flags("check_discretization", definition=definition, throw=throw)
     number = count("check_discretization(steps=...)", steps, "Pass the length of the orbit.")
     samples = OrbitSamples(discrete, seeded(rng), max(number, 4))
-    checks = (*_CHECKS, *_conserved(discrete), *((_DEFINITION,) if definition else ()))
+    checks = (*MOTION, *claimed(discrete), *((DEFINITION,) if definition else ()))
     return run_checks(_owner(discrete), checks, samples, tolerance_factor, throw)
 
 
-def _conserved(discrete: Discretization) -> tuple[Check, ...]:
-    """Return the checks that depend on what the discretization claims."""
-    named = isinstance(discrete.difference, str) and discrete.constraint in ("skew", "exponential")
-    back, energy = (None, ": not required"), (None, ": not required")
-    if named:
-        back = (1e-11, "")
-    if discrete.conserves_energy:
-        energy = (1e-12, "")
-    return (
-        Check("reversal", f"inverse displacements solve the equations backwards{back[1]}", back[0], measure.reversal),
-        Check(
-            "compiled reversal",
-            f"one compiled step and one back lead home{back[1]}",
-            back[0],
-            measure.compiled_reversal,
-        ),
-        Check("energy", f"the constrained energy is constant{energy[1]}", energy[0], measure.energy_drift),
-    )
-
-
 def _owner(discrete: Discretization) -> str:
-    difference, constraint = (
-        x if isinstance(x, str) else "callable" for x in (discrete.difference, discrete.constraint)
-    )
+    choices = (discrete.difference, discrete.constraint)
+    difference, constraint = (choice if isinstance(choice, str) else "callable" for choice in choices)
     system = type(discrete.system).__name__
     step = f"time_step={float(discrete.time_step):g}"
     return f"check_discretization({system} on {discrete.system.group!r}, {step}, {difference}, {constraint})"

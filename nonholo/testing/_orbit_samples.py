@@ -18,7 +18,7 @@ from nonholo.continuous import vector_field
 from nonholo.discrete import Discretization, discrete_legendre
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
-from nonholo.testing._report import NotApplicableError
+from nonholo.testing._report import NotApplicableError, need
 
 COUNTS = (10, 20, 40)  # steps for the path whose order is measured
 PATH = 1.0  # norm of the matrix of that path
@@ -43,8 +43,7 @@ class OrbitSamples:
 
     def start(self, size: float) -> dict[str, Any]:
         """Return a start with steps of the given size."""
-        if len(self.S) == 0:
-            raise NotApplicableError("the constraint forbids all motion")
+        need(len(self.S), "the constraint forbids all motion")
         velocity = self.directions.T @ self._rows
         speed = np.linalg.norm(self.group.hat(velocity), 2)
         return {

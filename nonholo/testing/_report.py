@@ -13,6 +13,12 @@ class NotApplicableError(Exception):
     """Raised by a measurement of a property that its object does not claim; the text says why."""
 
 
+def need(condition: object, otherwise: str) -> None:
+    """End a measurement of what an object does not claim, and say why."""
+    if not condition:
+        raise NotApplicableError(otherwise)
+
+
 @dataclasses.dataclass(frozen=True)
 class Check:
     """A property that is measured by one number.

@@ -7,7 +7,7 @@ import numpy as np
 from nonholo.analysis import conserved_momenta
 from nonholo.systems import Equilibria
 from nonholo.testing._measures import derivative, gap, largest
-from nonholo.testing._report import Check, NotApplicableError
+from nonholo.testing._report import Check, NotApplicableError, need
 from nonholo.testing._system_samples import SystemSamples
 from nonholo.testing._system_statics import need_motion
 
@@ -39,8 +39,7 @@ def _equilibria(s: SystemSamples) -> tuple[Equilibria, ...]:
     """Return each linear space of equilibria."""
     need_motion(s)
     system: Any = s.system
-    if s.spatial:
-        raise NotApplicableError("a right-invariant constraint")
+    need(not s.spatial, "a right-invariant constraint")
     try:
         known = system.equilibria()
     except ValueError:
@@ -63,15 +62,14 @@ def _at_rest(s: SystemSamples) -> float:
     return max(forbidden, largest(_rate_at(s, mixed)))
 
 
-def _attraction(s: SystemSamples) -> float:
+def _growth(s: SystemSamples) -> float:
     """Return the largest growth rate across the equilibria that attract, relative to the velocity."""
     attracting = [known for known in _equilibria(s) if known.attracting is not None]
-    if not attracting:
-        raise NotApplicableError("no equilibrium attracts")
-    return max(_growth(s, known) for known in attracting)
+    need(attracting, "no equilibrium attracts")
+    return max(_growth_beside(s, known) for known in attracting)
 
 
-def _growth(s: SystemSamples, known: Equilibria) -> float:
+def _growth_beside(s: SystemSamples, known: Equilibria) -> float:
     velocity = np.asarray(known.attracting)
     w = velocity @ np.linalg.pinv(s.S)
 
@@ -83,25 +81,22 @@ def _growth(s: SystemSamples, known: Equilibria) -> float:
     return float(rates[across - 1] / np.linalg.norm(velocity))
 
 
-def _body_momenta(s: SystemSamples) -> float:
+def _in_body(s: SystemSamples) -> float:
     need_motion(s)
-    rows = conserved_momenta(s.system).body
-    return _change(s, rows, s.full_momentum)
+    return _change(s, conserved_momenta(s.system).body, s.full_momentum)
 
 
-def _spatial_momenta(s: SystemSamples) -> float:
+def _in_space(s: SystemSamples) -> float:
     need_motion(s)
-    rows = conserved_momenta(s.system).spatial
 
     def spatial(restricted: np.ndarray, g: np.ndarray) -> np.ndarray:
         return s.group.coadjoint(s.group.inverse(g), s.full_momentum(restricted, g))
 
-    return _change(s, rows, spatial)
+    return _change(s, conserved_momenta(s.system).spatial, spatial)
 
 
 def _change(s: SystemSamples, rows: np.ndarray, quantity: Any) -> float:
-    if len(rows) == 0:
-        raise NotApplicableError("none is conserved")
+    need(len(rows), "none is conserved")
     slope = s.along_the_motion(quantity) @ rows.T
     return largest(slope) / (1 + largest(quantity(s.restricted, s.g)))
 
@@ -112,12 +107,8 @@ MOTION = (
     Check("constraint", "the vector field keeps the constraint", 1e-11, _constraint),
     Check("energy conserved", "the constrained energy is constant along the vector field", 1e-8, _energy),
     Check("equilibria", "equilibria are admissible and their velocities constant", 1e-11, _at_rest),
-    Check(
-        "attraction", "small deviations from the attracting equilibrium decay: negative growth rate", -1e-9, _attraction
-    ),
-    Check(
-        "conserved body momenta", "conserved_momenta(...).body are constant along the vector field", 1e-8, _body_momenta
-    ),
-    Check("conserved spatial momenta", "conserved_momenta(...).spatial are constant along it", 1e-8, _spatial_momenta),
+    Check("attraction", "small deviations from the attracting equilibrium decay: negative growth rate", -1e-9, _growth),
+    Check("conserved body momenta", "conserved_momenta(...).body are constant along the vector field", 1e-8, _in_body),
+    Check("conserved spatial momenta", "conserved_momenta(...).spatial are constant along it", 1e-8, _in_space),
 )
 """In the order of the report; rates of change are central differences of order four, good to 1e-11 or so."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from nonholo.analysis._equilibria import highest_energy
 from nonholo.analysis.energies._fold import fold_energy
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import error, instance
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization, Landscape, landscape, refuse_composition
 from nonholo.systems import NormalForm
@@ -122,8 +122,7 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
 
 def _checked(where: str, discrete: Any) -> NormalForm:
     remedy = "Pass `discretize(SuslovTop(J), time_step)` with n = 3."
-    if not isinstance(discrete, Discretization):
-        raise error(where, "be a discretized Suslov top", shown(discrete), remedy)
+    instance(where, discrete, Discretization, "be a discretized Suslov top", remedy)
     form = discrete.system.normal_form
     if form is None or form.is_sleigh or not form.is_planar:
         if form is not None and form.is_sleigh:
@@ -154,9 +153,8 @@ def _off_equator(land: Landscape, unit: float) -> list[CriticalPoint]:
         kappa = float(inverse) / length**2
         if kappa > 0.5:
             z = vector / length / np.sqrt(2 * kappa)
-            found.append(
-                CriticalPoint(unit / (4 * float(inverse)), kind, False, _along_c(z, land.sharpness), land.axes @ z)
-            )
+            along_c = land.sharpness == 0 or bool(abs(z[1]) <= 1e-12 * abs(z[0]))
+            found.append(CriticalPoint(unit / (4 * float(inverse)), kind, False, along_c, land.axes @ z))
     return found
 
 
@@ -180,7 +178,3 @@ def _real_roots(cubic: np.ndarray) -> list[float]:
     roots = np.roots(cubic)
     real = np.abs(roots.imag) <= 1e-12 * np.maximum(1.0, np.abs(roots))
     return [float(x) for x in roots[real].real]
-
-
-def _along_c(z: np.ndarray, sharpness: float) -> bool:
-    return sharpness == 0 or bool(abs(z[1]) <= 1e-12 * abs(z[0]))

@@ -124,10 +124,9 @@ def _of_orbit(form: NormalForm, orbit: Orbit) -> Asymptotics:
     velocity, found = orbit.body_velocity[0], approach(orbit)
     if found is None:
         return _resting(form, orbit, velocity)
-    along, spectrum, energy = found.kept, found.spectrum, found.energy
-    change = np.zeros_like(along) if spectrum.velocity is None else spectrum.velocity
-    persists = _known_to_persist(form, orbit, energy)
-    before, after = along - change, along + change
+    change = np.zeros_like(found.kept) if found.spectrum.velocity is None else found.spectrum.velocity
+    persists = _known_to_persist(form, orbit, found.energy)
+    before, after = found.kept - change, found.kept + change
     if form.is_sleigh and form.is_planar:
         turn = _heading_turn(form, orbit, found)
         forwards = None if turn is None else turn - float(np.copysign(np.pi, velocity[0]))

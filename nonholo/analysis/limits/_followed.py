@@ -55,19 +55,13 @@ def approach(orbit: Orbit) -> Approach | None:
 
 def kept_velocity(orbit: Orbit) -> tuple[Float[np.ndarray, "dim"], float]:
     """Return the part of the velocity that never changes, and the energy of the rest."""
-    system = cast("AbstractLLSystem", orbit.system)
-    kept = _kept(system, orbit.body_velocity[0])
+    system, velocity = cast("AbstractLLSystem", orbit.system), orbit.body_velocity[0]
+    form, kept = system.normal_form, np.zeros_like(velocity)
+    if form is not None and form.is_sleigh and form.arm == 0:  # the advance u
+        rows = system.form_map @ system.constraint_subspace
+        w = velocity @ np.linalg.pinv(rows)
+        kept = (w[-1] + form.offset @ w[:-1]) * rows[-1]
     return kept, float(orbit.energy[0]) - float(system.constrained_energy(kept @ np.asarray(system.inertia_operator)))
-
-
-def _kept(system: AbstractLLSystem, velocity: Float[np.ndarray, "dim"]) -> Float[np.ndarray, "dim"]:
-    """Return the part of the velocity that never changes: the advance u of a sleigh with a_1 = 0."""
-    form = system.normal_form
-    if form is None or not form.is_sleigh or form.arm != 0:
-        return np.zeros_like(velocity)
-    rows = system.form_map @ system.constraint_subspace
-    w = velocity @ np.linalg.pinv(rows)
-    return (w[-1] + form.offset @ w[:-1]) * rows[-1]
 
 
 def followed(orbit: Orbit, found: Approach, where: str = "asymptotics(subject=...)") -> Ends:

@@ -14,7 +14,8 @@ from nonholo.base.types import Float
 
 _FLAT = 1e-10  # singular value of the four forms below which they are dependent
 _REAL = 1e-7  # imaginary part below which a root of the cubic of the pencil is a real one, perhaps double
-_ROOT2 = np.sqrt(2.0)
+_ROWS, _COLUMNS = [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]  # of the entries of a symmetric matrix
+_WEIGHTS = np.sqrt([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -79,11 +80,7 @@ class SteinerSurface:
 
     def _pairs(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Return the vectors u and v of the singular matrices of the pencil."""
-        pairs = []
-        for S in _singular(self.pencil):
-            vectors = np.linalg.eigh(S)[1]
-            pairs.append((vectors[:, 2], vectors[:, 0]))
-        return pairs
+        return [(vectors[:, 2], vectors[:, 0]) for _, vectors in map(np.linalg.eigh, _singular(self.pencil))]
 
     def _without_squares(self) -> Float[np.ndarray, "3 6"]:
         first, second = self.pencil
@@ -122,10 +119,8 @@ def _singular(pencil: Float[np.ndarray, "2 3 3"]) -> list[np.ndarray]:
     turns = np.pi * np.arange(7) / 7
     turned = [np.cos(a) * pencil[1] + np.sin(a) * pencil[0] for a in turns]
     best = turns[np.argmax(np.abs(np.linalg.det(turned)))]
-    base, step = (
-        np.cos(best) * pencil[0] - np.sin(best) * pencil[1],
-        np.cos(best) * pencil[1] + np.sin(best) * pencil[0],
-    )
+    base = np.cos(best) * pencil[0] - np.sin(best) * pencil[1]
+    step = np.cos(best) * pencil[1] + np.sin(best) * pencil[0]
     adjugates = [_mixed(S, S) / 2 for S in (base, step)]
     middle = (np.trace(adjugates[1] @ base), np.trace(adjugates[0] @ step))
     roots = np.roots([np.linalg.det(step), *middle, np.linalg.det(base)])
@@ -146,13 +141,11 @@ def _mixed(X: np.ndarray, Y: np.ndarray) -> np.ndarray:
 
 def _vector(S: Float[np.ndarray, "... 3 3"]) -> Float[np.ndarray, "... 6"]:
     """Return a symmetric matrix as a vector with the same scalar product."""
-    diagonal = [S[..., i, i] for i in range(3)]
-    beside = [_ROOT2 * S[..., i, j] for i, j in ((0, 1), (0, 2), (1, 2))]
-    return np.stack(diagonal + beside, axis=-1)
+    return _WEIGHTS * S[..., _ROWS, _COLUMNS]
 
 
 def _matrix(v: Float[np.ndarray, "... 6"]) -> Float[np.ndarray, "... 3 3"]:
     """Return the symmetric matrix of a vector."""
-    a, b, c = (v[..., i] / _ROOT2 for i in (3, 4, 5))
-    rows = ((v[..., 0], a, b), (a, v[..., 1], c), (b, c, v[..., 2]))
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    S = np.empty((*v.shape[:-1], 3, 3))
+    S[..., _ROWS, _COLUMNS] = S[..., _COLUMNS, _ROWS] = v / _WEIGHTS
+    return S

@@ -19,7 +19,7 @@ from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.animation._sleigh_scene import sleigh_motion, sleigh_scene
 from nonholo.plotting.animation._top_scene import top_motion, top_scene
-from nonholo.plotting.parts import drawable, transition
+from nonholo.plotting.parts import drawable, posed, window
 from nonholo.plotting.sheets import sheet_of
 
 _COLORS = 96
@@ -76,7 +76,8 @@ def animate(
     figure, show = scene(orbit, shown)
     canvas = FigureCanvasAgg(figure)
     within_memory("animate(frames=...)", float(len(shown)) * math.prod(canvas.get_width_height()), "Ask for fewer.")
-    palette = _palette([_photograph(canvas, show, frame) for frame in _sampled(len(shown))])
+    sampled = np.unique(np.linspace(0, len(shown) - 1, _SHOWN_FOR_PALETTE).round().astype(int))
+    palette = _palette([_photograph(canvas, show, int(frame)) for frame in sampled])
     pictures = []
     for frame in range(len(shown)):
         pictures.append(_photograph(canvas, show, frame).quantize(palette=palette, dither=Image.Dither.NONE))
@@ -89,14 +90,12 @@ def animate(
 
 def _scene_of(orbit: Orbit) -> tuple[Callable[[Orbit], float], Callable[..., tuple[Figure, Callable[[int], None]]]]:
     where = "animate(orbit=...)"
-    drawable(where, orbit)
-    sheet = sheet_of(orbit.system)
+    sheet = sheet_of(drawable(where, orbit).system)
     if sheet is None:
         got = f"{orbit!r} on {orbit.system.group}"
         requirement = "be an orbit of a Suslov top in space or a sleigh in the plane"
         raise error(where, requirement, got, "Use `overview` for a still picture.")
-    if orbit.canonical_pose is None:
-        raise error(where, "have poses", "an orbit without them", "Run with reconstruct=True.")
+    posed(where, orbit)
     return (top_motion, top_scene) if sheet.blade is None else (sleigh_motion, sleigh_scene)
 
 
@@ -113,15 +112,9 @@ def _shown_states(orbit: Orbit, motion: float, total: int) -> Int[np.ndarray, "F
     `motion` is how far the body moves between two saved states, in units of what the eye can follow.
     """
     stride = max(1, int(1 / motion)) if motion > 0 else len(orbit)
-    span = stride * total
-    if len(orbit) <= span:
+    if len(orbit) <= stride * total:
         return np.linspace(0, len(orbit) - 1, total).round().astype(int)
-    first = min(max(0, transition(orbit) - span // 2), len(orbit) - span)
-    return np.arange(first, first + span, stride)
-
-
-def _sampled(total: int) -> list[int]:
-    return np.unique(np.linspace(0, total - 1, _SHOWN_FOR_PALETTE).round().astype(int)).tolist()
+    return np.arange(len(orbit))[window(orbit, motion, 1.0, total)]
 
 
 def _photograph(canvas: FigureCanvasAgg, show: Callable[[int], None], frame: int) -> Image.Image:

@@ -21,11 +21,9 @@ def stage(title: str, orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Figure
     clock = figure.text(0.97, 0.965, "", va="center", ha="right", family="monospace", fontsize=10, color="#555a62")
     strip = figure.add_axes((0.03, 0.022, 0.94, 0.012), xlim=(0, 1), ylim=(0, 1))
     strip.set_axis_off()
-    scale = theme.time_scale(orbit)
     times = orbit.time[shown]
-    strip.imshow(
-        theme.TIME(scale(np.linspace(times[0], times[-1], 256)))[None], extent=(0, 1, 0, 1), aspect="auto", alpha=0.9
-    )
+    colors = theme.TIME(theme.time_scale(orbit)(np.linspace(times[0], times[-1], 256)))
+    strip.imshow(colors[None], extent=(0, 1, 0, 1), aspect="auto", alpha=0.9)
     cover = strip.axvspan(0.0, 1.0, color="#e6e8ec", linewidth=0)
 
     def set_clock(frame: int) -> None:

@@ -46,6 +46,7 @@ def sleigh_scene(orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Figure, Cal
     trail = LineCollection([], cmap=theme.TIME, norm=theme.time_scale(orbit), linewidth=2, zorder=2)
     axes.add_collection(trail)
     body, stroke, center = _parts(axes)
+    ends = 0.4 * _half_length(blade) * np.array([[-1.0, 0.0], [1.0, 0.0]])  # of the stroke
 
     def show(frame: int) -> None:
         set_clock(frame)
@@ -54,7 +55,7 @@ def sleigh_scene(orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Figure, Cal
         trail.set_array(times[1 : len(past)])
         g = poses[frame]
         body.set_xy(_moved(g, outline))
-        stroke.set_data(*_moved(g, _stroke(blade)).T)
+        stroke.set_data(*_moved(g, ends).T)
         center.set_data(*_moved(g, blade.center[None]).T)
 
     return figure, show
@@ -79,10 +80,6 @@ def _outline(blade: Blade) -> Float[np.ndarray, "K 2"]:
     length = _half_length(blade)
     ellipse = np.stack([length * np.cos(angle), length / _SLENDER * np.sin(angle)], axis=-1)
     return ellipse + blade.center
-
-
-def _stroke(blade: Blade) -> Float[np.ndarray, "2 2"]:
-    return 0.4 * _half_length(blade) * np.array([[-1.0, 0.0], [1.0, 0.0]])
 
 
 def _ground(

@@ -1,7 +1,6 @@
 """The number of real values of the discrete sleigh, over the plane of its restricted momenta."""
 
 import dataclasses
-from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
@@ -13,10 +12,8 @@ from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.geometry._deltoid_plane import draw_deltoid, dress, name_inside
-from nonholo.plotting.parts import evenly_in_box, own_orbit
+from nonholo.plotting.parts import draw_orbit, own_orbit
 from nonholo.plotting.sheets import ellipse, momenta_on_plane, on_plane
-
-_MOST_DOTS = 1500
 
 
 @dataclasses.dataclass(frozen=True)
@@ -70,21 +67,9 @@ def branch_counts(discrete: Discretization, orbit: Orbit | None = None, axes: Ax
     resting = axes.plot(*on_plane(discrete.system, found.resting()).T, label="no translation", **look)[0]
     level = path = None
     if orbit is not None:
-        level = _level(axes, orbit)
-        path = _orbit(axes, orbit)
+        around = ellipse(orbit.system, float(orbit.energy[0]))
+        level = axes.plot(*around.T, color=theme.MUTED, linewidth=1.2, zorder=2, label="energy")[0]
+        path = draw_orbit(axes, orbit, momenta_on_plane(orbit))
     name_inside(axes, found, "3 real values")
     dress(axes, found, "Real values")
     return BranchCounts(axes, inside, boundary, dots, resting, level, path)
-
-
-def _level(axes: Axes, orbit: Orbit) -> Line2D:
-    around = ellipse(orbit.system, float(orbit.energy[0]))
-    return axes.plot(*around.T, color=theme.MUTED, linewidth=1.2, zorder=2, label="energy")[0]
-
-
-def _orbit(axes: Axes, orbit: Orbit) -> PathCollection:
-    momentum = momenta_on_plane(orbit)
-    chosen = evenly_in_box(momentum, _MOST_DOTS)
-    colors: Any = {"c": orbit.time[chosen], "cmap": theme.TIME, "norm": theme.time_scale(orbit)}
-    size = theme.dot_size(len(orbit)) + 6
-    return axes.scatter(*momentum[chosen].T, s=size, linewidths=0, zorder=6, label="orbit", **colors)

@@ -71,7 +71,10 @@ def branch_tree(discrete: Discretization, tree: BranchTree, axes: tuple[Axes, Ax
         array([ 1,  3,  9, 27, 81])
     """
     system = _checked(discrete, tree)
-    plane, growth = _new_axes() if axes is None else map(theme.axes_or_new, pair("plot.branch_tree(axes=...)", axes))
+    if axes is None:
+        plane, growth = Figure(figsize=(10.4, 4.8), layout="constrained").subplots(1, 2, width_ratios=(1.25, 1.0))
+    else:
+        plane, growth = map(theme.axes_or_new, pair("plot.branch_tree(axes=...)", axes))
     restricted = system.restrict(tree.momentum.real)
     momentum = on_plane(system, restricted)
     if momentum.shape[1] == 2:
@@ -93,15 +96,9 @@ def _checked(discrete: Any, tree: Any) -> Any:
     if len(tree.counts) < 2:
         raise error(where, "have a generation of images", "the root alone", "Make it with depth=1 or more.")
     if tree.displacement.shape[1:] != system.group.identity.shape:
-        raise error(
-            where, f"be in {system.group}", f"matrices {tree.displacement.shape[1:]}", "Pass its own `discrete`."
-        )
+        got = f"matrices {tree.displacement.shape[1:]}"
+        raise error(where, f"be in {system.group}", got, "Pass its own `discrete`.")
     return system
-
-
-def _new_axes() -> tuple[Axes, Axes]:
-    plane, growth = Figure(figsize=(10.4, 4.8), layout="constrained").subplots(1, 2, width_ratios=(1.25, 1.0))
-    return plane, growth
 
 
 def _edges(
@@ -131,10 +128,8 @@ def _growth(axes: Axes, tree: BranchTree) -> tuple[Line2D, Line2D, Line2D]:
     counts = axes.plot(level, tree.counts, "o", color=theme.DISCRETE, markersize=7, label="distinct images")[0]
     look: Any = {"markerfacecolor": "white", "markeredgewidth": 1.6, "linestyle": "none"}
     reals = axes.plot(level, real, "o", color=theme.UNSTABLE, markersize=7, label="real ones", **look)[0]
-    axes.set_yscale("log")
+    axes.set(xlabel="generation k", ylabel="number of images", yscale="log", title="Growth")
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.yaxis.set_minor_locator(NullLocator())
-    axes.set(xlabel="generation k", ylabel="number of images")
-    axes.set_title("Growth")
     axes.legend(loc="upper left")
     return counts, bound, reals

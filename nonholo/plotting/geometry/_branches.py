@@ -185,16 +185,15 @@ def _labels(
 ) -> tuple[Annotation, ...]:
     """Write index and step angle beside each real value, in a direction."""
     angles = np.degrees(_angles(sheet, found))
-    texts = [f"{i}: {angles[i]:.0f}°".replace("-", "\u2212") for i in np.flatnonzero(found.is_real)]
-    return tuple(_label(axes, *one) for one in zip(places, away, texts, strict=True))
-
-
-def _label(axes: Axes, place: np.ndarray, away: np.ndarray, text: str) -> Annotation:
-    size = np.linalg.norm(away)
-    x, y = away / size if size > 0 else np.array([0.0, 1.0])
-    look: Any = {"ha": "left" if x >= 0 else "right", "va": "center", "path_effects": theme.HALO, "zorder": 9}
-    shift = (_AWAY * float(np.copysign(max(abs(x), 0.6), x)), _AWAY * float(y))
-    return axes.annotate(text, (place[0], place[1]), shift, textcoords="offset points", **look)
+    labels = []
+    for i, place, direction in zip(np.flatnonzero(found.is_real), places, away, strict=True):
+        size = np.linalg.norm(direction)
+        x, y = direction / size if size > 0 else np.array([0.0, 1.0])
+        text = f"{i}: {angles[i]:.0f}°".replace("-", "\u2212")
+        look: Any = {"ha": "left" if x >= 0 else "right", "va": "center", "path_effects": theme.HALO, "zorder": 9}
+        shift = (_AWAY * float(np.copysign(max(abs(x), 0.6), x)), _AWAY * float(y))
+        labels.append(axes.annotate(text, (place[0], place[1]), shift, textcoords="offset points", **look))
+    return tuple(labels)
 
 
 def _title(found: Branches) -> str:

@@ -40,6 +40,5 @@ def dress(axes: Axes, found: Deltoid, title: str) -> None:
     side, anchor = (0.03, "left") if points_down else (0.97, "right")
     axes.margins(0.1)
     axes.text(side, 0.96, "1 real value", transform=axes.transAxes, ha=anchor, va="top", fontweight="bold")
-    axes.set(xlabel=r"$\pi = p_\theta + b\,p_1$", ylabel=r"momentum along the blade  $p_1$")
-    axes.set_title(title)
+    axes.set(xlabel=r"$\pi = p_\theta + b\,p_1$", ylabel=r"momentum along the blade  $p_1$", title=title)
     axes.legend(loc="lower left" if points_down else "upper left")

@@ -7,18 +7,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
 
-from nonholo.analysis import InvariantCurve, invariant_curve
+from nonholo.analysis import invariant_curve
 from nonholo.analysis.planar import planar_map
 from nonholo.base.checks import energies as checked_energies
-from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting.parts import evenly_in_box, own_orbit
+from nonholo.plotting.parts import draw_equilibria, draw_orbit, own_orbit
 from nonholo.plotting.sheets import AbstractSheet, sheet_of
 from nonholo.systems import AbstractLLSystem
 
-_MOST_DOTS = 1500
 _POINTS = 300
 
 
@@ -74,54 +72,18 @@ def invariant_curves(
     sheet = cast(AbstractSheet, sheet_of(checked.system))
     own_orbit(f"{where}(orbit=...)", orbit, checked)
     axes = theme.axes_or_new(axes, (6.2, 6.0))
-    curves = [invariant_curve(checked, energy, _POINTS) for energy in _energies(sheet, checked, energies)]
+    asked = sheet.energies(float(checked.time_step)) if energies is None else energies
+    curves = [invariant_curve(checked, energy, _POINTS) for energy in checked_energies(f"{where}(energies=...)", asked)]
     levels = tuple(sheet.draw_level(axes, curve, color=theme.LEVEL, linewidth=1.1, zorder=1) for curve in curves)
     own = path = None
     if orbit is not None:
         curves = [invariant_curve(checked, orbit[:1].energy[0], _POINTS)] if orbit.energy[0] > 0 else []
         for curve in curves:
             own = sheet.draw_level(axes, curve, color=theme.DISCRETE, linewidth=1.8, zorder=3, label="its energy")
-        path = _orbit(axes, sheet, orbit)
-    stable, unstable = _equilibria(axes, sheet, checked, curves)
+        path = draw_orbit(axes, orbit, sheet.places(sheet.variety.points(orbit.displacement)))
+    stable = unstable = None
+    if cast(AbstractLLSystem, checked.system).equilibria().attracting is not None:
+        stable, unstable = draw_equilibria(axes, *sheet.attracting(curves), 40 if len(curves) == 1 else 22)
     axes.set_title("Displacements")
     sheet.dress(axes, curves, np.empty((0, 2)))
     return InvariantCurvesPicture(axes, levels, own, stable, unstable, path)
-
-
-def _energies(sheet: AbstractSheet, discrete: Discretization, energies: Any) -> Float[np.ndarray, "L"]:
-    if energies is not None:
-        return checked_energies("plot.invariant_curves(energies=...)", energies)
-    return sheet.energies(float(discrete.time_step))
-
-
-def _orbit(axes: Axes, sheet: AbstractSheet, orbit: Orbit) -> PathCollection:
-    x, y = sheet.places(sheet.variety.points(orbit.displacement)).T
-    chosen = evenly_in_box(np.stack([x, y], axis=1), _MOST_DOTS)
-    return axes.scatter(
-        x[chosen],
-        y[chosen],
-        c=orbit.time[chosen],
-        cmap=theme.TIME,
-        norm=theme.time_scale(orbit),
-        s=theme.dot_size(len(orbit)) + 6,
-        linewidths=0,
-        zorder=6,
-        label="orbit",
-    )
-
-
-def _equilibria(
-    axes: Axes, sheet: AbstractSheet, discrete: Discretization, curves: list[InvariantCurve]
-) -> tuple[Any, Any]:
-    """Draw the line of equilibria, and its points on the curves."""
-    if cast(AbstractLLSystem, discrete.system).equilibria().attracting is None:
-        return None, None
-    points, reach = sheet.attracting(curves)
-    axes.plot(*np.stack([0 * reach, reach], axis=1), color=theme.STABLE, linewidth=0.9, zorder=2)
-    axes.plot(*np.stack([0 * reach, -reach], axis=1), color=theme.UNSTABLE, linewidth=0.9, dashes=(5, 3), zorder=2)
-    size = 40 if len(curves) == 1 else 22
-    stable = axes.scatter(*points.T, s=size, color=theme.STABLE, zorder=5, label="stable")
-    unstable = axes.scatter(
-        *-points.T, s=size, facecolors="white", edgecolors=theme.UNSTABLE, linewidths=1.5, zorder=5, label="unstable"
-    )
-    return stable, unstable

@@ -113,10 +113,9 @@ def _meeting(
 
 def _dress(axes: Axes, locus: MomentumLocus, plane: np.ndarray, n: np.ndarray, height: float) -> None:
     names = cast(AbstractSheet, sheet_of(locus.discrete.system)).component_names
-    across, up = (_words(row, names) for row in plane)
-    axes.set(xlabel=across, ylabel=up)
+    across, up, normal = (_words(row, names) for row in (*plane, n))
+    axes.set(xlabel=across, ylabel=up, title=f"Section  {normal} = {height:g}")
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_title(f"Section  {_words(n, names)} = {height:g}")
     theme.legend_above(axes)
 
 

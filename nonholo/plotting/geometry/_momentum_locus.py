@@ -1,6 +1,7 @@
 """The momentum locus in space: the translucent surface, its singular lines and points, an orbit on it."""
 
 import dataclasses
+from collections.abc import Iterable
 from typing import Any, cast
 
 import numpy as np
@@ -15,12 +16,13 @@ from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.elements import draw_surface, spans
-from nonholo.plotting.geometry._locus_view import best_view
-from nonholo.plotting.parts import evenly_in_box, own_orbit
+from nonholo.plotting.parts import View, draw_in_time, evenly_in_box, own_orbit
 from nonholo.plotting.sheets import AbstractSheet, sheet_of
 
 _MOST_DOTS = 600
 _WHISKER = 0.22  # of the length of its segment
+_VIEW = (25.0, -52.0)  # elevation and azimuth
+_AZIMUTHS = np.arange(-70.0, -24.0, 5.0)  # of a top
 
 
 @dataclasses.dataclass(frozen=True)
@@ -85,65 +87,44 @@ def momentum_locus(
     where = "plot.momentum_locus"
     instance(f"{where}(locus=...)", locus, MomentumLocus, "be a locus", "Pass what `nh.momentum_locus` returned.")
     own_orbit(f"{where}(orbit=...)", orbit, locus.discrete)
-    space: Any = _new_axes() if axes is None else axes
+    space: Any = axes
+    if space is None:
+        space = Figure(figsize=(7.2, 6.4)).add_axes((-0.02, 0.01, 0.94, 0.97), projection="3d")
     sheet = cast(AbstractSheet, sheet_of(locus.discrete.system))
     drawn = sheet.locus_map()
     if curve is not None:
         instance(f"{where}(curve=...)", curve, InvariantCurve, "be an invariant curve", "Pass `invariant_curve`.")
     surface = draw_surface(space, locus.momentum @ drawn)
-    doubles = tuple(_segment(space, ends @ drawn, linewidth=2.6) for ends in locus.double_lines)
-    whiskers = tuple(_segment(space, ends @ drawn, linewidth=1.6, dashes=(3, 2)) for ends in locus.whiskers(_WHISKER))
-    name(doubles, "meets itself")
-    name(whiskers, "equation alone")
+    singular: Any = {"color": theme.UNSTABLE}
+    doubles = _lines(space, locus.double_lines @ drawn, "meets itself", linewidth=2.6, **singular)
+    outside = locus.whiskers(_WHISKER) @ drawn
+    whiskers = _lines(space, outside, "equation alone", linewidth=1.6, dashes=(3, 2), **singular)
     pinch = _dots(space, locus.pinch_points @ drawn, s=44, facecolors="white", label="pinch points")
     triple = None if locus.triple_point is None else locus.triple_point[None] @ drawn
     triple_dot = _dots(space, triple, s=64, facecolors=theme.INK, marker="D", label="triple point")
     rest = space.scatter(0.0, 0.0, 0.0, s=26, color=theme.INK, depthshade=False, label="rest")
-    curves = tuple(_curve(space, points @ drawn) for points in (() if curve is None else curve.momentum))
-    name(curves, "one energy")
-    path = None if orbit is None else _orbit(space, orbit, drawn)
+    momenta = () if curve is None else (points @ drawn for points in curve.momentum)
+    curves = _lines(space, momenta, "one energy", color=theme.DISCRETE, linewidth=1.3, zorder=7)
+    path = None
+    if orbit is not None:
+        states = evenly_in_box(orbit.reduced_momentum, _MOST_DOTS)
+        path = draw_in_time(space, orbit, orbit.momentum @ drawn, states, zorder=8, size=24, label="orbit")
     _dress(space, locus, sheet, view)
     return MomentumLocusPicture(space, surface, doubles, whiskers, pinch, triple_dot, curves, rest, path)
 
 
-def _new_axes() -> Any:
-    return Figure(figsize=(7.2, 6.4)).add_axes((-0.02, 0.01, 0.94, 0.97), projection="3d")
-
-
-def name(lines: tuple[Any, ...], label: str) -> None:
-    """Give the first of several artists a label."""
+def _lines(axes: Any, curves: Iterable[Float[np.ndarray, "K 3"]], label: str, **look: Any) -> tuple[Any, ...]:
+    """Draw lines of one look; the first one has the label."""
+    lines = tuple(axes.plot(*points.T, **look)[0] for points in curves)
     for line in lines[:1]:
         line.set_label(label)
-
-
-def _segment(axes: Any, ends: Float[np.ndarray, "2 3"], **look: Any) -> Any:
-    return axes.plot(*ends.T, color=theme.UNSTABLE, **look)[0]
-
-
-def _curve(axes: Any, momentum: Float[np.ndarray, "K 3"]) -> Any:
-    return axes.plot(*momentum.T, color=theme.DISCRETE, linewidth=1.3, zorder=7)[0]
+    return lines
 
 
 def _dots(axes: Any, points: Float[np.ndarray, "L 3"] | None, **look: Any) -> Any:
     if points is None or len(points) == 0:
         return None
     return axes.scatter(*points.T, linewidths=1.5, depthshade=False, edgecolors=theme.UNSTABLE, zorder=9, **look)
-
-
-def _orbit(axes: Any, orbit: Orbit, drawn: Float[np.ndarray, "3 3"]) -> Any:
-    momentum = orbit.momentum @ drawn
-    chosen = evenly_in_box(orbit.reduced_momentum, _MOST_DOTS)
-    return axes.scatter(
-        *momentum[chosen].T,
-        c=orbit.time[chosen],
-        cmap=theme.TIME,
-        norm=theme.time_scale(orbit),
-        s=24,
-        linewidths=0,
-        depthshade=False,
-        label="orbit",
-        zorder=8,
-    )
 
 
 def _dress(axes: Any, locus: MomentumLocus, sheet: AbstractSheet, view: tuple[float, float] | None) -> None:
@@ -153,7 +134,7 @@ def _dress(axes: Any, locus: MomentumLocus, sheet: AbstractSheet, view: tuple[fl
     span = spans(drawn)[2]
     if np.ptp(drawn[..., 2]) < span:
         axes.set_zlim(-span / 4, span / 4)
-    axes.view_init(*(best_view(locus) if view is None else pair("plot.momentum_locus(view=...)", view)))
+    axes.view_init(*(_best_view(locus) if view is None else pair("plot.momentum_locus(view=...)", view)))
     axes.set_box_aspect((1.0, 1.0, 0.85), zoom=1.0)
     axes.computed_zorder = False
     axes.grid(False)
@@ -161,12 +142,20 @@ def _dress(axes: Any, locus: MomentumLocus, sheet: AbstractSheet, view: tuple[fl
         axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
         axis.set_major_locator(MaxNLocator(4))
         axis.line.set_color(theme.MUTED)
-    axes.text2D(
-        0.03,
-        0.97,
-        f"Momentum locus: {sheet.locus_kind(locus)}",
-        transform=axes.transAxes,
-        fontsize="large",
-        fontweight="bold",
-    )
+    title = f"Momentum locus: {sheet.locus_kind(locus)}"
+    axes.text2D(0.03, 0.97, title, transform=axes.transAxes, fontsize="large", fontweight="bold")
     axes.legend(loc="upper right", bbox_to_anchor=(1.02, 1.0))
+
+
+def _best_view(locus: MomentumLocus) -> tuple[float, float]:
+    """Return a view that sees the double segments of a top well apart."""
+    if len(locus.double_lines) < 3:
+        return _VIEW
+    along = np.diff(locus.double_lines, axis=1)[:, 0] / spans(locus.momentum)
+
+    def apart(azimuth: float) -> float:
+        flat = View(azimuth, _VIEW[0])(along)[0]
+        flat = flat / np.linalg.norm(flat, axis=1, keepdims=True)
+        return float(1 - np.abs(flat @ flat.T - np.eye(3)).max())
+
+    return _VIEW[0], float(max(_AZIMUTHS, key=apart))

@@ -14,21 +14,8 @@ from matplotlib.lines import Line2D
 from nonholo.base.checks import error, flags, shown
 from nonholo.base.types import Float
 from nonholo.orbit import Orbit
-from nonholo.plotting import theme
-from nonholo.plotting.parts import (
-    Square,
-    corner_axes,
-    detail,
-    drawable,
-    evenly_spread,
-    is_discrete,
-    posed,
-    square_about,
-)
+from nonholo.plotting import parts, theme
 from nonholo.plotting.sheets import Blade, blade_of_system
-
-_MOST_DOTS = 1500
-_REMEDY = "Use `body_axis_track` for a top."
 
 
 @dataclasses.dataclass(frozen=True)
@@ -87,21 +74,24 @@ def blade_track(orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = Non
         _blade("blade_track(flow=...)", flow)
     axes = theme.axes_or_new(axes, (6.0, 6.0))
     position = blade.contact(orbit)
-    cusps, view = _cusps(position, blade.speed(orbit)), square_about(position)
-    track, blades, masses, line = _draw(axes, orbit, orbit, flow, view)
-    stars, ends = _marks(axes, position, cusps, theme.end_colors(orbit))
+    cusps, view = _cusps(position, blade.speed(orbit)), parts.square_about(position)
+    track, blades, masses, line = _draw(axes, orbit, orbit, flow, view, blades=18, length=0.032)
+    ends = parts.draw_ends(axes, position, orbit)
+    _name_ends(axes, position)
+    stars = _stars(axes, position, cusps) if len(cusps) else None
     axes.set(xlim=view[0], ylim=view[1], xlabel="$x$", ylabel="$y$", title="Track of the blade", aspect="equal")
     theme.legend_above(axes)
-    enlarged = _enlarged(axes, orbit, flow, cusps, (position, view)) if enlarge and len(cusps) else None
+    enlarged = _enlarged(axes, orbit, flow, cusps) if enlarge and len(cusps) else None
     return BladeTrack(axes, track, blades, masses, stars, ends, line, enlarged)
 
 
 def _blade(where: str, orbit: Any) -> Blade:
     """Return the blade of an orbit that has one, and poses."""
-    blade = blade_of_system(drawable(where, orbit).system)
+    blade = blade_of_system(parts.drawable(where, orbit).system)
     if blade is None:
-        raise error(where, "be an orbit of a sleigh in the plane", shown(orbit), _REMEDY)
-    posed(where, orbit)
+        remedy = "Use `body_axis_track` for a top."
+        raise error(where, "be an orbit of a sleigh in the plane", shown(orbit), remedy)
+    parts.posed(where, orbit)
     return blade
 
 
@@ -119,50 +109,25 @@ def _cusps(position: Float[np.ndarray, "K 2"], speed: Float[np.ndarray, "K"]) ->
 
 
 def _draw(
-    axes: Axes, part: Orbit, whole: Orbit, flow: Orbit | None, view: Square, blades: int = 18, length: float = 0.032
+    axes: Axes, part: Orbit, whole: Orbit, flow: Orbit | None, view: parts.Square, blades: int, length: float
 ) -> tuple[PathCollection | LineCollection, LineCollection, PathCollection, Line2D | None]:
     """Draw a part of the orbit with the colors of the whole; the length of blades is in parts of the view."""
-    track = _track(axes, part, whole)
-    strokes, masses = _blades(axes, part, blades, length * np.ptp(view[0]))
-    return track, strokes, masses, None if flow is None else _flow(axes, flow)
-
-
-def _track(axes: Axes, part: Orbit, whole: Orbit) -> PathCollection | LineCollection:
     position = _contact(part)
-    chosen = evenly_spread(position, _MOST_DOTS)
-    colors: dict[str, Any] = {"cmap": theme.TIME, "norm": theme.time_scale(whole), "zorder": 3}
-    if is_discrete(part):
-        x, y = position[chosen].T
-        return axes.scatter(
-            x, y, c=part.time[chosen], s=theme.dot_size(len(part)), linewidths=0, label="discrete orbit", **colors
-        )
-    path = LineCollection(theme.pieces(position[chosen]), linewidth=2, **colors)
-    path.set(array=part.time[chosen[1:]], label="flow")
-    axes.add_collection(path)
-    return path
-
-
-def _flow(axes: Axes, flow: Orbit) -> Line2D:
-    position = _contact(flow)
-    x, y = position[evenly_spread(position, 10 * _MOST_DOTS)].T
-    return axes.plot(x, y, color=theme.CONTINUOUS, linewidth=1.0, zorder=4, label="continuous")[0]
+    track = parts.draw_in_time(axes, part, position, parts.evenly_spread(position), zorder=3, whole=whole)
+    strokes, masses = _blades(axes, part, blades, length * np.ptp(view[0]))
+    return track, strokes, masses, None if flow is None else parts.draw_flow(axes, _contact(flow))
 
 
 def _blades(axes: Axes, orbit: Orbit, count: int, length: float) -> tuple[LineCollection, PathCollection]:
     blade = _blade("blade_track", orbit)
     poses = blade.poses(orbit.chosen(_now_and_then(orbit, count)))
     points, half = poses[:, :2, 2], length / 2 * poses[:, :2, 0]
-    blades = LineCollection(
-        [*zip(points - half, points + half, strict=True)], colors=theme.INK, linewidth=1.5, zorder=5
-    )
     center = (poses @ np.append(blade.center, 1.0))[:, :2]
-    pins = LineCollection([*zip(points, center, strict=True)], colors=theme.MUTED, linewidth=0.7, zorder=2)
-    axes.add_collection(pins)
+    blades = parts.segments(points - half, points + half, colors=theme.INK, linewidth=1.5, zorder=5)
+    axes.add_collection(parts.segments(points, center, colors=theme.MUTED, linewidth=0.7, zorder=2))
     axes.add_collection(blades)
-    masses = axes.scatter(
-        *center.T, s=9, facecolors="white", edgecolors=theme.MUTED, linewidths=0.8, zorder=2.2, label="center of mass"
-    )
-    return blades, masses
+    look: Any = {"facecolors": "white", "edgecolors": theme.MUTED, "linewidths": 0.8, "zorder": 2.2}
+    return blades, axes.scatter(*center.T, s=9, label="center of mass", **look)
 
 
 def _now_and_then(orbit: Orbit, count: int) -> np.ndarray:
@@ -170,19 +135,14 @@ def _now_and_then(orbit: Orbit, count: int) -> np.ndarray:
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(_contact(orbit), axis=0), axis=1))])
     turn = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(orbit.heading)))])
     shares = [weight * total / total[-1] for weight, total in ((1.0, way), (0.35, turn)) if total[-1] > 0]
-    return evenly_spread(np.sum(shares, axis=0)[:, None], count) if shares else np.array([0])
+    return parts.evenly_spread(np.sum(shares, axis=0)[:, None], count) if shares else np.array([0])
 
 
-def _marks(
-    axes: Axes, position: Float[np.ndarray, "K 2"], cusps: Float[np.ndarray, "C 2"], rim: list[Any]
-) -> tuple[PathCollection | None, PathCollection]:
-    ends = position[[0, -1]]
-    middle = position[evenly_spread(position, _MOST_DOTS)].mean(axis=0)
-    marked = axes.scatter(*ends.T, s=44, facecolors=["white", rim[1]], edgecolors=rim, linewidths=1.6, zorder=7)
-    _name(axes, "start", ends[0], middle)
-    if not np.allclose(*ends):
-        _name(axes, "end", ends[1], middle)
-    return (_stars(axes, position, cusps) if len(cusps) else None), marked
+def _name_ends(axes: Axes, position: Float[np.ndarray, "K 2"]) -> None:
+    middle = position[parts.evenly_spread(position)].mean(axis=0)
+    _name(axes, "start", position[0], middle)
+    if not np.allclose(position[0], position[-1]):
+        _name(axes, "end", position[-1], middle)
 
 
 def _stars(axes: Axes, position: Float[np.ndarray, "K 2"], cusps: Float[np.ndarray, "C 2"]) -> PathCollection:
@@ -200,12 +160,11 @@ def _name(axes: Axes, word: str, point: Float[np.ndarray, "2"], middle: Float[np
     axes.annotate(word, tuple(point), zorder=9, path_effects=theme.HALO, annotation_clip=False, **place)
 
 
-def _enlarged(
-    axes: Axes, orbit: Orbit, flow: Orbit | None, cusps: Float[np.ndarray, "C 2"], seen: tuple[Any, ...]
-) -> Axes:
-    position, view = seen
-    rows, near = detail(position, orbit.body_velocity[:, 0], cusps[0], view)
-    inset = corner_axes(axes, position[evenly_spread(position, _MOST_DOTS)], view, near)
+def _enlarged(axes: Axes, orbit: Orbit, flow: Orbit | None, cusps: Float[np.ndarray, "C 2"]) -> Axes:
+    position = _contact(orbit)
+    view = parts.square_about(position)
+    rows, near = parts.detail(position, orbit.body_velocity[:, 0], cusps[0], view)
+    inset = parts.corner_axes(axes, position[parts.evenly_spread(position)], view, near)
     _draw(inset, orbit[rows], orbit, flow, near, blades=10, length=0.11)
     inset.scatter(*cusps.T, s=110, marker="*", color=theme.UNSTABLE, linewidths=0, zorder=8)
     return inset

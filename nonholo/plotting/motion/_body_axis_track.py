@@ -4,7 +4,7 @@
 """
 
 import dataclasses
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,25 +15,9 @@ from nonholo.base.checks import array, error, shown
 from nonholo.base.types import Float
 from nonholo.groups import SO
 from nonholo.orbit import Orbit
-from nonholo.plotting import theme
-from nonholo.plotting.parts import (
-    View,
-    best_view,
-    draw_curve,
-    draw_globe,
-    draw_named_axes,
-    draw_path,
-    forbidden_axis,
-    given_view,
-    is_free,
-    known_equilibria,
-    mark_ends,
-    permanent_velocity,
-    posed,
-    same_group,
-    turn_per_state,
-    window,
-)
+from nonholo.plotting import parts, theme
+
+Axis: TypeAlias = Float[np.ndarray, "3"] | None  # a unit vector
 
 _MOST_DOTS = 1200
 _FINEST = np.radians(4.0)  # no need to draw states that are closer than this
@@ -58,13 +42,13 @@ class BodyAxisTrack:
     """
 
     axes: Axes
-    view: View
+    view: parts.View
     points: Float[np.ndarray, "L 3"]
     path: LineCollection
     dots: PathCollection | None
-    axis_before: Float[np.ndarray, "3"] | None
-    axis_after: Float[np.ndarray, "3"] | None
-    fixed_axis: Float[np.ndarray, "3"] | None
+    axis_before: Axis
+    axis_after: Axis
+    fixed_axis: Axis
     flow: LineCollection | None
 
 
@@ -103,41 +87,30 @@ def body_axis_track(
         >>> np.allclose(track.points[-1], orbit.configuration[-1] @ [0, 0, 1]), track.axis_before is None
         (True, True)
     """
-    _check(orbit, flow)
+    where = "body_axis_track(orbit=...)"
+    if parts.posed(where, orbit).system.group != SO(3):
+        raise error(where, "be an orbit on SO(3)", shown(orbit), _REMEDY)
+    parts.same_group("body_axis_track(flow=...)", flow, orbit)
     gamma = _body_axis(orbit, body_axis)
     axes = theme.axes_or_new(axes, (6.0, 6.0))
     part = _part(orbit)
-    shown = orbit[part]
-    points = shown.configuration @ gamma
+    points = orbit[part].configuration @ gamma
     before, after = rotation_axes(orbit)
     fixed = _fixed_axis(orbit)
-    eye = (
-        best_view(points, known_axes(before, after, fixed))
-        if view is None
-        else given_view("body_axis_track(view=...)", view)
-    )
-    draw_globe(axes, eye)
+    eye = parts.view_of("body_axis_track(view=...)", view, points, known_axes(before, after, fixed))
+    parts.draw_globe(axes, eye)
     curve = None if flow is None else _flow(axes, eye, flow, gamma)
-    path, dots = draw_path(axes, eye, shown, points, orbit)
-    draw_named_axes(axes, eye, _named(before, after, fixed, orbit))
-    words = ("start" if part.start == 0 else "", "end" if part.stop == len(orbit) else "")
-    mark_ends(axes, eye, points, words, theme.end_colors(orbit))
+    path, dots = parts.draw_path(axes, eye, orbit[part], points, orbit)
+    parts.draw_named_axes(axes, eye, _named(before, after, fixed, orbit))
+    parts.mark_ends(axes, eye, points, part, orbit)
     axes.set_title(_title(orbit, body_axis))
     theme.legend_above(axes)
     return BodyAxisTrack(axes, eye, points, path, dots, before, after, fixed, curve)
 
 
-def _check(orbit: Orbit, flow: Orbit | None) -> None:
-    where = "body_axis_track(orbit=...)"
-    if posed(where, orbit).system.group != SO(3):
-        raise error(where, "be an orbit on SO(3)", shown(orbit), _REMEDY)
-    if flow is not None:
-        same_group("body_axis_track(flow=...)", flow, orbit)
-
-
 def _body_axis(orbit: Orbit, chosen: Any) -> Float[np.ndarray, "3"]:
     if chosen is None:
-        forbidden = forbidden_axis(orbit.system)
+        forbidden = parts.forbidden_axis(orbit.system)
         chosen = (0.0, 0.0, 1.0) if forbidden is None else forbidden
     where, remedy = "body_axis_track(body_axis=...)", "Pass a vector in body coordinates."
     axis = array(where, chosen, (3,), remedy)
@@ -149,13 +122,13 @@ def _body_axis(orbit: Orbit, chosen: Any) -> Float[np.ndarray, "3"]:
 def _title(orbit: Orbit, chosen: Any) -> str:
     if chosen is not None:
         return "Body axis in space"
-    return "Body axis 3 in space" if forbidden_axis(orbit.system) is None else "Forbidden body axis in space"
+    return "Body axis 3 in space" if parts.forbidden_axis(orbit.system) is None else "Forbidden body axis in space"
 
 
-def _fixed_axis(orbit: Orbit) -> Float[np.ndarray, "3"] | None:
+def _fixed_axis(orbit: Orbit) -> Axis:
     """Return the direction in space that the constraint, or the lack of one, singles out."""
     system = orbit.system
-    if is_free(system):
+    if parts.is_free(system):
         axis = orbit[:1].spatial_momentum[0]
     elif system.is_spatial and len(system.annihilator) == 1:
         axis = system.annihilator[0]
@@ -166,46 +139,39 @@ def _fixed_axis(orbit: Orbit) -> Float[np.ndarray, "3"] | None:
 
 
 def _part(orbit: Orbit) -> slice:
-    turn = turn_per_state(orbit)
-    stride = max(1, int(_FINEST / turn)) if turn > 0 else max(1, len(orbit) // _MOST_DOTS)
-    return window(orbit, stride, _MOST_DOTS)
+    return parts.window(orbit, parts.turn_per_state(orbit), _FINEST, _MOST_DOTS)
 
 
-def rotation_axes(orbit: Orbit) -> tuple[Float[np.ndarray, "3"] | None, Float[np.ndarray, "3"] | None]:
+def rotation_axes(orbit: Orbit) -> tuple[Axis, Axis]:
     """Return unit vectors in space of the permanent rotations left and reached; None where the orbit is not close."""
     return _rotation_axis(orbit, int(orbit.time.argmin()), 1), _rotation_axis(orbit, int(orbit.time.argmax()), -1)
 
 
-def _rotation_axis(orbit: Orbit, state: int, repelling: int) -> Float[np.ndarray, "3"] | None:
-    velocity, equilibria = permanent_velocity(orbit, state), known_equilibria(orbit.system)
+def _rotation_axis(orbit: Orbit, state: int, repelling: int) -> Axis:
+    velocity, equilibria = parts.permanent_velocity(orbit, state), parts.known_equilibria(orbit.system)
     attracting = None if equilibria is None else equilibria.attracting
     if velocity is None or (attracting is not None and repelling * (velocity @ attracting) > 0):
         return None
     return orbit[state : state + 1].configuration[0] @ velocity / np.linalg.norm(velocity)
 
 
-def known_axes(*axes: Float[np.ndarray, "3"] | None) -> Float[np.ndarray, "A 3"]:
+def known_axes(*axes: Axis) -> Float[np.ndarray, "A 3"]:
     """Return those of the axes that are known, in rows."""
     return np.array([axis for axis in axes if axis is not None]).reshape(-1, 3)
 
 
-def _flow(axes: Axes, eye: View, flow: Orbit, gamma: Float[np.ndarray, "3"]) -> LineCollection:
+def _flow(axes: Axes, eye: parts.View, flow: Orbit, gamma: Float[np.ndarray, "3"]) -> LineCollection:
     points = flow[_part(flow)].configuration @ gamma
     axes.plot([], [], color=theme.CONTINUOUS, linewidth=1.0, label="continuous")  # the curve's own first piece is faint
-    return draw_curve(axes, eye, points, np.array(to_rgb(theme.CONTINUOUS)), width=1.0, zorder=5.5)
+    return parts.draw_curve(axes, eye, points, np.array(to_rgb(theme.CONTINUOUS)), width=1.0, zorder=5.5)
 
 
-def _named(
-    before: Float[np.ndarray, "3"] | None,
-    after: Float[np.ndarray, "3"] | None,
-    fixed: Float[np.ndarray, "3"] | None,
-    orbit: Orbit,
-) -> list[tuple[Float[np.ndarray, "3"], str, str]]:
+def _named(before: Axis, after: Axis, fixed: Axis, orbit: Orbit) -> list[tuple[Float[np.ndarray, "3"], str, str]]:
     """Return the axes to draw, with their names and colors."""
     names = ("rotation axis\nbefore", "rotation axis\nafter")
     if before is not None and after is not None and np.linalg.norm(before - after) < 1e-6:
         before, names = None, ("", "rotation axis")
-    third = "spatial\nmomentum" if is_free(orbit.system) else "no rotation\nabout this axis"
+    third = "spatial\nmomentum" if parts.is_free(orbit.system) else "no rotation\nabout this axis"
     colors = (theme.UNSTABLE, theme.STABLE, theme.STABLE)
     every = zip((before, after, fixed), (*names, third), colors, strict=True)
     return [(axis, name, color) for axis, name, color in every if axis is not None]

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -77,19 +78,14 @@ def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
     error = (energy - energy[0]) / (energy[0] or 1.0)
     unit = _unit(float(np.abs(error).max()))
     shown = "machine epsilon" if _EPS / unit > _VISIBLE else "_machine epsilon"  # a legend of what can be seen
-    rounding = axes.axhspan(
-        -_EPS / unit, _EPS / unit, color=theme.LEVEL, alpha=0.45, linewidth=0, zorder=0, label=shown
-    )
+    band: Any = {"color": theme.LEVEL, "alpha": 0.45, "linewidth": 0, "zorder": 0, "label": shown}
+    rounding = axes.axhspan(-_EPS / unit, _EPS / unit, **band)
     axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
     drawn = (_error if is_discrete(orbit) else _curve)(axes, orbit.time, error / unit)
     _dress(axes, error / unit, unit, relative=bool(energy[0]))
-    return EnergyError(axes, drawn, rounding, unit, _expected(axes, orbit))
-
-
-def _expected(axes: Axes, orbit: Orbit) -> Text:
-    words = _EXPECTED[orbit.motion.conserves_energy]
-    look = {"color": "#555a62", "fontsize": 9, "va": "top", "path_effects": theme.HALO, "zorder": 6}
-    return axes.text(0.012, 0.97, words, transform=axes.transAxes, **look)
+    look: Any = {"color": "#555a62", "fontsize": 9, "va": "top", "path_effects": theme.HALO, "zorder": 6}
+    expected = axes.text(0.012, 0.97, _EXPECTED[orbit.motion.conserves_energy], transform=axes.transAxes, **look)
+    return EnergyError(axes, drawn, rounding, unit, expected)
 
 
 def _unit(largest: float) -> float:
@@ -111,8 +107,7 @@ def _curve(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K
 
 def _dress(axes: Axes, error: Float[np.ndarray, "K"], unit: float, relative: bool) -> None:
     exponent = math.floor(math.log10(unit) + 0.5)
-    axes.set(xlabel="time", ylabel=rf"$\Delta E{'/E' if relative else ''}$   [$10^{{{exponent}}}$]")
     reach = 1.4 * max(float(np.abs(error).max()), 1.6 * _EPS / unit)
-    axes.set_ylim(-reach, reach)
-    axes.set_title("Energy error")
+    ylabel = rf"$\Delta E{'/E' if relative else ''}$   [$10^{{{exponent}}}$]"
+    axes.set(xlabel="time", ylabel=ylabel, ylim=(-reach, reach), title="Energy error")
     theme.legend_above(axes)

@@ -1,7 +1,7 @@
 """The momenta along a three-dimensional constraint subspace, on their energy ellipsoid drawn as a sphere."""
 
 import dataclasses
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,20 +10,7 @@ from matplotlib.collections import LineCollection, PathCollection
 from nonholo.base.checks import error, shown
 from nonholo.base.types import Float
 from nonholo.orbit import Orbit
-from nonholo.plotting import theme
-from nonholo.plotting.parts import (
-    View,
-    best_view,
-    draw_globe,
-    draw_path,
-    drawable,
-    given_view,
-    known_equilibria,
-    mark_ends,
-    name_beside,
-    opacity,
-    window,
-)
+from nonholo.plotting import parts, theme
 from nonholo.systems import AbstractLLSystem
 
 _MOST_DOTS = 1500
@@ -45,7 +32,7 @@ class MomentumSphere:
     """
 
     axes: Axes
-    view: View
+    view: parts.View
     points: Float[np.ndarray, "L 3"]
     path: LineCollection
     dots: PathCollection | None
@@ -83,34 +70,25 @@ def momentum_sphere(orbit: Orbit, axes: Axes | None = None, view: tuple[float, f
     to_sphere = directions @ np.diag(values**-0.5) @ directions.T
     size = np.sqrt(2 * orbit[:1].energy[0]) or 1.0
     part = _part(orbit.reduced_momentum @ to_sphere / size, orbit)
-    shown = orbit[part]
-    points = shown.reduced_momentum @ to_sphere / size
+    points = orbit[part].reduced_momentum @ to_sphere / size
     attracting = _attracting(system, to_sphere)
-    eye = best_view(points, attracting) if view is None else given_view("momentum_sphere(view=...)", view)
+    eye = parts.view_of("momentum_sphere(view=...)", view, points, attracting)
     axes = theme.axes_or_new(axes, (6.0, 6.0))
-    draw_globe(axes, eye)
-    path, dots = draw_path(axes, eye, shown, points, orbit)
+    parts.draw_globe(axes, eye)
+    path, dots = parts.draw_path(axes, eye, orbit[part], points, orbit)
     _rows(axes, eye, to_sphere)
-    words = ("start" if part.start == 0 else "", "end" if part.stop == len(orbit) else "")
-    mark_ends(axes, eye, points, words, theme.end_colors(orbit))
+    parts.mark_ends(axes, eye, points, part, orbit)
     stable, unstable = _equilibria(axes, eye, attracting)
     axes.set_title("Momentum on its energy sphere")
     if stable is not None:
-        _legend(axes)
+        is_narrow = theme.is_narrow(axes)  # then beside the axes, otherwise in the corner beside the sphere
+        axes.legend(loc="lower left" if is_narrow else "lower right", bbox_to_anchor=(1.0, 0.0) if is_narrow else None)
     return MomentumSphere(axes, eye, points, path, dots, stable, unstable)
-
-
-def _legend(axes: Axes) -> None:
-    """Name the equilibria in the corner beside the sphere, or beside the axes where they are small."""
-    if theme.is_narrow(axes):
-        axes.legend(loc="lower left", bbox_to_anchor=(1.0, 0.0))
-    else:
-        axes.legend(loc="lower right")
 
 
 def _check(orbit: Orbit) -> AbstractLLSystem:
     where = "momentum_sphere(orbit=...)"
-    system = drawable(where, orbit).system
+    system = parts.drawable(where, orbit).system
     if system.is_spatial:
         remedy = "Its momenta along the constraint are conserved: draw `overview` instead."
         raise error(where, "have a left-invariant constraint", shown(orbit), remedy)
@@ -125,39 +103,36 @@ def _part(points: Float[np.ndarray, "K 3"], orbit: Orbit) -> slice:
     if len(orbit) <= _MOST_DOTS:
         return slice(0, len(orbit), 1)
     step = np.linalg.norm(np.diff(points, axis=0), axis=1).max(initial=0.0)
-    stride = max(1, int(_FINEST / step)) if step > 0 else max(1, len(orbit) // _MOST_DOTS)
-    return window(orbit, stride, _MOST_DOTS)
+    return parts.window(orbit, step, _FINEST, _MOST_DOTS)
 
 
 def _attracting(system: AbstractLLSystem, to_sphere: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "A 3"]:
     """Return the attracting equilibrium as a row, no row where there is none or more than one."""
     canonical = system.canonical
-    equilibria = known_equilibria(canonical)
+    equilibria = parts.known_equilibria(canonical)
     if equilibria is None or equilibria.attracting is None or len(equilibria.subspace) != 1:
         return np.empty((0, 3))
     point = to_sphere @ canonical.restrict(canonical.inertia_operator @ equilibria.attracting)
     return (point / np.linalg.norm(point))[None, :]
 
 
-def _rows(axes: Axes, eye: View, to_sphere: Float[np.ndarray, "3 3"]) -> None:
+def _rows(axes: Axes, eye: parts.View, to_sphere: Float[np.ndarray, "3 3"]) -> None:
     """Draw where each component of the momentum alone points, out of the sphere."""
     for index, direction in enumerate(to_sphere / np.linalg.norm(to_sphere, axis=1)[:, None]):
         (pole, tip), depth = eye(np.array([[1.0], [1.16]]) * direction)
-        alpha = float(opacity(depth[:1])[0])
+        alpha = float(parts.opacity(depth[:1])[0])
         axes.plot(*np.stack([pole, tip], axis=1), color=theme.MUTED, linewidth=1.4, alpha=alpha, zorder=6)
-        name_beside(axes, f"$r_{index + 1}$", tip, away=tip, color=theme.MUTED)
+        parts.name_beside(axes, f"$r_{index + 1}$", tip, away=tip, color=theme.MUTED)
 
 
 def _equilibria(
-    axes: Axes, eye: View, attracting: Float[np.ndarray, "A 3"]
+    axes: Axes, eye: parts.View, attracting: Float[np.ndarray, "A 3"]
 ) -> tuple[PathCollection | None, PathCollection | None]:
     if not len(attracting):
         return None, None
-    flat, depth = eye(np.concatenate([attracting, -attracting]))
-    alpha = opacity(depth)
-    look = {"s": 60, "linewidths": 1.6, "zorder": 8}
-    stable = axes.scatter(*flat[:1].T, color=theme.STABLE, alpha=alpha[0], label="stable", **look)
-    unstable = axes.scatter(
-        *flat[1:].T, facecolors="white", edgecolors=theme.UNSTABLE, alpha=alpha[1], label="unstable", **look
-    )
-    return stable, unstable
+    (here, there), depth = eye(np.concatenate([attracting, -attracting]))
+    alpha = parts.opacity(depth)
+    look: Any = {"s": 60, "linewidths": 1.6, "zorder": 8}
+    stable = axes.scatter(*here, color=theme.STABLE, alpha=alpha[0], label="stable", **look)
+    look |= {"facecolors": "white", "edgecolors": theme.UNSTABLE, "alpha": alpha[1]}
+    return stable, axes.scatter(*there, label="unstable", **look)

@@ -13,16 +13,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch
 
 from nonholo.base.checks import energies as checked_energies
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import error, instance, shown
 from nonholo.base.types import Float
 from nonholo.orbit import Orbit
-from nonholo.plotting import theme
+from nonholo.plotting import parts, theme
 from nonholo.plotting.motion._other_images import draw_images, trees_of
-from nonholo.plotting.parts import drawable, evenly_in_box, is_discrete, is_same_body, known_equilibria
 from nonholo.plotting.sheets import ellipse, half_axes, momenta_on_plane, name_axes, on_plane, plane_inertia
 from nonholo.systems import AbstractLLSystem, AbstractSystem
-
-_MOST_DOTS = 1500
 
 
 @dataclasses.dataclass(frozen=True)
@@ -111,15 +108,14 @@ def phase_portrait(
 
 def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
     where = "phase_portrait(system=...)"
-    if not isinstance(system, AbstractSystem):
-        raise error(where, "be a system", shown(system), "Pass `orbit.system` first, then the orbit.")
+    instance(where, system, AbstractSystem, "be a system", "Pass `orbit.system` first, then the orbit.")
     if system.is_spatial:
         remedy = "Its momenta along the constraint are conserved: draw `overview` instead."
         raise error(where, "have a left-invariant constraint", shown(system), remedy)
     if len(system.constraint_subspace) != 2:
         got = f"dimension {len(system.constraint_subspace)}"
         raise error(where, "have a two-dimensional constraint subspace", got, "Plot `orbit.restricted_momentum`.")
-    if orbit is not None and not is_same_body(drawable("phase_portrait(orbit=...)", orbit).system, system):
+    if orbit is not None and not parts.is_same_body(parts.drawable("phase_portrait(orbit=...)", orbit).system, system):
         raise error("phase_portrait(orbit=...)", "be an orbit of the system", shown(orbit), "Pass `orbit.system`.")
 
 
@@ -135,7 +131,7 @@ def _energies(system: AbstractLLSystem, orbit: Orbit | None, energies: Any) -> F
 def _equilibria(
     axes: Axes, system: AbstractLLSystem, half_axes: Float[np.ndarray, "2 2"], sizes: Float[np.ndarray, "L"]
 ) -> tuple[Any, ...]:
-    equilibria = known_equilibria(system)
+    equilibria = parts.known_equilibria(system)
     if equilibria is None:
         return None, None, None, ()
     attracting = equilibria.attracting
@@ -144,13 +140,7 @@ def _equilibria(
     u = np.linalg.solve(half_axes, on_plane(system, system.restrict(system.inertia_operator @ attracting)))
     u /= np.linalg.norm(u)
     points = sizes[:, None] * (half_axes @ u)
-    reach = 1.12 * points[sizes.argmax()]
-    axes.plot(*np.stack([0 * reach, reach], axis=1), color=theme.STABLE, linewidth=0.9, zorder=2)
-    axes.plot(*np.stack([0 * reach, -reach], axis=1), color=theme.UNSTABLE, linewidth=0.9, dashes=(5, 3), zorder=2)
-    stable = axes.scatter(*points.T, s=46, color=theme.STABLE, zorder=5, label="stable")
-    unstable = axes.scatter(
-        *-points.T, s=46, facecolors="white", edgecolors=theme.UNSTABLE, linewidths=1.5, zorder=5, label="unstable"
-    )
+    stable, unstable = parts.draw_equilibria(axes, points, 1.12 * points[sizes.argmax()], 46)
     arrows = tuple(_arrow(axes, size * half_axes, u, side) for size in sizes for side in (1, -1))
     return stable, unstable, None, arrows
 
@@ -165,23 +155,14 @@ def _every_point(axes: Axes, half_axes: Float[np.ndarray, "2 2"], sizes: Float[n
 def _arrow(axes: Axes, half_axes: Float[np.ndarray, "2 2"], u: Float[np.ndarray, "2"], side: int) -> FancyArrowPatch:
     across = side * np.array([-u[1], u[0]])
     tail, head = (tuple(half_axes @ (across + lean * u)) for lean in (-0.02, 0.02))
-    arrow = FancyArrowPatch(
-        tail, head, arrowstyle="-|>", mutation_scale=13, shrinkA=0, shrinkB=0, linewidth=0, color=theme.MUTED, zorder=2
-    )
+    look: Any = {"arrowstyle": "-|>", "mutation_scale": 13, "shrinkA": 0, "shrinkB": 0, "linewidth": 0}
+    arrow = FancyArrowPatch(tail, head, color=theme.MUTED, zorder=2, **look)
     axes.add_patch(arrow)
     return arrow
 
 
 def _orbit(axes: Axes, orbit: Orbit) -> PathCollection | LineCollection:
     momentum = momenta_on_plane(orbit)
-    chosen = evenly_in_box(momentum, _MOST_DOTS)
-    colors = {"cmap": theme.TIME, "norm": theme.time_scale(orbit), "zorder": 6}
-    if is_discrete(orbit):
-        x, y = momentum[chosen].T
-        stays = np.ptp(momentum, axis=0).max() <= 1e-6 * np.abs(momentum).max()
-        size = 60 if stays else theme.dot_size(len(orbit))
-        return axes.scatter(x, y, c=orbit.time[chosen], s=size, linewidths=0, label="discrete orbit", **colors)
-    path = LineCollection(theme.pieces(momentum[chosen]), linewidth=2, **colors)
-    path.set(array=orbit.time[chosen[1:]], label="flow")
-    axes.add_collection(path)
-    return path
+    stays = np.ptp(momentum, axis=0).max() <= 1e-6 * np.abs(momentum).max()
+    chosen = parts.evenly_in_box(momentum)
+    return parts.draw_in_time(axes, orbit, momentum, chosen, zorder=6, size=60 if stays else None)

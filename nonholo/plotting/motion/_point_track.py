@@ -6,18 +6,14 @@ from typing import Any
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
 from nonholo.base.checks import error, shown
 from nonholo.base.types import Float
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
-from nonholo.plotting import theme
-from nonholo.plotting.parts import evenly_spread, is_discrete, posed, same_group, square_about
+from nonholo.plotting import parts, theme
 
-_MOST_DOTS = 1500
 _BODIES = 14  # places at which the axes of the body are drawn
 _ARM = 0.055  # of a body axis, in parts of the picture
 
@@ -65,22 +61,22 @@ def point_track(orbit: Orbit, axes: Any = None, flow: Orbit | None = None) -> Po
         (31, 3)
     """
     where = "point_track(orbit=...)"
-    group = posed(where, orbit).system.group
+    group = parts.posed(where, orbit).system.group
     n = group.size - 1
     if n < 2 or group != SE(n):
         remedy = "Use `body_axis_track` on SO(3), `overview` on other groups."
         raise error(where, "be an orbit on SE(n)", f"{group}", remedy)
-    if flow is not None:
-        same_group("point_track(flow=...)", flow, orbit)
+    parts.same_group("point_track(flow=...)", flow, orbit)
     axes = _axes(axes, 2 if n == 2 else 3)
     shown = _largest(orbit.position)
-    chosen = evenly_spread(orbit.position, _MOST_DOTS)
-    points = orbit.position[chosen][:, shown]
+    chosen = parts.evenly_spread(orbit.position)
+    position = orbit.position[:, shown]
+    points = position[chosen]
     view = _dress(axes, points, shown)
-    track = _track(axes, points, orbit, orbit.time[chosen])
-    curve = None if flow is None else _flow(axes, flow.position[:, shown])
+    track = parts.draw_in_time(axes, orbit, position, chosen, zorder=3)
+    curve = None if flow is None else parts.draw_flow(axes, flow.position[:, shown])
     frames = _frames(axes, orbit, shown, _ARM * np.ptp(view[0]))
-    _ends(axes, points, theme.end_colors(orbit))
+    _mark_ends(axes, points, orbit)
     theme.legend_above(axes)
     return PointTrack(axes, tuple(shown.tolist()), points, track, frames, curve)
 
@@ -103,7 +99,7 @@ def _largest(position: Float[np.ndarray, "K n"]) -> np.ndarray:
 
 def _dress(axes: Any, points: Float[np.ndarray, "L d"], shown: np.ndarray) -> Float[np.ndarray, "d 2"]:
     """Set up the axes about the points; return what they show."""
-    view = square_about(points)
+    view = parts.square_about(points)
     solid = len(shown) == 3
     names = [f"${letter}$" for letter in "xyz"] if shown.max() < 3 else [f"$x_{i + 1}$" for i in shown]
     axes.set(xlim=view[0], ylim=view[1], xlabel=names[0], ylabel=names[1], aspect="equal")
@@ -119,43 +115,19 @@ def _dress(axes: Any, points: Float[np.ndarray, "L d"], shown: np.ndarray) -> Fl
     return view
 
 
-def _track(axes: Any, points: Float[np.ndarray, "L d"], orbit: Orbit, time: Float[np.ndarray, "L"]) -> Artist:
-    colors = {"cmap": theme.TIME, "norm": theme.time_scale(orbit), "zorder": 3}
-    if is_discrete(orbit):
-        own = {"depthshade": False} if points.shape[1] == 3 else {}
-        size = theme.dot_size(len(orbit))
-        return axes.scatter(*points.T, c=time, s=size, linewidths=0, label="discrete orbit", **own, **colors)
-    path = _pieces(points[:-1], points[1:], linewidth=2, **colors)
-    path.set(array=time[1:], label="flow")
-    axes.add_collection(path)
-    return path
-
-
-def _flow(axes: Any, position: Float[np.ndarray, "K d"]) -> Artist:
-    kept = evenly_spread(position, 10 * _MOST_DOTS)
-    return axes.plot(*position[kept].T, color=theme.CONTINUOUS, linewidth=1.0, zorder=4, label="continuous")[0]
-
-
 def _frames(axes: Any, orbit: Orbit, shown: np.ndarray, length: float) -> tuple[Artist, ...]:
     """Draw the body axes that belong to the coordinates shown."""
-    some = orbit.chosen(evenly_spread(orbit.position, _BODIES))
+    some = orbit.chosen(parts.evenly_spread(orbit.position, _BODIES))
     foot, drawn = some.position[:, shown], []
     for axis, color in zip(shown, theme.COMPONENTS, strict=False):
         tip = foot + length * some.configuration[:, shown, axis]
         look = {"colors": color, "linewidth": 1.4, "zorder": 5, "label": f"body axis {axis + 1}"}
-        drawn.append(axes.add_collection(_pieces(foot, tip, **look)))
+        drawn.append(axes.add_collection(parts.segments(foot, tip, **look)))
     return tuple(drawn)
 
 
-def _pieces(feet: Float[np.ndarray, "L d"], tips: Float[np.ndarray, "L d"], **look: Any) -> LineCollection:
-    kind = Line3DCollection if feet.shape[1] == 3 else LineCollection
-    return kind(list(np.stack([feet, tips], axis=1)), **look)
-
-
-def _ends(axes: Any, points: Float[np.ndarray, "L d"], rim: list[Any]) -> None:
-    own = {"depthshade": False} if points.shape[1] == 3 else {}
-    look = {"s": 44, "facecolors": ["white", rim[1]], "edgecolors": rim, "linewidths": 1.6, "zorder": 7}
-    axes.scatter(*points[[0, -1]].T, **look, **own)
+def _mark_ends(axes: Any, points: Float[np.ndarray, "L d"], orbit: Orbit) -> None:
+    parts.draw_ends(axes, points, orbit)
     axes.text(*points[0], "  start", zorder=9, path_effects=theme.HALO)
     if not np.allclose(points[0], points[-1]):
         axes.text(*points[-1], "  end", zorder=9, path_effects=theme.HALO)

@@ -35,11 +35,7 @@ class Section:
 
 @theme.styled
 def section(
-    crossings: Crossings,
-    across: Quantity,
-    up: Quantity,
-    axes: Axes | None = None,
-    labels: tuple[str, str] = ("", ""),
+    crossings: Crossings, across: Quantity, up: Quantity, axes: Axes | None = None, labels: tuple[str, str] = ("", "")
 ) -> Section:
     """Draw a Poincare section: one dot for each crossing of an event, colored from early to late.
 
@@ -73,9 +69,8 @@ def section(
     axes = theme.axes_or_new(axes, (6.0, 5.0))
     area = _LARGE if len(points) <= _FEW else _SMALL
     dots = axes.scatter(*points.T, c=crossings.time, cmap=theme.TIME, s=area, linewidths=0)
-    axes.set(xlabel=across_label, ylabel=up_label)
+    axes.set(xlabel=across_label, ylabel=up_label, title=f"{len(points)} crossings")
     axes.margins(0.06)
-    axes.set_title(f"{len(points)} crossings")
     return Section(axes, points, dots)
 
 

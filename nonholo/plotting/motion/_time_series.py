@@ -1,12 +1,11 @@
 """An orbit in time: velocity, momentum, heading and speed. These are panels of the overview."""
 
-import dataclasses
 import itertools
+from collections.abc import Callable
 from typing import Any, cast
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.lines import Line2D
 
 from nonholo.base.types import Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
@@ -19,32 +18,17 @@ _MOST_POINTS = 2000
 _MOST_LINES = 60  # momenta in one panel
 
 
-@dataclasses.dataclass(frozen=True)
-class TimeSeries:
-    """Lines against time.
-
-    Attributes:
-        axes: The axes; two of them if the lines have different scales.
-        lines: One line for each quantity.
-    """
-
-    axes: tuple[Axes, ...]
-    lines: tuple[Line2D, ...]
-
-
-def velocity_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> TimeSeries:
+def velocity_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> None:
     """Draw the components of the body velocity that the constraint leaves free, against time."""
-    free = np.flatnonzero(np.abs(_allowed(orbit)).max(axis=0, initial=0.0) > 0)
-    names = _velocity_names(orbit.system.group)
-    lines = _components(orbit, axes, orbit.body_velocity[:, free], [names[i] for i in free])
-    if flow is not None:
-        for component in free:
-            _flow(axes, flow.time, flow.body_velocity[:, component], named=component == free[-1])
-    _dress(axes, orbit, "Body velocity")
-    return TimeSeries((axes,), lines)
+    system = orbit.system
+    allowed = np.eye(system.group.dim) if system.is_spatial else system.constraint_subspace
+    free = np.flatnonzero(np.abs(allowed).max(axis=0, initial=0.0) > 0)
+    names = _velocity_names(system.group)
+    axes.set_title("Body velocity")
+    _draw(axes, orbit, flow, lambda states: states.body_velocity[:, free], [names[i] for i in free])
 
 
-def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> TimeSeries:
+def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> None:
     """Draw the momenta along the rows of the constraint subspace, in space for a right-invariant one, against time.
 
     Of very many those are drawn that become largest.
@@ -52,23 +36,18 @@ def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> 
     momentum = orbit.restricted_momentum
     k = momentum.shape[1]
     shown = np.sort(np.argsort(-np.abs(momentum).max(axis=0, initial=0.0), kind="stable")[:_MOST_LINES])
-    lines = _components(orbit, axes, momentum[:, shown], [f"$r_{{{i + 1}}}$" for i in shown])
-    if flow is not None:
-        for component, values in enumerate(flow.restricted_momentum[:, shown].T):
-            _flow(axes, flow.time, values, named=component == len(shown) - 1)
     kind = "Spatial momentum" if orbit.system.is_spatial else "Momentum"
     of_many = "" if k <= _MOST_LINES else f", the {_MOST_LINES} largest of {k}"
-    _dress(axes, orbit, f"{kind} along the constraint{of_many}")
-    return TimeSeries((axes,), lines)
+    axes.set_title(f"{kind} along the constraint{of_many}")
+    _draw(axes, orbit, flow, lambda states: states.restricted_momentum[:, shown], [f"$r_{{{i + 1}}}$" for i in shown])
 
 
-def heading_and_speed(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> TimeSeries:
+def heading_and_speed(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> None:
     """Draw the heading of a sleigh (left scale) and the speed along its blade (right scale) against time."""
     right = axes.twinx()
-    lines = []
-    for one, name, values in ((axes, r"heading  $\theta/\pi$", _heading), (right, "speed  $v_1$", _speed)):
-        color = theme.COMPONENTS[len(lines)]
-        lines.append(_line(one, orbit.time, values(orbit), color))
+    scales = ((axes, r"heading  $\theta/\pi$", _heading), (right, "speed  $v_1$", _speed))
+    for (one, name, values), color in zip(scales, theme.COMPONENTS, strict=False):
+        _line(one, orbit.time, values(orbit), color=color, linewidth=2.0, zorder=3)
         if flow is not None:
             _flow(one, flow.time, values(flow), named=one is right)
         one.set_ylabel(name, color=color)
@@ -79,7 +58,6 @@ def heading_and_speed(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> Ti
     axes.set_title("Heading and speed")
     theme.mark_time(right, orbit)
     theme.legend_above(right)
-    return TimeSeries((axes, right), tuple(lines))
 
 
 def _heading(orbit: Orbit) -> Float[np.ndarray, "K"]:
@@ -90,46 +68,35 @@ def _speed(orbit: Orbit) -> Float[np.ndarray, "K"]:
     return cast(Blade, blade_of_system(orbit.system)).speed(orbit)
 
 
-def _line(
-    axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K"], color: str, label: str | None = None
-) -> Line2D:
+def _line(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K"], **look: Any) -> None:
     chosen = evenly_in_box(np.stack([time, values], axis=1), _MOST_POINTS)
-    marker = "o" if len(time) == 1 else None
-    look: dict[str, Any] = {"color": color, "linewidth": 2.0, "marker": marker, "label": label, "zorder": 3}
-    return axes.plot(time[chosen], values[chosen], **look)[0]
+    axes.plot(time[chosen], values[chosen], marker="o" if len(time) == 1 else None, **look)
 
 
 def _flow(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K"], named: bool) -> None:
-    line = _line(axes, time, values, theme.CONTINUOUS, "continuous" if named else None)
-    line.set(linewidth=1.3, dashes=(3, 3), zorder=4)
+    look: Any = {"color": theme.CONTINUOUS, "linewidth": 1.3, "dashes": (3, 3), "zorder": 4}
+    _line(axes, time, values, label="continuous" if named else None, **look)
 
 
-def _components(orbit: Orbit, axes: Axes, values: Float[np.ndarray, "K m"], names: list[str]) -> tuple[Line2D, ...]:
-    """Draw one line for each column, thin and without names where there are too many to tell apart."""
-    colors = theme.component_colors(len(names))
+def _draw(
+    axes: Axes, orbit: Orbit, flow: Orbit | None, quantity: Callable[[Orbit], np.ndarray], names: list[str]
+) -> None:
+    """Draw one line for each component of a quantity, thin and without names where there are too many to tell apart."""
     few = len(names) <= len(theme.COMPONENTS)
-    rows = zip(values.T, colors, names, strict=True)
-    lines = tuple(_line(axes, orbit.time, row, color, label=name if few else None) for row, color, name in rows)
+    for values, color, name in zip(quantity(orbit).T, theme.component_colors(len(names)), names, strict=True):
+        look = {"color": color, "linewidth": 2.0 if few else 1.0, "label": name if few else None, "zorder": 3}
+        _line(axes, orbit.time, values, **look)
     if not few:
-        for line in lines:
-            line.set_linewidth(1.0)
         axes.text(0.99, 0.97, f"{names[0]} to {names[-1]}", transform=axes.transAxes, ha="right", va="top")
-    return lines
-
-
-def _dress(axes: Axes, orbit: Orbit, title: str) -> None:
+    if flow is not None:
+        for number, values in enumerate(quantity(flow).T, start=1):
+            _flow(axes, flow.time, values, named=number == len(names))
     axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
     if not any(np.any(line.get_ydata()) for line in axes.lines):
         axes.set_ylim(-1.0, 1.0)
-    axes.set_title(title)
     axes.margins(y=0.12)
     theme.mark_time(axes, orbit)
     theme.legend_above(axes)
-
-
-def _allowed(orbit: Orbit) -> Float[np.ndarray, "m dim"]:
-    """Return rows that span all body velocities the orbit could have."""
-    return np.eye(orbit.system.group.dim) if orbit.system.is_spatial else orbit.system.constraint_subspace
 
 
 def _velocity_names(group: AbstractMatrixGroup) -> list[str]:

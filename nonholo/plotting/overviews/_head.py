@@ -13,17 +13,9 @@ _FIXED = {False: "System with a left-invariant constraint", True: "System with a
 
 def write_head(figure: Figure, orbit: Orbit) -> None:
     """Write what moves, and how, above the panels."""
-    figure.text(
-        0.012,
-        0.985,
-        _name(orbit.system),
-        va="top",
-        fontsize=17,
-        fontweight="bold",
-    )
-    figure.text(
-        0.012, 0.934, "      ".join(_facts(orbit)).replace("-", "\u2212"), va="top", fontsize=10.5, color="#555a62"
-    )
+    figure.text(0.012, 0.985, _name(orbit.system), va="top", fontsize=17, fontweight="bold")
+    facts = "      ".join(_facts(orbit)).replace("-", "\u2212")
+    figure.text(0.012, 0.934, facts, va="top", fontsize=10.5, color="#555a62")
 
 
 def _facts(orbit: Orbit) -> list[str]:

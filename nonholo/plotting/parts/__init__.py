@@ -1,7 +1,8 @@
-"""The common parts of pictures: what may be drawn of an orbit, which of its states, spheres, enlarged corners."""
+"""The common parts of pictures: which orbits are drawn, which of their states, marks, spheres, enlarged corners."""
 
 from nonholo.plotting.parts._enlargement import Square, corner_axes, detail, square_about
-from nonholo.plotting.parts._sphere import View, arcs, best_view, draw_curve, draw_globe, given_view, opacity, set_curve
+from nonholo.plotting.parts._marks import draw_ends, draw_equilibria, draw_flow, draw_in_time, draw_orbit, segments
+from nonholo.plotting.parts._sphere import View, arcs, best_view, draw_curve, draw_globe, opacity, set_curve, view_of
 from nonholo.plotting.parts._sphere_path import draw_named_axes, draw_path, mark_ends, name_beside
 from nonholo.plotting.parts._subject import (
     drawable,
@@ -20,7 +21,6 @@ from nonholo.plotting.parts._thinning import (
     evenly_in_box,
     evenly_spread,
     some_states,
-    transition,
     turn_per_state,
     window,
 )
@@ -33,14 +33,18 @@ __all__ = [
     "corner_axes",
     "detail",
     "draw_curve",
+    "draw_ends",
+    "draw_equilibria",
+    "draw_flow",
     "draw_globe",
+    "draw_in_time",
     "draw_named_axes",
+    "draw_orbit",
     "draw_path",
     "drawable",
     "evenly_in_box",
     "evenly_spread",
     "forbidden_axis",
-    "given_view",
     "is_discrete",
     "is_free",
     "is_same_body",
@@ -52,11 +56,12 @@ __all__ = [
     "permanent_velocity",
     "posed",
     "same_group",
+    "segments",
     "set_curve",
     "some_states",
     "square_about",
     "time_step",
-    "transition",
     "turn_per_state",
+    "view_of",
     "window",
 ]

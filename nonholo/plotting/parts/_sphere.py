@@ -43,10 +43,11 @@ class View:
         return seen[..., :2], seen[..., 2]
 
 
-def given_view(where: str, value: Any) -> View:
-    """Return the view that a caller asks for."""
-    azimuth, elevation = (float(number(where, angle)) for angle in pair(where, value))
-    return View(azimuth, elevation)
+def view_of(where: str, asked: Any, points: Float[np.ndarray, "K 3"], axes: Float[np.ndarray, "A 3"]) -> View:
+    """Return the view that a caller asks for, by default the best one."""
+    if asked is None:
+        return best_view(points, axes)
+    return View(*(float(number(where, angle)) for angle in pair(where, asked)))
 
 
 def best_view(points: Float[np.ndarray, "K 3"], axes: Float[np.ndarray, "A 3"]) -> View:

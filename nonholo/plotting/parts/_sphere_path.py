@@ -67,10 +67,13 @@ def draw_named_axes(axes: Axes, eye: View, drawn: list[tuple[Float[np.ndarray, "
         name_beside(axes, name, tip, away=tip - np.mean(tips, axis=0), color=color)
 
 
-def mark_ends(axes: Axes, eye: View, points: Float[np.ndarray, "L 3"], words: tuple[str, str], rim: list[Any]) -> None:
-    """Mark the first and the last point with their words; an empty word leaves the mark out."""
+def mark_ends(axes: Axes, eye: View, points: Float[np.ndarray, "L 3"], part: slice, orbit: Orbit) -> None:
+    """Mark the first and the last point of a part of an orbit, where they are those of the orbit."""
     flat, depth = eye(points[[0, -1]])
+    rim = theme.end_colors(orbit)
+    has_end = part.stop == len(orbit) and not np.allclose(flat[0], flat[1])
+    words = ("start" if part.start == 0 else "", "end" if has_end else "")
     for place, alpha, edge, face, word in zip(flat, opacity(depth), rim, ("white", rim[1]), words, strict=True):
-        if word and not (word == "end" and np.allclose(flat[0], flat[1])):
+        if word:
             axes.scatter(*place, s=40, facecolors=[face], edgecolors=[edge], linewidths=1.6, alpha=alpha, zorder=7)
             axes.annotate(word, place, xytext=(7, 7), textcoords="offset points", zorder=8, path_effects=theme.HALO)

@@ -32,8 +32,8 @@ def posed(where: str, orbit: Any) -> Orbit:
 
 
 def same_group(where: str, orbit: Any, other: Orbit) -> None:
-    """Refuse an orbit that moves on another group than the orbit it is drawn beside."""
-    if posed(where, orbit).system.group != other.system.group:
+    """Refuse an orbit, if there is one, that moves on another group than the orbit it is drawn beside."""
+    if orbit is not None and posed(where, orbit).system.group != other.system.group:
         raise error(where, f"move on {other.system.group}", f"{orbit.system.group}", "Pass a motion of the same body.")
 
 

@@ -8,8 +8,10 @@ import numpy as np
 from nonholo.base.types import Float, Int
 from nonholo.orbit import Orbit
 
+MOST_DOTS = 1500  # of most pictures
 
-def evenly_spread(points: Float[np.ndarray, "K d"], most: int) -> Int[np.ndarray, "L"]:
+
+def evenly_spread(points: Float[np.ndarray, "K d"], most: int = MOST_DOTS) -> Int[np.ndarray, "L"]:
     """Return at most `most` + 2 indices, evenly along the polygon through the points, both ends kept.
 
     Example:
@@ -24,7 +26,7 @@ def evenly_spread(points: Float[np.ndarray, "K d"], most: int) -> Int[np.ndarray
     return np.unique(np.concatenate([[0], picked, [len(points) - 1]]))
 
 
-def evenly_in_box(points: Float[np.ndarray, "K d"], most: int) -> Int[np.ndarray, "L"]:
+def evenly_in_box(points: Float[np.ndarray, "K d"], most: int = MOST_DOTS) -> Int[np.ndarray, "L"]:
     """Do the same after scaling each coordinate to its own range, as axes do."""
     extent = np.ptp(points, axis=0)
     return evenly_spread(points / np.where(extent > 0, extent, 1.0), most)
@@ -52,8 +54,16 @@ def turn_per_state(orbit: Orbit) -> float:
     return float(speed * np.abs(np.diff(orbit.time)).max())
 
 
-def window(orbit: Orbit, stride: int, most: int) -> slice:
-    """Return at most `most` states, `stride` apart, about the transition; they start at the first state if they can."""
+def window(orbit: Orbit, step: float, finest: float, most: int) -> slice:
+    """Return at most `most` states about the transition; they start at the first state if they can.
+
+    Args:
+        orbit: The orbit.
+        step: How far a picture moves between two states.
+        finest: How far it should move at least.
+        most: Number of states.
+    """
+    stride = max(1, int(finest / step)) if step > 0 else max(1, len(orbit) // most)
     span = stride * most
     if len(orbit) <= span:
         return slice(0, len(orbit), stride)

@@ -27,17 +27,17 @@ class AbstractSheet(abc.ABC):
 
     Attributes:
         variety: The displacements.
+        momentum_labels: Names of the axes of the plane of momenta.
+        locus_labels: Names of the axes of a momentum locus in space.
+        component_names: Names of the components of a body momentum.
+        signs: The map from momenta along the rows of the normal form to the plane of momenta.
     """
 
     variety: AbstractPlanarVariety
     momentum_labels: ClassVar[tuple[str, str]]
-    """Names of the axes of the plane of momenta."""
     locus_labels: ClassVar[tuple[str, str, str]]
-    """Names of the axes of a momentum locus in space."""
     component_names: ClassVar[tuple[str, str, str]]
-    """Names of the components of a body momentum."""
     signs: ClassVar[Float[np.ndarray, "2"]]
-    """The map from momenta along the rows of the normal form to the plane of momenta."""
 
     @property
     def to_plane(self) -> Float[np.ndarray, "2 2"]:

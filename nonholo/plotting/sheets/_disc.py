@@ -17,20 +17,16 @@ from nonholo.systems import AbstractSystem
 class DiscSheet(AbstractSheet):
     """The disc of a top: the radius is the step angle in half-turns, the direction that of the turn."""
 
+    variety: Disc
     momentum_labels = (r"$M_{13}$, along $e_1\wedge e_3$", r"$M_{23}$, along $e_2\wedge e_3$")
     locus_labels = ("$P_1$", "$P_2$", "$P_3$")
     component_names = ("P_1", "P_2", "P_3")
     signs = np.array([1.0, 1.0])
 
     @property
-    def disc(self) -> Disc:
-        """The displacements."""
-        return cast(Disc, self.variety)
-
-    @property
     def inertia(self) -> Float[np.ndarray, "2 2"]:
         """B."""
-        return self.disc.inertia
+        return self.variety.inertia
 
     @property
     def blade(self) -> None:
@@ -66,7 +62,7 @@ class DiscSheet(AbstractSheet):
 
     def attracting(self, curves: list[InvariantCurve]) -> tuple[Float[np.ndarray, "E 2"], Float[np.ndarray, "2"]]:
         """Return the points over -c."""
-        reach = -self.disc.coupling / np.linalg.norm(self.disc.coupling)
+        reach = -self.variety.coupling / np.linalg.norm(self.variety.coupling)
         points = [_laid(curve.over(np.arctan2(reach[1], reach[0]))) for curve in curves]
         return np.concatenate([np.empty((0, 2)), *points]), reach
 
@@ -78,8 +74,7 @@ class DiscSheet(AbstractSheet):
         """Draw the rim; every place is within it."""
         del curves, places
         draw_rim(axes)
-        axes.set(xlim=(-1.14, 1.14), ylim=(-1.14, 1.14), xticks=[], yticks=[])
-        axes.set_aspect("equal")
+        axes.set(xlim=(-1.14, 1.14), ylim=(-1.14, 1.14), xticks=[], yticks=[], aspect="equal")
         axes.spines[:].set_visible(False)
         if axes.get_legend_handles_labels()[0]:
             axes.legend(loc="lower left", bbox_to_anchor=(0.9, 0.02))

@@ -52,6 +52,11 @@ class Subject:
         name = str(self.values.attrs.get("long_name") or label(self.values))
         return name[:1].upper() + name[1:]
 
+    @property
+    def finite(self) -> Float[np.ndarray, "K"]:
+        """The numbers of the members that have one."""
+        return self.values.values[np.isfinite(self.values.values)]
+
 
 def subject_of(result: Any, quantity: str | None) -> Subject:
     """Return the quantity of that name, by default the first one of a task that is one number of each member."""
@@ -88,16 +93,12 @@ def ends(codes: xarray.DataArray, *, successful: bool = False) -> list[tuple[int
     """Return the outcomes that occur, but for success, with their names and colors."""
     flags = [int(flag) for flag in np.atleast_1d(codes.attrs.get("flag_values", []))]
     names = dict(zip(flags, str(codes.attrs.get("flag_meanings", "")).split(), strict=False))
-    found, counts = np.unique(codes.values, return_counts=True)
-    return [
-        (int(code), f"{names.get(int(code), str(code)).replace('_', ' ')} ({count:,})", _color(names, int(code)))
-        for code, count in zip(found, counts, strict=True)
-        if successful or code != 0
-    ]
-
-
-def _color(names: dict[int, str], code: int) -> str:
-    return _ENDED.get(names.get(code, ""), _OTHER)
+    found = []
+    for code, count in zip(*np.unique(codes.values, return_counts=True), strict=True):
+        if successful or code != 0:
+            name = names.get(int(code), str(code))
+            found.append((int(code), f"{name.replace('_', ' ')} ({count:,})", _ENDED.get(name, _OTHER)))
+    return found
 
 
 def key_to(axes: Axes, ended: list[tuple[int, str, str]]) -> tuple[PathCollection, ...]:
@@ -120,7 +121,7 @@ def mark_below(
 
 def scale_of(subject: Subject) -> Normalize:
     """Return how numbers become colors: whole numbers one each if they are few, by logarithm if they range widely."""
-    finite = subject.values.values[np.isfinite(subject.values.values)]
+    finite = subject.finite
     distinct = np.unique(finite)
     if subject.whole and 0 < len(distinct) <= _FEW:
         middles = (distinct[:-1] + distinct[1:]) / 2
@@ -137,9 +138,9 @@ def color_key(axes: Axes, drawn: ScalarMappable, subject: Subject) -> Colorbar:
     bar = figure.colorbar(drawn, ax=axes, label=label(subject.values), pad=0.02)
     bar.outline.set_visible(False)
     if isinstance(drawn.norm, BoundaryNorm):
-        distinct = np.unique(subject.values.values[np.isfinite(subject.values.values)])
+        labels = [f"{value:g}" for value in np.unique(subject.finite)]
         ends_of = np.asarray(drawn.norm.boundaries)
-        bar.set_ticks(list((ends_of[:-1] + ends_of[1:]) / 2), labels=[f"{value:g}" for value in distinct])
+        bar.set_ticks(list((ends_of[:-1] + ends_of[1:]) / 2), labels=labels)
         bar.ax.tick_params(length=0, which="both")
     return bar
 
@@ -150,6 +151,11 @@ def is_wide(values: Float[np.ndarray, "..."]) -> bool:
         return False
     low, high = np.quantile(values, [0.05, 0.95])
     return bool(high > _WIDE * low)
+
+
+def scale_along(values: Float[np.ndarray, "K"]) -> str:
+    """Return the scale of an axis for these numbers, of which some may be missing."""
+    return "log" if is_wide(values[np.isfinite(values)]) else "linear"
 
 
 def is_geometric(values: Float[np.ndarray, "K"]) -> bool:

@@ -11,17 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from nonholo.base.checks import error, shown
 from nonholo.base.types import Float
 from nonholo.plotting import theme
-from nonholo.plotting.sweeps._sweep_axes import (
-    OUTCOME,
-    Subject,
-    color_key,
-    ends,
-    is_wide,
-    key_to,
-    label,
-    mark_below,
-    scale_of,
-)
+from nonholo.plotting.sweeps import _sweep_axes as common
 
 _MOST = 20_000  # dots
 _LARGE = 2000  # dots from which they are small
@@ -30,13 +20,13 @@ _BARS = 60
 Drawn = tuple[Any, tuple[Any, ...], Colorbar | None]
 
 
-def draw_draws(axes: Axes, result: xarray.Dataset, subject: Subject, x: str | None, y: str | None) -> Drawn:
+def draw_draws(axes: Axes, result: xarray.Dataset, subject: common.Subject, x: str | None, y: str | None) -> Drawn:
     """Draw the members of a random design."""
     if y is not None and x is None:
         raise error("plot.sweep_map(y=...)", "come with x", shown(y), "Pass x, or x and y.")
     if x is not None and y is not None:
         drawn = _colored_dots(axes, subject, _number(result, "x", x), _number(result, "y", y))
-    elif subject.values.name == OUTCOME:
+    elif subject.values.name == common.OUTCOME:
         drawn = _outcomes(axes, subject)
     elif x is not None:
         drawn = _dots_over(axes, subject, _number(result, "x", x))
@@ -61,32 +51,34 @@ def _thinned(*arrays: xarray.DataArray) -> list[np.ndarray]:
     return [array.values[:: -(-len(array) // _MOST)] for array in arrays]
 
 
-def _dots_over(axes: Axes, subject: Subject, x: xarray.DataArray) -> Drawn:
+def _dots_over(axes: Axes, subject: common.Subject, x: xarray.DataArray) -> Drawn:
     """Draw the quantity of members that succeeded as dots over x; the others are marked along the bottom."""
     across, values, codes = _thinned(x, subject.values, subject.codes)
-    good, ended = codes == 0, ends(subject.codes)
+    good, ended = codes == 0, common.ends(subject.codes)
     drawn = axes.scatter(across[good], values[good], color=theme.DISCRETE, **_look(across))
-    axes.set(xlabel=label(x), ylabel=label(subject.values), xscale=_scale(across), yscale=_scale(values))
-    shown = mark_below(axes, across, codes, ended, marker="|")
-    key_to(axes, ended)
+    axes.set(xlabel=common.label(x), xscale=common.scale_along(across))
+    axes.set(ylabel=common.label(subject.values), yscale=common.scale_along(values))
+    shown = common.mark_below(axes, across, codes, ended, marker="|")
+    common.key_to(axes, ended)
     return drawn, shown, None
 
 
-def _colored_dots(axes: Axes, subject: Subject, x: xarray.DataArray, y: xarray.DataArray) -> Drawn:
+def _colored_dots(axes: Axes, subject: common.Subject, x: xarray.DataArray, y: xarray.DataArray) -> Drawn:
     """Draw members as dots over x and y, those that did not succeed below the others."""
     across, up, values, codes = _thinned(x, y, subject.values, subject.codes)
-    of_outcome, look = subject.values.name == OUTCOME, _look(across)
-    ended = ends(subject.codes, successful=of_outcome)
+    of_outcome, look = subject.values.name == common.OUTCOME, _look(across)
+    ended = common.ends(subject.codes, successful=of_outcome)
     groups = [(codes == code, color) for code, _, color in ended]
     shown = tuple(axes.scatter(across[of], up[of], color=color, **look) for of, color in groups)
     drawn = bar = None
     if not of_outcome:
         good = codes == 0
-        colors: Any = {"c": values[good], "cmap": theme.TIME, "norm": scale_of(subject)}
+        colors: Any = {"c": values[good], "cmap": theme.TIME, "norm": common.scale_of(subject)}
         drawn = axes.scatter(across[good], up[good], **colors, **look)
-        bar = color_key(axes, drawn, subject)
-    axes.set(xlabel=label(x), ylabel=label(y), xscale=_scale(across), yscale=_scale(up))
-    key_to(axes, ended)
+        bar = common.color_key(axes, drawn, subject)
+    axes.set(xlabel=common.label(x), xscale=common.scale_along(across))
+    axes.set(ylabel=common.label(y), yscale=common.scale_along(up))
+    common.key_to(axes, ended)
     return drawn, shown, bar
 
 
@@ -94,20 +86,21 @@ def _look(across: np.ndarray) -> Any:
     return {"s": 14.0 if len(across) <= _LARGE else 5.0, "linewidths": 0, "rasterized": True}
 
 
-def _histogram(axes: Axes, subject: Subject) -> Drawn:
+def _histogram(axes: Axes, subject: common.Subject) -> Drawn:
     """Count the members that succeeded; the legend counts the others."""
-    values = subject.values.values[np.isfinite(subject.values.values)]
-    bars = axes.hist(values, bins=_bins(values, subject.whole), color=theme.DISCRETE, rwidth=0.94)[2]
-    axes.set(xlabel=label(subject.values), ylabel="members", xscale="linear" if subject.whole else _scale(values))
+    bars = axes.hist(subject.finite, bins=_bins(subject.finite, subject.whole), color=theme.DISCRETE, rwidth=0.94)[2]
+    axes.set(xlabel=common.label(subject.values), ylabel="members")
     if subject.whole:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-    key_to(axes, ends(subject.codes))
+    else:
+        axes.set_xscale(common.scale_along(subject.finite))
+    common.key_to(axes, common.ends(subject.codes))
     return bars, (), None
 
 
-def _outcomes(axes: Axes, subject: Subject) -> Drawn:
+def _outcomes(axes: Axes, subject: common.Subject) -> Drawn:
     """Count how members ended, one bar each."""
-    ended = ends(subject.codes, successful=True)
+    ended = common.ends(subject.codes, successful=True)
     counts = [int((subject.codes.values == code).sum()) for code, _, _ in ended]
     bars = axes.barh([name for _, name, _ in ended], counts, color=[color for _, _, color in ended], height=0.6)
     axes.set(xlabel="members", ylim=(len(ended) - 0.5, -0.5))
@@ -119,11 +112,6 @@ def _bins(values: Float[np.ndarray, "K"], whole: bool) -> Any:
         return 1
     if whole and np.ptp(values) < _BARS:
         return np.arange(values.min() - 0.5, values.max() + 1)
-    if is_wide(values):
+    if common.is_wide(values):
         return np.geomspace(values.min(), values.max(), _BARS + 1)
     return min(_BARS, max(1, int(np.sqrt(len(values)))))
-
-
-def _scale(values: Float[np.ndarray, "K"]) -> str:
-    finite = values[np.isfinite(values)]
-    return "log" if is_wide(finite) else "linear"

@@ -12,20 +12,7 @@ from matplotlib.colors import ListedColormap
 
 from nonholo.base.checks import choice, error
 from nonholo.plotting import theme
-from nonholo.plotting.sweeps._sweep_axes import (
-    OUTCOME,
-    Subject,
-    borders,
-    color_key,
-    ends,
-    is_geometric,
-    is_wide,
-    key_to,
-    label,
-    mark_below,
-    scale_of,
-    subject_of,
-)
+from nonholo.plotting.sweeps import _sweep_axes as common
 from nonholo.plotting.sweeps._sweep_draws import draw_draws
 
 _MARKED = 60  # members along a curve that get a dot each
@@ -78,7 +65,7 @@ def sweep_map(
         >>> picture.drawn.get_array().shape, picture.axes.get_xlabel()
         ((2, 3), 'inertia')
     """
-    subject = subject_of(result, quantity)
+    subject = common.subject_of(result, quantity)
     if subject.codes.dims == ("member",):
         axes = theme.axes_or_new(axes, (7.2, 5.4))
         return SweepMap(axes, *draw_draws(axes, result, subject, x, y))
@@ -114,48 +101,42 @@ def _chosen(free: list[str], x: str | None, y: str | None) -> list[str]:
     return [name for name in (across, up) if name is not None]
 
 
-def _map(axes: Axes, subject: Subject, x: str, y: str) -> SweepMap:
+def _map(axes: Axes, subject: common.Subject, x: str, y: str) -> SweepMap:
     values, codes = (_plane(array, x, y) for array in (subject.values, subject.codes))
-    edges = borders(_values(values, x)), borders(_values(values, y))
-    ended = ends(subject.codes, successful=subject.values.name == OUTCOME)
+    edges = common.borders(_places(values, x)), common.borders(_places(values, y))
+    ended = common.ends(subject.codes, successful=subject.values.name == common.OUTCOME)
     shown = _ended(axes, edges, codes, ended)
     drawn = bar = None
-    if subject.values.name != OUTCOME:
-        look: Any = {"cmap": theme.TIME, "norm": scale_of(subject), "rasterized": True, "zorder": 1}
+    if subject.values.name != common.OUTCOME:
+        look: Any = {"cmap": theme.TIME, "norm": common.scale_of(subject), "rasterized": True, "zorder": 1}
         drawn = axes.pcolormesh(*edges, np.ma.masked_invalid(values.values), **look)
-        bar = color_key(axes, drawn, subject)
-    for name, values_along, side in ((x, values[x], "x"), (y, values[y], "y")):
-        _dress_axis(axes, side, name, values_along)
-    key_to(axes, ended)
+        bar = common.color_key(axes, drawn, subject)
+    _dress_axis(axes, "x", values, x)
+    _dress_axis(axes, "y", values, y)
+    common.key_to(axes, ended)
     _name(axes, subject)
     return SweepMap(axes, drawn, shown, bar)
 
 
 def _ended(axes: Axes, edges: Any, codes: xarray.DataArray, ended: list[tuple[int, str, str]]) -> tuple[QuadMesh, ...]:
     """Fill the cells of each outcome with its color."""
-    return tuple(
-        axes.pcolormesh(
-            *edges,
-            np.ma.masked_where(codes.values != code, np.ones(codes.shape)),
-            cmap=ListedColormap([color]),
-            rasterized=True,
-            zorder=1,
-        )
-        for code, _, color in ended
-    )
+    cells = []
+    for code, _, color in ended:
+        here = np.ma.masked_where(codes.values != code, np.ones(codes.shape))
+        cells.append(axes.pcolormesh(*edges, here, cmap=ListedColormap([color]), rasterized=True, zorder=1))
+    return tuple(cells)
 
 
-def _curve(axes: Axes, subject: Subject, x: str) -> SweepMap:
+def _curve(axes: Axes, subject: common.Subject, x: str) -> SweepMap:
     values, codes = (_plane(array, x) for array in (subject.values, subject.codes))
-    across = _values(values, x)
+    across = _places(values, x)
     marker = "o" if len(across) <= _MARKED else ""
     (line,) = axes.plot(across, values.values, color=theme.DISCRETE, marker=marker, markersize=3.5)
-    ended = ends(subject.codes)
-    shown = mark_below(axes, across, codes.values, ended, marker="s")
-    _dress_axis(axes, "x", x, values[x])
-    kept = values.values[np.isfinite(values.values)]
-    axes.set(ylabel=label(subject.values), yscale="log" if is_wide(kept) else "linear")
-    key_to(axes, ended)
+    ended = common.ends(subject.codes)
+    shown = common.mark_below(axes, across, codes.values, ended, marker="s")
+    _dress_axis(axes, "x", values, x)
+    axes.set(ylabel=common.label(subject.values), yscale=common.scale_along(values.values))
+    common.key_to(axes, ended)
     _name(axes, subject)
     return SweepMap(axes, line, shown, None)
 
@@ -166,18 +147,17 @@ def _plane(array: xarray.DataArray, *names: str) -> xarray.DataArray:
     return flat.transpose(*reversed(names)).sortby(list(names))
 
 
-def _values(array: xarray.DataArray, name: str) -> np.ndarray:
+def _places(array: xarray.DataArray, name: str) -> np.ndarray:
     """Return the values along an axis; vectors and matrices are numbered."""
     return np.asarray(array[name].values, dtype=float)
 
 
-def _dress_axis(axes: Axes, side: str, name: str, values: xarray.DataArray) -> None:
-    scale = "log" if is_geometric(np.sort(values.values.astype(float))) else "linear"
-    text = label(values.rename(name))
-    axes.set(**{f"{side}scale": scale, f"{side}label": text})
+def _dress_axis(axes: Axes, side: str, array: xarray.DataArray, name: str) -> None:
+    scale = "log" if common.is_geometric(_places(array, name)) else "linear"
+    axes.set(**{f"{side}scale": scale, f"{side}label": common.label(array[name])})
 
 
-def _name(axes: Axes, subject: Subject) -> None:
+def _name(axes: Axes, subject: common.Subject) -> None:
     """Write what is shown, and the values that the rest of the design has."""
     fixed = [
         f"{str(name).replace('_', ' ')} = {values.values.item():.4g}"
