@@ -111,14 +111,9 @@ def _of_coordinates(start: Start, system: System, g: np.ndarray | None) -> np.nd
 
 def _admissible(where: str, system: System, g: np.ndarray | None, body_velocity: Any) -> np.ndarray:
     velocity = array(where, body_velocity, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
-    to_body = _to_body(system, g)
+    to_body = system.carried(system.group.identity if g is None else system.group.inverse(g))
     carried = np.linalg.solve(to_body, velocity)
     forbidden = system.annihilator @ carried
     if np.abs(forbidden).max(initial=0.0) > _TOLERANCE * np.abs(carried).max():
         raise inadmissible(where, forbidden, to_body @ (carried - np.linalg.pinv(system.annihilator) @ forbidden))
     return velocity
-
-
-def _to_body(system: System, g: np.ndarray | None) -> np.ndarray:
-    """Return the matrix from velocities in which the constraint is constant to body velocities."""
-    return system.carried(system.group.identity if g is None else system.group.inverse(g))
