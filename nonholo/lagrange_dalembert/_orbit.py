@@ -21,7 +21,7 @@ _SHARED: Labels = {
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class AbstractCoordinateOrbit(abc.ABC):
-    """A motion at K saved states, whose configurations are vectors or matrices."""
+    """A motion of a system in coordinates or on a group at K saved states."""
 
     time: Float[np.ndarray, "K"]
     configuration: Float[np.ndarray, "K ..."]
