@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from nonholo import __version__
+from nonholo.cli._caches import with_cache_folder
 from nonholo.cli.commands.export import export
 from nonholo.cli.commands.extend import extend
 from nonholo.cli.commands.info import info
@@ -27,7 +28,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 for _command in (simulate, sweep, new, systems, info, plot, export, resume, extend, paper):
-    app.command()(_command)
+    app.command()(_command if _command in (new, systems) else with_cache_folder(_command))  # these two compile nothing
 
 
 def main() -> None:

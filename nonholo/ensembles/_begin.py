@@ -77,9 +77,8 @@ def _refuse_too_long(task: Task, members: int) -> None:
 def _refuse_too_large(layout: Layout, outputs: dict[str, Output], path: Path) -> None:
     """Refuse blocks that memory does not hold, and results that the disk does not: numbers, and files of each block."""
     each = sum(math.prod(o.shape) * np.dtype(o.dtype).itemsize for o in outputs.values())
-    within_memory(
-        "sweep(block=...)", 2.0 * each * math.prod(layout.chunk), "Pass fewer members: a block is held whole."
-    )
+    held = 2.0 * each * math.prod(layout.chunk)
+    within_memory("sweep(block=...)", held, "Pass fewer members: a block is held whole.")
     files = layout.blocks * (1 + len(outputs))
     needed = float(each) * math.prod(layout.sizes) + _FILE * files
     within_disk("sweep(design=...)", needed, path, "Ask for fewer members, or for less of each.")

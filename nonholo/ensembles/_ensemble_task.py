@@ -14,9 +14,9 @@ from nonholo.base.checks import array, count, error, flag, shown
 from nonholo.discrete import Discretization, as_discretization
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
-from nonholo.ensembles._names import OUTCOME, STARTS
+from nonholo.ensembles._names import OUTCOME, STARTS, start_component
 from nonholo.ensembles._reductions import REDUCTIONS, final_state_of_schema_1
-from nonholo.ensembles._starts import check_starts, rows_of_starts, start_component
+from nonholo.ensembles._starts import check_starts, rows_of_starts
 from nonholo.io import unstored
 from nonholo.simulation import Ensemble, Members, ensemble, run_in_lanes
 from nonholo.systems import one_start

@@ -41,6 +41,12 @@ def component_of(name: str) -> tuple[str, int] | None:
     return (part[1], int(part[2])) if part else None
 
 
+def start_component(name: str) -> tuple[str, int] | None:
+    """Return which component of which start a name means; None if it means something else."""
+    part = component_of(name)
+    return part if part and part[0] in STARTS else None
+
+
 def stream_name(name: str) -> str:
     """Return what the random numbers of a drawn value are made of: components of starts had brackets, and keep theirs.
 
@@ -48,8 +54,8 @@ def stream_name(name: str) -> str:
         >>> stream_name("momentum_0"), stream_name("momentum[0]"), stream_name("a")
         ('momentum[0]', 'momentum[0]', 'a')
     """
-    part = component_of(name)
-    return f"{part[0]}[{part[1]}]" if part and part[0] in STARTS else name
+    part = start_component(name)
+    return f"{part[0]}[{part[1]}]" if part else name
 
 
 def array_name(where: str, name: Any) -> str:

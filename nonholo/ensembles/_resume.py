@@ -74,9 +74,8 @@ def resume(
         remedy = "Leave it out for an orbit."
     for name, value in given.items():
         if value is not None:
-            raise error(
-                f"resume({name}=...)", f"come with the store of {owner}", f"{shown(value)} for '{store}'", remedy
-            )
+            got = f"{shown(value)} for '{store}'"
+            raise error(f"resume({name}=...)", f"come with the store of {owner}", got, remedy)
     if stored != io.SWEEP_FORMAT:
         return simulation.resume_run(store, discrete=discrete, events=events, throw=throw, progress=progress)
     name, workers = checked_scheduler(scheduler, workers)

@@ -9,7 +9,7 @@ from nonholo.base.checks import error, shown
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.ensembles._block import MemberBlock
-from nonholo.ensembles._names import STARTS, component_of
+from nonholo.ensembles._names import STARTS, start_component
 
 Start: TypeAlias = tuple[str, Float[np.ndarray, "n"]]
 
@@ -35,12 +35,6 @@ def _check_components(start: Start | None, varied: dict[str, tuple[str, int]]) -
         if component >= len(start[1]):
             got = f"{name!r} of a start with {len(start[1])}"
             raise error("sweep(design=...)", "vary components that there are", got, "They are counted from 0.")
-
-
-def start_component(name: str) -> tuple[str, int] | None:
-    """Return which component of which start a name means; None if it means something else."""
-    part = component_of(name)
-    return part if part and part[0] in STARTS else None
 
 
 def rows_of_starts(start: Start | None, block: MemberBlock) -> dict[str, Float[np.ndarray, "count n"]]:
@@ -73,6 +67,5 @@ def _check_all(discrete: Discretization, varied: dict[str, tuple[str, int]]) -> 
     if not any(given == list(range(length)) for length in lengths[owner]):
         wanted = " or ".join(dict.fromkeys(map(str, lengths[owner])))
         remedy = f"Vary {owner}_0 to the last one, or pass EnsembleTask(..., {owner}=...) with what the others are."
-        raise error(
-            "sweep(design=...)", f"vary all {wanted} components of a start that is not given", str(given), remedy
-        )
+        requirement = f"vary all {wanted} components of a start that is not given"
+        raise error("sweep(design=...)", requirement, str(given), remedy)

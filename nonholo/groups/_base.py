@@ -11,7 +11,7 @@ import numpy as np
 
 from nonholo.base.checks import generator, trailing
 from nonholo.base.limits import within_memory
-from nonholo.base.numerics import identity_like
+from nonholo.base.numerics import identity_like, integrated_exponential, inverted
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups._coordinates import AbstractCoordinates
 
@@ -51,13 +51,13 @@ class AbstractMatrixGroup(abc.ABC):
     def cayley_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return `cayley(x)` minus the identity, without cancellation."""
 
-    @abc.abstractmethod
     def dexp_inverse(self, x: Float[Array, "... dim"]) -> Float[Array, "... dim dim"]:
         r"""Return the matrix of $\mathrm{dexp}_x^{-1} = \sum_k B_k\,\mathrm{ad}_x^k/k!$, for angles below $2\pi$.
 
-        It is the inverse of $\mathrm{dexp}_x = \sum_k \mathrm{ad}_x^k/(k+1)!$, defined by
+        It is the inverse of $\mathrm{dexp}_x = \sum_k \mathrm{ad}_x^k/(k+1)! = \varphi_1(\mathrm{ad}_x)$, defined by
         $\frac{d}{dt}e^{X(t)} = \mathrm{hat}(\mathrm{dexp}_x\dot x)\,e^{X}$.
         """
+        return inverted(integrated_exponential(self.ad(x)))
 
     @abc.abstractmethod
     def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
@@ -79,13 +79,14 @@ class AbstractMatrixGroup(abc.ABC):
     def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... N N"]:
         """Return the matrix of a compact pose."""
 
-    @abc.abstractmethod
     def pose_from_matrix(self, g: Float[Array, "... N N"]) -> Float[Array, "... size"]:
-        """Return the compact pose of a matrix."""
+        """Return the compact pose of a matrix: by default its entries row by row."""
+        g = self._matrix(g)
+        return g.reshape(*g.shape[:-2], self.pose_size)
 
-    @abc.abstractmethod
     def normalize_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... size"]:
         """Return the compact pose of the group that is nearest to one in which rounding errors have gathered."""
+        return self.pose_from_matrix(self.matrix_from_pose(pose))
 
     @abc.abstractmethod
     def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:
@@ -179,10 +180,8 @@ class AbstractMatrixGroup(abc.ABC):
         return trailing(where, x, (self.dim,), "Use `vee` to turn a matrix into coordinates.", real=True)
 
     def _pose(self, pose: Array) -> Array:
-        where = f"{self!r} (pose)"
-        return trailing(
-            where, pose, (self.pose_size,), "Use `pose_from_matrix` to turn a matrix into a pose.", real=True
-        )
+        remedy = "Use `pose_from_matrix` to turn a matrix into a pose."
+        return trailing(f"{self!r} (pose)", pose, (self.pose_size,), remedy, real=True)
 
     def _generator(self, rng: Any) -> np.random.Generator:
         return generator(f"{self!r}.random(rng=...)", rng)

@@ -15,7 +15,6 @@ from nonholo.base.numerics import (
     principal_logarithm,
 )
 from nonholo.base.types import Array, Float
-from nonholo.groups import _dexp
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
 from nonholo.groups._lie_algebra import checked_basis, checked_form
@@ -159,16 +158,10 @@ class MatrixGroup(AbstractMatrixGroup):
             raise error(where, "stay in the group", "an algebra whose Cayley map leaves it", "Use `exp` or `retract`.")
         return cayley_increment(self.hat(x))
 
-    def dexp_inverse(self, x: Float[Array, "... dim"]) -> Float[Array, "... dim dim"]:
-        r"""Return the matrix of $\mathrm{dexp}_x^{-1} = \sum_k B_k\,\mathrm{ad}_x^k/k!$."""
-        return _dexp.dexp_inverse(self.ad(x))
-
     def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
         """Return the inverse matrix."""
         g = self._matrix(g)
-        if self.form is not None:
-            return self.form_adjoint(g)
-        return inverted(g)
+        return inverted(g) if self.form is None else self.form_adjoint(g)
 
     def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
         """Return how far the logarithm is from the algebra; infinite where there is no logarithm (JAX: undefined).
@@ -201,18 +194,12 @@ class MatrixGroup(AbstractMatrixGroup):
 
     def random(self, rng: np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw the exponential of standard normal coordinates."""
-        rng = self._generator(rng)
-        return self.exp(rng.normal(size=self.dim))
+        return self.exp(self._generator(rng).normal(size=self.dim))
 
     def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... N N"]:
         """Return the matrix with these rows."""
         pose = self._pose(pose)
         return pose.reshape(*pose.shape[:-1], self.size, self.size)
-
-    def pose_from_matrix(self, g: Float[Array, "... N N"]) -> Float[Array, "... size"]:
-        """Return the entries row by row."""
-        g = self._matrix(g)
-        return g.reshape(*g.shape[:-2], self.pose_size)
 
     def normalize_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... size"]:
         """Return the pose as it is: nothing is known about the nearest element."""

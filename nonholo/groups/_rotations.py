@@ -105,15 +105,11 @@ def logarithm(R: Float[Array, "... n n"], where: str) -> Float[Array, "... n n"]
         raise error(where, "be a rotation", got, "Use a rotation, built by `exp` or `cayley`.")
     least_cosine = np.linalg.eigvalsh((flat[finite] + np.swapaxes(flat[finite], 1, 2)) / 2)[:, 0]
     moderate = finite[least_cosine > _MODERATE]
-    result[moderate] = _moderate_logarithm(flat[moderate])
+    K = inverse_cayley(flat[moderate])  # tan(angle / 2), to relative precision near the identity
+    result[moderate] = of_skew((K - np.swapaxes(K, -1, -2)) / 2, lambda tangent: 2j * np.arctan(tangent))
     for k in finite[least_cosine <= _MODERATE]:
         result[k] = _schur_logarithm(flat[k], where)
     return result.reshape(R.shape)
-
-
-def _moderate_logarithm(R: np.ndarray) -> np.ndarray:
-    K = inverse_cayley(R)  # tan(angle / 2), to relative precision near the identity
-    return of_skew((K - np.swapaxes(K, -1, -2)) / 2, lambda tangent: 2j * np.arctan(tangent))
 
 
 def _schur_logarithm(R: np.ndarray, where: str) -> np.ndarray:
@@ -147,6 +143,14 @@ def residual(R: Float[Array, "... n n"]) -> Float[Array, "..."]:
     xp = R.__array_namespace__()
     defect = xp.max(abs(R @ xp.swapaxes(R, -1, -2) - identity_like(R)), axis=(-2, -1))
     return xp.maximum(defect, 1 - xp.sign(xp.linalg.det(R)))
+
+
+def motion_inverse(g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
+    """Return the inverse motion."""
+    xp = g.__array_namespace__()
+    turned = xp.swapaxes(g[..., :-1, :-1], -1, -2)
+    upper = xp.concatenate([turned, -(turned @ g[..., :-1, -1:])], axis=-1)
+    return xp.concatenate([upper, g[..., -1:, :]], axis=-2)
 
 
 def motion_residual(g: Float[Array, "... N N"]) -> Float[Array, "..."]:

@@ -7,17 +7,18 @@ import numpy as np
 
 from nonholo.base.numerics import half_cotangent
 from nonholo.base.types import Array, Float
-from nonholo.groups import _rodrigues, _rotations
-from nonholo.groups._base import AbstractMatrixGroup
+from nonholo.groups import _rotations
 from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
+from nonholo.groups._rodrigues import AbstractRodriguesGroup
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
-class SpecialEuclidean2(AbstractMatrixGroup):
-    r"""Motions of the plane, $\begin{pmatrix} R & x \\ 0 & 1\end{pmatrix}$; coordinates $(\omega, v_1, v_2)$."""
+class SpecialEuclidean2(AbstractRodriguesGroup):
+    r"""Motions of the plane, $\begin{pmatrix} R & x \\ 0 & 1\end{pmatrix}$; coordinates $(\omega, v_1, v_2)$.
 
-    dim: ClassVar[int] = 3
-    size: ClassVar[int] = 3
+    `cayley(x)` is the motion with tan(angle / 2) = x[0] / 2 about the same center as `exp(x)`.
+    """
+
     basis: ClassVar[np.ndarray] = np.array(
         [
             [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
@@ -26,16 +27,12 @@ class SpecialEuclidean2(AbstractMatrixGroup):
         ]
     )
     coordinates: ClassVar[AbstractCoordinates] = coordinates_of(basis)
-    pose_size: ClassVar[int] = 4
-    is_rigid: ClassVar[bool] = True
 
     def __repr__(self) -> str:
         return "SE(2)"
 
-    def exp_increment(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
-        """Return `exp(x)` minus the identity, without cancellation."""
-        x = self._vector(x)
-        return _rodrigues.exp_increment(self.hat(x), x[..., 0] * x[..., 0])
+    def _squared_angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
+        return x[..., 0] * x[..., 0]
 
     def log(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3"]:
         """Return the body velocity that leads to `g` in unit time, turning by at most pi."""
@@ -46,23 +43,9 @@ class SpecialEuclidean2(AbstractMatrixGroup):
         x, y = g[..., 0, 2], g[..., 1, 2]
         return xp.stack([angle, along * x + across * y, along * y - across * x], axis=-1)
 
-    def cayley_increment(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
-        """Return, minus the identity, the motion with tan(angle / 2) = x[0] / 2 about the same center as `exp(x)`."""
-        x = self._vector(x)
-        return _rodrigues.cayley_increment(self.hat(x), x[..., 0] * x[..., 0])
-
-    def dexp_inverse(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
-        r"""Return the matrix of $\mathrm{dexp}_x^{-1}$, in closed form."""
-        x = self._vector(x)
-        return _rodrigues.dexp_inverse(self.ad(x), x[..., 0] * x[..., 0])
-
     def inverse(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:
         """Return the inverse motion."""
-        g = self._matrix(g)
-        xp = g.__array_namespace__()
-        turned = xp.swapaxes(g[..., :2, :2], -1, -2)
-        upper = xp.concatenate([turned, -(turned @ g[..., :2, 2:])], axis=-1)
-        return xp.concatenate([upper, g[..., 2:, :]], axis=-2)
+        return _rotations.motion_inverse(self._matrix(g))
 
     def residual(self, g: Float[Array, "... 3 3"]) -> Float[Array, "..."]:
         """Return the residual of the rotation or the largest error of the last row, whichever is larger."""
@@ -70,8 +53,7 @@ class SpecialEuclidean2(AbstractMatrixGroup):
 
     def angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
         """Return the angle through which `exp(x)` turns."""
-        x = self._vector(x)
-        return abs(x[..., 0])
+        return abs(self._vector(x)[..., 0])
 
     def random(self, rng: np.random.Generator) -> Float[np.ndarray, "3 3"]:
         """Draw a uniform heading and a standard normal position."""

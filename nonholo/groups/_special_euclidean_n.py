@@ -17,7 +17,7 @@ from nonholo.base.numerics import (
     versine,
 )
 from nonholo.base.types import Array, Float
-from nonholo.groups import _dexp, _rotations
+from nonholo.groups import _rotations
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._coordinates import SeparatedCoordinates
 
@@ -83,17 +83,9 @@ class SpecialEuclideanN(AbstractMatrixGroup):
         X = self.hat(x)
         return _rotations.motion_cayley_increment(X) if isinstance(X, np.ndarray) else cayley_increment(X)
 
-    def dexp_inverse(self, x: Float[Array, "... dim"]) -> Float[Array, "... dim dim"]:
-        r"""Return the matrix of $\mathrm{dexp}_x^{-1} = \sum_k B_k\,\mathrm{ad}_x^k/k!$."""
-        return _dexp.dexp_inverse(self.ad(x))
-
     def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
         """Return the inverse motion."""
-        g = self._matrix(g)
-        xp = g.__array_namespace__()
-        turned = xp.swapaxes(g[..., : self.n, : self.n], -1, -2)
-        upper = xp.concatenate([turned, -(turned @ g[..., : self.n, self.n :])], axis=-1)
-        return xp.concatenate([upper, g[..., self.n :, :]], axis=-2)
+        return _rotations.motion_inverse(self._matrix(g))
 
     def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
         """Return the residual of the rotation or the largest error of the last row, whichever is larger."""
@@ -124,10 +116,6 @@ class SpecialEuclideanN(AbstractMatrixGroup):
         g = self._matrix(g)
         rotation = g[..., : self.n, : self.n].reshape(*g.shape[:-2], self.n * self.n)
         return g.__array_namespace__().concatenate([rotation, g[..., : self.n, self.n]], axis=-1)
-
-    def normalize_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... size"]:
-        """Return the pose with the nearest rotation."""
-        return self.pose_from_matrix(self.matrix_from_pose(pose))
 
     def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:
         """Return the entries of R hat(x) and the body velocity turned to space."""

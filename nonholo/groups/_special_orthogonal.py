@@ -6,18 +6,20 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo.base.types import Array, Float
-from nonholo.groups import _rodrigues, _rotations
-from nonholo.groups._base import AbstractMatrixGroup
+from nonholo.groups import _rotations
 from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
 from nonholo.groups._quaternion import matrix_from_quaternion, normalized, quaternion_from_matrix
+from nonholo.groups._rodrigues import AbstractRodriguesGroup
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
-class SpecialOrthogonal3(AbstractMatrixGroup):
-    """Rotations of space; the coordinates of the algebra are the angular velocity vector."""
+class SpecialOrthogonal3(AbstractRodriguesGroup):
+    """Rotations of space; the coordinates of the algebra are the angular velocity vector.
 
-    dim: ClassVar[int] = 3
-    size: ClassVar[int] = 3
+    `exp(x)` is the rotation by the vector `x` (axis times angle), `cayley(x)` that about `x` with
+    tan(angle / 2) = |x| / 2.
+    """
+
     basis: ClassVar[np.ndarray] = np.array(
         [
             [[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]],
@@ -26,16 +28,12 @@ class SpecialOrthogonal3(AbstractMatrixGroup):
         ]
     )
     coordinates: ClassVar[AbstractCoordinates] = coordinates_of(basis)
-    pose_size: ClassVar[int] = 4
-    is_rigid: ClassVar[bool] = True
 
     def __repr__(self) -> str:
         return "SO(3)"
 
-    def exp_increment(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
-        """Return the rotation by the vector `x` (axis times angle) minus the identity, without cancellation."""
-        x = self._vector(x)
-        return _rodrigues.exp_increment(self.hat(x), (x * x).sum(axis=-1))
+    def _squared_angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
+        return (x * x).sum(axis=-1)
 
     def log(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3"]:
         """Return the rotation vector, of length at most pi; accurate near 0 and near pi."""
@@ -48,20 +46,9 @@ class SpecialOrthogonal3(AbstractMatrixGroup):
         scale = xp.where(tiny, 2.0, 2 * xp.arctan2(sine, q[..., 0]) / sine)
         return scale[..., None] * q[..., 1:]
 
-    def cayley_increment(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
-        """Return the rotation about `x` with tan(angle / 2) = |x| / 2, minus the identity, without cancellation."""
-        x = self._vector(x)
-        return _rodrigues.cayley_increment(self.hat(x), (x * x).sum(axis=-1))
-
-    def dexp_inverse(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
-        r"""Return the matrix of $\mathrm{dexp}_x^{-1}$, in closed form."""
-        x = self._vector(x)
-        return _rodrigues.dexp_inverse(self.ad(x), (x * x).sum(axis=-1))
-
     def inverse(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:
         """Return the transpose."""
-        g = self._matrix(g)
-        return g.__array_namespace__().swapaxes(g, -1, -2)
+        return self.form_adjoint(self._matrix(g))
 
     def residual(self, g: Float[Array, "... 3 3"]) -> Float[Array, "..."]:
         """Return the largest entry of g g^T - I; at least 2 for a reflection."""
@@ -74,23 +61,19 @@ class SpecialOrthogonal3(AbstractMatrixGroup):
 
     def random(self, rng: np.random.Generator) -> Float[np.ndarray, "3 3"]:
         """Draw a uniformly distributed rotation."""
-        rng = self._generator(rng)
-        return matrix_from_quaternion(rng.normal(size=4))
+        return matrix_from_quaternion(self._generator(rng).normal(size=4))
 
     def matrix_from_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:
         """Return the rotation matrix of a quaternion, scalar first."""
-        pose = self._pose(pose)
-        return matrix_from_quaternion(pose)
+        return matrix_from_quaternion(self._pose(pose))
 
     def pose_from_matrix(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 4"]:
         """Return the unit quaternion, scalar first and non-negative."""
-        g = self._matrix(g)
-        return quaternion_from_matrix(g)
+        return quaternion_from_matrix(self._matrix(g))
 
     def normalize_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return the unit quaternion."""
-        pose = self._pose(pose)
-        return normalized(pose)
+        return normalized(self._pose(pose))
 
     def pose_rate(self, pose: Float[Array, "... 4"], x: Float[Array, "... 3"]) -> Float[Array, "... 4"]:
         """Return half the Hamilton product of the quaternion with the angular velocity."""

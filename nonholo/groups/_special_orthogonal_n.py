@@ -9,7 +9,7 @@ import numpy as np
 from nonholo.base.limits import within_memory
 from nonholo.base.numerics import cayley_increment
 from nonholo.base.types import Array, Float
-from nonholo.groups import _dexp, _rotations
+from nonholo.groups import _rotations
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._coordinates import SeparatedCoordinates
 
@@ -63,14 +63,9 @@ class SpecialOrthogonalN(AbstractMatrixGroup):
         X = self.hat(x)
         return _rotations.cayley_increment(X) if isinstance(X, np.ndarray) else cayley_increment(X)
 
-    def dexp_inverse(self, x: Float[Array, "... dim"]) -> Float[Array, "... dim dim"]:
-        r"""Return the matrix of $\mathrm{dexp}_x^{-1} = \sum_k B_k\,\mathrm{ad}_x^k/k!$."""
-        return _dexp.dexp_inverse(self.ad(x))
-
     def inverse(self, g: Float[Array, "... n n"]) -> Float[Array, "... n n"]:
         """Return the transpose."""
-        g = self._matrix(g)
-        return g.__array_namespace__().swapaxes(g, -1, -2)
+        return self.form_adjoint(self._matrix(g))
 
     def residual(self, g: Float[Array, "... n n"]) -> Float[Array, "..."]:
         """Return the largest entry of g g^T - I; at least 2 for a reflection."""
@@ -83,22 +78,12 @@ class SpecialOrthogonalN(AbstractMatrixGroup):
 
     def random(self, rng: np.random.Generator) -> Float[np.ndarray, "n n"]:
         """Draw a uniformly distributed rotation."""
-        rng = self._generator(rng)
-        return _rotations.random(self.n, rng)
+        return _rotations.random(self.n, self._generator(rng))
 
     def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... n n"]:
         """Return the rotation nearest to the matrix with these rows."""
         pose = self._pose(pose)
         return _rotations.nearest(pose.reshape(*pose.shape[:-1], self.n, self.n))
-
-    def pose_from_matrix(self, g: Float[Array, "... n n"]) -> Float[Array, "... size"]:
-        """Return the entries row by row."""
-        g = self._matrix(g)
-        return g.reshape(*g.shape[:-2], self.pose_size)
-
-    def normalize_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... size"]:
-        """Return the entries of the nearest rotation."""
-        return self.pose_from_matrix(self.matrix_from_pose(pose))
 
     def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:
         """Return the entries of R hat(x)."""

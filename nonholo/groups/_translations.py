@@ -101,8 +101,7 @@ class Translations(AbstractMatrixGroup):
 
     def random(self, rng: np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw a standard normal vector."""
-        rng = self._generator(rng)
-        return self.exp(rng.normal(size=self.m))
+        return self.exp(self._generator(rng).normal(size=self.m))
 
     def matrix_from_pose(self, pose: Float[Array, "... m"]) -> Float[Array, "... N N"]:
         """Return the matrix of a vector."""

@@ -135,9 +135,8 @@ def read_attributes(path: str | Path, expected: str = FORMAT, readable: tuple[in
         got = f"'{path}', " + (f"a store of {made}" if made else "made by another program")
         raise error(where, kind, got, "Pass a store of nonholo that is one.")
     if stored.get("schema") not in readable:
-        remedy = (
-            f"This version reads schemas up to {readable[-1]}: upgrade nonholo ({stored.get('versions')} wrote it)."
-        )
+        made = f"{stored.get('versions')} wrote it"
+        remedy = f"This version reads schemas up to {readable[-1]}: upgrade nonholo ({made})."
         raise error(where, f"have a schema of {readable}", f"schema {stored.get('schema')}", remedy)
     check_metadata(where, str(path), stored, OrbitMetadata if expected == FORMAT else SweepMetadata)
     return stored

@@ -90,7 +90,7 @@ class OrbitMetadata(_About):
     def _have_one_length(self) -> "OrbitMetadata":
         if "time" not in self.arrays or len({shape[0] for shape in self.arrays.values()}) != 1:
             raise ValueError("arrays: must have one length, that of time")
-        if not any("kind" in described for described in (self.motion,)):
+        if "kind" not in self.motion:
             raise ValueError("motion: must have a kind")
         return self
 

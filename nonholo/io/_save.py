@@ -169,20 +169,13 @@ def consolidate(path: Path) -> None:
 def _write_array(group: zarr.Group, name: str, variable: xarray.Variable) -> zarr.Array:
     """Write an array one chunk after the other, so that a failure leaves no writer behind."""
     rows = len(variable)
-    array = create_array(group, name, variable, rows, max(1, min(_ROWS, rows)), is_coordinate=is_coordinate(name))
+    array = create_array(group, name, variable, rows, max(1, min(_ROWS, rows)))
     for first in range(0, rows, _ROWS):
         array[first : first + _ROWS] = np.ascontiguousarray(variable.values[first : first + _ROWS])
     return array
 
 
-def is_coordinate(name: str) -> bool:
-    """Tell the arrays of a store that need no times beside them: the times, and those of inner groups."""
-    return name == "time" or "/" in name
-
-
-def create_array(
-    group: zarr.Group, name: str, variable: xarray.Variable, rows: int, chunk: int, *, is_coordinate: bool
-) -> zarr.Array:
+def create_array(group: zarr.Group, name: str, variable: xarray.Variable, rows: int, chunk: int) -> zarr.Array:
     """Make the array of a variable for this many rows, this many in a chunk; rows that are not written are NaN.
 
     Chunks are compressed, then get a checksum of what is on disk.
@@ -195,7 +188,7 @@ def create_array(
         compressors=(BloscCodec(cname="zstd", clevel=3, shuffle="shuffle"), Crc32cCodec()),
         fill_value=float("nan"),
         dimension_names=[str(dimension) for dimension in variable.dims],
-        attributes=variable.attrs | ({} if is_coordinate else {"coordinates": "time"}),
+        attributes=variable.attrs,
     )
 
 

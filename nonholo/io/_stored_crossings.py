@@ -18,7 +18,7 @@ _NUMBERS, _MOST = 1 << 16, 1 << 10  # at most in a chunk: numbers, rows
 def create_crossings(group: zarr.Group, log: EventLog) -> None:
     """Make the array, without rows yet, for crossings like those of a log."""
     rows = xarray.Variable(("crossing", "entry"), rows_of(log))
-    create_array(group, EVENTS, rows, 0, max(1, min(_MOST, _NUMBERS // rows.shape[1])), is_coordinate=True)
+    create_array(group, EVENTS, rows, 0, max(1, min(_MOST, _NUMBERS // rows.shape[1])))
 
 
 def chunks_of(array: zarr.Array, log: EventLog) -> int:

@@ -41,12 +41,11 @@ class StoredPoses(NamedTuple):
         chunk = self.arrays["canonical_pose"].chunks[0]
         for number in range(-(-self.rows // chunk)):
             kept = slice(self.rows - number * chunk)
-            found = {name: self._read(name, number)[kept] for name in self.arrays}
+            found: dict[str, np.ndarray] = {}
+            for name, array in self.arrays.items():
+                index = (number,) + (0,) * (array.ndim - 1)
+                found[name] = checked_block(self.path, self.places[name], array, index)[kept]
             yield Stretch(found["time"], found["canonical_pose"], found.get("turned"))
-
-    def _read(self, name: str, number: int) -> np.ndarray:
-        array = self.arrays[name]
-        return checked_block(self.path, self.places[name], array, (number,) + (0,) * (array.ndim - 1))
 
 
 def open_poses(path: Path) -> StoredPoses:

@@ -32,7 +32,6 @@ from nonholo.io._save import (
     consolidate,
     create_array,
     edit_attributes,
-    is_coordinate,
     new_group,
     put_in_place,
     remove_partials,
@@ -283,11 +282,11 @@ def _create(part: Path, first: Orbit, plan: Plan, opening: Checkpoint, extra: di
     group = new_group(part, metadata, OrbitMetadata)
     group.create_group(CANONICAL.rstrip("/"))
     for name, variable in variables.items():
-        create_array(group, name, variable, rows, plan.rows, is_coordinate=is_coordinate(name))
+        create_array(group, name, variable, rows, plan.rows)
     row = np.append(packed_checkpoint(opening), seal_of(part, BEFORE, []))
     group.create_group("run")
     labeled = xarray.Variable(("block", "entry"), row[None])
-    checkpoints = create_array(group, CHECKPOINTS, labeled, plan.blocks + 1, 1, is_coordinate=True)
+    checkpoints = create_array(group, CHECKPOINTS, labeled, plan.blocks + 1, 1)
     checkpoints[0] = row
     if first.events is not None:
         create_crossings(group, first.events)

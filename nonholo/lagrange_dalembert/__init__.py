@@ -4,7 +4,7 @@ from nonholo.base.checks import needs
 
 with needs("jax", "nonholo.lagrange_dalembert"):
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
-    from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
+    from nonholo.lagrange_dalembert._orbit import AbstractCoordinateOrbit, CoordinateOrbit
     from nonholo.lagrange_dalembert._system import LagrangeDAlembert
     from nonholo.lagrange_dalembert.on_groups import (
         GroupDiscretization,
@@ -14,6 +14,7 @@ with needs("jax", "nonholo.lagrange_dalembert"):
     )
 
 __all__ = [
+    "AbstractCoordinateOrbit",
     "CoordinateDiscretization",
     "CoordinateOrbit",
     "GroupDiscretization",

@@ -3,11 +3,16 @@
 import dataclasses
 from typing import Any
 
+import numpy as np
+
+from nonholo.base.types import Array
+from nonholo.lagrange_dalembert import _start
+from nonholo.lagrange_dalembert._equations import momenta, momentum
 from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
-from nonholo.lagrange_dalembert._simulate import simulate
-from nonholo.lagrange_dalembert._start import fixed_time_step
+from nonholo.lagrange_dalembert._precision import in_double
+from nonholo.lagrange_dalembert._simulate import Start, checked_counts, set_out, simulated
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-from nonholo.systems import AbstractCoordinateDiscretization
+from nonholo.systems import AbstractCoordinateDiscretization, one_start
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -28,7 +33,7 @@ class CoordinateDiscretization(AbstractCoordinateDiscretization[CoordinateOrbit]
     time_step: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "time_step", fixed_time_step(self.time_step))
+        object.__setattr__(self, "time_step", _start.fixed_time_step(self.time_step))
 
     def simulate(
         self,
@@ -76,7 +81,11 @@ class CoordinateDiscretization(AbstractCoordinateDiscretization[CoordinateOrbit]
                    [1. , 2. ]])
         """
         starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
-        return simulate(self.system, self.time_step, configuration, starts, steps, save_every, throw, progress)
+        system, h = self.system, np.float64(self.time_step)
+        steps, every = checked_counts(steps, save_every, 4 * system.dimension)
+        q = _start.point("simulate", system, configuration)
+        _start.consistent(system, q, h)
+        return simulated(CoordinateOrbit, system, h, _first(system, h, q, starts), steps, every, throw, progress)
 
     def regularity(self, q: Any, q_next: Any) -> float:
         """Return the smallest singular value of the scaled regularity matrix of a step; zero at a fold.
@@ -95,3 +104,23 @@ class CoordinateDiscretization(AbstractCoordinateDiscretization[CoordinateOrbit]
             1.0
         """
         return self.system.regularity(q, q_next, time_step=self.time_step)
+
+
+def _first(system: LagrangeDAlembert, h: Any, q: np.ndarray, starts: dict[str, Any]) -> Start:
+    given = one_start("simulate", **starts)
+    if given == "displacement":
+        v = _start.velocity_of_displacement(system, q, starts["displacement"], h)
+        return in_double(_set_out_at, system, h, q, v)
+    if given == "momentum":
+        p, v = _start.velocity_of_momentum("simulate", system, q, starts["momentum"])
+        return in_double(set_out, system, h, q, v, p)
+    v = _start.velocity("simulate", system, q, starts["body_velocity"])
+    return in_double(_set_out_with, system, h, q, v)
+
+
+def _set_out_with(system: LagrangeDAlembert, h: Array, q: Array, v: Array) -> Start:
+    return set_out(system, h, q, v, momentum(system, q, v))
+
+
+def _set_out_at(system: LagrangeDAlembert, h: Array, q: Array, v: Array) -> Start:
+    return set_out(system, h, q, v, momenta(system, q, v, h)[0])

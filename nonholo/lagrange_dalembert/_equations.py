@@ -3,7 +3,7 @@ r"""The equations: discrete Lagrangian and constraints by rule, momenta as their
 Steps are described by (q, v) with $v = (q' - q)/h$, not by (q, q'), so that rules do not lose digits in q' - q.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -45,6 +45,11 @@ def momenta(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> tuple[Ar
     return arriving - along_q, arriving
 
 
+def momentum(system: LagrangeDAlembert, q: Array, v: Array) -> Array:
+    r"""Return $\partial L/\partial v$."""
+    return jax.grad(system.lagrangian, argnums=1)(q, v)
+
+
 def discrete_energy(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> Array:
     r"""Return $E = -\partial L_d/\partial h$ at fixed end points; where h is not known to L_d, E at the midpoint."""
     d = h * v
@@ -55,7 +60,34 @@ def discrete_energy(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> 
 
 def energy(system: LagrangeDAlembert, q: Array, v: Array) -> Array:
     r"""Return $v\cdot\partial L/\partial v - L$."""
-    return v @ jax.grad(system.lagrangian, argnums=1)(q, v) - system.lagrangian(q, v)
+    return v @ momentum(system, q, v) - system.lagrangian(q, v)
+
+
+def ahead(_: LagrangeDAlembert, q: Array, v: Array, h: Array) -> Array:
+    """Return the configuration after a step."""
+    return q + h * v
+
+
+def displaced(*_: object) -> tuple[()]:
+    """Return nothing: the displacement is h v."""
+    return ()
+
+
+def rate(_: LagrangeDAlembert, _q: Array, v: Array) -> Array:
+    """Return the rate of change of a configuration."""
+    return v
+
+
+def normalized(_: LagrangeDAlembert, q: Array) -> Array:
+    """Return the configuration as it is: rounding errors lead to another one."""
+    return q
+
+
+def force(system: LagrangeDAlembert, q: Array, v: Array) -> Array:
+    r"""Return $\partial L/\partial q$ less the change of $\partial L/\partial v$ with q."""
+    along_q = jax.grad(system.lagrangian)(q, v)
+    _, carried = jax.jvp(lambda x: momentum(system, x, v), (q,), (v,))
+    return along_q - carried
 
 
 class Scaled(NamedTuple):
@@ -89,7 +121,7 @@ def solve_bordered(matrix: Array, units: Scaled, force: Array, off: Array) -> tu
     return solution[:n] * units.velocity, solution[n:] / units.forms
 
 
-def kinetic_matrix(system: LagrangeDAlembert, q: Array, v: Array) -> Array:
+def kinetic_matrix(system: LagrangeDAlembert, q: Array, v: Array, _h: Any = None) -> Array:
     r"""Return $\partial^2 L/\partial v^2$."""
     return jax.hessian(system.lagrangian, argnums=1)(q, v)
 

@@ -1,66 +1,88 @@
-"""The continuous motion in coordinates: accelerations and forces of constraint, and the orbit of a solve."""
+"""The continuous motion: accelerations and forces of constraint, their solve, and the orbit of it.
 
-import functools
-from typing import Any
+Imported on first use: diffrax loads slowly.
+"""
+
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 
 from nonholo.base.checks import flow_times, flow_tolerances
+from nonholo.base.numerics.time_sweep import padded, reached, sweep
+from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array
-from nonholo.lagrange_dalembert import _start
-from nonholo.lagrange_dalembert._equations import acceleration_matrix, energy, forms, solve_bordered
-from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
-from nonholo.lagrange_dalembert._sweep import Motion, State, flowed
-from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-from nonholo.systems import one_start
+from nonholo.lagrange_dalembert._equations import solve_bordered
+from nonholo.lagrange_dalembert._precision import in_double
+from nonholo.lagrange_dalembert._room import equations_of
+
+OrbitT = TypeVar("OrbitT")
+State = tuple[Array, Array]
+"""Configuration and velocity."""
 
 
 def flow(
-    system: LagrangeDAlembert, configuration: Any, starts: dict[str, Any], times: Any, rtol: float, atol: float
-) -> CoordinateOrbit:
-    """Check a start, solve the equations and return the orbit."""
+    kind: Callable[..., OrbitT],
+    system: Any,
+    start: Callable[..., State],
+    configuration: Any,
+    starts: dict[str, Any],
+    times: Any,
+    rtol: float,
+    atol: float,
+) -> OrbitT:
+    """Check the arguments, solve the equations and return the orbit of a kind, whose start is checked by a function."""
     time, errors = flow_times(times), flow_tolerances(rtol, atol)
-    q = _start.point("flow", system, configuration)
-    v = _velocity(system, q, starts)
-    return flowed(CoordinateOrbit, Motion(_rate, _projected, _decode), system, (q, v), time, errors)
+    first = start(system, configuration, starts)
+    rest, good = in_double(_sweep, system, first, padded(time), errors)
+    rows = reached(first, rest, good, len(time))
+    count = len(rows[0])
+    columns = (x[:count] for x in in_double(_decode, system, *map(padded, rows)))
+    outcome = Outcome.successful if count == len(time) else Outcome.not_converged
+    orbit = kind(time[:count], rows[0], None, rows[1], *columns, outcome)
+    if outcome != Outcome.successful:
+        rtol, atol = errors
+        where = f"Flow from time {time[count - 1]:g} to {time[count]:g} (rtol {rtol:g}, atol {atol:g})"
+        raise OutcomeError(outcome, where, orbit)
+    return orbit
 
 
-def _velocity(system: LagrangeDAlembert, q: np.ndarray, starts: dict[str, Any]) -> np.ndarray:
-    if one_start("flow", **starts) == "momentum":
-        return _start.velocity_of_momentum("flow", system, q, starts["momentum"])[1]
-    return _start.velocity("flow", system, q, starts["body_velocity"])
+def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array]) -> tuple[State, Array]:
+    equations = equations_of(system)
+
+    def settled(current: State) -> State:
+        """Return the state with the admissible velocity next to its own in the kinetic energy."""
+        q, v = equations.normalized(system, current[0]), current[1]
+        return q, v - _bordered_solve(system, q, v, jnp.zeros_like(v), equations.forms(system, q) @ v)[0]
+
+    def rate(current: State) -> State:
+        return equations.rate(system, *current), _acceleration(system, *current)[0]
+
+    return sweep(lambda _, current: rate(settled(current)), settled, state, times, errors)
 
 
-def _bordered_solve(system: LagrangeDAlembert, q: Array, v: Array, force: Array, off: Array) -> tuple[Array, Array]:
+def _acceleration(system: Any, q: Array, v: Array) -> tuple[Array, Array]:
+    r"""Return the rate of v and the forces $\lambda$, from the equations and $\tfrac{d}{dt}(A(q) v) = 0$."""
+    equations = equations_of(system)
+    force = equations.force(system, q, v)
+    _, turned = jax.jvp(lambda x: equations.forms(system, x) @ v, (q,), (equations.rate(system, q, v),))
+    return _bordered_solve(system, q, v, force, -turned)
+
+
+def _bordered_solve(system: Any, q: Array, v: Array, force: Array, off: Array) -> tuple[Array, Array]:
     r"""Solve $M x - A^T\lambda$ = force, A x = off."""
-    return solve_bordered(*acceleration_matrix(system, q, v), force, off)
+    matrix, units = equations_of(system).acceleration_matrix(system, q, v)
+    return solve_bordered(matrix, units, force, off)
 
 
-def _projected(system: LagrangeDAlembert, state: State) -> State:
-    """Return the state with the admissible velocity next to its own in the kinetic energy."""
-    q, v = state
-    return q, v - _bordered_solve(system, q, v, jnp.zeros_like(v), forms(system, q) @ v)[0]
+def _decode(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
+    """Return momenta, forces of constraint, energies and residuals of many states."""
+    equations = equations_of(system)
 
-
-def _rate(system: LagrangeDAlembert, state: State) -> State:
-    return state[1], _acceleration(system, *state)[0]
-
-
-def _acceleration(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, Array]:
-    r"""Return the acceleration and the forces $\lambda$, from the equations and $\tfrac{d}{dt}(A v) = 0$."""
-    along_q = jax.grad(system.lagrangian)(q, v)
-    _, carried = jax.jvp(lambda x: jax.grad(system.lagrangian, argnums=1)(x, v), (q,), (v,))
-    _, turned = jax.jvp(lambda x: forms(system, x) @ v, (q,), (v,))
-    return _bordered_solve(system, q, v, along_q - carried, -turned)
-
-
-@functools.partial(jax.jit, static_argnums=0)
-def _decode(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, ...]:
     def one(q: Array, v: Array) -> tuple[Array, ...]:
-        residual = jnp.max(jnp.abs(forms(system, q) @ v), initial=0.0)
-        momentum = jax.grad(system.lagrangian, argnums=1)(q, v)
-        return momentum, _acceleration(system, q, v)[1], energy(system, q, v), residual
+        residual = jnp.max(jnp.abs(equations.forms(system, q) @ v), initial=0.0)
+        momentum, force = equations.momentum(system, q, v), _acceleration(system, q, v)[1]
+        return momentum, force, equations.energy(system, q, v), residual
 
     return jax.vmap(one)(q, v)

@@ -5,15 +5,15 @@ and the scaled matrix kept the sign of its determinant; a change of sign is a fo
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array
-from nonholo.lagrange_dalembert._equations import Scaled, forms, kinetic_matrix, newton_matrix
-from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+from nonholo.lagrange_dalembert._equations import Scaled
+from nonholo.lagrange_dalembert._room import equations_of
 
 _ITERATIONS = 12
 _TOLERANCE = 1e-10  # of the last correction, which is still applied: what is left is its square
@@ -59,18 +59,20 @@ Matrix = Callable[[Array], tuple[Array, Scaled, tuple[Array, Array]]]
 Correction = Callable[[Array, Array, Array], tuple[Array, Array, Array, Array, Array]]
 
 
-def orientation(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> tuple[Array, Array]:
+def orientation(system: Any, q: Array, v: Array, h: Array) -> tuple[Array, Array]:
     """Return the sign of the determinant of the scaled regularity matrix and its least singular value."""
-    matrix, _, _ = newton_matrix(system, q, v, h, kinetic_matrix(system, q, v))
+    equations = equations_of(system)
+    matrix, _, _ = equations.newton_matrix(system, q, v, h, equations.kinetic_matrix(system, q, v, h))
     return jnp.sign(jnp.linalg.det(matrix)), jnp.linalg.svd(matrix, compute_uv=False)[-1]
 
 
 def solve(
-    system: LagrangeDAlembert, h: Array, q: Array, p: Array, near: Array, guess: Array, sign: Array
+    system: Any, h: Array, q: Array, p: Array, near: Array, guess: Array, sign: Array
 ) -> tuple[Array, Array, Array]:
     """Return velocity, multipliers and outcome of the root with this orientation next to `near`."""
-    kinetic = kinetic_matrix(system, q, near)
-    return root(lambda v: newton_matrix(system, q, v, h, kinetic), forms(system, q), p, near, guess, sign)
+    equations = equations_of(system)
+    kinetic, rows = equations.kinetic_matrix(system, q, near, h), equations.forms(system, q)
+    return root(lambda v: equations.newton_matrix(system, q, v, h, kinetic), rows, p, near, guess, sign)
 
 
 def root(matrix: Matrix, rows: Array, p: Array, near: Array, guess: Array, sign: Array) -> tuple[Array, Array, Array]:

@@ -1,7 +1,8 @@
 """Orbits in coordinates: plain arrays at the saved states, and their labels."""
 
+import abc
 import dataclasses
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -11,22 +12,55 @@ from nonholo.base.types import Float
 Labels = dict[str, tuple[tuple[str, ...], str]]
 """Name: dimensions after `step`, and what the numbers are."""
 
-SHARED: Labels = {
+_SHARED: Labels = {
     "multipliers": (("constraint",), "impulses of constraint to the next state; of a flow forces of constraint"),
     "energy": ((), "energy"),
     "constraint_residual": ((), "largest residual of the constraint"),
 }
-_VARIABLES: Labels = {
-    "configuration": (("coordinate",), "coordinates"),
-    "displacement": (("coordinate",), "change of the coordinates in one step"),
-    "body_velocity": (("coordinate",), "velocity; of a discrete orbit displacement / time_step"),
-    "momentum": (("coordinate",), "momentum at the start of the step; of a flow the Legendre transform"),
-    **SHARED,
-}
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
-class CoordinateOrbit:
+class AbstractCoordinateOrbit(abc.ABC):
+    """A motion of a system in coordinates or on a group at K saved states."""
+
+    time: Float[np.ndarray, "K"]
+    configuration: Float[np.ndarray, "K ..."]
+    displacement: Float[np.ndarray, "K ..."] | None
+    body_velocity: Float[np.ndarray, "K n"]
+    momentum: Float[np.ndarray, "K n"]
+    multipliers: Float[np.ndarray, "L s"]
+    energy: Float[np.ndarray, "K"]
+    constraint_residual: Float[np.ndarray, "K"]
+    outcome: Outcome = Outcome.successful
+    _labels: ClassVar[Labels]
+
+    @abc.abstractmethod
+    def _configurations(self) -> str:
+        """Say what configurations are."""
+
+    def __repr__(self) -> str:
+        span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
+        return f"<{type(self).__name__}: {len(self)} states of {self._configurations()}{span}, {self.outcome}>"
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def to_dataset(self) -> Any:
+        """Return the orbit as a labeled `xarray.Dataset`; rows that do not exist, of multipliers, are NaN."""
+        import xarray
+
+        variables = {}
+        for name, (dimensions, meaning) in (self._labels | _SHARED).items():
+            rows = getattr(self, name)
+            if rows is not None:
+                missing = np.full((len(self) - len(rows), *rows.shape[1:]), np.nan)
+                variables[name] = (("step", *dimensions), np.concatenate([rows, missing]), {"long_name": meaning})
+        time = ("step", self.time, {"long_name": "time"})
+        return xarray.Dataset(variables, coords={"time": time}, attrs={"outcome": self.outcome.name})
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class CoordinateOrbit(AbstractCoordinateOrbit):
     r"""A motion in coordinates at K saved states.
 
     Attributes:
@@ -48,38 +82,12 @@ class CoordinateOrbit:
         <CoordinateOrbit: 11 states of 1 coordinates, time 0 to 1, successful>
     """
 
-    time: Float[np.ndarray, "K"]
-    configuration: Float[np.ndarray, "K n"]
-    displacement: Float[np.ndarray, "K n"] | None
-    body_velocity: Float[np.ndarray, "K n"]
-    momentum: Float[np.ndarray, "K n"]
-    multipliers: Float[np.ndarray, "L s"]
-    energy: Float[np.ndarray, "K"]
-    constraint_residual: Float[np.ndarray, "K"]
-    outcome: Outcome = Outcome.successful
+    _labels: ClassVar[Labels] = {
+        "configuration": (("coordinate",), "coordinates"),
+        "displacement": (("coordinate",), "change of the coordinates in one step"),
+        "body_velocity": (("coordinate",), "velocity; of a discrete orbit displacement / time_step"),
+        "momentum": (("coordinate",), "momentum at the start of the step; of a flow the Legendre transform"),
+    }
 
-    def __repr__(self) -> str:
-        span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
-        n = self.configuration.shape[1]
-        return f"<CoordinateOrbit: {len(self)} states of {n} coordinates{span}, {self.outcome}>"
-
-    def __len__(self) -> int:
-        return len(self.time)
-
-    def to_dataset(self) -> Any:
-        """Return the orbit as a labeled `xarray.Dataset`; multipliers that do not exist are NaN."""
-        return labeled(self, _VARIABLES)
-
-
-def labeled(orbit: Any, labels: Labels) -> Any:
-    """Return the arrays of an orbit as an `xarray.Dataset`; rows that do not exist are NaN."""
-    import xarray
-
-    variables = {}
-    for name, (dimensions, meaning) in labels.items():
-        rows = getattr(orbit, name)
-        if rows is not None:
-            missing = np.full((len(orbit) - len(rows), *rows.shape[1:]), np.nan)
-            variables[name] = (("step", *dimensions), np.concatenate([rows, missing]), {"long_name": meaning})
-    time = ("step", orbit.time, {"long_name": "time"})
-    return xarray.Dataset(variables, coords={"time": time}, attrs={"outcome": orbit.outcome.name})
+    def _configurations(self) -> str:
+        return f"{self.configuration.shape[1]} coordinates"

@@ -8,14 +8,15 @@ import numpy as np
 
 from nonholo.base.checks import array, error, is_traced, scale
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._equations import acceleration_matrix, discrete_constraints, forms
+from nonholo.lagrange_dalembert._equations import acceleration_matrix, forms, momentum
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert._precision import in_double
+from nonholo.lagrange_dalembert._room import equations_of
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-from nonholo.systems import inadmissible
+from nonholo.systems import inadmissible, one_start
 
 _TOLERANCE = 1e-9  # relative, for velocities and displacements that a user computed in floating point
-_DEGENERATE = 1e-10  # least singular value of scaled matrices, below which they are called singular
+DEGENERATE = 1e-10  # least singular value of scaled matrices, below which they are called singular
 _CONSISTENT = 1e-7  # relative; looser, since the functions may difference numerically
 _CORRECTIONS = 8
 
@@ -35,16 +36,36 @@ def point(owner: str, system: LagrangeDAlembert, configuration: Any) -> Float[np
     if configuration is None:
         raise error(where, "be given for a system in coordinates", "none", f"Pass the {n} coordinates of the start.")
     q = array(where, configuration, (n,), f"Pass the {n} coordinates.")
-    A = in_double(_forms, system, q)
-    what = "LagrangeDAlembert(constraint_forms=...)"
+    check_rows("LagrangeDAlembert(constraint_forms=...)", in_double(forms, system, q), q)
+    return q
+
+
+def check_rows(what: str, A: Float[np.ndarray, "s n"], at: np.ndarray) -> None:
+    """Refuse constraint forms that are not finite, or not independent, at a configuration."""
     if not np.all(np.isfinite(A)):
         raise error(what, "be finite at the start", f"{A.tolist()}", "Start where the constraint is defined.")
-    lengths = np.linalg.norm(A, axis=1, keepdims=True)
-    least = np.linalg.svd(A / np.where(lengths == 0, 1, lengths), compute_uv=False)[-1] if len(A) else 1.0
-    if least < _DEGENERATE:
-        got = f"rank {np.linalg.matrix_rank(A)} of {len(A)} rows at {q.tolist()}"
+    if least_value(A) < DEGENERATE:
+        got = f"rank {np.linalg.matrix_rank(A)} of {len(A)} rows at {at.tolist()}"
         raise error(what, "have independent rows", got, "Drop the constraints that follow from others.")
-    return q
+
+
+def unit_rows(rows: Float[np.ndarray, "s n"]) -> Float[np.ndarray, "s n"]:
+    """Return rows of length one; zeros stay."""
+    lengths = np.linalg.norm(rows, axis=1, keepdims=True)
+    return rows / np.where(lengths == 0, 1, lengths)
+
+
+def least_value(rows: Float[np.ndarray, "s n"]) -> float:
+    """Return the least singular value of rows of length one."""
+    return float(np.linalg.svd(unit_rows(rows), compute_uv=False)[-1]) if len(rows) else 1.0
+
+
+def of_flow(system: LagrangeDAlembert, configuration: Any, starts: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the checked start of a flow."""
+    q = point("flow", system, configuration)
+    if one_start("flow", **starts) == "momentum":
+        return q, velocity_of_momentum("flow", system, q, starts["momentum"])[1]
+    return q, velocity("flow", system, q, starts["body_velocity"])
 
 
 def consistent(system: LagrangeDAlembert, q: Float[np.ndarray, "n"], h: Any) -> None:
@@ -52,10 +73,10 @@ def consistent(system: LagrangeDAlembert, q: Float[np.ndarray, "n"], h: Any) -> 
     if system.discrete_constraints is None:
         return
     where = "LagrangeDAlembert(discrete_constraints=...)"
-    at_rest, slope = in_double(_constraint_slope, system, q, np.zeros_like(q), h)
+    at_rest, slope = in_double(constraint_slope, system, q, np.zeros_like(q), h)
     if not np.all(np.isfinite(at_rest)) or np.abs(at_rest).max() > _TOLERANCE * (1 + np.abs(slope).max()):
         raise error(where, "vanish for q_next = q", f"{at_rest.tolist()} at {q.tolist()}", "Subtract its value there.")
-    A = in_double(_forms, system, q)
+    A = in_double(forms, system, q)
     directions = np.linalg.svd(A)[2][len(A) :]
     missed = np.abs(slope @ directions.T)
     if not missed.max() <= _CONSISTENT * np.linalg.norm(slope, axis=1).max() or np.linalg.matrix_rank(slope) < len(A):
@@ -69,7 +90,7 @@ def velocity(owner: str, system: LagrangeDAlembert, q: Float[np.ndarray, "n"], g
     where = f"{owner}(body_velocity=...)"
     v = array(where, given, (system.dimension,), f"Pass the {system.dimension} velocities.")
     regular(system, q, v)
-    return admissible(where, in_double(_forms, system, q), v)
+    return admissible(where, in_double(forms, system, q), v)
 
 
 def admissible(where: str, A: Float[np.ndarray, "s n"], v: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
@@ -88,18 +109,18 @@ def regular(system: LagrangeDAlembert, q: np.ndarray, v: np.ndarray) -> None:
         got = f"value {value.tolist()}, gradients {[x.tolist() for x in gradients]} {at}"
         raise error(what, "be finite and differentiable", got, "Start elsewhere, or smooth it with jnp.where.")
     least = in_double(_least, system, q, v)
-    if not least > _DEGENERATE:
+    if not least > DEGENERATE:
         got = f"least singular value {float(least):.3g} of the equations {at}"
         raise error(what, "determine the accelerations", got, "Give every admissible direction a kinetic energy.")
 
 
 def velocity_of_momentum(
-    owner: str, system: LagrangeDAlembert, q: np.ndarray, momentum: Any
+    owner: str, system: LagrangeDAlembert, q: np.ndarray, given: Any
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return a checked momentum and the admissible velocity that has the same components along the constraint."""
     n = system.dimension
     where = f"{owner}(momentum=...)"
-    p = array(where, momentum, (n,), f"Pass the {n} momenta; only their action on admissible velocities counts.")
+    p = array(where, given, (n,), f"Pass the {n} momenta; only their action on admissible velocities counts.")
     regular(system, q, np.zeros(n))
     v = in_double(_inverse_legendre, system, q, p)
     regular(system, q, v)
@@ -112,7 +133,7 @@ def velocity_of_displacement(system: LagrangeDAlembert, q: np.ndarray, given: An
     d = array(where, given, (system.dimension,), "Pass q_1 - q_0.")
     v = d / h
     regular(system, q, v)
-    missed, slope = in_double(_constraint_slope, system, q, v, h)
+    missed, slope = in_double(constraint_slope, system, q, v, h)
     if np.any(np.abs(missed) > _TOLERANCE * (np.abs(slope) @ np.abs(v))):
         nearest = h * in_double(_admissible, system, q, v, h)
         got = f"residual {np.array2string(missed, precision=6)}"
@@ -127,25 +148,28 @@ def regularity(system: LagrangeDAlembert, q: Any, q_next: Any, time_step: Any) -
     h = scale(f"{owner}(time_step=...)", time_step, "Pass a positive time step.")
     first = array(f"{owner}(q=...)", q, (n,), f"Pass the {n} coordinates.")
     second = array(f"{owner}(q_next=...)", q_next, (n,), f"Pass the {n} coordinates.")
-    return float(in_double(_orientation, system, first, (second - first) / h, h)[1])
+    return float(in_double(orientation, system, first, (second - first) / h, h)[1])
 
 
-_forms = jax.jit(forms, static_argnums=0)
-_orientation = jax.jit(orientation, static_argnums=0)
+def constraint_slope(system: Any, q: Array, v: Array, h: Array) -> tuple[Array, Array]:
+    """Return the discrete constraints of a step and their derivatives along its velocity."""
+    constraints = equations_of(system).discrete_constraints
+    slope = jax.jacfwd(constraints, argnums=2)(system, q, v, h)
+    return constraints(system, q, v, h), slope
 
 
-def _differentiated_of(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, tuple[Array, Array]]:
+def _differentiated(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, tuple[Array, Array]]:
     return jax.value_and_grad(system.lagrangian, argnums=(0, 1))(q, v)
 
 
-def _least_of(system: LagrangeDAlembert, q: Array, v: Array) -> Array:
+def _least(system: LagrangeDAlembert, q: Array, v: Array) -> Array:
     return jnp.linalg.svd(acceleration_matrix(system, q, v)[0], compute_uv=False)[-1]
 
 
-def _inverse_legendre_of(system: LagrangeDAlembert, q: Array, p: Array) -> Array:
+def _inverse_legendre(system: LagrangeDAlembert, q: Array, p: Array) -> Array:
     def correct(_: Array, v: Array) -> Array:
         matrix, units = acceleration_matrix(system, q, v)
-        missed = p - jax.grad(system.lagrangian, argnums=1)(q, v)
+        missed = p - momentum(system, q, v)
         off = -(forms(system, q) @ v) / units.constraints
         step = jnp.linalg.solve(matrix, jnp.concatenate([missed * units.velocity, off]))
         return v + step[: q.shape[0]] * units.velocity
@@ -153,21 +177,9 @@ def _inverse_legendre_of(system: LagrangeDAlembert, q: Array, p: Array) -> Array
     return jax.lax.fori_loop(0, _CORRECTIONS, correct, jnp.zeros_like(q))
 
 
-def _constraint_slope_of(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> tuple[Array, Array]:
-    slope = jax.jacfwd(discrete_constraints, argnums=2)(system, q, v, h)
-    return discrete_constraints(system, q, v, h), slope
-
-
-def _admissible_of(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> Array:
+def _admissible(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> Array:
     def correct(_: Array, w: Array) -> Array:
-        missed, slope = _constraint_slope_of(system, q, w, h)
+        missed, slope = constraint_slope(system, q, w, h)
         return w - jnp.linalg.pinv(slope) @ missed
 
     return jax.lax.fori_loop(0, _CORRECTIONS, correct, v)
-
-
-_differentiated = jax.jit(_differentiated_of, static_argnums=0)
-_least = jax.jit(_least_of, static_argnums=0)
-_inverse_legendre = jax.jit(_inverse_legendre_of, static_argnums=0)
-_constraint_slope = jax.jit(_constraint_slope_of, static_argnums=0)
-_admissible = jax.jit(_admissible_of, static_argnums=0)

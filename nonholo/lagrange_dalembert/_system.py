@@ -2,15 +2,15 @@
 
 import dataclasses
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import jax
 
-from nonholo.base.checks import choice, count, error
+from nonholo.base.checks import choice, count
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._room import room
-from nonholo.lagrange_dalembert._tracing import traced_shape, with_time_step
+from nonholo.lagrange_dalembert._tracing import check_forms, check_value, count_of, with_time_step
 from nonholo.systems import AbstractCoordinateSystem
 
 if TYPE_CHECKING:
@@ -66,48 +66,32 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     rule: str = dataclasses.field(default="midpoint", kw_only=True)
     discrete_lagrangian: Callable[[Array, Array, Array], Array] | None = dataclasses.field(default=None, kw_only=True)
     discrete_constraints: Callable[[Array, Array, Array], Array] | None = dataclasses.field(default=None, kw_only=True)
+    _equations: ClassVar[str] = "_equations"
 
     def __post_init__(self) -> None:
-        where = "LagrangeDAlembert(dimension=...)"
-        object.__setattr__(self, "dimension", count(where, self.dimension, "Pass the number of coordinates."))
-        choice("LagrangeDAlembert(rule=...)", self.rule, ("midpoint", "trapezoidal"))
+        dimension = count(_named("dimension"), self.dimension, "Pass the number of coordinates.")
+        object.__setattr__(self, "dimension", dimension)
+        choice(_named("rule"), self.rule, ("midpoint", "trapezoidal"))
         object.__setattr__(self, "discrete_lagrangian", with_time_step(self.discrete_lagrangian))
         object.__setattr__(self, "discrete_constraints", with_time_step(self.discrete_constraints))
         with double_precision():
             q, h = jax.ShapeDtypeStruct((self.dimension,), float), jax.ShapeDtypeStruct((), float)
             self._check("lagrangian", (), q, q)
             if self.constraint_forms is not None:
-                self._check_forms(q)
+                where, remedy = _named("constraint_forms"), "Stack one row per constraint; pass None for no constraint."
+                check_forms(where, self.constraint_forms, self.dimension, q, f"{self.dimension} coordinates", remedy)
             self._check("discrete_lagrangian", (), q, q, h)
             self._check("discrete_constraints", (self.constraints,), q, q, h)
 
     def _check(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
-        found = self._shape(name, *arguments)
-        if found not in (None, shape):
-            wanted = "a scalar" if shape == () else f"an array of shape {shape}"
-            remedy = f"It is called with arrays of {self.dimension} coordinates."
-            raise error(f"LagrangeDAlembert({name}=...)", f"return {wanted}", f"shape {found}", remedy)
-
-    def _check_forms(self, q: Any) -> None:
-        n, found = self.dimension, self._shape("constraint_forms", q)
-        if found is None or len(found) != 2 or found[1] != n or not 0 < found[0] < n:
-            wanted = f"return an array of shape (s, {n}) with 0 < s < {n}"
-            remedy = "Stack one row per constraint; pass None for no constraint."
-            raise error("LagrangeDAlembert(constraint_forms=...)", wanted, f"shape {found}", remedy)
-
-    def _shape(self, name: str, *arguments: Any) -> tuple[int, ...] | None:
-        if getattr(self, name) is None and name != "lagrangian":
-            return None
-        where = f"LagrangeDAlembert({name}=...)"
-        return traced_shape(where, getattr(self, name), arguments, f"{self.dimension} coordinates")
+        function, of = getattr(self, name), f"{self.dimension} coordinates"
+        if function is not None or name == "lagrangian":
+            check_value(_named(name), function, shape, arguments, of, of)
 
     @property
     def constraints(self) -> int:
         """The number s of constraints."""
-        if self.constraint_forms is None:
-            return 0
-        with double_precision():
-            return jax.eval_shape(self.constraint_forms, jax.ShapeDtypeStruct((self.dimension,), float)).shape[0]
+        return count_of(self.constraint_forms, (self.dimension,))
 
     def regularity(self, q: Any, q_next: Any, *, time_step: float = 1.0) -> float:
         r"""Return the smallest singular value of the scaled regularity matrix; zero at a fold of the map.
@@ -192,4 +176,9 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             [-1.]
         """
         starts = {"body_velocity": body_velocity, "momentum": momentum}
-        return room("_flow").flow(self, configuration, starts, times, rtol, atol)
+        kind, start = room("_orbit").CoordinateOrbit, room("_start").of_flow
+        return room("_flow").flow(kind, self, start, configuration, starts, times, rtol, atol)
+
+
+def _named(argument: str) -> str:
+    return f"LagrangeDAlembert({argument}=...)"

@@ -9,6 +9,7 @@ import jax
 import jax.numpy as jnp
 
 from nonholo.base.checks import error, shown
+from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array
 
 
@@ -30,6 +31,31 @@ def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str)
         got = "complex numbers" if kind == "c" else "an integer"
         raise error(where, "return real numbers that it computes from its arguments", got, "Return a smooth formula.")
     return shape
+
+
+def check_value(
+    where: str, function: Any, shape: tuple[int, ...], arguments: tuple[Any, ...], of: str, called: str
+) -> None:
+    """Refuse a function whose value has another shape; `called` says what arrays it is called with."""
+    found = traced_shape(where, function, arguments, of)
+    if found != shape:
+        wanted = "a scalar" if shape == () else f"an array of shape {shape}"
+        raise error(where, f"return {wanted}", f"shape {found}", f"It is called with arrays of {called}.")
+
+
+def check_forms(where: str, forms: Any, n: int, configuration: Any, of: str, remedy: str) -> None:
+    """Refuse constraint forms that are not s rows of n numbers."""
+    found = traced_shape(where, forms, (configuration,), of)
+    if len(found) != 2 or found[1] != n or not 0 < found[0] < n:
+        raise error(where, f"return an array of shape (s, {n}) with 0 < s < {n}", f"shape {found}", remedy)
+
+
+def count_of(forms: Any, shape: tuple[int, ...]) -> int:
+    """Return the number s of constraint forms at configurations of a shape."""
+    if forms is None:
+        return 0
+    with double_precision():
+        return jax.eval_shape(forms, jax.ShapeDtypeStruct(shape, float)).shape[0]
 
 
 def _array(value: Any) -> Any:

@@ -7,7 +7,7 @@ $\mathrm{Ad}_g\omega \in \mathfrak{d}$ (LR systems). Time steps and solvers live
 
 import abc
 import functools
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -16,8 +16,9 @@ from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._equilibria import Equilibria, equilibria_of, transverse_rates
-from nonholo.systems._mass import inertia_form
+from nonholo.systems._mass import inertia_form, inertia_from_mass_tensor
 from nonholo.systems._normal_form import NormalForm
+from nonholo.systems._subspace import complement
 from nonholo.systems._wide import WideInertia
 
 
@@ -43,30 +44,36 @@ class AbstractSystem(abc.ABC):
     def homogeneous_mass_tensor(self) -> Float[Array, "N N"] | None:
         """The mass tensor on which the group's matrices act; None if the inertia operator was given directly."""
 
-    @property
-    @abc.abstractmethod
+    @kept
     def inertia_operator(self) -> Float[Array, "dim dim"]:
-        """The symmetric matrix that takes body velocity to body momentum."""
+        """The symmetric matrix that takes body velocity to body momentum, by default that of the mass tensor."""
+        return inertia_from_mass_tensor(self.group, self.homogeneous_mass_tensor)
 
     @property
     @abc.abstractmethod
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         """Rows span the subspace of the constraint; k runs from 0 to dim."""
 
-    @property
-    @abc.abstractmethod
+    @kept
     def annihilator(self) -> Float[np.ndarray, "s dim"]:
-        """Rows span the covectors that vanish on the constraint subspace; multipliers refer to them."""
+        """Rows span the covectors that vanish on the constraint subspace; multipliers refer to them.
+
+        By default the remaining coordinate rows, or orthonormal ones if the subspace has no coordinate rows.
+        """
+        return complement(self.constraint_subspace)
 
     @property
-    @abc.abstractmethod
-    def canonical(self) -> "AbstractSystem":
+    def canonical(self) -> Self:
         """The same body in the canonical frame; the system itself where no frame is better than the user's."""
+        return self
 
-    @property
-    @abc.abstractmethod
-    def frame(self) -> Float[np.ndarray, "N N"]:
-        """The canonical body frame as seen from the user's: a group element that maps the constraint to itself."""
+    @kept
+    def frame(self) -> Float[Array, "N N"]:
+        """The canonical body frame as seen from the user's: a group element that maps the constraint to itself.
+
+        The identity where no frame is better than the user's.
+        """
+        return self.group.identity
 
     @kept
     def frame_map(self) -> Float[Array, "k k"]:
@@ -88,10 +95,13 @@ class AbstractSystem(abc.ABC):
             return reduced
         return np.linalg.solve(self.frame_map, reduced[..., None])[..., 0]
 
-    @property
-    @abc.abstractmethod
+    @kept
     def inertia_along(self) -> Float[Array, "k k"] | WideInertia:
-        """The inertia along the rows of the constraint subspace, where it is not too large as a matrix."""
+        r"""The inertia along the rows of the constraint subspace, $S\,\mathbb{I}\,S^T$; its parts if too large."""
+        rows, mass_tensor = self.constraint_subspace, self.homogeneous_mass_tensor
+        if mass_tensor is None:
+            return rows @ self.inertia_operator @ rows.T
+        return inertia_form(self.group, self.group.hat(rows), mass_tensor)
 
     @functools.cached_property
     def normal_form(self) -> NormalForm | None:
@@ -225,22 +235,14 @@ class AbstractSystem(abc.ABC):
         return trailing(where, momentum, (self.group.dim,), remedy) @ self.constraint_subspace.T
 
     def _along(self, name: str, value: Array) -> Array:
-        where, remedy = (
-            f"{type(self).__name__} ({name}=...)",
-            "Pass one number for each row of the constraint subspace.",
-        )
-        return trailing(where, value, (self.rank,), remedy)
+        remedy = "Pass one number for each row of the constraint subspace."
+        return trailing(f"{type(self).__name__} ({name}=...)", value, (self.rank,), remedy)
 
 
 class AbstractLLSystem(AbstractSystem):
     r"""A left-invariant Lagrangian with a left-invariant constraint: body velocities lie in $\mathfrak{d}$."""
 
     is_spatial: ClassVar[bool] = False
-
-    @property
-    @abc.abstractmethod
-    def canonical(self) -> "AbstractLLSystem":
-        """The same body in the canonical frame; the system itself where no frame is better than the user's."""
 
     def equilibria(self) -> Equilibria:
         r"""Return the body velocities that stay constant, and the half of them that attracts.
@@ -329,21 +331,6 @@ class AbstractLRSystem(AbstractSystem):
 
     is_spatial: ClassVar[bool] = True
 
-    @kept
-    def inertia_along(self) -> Float[Array, "k k"]:
-        """The inertia along the rows of the constraint subspace of a body at the identity."""
-        return form_along(self)
-
-    @property
-    def canonical(self) -> "AbstractLRSystem":
-        """The system itself."""
-        return self
-
-    @kept
-    def frame(self) -> Float[np.ndarray, "N N"]:
-        """The identity."""
-        return self.group.identity
-
     def spatial_inertia(self, configuration: Float[Array, "... N N"]) -> Float[Array, "... k k"]:
         r"""Return the inertia along the constraint subspace of a body with this configuration.
 
@@ -415,14 +402,6 @@ class AbstractLRSystem(AbstractSystem):
 
 System = AbstractLLSystem | AbstractLRSystem
 """Any system on a group."""
-
-
-def form_along(system: AbstractSystem) -> Float[Array, "k k"]:
-    r"""Return the inertia along the constraint subspace by its definition, $S\,\mathbb{I}\,S^T$."""
-    rows, mass_tensor = system.constraint_subspace, system.homogeneous_mass_tensor
-    if mass_tensor is None:
-        return rows @ system.inertia_operator @ rows.T
-    return inertia_form(system.group, system.group.hat(rows), mass_tensor)
 
 
 def _solve(matrix: Float[Array, "... k k"] | WideInertia, vector: Float[Array, "... k"]) -> Float[Array, "... k"]:

@@ -51,7 +51,12 @@ def mass_tensor_of_body(
                [0. , 0.5, 0. ],
                [1. , 0. , 2. ]])
     """
-    n, slides = _checked_space(f"{owner}.from_inertia(group=...)", group)
+    where = f"{owner}.from_inertia(group=...)"
+    space = _space(checked_group(where, group))
+    if space is None:
+        remedy = "Elsewhere pass a mass tensor to the class itself: about the origin it is J_C + m a a^T."
+        raise error(where, "be SO(2), SO(3), SE(2) or SE(3), where inertia tensors are", shown(group), remedy)
+    n, slides = space
     m = scale(f"{owner}.from_inertia(mass=...)", mass, "Pass the mass of the body.")
     remedy = f"Pass {n} body coordinates, from the {'reference' if slides else 'fixed'} point."
     a = array(f"{owner}.from_inertia(center_of_mass=...)", center_of_mass, (n,), remedy)
@@ -95,19 +100,18 @@ def tensors_shown(group: AbstractMatrixGroup, mass_tensor: Float[Array, "N N"]) 
         return {"mass tensor J": J}
     if not space[1]:
         return {"mass tensor J": J, "inertia tensor tr(J) I - J": _inertia(J)}
-    return {"homogeneous mass tensor J": J} | (_about_its_center(J) if J[-1, -1] > 0 else {})
+    found = {"homogeneous mass tensor J": J}
+    if J[-1, -1] > 0:
+        m, a = J[-1, -1], J[:-1, -1] / J[-1, -1]
+        inertia = _inertia(J[:-1, :-1] - m * np.outer(a, a))
+        found |= {"mass": np.asarray(m), "center of mass": a, "inertia about the center of mass": inertia}
+    return found
 
 
 def lines_of(shown: dict[str, Float[np.ndarray, "..."]]) -> str:
     """Return named arrays as the lines of a `repr`."""
     lines = (f"{name} = {np.array2string(value, prefix=' ' * (len(name) + 5))}" for name, value in shown.items())
     return ",\n  ".join(lines)
-
-
-def _about_its_center(J: np.ndarray) -> dict[str, np.ndarray]:
-    m, a = J[-1, -1], J[:-1, -1] / J[-1, -1]
-    inertia = _inertia(J[:-1, :-1] - m * np.outer(a, a))
-    return {"mass": np.asarray(m), "center of mass": a, "inertia about the center of mass": inertia}
 
 
 def _inertia(J: np.ndarray) -> np.ndarray:
@@ -121,15 +125,6 @@ def _space(group: AbstractMatrixGroup) -> tuple[int, bool] | None:
     slides = not np.any(group.basis[:, -1])
     n = group.size - int(slides)
     return (n, slides) if n in (2, 3) else None
-
-
-def _checked_space(where: str, group: AbstractMatrixGroup) -> tuple[int, bool]:
-    """Refuse a group on which there is no inertia tensor."""
-    space = _space(checked_group(where, group))
-    if space is None:
-        remedy = "Elsewhere pass a mass tensor to the class itself: about the origin it is J_C + m a a^T."
-        raise error(where, "be SO(2), SO(3), SE(2) or SE(3), where inertia tensors are", shown(group), remedy)
-    return space
 
 
 def _about_center(where: str, inertia: Any, n: int) -> Array:

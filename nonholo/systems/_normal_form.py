@@ -16,7 +16,7 @@ import numpy as np
 from nonholo.base.checks import is_traced
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, SO
-from nonholo.systems._subspace import plane_rows
+from nonholo.systems._subspace import sleigh_rows, top_rows
 
 if TYPE_CHECKING:
     from nonholo.systems._base import AbstractLLSystem
@@ -138,7 +138,7 @@ def _recognized_top(system: "AbstractLLSystem", tensor: np.ndarray) -> NormalFor
     turn = _rotation(np.eye(n)[-1], axis)
     seen = turn.T @ tensor @ turn
     form = top_form((seen + seen.T) / 2)
-    return _seen_from(system, form, turn, plane_rows(system.group, [(i, n - 1) for i in range(n - 1)]))
+    return _seen_from(system, form, turn, top_rows(system.group))
 
 
 def _recognized_sleigh(system: "AbstractLLSystem", tensor: np.ndarray) -> NormalForm | None:
@@ -170,10 +170,7 @@ def _recognized_sleigh(system: "AbstractLLSystem", tensor: np.ndarray) -> Normal
     form = sleigh_form(mass, turn.T @ axis * arm, (about + about.T) / 2)
     if n == 2:  # in the plane the moment of inertia is all that counts
         form = dataclasses.replace(form, coupling=np.zeros(1))
-    slide = np.zeros((1, system.group.dim))
-    slide[0, -n] = 1.0
-    rows = np.concatenate([plane_rows(system.group, [(0, j) for j in range(1, n)]), slide])
-    return _seen_from(system, form, frame, rows)
+    return _seen_from(system, form, frame, sleigh_rows(system.group))
 
 
 def _pass_through(planes: Float[np.ndarray, "k n n"], axis: Float[np.ndarray, "n"]) -> bool:

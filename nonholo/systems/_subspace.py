@@ -54,9 +54,8 @@ def independent_rows(where: str, value: Any, dim: int) -> Float[np.ndarray, "k d
         return rows
     values = np.linalg.svd(rows, compute_uv=False)
     if len(rows) > dim or values[-1] <= _ROUNDING * dim * values[0]:
-        got = (
-            f"{len(rows)} rows with singular values from {values[0]:.3g} (number 1) to {values[-1]:.3g} ({len(values)})"
-        )
+        sizes = f"from {values[0]:.3g} (number 1) to {values[-1]:.3g} ({len(values)})"
+        got = f"{len(rows)} rows with singular values {sizes}"
         raise error(where, "have linearly independent rows", got, "Leave out the rows that others span.")
     return rows
 
@@ -88,7 +87,20 @@ def _refuse_inconsistent(where: str, rows: np.ndarray, covectors: np.ndarray) ->
         raise error(where, "vanish on the constraint subspace", f"a pairing of {residual:.3g}", remedy)
 
 
-def plane_rows(group: AbstractMatrixGroup, planes: list) -> Float[np.ndarray, "k dim"]:
+def top_rows(group: AbstractMatrixGroup) -> Float[np.ndarray, "k dim"]:
+    r"""Return the coordinates of the planes $e_i\wedge e_n$ in which a top on SO(n) may turn."""
+    return _plane_rows(group, [(i, group.size - 1) for i in range(group.size - 1)])
+
+
+def sleigh_rows(group: AbstractMatrixGroup) -> Float[np.ndarray, "n dim"]:
+    r"""Return the coordinates of the planes $e_1\wedge e_j$, then of the velocity along $e_1$, of a sleigh on SE(n)."""
+    n = group.size - 1
+    along = np.zeros((1, group.dim))
+    along[0, -n] = 1.0
+    return np.concatenate([_plane_rows(group, [(0, j) for j in range(1, n)]), along])
+
+
+def _plane_rows(group: AbstractMatrixGroup, planes: list) -> Float[np.ndarray, "k dim"]:
     r"""Return the coordinates of $e_i\wedge e_j = e_ie_j^T - e_je_i^T$ for pairs (i, j) counted from 0."""
     narrow(f"Full vectors of {group}", group.dim)
     wedge = np.zeros((len(planes), group.size, group.size))

@@ -15,7 +15,8 @@ from typer.testing import Result
 
 import nonholo as nh
 from nonholo import plotting
-from nonholo.cli.commands import _caches, _running
+from nonholo.cli import _caches
+from nonholo.cli.commands import _running
 from nonholo.cli.scenario.files import load_scenario
 from nonholo.simulation.stores import _stored_run
 

@@ -8,7 +8,7 @@ import typer
 
 from nonholo.base.progress import waiting
 from nonholo.cli.commands._running import Ran, check_output, run_and_keep
-from nonholo.cli.scenario.files import Loaded, Setting, load_scenario, parse_setting
+from nonholo.cli.scenario.files import Loaded, given_settings, load_scenario
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, scenario_errors, store_errors
 from nonholo.cli.screen.pictures import beside, draw, warn_of_older
 from nonholo.cli.screen.report import as_json, duration, figures, show
@@ -27,8 +27,7 @@ def simulate_and_keep(
 ) -> None:
     """Load, run, save, draw, report; options of the command line come before the settings of `--set`."""
     with scenario_errors(), reporting_warnings():
-        given = [Setting(f"{opt} {value}", key, value) for key, (opt, value) in chosen.items() if value is not None]
-        loaded = load_scenario(name, given + [parse_setting(text) for text in settings])
+        loaded = load_scenario(name, given_settings(chosen, settings))
     with store_errors(USAGE):
         check_output(output, overwrite=overwrite)
     shown = sys.stderr.isatty() and not quiet

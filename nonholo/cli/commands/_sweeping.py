@@ -12,7 +12,7 @@ import xarray
 
 from nonholo.cli.commands._resuming import reporting_stops
 from nonholo.cli.commands._running import at_free_path, check_output
-from nonholo.cli.scenario.files import Loaded, Setting, parse_setting
+from nonholo.cli.scenario.files import Loaded, given_settings
 from nonholo.cli.scenario.problems import ScenarioError, problem_of_value
 from nonholo.cli.scenario.sweep_files import load_sweep_scenario, sweep_text
 from nonholo.cli.scenario.sweeps import SweepScenario
@@ -36,14 +36,13 @@ def sweep_and_keep(
 ) -> None:
     """Load, run, draw, report; options of the command line come before the settings of `--set`."""
     with scenario_errors(), reporting_warnings():
-        given = [_setting(option, key, value) for key, (option, value) in chosen.items() if value is not None]
-        loaded = load_sweep_scenario(name, given + [parse_setting(text) for text in settings])
+        loaded = load_sweep_scenario(name, given_settings(chosen, settings))
         task = _task(loaded)
     if output is not None and output.exists():
         leave(f"'{output}' exists. Choose another path, or resume what it holds: nonholo resume {output}", USAGE)
     with store_errors(USAGE):
         check_output(output, overwrite=False)
-    text, begun = sweep_text(loaded.scenario.in_force(task)), time.perf_counter()
+    text, begun = sweep_text(loaded.scenario.in_force(task.discrete)), time.perf_counter()
     design, shown = loaded.scenario.design.design(), sys.stderr.isatty() and not quiet
     run = functools.partial(sweep, task, design, scheduler=scheduler, workers=workers, progress=shown, scenario=text)
     with store_errors(USAGE):
@@ -57,13 +56,6 @@ def sweep_and_keep(
     else:
         show_sweep(store, figures, {"title": loaded.scenario.title or loaded.name}, {"picture": picture}, json=json)
     leave_if_all_raised(figures)
-
-
-def _setting(option: str, key: str, value: Any) -> Setting:
-    """Return an option as a setting; 1e6 members are a whole number."""
-    if isinstance(value, float) and value.is_integer():
-        value = int(value)
-    return Setting(f"{option} {value}", key, value)
 
 
 def _task(loaded: Loaded[SweepScenario]) -> EnsembleTask:

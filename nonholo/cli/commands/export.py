@@ -28,9 +28,6 @@ def export(
     nonholo export runs/sleigh-001.zarr -o sleigh.csv
     nonholo export run.zarr --every 100 | head
     """
-    from nonholo.cli.commands._caches import use_cache_folder
-
-    use_cache_folder()
     from nonholo.cli.screen.errors import FAILED, USAGE, reporting_warnings, store_errors
     from nonholo.io import SWEEP_FORMAT, check_file, format_of, read_attributes, store_to_csv
 

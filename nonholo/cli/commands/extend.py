@@ -4,7 +4,8 @@ from typing import Annotated
 
 import typer
 
-from nonholo.cli.commands.resume import Json, Store
+from nonholo.cli.commands.resume import Store
+from nonholo.cli.commands.simulate import Json
 
 
 def extend(
@@ -16,9 +17,6 @@ def extend(
 
     nonholo extend run.zarr --steps 1000000
     """
-    from nonholo.cli.commands._caches import use_cache_folder
-
-    use_cache_folder()
     from nonholo import io
     from nonholo.cli.commands._resuming import continue_and_report
     from nonholo.cli.screen.errors import USAGE, leave

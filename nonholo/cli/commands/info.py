@@ -18,9 +18,6 @@ def info(
     nonholo info runs/suslov-001.zarr
     nonholo info runs/suslov-001.zarr --scenario > again.toml
     """
-    from nonholo.cli.commands._caches import use_cache_folder
-
-    use_cache_folder()
     from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
     from nonholo.cli.screen.provenance import show_provenance, show_standing, show_sweep_standing
     from nonholo.ensembles.stores import attributes_of

@@ -25,9 +25,6 @@ def paper(
     nonholo paper
     nonholo paper -o part --only sus_int --only st
     """
-    from nonholo.cli.commands._caches import use_cache_folder
-
-    use_cache_folder()
     import sys
 
     from nonholo.base.checks import needs

@@ -28,9 +28,6 @@ def plot(
     nonholo plot runs/sleigh-001.zarr --gif
     nonholo plot sweep.zarr --color outcome --x body.a --y run.time_step
     """
-    from nonholo.cli.commands._caches import use_cache_folder
-
-    use_cache_folder()
     from nonholo import io
     from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
     from nonholo.cli.screen.pictures import beside

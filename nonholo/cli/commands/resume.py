@@ -5,13 +5,13 @@ from typing import Annotated
 
 import typer
 
+from nonholo.cli.commands.simulate import Json
 from nonholo.cli.commands.sweep import Scheduler, Workers
 
 Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by sweep, or by simulate(..., store=...).")]
 Trust = Annotated[
     bool, typer.Option("--trust", help="Import the functions that the store of a sweep names, with your rights.")
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of the table.")]
 
 
 def resume(
@@ -28,9 +28,6 @@ def resume(
     nonholo resume run.zarr
     nonholo resume sweep.zarr --workers 4
     """
-    from nonholo.cli.commands._caches import use_cache_folder
-
-    use_cache_folder()
     from nonholo import io
     from nonholo.cli.commands._resuming import continue_and_report, resume_sweep
     from nonholo.ensembles import resume as continued

@@ -46,9 +46,6 @@ def simulate(
     nonholo simulate my.toml --set 'start={momentum=[0.1, 1.0]}'
     nonholo simulate my.toml -o study/first.zarr --json
     """
-    from nonholo.cli.commands._caches import use_cache_folder
-
-    use_cache_folder()
     from nonholo.cli.commands._simulating import simulate_and_keep
 
     chosen = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}

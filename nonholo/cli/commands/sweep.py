@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from nonholo.cli.commands.simulate import Json, Quiet, Settings
+
 Scenario = Annotated[
     str, typer.Argument(metavar="SCENARIO", help="A TOML file; `nonholo new sweep` writes one, with comments.")
 ]
@@ -20,12 +22,7 @@ Scheduler = Annotated[
     typer.Option(metavar="HOW", help="threads (default), processes, or tcp://HOST:PORT of a Dask scheduler."),
 ]
 Workers = Annotated[int | None, typer.Option(metavar="N", min=1, help="Threads or processes; by default one a core.")]
-Settings = Annotated[
-    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any value, in TOML; repeatable.")
-]
 Plot = Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a map beside the store.")]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of the table.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print only the path of the store.")]
 
 
 def sweep(
@@ -60,12 +57,10 @@ def sweep(
     nonholo sweep my.toml --scheduler tcp://127.0.0.1:8786
     nonholo resume large.zarr               resume one that stopped
     """
-    from nonholo.cli.commands._caches import use_cache_folder
-
-    use_cache_folder()
     from nonholo.cli.commands._sweeping import sweep_and_keep
 
-    chosen = {"design.members": ("--members", members), "output.plot": ("--plot", plot)}
+    whole = int(members) if members is not None and members.is_integer() else members  # 1e6 is a whole number
+    chosen = {"design.members": ("--members", whole), "output.plot": ("--plot", plot)}
     sweep_and_keep(
         scenario, chosen, settings or [], output, scheduler=scheduler, workers=workers, json=json, quiet=quiet
     )

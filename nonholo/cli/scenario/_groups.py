@@ -3,9 +3,10 @@
 import re
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import AfterValidator, Discriminator, Tag
+from pydantic import Discriminator, Tag
 
-from nonholo.cli.scenario.sections import Matrix, Section
+import nonholo
+from nonholo.cli.scenario.sections import Matrix, Section, checked_by
 
 if TYPE_CHECKING:
     from nonholo.groups import AbstractMatrixGroup
@@ -30,29 +31,20 @@ def group_of(given: str | GroupTable) -> "AbstractMatrixGroup":
         >>> group_of("SE(2) x Translations(2)")
         ProductGroup(SE(2), Translations(2))
     """
-    from nonholo.groups import MatrixGroup, ProductGroup
-
     if isinstance(given, GroupTable):
-        return MatrixGroup(given.basis, given.form)
+        return nonholo.MatrixGroup(given.basis, given.form)
     factors = [_factor(name.strip()) for name in given.split(" x ")]
-    return factors[0] if len(factors) == 1 else ProductGroup(*factors)
+    return factors[0] if len(factors) == 1 else nonholo.ProductGroup(*factors)
 
 
 def _factor(name: str) -> "AbstractMatrixGroup":
-    from nonholo import groups
-
     found = _NAME.fullmatch(name)
     try:
         if found:
-            return getattr(groups, found[1])(int(found[2]))
+            return getattr(nonholo, found[1])(int(found[2]))
     except ValueError:
         pass
     raise ValueError(f"{_HOW}. Got {name!r}")
-
-
-def _checked(given: Any) -> Any:
-    group_of(given)
-    return given
 
 
 def _tag(given: Any) -> str:
@@ -60,5 +52,5 @@ def _tag(given: Any) -> str:
 
 
 Group = Annotated[
-    Annotated[str, Tag(NAME)] | Annotated[GroupTable, Tag(TABLE)], Discriminator(_tag), AfterValidator(_checked)
+    Annotated[str, Tag(NAME)] | Annotated[GroupTable, Tag(TABLE)], Discriminator(_tag), checked_by(group_of)
 ]

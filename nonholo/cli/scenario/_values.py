@@ -4,10 +4,10 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
-from pydantic import AfterValidator
-
+import nonholo
 from nonholo.base.checks import is_integer, shown
 from nonholo.base.limits import bounded_count
+from nonholo.cli.scenario.sections import checked_by
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,22 +24,15 @@ _PAIRS = {
 }
 _SIZED = ("normal", "direction", "mass_tensor")
 _NEED_SIZE = {"direction": "vectors", "mass_tensor": "matrices"}
-
-
-def _checked_along(given: Any) -> Any:
-    along(given)
-    return given
-
-
-def _checked_drawn(given: Any) -> Any:
-    drawn(given)
-    return given
-
-
-Along: TypeAlias = Annotated[Any, AfterValidator(_checked_along)]
-"""Values along one axis of a grid."""
-Drawn: TypeAlias = Annotated[Any, AfterValidator(_checked_drawn)]
-"""The distributions that members of a random design draw from."""
+_KINDS: "dict[str, Callable[[Any, Any], AbstractDistribution]]" = {
+    "uniform": lambda bounds, _: nonholo.Uniform(*bounds),
+    "log_uniform": lambda bounds, _: nonholo.LogUniform(*bounds),
+    "normal": lambda moments, size: nonholo.Normal(*moments, size=size),
+    "direction": lambda length, size: nonholo.Direction(size, length),
+    "mass_tensor": lambda bounds, size: nonholo.MassTensor(size, *bounds),
+    "choice": lambda values, _: nonholo.Choice(values),
+}
+"""The distributions by their words, each made of its argument and its size."""
 
 
 def is_range(given: Any) -> bool:
@@ -112,14 +105,13 @@ def drawn(given: Any) -> "AbstractDistribution":
         >>> drawn({"direction": 0.3, "size": 2})
         Direction(size=2, length=0.3)
     """
-    kinds = _distributions()
-    names = [name for name in given if name in kinds] if isinstance(given, dict) else []
+    names = [name for name in given if name in _KINDS] if isinstance(given, dict) else []
     if len(names) != 1:
-        raise ValueError(f"must hold one of {', '.join(kinds)}, as in {{uniform = [0.1, 1.0]}}. Got {given!r}")
+        raise ValueError(f"must hold one of {', '.join(_KINDS)}, as in {{uniform = [0.1, 1.0]}}. Got {given!r}")
     kind = names[0]
     _check_drawn(kind, given)
     try:
-        return kinds[kind](given[kind], given.get("size"))
+        return _KINDS[kind](given[kind], given.get("size"))
     except ValueError as failure:
         raise ValueError(f"{kind}: {str(failure).partition('` ')[2] or failure}") from None
 
@@ -139,21 +131,14 @@ def needs_size(given: Any) -> bool:
     return isinstance(given, dict) and "size" not in given and bool(set(_NEED_SIZE) & set(given))
 
 
-def _distributions() -> "dict[str, Callable[[Any, Any], AbstractDistribution]]":
-    from nonholo import ensembles as kinds
-
-    return {
-        "uniform": lambda bounds, _: kinds.Uniform(*bounds),
-        "log_uniform": lambda bounds, _: kinds.LogUniform(*bounds),
-        "normal": lambda moments, size: kinds.Normal(*moments, size=size),
-        "direction": lambda length, size: kinds.Direction(size, length),
-        "mass_tensor": lambda bounds, size: kinds.MassTensor(size, *bounds),
-        "choice": lambda values, _: kinds.Choice(values),
-    }
-
-
 def _known(given: dict[str, Any], keys: list[str], needed: list[str], example: str) -> None:
     unknown, missing = [key for key in given if key not in keys], [key for key in needed if key not in given]
     if unknown or missing:
         fault = f"without {', '.join(missing)}" if missing else f"with {', '.join(unknown)}"
         raise ValueError(f"must have the keys of {example}. Got a table {fault}")
+
+
+Along: TypeAlias = Annotated[Any, checked_by(along)]
+"""Values along one axis of a grid."""
+Drawn: TypeAlias = Annotated[Any, checked_by(drawn)]
+"""The distributions that members of a random design draw from."""

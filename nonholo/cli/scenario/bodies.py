@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, get_args
 
 from pydantic import model_validator
 
+import nonholo
 from nonholo.cli.scenario._groups import Group, group_of
 from nonholo.cli.scenario.sections import Matrix, Number, Positive, Section, Vector, exactly_one
 
@@ -43,11 +44,11 @@ class SuslovBody(AbstractBody):
 
     def system(self) -> "System":
         """Return the top."""
-        from nonholo.systems import SuslovTop
-
         if self.inertia is not None:
-            return SuslovTop.from_inertia(self.inertia, axis=(0.0, 0.0, 1.0) if self.axis is None else self.axis)
-        return SuslovTop(self.mass_tensor, axis=self.axis)
+            return nonholo.SuslovTop.from_inertia(
+                self.inertia, axis=(0.0, 0.0, 1.0) if self.axis is None else self.axis
+            )
+        return nonholo.SuslovTop(self.mass_tensor, axis=self.axis)
 
 
 class SleighBody(AbstractBody):
@@ -61,9 +62,7 @@ class SleighBody(AbstractBody):
 
     def system(self) -> "System":
         """Return the sleigh."""
-        from nonholo.systems import ChaplyginSleigh
-
-        return ChaplyginSleigh(self.mass, self.inertia, self.a, self.b)
+        return nonholo.ChaplyginSleigh(self.mass, self.inertia, self.a, self.b)
 
 
 class MultidimensionalSleighBody(AbstractBody):
@@ -76,9 +75,7 @@ class MultidimensionalSleighBody(AbstractBody):
 
     def system(self) -> "System":
         """Return the sleigh."""
-        from nonholo.systems import MultidimensionalSleigh
-
-        return MultidimensionalSleigh(self.mass, self.center_of_mass, self.mass_tensor)
+        return nonholo.MultidimensionalSleigh(self.mass, self.center_of_mass, self.mass_tensor)
 
 
 class RigidBodyBody(AbstractBody):
@@ -90,9 +87,7 @@ class RigidBodyBody(AbstractBody):
 
     def system(self) -> "System":
         """Return the body."""
-        from nonholo.systems import RigidBody
-
-        return RigidBody(self.mass_tensor, None if self.group is None else group_of(self.group))
+        return nonholo.RigidBody(self.mass_tensor, None if self.group is None else group_of(self.group))
 
 
 class VeselovaBody(AbstractBody):
@@ -103,9 +98,7 @@ class VeselovaBody(AbstractBody):
 
     def system(self) -> "System":
         """Return the top."""
-        from nonholo.systems import VeselovaTop
-
-        return VeselovaTop(self.mass_tensor)
+        return nonholo.VeselovaTop(self.mass_tensor)
 
 
 class LeftInvariantBody(AbstractBody):
@@ -124,14 +117,12 @@ class LeftInvariantBody(AbstractBody):
 
     def system(self) -> "System":
         """Return the system."""
-        from nonholo.systems import LLSystem
-
-        energy: dict[str, Any] = {"mass_tensor": self.mass_tensor, "inertia_operator": self.inertia_operator}
-        return LLSystem(
+        return nonholo.LLSystem(
             group_of(self.group),
-            constraint_subspace=self.constraint_subspace,
+            self.mass_tensor,
+            self.constraint_subspace,
             annihilator=self.annihilator,
-            **energy,
+            inertia_operator=self.inertia_operator,
         )
 
 
@@ -147,10 +138,8 @@ class RightInvariantBody(AbstractBody):
 
     def system(self) -> "System":
         """Return the system."""
-        from nonholo.systems import LRSystem
-
         given: Any = (self.mass_tensor, self.constraint_subspace)
-        return LRSystem(group_of(self.group), *given, annihilator=self.annihilator)
+        return nonholo.LRSystem(group_of(self.group), *given, annihilator=self.annihilator)
 
 
 AnyBody = (

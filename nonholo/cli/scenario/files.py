@@ -63,6 +63,12 @@ def checked(
         raise ScenarioError(problems_of(failure, model, source, options)) from None
 
 
+def given_settings(chosen: dict[str, tuple[str, Any]], texts: list[str]) -> list[Setting]:
+    """Return the settings of a command line: its options by key path, those that are given, then those of `--set`."""
+    given = [Setting(f"{option} {value}", key, value) for key, (option, value) in chosen.items() if value is not None]
+    return given + [parse_setting(text) for text in texts]
+
+
 def parse_setting(text: str) -> Setting:
     """Read KEY=VALUE with a dotted key and a TOML value.
 

@@ -4,12 +4,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
+import nonholo
 from nonholo.cli.scenario.bodies import AnyBody
 from nonholo.cli.scenario.sections import Count, Matrix, Positive, Section, Vector, exactly_one
 
 if TYPE_CHECKING:
     from nonholo.discrete import Discretization
-    from nonholo.systems import System
 
 
 class Start(Section):
@@ -38,16 +38,6 @@ class Run(Section):
     order: Literal[2, 4, 6, 8] = 2
     branch: Literal["principal", "nearest", "smallest", "largest", "inner", "outer"] = "principal"
 
-    def discretized(self, system: "System") -> "Discretization":
-        """Return a discretized system."""
-        from nonholo.discrete import discretize
-
-        return discretize(system, self.time_step, self.difference, self.constraint, self.order)
-
-    def in_force(self, discrete: "Discretization") -> Self:
-        """Return the run with the library's choices of difference and constraint written out."""
-        return self.model_copy(update={"difference": discrete.difference, "constraint": discrete.constraint})
-
 
 class Output(Section):
     """The picture beside the store."""
@@ -56,22 +46,29 @@ class Output(Section):
     gif: bool = False
 
 
-class Scenario(Section):
-    """A whole scenario."""
+class AbstractScenario(Section):
+    """The tables that scenarios of one motion and of sweeps share."""
 
     title: str = ""
     body: Annotated[AnyBody, Field(discriminator="kind")]
     start: Start
     run: Run
-    output: Output = Output()
 
     def discretization(self) -> "Discretization":
         """Return the discretized body."""
-        return self.run.discretized(self.body.system())
+        run = self.run
+        return nonholo.discretize(self.body.system(), run.time_step, run.difference, run.constraint, run.order)
 
     def in_force(self, discrete: "Discretization") -> Self:
-        """Return the scenario with the library's choices written out."""
-        return self.model_copy(update={"run": self.run.in_force(discrete)})
+        """Return the scenario with the library's choices of difference and constraint written out."""
+        chosen = {"difference": discrete.difference, "constraint": discrete.constraint}
+        return self.model_copy(update={"run": self.run.model_copy(update=chosen)})
+
+
+class Scenario(AbstractScenario):
+    """A whole scenario."""
+
+    output: Output = Output()
 
     def options(self) -> dict[str, Any]:
         """Return the arguments of `simulate`."""

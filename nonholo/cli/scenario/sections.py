@@ -1,14 +1,25 @@
 """The parts of every table of a scenario: checked numbers, no unknown keys, one of several keys."""
 
-from typing import Annotated
+from collections.abc import Callable
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Count = Annotated[int, Field(gt=0, le=10**15)]
 Vector = list[Number]
 Matrix = list[Vector]
+
+
+def checked_by(make: Callable[[Any], object]) -> AfterValidator:
+    """Return the check of a value that stays as it is written, but of which something can be made."""
+
+    def check(given: Any) -> Any:
+        make(given)
+        return given
+
+    return AfterValidator(check)
 
 
 class Section(BaseModel):

@@ -2,27 +2,28 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal, Self, TypeVar
 
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
+import nonholo
 from nonholo.cli.scenario._values import Along, Drawn, along, drawn, is_range
-from nonholo.cli.scenario.bodies import AnyBody
-from nonholo.cli.scenario.motion import Run, Start
-from nonholo.cli.scenario.sections import Count, Section
+from nonholo.cli.scenario.motion import AbstractScenario
+from nonholo.cli.scenario.sections import Count, Section, checked_by
 
 if TYPE_CHECKING:
     from nonholo.ensembles import EnsembleTask, Grid, RandomDesign
 
 Seed = Annotated[int, Field(ge=0, lt=2**63)]
+Given = TypeVar("Given")
 
 
-class GridValues(Section):
-    """Values along the axes of a grid, by table and key."""
+class Values(Section, Generic[Given]):
+    """What is varied, by table and key: values along the axes of a grid, or distributions."""
 
-    body: dict[str, Along] = Field(default_factory=dict)
-    start: dict[str, Along] = Field(default_factory=dict)
-    run: dict[str, Along] = Field(default_factory=dict)
+    body: dict[str, Given] = Field(default_factory=dict)
+    start: dict[str, Given] = Field(default_factory=dict)
+    run: dict[str, Given] = Field(default_factory=dict)
 
 
 class GridDesign(Section):
@@ -31,7 +32,7 @@ class GridDesign(Section):
     kind: Literal["grid"]
     members: Count | None = None
     seed: Seed = 0
-    values: GridValues
+    values: Values[Along]
 
     def scaled(self) -> Self:
         """Return the design with the counts of its ranges multiplied by one factor, for the members asked for."""
@@ -45,21 +46,11 @@ class GridDesign(Section):
         factor = (self.members / whole) ** (1 / len(ranges))
         for given in ranges:
             given["count"] = max(1, round(given["count"] * factor))
-        return self.model_copy(update={"members": None, "values": GridValues.model_validate(values)})
+        return self.model_copy(update={"members": None, "values": Values[Along].model_validate(values)})
 
     def design(self) -> "Grid":
         """Return the design under the names of the library."""
-        from nonholo.ensembles import Grid
-
-        return Grid({name: along(given) for name, given in named(self.values)}, seed=self.seed)
-
-
-class RandomValues(Section):
-    """Distributions, by table and key."""
-
-    body: dict[str, Drawn] = Field(default_factory=dict)
-    start: dict[str, Drawn] = Field(default_factory=dict)
-    run: dict[str, Drawn] = Field(default_factory=dict)
+        return nonholo.Grid({name: along(given) for name, given in named(self.values)}, seed=self.seed)
 
 
 class RandomMembers(Section):
@@ -68,7 +59,7 @@ class RandomMembers(Section):
     kind: Literal["random"]
     members: Count
     seed: Seed = 0
-    values: RandomValues
+    values: Values[Drawn]
 
     def scaled(self) -> Self:
         """Return the design itself: it has the members asked for."""
@@ -76,24 +67,21 @@ class RandomMembers(Section):
 
     def design(self) -> "RandomDesign":
         """Return the design under the names of the library."""
-        from nonholo.ensembles import RandomDesign
-
         drawings = {name: drawn(given) for name, given in named(self.values)}
-        return RandomDesign(self.members, drawings, seed=self.seed)
+        return nonholo.RandomDesign(self.members, drawings, seed=self.seed)
 
 
 DESIGNS: dict[str, type[Section]] = {"grid": GridDesign, "random": RandomMembers}
 
 
-def _reduction(name: str) -> str:
+def _check_reduction(name: str) -> None:
     from nonholo.ensembles import REDUCTIONS
 
     if name not in REDUCTIONS:
         raise ValueError(f"must be one of {', '.join(REDUCTIONS)}. Got {name!r}")
-    return name
 
 
-Reduction = Annotated[str, AfterValidator(_reduction)]
+Reduction = Annotated[str, checked_by(_check_reduction)]
 
 
 class Keep(Section):
@@ -112,31 +100,21 @@ class SweepOutput(Section):
     y: str | None = None
 
 
-class SweepScenario(Section):
+class SweepScenario(AbstractScenario):
     """The scenario of a sweep."""
 
-    title: str = ""
-    body: Annotated[AnyBody, Field(discriminator="kind")]
-    start: Start
-    run: Run
     design: Annotated[GridDesign | RandomMembers, Field(discriminator="kind")]
     keep: Keep = Keep()
     output: SweepOutput = SweepOutput()
 
     def task(self) -> "EnsembleTask":
         """Return what is done with every member."""
-        from nonholo.ensembles import EnsembleTask
-
         start: Any = self.start.model_dump(exclude_none=True)
         options: Any = {"reductions": self.keep.reductions, "reconstruct": self.keep.poses}
-        return EnsembleTask(self.run.discretized(self.body.system()), steps=self.run.steps, **start, **options)
-
-    def in_force(self, task: "EnsembleTask") -> Self:
-        """Return the scenario with the library's choices written out."""
-        return self.model_copy(update={"run": self.run.in_force(task.discrete)})
+        return nonholo.EnsembleTask(self.discretization(), steps=self.run.steps, **start, **options)
 
 
-def named(values: GridValues | RandomValues) -> Iterator[tuple[str, Any]]:
+def named(values: Values) -> Iterator[tuple[str, Any]]:
     """Yield the entries of a design under the names of the library, which are those of the keys."""
     for table in (values.body, values.start, values.run):
         yield from table.items()

@@ -8,13 +8,13 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo.base.checks import array, count, error, natural, shape_of, shown
+from nonholo.base.checks import count, error, natural, shown
 from nonholo.base.types import Float
 from nonholo.ensembles._names import OUTCOME, array_name, component_name, stream_name
-from nonholo.ensembles.designs._distributions import AbstractDistribution
+from nonholo.ensembles.designs._distributions import AbstractDistribution, listed
 from nonholo.ensembles.designs._uniform import uniform_numbers
 
-_REMEDY = "Pass a dictionary of names to"
+_REMEDY, _SEED = "Pass a dictionary of names to", "Pass 0, 1, 2, ..."
 Values = dict[str, np.ndarray]
 
 
@@ -73,16 +73,19 @@ class Grid(AbstractDesign):
     def __init__(self, axes: Any, seed: int = 0) -> None:
         if not isinstance(axes, Mapping) or not axes:
             raise error("Grid(axes=...)", "be a mapping of names to values", shown(axes), f"{_REMEDY} values.")
-        kept = {name: _along(name, axes[given]) for name, given in _named("Grid(axes=...)", axes).items()}
+        kept = {
+            name: listed(f"Grid({{{name!r}: ...}})", axes[given])
+            for name, given in _named("Grid(axes=...)", axes).items()
+        }
         if len({axis_dimension(name, values) for name, values in kept.items()}) < len(kept):
-            raise error(
-                "Grid(axes=...)", "have other names than its vectors and matrices", ", ".join(kept), "Rename one."
-            )
+            requirement = "have other names than its vectors and matrices"
+            raise error("Grid(axes=...)", requirement, ", ".join(kept), "Rename one.")
         object.__setattr__(self, "values_along", kept)
-        object.__setattr__(self, "seed", _seed("Grid(seed=...)", seed))
+        object.__setattr__(self, "seed", natural("Grid(seed=...)", seed, _SEED))
 
     def __repr__(self) -> str:
-        return f"<Grid of {self.members} members: {_times(self.sizes)}>"
+        sizes = " x ".join(f"{size} {name}" for name, size in self.sizes.items())
+        return f"<Grid of {self.members} members: {sizes}>"
 
     @property
     def sizes(self) -> dict[str, int]:
@@ -129,7 +132,7 @@ class RandomDesign(AbstractDesign):
                 raise error(f"RandomDesign({{{name!r}: ...}})", "be a distribution", shown(value), remedy)
         object.__setattr__(self, "count", count("RandomDesign(members=...)", members, "Pass how many."))
         object.__setattr__(self, "distributions", {name: distributions[given] for name, given in named.items()})
-        object.__setattr__(self, "seed", _seed("RandomDesign(seed=...)", seed))
+        object.__setattr__(self, "seed", natural("RandomDesign(seed=...)", seed, _SEED))
 
     def __repr__(self) -> str:
         drawn = ", ".join(f"{name} {value!r}" for name, value in self.distributions.items())
@@ -175,14 +178,6 @@ def axis_dimensions(name: str, values: Float[np.ndarray, "count ..."]) -> tuple[
     return (axis_dimension(name, values), *(f"{name}_{axis}" for axis in range(1, values.ndim)))
 
 
-def _along(name: str, values: Any) -> np.ndarray:
-    where = f"Grid({{{name!r}: ...}})"
-    checked = array(where, values, (None,) * max(1, len(shape_of(values))), "Pass a list of values.")
-    if not len(checked):
-        raise error(where, "hold at least one value", "none", "Pass a list of values.")
-    return checked
-
-
 def _named(where: str, given: Mapping[Any, Any]) -> dict[str, str]:
     """Return the given names by those of the result, refused if two are one."""
     named = {component_name(array_name(where, name)): name for name in given}
@@ -191,11 +186,3 @@ def _named(where: str, given: Mapping[Any, Any]) -> dict[str, str]:
     if len(named) < len(given):
         raise error(where, "name each value once", ", ".join(given), "Leave one out.")
     return named
-
-
-def _seed(where: str, seed: Any) -> int:
-    return natural(where, seed, "Pass 0, 1, 2, ...")
-
-
-def _times(sizes: dict[str, int]) -> str:
-    return " x ".join(f"{size} {name}" for name, size in sizes.items())

@@ -2,6 +2,7 @@
 
 import abc
 import dataclasses
+import math
 from typing import Any
 
 import numpy as np
@@ -18,9 +19,9 @@ class AbstractDistribution(abc.ABC):
     """A distribution of numbers, vectors or matrices."""
 
     @property
-    @abc.abstractmethod
     def width(self) -> int:
-        """Uniform numbers that one draw takes."""
+        """Uniform numbers that one draw takes: by default one for each of its numbers."""
+        return math.prod(self.shape)
 
     @property
     @abc.abstractmethod
@@ -33,27 +34,28 @@ class AbstractDistribution(abc.ABC):
 
 
 @dataclasses.dataclass(frozen=True)
-class Uniform(AbstractDistribution):
+class AbstractBounded(AbstractDistribution):
+    """Numbers between two bounds, or vectors of them if the bounds are vectors."""
+
+    low: Any
+    high: Any
+
+    def __post_init__(self) -> None:
+        _bounds(self)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return np.shape(self.low)
+
+
+@dataclasses.dataclass(frozen=True)
+class Uniform(AbstractBounded):
     """Numbers between two bounds, or vectors of them if the bounds are vectors.
 
     Example:
         >>> Uniform(1.0, 3.0).draw(np.array([[0.0], [0.5]]))
         array([1., 2.])
     """
-
-    low: Any
-    high: Any
-
-    def __post_init__(self) -> None:
-        _bounds(self, "Uniform")
-
-    @property
-    def width(self) -> int:
-        return int(np.size(self.low))
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        return np.shape(self.low)
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
         """Return draws, one for each row of uniform numbers."""
@@ -62,7 +64,7 @@ class Uniform(AbstractDistribution):
 
 
 @dataclasses.dataclass(frozen=True)
-class LogUniform(AbstractDistribution):
+class LogUniform(AbstractBounded):
     """Positive numbers whose logarithms lie evenly between those of two bounds.
 
     Example:
@@ -70,21 +72,10 @@ class LogUniform(AbstractDistribution):
         array([1.])
     """
 
-    low: Any
-    high: Any
-
     def __post_init__(self) -> None:
-        _bounds(self, "LogUniform")
+        super().__post_init__()
         if not np.min(self.low) > 0:
             raise error("LogUniform(low=...)", "be positive", f"{self.low}", "Pass positive bounds, or use Uniform.")
-
-    @property
-    def width(self) -> int:
-        return int(np.size(self.low))
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        return np.shape(self.low)
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
         """Return draws, one for each row of uniform numbers."""
@@ -113,10 +104,6 @@ class Normal(AbstractDistribution):
             bounded_count("Normal(size=...)", self.size, 8.0, "Pass the length of the vectors.")
 
     @property
-    def width(self) -> int:
-        return 1 if self.size is None else self.size
-
-    @property
     def shape(self) -> tuple[int, ...]:
         return () if self.size is None else (self.size,)
 
@@ -140,10 +127,6 @@ class Direction(AbstractDistribution):
     def __post_init__(self) -> None:
         bounded_count("Direction(size=...)", self.size, 8.0, "Pass the length of the vectors.")
         object.__setattr__(self, "length", float(positive("Direction(length=...)", self.length, "Pass their norm.")))
-
-    @property
-    def width(self) -> int:
-        return self.size
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -172,7 +155,7 @@ class MassTensor(AbstractDistribution):
     def __post_init__(self) -> None:
         n = count("MassTensor(n=...)", self.n, "Pass the dimension of the body.")
         within_memory("MassTensor(n=...)", 24.0 * n * n, "Pass a smaller n.")
-        _bounds(self, "MassTensor")
+        _bounds(self)
         if np.ndim(self.low) or not self.low > 0:
             raise error("MassTensor(low=...)", "be one positive number", f"{self.low}", "Pass the least eigenvalue.")
 
@@ -206,11 +189,7 @@ class Choice(AbstractDistribution):
     values: Any
 
     def __post_init__(self) -> None:
-        shape = (None,) * max(1, len(shape_of(self.values)))
-        checked = array("Choice(values=...)", self.values, shape, "Pass a list of values.")
-        if not len(checked):
-            raise error("Choice(values=...)", "hold at least one value", "none", "Pass a list of values.")
-        object.__setattr__(self, "values", checked.tolist())
+        object.__setattr__(self, "values", listed("Choice(values=...)", self.values).tolist())
 
     @property
     def width(self) -> int:
@@ -228,9 +207,18 @@ class Choice(AbstractDistribution):
 DISTRIBUTIONS = {kind.__name__: kind for kind in (Uniform, LogUniform, Normal, Direction, MassTensor, Choice)}
 
 
-def _bounds(owner: Any, name: str) -> None:
+def listed(where: str, values: Any) -> Float[np.ndarray, "count ..."]:
+    """Return a list of numbers, vectors or matrices, at least one, as an array."""
+    remedy = "Pass a list of values."
+    checked = array(where, values, (None,) * max(1, len(shape_of(values))), remedy)
+    if not len(checked):
+        raise error(where, "hold at least one value", "none", remedy)
+    return checked
+
+
+def _bounds(owner: Any) -> None:
     """Check and keep two bounds of one shape as plain numbers, which are written to stores exactly."""
-    remedy = "Pass numbers, or vectors of one length."
+    name, remedy = type(owner).__name__, "Pass numbers, or vectors of one length."
     low, high = (trailing(f"{name}({side}=...)", getattr(owner, side), (), remedy) for side in ("low", "high"))
     for side, bound in (("low", low), ("high", high)):
         if not bound.size:

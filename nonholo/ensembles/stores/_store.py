@@ -301,7 +301,7 @@ def attributes_of(path: str | Path) -> dict[str, Any]:
 def _create_arrays(group: zarr.Group, design: Design, layout: Layout, outputs: dict[str, Output]) -> None:
     for name, values in design.axes.items():
         variable = xarray.Variable(axis_dimensions(name, values), values, _AXIS)
-        io.create_array(group, name, variable, len(values), len(values), is_coordinate=True)[:] = values
+        io.create_array(group, name, variable, len(values), len(values))[:] = values
     for name, output in outputs.items():
         group.create_array(
             name,

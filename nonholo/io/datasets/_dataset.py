@@ -7,7 +7,7 @@ from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.io._attributes import attributes
 from nonholo.io.datasets._pose_variables import pose_variables
-from nonholo.orbit import Orbit
+from nonholo.orbit import STATES, Orbit
 from nonholo.systems import System
 
 CANONICAL = "canonical/"
@@ -75,9 +75,11 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
     """
     wanted = (*_KNOWN, *_MATRICES) if decoded else tuple(_KNOWN)
     known = {name: _variable(orbit, name) for name in wanted if _is_known(orbit, name)}
-    found = _time(orbit) | known | _posed(orbit, None)
+    found = {"time": _variable(orbit, "time")} | known | _posed(orbit, None)
     if decoded and _has_multipliers(orbit):
-        found["multipliers"] = _variable(orbit, "multipliers", _padded(orbit.multipliers, len(orbit)))
+        rows = orbit.multipliers
+        missing = np.full((len(orbit) - len(rows), rows.shape[1]), np.nan)
+        found["multipliers"] = _variable(orbit, "multipliers", np.concatenate([rows, missing]))
     return xarray.Dataset(found, attrs=attributes(orbit)).set_coords("time")
 
 
@@ -92,13 +94,15 @@ def stored_variables(
         older: Whether the store is of a schema below 3, which had compact states and energies alone.
     """
     compact = {
-        ("" if older else CANONICAL) + name: _variable(orbit, name, value)
-        for name, value in zip(_COMPACT, _states(orbit), strict=True)
-        if value is not None
+        ("" if older else CANONICAL) + name: _variable(orbit, name, getattr(orbit, state))
+        for name, state in zip(_COMPACT, STATES[1:], strict=True)
+        if getattr(orbit, state) is not None
     }
     names = [name for name in (_STORED[:1] if older else _STORED) if _is_known(orbit, name)]
-    known = {name: _variable(orbit, name) for name in names}
-    return _time(orbit) | known | ({} if older else _posed(orbit, before)) | compact
+    known = {name: _variable(orbit, name) for name in names} | ({} if older else _posed(orbit, before))
+    for variable in known.values():
+        variable.attrs["coordinates"] = "time"  # those of the group canonical need none
+    return {"time": _variable(orbit, "time")} | known | compact
 
 
 def is_known(system: System, name: str, *, posed: bool, discrete: bool) -> bool:
@@ -122,14 +126,6 @@ def _is_known(orbit: Orbit, name: str) -> bool:
     return is_known(orbit.system, name, posed=orbit.canonical_pose is not None, discrete=orbit.cayley is not None)
 
 
-def _states(orbit: Orbit) -> tuple[np.ndarray | None, ...]:
-    return orbit.reduced_momentum, orbit.cayley, orbit.canonical_pose, orbit.turned
-
-
-def _time(orbit: Orbit) -> dict[str, xarray.Variable]:
-    return {"time": _variable(orbit, "time")}
-
-
 def _posed(orbit: Orbit, before: np.ndarray | None) -> dict[str, xarray.Variable]:
     if orbit.canonical_pose is None or orbit.canonical_pose.shape[1] > _MOST:
         return {}
@@ -142,10 +138,6 @@ def _has_multipliers(orbit: Orbit) -> bool:
     motion = orbit.motion
     single = not isinstance(motion, Discretization) or (motion.order == 2 and orbit.save_every == 1)
     return single and len(orbit) > 0 and _is_known(orbit, "momentum")
-
-
-def _padded(rows: np.ndarray, count: int) -> np.ndarray:
-    return np.concatenate([rows, np.full((count - len(rows), rows.shape[1]), np.nan)])
 
 
 def _variable(orbit: Orbit, name: str, values: np.ndarray | None = None) -> xarray.Variable:

@@ -1,20 +1,13 @@
-"""The discrete map on a group: a system with a time step, its run, one step and the decoding."""
+"""The discrete map on a group: a system with a time step, and its run."""
 
 import dataclasses
-import functools
 from typing import Any
 
-import jax
-import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.results import Outcome, finished
-from nonholo.base.types import Array
-from nonholo.lagrange_dalembert._blocks import State, checked_counts, decoded, run
-from nonholo.lagrange_dalembert._newton import root
 from nonholo.lagrange_dalembert._precision import in_double
+from nonholo.lagrange_dalembert._simulate import Start, checked_counts, set_out, simulated
 from nonholo.lagrange_dalembert._start import fixed_time_step
-from nonholo.lagrange_dalembert.on_groups import _equations as equations
 from nonholo.lagrange_dalembert.on_groups import _start as start
 from nonholo.lagrange_dalembert.on_groups._orbit import GroupOrbit
 from nonholo.lagrange_dalembert.on_groups._system import GroupLagrangeDAlembert
@@ -93,57 +86,15 @@ class GroupDiscretization(AbstractCoordinateDiscretization):
         given = one_start("simulate", **starts)
         g = start.pose("simulate", system, configuration)
         start.consistent(system, g, h)
-        rows, code, done = run(_step, system, h, _first(system, h, g, given, starts[given]), steps, every, progress)
-        return finished(_orbit(system, h, rows, Outcome(int(code)), every), h, done, steps, throw)
+        first = _first(system, h, g, given, starts[given])
+        return simulated(GroupOrbit, system, h, first, steps, every, throw, progress)
 
 
-def _first(system: GroupLagrangeDAlembert, h: Any, g: np.ndarray, given: str, value: Any) -> tuple[State, Array, Array]:
+def _first(system: GroupLagrangeDAlembert, h: Any, g: np.ndarray, given: str, value: Any) -> Start:
     if given == "displacement":
         v, p = start.of_displacement(system, g, value, h)
     elif given == "momentum":
         v, p = start.of_momentum("simulate", system, g, value)
     else:
         v, p = start.of_velocity("simulate", system, g, value)
-    return in_double(_set_out, system, h, g, v, p)
-
-
-@functools.partial(jax.jit, static_argnums=0)
-def _set_out(system: GroupLagrangeDAlembert, h: Array, g: Array, v: Array, p: Array) -> tuple[State, Array, Array]:
-    """Return the first state, the orientation of the equations at the velocity v, and the outcome."""
-    matrix, _, _ = equations.newton_matrix(system, g, v, h, equations.inertia(system, h))
-    sign = jnp.sign(jnp.linalg.det(matrix))
-    first, _, code = _solve(system, h, g, p, v, v, sign)
-    return (g, first, first), sign, code
-
-
-def _solve(
-    system: GroupLagrangeDAlembert, h: Array, g: Array, p: Array, near: Array, guess: Array, sign: Array
-) -> tuple[Array, Array, Array]:
-    kinetic = equations.inertia(system, h)
-    rows = equations.forms(system, g)
-    return root(lambda v: equations.newton_matrix(system, g, v, h, kinetic), rows, p, near, guess, sign)
-
-
-def _step(system: GroupLagrangeDAlembert, h: Array, state: State, sign: Array) -> tuple[State, Array, Array]:
-    g, v, before = state
-    _, arriving = equations.momenta(system, v, h)
-    ahead = equations.normalized(system, g @ equations.displaced(system, v, h))
-    following, multipliers, code = _solve(system, h, ahead, arriving, v, 2 * v - before, sign)
-    return (ahead, following, v), multipliers, code
-
-
-def _orbit(system: GroupLagrangeDAlembert, h: Any, rows: list[np.ndarray], outcome: Outcome, every: int) -> GroupOrbit:
-    g, v, impulses = rows
-    displacement, momentum, energy, residual = decoded(_decode, system, h, g, v)
-    time = h * (every * np.arange(len(g)))
-    return GroupOrbit(time, g, displacement, v, momentum, impulses, energy, residual, outcome)
-
-
-@functools.partial(jax.jit, static_argnums=0)
-def _decode(system: GroupLagrangeDAlembert, h: Array, g: Array, v: Array) -> tuple[Array, Array, Array, Array]:
-    def one(g: Array, v: Array) -> tuple[Array, Array, Array, Array]:
-        residual = jnp.max(jnp.abs(equations.discrete_constraints(system, g, v, h)), initial=0.0)
-        momentum, energy = equations.momenta(system, v, h)[0], equations.discrete_energy(system, v, h)
-        return equations.displaced(system, v, h), momentum, energy, residual
-
-    return jax.vmap(one)(g, v)
+    return in_double(set_out, system, h, g, v, p)

@@ -4,6 +4,8 @@ A displacement is described by v with $W = e^{hv}$, not by the matrix, so that t
 log W and continues beyond angles of pi.
 """
 
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 
@@ -19,35 +21,44 @@ def forms(system: GroupLagrangeDAlembert, g: Array) -> Array:
     return jnp.asarray(system.constraint_forms(g))
 
 
-def displaced(system: GroupLagrangeDAlembert, v: Array, h: Array) -> Array:
+def displaced(system: GroupLagrangeDAlembert, v: Array, h: Array) -> tuple[Array]:
     """Return the displacement W."""
+    return (_displacement(system, v, h),)
+
+
+def _displacement(system: GroupLagrangeDAlembert, v: Array, h: Array) -> Array:
     return system.group.exp(h * v)
+
+
+def ahead(system: GroupLagrangeDAlembert, g: Array, v: Array, h: Array) -> Array:
+    """Return the pose after a step."""
+    return normalized(system, g @ _displacement(system, v, h))
 
 
 def discrete_constraints(system: GroupLagrangeDAlembert, g: Array, v: Array, h: Array) -> Array:
     """Return F(g, W)."""
     if system.discrete_constraints is not None:
-        return jnp.asarray(system.discrete_constraints(g, displaced(system, v, h), h))
-    return forms(system, g @ displaced(system, v, h / 2)) @ v
+        return jnp.asarray(system.discrete_constraints(g, _displacement(system, v, h), h))
+    return forms(system, g @ _displacement(system, v, h / 2)) @ v
 
 
-def momenta(system: GroupLagrangeDAlembert, v: Array, h: Array) -> tuple[Array, Array]:
+def momenta(system: GroupLagrangeDAlembert, _g: Array, v: Array, h: Array) -> tuple[Array, Array]:
     r"""Return P(W) and $P^+(W) = \mathrm{Ad}^*_W P(W)$.
 
     With D the matrix of derivatives of l_d they are the covectors $\mathrm{tr}\,D^TE_iW$ and $\mathrm{tr}\,D^TWE_i$.
     """
-    W = displaced(system, v, h)
+    W = _displacement(system, v, h)
     D = jax.grad(system.discrete_lagrangian)(W, h)
     coordinates = system.group.coordinates
     return coordinates.dual_vector(D @ W.T), coordinates.dual_vector(W.T @ D)
 
 
-def discrete_energy(system: GroupLagrangeDAlembert, v: Array, h: Array) -> Array:
+def discrete_energy(system: GroupLagrangeDAlembert, _g: Array, v: Array, h: Array) -> Array:
     r"""Return $-\partial l_d/\partial h$ at fixed W."""
-    return -jax.grad(system.discrete_lagrangian, argnums=1)(displaced(system, v, h), h)
+    return -jax.grad(system.discrete_lagrangian, argnums=1)(_displacement(system, v, h), h)
 
 
-def inertia(system: GroupLagrangeDAlembert, h: Array) -> Array:
+def kinetic_matrix(system: GroupLagrangeDAlembert, _g: Any, _v: Any, h: Array) -> Array:
     r"""Return h times the second derivative of $l_d(e^x)$ at x = 0: the inertia operator of a quadratic Lagrangian."""
 
     def at(x: Array) -> Array:
@@ -60,17 +71,27 @@ def lagrangian(system: GroupLagrangeDAlembert, w: Array) -> Array:
     r"""Return $l(\omega)$: the given one, or the quadratic form that belongs to l_d."""
     if system.lagrangian is not None:
         return system.lagrangian(w)
-    return w @ inertia(system, jnp.ones(())) @ w / 2
+    return w @ kinetic_matrix(system, None, None, jnp.ones(())) @ w / 2
 
 
-def continuous_momentum(system: GroupLagrangeDAlembert, w: Array) -> Array:
+def momentum(system: GroupLagrangeDAlembert, _g: Array, w: Array) -> Array:
     r"""Return $\partial l/\partial\omega$."""
     return jax.grad(lagrangian, argnums=1)(system, w)
 
 
-def energy(system: GroupLagrangeDAlembert, w: Array) -> Array:
+def energy(system: GroupLagrangeDAlembert, g: Array, w: Array) -> Array:
     r"""Return $\omega\cdot\partial l/\partial\omega - l$."""
-    return w @ continuous_momentum(system, w) - lagrangian(system, w)
+    return w @ momentum(system, g, w) - lagrangian(system, w)
+
+
+def rate(system: GroupLagrangeDAlembert, g: Array, w: Array) -> Array:
+    """Return the rate of change of a pose."""
+    return g @ system.group.hat(w)
+
+
+def force(system: GroupLagrangeDAlembert, g: Array, w: Array) -> Array:
+    r"""Return $\mathrm{ad}^*_\omega p$, what accelerates a free body."""
+    return system.group.coad(w, momentum(system, g, w))
 
 
 def newton_matrix(
@@ -79,7 +100,7 @@ def newton_matrix(
     """Return the scaled matrix of a step, its units, and P and F at the step."""
 
     def values(w: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-        both = momenta(system, w, h)[0], discrete_constraints(system, g, w, h)
+        both = momenta(system, g, w, h)[0], discrete_constraints(system, g, w, h)
         return both, both
 
     (mass, below), found = jax.jacfwd(values, has_aux=True)(v)

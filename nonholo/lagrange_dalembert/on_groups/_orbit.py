@@ -1,25 +1,13 @@
 """Orbits on a group: plain arrays at the saved states, and their labels."""
 
 import dataclasses
-from typing import Any
+from typing import ClassVar
 
-import numpy as np
-
-from nonholo.base.results import Outcome
-from nonholo.base.types import Float
-from nonholo.lagrange_dalembert._orbit import SHARED, Labels, labeled
-
-_VARIABLES: Labels = {
-    "configuration": (("row", "column"), "pose"),
-    "displacement": (("row", "column"), "displacement of a single step, seen from the body"),
-    "body_velocity": (("component",), "body velocity; of a discrete orbit log(displacement) / time_step"),
-    "momentum": (("component",), "body momentum at the start of the step; of a flow the Legendre transform"),
-    **SHARED,
-}
+from nonholo.lagrange_dalembert._orbit import AbstractCoordinateOrbit, Labels
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
-class GroupOrbit:
+class GroupOrbit(AbstractCoordinateOrbit):
     r"""A motion of a `GroupLagrangeDAlembert` at K saved states.
 
     Attributes:
@@ -41,24 +29,13 @@ class GroupOrbit:
         <GroupOrbit: 11 states of 3 x 3 matrices, time 0 to 1, successful>
     """
 
-    time: Float[np.ndarray, "K"]
-    configuration: Float[np.ndarray, "K N N"]
-    displacement: Float[np.ndarray, "K N N"] | None
-    body_velocity: Float[np.ndarray, "K dim"]
-    momentum: Float[np.ndarray, "K dim"]
-    multipliers: Float[np.ndarray, "L s"]
-    energy: Float[np.ndarray, "K"]
-    constraint_residual: Float[np.ndarray, "K"]
-    outcome: Outcome = Outcome.successful
+    _labels: ClassVar[Labels] = {
+        "configuration": (("row", "column"), "pose"),
+        "displacement": (("row", "column"), "displacement of a single step, seen from the body"),
+        "body_velocity": (("component",), "body velocity; of a discrete orbit log(displacement) / time_step"),
+        "momentum": (("component",), "body momentum at the start of the step; of a flow the Legendre transform"),
+    }
 
-    def __repr__(self) -> str:
-        span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
+    def _configurations(self) -> str:
         n = self.configuration.shape[-1]
-        return f"<GroupOrbit: {len(self)} states of {n} x {n} matrices{span}, {self.outcome}>"
-
-    def __len__(self) -> int:
-        return len(self.time)
-
-    def to_dataset(self) -> Any:
-        """Return the orbit as a labeled `xarray.Dataset`; multipliers that do not exist are NaN."""
-        return labeled(self, _VARIABLES)
+        return f"{n} x {n} matrices"

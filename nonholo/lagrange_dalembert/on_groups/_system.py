@@ -2,16 +2,16 @@
 
 import dataclasses
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import jax
 
-from nonholo.base.checks import error, instance
+from nonholo.base.checks import instance
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert._room import room
-from nonholo.lagrange_dalembert._tracing import traced_shape
+from nonholo.lagrange_dalembert._tracing import check_forms, check_value, count_of
 from nonholo.systems import AbstractCoordinateSystem, checked_group, group_mass_tensor, inertia_form
 
 if TYPE_CHECKING:
@@ -71,47 +71,32 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     constraint_forms: Callable[[Array], Array] | None
     discrete_constraints: Callable[[Array, Array, Array], Array] | None = None
     lagrangian: Callable[[Array], Array] | None = dataclasses.field(default=None, kw_only=True)
+    _equations: ClassVar[str] = "on_groups._equations"
 
     def __post_init__(self) -> None:
-        where, remedy = "GroupLagrangeDAlembert(group=...)", "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
-        instance(where, self.group, AbstractMatrixGroup, "be a matrix group", remedy)
+        remedy = "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
+        instance(_named("group"), self.group, AbstractMatrixGroup, "be a matrix group", remedy)
         with double_precision():
             g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
             w, h = jax.ShapeDtypeStruct((self.group.dim,), float), jax.ShapeDtypeStruct((), float)
             self._check("discrete_lagrangian", (), g, h)
             if self.constraint_forms is not None:
-                self._check_forms(g)
+                where = _named("constraint_forms")
+                remedy = "Stack one row per constraint, in body coordinates; pass None for no constraint."
+                check_forms(where, self.constraint_forms, self.group.dim, g, repr(self.group), remedy)
             if self.discrete_constraints is not None:
                 self._check("discrete_constraints", (self.constraints,), g, g, h)
             if self.lagrangian is not None:
                 self._check("lagrangian", (), w)
 
     def _check(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
-        found = self._shape(name, *arguments)
-        if found != shape:
-            wanted = "a scalar" if shape == () else f"an array of shape {shape}"
-            remedy = f"It is called with arrays of shapes {[x.shape for x in arguments]}."
-            raise error(f"GroupLagrangeDAlembert({name}=...)", f"return {wanted}", f"shape {found}", remedy)
-
-    def _check_forms(self, g: Any) -> None:
-        n, found = self.group.dim, self._shape("constraint_forms", g)
-        if len(found) != 2 or found[1] != n or not 0 < found[0] < n:
-            wanted = f"return an array of shape (s, {n}) with 0 < s < {n}"
-            remedy = "Stack one row per constraint, in body coordinates; pass None for no constraint."
-            raise error("GroupLagrangeDAlembert(constraint_forms=...)", wanted, f"shape {found}", remedy)
-
-    def _shape(self, name: str, *arguments: Any) -> tuple[int, ...]:
-        where = f"GroupLagrangeDAlembert({name}=...)"
-        return traced_shape(where, getattr(self, name), arguments, f"{self.group!r}")
+        called = f"shapes {[x.shape for x in arguments]}"
+        check_value(_named(name), getattr(self, name), shape, arguments, repr(self.group), called)
 
     @property
     def constraints(self) -> int:
         """The number s of constraints."""
-        if self.constraint_forms is None:
-            return 0
-        with double_precision():
-            g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
-            return jax.eval_shape(self.constraint_forms, g).shape[0]
+        return count_of(self.constraint_forms, (self.group.size, self.group.size))
 
     def discretize(self, time_step: Any) -> "GroupDiscretization":
         """Return the discrete map with this time step.
@@ -170,7 +155,12 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
             [-1. -1.  1.]
         """
         starts = {"body_velocity": body_velocity, "momentum": momentum}
-        return room("on_groups._flow").flow(self, configuration, starts, times, rtol, atol)
+        kind, start = room("on_groups").GroupOrbit, room("on_groups._start").of_flow
+        return room("_flow").flow(kind, self, start, configuration, starts, times, rtol, atol)
+
+
+def _named(argument: str) -> str:
+    return f"GroupLagrangeDAlembert({argument}=...)"
 
 
 def mass_tensor_lagrangian(

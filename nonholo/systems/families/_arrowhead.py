@@ -15,7 +15,6 @@ from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem
-from nonholo.systems._mass import inertia_from_mass_tensor
 from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._wide import WideInertia, narrow
 from nonholo.systems.families._multidimensional_sleigh import MultidimensionalSleigh
@@ -77,11 +76,6 @@ class ArrowheadTop(AbstractLLSystem):
         return J
 
     @kept
-    def inertia_operator(self) -> Float[np.ndarray, "dim dim"]:
-        """The inertia operator of the mass tensor."""
-        return inertia_from_mass_tensor(self.group, self.homogeneous_mass_tensor)
-
-    @kept
     def inertia_along(self) -> WideInertia:
         """The diagonal of B."""
         return WideInertia(self.diagonal[:-1] + self.diagonal[-1], None, np.zeros_like(self.coupling))
@@ -90,21 +84,6 @@ class ArrowheadTop(AbstractLLSystem):
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         r"""Rows $e_i\wedge e_n$."""
         return self.dense.constraint_subspace
-
-    @kept
-    def annihilator(self) -> Float[np.ndarray, "s dim"]:
-        """The forbidden planes."""
-        return self.dense.annihilator
-
-    @property
-    def canonical(self) -> "ArrowheadTop":
-        """The top itself."""
-        return self
-
-    @kept
-    def frame(self) -> Float[np.ndarray, "n n"]:
-        """The identity."""
-        return self.group.identity
 
     @functools.cached_property
     def normal_form(self) -> NormalForm:
@@ -173,11 +152,6 @@ class ArrowheadSleigh(AbstractLLSystem):
         return self.dense.homogeneous_mass_tensor
 
     @kept
-    def inertia_operator(self) -> Float[np.ndarray, "dim dim"]:
-        """The inertia operator of the mass tensor."""
-        return self.dense.inertia_operator
-
-    @kept
     def inertia_along(self) -> WideInertia:
         r"""The diagonal of $B_1$, the mass, and the offset of the center of mass across the blade."""
         a = self.center_of_mass
@@ -187,21 +161,6 @@ class ArrowheadSleigh(AbstractLLSystem):
     def constraint_subspace(self) -> Float[np.ndarray, "n dim"]:
         r"""Rows $e_1\wedge e_j$, then the velocity along body axis 1."""
         return self.dense.constraint_subspace
-
-    @kept
-    def annihilator(self) -> Float[np.ndarray, "s dim"]:
-        """The remaining coordinate rows."""
-        return self.dense.annihilator
-
-    @property
-    def canonical(self) -> "ArrowheadSleigh":
-        """The sleigh itself."""
-        return self
-
-    @kept
-    def frame(self) -> Float[np.ndarray, "N N"]:
-        """The identity."""
-        return self.group.identity
 
     @functools.cached_property
     def normal_form(self) -> NormalForm:

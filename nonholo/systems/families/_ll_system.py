@@ -10,9 +10,9 @@ from nonholo.base.checks import array, error, is_traced, positive_definite, symm
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem, form_along
+from nonholo.systems._base import AbstractLLSystem
 from nonholo.systems._body import lines_of, mass_tensor_of_body, tensors_shown
-from nonholo.systems._mass import checked_group, form_mass_tensor, group_mass_tensor, inertia_from_mass_tensor
+from nonholo.systems._mass import checked_group, form_mass_tensor, group_mass_tensor
 from nonholo.systems._normal_form import NormalForm, recognized_form
 from nonholo.systems._subspace import subspace_and_annihilator
 
@@ -100,7 +100,9 @@ class LLSystem(AbstractLLSystem):
             mass_tensor = _tensor(where, group, mass_tensor)
         else:
             where = "LLSystem(inertia_operator=...)"
-            inertia_operator = _operator(where, inertia_operator, group.dim)
+            shape = (group.dim, group.dim)
+            remedy = f"Pass the symmetric {shape} matrix that takes body velocities to body momenta."
+            inertia_operator = symmetric(where, array(where, inertia_operator, shape, remedy), remedy)
         values = (group, mass_tensor, inertia_operator, rows, covectors)
         for field, value in zip(dataclasses.fields(self), values, strict=True):
             object.__setattr__(self, field.name, value)
@@ -165,22 +167,7 @@ class LLSystem(AbstractLLSystem):
         """The inertia operator, that of the mass tensor if there is one."""
         if self.mass_tensor is None:
             return self.given_inertia
-        return inertia_from_mass_tensor(self.group, self.mass_tensor)
-
-    @kept
-    def inertia_along(self) -> Float[Array, "k k"]:
-        """The inertia along the rows of the constraint subspace."""
-        return form_along(self)
-
-    @property
-    def canonical(self) -> "LLSystem":
-        """The system itself."""
-        return self
-
-    @kept
-    def frame(self) -> Float[np.ndarray, "N N"]:
-        """The identity."""
-        return self.group.identity
+        return super().inertia_operator
 
     @functools.cached_property
     def normal_form(self) -> NormalForm | None:
@@ -193,11 +180,6 @@ def _tensor(where: str, group: AbstractMatrixGroup, value: Any) -> Array:
         return form_mass_tensor(where, group, value)
     instead = "Pass inertia_operator= instead or, if the group preserves a form G, MatrixGroup(basis, form=G)."
     return group_mass_tensor(where, group, value, instead)
-
-
-def _operator(where: str, value: Any, dim: int) -> Array:
-    remedy = f"Pass the symmetric ({dim}, {dim}) matrix that takes body velocities to body momenta."
-    return symmetric(where, array(where, value, (dim, dim), remedy), remedy)
 
 
 def _refuse_singular(where: str, system: LLSystem) -> None:

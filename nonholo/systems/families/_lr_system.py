@@ -11,8 +11,8 @@ from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLRSystem
 from nonholo.systems._body import lines_of, tensors_shown
-from nonholo.systems._mass import body_tensor, checked_group, group_mass_tensor, inertia_from_mass_tensor
-from nonholo.systems._subspace import complement, plane_rows, subspace_and_annihilator
+from nonholo.systems._mass import body_tensor, checked_group, group_mass_tensor
+from nonholo.systems._subspace import subspace_and_annihilator, top_rows
 
 _REMEDY = "The constrained directions turn in the body, so the body needs a positive kinetic energy in every motion."
 
@@ -72,11 +72,6 @@ class LRSystem(AbstractLRSystem):
         """The mass tensor itself."""
         return self.mass_tensor
 
-    @kept
-    def inertia_operator(self) -> Float[Array, "dim dim"]:
-        """The inertia operator of the mass tensor."""
-        return inertia_from_mass_tensor(self.group, self.mass_tensor)
-
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class VeselovaTop(AbstractLRSystem):
@@ -126,17 +121,6 @@ class VeselovaTop(AbstractLRSystem):
         return self.mass_tensor
 
     @kept
-    def inertia_operator(self) -> Float[Array, "dim dim"]:
-        """The inertia operator of the mass tensor."""
-        return inertia_from_mass_tensor(self.group, self.mass_tensor)
-
-    @kept
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         r"""Rows $e_i\wedge e_n$, fixed in space."""
-        n = self.mass_tensor.shape[-1]
-        return plane_rows(self.group, [(i, n - 1) for i in range(n - 1)])
-
-    @kept
-    def annihilator(self) -> Float[np.ndarray, "s dim"]:
-        """The remaining coordinate rows."""
-        return complement(self.constraint_subspace)
+        return top_rows(self.group)

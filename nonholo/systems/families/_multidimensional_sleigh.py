@@ -11,9 +11,8 @@ from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem
-from nonholo.systems._mass import inertia_from_mass_tensor
 from nonholo.systems._normal_form import NormalForm, sleigh_form
-from nonholo.systems._subspace import complement, plane_rows
+from nonholo.systems._subspace import sleigh_rows
 
 if TYPE_CHECKING:
     from nonholo.systems.families._arrowhead import ArrowheadSleigh
@@ -114,11 +113,6 @@ class MultidimensionalSleigh(AbstractLLSystem):
         return xp.pad(xp.asarray(self.mass_tensor), ((0, 1), (0, 1))) + self.mass * lever[:, None] * lever
 
     @kept
-    def inertia_operator(self) -> Float[Array, "dim dim"]:
-        """The inertia operator in the coordinates of so(n), then the velocity of the reference point."""
-        return inertia_from_mass_tensor(self.group, self.homogeneous_mass_tensor)
-
-    @kept
     def inertia_along(self) -> Float[Array, "n n"]:
         r"""The matrix of $w\cdot Bw + m\,a_1^2|w|^2 + m(v_1 + \alpha\cdot w)^2$ in (w, v_1), twice the energy."""
         J, a, m = self.mass_tensor, self.center_of_mass, self.mass
@@ -131,25 +125,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
     @kept
     def constraint_subspace(self) -> Float[np.ndarray, "n dim"]:
         r"""Rows $e_1\wedge e_j$, j = 2..n, then the velocity along body axis 1."""
-        n, group = self.center_of_mass.shape[-1], self.group
-        along = np.zeros((1, group.dim))
-        along[0, -n] = 1.0
-        return np.concatenate([plane_rows(group, [(0, j) for j in range(1, n)]), along])
-
-    @kept
-    def annihilator(self) -> Float[np.ndarray, "s dim"]:
-        """The remaining coordinate rows."""
-        return complement(self.constraint_subspace)
-
-    @property
-    def canonical(self) -> "MultidimensionalSleigh":
-        """The sleigh itself."""
-        return self
-
-    @kept
-    def frame(self) -> Float[np.ndarray, "N N"]:
-        """The identity."""
-        return self.group.identity
+        return sleigh_rows(self.group)
 
     @functools.cached_property
     def normal_form(self) -> NormalForm:

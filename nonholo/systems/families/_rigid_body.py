@@ -9,9 +9,9 @@ from nonholo.base.checks import positive_definite
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem, form_along
+from nonholo.systems._base import AbstractLLSystem
 from nonholo.systems._body import lines_of, mass_tensor_of_body, tensors_shown
-from nonholo.systems._mass import body_tensor, checked_group, group_mass_tensor, inertia_from_mass_tensor
+from nonholo.systems._mass import body_tensor, checked_group, group_mass_tensor
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
@@ -46,10 +46,8 @@ class RigidBody(AbstractLLSystem):
     structure: ClassVar[tuple[str, ...]] = ("group",)
 
     def __post_init__(self) -> None:
-        where, remedy = (
-            "RigidBody(mass_tensor=...)",
-            "Pass the mass tensor J; `RigidBody.from_inertia` takes the inertia tensor.",
-        )
+        where = "RigidBody(mass_tensor=...)"
+        remedy = "Pass the mass tensor J; `RigidBody.from_inertia` takes the inertia tensor."
         if self.group is None:
             tensor = body_tensor(where, self.mass_tensor, remedy)
             object.__setattr__(self, "group", SO(tensor.shape[0]))
@@ -97,16 +95,6 @@ class RigidBody(AbstractLLSystem):
         return self.mass_tensor
 
     @kept
-    def inertia_operator(self) -> Float[Array, "dim dim"]:
-        """The inertia operator of the mass tensor."""
-        return inertia_from_mass_tensor(self.group, self.mass_tensor)
-
-    @kept
-    def inertia_along(self) -> Float[Array, "k k"]:
-        """The inertia along the rows of the constraint subspace."""
-        return form_along(self)
-
-    @kept
     def constraint_subspace(self) -> Float[np.ndarray, "dim dim"]:
         """All coordinate rows."""
         return np.eye(self.group.dim)
@@ -115,13 +103,3 @@ class RigidBody(AbstractLLSystem):
     def annihilator(self) -> Float[np.ndarray, "0 dim"]:
         """No rows."""
         return np.empty((0, self.group.dim))
-
-    @property
-    def canonical(self) -> "RigidBody":
-        """The body itself."""
-        return self
-
-    @kept
-    def frame(self) -> Float[np.ndarray, "N N"]:
-        """The identity."""
-        return self.group.identity

@@ -10,8 +10,7 @@ from nonholo.base.checks import number, scale
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem, form_along
-from nonholo.systems._mass import inertia_from_mass_tensor
+from nonholo.systems._base import AbstractLLSystem
 from nonholo.systems._normal_form import NormalForm
 
 
@@ -68,16 +67,6 @@ class ChaplyginSleigh(AbstractLLSystem):
         half = self.inertia / 2
         rows = ((half + m * a * a, m * a * b, m * a), (m * a * b, half + m * b * b, m * b), (m * a, m * b, m))
         return xp.stack([xp.stack(row) for row in rows])
-
-    @kept
-    def inertia_operator(self) -> Float[Array, "3 3"]:
-        """The inertia operator in the coordinates (omega, v1, v2)."""
-        return inertia_from_mass_tensor(self.group, self.homogeneous_mass_tensor)
-
-    @kept
-    def inertia_along(self) -> Float[Array, "k k"]:
-        """The inertia along the rows of the constraint subspace."""
-        return form_along(self)
 
     @kept
     def constraint_subspace(self) -> Float[np.ndarray, "2 3"]:

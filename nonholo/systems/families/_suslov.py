@@ -12,15 +12,9 @@ from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem
 from nonholo.systems._body import lines_of, possible, tensors_shown
-from nonholo.systems._mass import (
-    body_tensor,
-    inertia_from_mass_tensor,
-    inertia_tensor,
-    mass_tensor_from_inertia,
-    rotation_to,
-)
+from nonholo.systems._mass import body_tensor, inertia_tensor, mass_tensor_from_inertia, rotation_to
 from nonholo.systems._normal_form import NormalForm, top_form
-from nonholo.systems._subspace import complement, plane_rows
+from nonholo.systems._subspace import top_rows
 
 if TYPE_CHECKING:
     from nonholo.systems.families._arrowhead import ArrowheadTop
@@ -124,9 +118,7 @@ class SuslovTop(AbstractLLSystem):
     @kept
     def inertia_operator(self) -> Float[Array, "dim dim"]:
         r"""The operator $\omega \mapsto J\omega + \omega J$; for n = 3 it is $\mathrm{tr}(J)\,\mathrm{Id} - J$."""
-        if self.axis is None:
-            return inertia_from_mass_tensor(self.group, self.mass_tensor)
-        return inertia_tensor(self.mass_tensor)
+        return super().inertia_operator if self.axis is None else inertia_tensor(self.mass_tensor)
 
     @kept
     def inertia_along(self) -> Float[Array, "k k"]:
@@ -136,14 +128,13 @@ class SuslovTop(AbstractLLSystem):
     @kept
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         r"""Rows $e_i\wedge e_n$; n = 3: S(0, 1, 0) and S(-1, 0, 0), S the shortest rotation taking e3 to the axis."""
-        n = self.mass_tensor.shape[-1]
-        rows = plane_rows(self.group, [(i, n - 1) for i in range(n - 1)])
+        rows = top_rows(self.group)
         return rows if self.axis is None else rows @ self.frame.T
 
     @kept
     def annihilator(self) -> Float[np.ndarray, "s dim"]:
         r"""The forbidden planes $e_i\wedge e_j$, i < j < n; for n = 3 the forbidden axis."""
-        return complement(self.constraint_subspace) if self.axis is None else np.array(self.axis)[None, :]
+        return super().annihilator if self.axis is None else np.array(self.axis)[None, :]
 
     @kept
     def frame(self) -> Float[np.ndarray, "n n"]:

@@ -1,6 +1,19 @@
 """The place where JAX keeps compiled code between commands, so that only the first one has to wait for it."""
 
+import functools
 import os
+from collections.abc import Callable
+
+
+def with_cache_folder(command: Callable[..., None]) -> Callable[..., None]:
+    """Return a command that gives JAX its folder first."""
+
+    @functools.wraps(command)
+    def run(**options: object) -> None:
+        use_cache_folder()
+        command(**options)
+
+    return run
 
 
 def use_cache_folder() -> None:
