@@ -416,8 +416,9 @@ def _repaired(sizes: np.ndarray, tolerance: float, step: float) -> float:
 @njit(inline="always", **COMPILED)
 def _take_roots(x: np.ndarray, degree: int, lanes: tuple[int, ...]) -> None:
     """Write roots of positive numbers to three digits, by square roots: x^(1/d), 1/d written in bits."""
-    share = 1.0 / degree
-    roots = np.ones(len(lanes))
+    share, roots = 1.0 / degree, np.empty(len(lanes))
+    for lane in range(len(lanes)):
+        roots[lane] = 1.0
     for _ in range(_BITS):
         share *= 2
         for lane in range(len(lanes)):

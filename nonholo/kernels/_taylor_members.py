@@ -60,7 +60,7 @@ def _advance_members(
 ) -> None:
     L, following = len(_LANES), 0
     room, state, ends = make_room(f, order, _LANES), np.zeros((2, (starts.shape[1] + 1) * L)), np.zeros(L)
-    members, direction, looked = np.full(L, -1), math.copysign(1.0, times[-1] - times[0]), 0
+    members, direction, looked = np.zeros(L, np.int64) - 1, math.copysign(1.0, times[-1] - times[0]), 0
     while following < len(starts) or members.max() >= 0:
         if looked % _LOOK == 0 and stop[0]:
             break

@@ -66,6 +66,7 @@ NOT_CALLED = {
     "Crossings": "made by runs; its methods are called",
     "Ensemble": "made by `ensemble`; its methods are called",
     "EventLog": "made by runs",
+    "FlowEnsemble": "made by `ensemble` of a system, which is called",
     "Orbit": "made by runs; its methods are called",
     "Outcome": "an enumeration",
     "cusp": "an event; `crossings` is called with it",

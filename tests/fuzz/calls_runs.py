@@ -98,10 +98,12 @@ def _ensembles() -> list[Call]:
     how = {"reconstruct": flag(True), "backend": text("auto"), "progress": flag(False), "events": anything(None)}
     bodies, each = np.stack([J, J + 0.1 * np.eye(3), J]), nh.ensemble
     velocity = array(starts, "rows")
+    flows = {"discrete": thing(TOP.system), "times": array([0.0, 0.1, 0.3], "any"), "restricted_velocity": velocity}
     parameters = lambda mass_tensor, **rest: each(parameters={"mass_tensor": mass_tensor}, **rest)  # noqa: E731
     return [
         call("ensemble", each, **given, restricted_velocity=velocity, parameters=anything(None), **how),
         call("ensemble [momentum]", each, **given, momentum=velocity, reduce=function(None, none=True)),
+        call("ensemble [flows]", each, **flows, rtol=positive(1e-8), reduce=function(None, none=True)),
         call("ensemble [bodies]", parameters, **given, restricted_velocity=array(starts), mass_tensor=array(bodies)),
         *(
             call(f"ensemble [{name}]", each, **_members(discrete), save_every=count(2, none=True))
@@ -117,9 +119,11 @@ def _members(discrete: nh.Discretization) -> dict[str, Argument]:
 
 def _results() -> list[Call]:
     orbit = nh.simulate(TOP, restricted_velocity=(0.3, 0.2), steps=4)
+    flow = nh.flow(TOP.system, restricted_velocity=(0.3, 0.2), times=(0.0, 1.0))
     batch = nh.ensemble(TOP, restricted_velocity=np.array([[0.3, 0.2], [0.1, 0.1]]), steps=4, save_every=1)
     return [
         call("Ensemble.orbit", batch.orbit, member=integer(1)),
+        call("Orbit.at", flow.at, times=array([0.0, 0.7], "any")),
         call("Orbit.chosen", orbit.chosen, states=anything(slice(2))),
         call("Orbit.to_csv", orbit.to_csv, path=path("new.csv"), overwrite=flag(False)),
         call("Orbit.to_dataset", lambda: orbit.to_dataset()),

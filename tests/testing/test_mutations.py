@@ -1,6 +1,7 @@
 """The checks catch what is wrong, and name it: groups, systems and discretizations with one error each."""
 
 import copy
+import dataclasses
 from collections.abc import Callable
 from typing import Any
 
@@ -76,9 +77,17 @@ def test_errors_of_groups(error: str) -> None:
     assert all(f"\n  {name}: must satisfy" in str(raised.value) for name in expected)
 
 
+def bare(system: Any) -> Any:
+    """Return a copy of a system without what it has computed and kept."""
+    other = copy.copy(system)
+    for name in vars(system).keys() - {field.name for field in dataclasses.fields(system)}:
+        del vars(other)[name]
+    return other
+
+
 def changed(system: Any, **fields: Any) -> Any:
     """Return a copy of a system with fields that its class would refuse."""
-    other = copy.copy(system)
+    other = bare(system)
     for name, value in fields.items():
         object.__setattr__(other, name, np.asarray(value, dtype=float))
     return other
@@ -86,7 +95,7 @@ def changed(system: Any, **fields: Any) -> Any:
 
 def overridden(system: Any, **members: Any) -> Any:
     """Return a copy of a system of a class with other members."""
-    other = copy.copy(system)
+    other = bare(system)
     object.__setattr__(other, "__class__", type("Wrong", (type(system),), members))
     return other
 
