@@ -67,7 +67,7 @@ PROFILES = {
         "kernels with every index checked, which compiles them once more",
         ("kernels", "base", "continuous"),
         f"NUMBA_BOUNDSCHECK=1 {PYTHON} -m pytest -q tests/kernels tests/base tests/continuous "
-        "tests/simulation/test_ensemble.py",
+        "tests/simulation/test_ensemble.py tests/simulation/test_flow_ensemble.py",
     ),
     "site": Profile(
         "the pages and the docstrings of public names as a site; broken links and unknown names are errors",
