@@ -8,8 +8,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy.linalg
-import scipy.optimize
+import scipy  # its parts load on first use
 
 from nonholo.base.numerics import real_cubic_roots
 from nonholo.base.types import Float

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
-from scipy.special import ndtri
+import scipy  # its parts load on first use
 
 from nonholo.base.checks import array, count, error, number, positive, shape_of, trailing
 from nonholo.base.limits import bounded_count, within_memory
@@ -109,7 +109,7 @@ class Normal(AbstractDistribution):
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
         """Return draws, one for each row of uniform numbers."""
-        return self.mean + self.deviation * ndtri(np.maximum(uniform, _LEAST)).reshape(-1, *self.shape)
+        return self.mean + self.deviation * scipy.special.ndtri(np.maximum(uniform, _LEAST)).reshape(-1, *self.shape)
 
 
 @dataclasses.dataclass(frozen=True)
