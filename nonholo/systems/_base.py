@@ -7,7 +7,7 @@ $\mathrm{Ad}_g\omega \in \mathfrak{d}$ (LR systems). Time steps and solvers live
 
 import abc
 import functools
-from typing import ClassVar, Self
+from typing import ClassVar, TypeVar
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from nonholo.systems._mass import inertia_form, inertia_from_mass_tensor
 from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._subspace import complement
 from nonholo.systems._wide import WideInertia
+
+SystemT = TypeVar("SystemT", bound="AbstractSystem")
 
 
 class AbstractSystem(abc.ABC):
@@ -63,7 +65,7 @@ class AbstractSystem(abc.ABC):
         return complement(self.constraint_subspace)
 
     @property
-    def canonical(self) -> Self:
+    def canonical(self: SystemT) -> SystemT:
         """The same body in the canonical frame; the system itself where no frame is better than the user's."""
         return self
 

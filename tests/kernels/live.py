@@ -77,7 +77,15 @@ def flows(system: Any, method: str | None = None) -> Arrays:
     """Return a continuous motion."""
     velocity = np.random.default_rng(4).normal(size=len(system.constraint_subspace))
     orbit = nh.flow(system, restricted_velocity=velocity, times=np.linspace(0.0, 5.0, 6), method=method)
-    return [orbit.reduced_momentum, orbit.canonical_pose]
+    between = orbit.at(np.linspace(4.9, 0.1, 7))
+    return [orbit.reduced_momentum, orbit.canonical_pose, between.reduced_momentum, between.canonical_pose]
+
+
+def members_of_flows(system: Any) -> Arrays:
+    """Return the continuous motions of an ensemble."""
+    velocities = SIZE * np.random.default_rng(7).normal(size=(MEMBERS // 4, 2))
+    batch = nh.ensemble(system, restricted_velocity=velocities, times=np.linspace(0.0, 5.0, 3))
+    return [batch.reduced_momentum, batch.canonical_pose]
 
 
 def body(group: Any, k: int, seed: int) -> nh.LLSystem:
@@ -118,6 +126,8 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     "a top past angle pi": lambda: past_pi(),
     "flow of a top": lambda: flows(TOP),
     "flow of a sleigh": lambda: flows(SLEIGH),
+    "flows of tops": lambda: members_of_flows(TOP),
+    "flows of sleighs": lambda: members_of_flows(SLEIGH),
     "right-invariant flow on SE(3)": lambda: flows(GENERAL["right-invariant on SE(3)"][0]),
     "pose of a top in closed form": lambda: flows(TOP, "closed_form"),
     "a fold on SO(4)": lambda: orbits(GENERAL["any d on SO(4)"][0], size=20.0),
