@@ -1,0 +1,101 @@
+"""Calls that cost nothing: what a warm call takes, and a first one in a fresh process above the import of numba.
+
+Every call returns what its tests check; here they are only timed. For the figures of another commit run the file with
+that commit on PYTHONPATH.
+
+    python benchmarks/calls.py [--rounds 11]
+"""
+
+import argparse
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import nonholo as nh
+
+CALLS = 30  # in one round
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+SLEIGH = nh.ChaplyginSleigh(1.0, 0.75, 0.5)
+VELOCITY = (0.4, 0.9, 0.0)
+FLOOR = "import numba\n@numba.njit(cache=True)\ndef one(x):\n    return x + 1\none(1.0)\n"
+FIRST = {
+    "simulate": "import nonholo as nh\nnh.simulate(nh.discretize(nh.{}, 0.1), body_velocity=(1, 1, 0), steps=100)\n",
+    "flow": "import nonholo as nh\nnh.flow(nh.{}, body_velocity=(0.4, 0.9, 0), times=(0, 20))\n",
+}
+BODIES = {
+    "top": "SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])",
+    "sleigh": "ChaplyginSleigh(1.0, 0.75, 0.5)",
+}
+
+
+def calls() -> dict[str, Callable[[], Any]]:
+    """Return the calls by name."""
+    found: dict[str, Callable[[], Any]] = {"SuslovTop(...)": lambda: nh.SuslovTop(np.array(TOP.mass_tensor))}
+    found["ChaplyginSleigh(...)"] = lambda: nh.ChaplyginSleigh(1.0, 0.75, 0.5)
+    for name, system in (("top", TOP), ("sleigh", SLEIGH)):
+        discrete = nh.discretize(system, 0.1)
+        orbit = nh.simulate(discrete, body_velocity=VELOCITY, steps=100)
+        found[f"discretize, {name}"] = lambda system=system: nh.discretize(system, 0.1)
+        found[f"simulate, {name}, 100 steps"] = lambda discrete=discrete: nh.simulate(
+            discrete, body_velocity=VELOCITY, steps=100
+        )
+        found[f"invariants, {name}"] = lambda orbit=orbit: nh.invariants(orbit)
+        found[f"flow, {name}, T = 20"] = lambda system=system: nh.flow(
+            system, body_velocity=VELOCITY, times=(0.0, 20.0)
+        )
+    return found
+
+
+def microseconds(call: Callable[[], Any], rounds: int) -> float:
+    """Return the median of rounds of warm calls."""
+    call()
+    taken = []
+    for _ in range(rounds):
+        begun = time.perf_counter()
+        for _ in range(CALLS):
+            call()
+        taken.append((time.perf_counter() - begun) / CALLS * 1e6)
+    return statistics.median(taken)
+
+
+def seconds(programs: dict[str, Path], rounds: int) -> dict[str, float]:
+    """Return medians of whole processes, in turns."""
+    taken: dict[str, list[float]] = {name: [] for name in programs}
+    for _ in range(rounds + 1):
+        for name, file in programs.items():
+            begun = time.perf_counter()
+            subprocess.run([sys.executable, str(file)], check=True)  # noqa: S603
+            taken[name].append(time.perf_counter() - begun)
+    return {name: statistics.median(found[1:]) for name, found in taken.items()}
+
+
+def main() -> None:
+    """Print both tables."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rounds", type=int, default=11)
+    rounds = parser.parse_args().rounds
+    print("| call | us |\n| --- | ---: |")
+    for name, call in calls().items():
+        print(f"| {name} | {microseconds(call, rounds):.0f} |", flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        texts = {"numba and one function": FLOOR}
+        texts |= {f"{what}, {body}": text.format(made) for what, text in FIRST.items() for body, made in BODIES.items()}
+        programs = {name: Path(folder, f"{name.replace(' ', '_')}.py") for name in texts}
+        for name, file in programs.items():
+            file.write_text(texts[name])
+        found = seconds(programs, rounds)
+    floor = found.pop("numba and one function")
+    print(f"\n| first call in a process | s above the {floor:.2f} s of numba |\n| --- | ---: |")
+    for name, taken in found.items():
+        print(f"| {name} | {taken - floor:.2f} |")
+
+
+if __name__ == "__main__":
+    main()
