@@ -33,6 +33,8 @@ class AbstractMotion(abc.ABC):
     """A rule of motion of a system: a discretization or the continuous flow."""
 
     system: System
+    span: tuple[float, float] | None = None
+    """The first and the last time between which `at` knows all states; None if saved states are all there is."""
 
     @property
     @abc.abstractmethod

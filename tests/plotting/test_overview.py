@@ -125,3 +125,16 @@ def test_global_settings_are_unchanged(sleigh_orbit: nh.Orbit, tmp_path: Path) -
     before = dict(mpl.rcParams)
     nh.plot.overview(sleigh_orbit, tmp_path / "picture.png")
     assert dict(mpl.rcParams) == before
+
+
+def test_flows_with_few_times_have_smooth_curves() -> None:
+    """Two requested times, forward or backward, give the curve of the flow; a flow from elsewhere has its states."""
+    sleigh = nh.ChaplyginSleigh(1.0, 0.75, 0.5)
+    for times in ((0.0, 10.0), (10.0, 0.0)):
+        flow = nh.flow(sleigh, body_velocity=(1.0, 0.5, 0.0), times=times)
+        track = nh.plot.overview(flow).axes[0].collections[0].get_paths()
+        points = np.concatenate([path.vertices for path in track])
+        exact = nh.flow(sleigh, body_velocity=(1.0, 0.5, 0.0), times=np.linspace(*times, 4000), method="closed_form")
+        assert len(points) > 500
+        gaps = np.abs(points[::50, None] - exact.position[None]).max(axis=-1).min(axis=1)
+        assert gaps.max() < 0.01

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -17,6 +18,7 @@ from nonholo.plotting.parts import drawable
 
 _SIZE = (13.0, 7.6)
 _LARGER = 2.2  # times as high as a panel against time
+_SMOOTH = 1000  # states of a flow, in which a curve has no corners
 
 
 @theme.styled
@@ -55,7 +57,7 @@ def overview(
     if path is not None:
         check_suffix(figure, path)
         check_file(path, overwrite=overwrite, where="overview(path=...)")
-    panels = panels_of(orbit, flow)
+    panels = panels_of(_smooth(orbit), None if flow is None else _smooth(flow))
     axes = _axes(figure, panels)
     for panel, own in zip(panels, axes, strict=True):
         panel.draw(own)
@@ -66,6 +68,15 @@ def overview(
     if path is not None:
         figure.savefig(path)
     return figure
+
+
+def _smooth(orbit: Orbit) -> Orbit:
+    """Return a flow that knows its states between the saved ones with enough for curves; others as they are."""
+    if orbit.motion.span is None or not 1 < len(orbit) < _SMOOTH:
+        return orbit
+    more = np.linspace(orbit.time[0], orbit.time[-1], _SMOOTH)
+    times = np.union1d(orbit.time, more)
+    return orbit.at(times if more[-1] > more[0] else times[::-1])
 
 
 def check_suffix(figure: Figure, path: str | Path) -> None:
