@@ -178,6 +178,17 @@ def shape_of(value: Any) -> tuple[int, ...]:
         return ()
 
 
+def refuse_given(owner: str, requirement: str, remedy: str, **given: tuple[Any, Any]) -> None:
+    """Refuse arguments that this call does not have: each comes with its default.
+
+    Example:
+        >>> refuse_given("discretize", "be left out", "It has none.", order=(2, 2))
+    """
+    for name, (value, default) in given.items():
+        if value is not default and not (isinstance(value, type(default)) and value == default):
+            raise error(f"{owner}({name}=...)", requirement, shown(value), remedy)
+
+
 def positive(where: str, value: Any, remedy: str) -> Array:
     """Return a strictly positive scalar."""
     result = number(where, value, remedy)

@@ -26,7 +26,8 @@ else:
             value = owner.__dict__.get(name)
             if value is None:
                 value = self.fget(owner)
-                small = not isinstance(value, np.ndarray) or value.nbytes <= _SMALL
-                if small and not any(is_traced(getattr(owner, leaf)) for leaf in owner.leaves):
-                    owner.__dict__[name] = value
-            return value.copy() if isinstance(value, np.ndarray) and value.nbytes <= _SMALL else value
+                is_large = isinstance(value, np.ndarray) and value.nbytes > _SMALL
+                if is_large or any(is_traced(getattr(owner, leaf)) for leaf in owner.leaves):
+                    return value
+                owner.__dict__[name] = value
+            return value.copy() if isinstance(value, np.ndarray) else value

@@ -12,8 +12,8 @@ from nonholo.base.numerics.time_sweep import State, padded, reached, sweep
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.continuous._equations import Body, body_of, momentum_rate, spatial_velocity
-from nonholo.continuous._solution import Solved, States, on_same_turn
-from nonholo.groups import SE, AbstractMatrixGroup
+from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
+from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractSystem
 
 Rate = Callable[[AbstractMatrixGroup, Array, State, Any], State]
@@ -27,9 +27,8 @@ def integrate_by_diffrax(
     tolerances: tuple[float, float],
 ) -> Solved:
     """Solve the equations of a system; times elapse from zero."""
-    planar = system.group == SE(2)
-    turned = np.arctan2(pose[1:2], pose[0:1]) if planar else np.zeros(0)
-    start = (reduced_momentum, pose, turned)
+    planar = system.group == PLANE
+    start = (reduced_momentum, pose, first_heading(system.group, pose))
     if system.is_spatial:
         rate, known = _spatial_rate, (system.constraint_subspace, system.homogeneous_mass_tensor)
     else:

@@ -6,8 +6,7 @@ import numpy as np
 
 from nonholo.base.types import Bool, Float, Int
 from nonholo.continuous._series import GUARD, body_equations, body_numbers, by_series, is_compact, power_of_two
-from nonholo.continuous._solution import States, on_same_turn
-from nonholo.groups import SE
+from nonholo.continuous._solution import PLANE, States, first_heading, on_same_turn
 from nonholo.kernels import solve_members
 from nonholo.systems import AbstractSystem
 
@@ -36,11 +35,10 @@ def members_by_series(
     velocities, torques = (np.stack(x) for x in zip(*map(body_numbers, systems), strict=True))
     used = (torques != 0).any(axis=0)
     f = body_equations(first.group, first.constraint_subspace, velocities[0], used.astype(np.float64))
-    own, plane, k = torques[:, used], first.group == SE(2), momenta.shape[1]
+    own, plane, k = torques[:, used], first.group == PLANE, momenta.shape[1]
     factors = np.hstack([own, np.tile(f.factors[own.shape[1] :], (len(systems), 1))])
     units = np.array([power_of_two(w) for w in (velocities @ momenta[..., None])[..., 0]])
-    heading = np.arctan2(poses[:, 1:2], poses[:, :1]) if plane else np.zeros((len(poses), 0))
-    starts = np.hstack([momenta / units[:, None], poses, heading])
+    starts = np.hstack([momenta / units[:, None], poses, first_heading(first.group, poses)])
     rows = np.full((len(momenta), len(elapsed), starts.shape[1]), np.nan)
     reached = solve_members(f, (velocities, factors), starts, (elapsed, units), tolerance * GUARD, rows, stop)
     found = first.group.normalize_pose(rows[..., k : k + poses.shape[1]])
@@ -58,7 +56,7 @@ def _one_by_one(
 ) -> tuple[States, np.ndarray]:
     reached = np.zeros(len(momenta), dtype=np.int64)
     r, g = (np.full((len(momenta), len(elapsed), rows.shape[1]), np.nan) for rows in (momenta, poses))
-    turned = np.full((len(momenta), len(elapsed)), np.nan) if systems[0].group == SE(2) else None
+    turned = np.full((len(momenta), len(elapsed)), np.nan) if systems[0].group == PLANE else None
     for member in range(len(momenta)):
         if stop[0]:
             break

@@ -18,12 +18,11 @@ import numpy as np
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.continuous._heteroclinic import Heteroclinic
-from nonholo.continuous._solution import Solved, States, on_same_turn
-from nonholo.groups import SE, AbstractMatrixGroup
+from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
+from nonholo.groups import AbstractMatrixGroup
 from nonholo.kernels import SERIES_LANES, Quadratic, order_for, revisit_series, solve_series
 from nonholo.systems import AbstractSystem
 
-_PLANE = SE(2)
 _COMPACT = 40
 """Poses of more numbers are integrated as matrices, whose rates need not be tried."""
 GUARD = 1 / 64
@@ -75,12 +74,12 @@ class Series:
     def decoded(self, rows: Float[np.ndarray, "K size"]) -> States:
         """Return momenta, poses and headings."""
         group, head, unit = self.group, rows[:, : self.head], self.unit
-        end = len(self.equations.blocks) - (group == _PLANE)
+        end = len(self.equations.blocks) - (group == PLANE)
         found = rows[:, self.head : end]
         matrices = found.reshape(-1, *group.identity.shape) if not self.compact else None
         poses = group.normalize_pose(found if matrices is None else group.pose_from_matrix(matrices))
         momenta = head * unit if self.momentum is None else np.tile(self.momentum, (len(rows), 1))
-        return States(momenta, poses, on_same_turn(rows[:, -1], poses) if group == _PLANE else None)
+        return States(momenta, poses, on_same_turn(rows[:, -1], poses) if group == PLANE else None)
 
 
 def by_series(
@@ -146,8 +145,7 @@ def _solved(
 ) -> Solved:
     compact, tolerance = is_compact(group) and not len(f.forms), tolerances[0] * GUARD
     g = pose if compact else group.matrix_from_pose(pose).ravel()
-    turned = np.arctan2(pose[1:2], pose[0:1]) if group == _PLANE else np.zeros(0)
-    rows, nodes = solve_series(f, np.concatenate([head, g, turned]), elapsed * unit, tolerance)
+    rows, nodes = solve_series(f, np.concatenate([head, g, first_heading(group, pose)]), elapsed * unit, tolerance)
     series = Series(group, f, len(head), compact, constant, unit, tolerance, float(elapsed[-1]), nodes)
     outcome = Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
     return Solved(series.decoded(rows), outcome, series, nodes[:, 0, -1] / unit)
@@ -188,7 +186,7 @@ def _space_equations(group: AbstractMatrixGroup, S: np.ndarray, tensor: np.ndarr
 
 
 def _with_heading(group: AbstractMatrixGroup, S: np.ndarray, rates: _Rates) -> _Rates:
-    return rates._replace(lone=np.concatenate([rates.lone, S[:, :1]], axis=1)) if group == _PLANE else rates
+    return rates._replace(lone=np.concatenate([rates.lone, S[:, :1]], axis=1)) if group == PLANE else rates
 
 
 def _assembled(

@@ -7,6 +7,9 @@ import numpy as np
 
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
+from nonholo.groups import SE, AbstractMatrixGroup
+
+PLANE = SE(2)
 
 
 class States(NamedTuple):
@@ -41,6 +44,11 @@ class Solved(NamedTuple):
     outcome: Outcome
     at: Callable[[Float[np.ndarray, "K"]], States]
     steps: Float[np.ndarray, "steps"] = np.zeros(0)
+
+
+def first_heading(group: AbstractMatrixGroup, pose: Float[np.ndarray, "... size"]) -> Float[np.ndarray, "... j"]:
+    """Return the angle of a pose in the plane as one number; none of other groups."""
+    return np.arctan2(pose[..., 1:2], pose[..., :1]) if group == PLANE else pose[..., :0]
 
 
 def on_same_turn(

@@ -3,7 +3,7 @@
 import abc
 from typing import Any, Generic, TypeVar
 
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import refuse_given
 
 OrbitT = TypeVar("OrbitT")
 DiscretizationT = TypeVar("DiscretizationT")
@@ -56,8 +56,5 @@ def refuse_in_coordinates(owner: str, **given: tuple[Any, Any]) -> None:
         >>> from nonholo.systems._coordinate_system import refuse_in_coordinates
         >>> refuse_in_coordinates("discretize", order=(2, 2))
     """
-    for name, (value, default) in given.items():
-        if value is not default and not (isinstance(value, type(default)) and value == default):
-            what = "keep its default for a Lagrange-d'Alembert system"
-            remedy = "Leave it out: only tops, sleighs and other LL and LR systems have it."
-            raise error(f"{owner}({name}=...)", what, shown(value), remedy)
+    remedy = "Leave it out: only tops, sleighs and other LL and LR systems have it."
+    refuse_given(owner, "keep its default for a Lagrange-d'Alembert system", remedy, **given)

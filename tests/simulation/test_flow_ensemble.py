@@ -104,6 +104,7 @@ def test_a_member_that_cannot_go_on_has_no_later_states() -> None:
 @pytest.mark.parametrize(
     ("given", "message"),
     [
+        ({"steps": np.array([5, 6])}, r"ensemble\(steps=...\)` must be left out for a flow"),
         ({"steps": 5}, r"ensemble\(steps=...\)` must be left out for a flow"),
         ({"save_every": 1}, r"ensemble\(save_every=...\)` must be left out"),
         ({"backend": "jax"}, r"ensemble\(backend=...\)` must be left out"),
@@ -130,7 +131,8 @@ def test_other_refused_starts() -> None:
         nh.ensemble(SLEIGH, momentum=[[1.0, 1.0, 0.5], [0.0, 0.0, 1.0]], times=(0.0, 1.0))
     with pytest.raises(ValueError, match=r"ensemble\(times=...\)"):
         nh.ensemble(SLEIGH, restricted_velocity=np.ones((10**6, 2)), times=np.arange(1e6))
-    with pytest.raises(ValueError, match="left out for a discretization"):
-        nh.ensemble(nh.discretize(SLEIGH, 0.1), restricted_velocity=np.ones((2, 2)), times=(0.0, 1.0))
+    for times in ((0.0, 1.0), np.linspace(0.0, 1.0, 3)):
+        with pytest.raises(ValueError, match=r"ensemble\(times=...\)` must be left out for a discretization"):
+            nh.ensemble(nh.discretize(SLEIGH, 0.1), restricted_velocity=np.ones((2, 2)), times=times)
     with pytest.raises(ValueError, match=r"ensemble\(steps=...\)"):
         nh.ensemble(nh.discretize(SLEIGH, 0.1), restricted_velocity=np.ones((2, 2)))

@@ -5,7 +5,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo.base.checks import choice, count, error, flags, shown
+from nonholo.base.checks import choice, count, error, flags, refuse_given, shown
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome
 from nonholo.discrete import PRINCIPAL, Discretization, as_discretization
@@ -17,13 +17,13 @@ from nonholo.simulation.members._members import Members, checked_parameters
 from nonholo.simulation.members._reduce import Reduced, joined
 from nonholo.simulation.members._result import Ensemble
 from nonholo.simulation.members._run import Plan, Report, counting, run_members, states_of
-from nonholo.simulation.members._start import checked_rows, first_momenta
+from nonholo.simulation.members._start import are_others, checked_rows, first_momenta
 from nonholo.simulation.runs import refuse_too_large, refuse_too_long
 from nonholo.systems import AbstractSystem, Start, System
 
 Motions: TypeAlias = tuple[Members, np.ndarray, np.ndarray | None]
 
-_TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
+_KINDS = "A discretization has steps, a system times and rtol."
 _BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
 
 
@@ -50,7 +50,8 @@ def ensemble(
     becomes of it does not depend on the others. Tops with n = 3 and plane sleighs run in compiled blocks of 32 members,
     other systems one after another. All cores are used (`NUMBA_NUM_THREADS` sets how many), with the same result.
 
-    Of a system in place of a discretization the flows are solved, by the series of `flow`, with the same bits.
+    Of a system in place of a discretization the flows are solved, by the series of `flow`: from one canonical momentum
+    each has the bits of a flow alone.
 
     A member that cannot continue keeps its good states: see `Ensemble` for what is where, and `outcome` for why.
 
@@ -98,9 +99,11 @@ def ensemble(
         raise error("ensemble(reduce=...)", "be a function", f"a {type(reduce).__name__}", "Pass a function, or None.")
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
     if isinstance(discrete, AbstractSystem):
-        _refuse("a flow", steps=steps, save_every=save_every, events=events, backend=backend, reconstruct=reconstruct)
+        of_steps = {"steps": (steps, None), "save_every": (save_every, None), "events": (events, None)}
+        how = {"backend": (backend, "auto"), "reconstruct": (reconstruct, True)}
+        refuse_given("ensemble", "be left out for a flow", _KINDS, **of_steps, **how)
         return ensemble_of_flows(discrete, Start.of("ensemble", **starts), times, parameters, rtol, reduce, progress)
-    _refuse("a discretization", times=times, rtol=rtol)
+    refuse_given("ensemble", "be left out for a discretization", _KINDS, times=(times, None), rtol=(rtol, None))
     discrete = as_discretization("ensemble(discrete=...)", discrete, composed=True)
     steps = count("ensemble(steps=...)", steps, "Pass the number of steps.")
     if save_every is not None:
@@ -143,13 +146,6 @@ def _motions(discrete: Discretization, start: Start, parameters: Any, plan: Plan
     return members, first_momenta(members, start.name, rows), full
 
 
-def _refuse(of: str, **given: Any) -> None:
-    for name, value in given.items():
-        if value is not None and value != {"backend": "auto", "reconstruct": True}.get(name):
-            remedy = "A discretization has steps, a system times and rtol."
-            raise error(f"ensemble({name}=...)", f"be left out for {of}", shown(value), remedy)
-
-
 def _check_backend(discrete: Discretization, backend: str) -> None:
     choice("ensemble(backend=...)", backend, ("auto", "numba", "jax"))
     if backend == "numba" and discrete.route.compiled is None:
@@ -174,7 +170,7 @@ def _block(
 
 def _unstart(done: Ensemble, full: np.ndarray, found: np.ndarray) -> None:
     """Take the states from members that have another full momentum than the one they should start with."""
-    missed = np.linalg.norm(full - found, axis=1) > _TOLERANCE * np.linalg.norm(found, axis=1)
+    missed = are_others(full, found)
     done.outcome[missed], done.steps_done[missed] = Outcome.off_momentum_locus, 0
     for states in (done.reduced_momentum, done.cayley, done.canonical_pose):
         if states is not None:

@@ -19,12 +19,11 @@ from nonholo.simulation.members._members import Members, checked_parameters
 from nonholo.simulation.members._reduce import Reduced, joined
 from nonholo.simulation.members._result import Ensemble
 from nonholo.simulation.members._run import Report, counting, in_threads, threads_to_use
-from nonholo.simulation.members._start import checked_rows, first_momenta
+from nonholo.simulation.members._start import are_others, checked_rows, first_momenta
 from nonholo.systems import Start, System
 
 _PART = 1024  # members in a piece of work of one thread,
 _NUMBERS = 1 << 20  # and the most numbers in their states
-_TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -94,31 +93,31 @@ def ensemble_of_flows(
         return joined(len(rows), ((len(batch), reduce(batch)) for batch in batches))
 
 
-def _check_momenta(given: np.ndarray, found: np.ndarray) -> None:
+def _check_momenta(given: np.ndarray, full: np.ndarray) -> None:
     """Refuse full momenta that no admissible velocity has."""
-    missed = np.linalg.norm(given - found, axis=1) > _TOLERANCE * np.linalg.norm(found, axis=1)
-    if missed.any():
-        member = int(np.argmax(missed))
-        remedy = f"With the same components along the constraint that of member {member} is {found[member].tolist()}."
+    wrong = are_others(given, full)
+    if wrong.any():
+        member = int(np.argmax(wrong))
+        remedy = f"With the same components along the constraint that of member {member} is {full[member].tolist()}."
         got = f"{given[member].tolist()}"
         raise error("ensemble(momentum=...)", "belong to admissible velocities", got, remedy)
 
 
 def _solved(members: Members, momenta: np.ndarray, time: np.ndarray, rtol: float, report: Report) -> FlowEnsemble:
     """Solve for a block of members, pieces of it in threads."""
-    count, found = len(members), {}
+    count, pieces = len(members), {}
     systems = [members.of(member).system for member in range(count if members.parameters else 1)]
     poses = np.broadcast_to([system.frame_pose for system in systems], (count, systems[0].group.pose_size))
     canonical = [system.canonical for system in systems]
 
     def work(part: slice, stop: np.ndarray) -> None:
         own = canonical[part] if members.parameters else canonical
-        found[part.start] = members_by_series(own, momenta[part], poses[part], time - time[0], rtol, stop)
+        pieces[part.start] = members_by_series(own, momenta[part], poses[part], time - time[0], rtol, stop)
 
     size = max(1, min(_PART, _NUMBERS // ((momenta.shape[1] + poses.shape[1]) * len(time)), -(-count // 8)))
     parts = [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]
     in_threads(work, parts, threads_to_use(), report)
-    states, reached = zip(*(found[part.start] for part in parts), strict=True)
+    states, reached = zip(*(pieces[part.start] for part in parts), strict=True)
     momenta_of, poses_of = (np.concatenate([getattr(part, name) for part in states]) for name in ("momenta", "poses"))
     turned = None if states[0].turned is None else np.concatenate([part.turned for part in states])
     good = np.concatenate(reached)

@@ -3,13 +3,13 @@
 import numpy as np
 
 from nonholo.base.checks import array, error, shape_of
-from nonholo.base.types import Float
+from nonholo.base.types import Bool, Float
 from nonholo.simulation.members._families import ScalarMembers, have_kernel, scalar_members
 from nonholo.simulation.members._members import Members, refused
 from nonholo.systems import Start, System
 
 _CHUNK = 1 << 16  # members whose starts are made at once: what it takes between is not kept
-_TOLERANCE = 1e-9  # relative, for velocities that a user computed in floating point
+_TOLERANCE = 1e-9  # relative, for velocities and momenta that a user computed in floating point
 
 
 def checked_rows(system: System, parameters: dict[str, np.ndarray], start: Start) -> np.ndarray:
@@ -78,6 +78,11 @@ def applied(
     """
     A = matrices.reshape(len(matrices), *(1,) * (vectors.ndim - 2), *matrices.shape[1:])
     return sum((A[..., j] * vectors[..., j, None] for j in range(1, A.shape[-1])), A[..., 0] * vectors[..., 0, None])
+
+
+def are_others(given: Float[np.ndarray, "M dim"], full: Float[np.ndarray, "M dim"]) -> Bool[np.ndarray, "M"]:
+    """Tell which full momenta that were given are not those with which the members start."""
+    return np.linalg.norm(given - full, axis=1) > _TOLERANCE * np.linalg.norm(full, axis=1)
 
 
 def _of_one(members: Members, member: int, name: str, row: np.ndarray) -> np.ndarray:
