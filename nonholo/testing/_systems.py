@@ -2,13 +2,15 @@
 
 from typing import Any
 
+import numpy as np
+
+from nonholo.analysis import conserved_momenta
 from nonholo.base.checks import error, flags
-from nonholo.systems import AbstractSystem
-from nonholo.testing._measures import seeded
-from nonholo.testing._report import Report, run_checks
-from nonholo.testing._system_motion import MOTION
+from nonholo.systems import AbstractSystem, Equilibria
+from nonholo.testing._measures import derivative, gap, largest, seeded
+from nonholo.testing._report import Check, NotApplicableError, Report, need, run_checks
 from nonholo.testing._system_samples import SystemSamples
-from nonholo.testing._system_statics import STATICS
+from nonholo.testing._system_statics import STATICS, need_motion
 
 
 def check_system(
@@ -54,3 +56,105 @@ def check_system(
 
 def _named(thing: Any) -> str:
     return type(thing).__name__
+
+
+def _equations(s: SystemSamples) -> float:
+    """Compare the rate of momentum with <p, [omega, S_i]>; momenta along a constraint fixed in space are constant."""
+    need_motion(s)
+    brackets = s.group.bracket(s.body_velocity[:, None, :], s.directions)
+    expected = 0 * s.restricted if s.spatial else (brackets @ s.momentum[:, :, None])[:, :, 0]
+    return largest(s.rate[0] - expected) / largest(s.momentum)
+
+
+def _reconstruction(s: SystemSamples) -> float:
+    return gap(s.rate[1], s.g @ s.group.hat(s.body_velocity))
+
+
+def _constraint(s: SystemSamples) -> float:
+    back = np.linalg.inv(s.g)
+    velocity = s.rate[1] @ back if s.spatial else back @ s.rate[1]
+    return largest(s.group.vee(velocity) @ s.A.T)
+
+
+def _energy(s: SystemSamples) -> float:
+    need_motion(s)
+    return largest(s.along_the_motion(s.energy)) / largest(s.energy(s.restricted, s.g))
+
+
+def _equilibria(s: SystemSamples) -> tuple[Equilibria, ...]:
+    """Return each linear space of equilibria."""
+    need_motion(s)
+    system: Any = s.system
+    need(not s.spatial, "a right-invariant constraint")
+    try:
+        known = system.equilibria()
+    except ValueError:
+        raise NotApplicableError("the system refuses to name its equilibria") from None
+    return known, *known.others
+
+
+def _rate_at(s: SystemSamples, velocity: np.ndarray) -> np.ndarray:
+    """Return the rate of change of body velocities, in rows of the subspace."""
+    w = velocity @ np.linalg.pinv(s.S)
+    brackets = s.group.bracket(velocity[:, None, :], s.S)
+    inertia = s.S @ s.inertia @ s.S.T
+    return np.linalg.solve(inertia, (brackets @ (w @ s.S @ s.inertia.T)[:, :, None])[:, :, 0].T).T
+
+
+def _at_rest(s: SystemSamples) -> float:
+    spaces = [known.subspace for known in _equilibria(s)]
+    mixed = np.concatenate([*spaces, *(rows.sum(axis=0)[None] for rows in spaces)])
+    forbidden = largest(mixed @ s.A.T)
+    return max(forbidden, largest(_rate_at(s, mixed)))
+
+
+def _growth(s: SystemSamples) -> float:
+    """Return the largest growth rate across the equilibria that attract, relative to the velocity."""
+    attracting = [known for known in _equilibria(s) if known.attracting is not None]
+    need(attracting, "no equilibrium attracts")
+    return max(_growth_beside(s, known) for known in attracting)
+
+
+def _growth_beside(s: SystemSamples, known: Equilibria) -> float:
+    velocity = np.asarray(known.attracting)
+    w = velocity @ np.linalg.pinv(s.S)
+
+    def nearby(t: float) -> np.ndarray:
+        return _rate_at(s, (w + t * np.eye(len(w))) @ s.S)
+
+    rates = np.sort(np.linalg.eigvals(derivative(nearby, 0.1).T).real)
+    across = len(w) - len(known.subspace)
+    return float(rates[across - 1] / np.linalg.norm(velocity))
+
+
+def _in_body(s: SystemSamples) -> float:
+    need_motion(s)
+    return _change(s, conserved_momenta(s.system).body, s.full_momentum)
+
+
+def _in_space(s: SystemSamples) -> float:
+    need_motion(s)
+
+    def spatial(restricted: np.ndarray, g: np.ndarray) -> np.ndarray:
+        return s.group.coadjoint(s.group.inverse(g), s.full_momentum(restricted, g))
+
+    return _change(s, conserved_momenta(s.system).spatial, spatial)
+
+
+def _change(s: SystemSamples, rows: np.ndarray, quantity: Any) -> float:
+    need(len(rows), "none is conserved")
+    slope = s.along_the_motion(quantity) @ rows.T
+    return largest(slope) / (1 + largest(quantity(s.restricted, s.g)))
+
+
+MOTION = (
+    Check("equations of motion", "rate of <p, S_i> = <p, [omega, S_i]> (in space: zero)", 1e-11, _equations),
+    Check("reconstruction", "g' = g hat(omega)", 1e-11, _reconstruction),
+    Check("constraint", "the vector field keeps the constraint", 1e-11, _constraint),
+    Check("energy conserved", "the constrained energy is constant along the vector field", 1e-8, _energy),
+    Check("equilibria", "equilibria are admissible and their velocities constant", 1e-11, _at_rest),
+    Check("attraction", "small deviations from the attracting equilibrium decay: negative growth rate", -1e-9, _growth),
+    Check("conserved body momenta", "conserved_momenta(...).body are constant along the vector field", 1e-8, _in_body),
+    Check("conserved spatial momenta", "conserved_momenta(...).spatial are constant along it", 1e-8, _in_space),
+)
+"""In the order of the report; rates of change are central differences of order four, good to 1e-11 or so."""

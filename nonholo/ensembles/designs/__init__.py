@@ -12,20 +12,3 @@ from nonholo.ensembles.designs._distributions import (
     Uniform,
 )
 from nonholo.ensembles.designs._uniform import uniform_numbers
-
-__all__ = [
-    "DISTRIBUTIONS",
-    "AbstractDesign",
-    "AbstractDistribution",
-    "Choice",
-    "Design",
-    "Direction",
-    "Grid",
-    "LogUniform",
-    "MassTensor",
-    "Normal",
-    "RandomDesign",
-    "Uniform",
-    "axis_dimensions",
-    "uniform_numbers",
-]

@@ -5,25 +5,3 @@ from nonholo.ensembles.stores._poses_csv import sweep_to_csv
 from nonholo.ensembles.stores._results import OUTCOME, RAISED, Output, Results, Task, attempted, probed
 from nonholo.ensembles.stores._standing import SweepStanding, opened_result, standing_of
 from nonholo.ensembles.stores._store import Mark, SweepStore, attributes_of, create_store, open_store, store_of
-
-__all__ = [
-    "OUTCOME",
-    "RAISED",
-    "Layout",
-    "Mark",
-    "Output",
-    "Results",
-    "SweepStanding",
-    "SweepStore",
-    "Task",
-    "attempted",
-    "attributes_of",
-    "create_store",
-    "layout_of",
-    "open_store",
-    "opened_result",
-    "probed",
-    "standing_of",
-    "store_of",
-    "sweep_to_csv",
-]

@@ -14,16 +14,3 @@ from nonholo.plotting.sheets._momentum_plane import (
     on_plane,
     plane_inertia,
 )
-
-__all__ = [
-    "AbstractSheet",
-    "Blade",
-    "blade_of_system",
-    "ellipse",
-    "half_axes",
-    "momenta_on_plane",
-    "name_axes",
-    "on_plane",
-    "plane_inertia",
-    "sheet_of",
-]
