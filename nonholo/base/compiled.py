@@ -37,7 +37,8 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     """
 
     def decorate(function: Callable[..., Any]) -> Any:
-        made = numba.njit(**{"no_cfunc_wrapper": True, **options})(function)  # nothing calls kernels from C
+        options["no_cfunc_wrapper"] = True  # nothing calls kernels from C
+        made = numba.njit(**options)(function)
         if isinstance(made, dispatcher.Dispatcher):  # NUMBA_DISABLE_JIT leaves the function as it is
             try:
                 made._cache = _Cache(function)  # pyright: ignore
