@@ -62,7 +62,9 @@ def step_each(
     each = _runs(body).step_each
     if each is None:
         raise TypeError(f"`step_each` needs a plain body. Got {type(body).__name__}. Use `whole_steps`.")
-    return each(body, *states, guesses, principal_only)
+    momenta, charts, poses = states
+    rows = (np.ascontiguousarray(part) for part in (momenta, charts))  # one layout, or each is compiled for two
+    return each(body, *rows, poses, np.ascontiguousarray(guesses), principal_only)
 
 
 def _scalar_start(body: Body, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:

@@ -22,7 +22,7 @@ from numba.extending import overload
 from nonholo.base.compiled import njit
 from nonholo.base.types import Float
 from nonholo.kernels._scalar import COMPILED
-from nonholo.kernels._small import eliminate, multiply, transpose
+from nonholo.kernels._small import assign_rows, eliminate, multiply, transpose
 
 SERIES_LANES = 8
 """The number of products is padded to a multiple of it."""
@@ -131,7 +131,7 @@ def advance(
     """
     room, going, at = make_room(f, order, ONE), True, 0
     while at < len(nodes) and going and reached < len(times):
-        nodes[at] = state
+        assign_rows(nodes[at], state)
         at += 1
         prepare(f, state, order, tolerance, times[-1:], room, ONE)
         reached, going = read(room, state, times, 1.0, reached, rows, 0, ONE)
@@ -155,7 +155,7 @@ def revisit_series(
             after += 1
         if after != at:
             at = after
-            state[:] = nodes[at]
+            assign_rows(state, nodes[at])
             prepare(f, state, order, tolerance, ends, room, ONE)
         while abs(since(state, times[i], 0, ONE)) > room.steps[0]:  # nodes between were left out
             room.steps[0] *= direction
