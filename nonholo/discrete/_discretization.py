@@ -109,7 +109,7 @@ class Discretization(Scheme, AbstractMotion):
         if not self.variety.exact:
             return equations_of(self.variety, D)
         group, forbidden = self.system.group, self.variety.annihilator.T
-        return (group.log(D) if self.variety.exponential else group.vee((D - group.inverse(D)) / 2)) @ forbidden
+        return (group.log(D) if self.variety.exponential else group.vee(D - group.inverse(D)) / 2) @ forbidden
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         """Return the discrete momenta at the displacements, of a composition at those of first substeps."""

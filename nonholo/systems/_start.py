@@ -92,9 +92,10 @@ def of_finite_energy(owner: str, system: System, g: np.ndarray | None, along: np
 
     The energy is half the product of a momentum and its velocity, the `pair` where both are known.
     """
-    with np.errstate(over="ignore", invalid="ignore"):
-        energy = np.vdot(*pair or (along, system.restricted_velocity(along, g))) / 2
-    if not np.isfinite(energy):
+    if not pair:
+        with np.errstate(over="ignore", invalid="ignore"):
+            pair = along, system.restricted_velocity(along, g)
+    if not abs(energy := np.vdot(*pair) / 2) < np.inf:
         raise error(f"{owner}(...)", "start with a finite energy", f"{energy}", "Start slower, or use other units.")
     return along if system.canonical is system else system.to_canonical(along)
 
