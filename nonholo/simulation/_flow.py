@@ -2,7 +2,7 @@
 
 import functools
 from collections.abc import Callable
-from typing import Any, cast, overload
+from typing import Any, overload
 
 import numpy as np
 
@@ -112,26 +112,30 @@ def flow(
     solver, time = solver_of(method), flow_times(times)
     tolerances = flow_tolerances((1e-10 if method == "diffrax" else 1e-14) if rtol is None else rtol, atol)
     solve = functools.partial(solver, system.canonical, tolerances=tolerances)
-    first = _first_state(
-        system, time, Start.of("flow", configuration, restricted_velocity=restricted_velocity, **starts)
-    )
-    return _flowed(first, time, tolerances, solve, None if events is None else checked_events("flow", events))
+    start = Start.of("flow", configuration, restricted_velocity=restricted_velocity, **starts)
+    first = _first_state(system, time, start)
+    return _flowed(system, first, time, tolerances, solve, None if events is None else checked_events("flow", events))
 
 
-def _first_state(system: System, time: np.ndarray, start: Start) -> Orbit:
-    """Return the checked state at the first time."""
+def _first_state(system: System, time: np.ndarray, start: Start) -> tuple[np.ndarray, np.ndarray]:
+    """Return the checked momentum and pose at the first time."""
     group = system.group
     within_memory("flow(times=...)", 32.0 * len(time) * (system.rank + group.pose_size), "Ask for fewer times.")
     g = start.pose(group)
     reduced, pose = start.momentum(system, g), start.canonical_pose(system, g)
-    first = Orbit(ContinuousFlow(system), time[:1], reduced[None], None, pose[None])
     if start.name == "momentum":
-        _check_momentum(start.value, first.momentum[0])
-    return first
+        _check_momentum(start.value, _opening(system, time, (reduced, pose)).momentum[0])
+    return reduced, pose
+
+
+def _opening(system: System, time: np.ndarray, first: tuple[np.ndarray, np.ndarray]) -> Orbit:
+    """Return the first state alone."""
+    return Orbit(ContinuousFlow(system), time[:1], first[0][None], None, first[1][None])
 
 
 def _flowed(
-    first: Orbit,
+    system: System,
+    first: tuple[np.ndarray, np.ndarray],
     time: np.ndarray,
     tolerances: tuple[float, float],
     solve: Callable[..., Solved],
@@ -139,10 +143,10 @@ def _flowed(
 ) -> Orbit:
     """Return the orbit from a first state, with what events found."""
     if events is not None:
-        check_functions(events, first)
-    solved = solve(first.reduced_momentum[0], cast(np.ndarray, first.canonical_pose)[0], time - time[0])
+        check_functions(events, _opening(system, time, first))
+    solved = solve(*first, time - time[0])
     states, outcome, reached = solved.states, solved.outcome, len(solved.states.momenta)
-    motion = ContinuousFlow(first.system, (time[0], time[reached - 1]), solved.at)
+    motion = ContinuousFlow(system, (time[0], time[reached - 1]), solved.at)
     orbit = Orbit(motion, time[:reached], states.momenta, None, states.poses, outcome, turned=states.turned)
     if events is not None:
         orbit = flow_with_events(events, orbit, time[0] + solved.steps)

@@ -11,7 +11,7 @@ from typing import ClassVar, TypeVar
 
 import numpy as np
 
-from nonholo.base.checks import error, shape_of, trailing
+from nonholo.base.checks import error, is_traced, shape_of, trailing
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
@@ -409,5 +409,5 @@ System = AbstractLLSystem | AbstractLRSystem
 def _solve(matrix: Float[Array, "... k k"] | WideInertia, vector: Float[Array, "... k"]) -> Float[Array, "... k"]:
     if isinstance(matrix, WideInertia):
         return matrix.velocities(vector)
-    xp = (matrix @ vector[..., None]).__array_namespace__()  # either may be traced
+    xp = (vector if is_traced(vector) else matrix).__array_namespace__()
     return xp.linalg.solve(xp.asarray(matrix), xp.asarray(vector)[..., None])[..., 0]

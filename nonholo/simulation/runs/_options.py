@@ -1,6 +1,6 @@
 """The options of a run, checked."""
 
-import dataclasses
+from typing import NamedTuple
 
 from nonholo.base.checks import choice, step_counts
 from nonholo.discrete import (
@@ -13,8 +13,7 @@ from nonholo.discrete import (
 )
 
 
-@dataclasses.dataclass(frozen=True)
-class RunOptions:
+class RunOptions(NamedTuple):
     """The options of a run, whatever its start.
 
     Attributes:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from nonholo.systems.families._arrowhead import ArrowheadTop
 
 _E3 = (0.0, 0.0, 1.0)
+_LAST = array("SuslovTop(axis=...)", _E3, (3,))
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
@@ -144,7 +145,7 @@ class SuslovTop(AbstractLLSystem):
     @kept
     def canonical(self) -> "SuslovTop":
         """The same top in body axes whose last one is the forbidden axis."""
-        if self.axis is None or np.array_equal(self.axis, _E3):
+        if self.axis is None or tuple(self.axis) == _E3:
             return self
         turned = self.frame.T @ self.mass_tensor @ self.frame
         return SuslovTop((turned + turned.T) / 2)
@@ -166,7 +167,9 @@ def _forbidden_axis(where: str, value: Array, n: int) -> Array:
             remedy = "Turn the body so that its planes of rotation contain e_n."
             raise error(where, "be left out for n > 3", f"an axis for n = {n}", remedy)
         return None
-    axis = array(where, _E3 if value is None else value, (3,), "Pass a unit vector in body coordinates.")
+    if value is None:
+        return _LAST
+    axis = array(where, value, (3,), "Pass a unit vector in body coordinates.")
     if is_traced(axis):
         raise error(where, "be concrete", "a traced value", "Differentiate with respect to mass_tensor instead.")
     length = np.linalg.norm(axis)
