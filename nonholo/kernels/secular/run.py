@@ -179,12 +179,11 @@ def advance(
 
     After a failure the state is that of the last good step.
     """
-    taken = state.copy()
-    done, code = _take(p, taken, steps, every, momenta, charts, poses)
+    first = state.copy()
+    done, code = _take(p, state, steps, every, momenta, charts, poses)
     if code != 0:  # the state before the last push is gone: what led to it is done again
-        taken = state.copy()
-        _take(p, taken, done, every, momenta, charts, poses)
-    assign(state, taken)
+        assign(state, first)
+        _take(p, state, done, every, momenta, charts, poses)
     return done, code
 
 
