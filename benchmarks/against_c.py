@@ -25,7 +25,7 @@ from nonholo import kernels
 
 STEPS, ROUNDS, MANY = 1_000_000, 15, 1_000_000
 FLAGS = ["-O3", "-march=native", "-fno-math-errno", "-fopenmp-simd", "-shared", "-fPIC"]
-HEADER = f"{'case':30} {'library':>11} {'C':>11}  ratio {'strict C':>11}  ratio"
+HEADER = f"{'case':36} {'library':>11} {'C':>11}  ratio {'strict C':>11}  ratio"
 
 
 def built(
@@ -75,7 +75,7 @@ def compare(
     """Print a row: the library, C and strict C in nanoseconds, and the ratios to both."""
     ours, *beside = paired(library, references, unit, rounds)
     cells = [f"{1e9 * c:8.1f} ns {ratio:6.2f}" for c, ratio in zip(beside[::2], beside[1::2], strict=True)]
-    print(f"{case:30} {1e9 * ours:8.1f} ns {' '.join(cells)}", flush=True)
+    print(f"{case:36} {1e9 * ours:8.1f} ns {' '.join(cells)}", flush=True)
 
 
 def one_orbit(both: tuple, name: str, system: nh.SuslovTop | nh.ChaplyginSleigh, velocity: tuple) -> None:
