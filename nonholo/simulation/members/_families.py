@@ -119,6 +119,17 @@ def scalar_members(members: Members) -> ScalarMembers:
     return _FAMILIES[type(members.discrete.system)].numbers(members)
 
 
+def tangents(
+    members: Members, momenta: Float[np.ndarray, "M K 2"], charts: Float[np.ndarray, "M K 2"]
+) -> Float[np.ndarray, "M K 2 2"]:
+    """Return the derivatives of steps of tops and plane sleighs by the momenta of their rows before them."""
+    scalar = scalar_members(members)
+    m1, m2 = np.moveaxis(momenta * scalar.scale[:, None, None], -1, 0)
+    C, body = scalar.frame_map[:, None], body_of(members)(*scalar.fields[..., None])
+    canonical = np.stack(kernels.tangent(body, m1, m2, *np.moveaxis(charts, -1, 0)), axis=-1).reshape(*m1.shape, 2, 2)
+    return np.linalg.inv(C) @ canonical @ C
+
+
 def check_systems(members: Members) -> None:
     """Refuse parameters of which no system can be made; tops and sleighs are looked through in one go."""
     step = members.parameters.get(STEP)
