@@ -35,15 +35,16 @@ def members_by_series(
     velocities, torques = (np.stack(x) for x in zip(*map(body_numbers, systems), strict=True))
     used = (torques != 0).any(axis=0)
     f = body_equations(first.group, first.constraint_subspace, velocities[0], used.astype(np.float64))
-    own, plane, k = torques[:, used], first.group == PLANE, momenta.shape[1]
-    factors = np.hstack([own, np.tile(f.factors[own.shape[1] :], (len(systems), 1))])
+    own = np.moveaxis(torques, -1, 1)[:, np.moveaxis(used, -1, 0)]  # row by row of the equations
+    plane, k = first.group == PLANE, momenta.shape[1]
+    factors = np.hstack([np.tile(f.factors[0, : f.factors.size - own.shape[1]], (len(systems), 1)), own])
     units = np.array([power_of_two(w) for w in (velocities @ momenta[..., None])[..., 0]])
-    starts = np.hstack([momenta / units[:, None], poses, first_heading(first.group, poses)])
+    starts = np.hstack([poses, first_heading(first.group, poses), momenta / units[:, None]])
     rows = np.full((len(momenta), len(elapsed), starts.shape[1]), np.nan)
     reached = solve_members(f, (velocities, factors), starts, (elapsed, units), tolerance * GUARD, rows, stop)
-    found = first.group.normalize_pose(rows[..., k : k + poses.shape[1]])
-    turned = on_same_turn(rows[..., -1], found) if plane else None
-    return States(rows[..., :k] * units[:, None, None], found, turned), reached
+    found = first.group.normalize_pose(rows[..., : poses.shape[1]])
+    turned = on_same_turn(rows[..., poses.shape[1]], found) if plane else None
+    return States(rows[..., -k:] * units[:, None, None], found, turned), reached
 
 
 def _one_by_one(

@@ -37,7 +37,8 @@ class Solved(NamedTuple):
         states: At the requested times; after a failure only the good ones.
         outcome: How it ended.
         at: Gives the states at times since the start, up to the last good one, in the order of the requested times.
-        steps: Where the steps of the solver begin; empty if that says nothing of the motion.
+        steps: Where steps of the solver begin and, if they are long, times within; empty if that says nothing of the
+            motion.
     """
 
     states: States

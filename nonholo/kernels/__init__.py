@@ -9,15 +9,13 @@ from nonholo.kernels._nearest import NearestBody
 from nonholo.kernels._nearest import advance as advance_to_nearest
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
-from nonholo.kernels._taylor import SERIES_LANES, Quadratic, order_for, revisit_series, solve_series
-from nonholo.kernels._taylor_members import solve_members
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.secular import SecularBody, secular_sleigh, secular_top
+from nonholo.kernels.taylor import Quadratic, order_for, revisit_series, solve_members, solve_series, sparse_products
 
 __all__ = [
     "CORRECTIONS",
     "LANES",
-    "SERIES_LANES",
     "SETTLED",
     "AnyBody",
     "Body",
@@ -46,6 +44,7 @@ __all__ = [
     "sizes",
     "solve_members",
     "solve_series",
+    "sparse_products",
     "start",
     "step_each",
     "suslov_body",
