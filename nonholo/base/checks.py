@@ -111,7 +111,7 @@ def _too_large(where: str, value: np.ndarray, remedy: str) -> ValueError:
 
 def _is_moderate(value: np.ndarray) -> bool:
     """Tell by one sum of squares that no number lies beyond the largest; False says nothing."""
-    return value.size < _FEW and bool(abs(np.vdot(value, value)) <= LARGEST**2)
+    return value.size < _FEW and float(abs(np.vdot(value, value))) <= LARGEST**2
 
 
 def _check_finite(where: str, value: np.ndarray, remedy: str) -> None:
@@ -124,7 +124,7 @@ def _check_finite(where: str, value: np.ndarray, remedy: str) -> None:
 
 def _check_size(where: str, value: np.ndarray, remedy: str) -> None:
     """Refuse numbers that are not finite, or whose squares overflow."""
-    if not _is_moderate(value) and not (most := np.abs(value).max(initial=0.0)) <= LARGEST:
+    if not _is_moderate(value) and not (most := float(np.abs(value).max(initial=0.0))) <= LARGEST:
         _check_finite(where, value, remedy)
         raise error(where, f"have no number beyond {LARGEST:g}", f"{most:g}", "Use other units.")
 
