@@ -148,11 +148,11 @@ def _solved(
     series = Series(group, f, len(head), compact, constant, unit, tolerance, float(elapsed[-1]), nodes)
     outcome = Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
     return Solved(
-        series.decoded(rows), outcome, series, _looked_at(np.append(nodes[:, 0, -1], elapsed[-1] * unit)) / unit
+        series.decoded(rows), outcome, series, looked_at(np.append(nodes[:, 0, -1], elapsed[-1] * unit)) / unit
     )
 
 
-def _looked_at(ends: Float[np.ndarray, "steps"]) -> Float[np.ndarray, "looks"]:
+def looked_at(ends: Float[np.ndarray, "steps"]) -> Float[np.ndarray, "looks"]:
     """Return times at which the state is looked at for events: steps are long, so within them too."""
     looks = np.arange(_LOOKS * len(ends) - _LOOKS + 1) / _LOOKS
     return np.interp(looks, np.arange(len(ends)), ends)
