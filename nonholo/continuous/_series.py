@@ -148,11 +148,11 @@ def _solved(
     series = Series(group, f, len(head), compact, constant, unit, tolerance, float(elapsed[-1]), nodes)
     outcome = Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
     return Solved(
-        series.decoded(rows), outcome, series, _looked_at(np.append(nodes[:, 0, -1], elapsed[-1] * unit)) / unit
+        series.decoded(rows), outcome, series, looked_at(np.append(nodes[:, 0, -1], elapsed[-1] * unit)) / unit
     )
 
 
-def _looked_at(ends: Float[np.ndarray, "steps"]) -> Float[np.ndarray, "looks"]:
+def looked_at(ends: Float[np.ndarray, "steps"]) -> Float[np.ndarray, "looks"]:
     """Return times at which the state is looked at for events: steps are long, so within them too."""
     looks = np.arange(_LOOKS * len(ends) - _LOOKS + 1) / _LOOKS
     return np.interp(looks, np.arange(len(ends)), ends)
@@ -164,13 +164,19 @@ def quadratic(system: AbstractSystem) -> Quadratic:
     group, S = system.group, system.constraint_subspace
     if system.is_spatial:
         return _space_equations(group, S, cast(np.ndarray, system.homogeneous_mass_tensor))
-    return body_equations(group, S, *body_numbers(system))
+    return body_equations(group, S, *body_numbers(group, S, system.inertia_operator))
 
 
-def body_numbers(system: AbstractSystem) -> tuple[Float[np.ndarray, "k k"], Float[np.ndarray, "k k k"]]:
-    """Return V and the coefficients of products of velocities in the rates of momenta."""
-    S, inertia = system.constraint_subspace, system.inertia_operator
-    return np.linalg.inv(S @ inertia @ S.T), _torques(system.group, S, S @ inertia.T)
+def body_numbers(
+    group: AbstractMatrixGroup, S: np.ndarray, inertia: Float[np.ndarray, "... dim dim"]
+) -> tuple[Float[np.ndarray, "... k k"], Float[np.ndarray, "... k k k"]]:
+    """Return V and the coefficients of products w_a w_b, a <= b, of velocities in the rates of momenta."""
+    momenta = S @ inertia.swapaxes(-1, -2)
+    torques = np.zeros((*inertia.shape[:-2], len(S), len(S), len(S)))
+    for a, row in enumerate(S):
+        torques[..., a, :, :] = group.coad(np.broadcast_to(row, momenta.shape), momenta) @ S.T
+    upper = (np.tri(len(S)).T - np.eye(len(S)) / 2)[..., None]
+    return np.linalg.inv(S @ inertia @ S.T), (torques + torques.swapaxes(-3, -2)) * upper
 
 
 def body_equations(group: AbstractMatrixGroup, S: np.ndarray, velocities: np.ndarray, torques: np.ndarray) -> Quadratic:
@@ -222,14 +228,6 @@ def _side_by_side(k: int, size: int, velocities: np.ndarray, places: np.ndarray)
     multiplied = np.zeros((k, size), dtype=np.bool_)
     multiplied[velocities, places] = True
     return np.lexsort(~multiplied[::-1])
-
-
-def _torques(group: AbstractMatrixGroup, S: np.ndarray, momenta: np.ndarray) -> Float[np.ndarray, "k k k"]:
-    """Return the coefficients of w_a w_b, a <= b, in the rates of the momenta along S."""
-    torques = np.zeros((len(S), len(S), len(S)))
-    for a, row in enumerate(S):
-        torques[a] = group.coad(np.broadcast_to(row, momenta.shape), momenta) @ S.T
-    return (torques + torques.transpose(1, 0, 2)) * (np.tri(len(S)).T - np.eye(len(S)) / 2)[..., None]
 
 
 def _compact_rates(group: AbstractMatrixGroup, S: np.ndarray) -> _Rates:

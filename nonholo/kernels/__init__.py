@@ -11,13 +11,23 @@ from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.secular import SecularBody, secular_sleigh, secular_top
-from nonholo.kernels.taylor import Quadratic, order_for, revisit_series, solve_members, solve_series, sparse_products
+from nonholo.kernels.taylor import (
+    Arrowhead,
+    Quadratic,
+    order_for,
+    revisit_series,
+    solve_arrowhead,
+    solve_members,
+    solve_series,
+    sparse_products,
+)
 
 __all__ = [
     "CORRECTIONS",
     "LANES",
     "SETTLED",
     "AnyBody",
+    "Arrowhead",
     "Body",
     "ComposedBody",
     "GeneralBody",
@@ -42,6 +52,7 @@ __all__ = [
     "secular_sleigh",
     "secular_top",
     "sizes",
+    "solve_arrowhead",
     "solve_members",
     "solve_series",
     "sparse_products",

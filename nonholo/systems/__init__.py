@@ -1,7 +1,7 @@
 """Systems: a group, an inertia operator and the subspace that velocities are constrained to."""
 
 from nonholo.systems import families
-from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, AbstractSystem, Equilibria, System
+from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, AbstractSystem, Equilibria, System, unchecked
 from nonholo.systems._body import ImpossibleBodyWarning
 from nonholo.systems._coordinate_system import (
     AbstractCoordinateDiscretization,
@@ -83,4 +83,5 @@ __all__ = [
     "spanned",
     "symmetric_complement",
     "trace_constraints",
+    "unchecked",
 ]

@@ -241,6 +241,14 @@ class AbstractSystem(abc.ABC):
         return trailing(f"{type(self).__name__} ({name}=...)", value, (self.rank,), remedy)
 
 
+def unchecked(system: SystemT, **numbers: Array) -> SystemT:
+    """Return a system with other numbers, unchecked: they may have axes in front, where its formulas allow them."""
+    other = object.__new__(type(system))
+    for name in (*system.leaves, *system.structure):
+        object.__setattr__(other, name, numbers.get(name, getattr(system, name)))
+    return other
+
+
 class AbstractLLSystem(AbstractSystem):
     r"""A left-invariant Lagrangian with a left-invariant constraint: body velocities lie in $\mathfrak{d}$."""
 

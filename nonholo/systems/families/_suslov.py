@@ -10,7 +10,7 @@ from nonholo.base.checks import array, error, is_traced, positive_definite, symm
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem
+from nonholo.systems._base import AbstractLLSystem, unchecked
 from nonholo.systems._body import lines_of, possible, tensors_shown
 from nonholo.systems._mass import body_tensor, inertia_tensor, mass_tensor_from_inertia, rotation_to
 from nonholo.systems._normal_form import NormalForm, top_form
@@ -148,7 +148,8 @@ class SuslovTop(AbstractLLSystem):
         if self.axis is None or tuple(self.axis) == _E3:
             return self
         turned = self.frame.T @ self.mass_tensor @ self.frame
-        return SuslovTop((turned + turned.T) / 2)
+        halves = turned + turned.__array_namespace__().swapaxes(turned, -1, -2)
+        return unchecked(self, mass_tensor=halves / 2, axis=np.array(_E3))
 
     @property
     def coupling(self) -> Float[Array, "k"]:
