@@ -12,3 +12,8 @@ def room(name: str) -> Any:
 def equations_of(system: Any) -> Any:
     """Return the module with the equations of a system; those of coordinates and of groups offer the same functions."""
     return room(system._equations)
+
+
+def configurations(system: Any, places: Any) -> Any:
+    """Return the configurations of places: those of driven systems have the time in a last column."""
+    return places[:, :-1] if getattr(system, "is_driven", False) else places

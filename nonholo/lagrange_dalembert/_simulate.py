@@ -14,7 +14,7 @@ from nonholo.base.results import Outcome, finished
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._room import equations_of
+from nonholo.lagrange_dalembert._room import configurations, equations_of
 
 _ROWS = 1024  # saved states of one block: one size of table, one compilation
 _LEAST = 1e-6  # seconds of a step, at least
@@ -49,7 +49,9 @@ def simulated(
     (q, v, impulses), code, done = _run(system, h, start, steps, every, progress)
     *displaced, momentum, energy, residual = _decoded(system, h, q, v)
     displacement, time = displaced[0] if displaced else h * v, h * (every * np.arange(len(q)))
-    orbit = kind(time, q, displacement, v, momentum, impulses, energy, residual, Outcome(int(code)))
+    orbit = kind(
+        time, configurations(system, q), displacement, v, momentum, impulses, energy, residual, Outcome(int(code))
+    )
     return finished(orbit, h, done, steps, throw)
 
 

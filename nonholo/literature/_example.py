@@ -8,7 +8,7 @@ import numpy as np
 
 from nonholo.base.checks import array, scale
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert import LagrangeDAlembert
+from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -32,7 +32,7 @@ class Example:
     """
 
     name: str
-    system: LagrangeDAlembert
+    system: LagrangeDAlembert | GroupLagrangeDAlembert
     coordinates: tuple[str, ...]
     configuration: Float[np.ndarray, "n"]
     body_velocity: Float[np.ndarray, "n"]

@@ -139,7 +139,12 @@ def _examples() -> list[Call]:
     place, upright = array([0.0, 0.0, 0.0]), array([0.0, 0.0, 0.0, 0.0])
     odd = {"asymmetry": number(0.5), "turning": number(2.6)}
     velocity = array([1.0, 1.0])
+    racer = {"mass": positive(1.0), "inertia": positive(0.2), "joint": positive(1.0), "amplitude": number(0.5)}
+    driven = {**common, "moving_mass": positive(0.3), "ahead": number(-0.3), "frequency": positive(1.0)}
     return [
+        call("examples.chaplygin_ball", made.chaplygin_ball, mass=positive(1.0), radius=positive(1.0), slow=True),
+        call("examples.driven_sleigh", made.driven_sleigh, **driven, slow=True),
+        call("examples.roller_racer", made.roller_racer, **racer, slow=True),
         call("examples.chaotic_quartic_oscillator", made.chaotic_quartic_oscillator, pairs=count(3), slow=True),
         call("examples.knife_edge_on_incline", made.knife_edge_on_incline, **common, configuration=place, slow=True),
         call("examples.non_reversible", made.non_reversible, **odd, slow=True),

@@ -83,7 +83,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
             if self.constraint_forms is not None:
                 where = _named("constraint_forms")
                 remedy = "Stack one row per constraint, in body coordinates; pass None for no constraint."
-                check_forms(where, self.constraint_forms, self.group.dim, g, repr(self.group), remedy)
+                check_forms(where, self.constraint_forms, self.group.dim, (g,), repr(self.group), remedy)
             if self.discrete_constraints is not None:
                 self._check("discrete_constraints", (self.constraints,), g, g, h)
             if self.lagrangian is not None:
