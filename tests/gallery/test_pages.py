@@ -7,6 +7,8 @@ import pytest
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = (
+    "theory/discrete-equations.md",
+    "theory/energy-theorem.md",
     "theory/groups-and-systems.md",
     "theory/right-invariant.md",
     "how-to/choose-a-branch-rule.md",
