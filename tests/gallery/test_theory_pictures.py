@@ -26,6 +26,20 @@ def test_pictures_are_drawn_and_small(script: ModuleType, name: str, panels: int
     assert f"../images/theory/{name}.png" in pages
 
 
+def test_the_pages_quote_the_numbers(script: ModuleType) -> None:
+    """What the captions say is what the script prints, rounded."""
+    found = script.numbers()
+    odd = ", ".join(f"{found[f'odd part, {k} component']:g}" for k in ("first", "second"))
+    quoted = {
+        "discrete-equations": [f"$s = {found['s at the fold']:.3f}$", f"{found['energy after the step']:.3f}"],
+        "energy-theorem": [f"$F_o = ({odd})$"],
+        "chaplygin-sleigh": [f"${found[f'angle {k}, degrees']:.1f}°$" for k in (1, 2, 3)],
+    }
+    for page, numbers in quoted.items():
+        text = (scripts.ROOT / "docs" / "theory" / f"{page}.md").read_text()
+        assert [number for number in numbers if number not in text] == []
+
+
 def test_both_momenta_are_mirror_images(script: ModuleType) -> None:
     """In the metric of the energy the parts are orthogonal, and the step changes the sign of the even one."""
     before, after, odd = script.mirror()
