@@ -7,6 +7,7 @@ import pytest
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = (
+    "theory/euler-poincare-suslov.md",
     "theory/discrete-equations.md",
     "theory/energy-theorem.md",
     "theory/groups-and-systems.md",
