@@ -1,4 +1,4 @@
-"""The Python blocks of the pages run: their assertions are the statements of the text around them; named tests exist."""
+"""The Python blocks of pages run: their assertions are the statements of the text around them. Named tests exist."""
 
 import re
 from pathlib import Path
