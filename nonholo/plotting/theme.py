@@ -22,6 +22,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import ListedColormap, Normalize, is_color_like, to_rgb, to_rgba
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from nonholo.base.checks import error, flag, instance, pair, positive, shown, text
 from nonholo.base.types import Float
@@ -214,11 +215,19 @@ def _scale() -> float:
 
 
 class _Picture(Figure):
-    """A figure whose text stays text in files."""
+    """A figure whose text stays text in files; in SVG, where a halo would make it curves, without one."""
 
-    def savefig(self, *arguments: Any, **named: Any) -> None:
-        with matplotlib.rc_context({"svg.fonttype": "none", "pdf.fonttype": 42}):
-            Figure.savefig(self, *arguments, **named)
+    def savefig(self, fname: Any, **named: Any) -> None:
+        is_svg = "svg" in (named.get("format"), Path(str(fname)).suffix[1:].lower())
+        words = [(word, word.get_path_effects()) for word in self.findobj(Text) if is_svg]
+        try:
+            for word, _ in words:
+                word.set_path_effects([])
+            with matplotlib.rc_context({"svg.fonttype": "none", "pdf.fonttype": 42}):
+                Figure.savefig(self, fname, **named)
+        finally:
+            for word, halo in words:
+                word.set_path_effects(halo)
 
 
 def new_figure(size: tuple[float, float], layout: Any = "constrained") -> Figure:
