@@ -82,8 +82,9 @@ class Look(TypedDict, total=False):
     Attributes:
         title: Instead of the picture's own title; "" for none. A title that the axes have, or get later, also takes
             the place of the picture's own.
-        label: Name in the legend of what is drawn: of the orbit, or of the values, the curve or the dots.
-        color: Its color, any of matplotlib's; orbits have the colors of time by default.
+        label: Name in the legend of the orbit; of the principal value, the section or the counts where it is these
+            that are drawn.
+        color: The color of the same, any of matplotlib's; orbits have the colors of time by default.
         legend: Whether there is a legend.
         annotate: Whether there are words inside the axes.
         size: Width and height of a new figure in inches, with which its fonts grow. By default that of the settings of
@@ -170,18 +171,17 @@ def styled(draw: Callable[_P, _R]) -> Callable[_P, _R]:
 
 
 def _check(owner: str, look: dict[str, Any]) -> None:
-    for name in ("title", "label"):
-        if name in look:
-            text(f"{owner}({name}=...)", look[name])
-    for name in ("legend", "annotate", "dark"):
-        if name in look:
-            flag(f"{owner}({name}=...)", look[name])
+    checks = dict.fromkeys(("title", "label"), text) | dict.fromkeys(("legend", "annotate", "dark"), flag)
+    for name in checks.keys() & look.keys():
+        checks[name](f"{owner}({name}=...)", look[name])
     if "size" in look:
         where, remedy = f"{owner}(size=...)", "Pass width and height in inches."
         look["size"] = tuple(float(positive(where, side, remedy)) for side in pair(where, look["size"]))
-    if "color" in look and not is_color_like(look["color"]):
-        remedy = 'Pass a name as "C1", or "#56b4e9".'
-        raise error(f"{owner}(color=...)", "be a color of matplotlib", shown(look["color"]), remedy)
+    if "color" in look:
+        if not is_color_like(look["color"]):
+            remedy = 'Pass a name as "C1", or "#56b4e9".'
+            raise error(f"{owner}(color=...)", "be a color of matplotlib", shown(look["color"]), remedy)
+        look["color"] = to_rgba(look["color"])
 
 
 def luminance(color: Any) -> float:
@@ -219,7 +219,7 @@ class _Picture(Figure):
 
     def savefig(self, fname: Any, **named: Any) -> None:
         is_svg = "svg" in (named.get("format"), Path(str(fname)).suffix[1:].lower())
-        words = [(word, word.get_path_effects()) for word in self.findobj(Text) if is_svg]
+        words = [(word, word.get_path_effects()) for word in (self.findobj(Text) if is_svg else ())]
         try:
             for word, _ in words:
                 word.set_path_effects([])
@@ -375,19 +375,26 @@ def legend_above(axes: Axes) -> None:
     Where both do not fit into one line the title moves up; of one that is the caller's the legend keeps clear inside.
     """
     labels = list(dict.fromkeys(axes.get_legend_handles_labels()[1]))
-    width = axes.get_window_extent().width / axes.figure.dpi / _scale()
-    ours, middle = axes.get_title(loc="left"), axes.get_title(loc="center")
-    room = width - sum(0.067 * len(label) + 0.3 for label in labels) * (2 if middle else 1)
-    fits = not ours + middle or 0.085 * len(ours + middle) <= room
-    if is_narrow(axes) or (not fits and _TITLES.get(axes) != ours + middle):
+    if not labels or not asked("legend", True):
+        return
+    ours = axes.get_title(loc="left") + axes.get_title()
+    fits = _fits(axes, labels)
+    if is_narrow(axes) or (not fits and _TITLES.get(axes) != ours):
         legend(axes, loc="best", fontsize="small", frameon=True, framealpha=0.8, edgecolor="none")
     else:
         close = {"handlelength": 0.8, "columnspacing": 0.7} if len(labels) > 3 else {}
-        if not fits and asked("legend", True):
+        if not fits:
             axes.set_title(ours, loc="left", pad=_RAISED)
-        legend(axes, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=max(1, len(labels)), **close)
-    if labels and asked("legend", True):
-        _LEGENDS.add(axes.get_legend())
+        legend(axes, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=len(labels), **close)
+    _LEGENDS.add(axes.get_legend())
+
+
+def _fits(axes: Axes, labels: list[str]) -> bool:
+    """Tell whether a title, at the left or in the middle, and a legend in one line do not meet."""
+    left, middle = axes.get_title(loc="left"), axes.get_title()
+    width = axes.get_window_extent().width / axes.figure.dpi / _scale()
+    beside = (2 if middle else 1) * sum(0.067 * len(label) + 0.3 for label in labels)
+    return not left + middle or 0.085 * len(left + middle) <= width - beside
 
 
 def legend(axes: Axes, **look: Any) -> None:

@@ -89,8 +89,8 @@ def test_every_picture_takes_the_same_keywords() -> None:
     assert functions - {"overview", "animate", "sweep_map"} == set(PICTURES)
     for name in functions:
         assert "look" in inspect.signature(getattr(nh.plot, name)).parameters, name
-    with pytest.raises(TypeError, match=r"blade_track\(\) got an unexpected keyword argument 'colour'"):
-        nh.plot.blade_track(_short(), colour="red")
+    with pytest.raises(TypeError, match=r"blade_track\(\) got an unexpected keyword argument 'tint'"):
+        nh.plot.blade_track(_short(), tint="red")
 
 
 @pytest.mark.parametrize("name", PICTURES)

@@ -9,27 +9,36 @@ import typer
 
 from nonholo.cli.screen.kinds import KINDS
 
+Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate, sweep or save_orbit.")]
+Output = Annotated[
+    Path | None,
+    typer.Option("-o", "--output", metavar="PICTURE", help="A .png, .svg or .pdf; by default beside STORE."),
+]
+Kind = Annotated[str, typer.Option(metavar="KIND", help=f"Of a run: {', '.join(KINDS)}.")]
+Gif = Annotated[bool, typer.Option("--gif", help="Of a run: draw an animation instead.")]
+Color = Annotated[str | None, typer.Option(metavar="NAME", help="Of a sweep: the quantity that is shown.")]
+Across = Annotated[str | None, typer.Option("--x", metavar="NAME", help="Of a sweep or section: what runs across.")]
+Up = Annotated[str | None, typer.Option("--y", metavar="NAME", help="Of a sweep or section: what runs up.")]
+Title = Annotated[str | None, typer.Option(help="Instead of the picture's own; '' for none.")]
+Size = Annotated[str | None, typer.Option(metavar="WxH", help="In inches, as 16x9; fonts grow with it.")]
+Dpi = Annotated[float, typer.Option(min=10, max=1200, help="Dots per inch of a .png.")]
+Dark = Annotated[bool | None, typer.Option("--dark/--light", help="Colors for a dark or a light background.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace an older PICTURE.")]
+
 
 def plot(
-    store: Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate, sweep or save_orbit.")],
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", metavar="PICTURE", help="A .png, .svg or .pdf; by default beside STORE."),
-    ] = None,
-    kind: Annotated[str, typer.Option(metavar="KIND", help=f"Of a run: {', '.join(KINDS)}.")] = KINDS[0],
-    gif: Annotated[bool, typer.Option("--gif", help="Of a run: draw an animation instead.")] = False,
-    color: Annotated[str | None, typer.Option(metavar="NAME", help="Of a sweep: the quantity that is shown.")] = None,
-    x: Annotated[
-        str | None, typer.Option("--x", metavar="NAME", help="Of a sweep or section: what runs across.")
-    ] = None,
-    y: Annotated[str | None, typer.Option("--y", metavar="NAME", help="Of a sweep or section: what runs up.")] = None,
-    title: Annotated[str | None, typer.Option(help="Instead of the picture's own; '' for none.")] = None,
-    size: Annotated[
-        str | None, typer.Option(metavar="WxH", help="Width and height in inches, as 16x9; fonts grow with it.")
-    ] = None,
-    dpi: Annotated[float, typer.Option(min=10, max=1200, help="Dots per inch of a .png.")] = 150,
-    dark: Annotated[bool | None, typer.Option("--dark/--light", help="Colors for a dark background.")] = None,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an older PICTURE.")] = False,
+    store: Store,
+    output: Output = None,
+    kind: Kind = KINDS[0],
+    gif: Gif = False,
+    color: Color = None,
+    x: Across = None,
+    y: Up = None,
+    title: Title = None,
+    size: Size = None,
+    dpi: Dpi = 150,
+    dark: Dark = None,
+    overwrite: Overwrite = False,
 ) -> None:
     """Draw the overview of a run, another picture or an animation of it, or the map of a sweep.
 
@@ -57,17 +66,24 @@ def plot(
             leave("A sweep has one kind of picture, its map. Leave --kind and --gif out.", USAGE)
         drawn = draw_stored_sweep(store, path, color, x, y, dpi, look)
     else:
-        if color or ((x or y) and kind != "section"):
-            leave("--color, --x and --y are for the store of a sweep; --x and --y for --kind section too.", USAGE)
-        if kind not in KINDS:
-            leave(f"--kind must be one of {', '.join(KINDS)}. Got '{kind}'.", USAGE)
-        if gif and kind != KINDS[0]:
-            leave("--gif is a kind of its own. Leave --kind out.", USAGE)
+        _check_kind(kind, gif, color, x or y)
         names = {"across": x, "up": y} if kind == "section" else {}
         drawn = _draw_run(store, path, look, gif=gif, kind=kind, dpi=dpi, **names)
     if str(path) not in drawn:
         raise typer.Exit(FAILED)
     typer.echo(path)
+
+
+def _check_kind(kind: str, gif: bool, color: str | None, axis: str | None) -> None:
+    """Refuse options that do not belong to this kind of picture of a run."""
+    from nonholo.cli.screen.errors import USAGE, leave
+
+    if kind not in KINDS:
+        leave(f"--kind must be one of {', '.join(KINDS)}. Got '{kind}'.", USAGE)
+    if color or (axis and kind != "section"):
+        leave("--color, --x and --y are for the store of a sweep; --x and --y for --kind section too.", USAGE)
+    if gif and kind != KINDS[0]:
+        leave("--gif is a kind of its own. Leave --kind out.", USAGE)
 
 
 def _look(title: str | None, size: str | None, dark: bool | None) -> dict[str, Any]:

@@ -90,9 +90,10 @@ def body_axis_track(
         (True, True)
     """
     where = "body_axis_track(orbit=...)"
-    if parts.posed(where, orbit).system.group != SO(3):
+    orbit = parts.posed(where, orbit)
+    if orbit.system.group != SO(3):
         raise error(where, "be an orbit on SO(3)", shown(orbit), _REMEDY)
-    orbit, flow = parts.posed(where, orbit), parts.same_group("body_axis_track(flow=...)", flow, orbit)
+    flow = parts.same_group("body_axis_track(flow=...)", flow, orbit)
     gamma = _body_axis(orbit, body_axis)
     axes = theme.axes_or_new(axes, (6.0, 6.0))
     part = _part(orbit)

@@ -71,12 +71,8 @@ def section(
         raise error("section(crossings=...)", "hold crossings of an event", shown(crossings), remedy)
     function("section(across=...)", across)
     function("section(up=...)", up)
-    across_label, up_label = (
-        text("section(labels=...)", label) or _name_of(quantity, word)
-        for label, quantity, word in zip(
-            pair("section(labels=...)", labels), (across, up), ("across", "up"), strict=True
-        )
-    )
+    given = [text("section(labels=...)", label) for label in pair("section(labels=...)", labels)]
+    across_label, up_label = given[0] or _name_of(across, "across"), given[1] or _name_of(up, "up")
     points = np.stack([_values("across", across, crossings), _values("up", up, crossings)], axis=1)
     axes = theme.axes_or_new(axes, (6.0, 5.0))
     area = _LARGE if len(points) <= _FEW else _SMALL

@@ -41,9 +41,10 @@ def same_group(where: str, orbit: Any, other: Orbit) -> Orbit | None:
     """Return the same of an orbit, if there is one, that moves on the same group as the orbit it is drawn beside."""
     if orbit is None:
         return None
-    if posed(where, orbit).system.group != other.system.group:
+    orbit = posed(where, orbit)
+    if orbit.system.group != other.system.group:
         raise error(where, f"move on {other.system.group}", f"{orbit.system.group}", "Pass a motion of the same body.")
-    return posed(where, orbit)
+    return orbit
 
 
 def is_discrete(orbit: Orbit) -> bool:
