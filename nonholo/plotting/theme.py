@@ -77,7 +77,7 @@ _R = TypeVar("_R")
 
 
 class Look(TypedDict, total=False):
-    """What every picture takes by keyword, beside its own arguments.
+    """What every picture takes by keyword, beside its own arguments; None is as if it were not given.
 
     Attributes:
         title: Instead of the picture's own title; "" for none. A title that the axes have, or get later, also takes
@@ -92,13 +92,13 @@ class Look(TypedDict, total=False):
         dark: Whether colors are for a dark background; by default as the axes are, or the settings of matplotlib.
     """
 
-    title: str
-    label: str
+    title: str | None
+    label: str | None
     color: Any
-    legend: bool
-    annotate: bool
-    size: tuple[float, float]
-    dark: bool
+    legend: bool | None
+    annotate: bool | None
+    size: tuple[float, float] | None
+    dark: bool | None
 
 
 @dataclasses.dataclass
@@ -153,8 +153,8 @@ def styled(draw: Callable[_P, _R]) -> Callable[_P, _R]:
         if names and unknown:
             raise TypeError(f"{draw.__name__}() got an unexpected keyword argument {unknown[0]!r}")
         inherited = {name: value for name, value in _DRAWING.get().look.items() if name not in ("title", "size")}
-        look: Any = {name: named.pop(name) for name in names if name in named}
-        _check(draw.__name__, look)
+        given: Any = {name: named.pop(name) for name in names if name in named}
+        look = _checked(draw.__name__, {name: value for name, value in given.items() if value is not None})
         with matplotlib.style.context(_SHEET):
             drawing = _Drawing(Look(**{**inherited, **look}))
             token = _DRAWING.set(drawing)
@@ -170,7 +170,7 @@ def styled(draw: Callable[_P, _R]) -> Callable[_P, _R]:
     return under_sheet
 
 
-def _check(owner: str, look: dict[str, Any]) -> None:
+def _checked(owner: str, look: dict[str, Any]) -> dict[str, Any]:
     checks = dict.fromkeys(("title", "label"), text) | dict.fromkeys(("legend", "annotate", "dark"), flag)
     for name in checks.keys() & look.keys():
         checks[name](f"{owner}({name}=...)", look[name])
@@ -182,6 +182,7 @@ def _check(owner: str, look: dict[str, Any]) -> None:
             remedy = 'Pass a name as "C1", or "#56b4e9".'
             raise error(f"{owner}(color=...)", "be a color of matplotlib", shown(look["color"]), remedy)
         look["color"] = to_rgba(look["color"])
+    return look
 
 
 def luminance(color: Any) -> float:

@@ -89,6 +89,7 @@ def test_every_picture_takes_the_same_keywords() -> None:
     assert functions - {"overview", "animate", "sweep_map"} == set(PICTURES)
     for name in functions:
         assert "look" in inspect.signature(getattr(nh.plot, name)).parameters, name
+    assert _titles(PICTURES["energy_error"](**dict.fromkeys(theme.Look.__annotations__)).axes) == {"Energy error"}
     with pytest.raises(TypeError, match=r"blade_track\(\) got an unexpected keyword argument 'tint'"):
         nh.plot.blade_track(_short(), tint="red")
 
