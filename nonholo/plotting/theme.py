@@ -139,6 +139,11 @@ def asked(name: str, otherwise: Any) -> Any:
     return _DRAWING.get().look.get(name, otherwise)
 
 
+def named(color: Any, label: str | None = None) -> dict[str, Any]:
+    """Return the color and the name of what the caller may color and name, else these."""
+    return {"color": asked("color", color), "label": asked("label", label)}
+
+
 def styled(draw: Callable[_P, _R]) -> Callable[_P, _R]:
     """Run a drawing function under the style sheet and the keywords of `Look`, and restore all settings afterwards.
 
@@ -198,11 +203,11 @@ def _settle(dark: bool | None, paper: Any) -> None:
     found = luminance(paper) < _DARK
     drawing.is_dark = found if dark is None else dark
     drawing.paper = paper if found == drawing.is_dark else _PAPERS[drawing.is_dark]
-    ink, quiet, muted = (_COLORS[name][drawing.is_dark] for name in ("INK", "QUIET", "MUTED"))
+    ink, muted = (_COLORS[name][drawing.is_dark] for name in ("INK", "MUTED"))
     settings = dict.fromkeys(("figure.facecolor", "axes.facecolor"), drawing.paper) if paper != drawing.paper else {}
-    settings |= dict.fromkeys(("axes.labelcolor", "xtick.labelcolor", "ytick.labelcolor"), quiet)
+    settings |= dict.fromkeys(("text.color", "axes.labelcolor", "xtick.labelcolor", "ytick.labelcolor"), ink)
     settings |= dict.fromkeys(("axes.edgecolor", "xtick.color", "ytick.color"), muted)
-    _SETTINGS.update(settings | {"text.color": ink})
+    _SETTINGS.update(settings)
 
 
 def _set_fonts(scale: float) -> None:

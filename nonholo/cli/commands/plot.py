@@ -64,7 +64,7 @@ def plot(
 
         if gif or kind != KINDS[0]:
             leave("A sweep has one kind of picture, its map. Leave --kind and --gif out.", USAGE)
-        drawn = draw_stored_sweep(store, path, color, x, y, dpi, look)
+        drawn = draw_stored_sweep(store, path, color, x, y, dpi=dpi, **look)
     else:
         _check_kind(kind, gif, color, x or y)
         names = {"across": x, "up": y} if kind == "section" else {}

@@ -128,14 +128,8 @@ def _growth(axes: Axes, tree: BranchTree) -> tuple[Line2D, Line2D, Line2D]:
     level, images = np.arange(len(tree.counts)), int(tree.counts[1])
     real = np.bincount(tree.level[tree.is_real], minlength=len(level))
     bound = axes.plot(level, images**level, color=theme.MUTED, dashes=(4, 3), label=f"${images}^k$", zorder=1)[0]
-    counts = axes.plot(
-        level,
-        tree.counts,
-        "o",
-        color=theme.asked("color", theme.DISCRETE),
-        markersize=7,
-        label=theme.asked("label", "distinct images"),
-    )[0]
+    own = theme.named(theme.DISCRETE, "distinct images")
+    counts = axes.plot(level, tree.counts, "o", markersize=7, **own)[0]
     look: Any = {"markerfacecolor": theme.PAPER, "markeredgewidth": 1.6, "linestyle": "none"}
     reals = axes.plot(level, real, "o", color=theme.UNSTABLE, markersize=7, label="real ones", **look)[0]
     axes.set(xlabel="generation k", ylabel="number of images", yscale="log")

@@ -170,15 +170,14 @@ def _dots(axes: Axes, found: Branches, places: np.ndarray, here: np.ndarray) -> 
     """Draw the values and the present displacement; count the complex values in the legend."""
     real = np.flatnonzero(found.is_real)
     is_principal = real == found.principal if found.principal is not None else np.zeros(len(real), dtype=bool)
-    color = theme.asked("color", theme.STABLE)
-    look: Any = {"edgecolors": color, "linewidths": 1.6, "s": 58, "zorder": 7}
+    own, look = theme.named(theme.STABLE, "principal"), {"linewidths": 1.6, "s": 58, "zorder": 7}
     principal = others = None
     if is_principal.any():
-        principal = axes.scatter(
-            *places[is_principal].T, facecolors=color, label=theme.asked("label", "principal"), **look
-        )
+        principal = axes.scatter(*places[is_principal].T, **look, **own)
     if not is_principal.all():
-        others = axes.scatter(*places[~is_principal].T, facecolors=theme.PAPER, label="other real", **look)
+        others = axes.scatter(
+            *places[~is_principal].T, facecolors=theme.PAPER, edgecolors=own["color"], label="other real", **look
+        )
     present = axes.scatter(*here.T, marker="x", s=70, color=theme.UNSTABLE, linewidths=2.2, zorder=8, label="present")
     if not found.is_real.all():
         axes.plot([], [], " ", label=f"and {np.count_nonzero(~found.is_real)} complex")

@@ -99,10 +99,10 @@ def _curve(axes: Axes, locus: MomentumLocus, plane: np.ndarray, foot: np.ndarray
     room = _MARGIN * (high - low)
     across, up = (np.linspace(*ends, _GRID) for ends in zip(low - room, high + room, strict=True))
     x, y = np.meshgrid(across, up)
-    color = theme.asked("color", theme.DISCRETE)
-    axes.plot([], [], color=color, label=theme.asked("label", None))
+    own = theme.named(theme.DISCRETE)
+    axes.plot([], [], **own)
     values = locus.implicit(foot + np.stack([x, y], axis=-1) @ plane)
-    return axes.contour(x, y, values, levels=[0.0], colors=[color], linewidths=1.8, zorder=2)
+    return axes.contour(x, y, values, levels=[0.0], colors=[own["color"]], linewidths=1.8, zorder=2)
 
 
 def _meeting(

@@ -89,25 +89,21 @@ def energy_error(orbit: Orbit, axes: Axes | None = None, **look: Unpack[theme.Lo
     return EnergyError(axes, drawn, rounding, unit, expected)
 
 
-def _own(color: str) -> dict[str, Any]:
-    return {"color": theme.asked("color", color), "label": theme.asked("label", None)}
-
-
 def _unit(largest: float) -> float:
     return 1e-16 if largest < 1e-13 else float(f"1e{math.floor(math.log10(largest))}")
 
 
 def _error(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K"]) -> PathCollection | PolyCollection:
     if len(time) <= _MOST_DOTS:
-        return axes.scatter(time, error, s=5, linewidths=0, zorder=3, **_own(theme.DISCRETE))
+        return axes.scatter(time, error, s=5, linewidths=0, zorder=3, **theme.named(theme.DISCRETE))
     starts = np.arange(0, len(time), math.ceil(len(time) / _COLUMNS))
     low, high = np.minimum.reduceat(error, starts), np.maximum.reduceat(error, starts)
-    return axes.fill_between(time[starts], low, high, linewidth=0.8, zorder=3, **_own(theme.DISCRETE))
+    return axes.fill_between(time[starts], low, high, linewidth=0.8, zorder=3, **theme.named(theme.DISCRETE))
 
 
 def _curve(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K"]) -> Line2D:
     chosen = evenly_in_box(np.stack([time, error], axis=1), _MOST_DOTS)
-    return axes.plot(time[chosen], error[chosen], linewidth=1.0, zorder=3, **_own(theme.CONTINUOUS))[0]
+    return axes.plot(time[chosen], error[chosen], linewidth=1.0, zorder=3, **theme.named(theme.CONTINUOUS))[0]
 
 
 def _dress(axes: Axes, time: Any, error: Float[np.ndarray, "K"], unit: float, relative: bool) -> None:

@@ -59,7 +59,7 @@ def _dots_over(axes: Axes, subject: common.Subject, x: xarray.DataArray) -> _Dra
     """Draw the quantity of members that succeeded as dots over x; the others are marked along the bottom."""
     across, values, codes = _thinned(x, subject.values, subject.codes)
     good, ended = codes == 0, common.ends(subject.codes)
-    drawn = axes.scatter(across[good], values[good], **_own(), **_look(across, 0.2))
+    drawn = axes.scatter(across[good], values[good], **theme.named(theme.DISCRETE), **_look(across, 0.2))
     axes.set(xlabel=common.label(x), xscale=common.scale_along(across))
     axes.set(ylabel=common.label(subject.values), yscale=common.scale_along(values))
     shown = common.mark_below(axes, across, codes, ended, marker="|")
@@ -92,13 +92,11 @@ def _look(across: np.ndarray, faintest: float) -> Any:
     return {"s": 14.0 if len(across) <= _LARGE else 5.0, "linewidths": 0, "rasterized": True, "alpha": opacity}
 
 
-def _own() -> Any:
-    return {"color": theme.asked("color", theme.DISCRETE), "label": theme.asked("label", None)}
-
-
 def _histogram(axes: Axes, subject: common.Subject) -> _Drawn:
     """Count the members that succeeded; the legend counts the others."""
-    bars = axes.hist(subject.finite, bins=_bins(subject.finite, subject.whole), rwidth=0.94, **_own())[2]
+    bars = axes.hist(
+        subject.finite, bins=_bins(subject.finite, subject.whole), rwidth=0.94, **theme.named(theme.DISCRETE)
+    )[2]
     axes.set(xlabel=common.label(subject.values), ylabel="members")
     if subject.whole:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -249,7 +247,7 @@ def _curve(axes: Axes, subject: common.Subject, x: str) -> SweepMap:
     values, codes = (_plane(array, x) for array in (subject.values, subject.codes))
     across = _places(values, x)
     marker = "o" if len(across) <= _MARKED else ""
-    (line,) = axes.plot(across, values.values, **_own(), marker=marker, markersize=3.5)
+    (line,) = axes.plot(across, values.values, **theme.named(theme.DISCRETE), marker=marker, markersize=3.5)
     ended = common.ends(subject.codes)
     shown = common.mark_below(axes, across, codes.values, ended, marker="s")
     _dress_axis(axes, "x", values, x)
