@@ -111,10 +111,11 @@ def _dress(axes: Any, points: Float[np.ndarray, "L d"], shown: np.ndarray) -> Fl
     axes.set(xlabel=names[0], ylabel=names[1], zlabel=names[2])
     axes.view_init(elev=24, azim=-58)
     sides = np.ptp(limits, axis=1)
-    axes.set_box_aspect(sides, zoom=0.95)
+    axes.set_box_aspect(sides, zoom=0.88)
     for axis, side in zip((axes.xaxis, axes.yaxis, axes.zaxis), sides / sides.max(), strict=True):
         axis.pane.set(facecolor=theme.PAPER, edgecolor=theme.LEVEL)
         axis.set_major_locator(MaxNLocator(max(2, round(5 * side))))
+        axis.labelpad = 4 + (14 if side == 1.0 else -7) * (1 - sides.min() / sides.max())  # away from numbers
     floor = np.column_stack([points[:, :2], np.full(len(points), limits[2, 0])])
     axes.plot(*floor.T, color=theme.LEVEL, linewidth=1.2, zorder=1)
     return limits
