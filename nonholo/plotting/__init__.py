@@ -36,6 +36,7 @@ from nonholo.plotting.motion import (
 )
 from nonholo.plotting.overviews import overview
 from nonholo.plotting.sweeps import SweepMap, sweep_map
+from nonholo.plotting.theme import Look
 
 __all__ = [
     "BladeTrack",
@@ -46,6 +47,7 @@ __all__ = [
     "EnergyError",
     "InvariantCurvesPicture",
     "LocusSection",
+    "Look",
     "MomentumLocusPicture",
     "MomentumSphere",
     "PhasePortrait",

@@ -7,9 +7,10 @@ moves, its parameters, how long, and how the run ended.
 import functools
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple, Unpack, cast
 
 import numpy as np
+from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -97,7 +98,7 @@ def _write_mass_tensor(axes: Axes, mass_tensor: Float[np.ndarray, "3 3"]) -> Non
     width = max(len(cell) for row in cells for cell in row)
     lines = ["  ".join(cell.rjust(width) for cell in row) for row in cells]
     text = f"    \u23a1{lines[0]}\u23a4\nJ = \u23a2{lines[1]}\u23a5\n    \u23a3{lines[2]}\u23a6"
-    look: Any = {"family": "monospace", "fontsize": 9.5, "linespacing": 1.05, "color": "#555a62"}
+    look: Any = {"family": "monospace", "fontsize": "medium", "linespacing": 1.05, "color": theme.QUIET}
     axes.text(0.0, 0.0, text, transform=axes.transAxes, **look)
 
 
@@ -106,9 +107,16 @@ _FIXED = {False: "System with a left-invariant constraint", True: "System with a
 
 def _write_head(figure: Figure, orbit: Orbit) -> None:
     """Write what moves, and how, above the panels."""
-    figure.text(0.012, 0.985, _name(orbit.system), va="top", fontsize=17, fontweight="bold")
-    facts = "      ".join(_facts(orbit)).replace("-", "\u2212")
-    figure.text(0.012, 0.934, facts, va="top", fontsize=10.5, color="#555a62")
+    line = rcParams["font.size"] / 72 / figure.get_figheight()  # in parts of the figure
+    name = theme.asked("title", _name(orbit.system))
+    figure.text(0.012, 0.985, name, va="top", fontsize="xx-large", fontweight="bold")
+    below = 0.985 - 2.8 * line * bool(name)
+    if theme.asked("annotate", True):
+        facts = "      ".join(_facts(orbit)).replace("-", "\u2212")
+        figure.text(0.012, below, facts, va="top", color=theme.QUIET)
+        below -= 1.6 * line
+    layout = ConstrainedLayoutEngine(rect=(0.004, 0.004, 0.992, below), hspace=0.05, wspace=0.03)
+    figure.set_layout_engine(layout)
 
 
 def _facts(orbit: Orbit) -> list[str]:
@@ -154,12 +162,16 @@ def _parameters(system: System) -> str:
 
 _SIZE = (13.0, 7.6)
 _LARGER = 2.2  # times as high as a panel against time
-_SMOOTH = 1000  # states of a flow, in which a curve has no corners
 
 
 @theme.styled
 def overview(
-    orbit: Orbit, path: str | Path | None = None, flow: Orbit | None = None, *, overwrite: bool = False
+    orbit: Orbit,
+    path: str | Path | None = None,
+    flow: Orbit | None = None,
+    *,
+    overwrite: bool = False,
+    **look: Unpack[theme.Look],
 ) -> Figure:
     """Draw an orbit of any system: its path in space, its momentum, its velocity and the error of its energy.
 
@@ -174,6 +186,7 @@ def overview(
         path: Where to save the figure, a new file; the suffix (.png, .svg, .pdf) chooses the format.
         flow: The continuous motion from the same initial data, drawn beside a discrete orbit.
         overwrite: Replace an older picture at the path.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         FileExistsError: The path exists, and is not to be replaced.
@@ -185,17 +198,16 @@ def overview(
         >>> [axes.get_title(loc="left") for axes in nh.plot.overview(orbit).axes[:2]]
         ['Track of the blade', 'Phase portrait']
     """
-    drawable("overview(orbit=...)", orbit)
-    if flow is not None:
-        drawable("overview(flow=...)", flow)
-    below_title = ConstrainedLayoutEngine(rect=(0.004, 0.004, 0.992, 0.905), hspace=0.05, wspace=0.03)
-    figure = Figure(figsize=_SIZE, layout=below_title)
+    smooth = drawable("overview(orbit=...)", orbit)
+    flow = None if flow is None else drawable("overview(flow=...)", flow)
+    figure = theme.new_figure(_SIZE)
     if path is not None:
         check_suffix(figure, path)
         check_file(path, overwrite=overwrite, where="overview(path=...)")
-    panels = panels_of(_smooth(orbit), None if flow is None else _smooth(flow))
+    panels = panels_of(smooth, flow)
     axes = _axes(figure, panels)
     for panel, own in zip(panels, axes, strict=True):
+        theme.begin(own)
         panel.draw(own)
     if panels[0].is_timed:
         axes[0].set_xlabel("time")
@@ -204,15 +216,6 @@ def overview(
     if path is not None:
         figure.savefig(path)
     return figure
-
-
-def _smooth(orbit: Orbit) -> Orbit:
-    """Return a flow that knows its states between the saved ones with enough for curves; others as they are."""
-    if orbit.motion.span is None or not 1 < len(orbit) < _SMOOTH:
-        return orbit
-    more = np.linspace(orbit.time[0], orbit.time[-1], _SMOOTH)
-    times = np.union1d(orbit.time, more)
-    return orbit.at(times if more[-1] > more[0] else times[::-1])
 
 
 def check_suffix(figure: Figure, path: str | Path) -> None:

@@ -15,15 +15,17 @@ PAGES = (
     "how-to/choose-a-branch-rule.md",
     "how-to/choose-a-discretisation.md",
     "how-to/run-an-ensemble.md",
+    "how-to/style-a-picture.md",
 )
 
 
 @pytest.mark.profile("paper", keep=["theory/*", "how-to/run-an-ensemble.md", "how-to/choose-a-branch-rule.md"])
 @pytest.mark.parametrize("page", PAGES)
-def test_the_blocks_run(page: str) -> None:
+def test_the_blocks_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The blocks of a page, one after another in one namespace, raise nothing."""
     blocks = re.findall(r"```python\n(.*?)```", (DOCS / page).read_text(), re.DOTALL)
     names: dict[str, object] = {}
+    monkeypatch.chdir(tmp_path)
     assert blocks
     for block in blocks:
         exec(compile(block, page, "exec"), names)  # noqa: S102

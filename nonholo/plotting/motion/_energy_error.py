@@ -2,7 +2,7 @@
 
 import dataclasses
 import math
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -48,7 +48,7 @@ class EnergyError:
 
 
 @theme.styled
-def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
+def energy_error(orbit: Orbit, axes: Axes | None = None, **look: Unpack[theme.Look]) -> EnergyError:
     r"""Draw the relative error of the reduced constrained energy against time.
 
     $$ (E_k - E_0)/E_0 , $$
@@ -60,6 +60,7 @@ def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
     Args:
         orbit: The orbit.
         axes: Where to draw; a new figure by default.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         ValueError: No orbit, one without states, or one without poses whose energy depends on them.
@@ -70,7 +71,7 @@ def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
         >>> nh.plot.energy_error(orbit).unit
         1e-16
     """
-    drawable("energy_error(orbit=...)", orbit)
+    orbit = drawable("energy_error(orbit=...)", orbit)
     if orbit.system.is_spatial:
         posed("energy_error(orbit=...)", orbit)
     axes = theme.axes_or_new(axes, (6.0, 2.6))
@@ -82,9 +83,9 @@ def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
     rounding = axes.axhspan(-_EPS / unit, _EPS / unit, **band)
     axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
     drawn = (_error if is_discrete(orbit) else _curve)(axes, orbit.time, error / unit)
-    _dress(axes, error / unit, unit, relative=bool(energy[0]))
-    look: Any = {"color": "#555a62", "fontsize": 9, "va": "top", "path_effects": theme.HALO, "zorder": 6}
-    expected = axes.text(0.012, 0.97, _EXPECTED[orbit.motion.conserves_energy], transform=axes.transAxes, **look)
+    _dress(axes, orbit.time, error / unit, unit, relative=bool(energy[0]))
+    small: Any = {"color": theme.QUIET, "fontsize": "medium", "va": "top", "path_effects": theme.HALO, "zorder": 6}
+    expected = axes.text(0.012, 0.97, _EXPECTED[orbit.motion.conserves_energy], transform=axes.transAxes, **small)
     return EnergyError(axes, drawn, rounding, unit, expected)
 
 
@@ -94,20 +95,24 @@ def _unit(largest: float) -> float:
 
 def _error(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K"]) -> PathCollection | PolyCollection:
     if len(time) <= _MOST_DOTS:
-        return axes.scatter(time, error, s=5, color=theme.DISCRETE, linewidths=0, zorder=3)
+        return axes.scatter(time, error, s=5, linewidths=0, zorder=3, **theme.named(theme.DISCRETE))
     starts = np.arange(0, len(time), math.ceil(len(time) / _COLUMNS))
     low, high = np.minimum.reduceat(error, starts), np.maximum.reduceat(error, starts)
-    return axes.fill_between(time[starts], low, high, color=theme.DISCRETE, linewidth=0.8, zorder=3)
+    return axes.fill_between(time[starts], low, high, linewidth=0.8, zorder=3, **theme.named(theme.DISCRETE))
 
 
 def _curve(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K"]) -> Line2D:
     chosen = evenly_in_box(np.stack([time, error], axis=1), _MOST_DOTS)
-    return axes.plot(time[chosen], error[chosen], color=theme.CONTINUOUS, linewidth=1.0, zorder=3)[0]
+    return axes.plot(time[chosen], error[chosen], linewidth=1.0, zorder=3, **theme.named(theme.CONTINUOUS))[0]
 
 
-def _dress(axes: Axes, error: Float[np.ndarray, "K"], unit: float, relative: bool) -> None:
+def _dress(axes: Axes, time: Any, error: Float[np.ndarray, "K"], unit: float, relative: bool) -> None:
     exponent = math.floor(math.log10(unit) + 0.5)
     reach = 1.4 * max(float(np.abs(error).max()), 1.6 * _EPS / unit)
     ylabel = rf"$\Delta E{'/E' if relative else ''}$   [$10^{{{exponent}}}$]"
-    axes.set(xlabel="time", ylabel=ylabel, ylim=(-reach, reach), title="Energy error")
+    axes.set(xlabel="time", ylabel=ylabel)
+    axes.margins(y=0.0)
+    axes.update_datalim([(time[0], -reach), (time[-1], reach)])
+    axes.autoscale_view()
+    theme.write_title(axes, "Energy error")
     theme.legend_above(axes)
