@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from nonholo.base.compiled import njit
+from nonholo.kernels._scalar import BORROWING, COMPILED, INLINED
 from nonholo.kernels._small import eliminate, multiply, paired, paired_twice, sandwich, transpose
 
 LOST = 1e12  # turning of a displacement of an iteration that runs away
@@ -79,6 +80,8 @@ class Workspace(NamedTuple):
         Q: D_i J, (k, N, N), with the mass tensor that the equations see.
         slope: The Jacobian, (m, m).
         residual: The residual, then the correction, (m, 1).
+        slopes: Jacobians along a path, at its point and further on, and their quotient, (3, m, m).
+        charts: What is foretold and found there; where the path leads from both, (4, m).
     """
 
     G: np.ndarray
@@ -90,9 +93,11 @@ class Workspace(NamedTuple):
     Q: np.ndarray
     slope: np.ndarray
     residual: np.ndarray
+    slopes: np.ndarray
+    charts: np.ndarray
 
 
-@njit()
+@njit(**COMPILED)
 def workspace(p: GeneralBody) -> Workspace:
     """Return a workspace for a body, with the mass tensor of the body."""
     N, m = len(p.tensor), len(p.stretch)
@@ -107,17 +112,19 @@ def workspace(p: GeneralBody) -> Workspace:
         p.pairings.copy(),
         np.zeros((m, m)),
         np.zeros((m, 1)),
+        np.zeros((3, m, m)),
+        np.zeros((4, m)),
     )
 
 
-@njit()
+@njit(**BORROWING)
 def see_tensor(p: GeneralBody, w: Workspace, J: np.ndarray) -> None:
     """Let the equations see a mass tensor."""
     for i in range(len(p.directions)):
         multiply(p.directions[i], J, w.Q[i])
 
 
-@njit()
+@njit(**INLINED)
 def displaced(p: GeneralBody, w: Workspace, y: np.ndarray) -> float:
     """Compute X = 2 (I - Y)^{-1} Y and G = I + X / 2; return how far it turns, the sum of tan^2(angle / 2).
 
@@ -127,7 +134,7 @@ def displaced(p: GeneralBody, w: Workspace, y: np.ndarray) -> float:
     return _displaced(p.places, p.entries, p.size, y, w.X, w.G, w.scratch)
 
 
-@njit()
+@njit(**BORROWING)
 def _displaced(
     places: np.ndarray, entries: np.ndarray, n: int, y: np.ndarray, X: np.ndarray, G: np.ndarray, scratch: np.ndarray
 ) -> float:
@@ -152,7 +159,7 @@ def _displaced(
     return turning
 
 
-@njit()
+@njit(**INLINED)
 def _adjoint(p: GeneralBody, X: np.ndarray, half: np.ndarray, out: np.ndarray) -> None:
     """Write X* = G^{-1} X^T G, the transpose where there is no form."""
     transpose(X, out)
@@ -161,7 +168,7 @@ def _adjoint(p: GeneralBody, X: np.ndarray, half: np.ndarray, out: np.ndarray) -
         multiply(half, p.form, out)
 
 
-@njit()
+@njit(**INLINED)
 def _invert(p: GeneralBody, X: np.ndarray, half: np.ndarray, V: np.ndarray) -> None:
     """Write the inverse of the group element I + X."""
     n = p.size
@@ -176,7 +183,7 @@ def _invert(p: GeneralBody, X: np.ndarray, half: np.ndarray, V: np.ndarray) -> N
                 V[i, n] -= X[j, i] * X[j, n]
 
 
-@njit()
+@njit(**INLINED)
 def skew_part(p: GeneralBody, w: Workspace) -> None:
     """Write K = (W - W^{-1})/2 to the scratch matrix, and W^{-1} to V."""
     X, V, K = w.X, w.V, w.scratch
@@ -187,16 +194,16 @@ def skew_part(p: GeneralBody, w: Workspace) -> None:
         K[i, i] += 0.5
 
 
-@njit()
+@njit(**INLINED)
 def _pair_with_chart(S: np.ndarray, factor: float, places: np.ndarray, entries: np.ndarray, row: np.ndarray) -> None:
     """Add the pairings of a matrix with each C_a, times a factor, to a row."""
     for e in range(len(entries)):
         row[places[e, 0]] += factor * S[places[e, 1], places[e, 2]] * entries[e]
 
 
-@njit()
-def equations(p: GeneralBody, w: Workspace, m: np.ndarray) -> None:
-    """Compute the residual and its Jacobian at the displacement in the workspace.
+@njit(**INLINED)
+def equations(p: GeneralBody, w: Workspace, s: float, m: np.ndarray) -> None:
+    """Compute the residual for momenta s m and its Jacobian at the displacement in the workspace.
 
     The pairing of Q with G C_a G is that of G^T Q G^T with C_a.
     """
@@ -215,12 +222,12 @@ def equations(p: GeneralBody, w: Workspace, m: np.ndarray) -> None:
             sandwich(H, A[j - k], half, scratch)
             _pair_with_chart(scratch, 1.0, places, entries, slope[j])
     for i in range(k):
-        residual[i, 0] = paired_twice(Q[i], p.remainders[i], X, m[i])
+        residual[i, 0] = paired_twice(Q[i], p.remainders[i], X, s * m[i])
         sandwich(G, Q[i], half, scratch)
         _pair_with_chart(scratch, 2.0, places, entries, slope[i])
 
 
-@njit()
+@njit(**INLINED)
 def increments(p: GeneralBody, w: Workspace, term: np.ndarray) -> None:
     r"""Compute the change of the scaled momenta in one step, $\mathrm{tr}(X D_i J X^*) = \langle Q_i, X^*X\rangle$.
 
