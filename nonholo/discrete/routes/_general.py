@@ -46,7 +46,7 @@ def general_body(system: AbstractSystem, variety: Variety) -> tuple[kernels.Gene
     body = kernels.GeneralBody(
         tensor=_plain(tensor),
         directions=_plain(directions),
-        places=np.ascontiguousarray(np.argwhere(chart).astype(np.uint64)),  # of one layout, empty or not: compiled once
+        places=np.ascontiguousarray(np.argwhere(chart)),  # of one layout, empty or not: compiled once
         entries=_plain((chart / lengths[:, None, None])[chart != 0]),
         forbidden=_plain(forbidden),
         pairings=_plain(pairings),

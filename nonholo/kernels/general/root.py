@@ -5,13 +5,16 @@ import numpy as np
 from nonholo.base.compiled import njit
 from nonholo.kernels._scalar import BORROWING, INLINED, PIECES
 from nonholo.kernels._small import assign, assign_rows, eliminate, multiply, paired
-from nonholo.kernels.general._step import LOST, GeneralBody, Workspace, displaced, equations, skew_part
+from nonholo.kernels.general._rows import decompose, solve_rows
+from nonholo.kernels.general._step import LOST, GeneralBody, Workspace, displaced, jacobian, residual, skew_part
 
 _STEPS = 12  # of Newton's method
 _FIRST = 0.25  # first continuation step, in s
 _SMALLEST = 1e-7  # continuation step, relative to s, below which the branch is given up
 _BENT = 0.5  # most change of the Jacobian in one piece of the path: two roots for one momentum differ by -2
 _APART = 1e300  # of Jacobians that cannot be compared
+_NEAR = 1e-4  # times _FALL: most of a correction after which its Jacobian serves again, squared
+_FALL = 1e-4  # least fall of a correction with the same Jacobian, squared
 _ROUNDING = 1e-24  # squared, of a displacement
 _LEAST = 1e-300  # and the absolute one: a momentum may be any number of times too large
 _FAR = 1e4  # turning of a displacement beyond which the Cayley chart ends: an angle of 179 degrees
@@ -21,24 +24,33 @@ _FAR = 1e4  # turning of a displacement beyond which the Cayley chart ends: an a
 def newton(p: GeneralBody, w: Workspace, s: float, m: np.ndarray, y: np.ndarray) -> tuple[bool, float]:
     """Correct a guess of the root over s m until the next correction would be below rounding.
 
-    Return whether it was reached, and the Jacobian determinant at the end.
+    A Jacobian serves as long as corrections with it are small and fall fast: what is left then is below the product of
+    the first and the last one. Return whether the root was reached, and the last determinant.
     """
-    det = 1.0
+    det, first, last = 1.0, 0.0, 0.0
     for _ in range(_STEPS if len(y) else 0):
         if not displaced(p, w, y) < LOST:
             return False, det
-        equations(p, w, s, m)
-        correction = w.residual
-        det = eliminate(w.slope, correction)
-        if not (np.isfinite(det) and det != 0):
-            return False, det
+        residual(p, w, s, m)
+        if first == 0.0:
+            last = _NEAR
+            jacobian(p, w)
+            det = decompose(w.slope, w.order, w.inverses, w.others)
+            if not (np.isfinite(det) and det != 0):
+                return False, det
+        solve_rows(w.slope, w.order, w.inverses, w.sums, w.correction)
         step = size = 0.0
         for a in range(len(y)):
-            y[a] -= correction[a, 0]
-            step += correction[a, 0] ** 2
+            y[a] -= w.correction[a]
+            step += w.correction[a] ** 2
             size += y[a] ** 2
-        if step <= 1e-18 * (1 + size):
+        share = step / (1 + size)
+        first = max(first, share)
+        if share * first <= 1e-36:
             return True, det
+        if not share <= _FALL * last:
+            first = 0.0
+        last = share
     return len(y) == 0, det
 
 
@@ -59,7 +71,7 @@ def certified(p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray) -> boo
     return paired(carried, K) <= p.radius
 
 
-@njit(**INLINED)
+@njit(inline="always", **BORROWING)
 def _rotational(X: np.ndarray, n: int) -> float:
     """Return the sum of the squares of the first n rows and columns."""
     total = 0.0
@@ -69,7 +81,7 @@ def _rotational(X: np.ndarray, n: int) -> float:
     return total
 
 
-@njit(**INLINED)
+@njit(inline="always", **BORROWING)
 def _certifiable(p: GeneralBody, m: np.ndarray) -> bool:
     """Tell whether the momenta are so small that there is a ball."""
     energy = 0.0
@@ -85,16 +97,17 @@ def _tangent(
 ) -> float:
     """Write the Jacobian at a root and the derivative of the root with respect to s; return the determinant."""
     displaced(p, w, y)
-    equations(p, w, s, m)
+    residual(p, w, s, m)
+    jacobian(p, w)
     assign_rows(slope, w.slope)
-    w.residual[:] = 0.0
-    assign(w.residual[:, 0], m)
-    det = eliminate(w.slope, w.residual)
-    assign(tangent, w.residual[:, 0])
+    w.sums[:] = 0.0
+    assign(w.sums[0], m)
+    det = decompose(w.slope, w.order, w.inverses, w.others)
+    solve_rows(w.slope, w.order, w.inverses, w.sums, tangent)
     return det
 
 
-@njit(**INLINED)
+@njit(inline="always", **BORROWING)
 def _bend(w: Workspace) -> float:
     """Return how far Jacobians are apart, by traces of E and E^2, E + I the quotient: the same in all coordinates.
 
@@ -146,7 +159,7 @@ def principal(p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray) -> int
     return 3
 
 
-@njit(**INLINED)
+@njit(inline="always", **BORROWING)
 def _piece(
     p: GeneralBody, w: Workspace, size: float, ahead: float, m: np.ndarray, y: np.ndarray, start: float
 ) -> tuple[bool, float]:
@@ -162,7 +175,7 @@ def _piece(
     return _bend(w) <= _BENT, det
 
 
-@njit(**INLINED)
+@njit(inline="always", **BORROWING)
 def finite(A: np.ndarray) -> bool:
     """Tell whether all numbers of an array are."""
     found = True
@@ -171,7 +184,7 @@ def finite(A: np.ndarray) -> bool:
     return found
 
 
-@njit(**INLINED)
+@njit(inline="always", **BORROWING)
 def _close(y: np.ndarray, guess: np.ndarray, found: np.ndarray) -> bool:
     """Tell whether a root is where the tangent foretold, to a tenth of a move that is not long, or to rounding."""
     moved = off = square = 0.0
