@@ -15,9 +15,9 @@ import numpy as np
 from numba.extending import overload
 
 from nonholo.base.types import Int
+from nonholo.kernels._lanes import EIGHT, load, spread, store
 from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import eliminate
-from nonholo.kernels.taylor._lanes import EIGHT, load, spread, store
 
 
 class Quadratic(NamedTuple):

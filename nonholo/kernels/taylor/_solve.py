@@ -11,10 +11,10 @@ import numpy as np
 
 from nonholo.base.compiled import njit
 from nonholo.base.types import Float
+from nonholo.kernels._lanes import EIGHT, ONE, load, spread, store
 from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import assign_rows
 from nonholo.kernels.taylor._expansion import Quadratic, Room, expand, make_room
-from nonholo.kernels.taylor._lanes import EIGHT, ONE, load, spread, store
 from nonholo.kernels.taylor._steps import order_for, write_steps
 
 _STEPS = 2048  # between two looks at the keyboard
