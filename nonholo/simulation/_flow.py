@@ -9,7 +9,7 @@ import numpy as np
 from nonholo.base.checks import error, flow_times, flow_tolerances, shown
 from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome, OutcomeError
-from nonholo.continuous import ContinuousFlow, Solved, solver_of
+from nonholo.continuous import ContinuousFlow, Solved, solver_for
 from nonholo.orbit import Orbit
 from nonholo.simulation.events import Event, check_functions, checked_events, flow_with_events
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, OrbitT, Start, System, refuse_in_coordinates
@@ -65,6 +65,9 @@ def flow(
     momentum along the constraint is $r_\perp\,\mathrm{sech}\,s + r_\parallel\tanh s$, $s = s_0 + \nu t$, exact.
     Exact are also heading and path of the sleigh (a hypergeometric function); the pose of the top is a quadrature.
 
+    Of a `Forced` system the force -dU + f stands beside ad*; it is solved by DOP853 of SciPy, with `rtol` of 1e-13 and
+    more, which also gives the states between.
+
     For a `LagrangeDAlembert` these are the equations of its `flow`, with q in place of the pose: it starts at a
     `configuration`, and takes neither `restricted_velocity` nor `method`.
 
@@ -80,7 +83,8 @@ def flow(
         rtol: Relative error of a step, at least 1e-14, which is the default; with "diffrax" 1e-10.
         atol: Absolute error of a step with "diffrax". Smaller components are not resolved there: a solution that starts
             so near a repelling equilibrium leaves it at the wrong time.
-        method: None (numerical), "closed_form", or "diffrax": numerical too, by JAX, from the extra `jax`.
+        method: None (numerical), without forces also "closed_form" or "diffrax": numerical too, by JAX, from the extra
+            `jax`.
         events: `Event`s, or functions of an orbit, whose changes of sign from one requested time or step of the series
             to the next are found, and located on the solution; see `Orbit.events`. Two of them between two such times
             are not seen: ask for more times. A stopping event ends the orbit with the last requested time before it.
@@ -109,9 +113,10 @@ def flow(
         return system.flow(configuration=configuration, times=times, **starts, **errors)
     if not isinstance(system, AbstractSystem):
         raise error("flow(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
-    solver, time = solver_of(method), flow_times(times)
+    time = flow_times(times)
+    solver = solver_for(system, float(time[0]), method)
     tolerances = flow_tolerances((1e-10 if method == "diffrax" else 1e-14) if rtol is None else rtol, atol)
-    solve = functools.partial(solver, system.canonical, tolerances=tolerances)
+    solve = functools.partial(solver, tolerances=tolerances)
     first = _first_state(
         system, time, Start.of("flow", configuration, restricted_velocity=restricted_velocity, **starts)
     )

@@ -402,7 +402,7 @@ class AbstractLRSystem(AbstractSystem):
         return velocity @ inertia if inertia.ndim == 2 else (velocity[..., None, :] @ inertia)[..., 0, :]
 
 
-System = AbstractLLSystem | AbstractLRSystem
+System = AbstractSystem
 """Any system on a group."""
 
 

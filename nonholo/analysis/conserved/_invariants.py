@@ -9,7 +9,7 @@ from nonholo.base.checks import error
 from nonholo.base.results import Outcome
 from nonholo.discrete import Discretization, reversal_defects
 from nonholo.orbit import Orbit, as_orbit
-from nonholo.systems import NormalForm
+from nonholo.systems import NormalForm, as_forced
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
 _SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
@@ -22,13 +22,16 @@ class Invariants:
     Attributes:
         states: Saved states.
         steps: Steps they span (0 for a flow).
-        energy_drift: Largest change of the reduced constrained energy, relative to it (absolute at rest).
+        energy_drift: Largest change of the reduced constrained energy, relative to it (absolute at rest). Under forces
+            what is left of the balance: the largest change of the energy less the work of the force, relative to the
+            largest energy.
         constraint_residual: Largest forbidden part of the logarithm of a displacement, or of a velocity; where the
             variety is given by equations, their largest residual.
         group_residual: Largest distance of a pose from the group.
         reversal_defect: Largest relative miss of one step forward and back.
         largest_step_angle: In degrees.
         outcome: How the run ended.
+        work: What the force did on the whole, minus what friction dissipated; None without a force.
     """
 
     states: int
@@ -39,6 +42,7 @@ class Invariants:
     reversal_defect: float | None
     largest_step_angle: float | None
     outcome: Outcome
+    work: float | None = None
 
 
 def invariants(orbit: Orbit) -> Invariants:
@@ -59,16 +63,18 @@ def invariants(orbit: Orbit) -> Invariants:
     group = orbit.system.group
     sample = orbit[:: max(1, len(orbit) // (_SAMPLED if group.dim == 3 else _SAMPLED_LARGE))]
     discrete = sample.cayley is not None
-    energy = orbit.energy
+    forced, energy, work = as_forced(orbit.system), orbit.energy, orbit.work
+    size = abs(energy[0]) if forced is None or forced.is_free else np.abs(energy).max()
     return Invariants(
         states=len(orbit),
         steps=(len(orbit) - 1) * orbit.save_every if discrete else 0,
-        energy_drift=float(np.abs(energy - energy[0]).max() / (abs(energy[0]) or 1.0)),
+        energy_drift=float(np.abs(energy - energy[0] - work).max() / (size or 1.0)),
         constraint_residual=float(np.abs(orbit.motion.constraint_residual(sample)).max(initial=0.0)),
         group_residual=None if orbit.canonical_pose is None else _group_residual(sample),
         reversal_defect=_reversal_defect(sample),
         largest_step_angle=_largest_angle(sample) if discrete else None,
         outcome=orbit.outcome,
+        work=None if forced is None or forced.force is None else float(work[-1]),
     )
 
 
@@ -89,7 +95,7 @@ def _group_residual(orbit: Orbit) -> float:
 
 def _reversal_defect(orbit: Orbit) -> float | None:
     motion = orbit.motion
-    route = motion.route.compiled if isinstance(motion, Discretization) else None
+    route = motion.route.compiled if isinstance(motion, Discretization) and motion.forces is None else None
     if route is None:
         return None
     moving = np.abs(orbit.canonical_chart).sum(axis=1) > 0

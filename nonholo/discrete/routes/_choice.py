@@ -1,14 +1,18 @@
 """Which route a discretization takes: the first of its system that computes what is asked for."""
 
+import dataclasses
+
 from nonholo.discrete._scheme import Scheme
 from nonholo.discrete._variety import variety_of
 from nonholo.discrete.routes._base import AbstractRoute
 from nonholo.discrete.routes._closed_forms import closed_form
 from nonholo.discrete.routes._composed import ComposedRoute
 from nonholo.discrete.routes._definition import DefinitionRoute
+from nonholo.discrete.routes._forced import forced_route
 from nonholo.discrete.routes._matrix import MatrixRoute
 from nonholo.discrete.routes._scalar import ScalarRoute
 from nonholo.discrete.routes._secular import SecularRoute
+from nonholo.systems import as_forced
 
 _SCALAR = (None, "scalar")
 _SECULAR = (*_SCALAR, "secular")
@@ -23,6 +27,8 @@ def make_route(scheme: Scheme, wanted: str | None = None) -> AbstractRoute:
         wanted: None for the best one; or the name of one, which then, or where it is not known for the system the next
             more general one, is taken. Stores name the route that began them.
     """
+    if (forced := as_forced(scheme.system)) is not None:
+        return forced_route(make_route(dataclasses.replace(scheme, system=forced.system), wanted), forced)  # type: ignore[type-var]
     single = _single(scheme, wanted)
     compiled = single.compiled
     return single if compiled is None or scheme.order == 2 else ComposedRoute(compiled, scheme.order)

@@ -1,0 +1,386 @@
+"""Maps and flows under forces: order, balance, what is conserved, against equations written by hand, and refusals."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from bodies import GENERAL
+from scipy.integrate import solve_ivp
+
+import nonholo as nh
+from nonholo.discrete.routes import FunctionRoute
+from nonholo.orbit import Orbit
+from nonholo.systems import AbstractSystem
+
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
+VESELOVA = nh.VeselovaTop(np.diag([1.0, 2.0, 3.0]))
+HEAVY = nh.Gravity(force=[0.2, -0.3, -1.0], point=[0.1, 0.2, 0.3])
+SLOPE = nh.Gravity(force=[0.4, -1.0], point=[0.5, 0.3])
+RUB = nh.Friction(0.1 * np.eye(3) + 0.05 * np.ones((3, 3)) + np.array([[0, 0.1, 0], [-0.1, 0, 0], [0, 0, 0]]))
+SPAN = 0.8
+
+
+def _drive(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """A force of time, pose and velocity."""
+    return np.array([np.cos(3 * time) - 0.4 * w[0] * w[1], 0.3 * g[0, 1] - 0.2 * w[1], 0.1 * time])
+
+
+def _push(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """A force of time alone."""
+    del g, w
+    return np.array([np.cos(3 * time), 0.2 * time, -0.1])
+
+
+def _spring(g: np.ndarray) -> float:
+    """A potential that is no weight."""
+    return float(0.5 * np.sum((g[:2] - 0.3) ** 2) + np.sin(g[0, 1]))
+
+
+def _table(time_step: float) -> np.ndarray:
+    steps = round(SPAN / time_step)
+    return np.array([_push((k + 0.5) * time_step, np.eye(3), np.zeros(3)) for k in range(steps)])
+
+
+def _weight(system: AbstractSystem) -> nh.Gravity:
+    return HEAVY if system.group == nh.SO(3) else SLOPE
+
+
+KINDS: dict[str, Callable[[AbstractSystem], nh.Forced]] = {
+    "gravity": lambda system: nh.Forced(system, _weight(system)),
+    "potential": lambda system: nh.Forced(system, _spring),
+    "friction": lambda system: nh.Forced(system, force=RUB),
+    "gravity with friction": lambda system: nh.Forced(system, _weight(system), RUB),
+    "function": lambda system: nh.Forced(system, force=_drive),
+    "both functions": lambda system: nh.Forced(system, _spring, _drive),
+    "table": lambda system: nh.Forced(system, force=_push),
+}
+"""Of a table the function that it samples, which the flow knows."""
+
+
+def _start(system: AbstractSystem) -> dict[str, Any]:
+    g = system.group.random(np.random.default_rng(5))
+    return {"restricted_velocity": [0.5, -0.3], "configuration": g}
+
+
+def _slope(errors: list[float]) -> float:
+    return float(np.polyfit(range(len(errors)), -np.log2(errors), 1)[0])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("system", [TOP, SLEIGH, VESELOVA], ids=["top", "sleigh", "veselova"])
+def test_the_map_is_of_order_two(system: AbstractSystem, kind: str) -> None:
+    """Momentum, pose and the balance of energy are of order 2 in the time step, for every force."""
+    missed: list[list[float]] = []
+    for h in (0.08, 0.04, 0.02):
+        of_flow = KINDS[kind](system)
+        of_map = nh.Forced(system, force=_table(h)) if kind == "table" else of_flow
+        orbit = nh.simulate(nh.discretize(of_map, h), **_start(system), steps=round(SPAN / h))
+        flow = nh.flow(of_flow, **_start(system), times=(0.0, SPAN))
+        balance = orbit.energy - orbit.energy[0] - orbit.work
+        momentum = orbit.restricted_momentum[-1] - flow.restricted_momentum[-1]
+        pose = orbit.configuration[-1] - flow.configuration[-1]
+        missed.append([float(np.abs(x).max()) for x in (momentum, pose, balance)])
+    for errors in np.transpose(missed)[: 3 if kind != "friction" else 2]:
+        assert errors[-1] < 1e-13 or abs(_slope(list(errors)) - 2) < 0.1, errors
+
+
+def test_no_force_gives_the_bits_of_the_free_map_and_flow() -> None:
+    """Forced with neither argument is the free system, and so is one with a table of zeros, to the last bit."""
+    for system in (TOP, SLEIGH, VESELOVA):
+        free = nh.simulate(nh.discretize(system, 0.1), **_start(system), steps=50)
+        same = nh.simulate(nh.discretize(nh.Forced(system), 0.1), **_start(system), steps=50)
+        assert np.array_equal(free.momentum, same.momentum)
+        assert np.array_equal(free.configuration, same.configuration)
+        assert np.array_equal(free.multipliers, same.multipliers)
+        flows = [nh.flow(s, **_start(system), times=(0.0, 1.0)) for s in (system, nh.Forced(system))]
+        assert np.array_equal(flows[0].momentum, flows[1].momentum)
+    for system in (TOP, SLEIGH):
+        free = nh.simulate(nh.discretize(system, 0.1), **_start(system), steps=50)
+        same = nh.simulate(nh.discretize(nh.Forced(system, force=np.zeros((50, 3))), 0.1), **_start(system), steps=50)
+        assert np.array_equal(free.restricted_momentum, same.restricted_momentum)
+        assert np.array_equal(free.pose, same.pose)
+        assert np.array_equal(free.chart, same.chart)
+
+
+@pytest.mark.parametrize("name", ["suslov 4", "sleigh 3", "any d on SE(3)", "right-invariant on SE(3)"])
+def test_constraint_and_group_are_kept_on_every_group(name: str) -> None:
+    """Under weight and friction constraint and group hold to rounding, and the balance closes to order 2."""
+    system, velocity = GENERAL[name]
+    n, rng, balance = system.group.size - (system.group.size == 4 and name != "suslov 4"), np.random.default_rng(3), []
+    heavy = nh.Gravity(0.3 * rng.normal(size=n), rng.normal(size=n))
+    forced = nh.Forced(system, heavy, nh.Friction(rng.uniform(0, 0.2, system.group.dim)))
+    for h in (0.02, 0.01):
+        orbit = nh.simulate(nh.discretize(forced, h), restricted_velocity=velocity, steps=round(0.4 / h))
+        found = nh.invariants(orbit)
+        balance.append(found.energy_drift)
+        assert found.constraint_residual < 1e-13
+        assert found.group_residual is not None
+        assert found.work is not None
+        assert found.group_residual < 1e-13
+        assert found.work < 0
+    assert balance[0] / balance[1] == pytest.approx(4, rel=0.1)
+
+
+def test_functions_give_the_impulses_of_what_is_compiled() -> None:
+    """Weight, friction and table as Python functions, by the definition of the impulses, agree with the kernel."""
+    tilted = nh.SuslovTop.from_inertia(np.diag([2.0, 3.0, 4.0]), (0.6, 0.8, 0))
+    for system, heavy in ((TOP, HEAVY), (SLEIGH, SLOPE), (tilted, HEAVY)):
+        for forced in (nh.Forced(system, heavy, RUB), nh.Forced(system, heavy, _table(0.05))):
+            discrete = nh.discretize(forced, 0.05)
+            orbit = nh.simulate(discrete, **_start(system), steps=16)
+            route = FunctionRoute(discrete.route.compiled.single, forced)  # type: ignore[union-attr]
+            rows, _, _ = route.run(orbit.reduced_momentum[0], orbit.canonical_pose[0], 16, 1, False)
+            for mine, theirs in zip(rows, (orbit.reduced_momentum, orbit.cayley, orbit.canonical_pose), strict=True):
+                assert np.abs(mine - theirs).max() < 1e-13
+
+
+def test_a_differentiated_potential_is_the_weight() -> None:
+    """Differences of U agree with the exact covector of a weight to 1e-12."""
+    for system, heavy in ((TOP, HEAVY), (SLEIGH, SLOPE)):
+        g = system.group.random(np.random.default_rng(1))
+        by_function = nh.Forced(system, lambda g, heavy=heavy, group=system.group: heavy.energy(group, g))
+        assert np.abs(by_function.potential_force(g) - nh.Forced(system, heavy).potential_force(g)).max() < 1e-12
+
+
+def test_a_heavy_suslov_top_against_equations_by_hand() -> None:
+    """Flow and map agree with Euler's equations with moment of the weight, reaction along e_3, and Poisson's."""
+    inertia, x, F = TOP.inertia_operator, np.asarray(HEAVY.point), np.asarray(HEAVY.force)
+
+    def field(time: float, state: np.ndarray) -> np.ndarray:
+        del time
+        w, c = np.array([state[0], state[1], 0.0]), state[2:]  # c: the weight seen from the body
+        moment = np.cross(inertia @ w, w) + np.cross(x, c)
+        change = np.append(np.linalg.solve(inertia[:2, :2], moment[:2]), 0.0)
+        return np.concatenate([change[:2], np.cross(c, w)])
+
+    g = TOP.group.random(np.random.default_rng(5))
+    start = {"body_velocity": (0.5, -0.3, 0.0), "configuration": g}
+    wanted = solve_ivp(field, (0, 2.0), np.concatenate([[0.5, -0.3], g.T @ F]), "DOP853", rtol=1e-12, atol=1e-13).y[
+        :, -1
+    ]
+    flow = nh.flow(nh.Forced(TOP, HEAVY), **start, times=(0.0, 2.0))
+    assert np.abs(flow.body_velocity[-1, :2] - wanted[:2]).max() < 1e-10
+    assert np.abs(flow.configuration[-1].T @ F - wanted[2:]).max() < 1e-10
+    orbit = nh.simulate(nh.discretize(nh.Forced(TOP, HEAVY), 1e-3), **start, steps=2000)
+    assert np.abs(orbit.body_velocity[-1, :2] - wanted[:2]).max() < 1e-6
+
+
+def test_a_driven_sleigh_with_friction_against_equations_by_hand() -> None:
+    """Flow and map agree with m(u' - a w^2) = F - c u and (J + m a^2) w' + m a u w = M(t) - k w, written by hand."""
+    m, J, a, c, k = 1.3, 0.7, 0.4, 0.3, 0.2
+
+    def field(time: float, state: np.ndarray) -> np.ndarray:
+        w, u, angle = state[:3]
+        turn = (np.cos(2 * time) - k * w - m * a * u * w) / (J + m * a * a)
+        return np.array([turn, (0.5 - c * u) / m + a * w * w, w, u * np.cos(angle), u * np.sin(angle)])
+
+    def force(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
+        del g
+        return np.array([np.cos(2 * time) - k * w[0], 0.5 - c * w[1], 0.7])  # a force across the blade does nothing
+
+    wanted = solve_ivp(field, (0, 3.0), [0.2, 1.0, 0.0, 0.0, 0.0], "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+    forced, start = nh.Forced(nh.ChaplyginSleigh(m, J, a), force=force), {"body_velocity": (0.2, 1.0, 0.0)}
+    flow = nh.flow(forced, **start, times=(0.0, 3.0))
+    found = np.concatenate([flow.body_velocity[-1, :2], flow.heading[-1:], flow.position[-1]])
+    assert np.abs(found - wanted).max() < 1e-10
+    orbit = nh.simulate(nh.discretize(forced, 0.01), **start, steps=300)
+    found = np.concatenate([orbit.body_velocity[-1, :2], orbit.heading[-1:], orbit.position[-1]])
+    assert np.abs(found - wanted).max() < 1e-4
+
+
+def test_a_knife_edge_on_an_incline_is_a_cycloid() -> None:
+    """A balanced sleigh on an incline: turning at w it stays between x = 0 and g/(2 w^2), its known cycloid."""
+    turn, pull = 0.7, 0.4
+    edge = nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.0), nh.Gravity([pull, 0.0], [0.0, 0.0]))
+    orbit = nh.simulate(nh.discretize(edge, 1e-3), body_velocity=(turn, 0.0, 0.0), steps=5000)
+    time = orbit.time
+    x = pull / (2 * turn**2) * np.sin(turn * time) ** 2
+    y = pull / (2 * turn**2) * (turn * time - np.sin(2 * turn * time) / 2)
+    assert np.abs(orbit.position - np.stack([x, y], axis=1)).max() < 1e-6
+
+
+def test_friction_never_adds_energy() -> None:
+    """The kinetic energy falls in every step, for random bodies, friction and step sizes up to a thousand."""
+    rng = np.random.default_rng(8)
+    for case in range(60):
+        system = nh.ChaplyginSleigh(*rng.uniform(0.2, 3, 2), *rng.normal(size=2)) if case % 2 else TOP
+        root, turning = rng.normal(size=(2, 3, 3)) * 10 ** rng.uniform(-3, 3)
+        forced = nh.Forced(system, force=nh.Friction(root @ root.T + turning - turning.T))
+        h = 10 ** rng.uniform(-3, 3)
+        slow = 0.1 / h * rng.normal(size=2)
+        energy = nh.simulate(nh.discretize(forced, h), restricted_velocity=slow, steps=40, throw=False).energy
+        assert len(energy)
+        assert np.all(np.diff(energy) <= 1e-14 * energy[0])
+
+
+def test_friction_of_a_balanced_body_is_exact() -> None:
+    """Where the free motion has constant velocity, speeds fall by the exact exponentials at any step size."""
+    forced = nh.Forced(nh.ChaplyginSleigh(2.0, 0.5, 0.0), force=nh.Friction([0.3, 0.8, 5.0]))
+    orbit = nh.simulate(nh.discretize(forced, 2.0), body_velocity=(0.2, 0.3, 0.0), steps=20)
+    exact = np.array([0.2, 0.3]) * np.exp(-np.outer(orbit.time, [0.3 / 0.5, 0.8 / 2.0]))
+    assert np.abs(orbit.body_velocity[:, :2] - exact).max() < 1e-15
+
+
+def test_rows_of_a_table_act_over_their_steps() -> None:
+    """On a straight motion the momentum gains h times each row; the beginning of a run does not know its end."""
+    rows = np.random.default_rng(2).normal(size=(6, 3)) * [0.0, 1.0, 3.0]
+    forced = nh.Forced(nh.ChaplyginSleigh(2.0, 0.5, 0.0), force=rows)
+    orbit = nh.simulate(nh.discretize(forced, 0.1), body_velocity=(0.0, 0.3, 0.0), steps=6)
+    assert np.abs(orbit.restricted_momentum[1:, 1] - 0.6 - 0.1 * np.cumsum(rows[:, 1])).max() < 1e-15
+    shorter = nh.simulate(nh.discretize(forced, 0.1), body_velocity=(0.0, 0.3, 0.0), steps=3)
+    assert np.array_equal(shorter.momentum, orbit.momentum[:4])
+    with pytest.raises(ValueError, match=r"simulate\(steps=...\)"):
+        nh.simulate(nh.discretize(forced, 0.1), body_velocity=(0.0, 0.3, 0.0), steps=7)
+
+
+@pytest.mark.parametrize("system", [TOP, SLEIGH, VESELOVA], ids=["top", "sleigh", "veselova"])
+def test_multipliers_hold_no_force(system: AbstractSystem) -> None:
+    """Impulses of the constraint are the time step times the reactions of the flow, and hold no part of the force."""
+    forced = nh.Forced(system, HEAVY if system.group == nh.SO(3) else SLOPE, _drive)
+    h, missed = 0.01, []
+    for each in (h, h / 2):
+        orbit = nh.simulate(nh.discretize(forced, each), **_start(system), steps=round(0.1 / each))
+        flow = nh.flow(forced, **_start(system), times=orbit.time[:-1] + each / 2)
+        flow = nh.flow(forced, **_start(system), times=np.concatenate([[0.0], orbit.time[:-1] + each / 2]))[1:]
+        missed.append(np.abs(orbit.multipliers / each - flow.multipliers).max())
+    assert missed[0] < 1e-2
+    assert missed[0] / missed[1] > 1.8
+
+
+def _energy_errors(system: AbstractSystem, point: list[float], h: float, velocity: tuple[float, ...]) -> np.ndarray:
+    """Return the largest errors of T + U in the first and in the last tenth of a long run."""
+    heavy = nh.Forced(system, nh.Gravity([0.0, 0.0, -1.0], point))
+    orbit = nh.simulate(nh.discretize(heavy, h), body_velocity=velocity, steps=round(2500 / h), save_every=10)
+    error, tenth = np.abs(orbit.energy - orbit.energy[0]), len(orbit) // 10
+    return np.array([error[:tenth].max(), error[-tenth:].max()])
+
+
+def test_the_energy_error_stays_bounded_or_grows_at_a_rate_of_order_two() -> None:
+    """Bounded for a free heavy top and for one symmetric in time; on another orbit a slow drift, of order 2."""
+    tensor = np.diag([1.0, 1.2, 0.7])
+    for system, point, velocity in (
+        (nh.RigidBody(tensor), [0.0, 0.1, 0.4], (0.3, 0.2, 1.0)),
+        (nh.SuslovTop(tensor), [0.0, 0.0, 0.4], (0.3, 0.2, 0.0)),
+    ):
+        first, last = _energy_errors(system, point, 0.05, velocity)
+        assert last < 1.2 * first < 4e-3
+    drifting = [_energy_errors(nh.SuslovTop(tensor), [0.0, 0.1, 0.4], h, (0.3, 0.2, 0.0))[1] for h in (0.05, 0.025)]
+    assert drifting[0] / drifting[1] == pytest.approx(4, rel=0.2)
+
+
+def test_a_run_under_a_potential_is_reversible() -> None:
+    """From the opposite momentum the map under a weight goes back the way it came, to rounding."""
+    for system, heavy in ((TOP, HEAVY), (SLEIGH, SLOPE)):
+        discrete = nh.discretize(nh.Forced(system, heavy), 0.05)
+        there = nh.simulate(discrete, **_start(system), steps=50)
+        back = nh.simulate(
+            discrete, momentum=-there.restricted_momentum[-1], configuration=there.configuration[-1], steps=50
+        )
+        assert np.abs(back.configuration[-1] - there.configuration[0]).max() < 1e-12
+        assert np.abs(back.restricted_momentum[-1] + there.restricted_momentum[0]).max() < 1e-12
+
+
+def _states(orbit: Orbit) -> tuple[np.ndarray, ...]:
+    return orbit.time, orbit.reduced_momentum, orbit.cayley, orbit.canonical_pose  # type: ignore[return-value]
+
+
+def test_thinned_and_iterated_runs_are_the_same() -> None:
+    """Blocks and every third state are those of the whole run, bit for bit; runs of functions can be thinned too."""
+    discrete = nh.discretize(nh.Forced(TOP, HEAVY, RUB), 0.05)
+    whole = nh.simulate(discrete, **_start(TOP), steps=30)
+    thin = nh.simulate(discrete, **_start(TOP), steps=30, save_every=3)
+    blocks = list(nh.iterate(discrete, **_start(TOP), steps=30, block_steps=7))
+    for mine, all_of_them in zip(_states(thin), _states(whole), strict=True):
+        assert np.array_equal(mine, all_of_them[::3])
+    for j, all_of_them in enumerate(_states(whole)):
+        assert np.array_equal(np.concatenate([_states(block)[j] for block in blocks]), all_of_them)
+    driven = nh.discretize(nh.Forced(TOP, force=_drive), 0.05)
+    whole, thin = (nh.simulate(driven, **_start(TOP), steps=9, save_every=every) for every in (1, 3))
+    assert np.array_equal(thin.momentum, whole.momentum[::3])
+
+
+def test_outcomes_stay_apart() -> None:
+    """A branch that ends, an overflow and a half impulse that cannot be solved end a run with names of their own."""
+    rows = np.zeros((9, 3))
+    rows[4, 0] = 1e3
+    ended = nh.simulate(nh.discretize(nh.Forced(TOP, force=rows), 0.1), **_start(TOP), steps=9, throw=False)
+    assert (str(ended.outcome), len(ended)) == ("no_real_branch", 4)
+    drives = {
+        "nonfinite": lambda time, _, w: 0.0 * w + (np.nan if time > 0.25 else 0.0),
+        "not_converged": lambda time, _, w: 1e4 * np.sign(w - 0.01) * -1.0 if time > 0.25 else 0.0 * w,
+    }
+    for name, drive in drives.items():
+        discrete = nh.discretize(nh.Forced(SLEIGH, force=drive), 0.1)
+        run = nh.simulate(discrete, **_start(SLEIGH), steps=9, throw=False)
+        assert (str(run.outcome), len(run)) == (name, 3)
+        with pytest.raises(nh.OutcomeError, match=name):
+            nh.simulate(discrete, **_start(SLEIGH), steps=9)
+
+
+def test_stiff_friction_of_a_function_is_solved() -> None:
+    """A friction so stiff that substitution fails is solved by Newton's method."""
+    forced = nh.Forced(nh.ChaplyginSleigh(2.0, 0.5, 0.0), force=lambda *state: -1e3 * state[2])
+    orbit = nh.simulate(nh.discretize(forced, 0.1), body_velocity=(0.2, 0.3, 0.0), steps=10)
+    assert np.all(np.diff(np.abs(orbit.restricted_momentum), axis=0) < 0)
+
+
+_FORCED = nh.Forced(TOP, HEAVY, RUB)
+_MAP = nh.discretize(_FORCED, 0.1)
+_RUN = nh.simulate(_MAP, restricted_velocity=[0.5, -0.3], steps=5)
+_PAIR = nh.Forced(TOP, force=lambda *state: state[2][:2])
+_REFUSED: dict[str, Callable[[], Any]] = {
+    "step": lambda: nh.step(_MAP, [0.1, 0.2]),
+    "branches": lambda: nh.branches(_MAP, momentum=[0.1, 0.2]),
+    "displacements_over": lambda: nh.displacements_over(_MAP, [0.1, 0.2]),
+    "discrete_legendre": lambda: nh.discrete_legendre(_MAP, np.eye(3)),
+    "momentum_locus": lambda: nh.momentum_locus(_MAP),
+    "invariant_curve": lambda: nh.invariant_curve(_MAP, 0.1),
+    "critical_energies": lambda: nh.critical_energies(_MAP),
+    "consistency_defect": lambda: nh.consistency_defect(_MAP, np.eye(3)),
+    "heteroclinic": lambda: nh.heteroclinic(_MAP, energy=0.1),
+    "flow_obstruction": lambda: nh.flow_obstruction(_MAP, 0.1),
+    "equilibria": lambda: nh.equilibria(_FORCED),
+    "equilibria of the map": lambda: nh.equilibria(_MAP),
+    "invariant_measure": lambda: nh.invariant_measure(_FORCED),
+    "conserved_momenta": lambda: nh.conserved_momenta(_FORCED),
+    "lyapunov_function": lambda: nh.lyapunov_function(_FORCED),  # type: ignore[arg-type]
+    "asymptotics": lambda: nh.asymptotics(_RUN),
+    "vector_field": lambda: nh.vector_field(_FORCED),
+    "check_system": lambda: nh.testing.check_system(_FORCED),
+    "check_discretization": lambda: nh.testing.check_discretization(_MAP),
+    "ensemble": lambda: nh.ensemble(_MAP, restricted_velocity=np.ones((2, 2)), steps=2),
+    "ensemble of flows": lambda: nh.ensemble(_FORCED, restricted_velocity=np.ones((2, 2)), times=(0.0, 1.0)),
+    "EnsembleTask": lambda: nh.EnsembleTask(_MAP, steps=3),
+    "phase_portrait": lambda: nh.plot.phase_portrait(_FORCED),
+    "events": lambda: nh.simulate(
+        _MAP, restricted_velocity=[0.5, -0.3], steps=5, events=[lambda orbit: orbit.time - 0.2]
+    ),
+    "crossings": lambda: nh.crossings(_RUN, lambda orbit: orbit.time - 0.2),
+    "branch": lambda: nh.simulate(_MAP, restricted_velocity=[0.5, -0.3], steps=5, branch="nearest"),
+    "backend": lambda: nh.simulate(_MAP, restricted_velocity=[0.5, -0.3], steps=5, backend="jax"),
+    "displacement": lambda: nh.simulate(_MAP, displacement=np.eye(3), steps=5),
+    "order": lambda: nh.discretize(_FORCED, 0.1, order=4),
+    "difference": lambda: nh.discretize(_FORCED, 0.1, difference="logarithmic"),
+    "closed_form": lambda: nh.flow(_FORCED, restricted_velocity=[0.5, -0.3], times=(0.0, 1.0), method="closed_form"),
+    "flow of a table": lambda: nh.flow(
+        nh.Forced(TOP, force=np.ones((3, 3))), restricted_velocity=[0.5, -0.3], times=(0.0, 1.0)
+    ),
+    "forced twice": lambda: nh.Forced(_FORCED),
+    "no system": lambda: nh.Forced(3),  # type: ignore[arg-type]
+    "no potential": lambda: nh.Forced(TOP, 3.0),
+    "points of another dimension": lambda: nh.Forced(TOP, SLOPE),
+    "friction of another dimension": lambda: nh.Forced(TOP, force=nh.Friction([1.0, 2.0])),
+    "friction that drives": lambda: nh.Friction([1.0, -2.0, 0.0]),
+    "a table of another dimension": lambda: nh.Forced(TOP, force=np.ones((3, 2))),
+    "a potential of two numbers": lambda: nh.Forced(TOP, lambda g: g[0]).potential_energy(np.eye(3)),
+    "a force of two numbers": lambda: _PAIR.applied_force(0.0, np.eye(3), np.ones(3)),
+}
+
+
+@pytest.mark.parametrize("question", _REFUSED)
+def test_what_does_not_know_of_forces_is_refused(question: str) -> None:
+    """Whatever serves free motions alone says so, in place of leaving the forces out."""
+    with pytest.raises(ValueError, match=r"Force|force|Friction|Gravity"):
+        _REFUSED[question]()
