@@ -17,7 +17,7 @@ from nonholo.continuous._forced import forced_reaction
 from nonholo.continuous._solution import States
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.systems import AbstractSystem, as_forced, inertia_form, refuse_forced
+from nonholo.systems import AbstractSystem, inertia_form, refuse_forces
 
 Body = tuple[Array, Array, Array]
 r"""Constraint subspace $S$, inertia operator $\mathbb{I}$ and $(S\mathbb{I}S^T)^{-1}S$, which takes r to $\omega$."""
@@ -94,7 +94,7 @@ class ContinuousFlow(AbstractMotion):
 
         For a right-invariant constraint the last term is $\sum_j \lambda_j \mathrm{Ad}^*_g a^j$.
         """
-        system, forced = self.system, as_forced(self.system)
+        system, forced = self.system, self.system.forces
         if forced is not None:
             force = forced_reaction(forced, states)
         elif system.is_spatial:
@@ -176,7 +176,7 @@ def vector_field(system: AbstractSystem) -> Callable[[Array, Float[Array, "size"
     """
     if not isinstance(system, AbstractSystem):
         raise error("vector_field(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
-    refuse_forced("vector_field(system=...)", system)
+    refuse_forces("vector_field(system=...)", system)
     group, S = system.group, system.constraint_subspace
     k, shape = len(S), group.identity.shape
     body = None if system.is_spatial else body_of(system)

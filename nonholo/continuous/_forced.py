@@ -17,7 +17,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
 from nonholo.orbit import Orbit
-from nonholo.systems import Forced, admissible_directions
+from nonholo.systems import Forced
 
 _LEAST_RTOL, _SHARE = 1e-13, 1e-3  # SciPy allows no less; absolute errors are that part of the relative ones
 
@@ -52,7 +52,7 @@ def _field(forced: Forced, begins: float, k: int) -> Callable[[float, np.ndarray
 
     def derivative(time: float, state: np.ndarray) -> np.ndarray:
         g = state[k : k + N * N].reshape(N, N)
-        E = admissible_directions(forced, g)
+        E = forced.directions(g)
         velocity = E @ np.linalg.solve(E.T @ inertia @ E, state[:k])
         force = forced.potential_force(g) + forced.applied_force(begins + time, g, velocity)
         if not forced.is_spatial:
@@ -80,7 +80,7 @@ def forced_reaction(forced: Forced, states: Orbit) -> Float[np.ndarray, "K dim"]
     g, velocity = states.configuration, states.body_velocity
     applied = [forced.applied_force(*row) for row in zip(states.time, g, velocity, strict=True)]
     force = group.coad(velocity, velocity @ inertia.T) + forced.potential_force(g) + np.reshape(applied, velocity.shape)
-    E = admissible_directions(forced, g)
+    E = forced.directions(g)
     along = np.swapaxes(E, -1, -2)
     acceleration = E @ np.linalg.solve(along @ inertia @ E, along @ force[..., None])
     missing = (inertia @ acceleration)[..., 0] - force

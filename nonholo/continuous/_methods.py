@@ -8,13 +8,13 @@ from nonholo.continuous._closed_form import closed_form
 from nonholo.continuous._forced import by_runge_kutta
 from nonholo.continuous._series import by_series
 from nonholo.continuous._solution import Solved
-from nonholo.systems import AbstractSystem, as_forced
+from nonholo.systems import AbstractSystem
 
 
 def solver_for(system: AbstractSystem, begins: float, method: str | None) -> Callable[..., Solved]:
     """Return what solves the equations of a system from a time on; those with forces are solved by DOP853 alone."""
-    solver, forced = solver_of(method), as_forced(system)
-    if forced is None or forced.is_free:
+    solver, forced = solver_of(method), system.forces
+    if forced is None:
         return functools.partial(solver, system.canonical)
     if method is not None:
         remedy = "Leave it out: forces are integrated by DOP853."

@@ -22,9 +22,7 @@ from nonholo.systems import (
     DiscretizationT,
     Forced,
     System,
-    as_forced,
-    impulses,
-    refuse_forced,
+    refuse_forces,
     refuse_in_coordinates,
 )
 
@@ -65,8 +63,7 @@ class Discretization(Scheme, AbstractMotion):
     @property
     def forces(self) -> Forced | None:
         """The system with its forces; None of a free one."""
-        forced = as_forced(self.system)
-        return None if forced is None or forced.is_free else forced
+        return self.system.forces
 
     @property
     def route_name(self) -> str:
@@ -161,7 +158,7 @@ class Discretization(Scheme, AbstractMotion):
         """Return the half impulses at nodes of the steps that begin there, or with shift -1 of those that end there."""
         forced, half = cast(Forced, self.forces), float(self.time_step) * (0.5 + shift)
         steps = np.rint(states.time / self.time_step).astype(int) + shift
-        found = impulses(forced, states.restricted_momentum, states.configuration, states.time, steps, half)
+        found = forced.impulses(states.restricted_momentum, states.configuration, states.time, steps, half)
         return found if shift == 0 else -found
 
     def _momentum(self, states: Orbit, cayley: np.ndarray, side: str) -> np.ndarray:
@@ -182,7 +179,7 @@ def as_discretization(where: str, value: Any, *, composed: bool = False, forced:
     if not composed:
         refuse_composition(where, value, "Pass the discretization of order 2 that is composed.")
     if not forced:
-        refuse_forced(where, value.system)
+        refuse_forces(where, value.system)
     return value
 
 

@@ -4,7 +4,7 @@ from nonholo.kernels._composition import ComposedBody, whole_steps
 from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
-from nonholo.kernels._forced import ForcedBody, Kick, kicked, run_by_kicks
+from nonholo.kernels._forced import ForcedBody, Kick
 from nonholo.kernels._interface import Body, certified, correction, increment, move, residual
 from nonholo.kernels._nearest import NearestBody
 from nonholo.kernels._nearest import advance as advance_to_nearest
@@ -40,12 +40,10 @@ __all__ = [
     "converged",
     "correction",
     "increment",
-    "kicked",
     "move",
     "order_for",
     "residual",
     "revisit_series",
-    "run_by_kicks",
     "secular_sleigh",
     "secular_top",
     "sizes",

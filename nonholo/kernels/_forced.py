@@ -3,28 +3,25 @@ r"""Runs with forces: half an impulse at each end of a step, and the step of the
 A node k has the momenta m. A step begins at $s = K_k(m)$ with the root over s, and ends, after the increment and the
 move, with $K_k$ once more at the pose of the next node (docs/theory/forces.md). The half impulse is
 
-$$ K_k(m) = A\,m + P\,R^TF + r_k, $$
+$$ K_k(m) = A\,m + P\,\phi(g) + r_k, $$
 
-with R the rotation of the pose, F a force fixed in space, and a row for each step. A run's state is one array:
-momenta of the next node, their compensations, its pose, the last three roots, the number of its step, and the chart at
-which it began.
+where $\phi$ are the entries of the pose, of a quaternion the products of two of them: a force that is fixed in space
+is linear in the rotation. A run's state is one array: momenta of the next node, their compensations, its pose, the last
+three roots, the number of its step, and the chart at which it began.
 """
 
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from nonholo.base.compiled import njit
-from nonholo.kernels._driver import SETTLED, _compensated, _solve
+from nonholo.kernels._driver import SETTLED, _compensated, _solve, _unpack
 from nonholo.kernels._interface import Body, increment, move
 from nonholo.kernels._scalar import COMPILED, scalar
-from nonholo.kernels._small import assign, assign_rows
+from nonholo.kernels._small import assign
 from nonholo.kernels._substeps import at_rest, charted, prepared, pushed, solved
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.secular import SecularBody
-
-_ONE = np.ones(1)
 
 
 class Kick(NamedTuple):
@@ -32,17 +29,14 @@ class Kick(NamedTuple):
 
     Attributes:
         keep: A, what is left of the momenta, (k, k); (0, 0) where all is.
-        pull: P, (k, n); (0, 0) without a force that is fixed in space.
-        weight: F, (n,); (0,) without.
-        rows: r, one for each step, (steps, k); none acts after the last one.
-        stride: N where poses are matrices row by row; 0 for a quaternion (n = 3) or cosine and sine (n = 2).
+        pull: P, (k, size) for poses that are matrices, (k, 2) for cosine and sine, (k, 10) for a quaternion, its
+            squares before its products 01, 02, 03, 12, 13, 23; (k, 0) without a force that is fixed in space.
+        rows: r, (steps, 2, k), at the beginning and at the end of each step; none acts after the last one.
     """
 
     keep: np.ndarray
     pull: np.ndarray
-    weight: np.ndarray
     rows: np.ndarray
-    stride: int
 
 
 class ForcedBody(NamedTuple):
@@ -53,75 +47,46 @@ class ForcedBody(NamedTuple):
 
 
 @njit(**COMPILED)
-def kicked(kick: Kick, row: int, m: np.ndarray, pose: np.ndarray, out: np.ndarray) -> None:
-    """Write the momenta after half an impulse of a step."""
-    seen = np.zeros(len(kick.weight))
-    _turned_back(kick.weight, pose, kick.stride, seen)
+def kicked(kick: Kick, row: int, half: int, m: np.ndarray, pose: np.ndarray, out: np.ndarray) -> None:
+    """Write the momenta after half an impulse of a step, at its beginning (0) or end (1); poses are matrices."""
     for i in range(len(m)):
-        total = m[i]
+        total, force = m[i], 0.0
         if len(kick.keep) > 0:
             total = 0.0
             for j in range(len(m)):
                 total += kick.keep[i, j] * m[j]
-        force = 0.0
-        for j in range(len(seen)):
-            force += kick.pull[i, j] * seen[j]
+        for j in range(kick.pull.shape[1]):
+            force += kick.pull[i, j] * pose[j]
         if row < len(kick.rows):
-            force += kick.rows[row, i]
+            force += kick.rows[row, half, i]
         out[i] = total + force
 
 
-@njit(**COMPILED)
-def _turned_back(weight: np.ndarray, pose: np.ndarray, stride: int, out: np.ndarray) -> None:
-    """Write $R^TF$."""
-    n = len(weight)
-    if stride > 0:
-        for j in range(n):
-            out[j] = 0.0
-            for i in range(n):
-                out[j] += pose[i * stride + j] * weight[i]
-    elif n == 3:
-        turned = _from_quaternion(weight[0], weight[1], weight[2], pose[0], pose[1], pose[2], pose[3])
-        out[0], out[1], out[2] = turned
-    elif n == 2:
-        out[0], out[1] = _from_angle(weight[0], weight[1], pose[0], pose[1])
-
-
 @scalar
-def _from_quaternion(
-    f: float, g: float, h: float, w: float, x: float, y: float, z: float
-) -> tuple[float, float, float]:
-    a, b, c = 2 * (g * z - h * y), 2 * (h * x - f * z), 2 * (f * y - g * x)
-    return f + (w * a + (b * z - c * y)), g + (w * b + (c * x - a * z)), h + (w * c + (a * y - b * x))
-
-
-@scalar
-def _from_angle(f: float, g: float, cos: float, sin: float) -> tuple[float, float]:
-    return cos * f + sin * g, cos * g - sin * f
-
-
-@scalar
-def _pulled(n: int, F: Any, P: Any, q: Any) -> tuple[float, float]:
-    r"""Return $P\,R^TF$ of two momenta at a compact pose."""
-    if n == 3:
-        u, v, w = _from_quaternion(F[0], F[1], F[2], q[0], q[1], q[2], q[3])
-        return P[0] * u + P[1] * v + P[2] * w, P[3] * u + P[4] * v + P[5] * w
-    if n == 2:
-        u, v = _from_angle(F[0], F[1], q[0], q[1])
-        return P[0] * u + P[1] * v, P[3] * u + P[4] * v
-    return 0.0, 0.0
+def pulled(width: int, P: Any, q0: float, q1: float, q2: float, q3: float) -> tuple[float, float]:
+    """Return what a force that is fixed in space adds to two momenta at a compact pose."""
+    if width == 10:
+        a, b, c, d, e, f = q0 * q1, q0 * q2, q0 * q3, q1 * q2, q1 * q3, q2 * q3
+        w, x, y, z = q0 * q0, q1 * q1, q2 * q2, q3 * q3
+        first = (P[0] * w + P[1] * x) + (P[2] * y + P[3] * z)
+        second = (P[10] * w + P[11] * x) + (P[12] * y + P[13] * z)
+        first += (P[4] * a + P[5] * b) + (P[6] * c + P[7] * d) + (P[8] * e + P[9] * f)
+        second += (P[14] * a + P[15] * b) + (P[16] * c + P[17] * d) + (P[18] * e + P[19] * f)
+        return first, second
+    return P[0] * q0 + P[1] * q1, P[10] * q0 + P[11] * q1
 
 
 @njit(**COMPILED)
 def _numbers(kick: Kick):  # noqa: ANN202
-    """Return F, P row by row and A row by row as numbers."""
-    F, P, A, n = np.zeros(3), np.zeros((2, 3)), np.zeros((2, 2)), len(kick.weight)
-    for j in range(n):
-        F[j], P[0, j], P[1, j] = kick.weight[j], kick.pull[0, j], kick.pull[1, j]
-    if len(kick.keep) > 0:
-        assign_rows(A, kick.keep)
-    of_force, of_pull = (F[0], F[1], F[2]), (P[0, 0], P[0, 1], P[0, 2], P[1, 0], P[1, 1], P[1, 2])
-    return of_force, of_pull, (A[0, 0], A[0, 1], A[1, 0], A[1, 1])
+    """Return the rows of P and A as numbers: arrays would be counted at every step of a loop."""
+    p, a, width = np.zeros(20), np.zeros(4), kick.pull.shape[1]
+    for j in range(width):
+        p[j], p[10 + j] = kick.pull[0, j], kick.pull[1, j]
+    for j in range(2 * len(kick.keep)):
+        a[j] = kick.keep[j // 2, j % 2]
+    first = (p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9])
+    second = (p[10], p[11], p[12], p[13], p[14], p[15], p[16], p[17], p[18], p[19])
+    return width, first + second, a[0], a[1], a[2], a[3]
 
 
 @njit(nogil=True, **COMPILED)
@@ -136,15 +101,14 @@ def _advance_two(
     poses: np.ndarray,
 ) -> tuple[int, int]:
     """Advance a top in space or a sleigh in the plane, with numbers in place of arrays."""
-    m1, m2, l1, l2, q0, q1, q2, q3 = state[0], state[1], state[2], state[3], state[4], state[5], state[6], state[7]
-    y1, y2, u1, u2, v1, v2 = state[8], state[9], state[10], state[11], state[12], state[13]
+    m1, m2, l1, l2, q0, q1, q2, q3, y1, y2, u1, u2, v1, v2 = _unpack(state)
+    rubs, table, last = len(kick.keep) > 0, kick.rows, len(kick.rows)
+    width, P, a, b, c, d = _numbers(kick)
     row, code, done = int(state[14]), 0, 0
-    n, rubs, table, last = len(kick.weight), len(kick.keep) > 0, kick.rows, len(kick.rows)
-    F, P, A = _numbers(kick)
-    f1, f2 = _pulled(n, F, P, (q0, q1, q2, q3))
+    f1, f2 = pulled(width, P, q0, q1, q2, q3)
     while done < steps:
-        r1, r2 = (table[row, 0], table[row, 1]) if row < last else (0.0, 0.0)
-        s1, s2 = (A[0] * m1 + A[1] * m2, A[2] * m1 + A[3] * m2) if rubs else (m1, m2)
+        s1, s2 = (a * m1 + b * m2, c * m1 + d * m2) if rubs else (m1, m2)
+        r1, r2 = (table[row, 0, 0], table[row, 0, 1]) if row < last else (0.0, 0.0)
         s1, s2 = s1 + (f1 + r1), s2 + (f2 + r2)
         code, w1, w2 = _solve(p, s1, s2, 3 * (y1 - u1) + v1, 3 * (y2 - u2) + v2)
         if code != 0:
@@ -160,8 +124,9 @@ def _advance_two(
         s1, l1 = _compensated(s1, l1, d1, settled)
         s2, l2 = _compensated(s2, l2, d2, settled)
         q0, q1, q2, q3 = move(p, w1, w2, q0, q1, q2, q3)
-        f1, f2 = _pulled(n, F, P, (q0, q1, q2, q3))
-        m1, m2 = (A[0] * s1 + A[1] * s2, A[2] * s1 + A[3] * s2) if rubs else (s1, s2)
+        f1, f2 = pulled(width, P, q0, q1, q2, q3)
+        m1, m2 = (a * s1 + b * s2, c * s1 + d * s2) if rubs else (s1, s2)
+        r1, r2 = (table[row, 1, 0], table[row, 1, 1]) if row < last else (0.0, 0.0)
         m1, m2 = m1 + (f1 + r1), m2 + (f2 + r2)
         row += 1
     assign(state, np.array((m1, m2, l1, l2, q0, q1, q2, q3, y1, y2, u1, u2, v1, v2, float(row))))
@@ -172,7 +137,6 @@ def _advance_two(
 def _advance_many(
     p: Any,
     kick: Kick,
-    one: np.ndarray,
     state: np.ndarray,
     steps: int,
     every: int,
@@ -180,21 +144,23 @@ def _advance_many(
     charts: np.ndarray,
     poses: np.ndarray,
 ) -> tuple[int, int]:
-    """Advance any other body; `one` is the weight of its only substep."""
+    """Advance any other body."""
     k, size = momenta.shape[1], poses.shape[1]
     m, lost, pose = state[:k].copy(), state[k : 2 * k].copy(), state[2 * k : 2 * k + size].copy()
     roots = state[2 * k + size : len(state) - 1].copy().reshape(3, -1)
     s, change, root, guess = np.empty(k), np.empty(k), roots[0].copy(), roots[0].copy()
-    row, code, done = int(state[len(state) - 1]), 0, 0
+    row, code, done, one = int(state[len(state) - 1]), 0, 0, np.zeros(1)
+    one[0] = 1.0
     while done < steps:
-        kicked(kick, row, m, pose, s)
+        kicked(kick, row, 0, m, pose, s)
         w = prepared(p, s, one)  # a certificate may be for momenta of one energy
         for j in range(len(guess)):
             guess[j] = 3 * (roots[0, j] - roots[1, j]) + roots[2, j]
         code = solved(p, w, 0, s, guess, pose, root)
         if code != 0:
             break
-        _remember(roots, root)
+        for j in range(len(root)):
+            roots[2, j], roots[1, j], roots[0, j] = roots[1, j], roots[0, j], root[j]
         done += 1
         if done % every == 0:
             at = done // every - 1
@@ -203,21 +169,12 @@ def _advance_many(
             charted(p, s, root, charts[at])
         pushed(p, w, s, root, change, pose)
         add_compensated(s, lost, change)
-        kicked(kick, row, s, pose, m)
+        kicked(kick, row, 1, s, pose, m)
         row += 1
-    assign(state, m)
-    assign(state[k:], lost)
-    assign(state[2 * k :], pose)
-    assign(state[2 * k + size :], roots.ravel())
+    for begin, part in ((0, m), (k, lost), (2 * k, pose), (2 * k + size, roots.ravel())):
+        assign(state[begin:], part)
     state[len(state) - 1] = row
     return done, code
-
-
-@njit(**COMPILED)
-def _remember(roots: np.ndarray, root: np.ndarray) -> None:
-    """Put a root before the last ones."""
-    for j in range(len(root)):
-        roots[2, j], roots[1, j], roots[0, j] = roots[1, j], roots[0, j], root[j]
 
 
 @njit(**COMPILED)
@@ -242,61 +199,10 @@ def start(forced: ForcedBody, momentum: np.ndarray, pose: np.ndarray, sizes: Any
     return code, state
 
 
-def advance(
-    forced: ForcedBody,
-    state: np.ndarray,
-    steps: int,
-    every: int,
-    momenta: np.ndarray,
-    charts: np.ndarray,
-    poses: np.ndarray,
-) -> tuple[int, int]:
+def advance(forced: ForcedBody, state: np.ndarray, steps: int, every: int, *rows: np.ndarray) -> tuple[int, int]:
     """Take up to `steps` steps, saving each `every`-th one; return how many were good and the outcome.
 
     After a failure the state is that of the last good step.
     """
-    body, kick = forced
-    rest, rows = state[: len(state) - charts.shape[1]], (momenta, charts, poses)
-    if isinstance(body, SecularBody | GeneralBody):
-        return _advance_many(body, kick, _ONE, rest, steps, every, *rows)
-    return _advance_two(body, kick, rest, steps, every, *rows)
-
-
-def run_by_kicks(
-    body: Any,
-    kick: Callable[[int, int, np.ndarray, np.ndarray], np.ndarray],
-    momentum: np.ndarray,
-    pose: np.ndarray,
-    steps: int,
-    report: Callable[[int, np.ndarray, np.ndarray, np.ndarray], Any],
-) -> int:
-    """Run the same steps with a Python function for half an impulse; return the outcome.
-
-    Args:
-        body: The body of the step.
-        kick: From node, step, momenta and pose to momenta.
-        momentum: Those of the first node.
-        pose: That of the first node.
-        steps: How many.
-        report: Called with each good node: its number, momenta, chart and pose.
-    """
-    m, lost, pose = momentum.copy(), np.zeros_like(momentum), pose.copy()
-    roots = np.tile(at_rest(body), (3, 1))
-    root, change = roots[0].copy(), np.empty_like(m)
-    for k in range(steps + 1):
-        s = kick(k, k, m, pose)
-        w = prepared(body, s, _ONE)
-        code = solved(body, w, 0, s, 3 * (roots[0] - roots[1]) + roots[2], pose, root)
-        if code != 0:
-            return code
-        _remember(roots, root)
-        if k == 0:
-            roots[1:] = root
-        chart = np.empty_like(m if not isinstance(body, GeneralBody) else root)
-        charted(body, s, root, chart)
-        report(k, m, chart, pose)
-        if k < steps:
-            pushed(body, w, s, root, change, pose)
-            add_compensated(s, lost, change)
-            m = kick(k + 1, k, s, pose)
-    return 0
+    run = _advance_many if isinstance(forced.body, SecularBody | GeneralBody) else _advance_two
+    return run(*forced, state[: len(state) - rows[1].shape[1]], steps, every, *rows)

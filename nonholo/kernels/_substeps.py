@@ -1,7 +1,7 @@
 """Functions of bodies for a substep of a composition: a root over given momenta, the push and the move at that root.
 
 The same pieces for every body, chosen by its type; numba chooses when it compiles. Tops in space and sleighs in the
-plane have loops of their own, in `_composition` and `_forced`; their pieces serve runs with forces of Python functions.
+plane have loops of their own, in `_composition` and `_forced`.
 """
 
 from collections.abc import Callable
@@ -11,8 +11,7 @@ import numpy as np
 from numba.extending import overload
 
 from nonholo.base.compiled import njit
-from nonholo.kernels._driver import _solve
-from nonholo.kernels._interface import Body, increment, move
+from nonholo.kernels._interface import Body
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._small import assign
 from nonholo.kernels.general import GeneralBody, Workspace, increments, workspace
@@ -25,20 +24,6 @@ from nonholo.kernels.secular import run as secular_run
 @njit(**COMPILED)
 def _two_prepared(p: Body, m: np.ndarray, weights: np.ndarray) -> np.ndarray:
     return np.empty(0)
-
-
-@njit(**COMPILED)
-def _two_solved(
-    p: Body, w: np.ndarray, stage: int, m: np.ndarray, guess: np.ndarray, pose: np.ndarray, root: np.ndarray
-) -> int:
-    code, root[0], root[1] = _solve(p, m[0], m[1], guess[0], guess[1])
-    return code
-
-
-@njit(**COMPILED)
-def _two_pushed(p: Body, w: np.ndarray, m: np.ndarray, root: np.ndarray, change: np.ndarray, pose: np.ndarray) -> None:
-    change[0], change[1] = increment(p, m[0], m[1], root[0], root[1])
-    pose[0], pose[1], pose[2], pose[3] = move(p, root[0], root[1], pose[0], pose[1], pose[2], pose[3])
 
 
 @njit(**COMPILED)
@@ -141,9 +126,9 @@ def chosen(secular: Callable[..., Any], general: Callable[..., Any], two: Any = 
 
 prepared = chosen(_secular_prepared, _general_prepared, _two_prepared)
 """(p, m, weights): what the other pieces need beside the body."""
-solved = chosen(_secular_solved, _general_solved, _two_solved)
+solved = chosen(_secular_solved, _general_solved)
 """(p, w, stage, m, guess, pose, root): write the principal root over m; return the outcome."""
-pushed = chosen(_secular_pushed, _general_pushed, _two_pushed)
+pushed = chosen(_secular_pushed, _general_pushed)
 """(p, w, m, root, change, pose): write the change of m, right after `solved`; move the pose."""
 charted = chosen(_secular_charted, _general_charted, _two_charted)
 """(p, m, root, chart): write the chart coordinates of a root."""

@@ -17,7 +17,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.groups import SE
 from nonholo.orbit._poses import configurations, poses, unwrapped
-from nonholo.systems import System, as_forced, work_of
+from nonholo.systems import System
 
 STATES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
 """The arrays of an orbit, a row for each state."""
@@ -270,7 +270,7 @@ class Orbit:
     @property
     def energy(self) -> Float[np.ndarray, "K"]:
         """Reduced constrained energy; with the potential energy under forces, that of the nodes."""
-        system, forced = self.system, as_forced(self.system)
+        system, forced = self.system, self.system.forces
         potential = None if forced is None or forced.potential is None else forced.potential_energy(self.configuration)
         if system.is_spatial:
             kinetic = system.constrained_energy(self.reduced_momentum, self.configuration)
@@ -285,10 +285,10 @@ class Orbit:
         Of friction it is minus the dissipated energy. The energy less this work is constant up to an error of order 2
         in the time between states.
         """
-        forced = as_forced(self.system)
+        forced = self.system.forces
         if forced is None or forced.force is None:
             return np.zeros(len(self))
-        return work_of(forced, self.time, self.configuration, self.body_velocity, self.save_every)
+        return forced.work(self.time, self.configuration, self.body_velocity, self.save_every)
 
     def to_dataset(self, *, decoded: bool = False) -> Any:
         """Return the orbit as a labeled `xarray.Dataset`, in the user's body frame.

@@ -1,7 +1,7 @@
 """Systems: a group, an inertia operator and the subspace that velocities are constrained to."""
 
 from nonholo.systems import families
-from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, AbstractSystem, Equilibria, System
+from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, AbstractSystem, Equilibria, System, refuse_forces
 from nonholo.systems._body import ImpossibleBodyWarning
 from nonholo.systems._coordinate_system import (
     AbstractCoordinateDiscretization,
@@ -36,18 +36,7 @@ from nonholo.systems.families import (
     SuslovTop,
     VeselovaTop,
 )
-from nonholo.systems.forces import (
-    Forced,
-    Friction,
-    Gravity,
-    Propagator,
-    admissible_directions,
-    as_forced,
-    impulses,
-    propagator,
-    refuse_forced,
-    work_of,
-)
+from nonholo.systems.forces import Forced, Friction, Gravity
 
 SYSTEMS = tuple(vars(families)[name] for name in families.__all__)
 """Every final class of this room."""
@@ -73,19 +62,15 @@ __all__ = [
     "MultidimensionalSleigh",
     "NormalForm",
     "OrbitT",
-    "Propagator",
     "RigidBody",
     "Start",
     "SuslovTop",
     "System",
     "VeselovaTop",
-    "admissible_directions",
-    "as_forced",
     "checked_group",
     "euler_angle_discrete_lagrangian",
     "group_mass_tensor",
     "gyroscopic_form",
-    "impulses",
     "in_exp_d",
     "in_group",
     "inadmissible",
@@ -97,12 +82,10 @@ __all__ = [
     "null_space",
     "of_finite_energy",
     "one_start",
-    "propagator",
     "reference_point_subspace",
-    "refuse_forced",
+    "refuse_forces",
     "refuse_in_coordinates",
     "spanned",
     "symmetric_complement",
     "trace_constraints",
-    "work_of",
 ]

@@ -4,7 +4,7 @@ from typing import Any
 
 from nonholo.base.checks import count, error, flags
 from nonholo.discrete import Discretization, refuse_composition
-from nonholo.systems import refuse_forced
+from nonholo.systems import refuse_forces
 from nonholo.testing._discrete_motion import DEFINITION, MOTION, claimed
 from nonholo.testing._measures import seeded
 from nonholo.testing._orbit_samples import OrbitSamples
@@ -51,7 +51,7 @@ def check_discretization(
         >>> exact["energy"].status, exact["order of poses"].value < 0.1
         ('ok', True)
     """
-    refuse_forced("check_discretization(discrete=...)", getattr(discrete, "system", None))
+    refuse_forces("check_discretization(discrete=...)", getattr(discrete, "system", None))
     if not isinstance(discrete, Discretization):
         remedy = "Pass `discretize(system, time_step)` of an LLSystem or another system on a group; not in coordinates."
         requirement = "be a discretization of a system on a group"

@@ -3,7 +3,7 @@
 from typing import Any
 
 from nonholo.base.checks import error, flags
-from nonholo.systems import AbstractSystem, refuse_forced
+from nonholo.systems import AbstractSystem, refuse_forces
 from nonholo.testing._measures import seeded
 from nonholo.testing._report import Report, run_checks
 from nonholo.testing._system_motion import MOTION
@@ -43,7 +43,7 @@ def check_system(
         >>> report["energy conserved"].status, report["attraction"].value < 0
         ('ok', True)
     """
-    refuse_forced("check_system(system=...)", system)
+    refuse_forces("check_system(system=...)", system)
     if not isinstance(system, AbstractSystem):
         remedy = "Pass an LLSystem, another system on a group or your own class; not a system in coordinates."
         raise error("check_system(system=...)", "be a system on a group", _named(system), remedy)

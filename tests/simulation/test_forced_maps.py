@@ -126,10 +126,14 @@ def test_constraint_and_group_are_kept_on_every_group(name: str) -> None:
 def test_functions_give_the_impulses_of_what_is_compiled() -> None:
     """Weight, friction and table as Python functions, by the definition of the impulses, agree with the kernel."""
     tilted = nh.SuslovTop.from_inertia(np.diag([2.0, 3.0, 4.0]), (0.6, 0.8, 0))
-    for system, heavy in ((TOP, HEAVY), (SLEIGH, SLOPE), (tilted, HEAVY)):
-        for forced in (nh.Forced(system, heavy, RUB), nh.Forced(system, heavy, _table(0.05))):
-            discrete = nh.discretize(forced, 0.05)
-            orbit = nh.simulate(discrete, **_start(system), steps=16)
+    spatial = nh.Gravity([0.1, -0.2, -0.5], [0.3, 0.1, 0.2])
+    rng = np.random.default_rng(6)
+    for system, heavy in ((TOP, HEAVY), (SLEIGH, SLOPE), (tilted, HEAVY), (GENERAL["any d on SE(3)"][0], spatial)):
+        rub, dim = nh.Friction(rng.uniform(0, 0.3, system.group.dim)), system.group.dim
+        for force in (rub, rng.normal(size=(16, dim))):
+            forced = nh.Forced(system, heavy, force)
+            discrete, g = nh.discretize(forced, 0.05), system.group.random(rng)
+            orbit = nh.simulate(discrete, restricted_velocity=rng.normal(size=system.rank), configuration=g, steps=16)
             route = FunctionRoute(discrete.route.compiled.single, forced)  # type: ignore[union-attr]
             rows, _, _ = route.run(orbit.reduced_momentum[0], orbit.canonical_pose[0], 16, 1, False)
             for mine, theirs in zip(rows, (orbit.reduced_momentum, orbit.cayley, orbit.canonical_pose), strict=True):

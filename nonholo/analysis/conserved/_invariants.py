@@ -9,7 +9,7 @@ from nonholo.base.checks import error
 from nonholo.base.results import Outcome
 from nonholo.discrete import Discretization, reversal_defects
 from nonholo.orbit import Orbit, as_orbit
-from nonholo.systems import NormalForm, as_forced
+from nonholo.systems import NormalForm
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
 _SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
@@ -31,7 +31,7 @@ class Invariants:
         reversal_defect: Largest relative miss of one step forward and back.
         largest_step_angle: In degrees.
         outcome: How the run ended.
-        work: What the force did on the whole, minus what friction dissipated; None without a force.
+        work: What the force did on the whole, minus what friction dissipated; None of a free system.
     """
 
     states: int
@@ -63,8 +63,8 @@ def invariants(orbit: Orbit) -> Invariants:
     group = orbit.system.group
     sample = orbit[:: max(1, len(orbit) // (_SAMPLED if group.dim == 3 else _SAMPLED_LARGE))]
     discrete = sample.cayley is not None
-    forced, energy, work = as_forced(orbit.system), orbit.energy, orbit.work
-    size = abs(energy[0]) if forced is None or forced.is_free else np.abs(energy).max()
+    energy, work = orbit.energy, orbit.work
+    size = np.abs(energy if orbit.system.forces is not None else energy[0]).max()
     return Invariants(
         states=len(orbit),
         steps=(len(orbit) - 1) * orbit.save_every if discrete else 0,
@@ -74,7 +74,7 @@ def invariants(orbit: Orbit) -> Invariants:
         reversal_defect=_reversal_defect(sample),
         largest_step_angle=_largest_angle(sample) if discrete else None,
         outcome=orbit.outcome,
-        work=None if forced is None or forced.force is None else float(work[-1]),
+        work=float(work[-1]) if orbit.system.forces is not None else None,
     )
 
 

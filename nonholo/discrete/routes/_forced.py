@@ -1,5 +1,6 @@
 """The routes of forced steps: another route with half an impulse at each end of its steps, compiled or in Python."""
 
+import contextlib
 import dataclasses
 import functools
 from typing import Any, ClassVar, NoReturn
@@ -13,29 +14,35 @@ from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Rows
 from nonholo.discrete.routes._outer import AbstractOuterRoute
+from nonholo.groups import SE
 from nonholo.orbit import Orbit
-from nonholo.systems import Forced, Friction, Gravity, impulses, propagator
+from nonholo.systems import Forced
 
 
 def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:
     """Return the route of a system with forces around that of the free one."""
-    if forced.is_free:
+    if forced.forces is None:
         return free
     inside = free.compiled
     if inside is None or free.order > 2:
         remedy = "Use order=2, and the default difference and constraint of a system with a mass tensor."
         got = f"order {free.order}, route {free.name!r}"
         raise error("discretize(system=Forced(...))", "have a compiled step of order 2 inside", got, remedy)
-    if forced.needs_function or forced.is_spatial:
-        return FunctionRoute(inside, forced)
-    return ForcedRoute(inside, forced)
+    in_python = forced.needs_function or forced.is_spatial
+    return FunctionRoute(inside, forced) if in_python else ForcedRoute(inside, forced)
 
 
 class AbstractForcedRoute(AbstractRoute):
     """A route whose steps depend on their numbers: there is none from a state alone."""
 
+    free: AbstractCompiledRoute
     order: ClassVar[int] = 2
     is_scalar: ClassVar[bool] = False
+
+    @property
+    def name(self) -> str:
+        """The name of the route inside."""
+        return self.free.name
 
     def next_charts(self, states: Orbit) -> NoReturn:
         """Refuse: what follows a state depends on the number of its step."""
@@ -90,72 +97,83 @@ class FunctionRoute(AbstractForcedRoute):
     needs_pose: ClassVar[bool] = True
     compiled: ClassVar[None] = None
 
-    @property
-    def name(self) -> str:
-        """The name of the route inside."""
-        return self.free.name
-
-    def kick(self, node: int, step: int, m: np.ndarray, pose: np.ndarray) -> np.ndarray:
-        """Return the kernel's momenta after half the impulse of a step at a node."""
+    def impulse(self, node: int, step: int, m: np.ndarray, pose: np.ndarray) -> np.ndarray:
+        """Return what half the impulse of a step at a node adds to the kernel's momenta."""
         forced, free, half = self.forced, self.free, float(self.free.time_step) / 2
         r = forced.from_canonical(free.decode(m[None].copy()))
         g = forced.group.matrix_from_pose(free.decode_poses(pose[None])) @ forced.group.inverse(forced.frame)
-        j = impulses(forced, r, g, np.array([2 * half * node]), np.array([step]), half)
-        if not np.isfinite(j).all():
+        j = forced.impulses(r, g, np.array([2 * half * node]), np.array([step]), half)
+        if not np.isfinite(j).all():  # the step will not be finite
             return np.full_like(m, np.nan)
-        return m + free.encode(forced.to_canonical(forced.restrict_at(j, g)))[0]
+        return free.encode(forced.to_canonical(forced.restrict_at(j, g)))[0]
 
     def run(
         self, reduced: np.ndarray, pose: np.ndarray, steps: int, every: int, progress: bool
     ) -> tuple[Rows, Outcome, int]:
         """Run from canonical momenta and pose; return canonical rows, the outcome and the last good step."""
-        free, saved, done = self.free, [], -1
-        with progress_bar("steps", progress) as show:
+        free, (n, width, size), code, done, saved = self.free, self.free.sizes, 0, -1, []
+        m, place, room, state = free.encode(reduced), free.encode_poses(pose), _rows(1, free.sizes), np.empty(0)
+        kick = kernels.Kick(_NONE, np.zeros((n, 0)), np.zeros((1, 2, n)))
+        body = kernels.ForcedBody(free.body, kick)
+        with progress_bar("steps", progress) as show, contextlib.suppress(OutcomeError):
+            while done < steps:
+                code = Outcome.not_converged  # the midpoint rule of a half impulse may say so
+                kick.rows[0, 0] = self.impulse(done + 1, done + 1, m, place)
+                if done < 0:
+                    code, state = kernels.start(body, m, place)
+                    room[1][0] = kernels.chart_of(body, state)
+                else:
+                    state[:n], state[-1 - width] = m, 0.0  # the one row of the table acts
+                    _, code = kernels.advance(body, state, 1, 1, room)
+                if code != 0:
+                    break
+                done += 1
+                show(done, steps)
+                saved += [(m, room[1][0].copy(), place)] * (done % every == 0)
+                if done < steps:
+                    code, place = Outcome.not_converged, state[2 * n : 2 * n + size].copy()
+                    m = state[:n] + self.impulse(done + 1, done, state[:n], place)
+        momenta, charts, poses = _rows(len(saved), free.sizes)
+        for k, row in enumerate(saved):
+            momenta[k], charts[k], poses[k] = row
+        return (free.decode(momenta), free.from_kernel(charts), free.decode_poses(poses)), Outcome(code), max(0, done)
 
-            def report(number: int, *row: np.ndarray) -> None:
-                nonlocal done
-                done = number
-                show(number, steps)
-                if number % every == 0:
-                    saved.append([each.copy() for each in row])
 
-            first = free.encode(reduced), free.encode_poses(pose)
-            try:
-                code = kernels.run_by_kicks(free.body, self.kick, *first, steps, report)
-            except OutcomeError as failure:  # the midpoint rule of a half impulse
-                code = failure.outcome
-        momenta, charts, poses = (
-            np.array([row[j] for row in saved]).reshape(len(saved), width) for j, width in enumerate(free.sizes)
-        )
-        rows = free.decode(momenta), free.from_kernel(charts), free.decode_poses(poses)
-        return rows, Outcome(code), max(0, done)
+def _rows(number: int, sizes: tuple[int, int, int]) -> Rows:
+    momenta, charts, poses = (np.empty((number, width)) for width in sizes)
+    return momenta, charts, poses
 
 
 def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
     """Return half the impulse of a step in the units and axes of a kernel."""
-    S, k, half = np.asarray(forced.constraint_subspace), forced.rank, float(free.time_step) / 2
-    parts = propagator(forced, S.T, half)
+    S, k = np.asarray(forced.constraint_subspace), forced.rank
+    keep, push, _ = forced.propagator(S.T, float(free.time_step) / 2)
     to_kernel = free.encode(forced.to_canonical(np.eye(k)))
-    push = parts.push.T @ to_kernel
-    keep = np.linalg.solve(to_kernel, parts.keep.T @ to_kernel).T if isinstance(forced.force, Friction) else _none(2)
-    pull, weight, stride = _pull(free, forced, S.T @ push)
-    rows = np.zeros((0, k)) if forced.table is None else forced.table @ S.T @ push
-    keep, pull, weight, rows = (np.array(x, order="C") for x in (keep, pull, weight, rows))
-    return kernels.Kick(keep, pull, weight, rows, stride)
+    along = S.T @ push.T @ to_kernel
+    rows = np.zeros((0, k)) if forced.table is None else forced.table @ along
+    kept = _NONE if forced.friction is None else np.linalg.solve(to_kernel, keep.T @ to_kernel).T
+    parts = kept, _pull(free, forced, along), np.stack([rows, rows], axis=1)
+    return kernels.Kick(*(np.array(part, order="C") for part in parts))
 
 
 def _pull(
-    free: AbstractCompiledRoute, forced: Forced, to_kernel: Float[np.ndarray, "dim k"]
-) -> tuple[np.ndarray, np.ndarray, int]:
-    """Return the matrix that takes a spatial force, seen from the kernel's body frame, to its momenta; the force."""
-    gravity, group = forced.potential, forced.group
-    if not isinstance(gravity, Gravity):
-        return _none(2), _none(1), 0
-    coded, N, n = free.encode_poses(forced.frame_pose[None])[0], group.size, len(gravity.force)
-    frame = group.matrix_from_pose(coded) if free.is_scalar else coded.reshape(N, N)
-    arms = gravity.arms(group) @ np.linalg.inv(frame).T
-    return (arms[:, :n].T @ to_kernel).T, np.asarray(gravity.force), 0 if free.is_scalar else N
+    free: AbstractCompiledRoute, forced: Forced, along: Float[np.ndarray, "dim k"]
+) -> Float[np.ndarray, "k size"]:
+    """Return the coefficients of gravity in the entries of a pose of the kernel: it is linear in the matrix."""
+    gravity, group, N = forced.gravity, forced.group, forced.group.size
+    if gravity is None:
+        return np.zeros((along.shape[1], 0))
+    matrix = group.matrix_from_pose if free.is_scalar else lambda pose: pose.reshape(-1, N, N)
+    back = np.linalg.inv(matrix(free.encode_poses(forced.frame_pose[None]))[0])
+
+    def at(poses: np.ndarray) -> np.ndarray:
+        return gravity.covector(group, matrix(poses) @ back) @ along
+
+    if not free.is_scalar or group == SE(2):
+        return at(np.eye(2 if free.is_scalar else N * N, 4 if free.is_scalar else N * N)).T
+    first, second = np.triu_indices(4, 1)
+    squares, pairs = at(np.eye(4)), at((np.eye(4)[first] + np.eye(4)[second]) / np.sqrt(2))
+    return np.concatenate([squares, 2 * pairs - squares[first] - squares[second]]).T
 
 
-def _none(axes: int) -> np.ndarray:
-    return np.zeros((0,) * axes)
+_NONE = np.zeros((0, 0))

@@ -19,7 +19,7 @@ from nonholo.orbit import Orbit
 from nonholo.plotting import parts, theme
 from nonholo.plotting.motion._other_images import draw_images, trees_of
 from nonholo.plotting.sheets import ellipse, half_axes, momenta_on_plane, name_axes, on_plane, plane_inertia
-from nonholo.systems import AbstractLLSystem, AbstractSystem, refuse_forced
+from nonholo.systems import AbstractLLSystem, AbstractSystem, refuse_forces
 
 
 @dataclasses.dataclass(frozen=True)
@@ -108,7 +108,7 @@ def phase_portrait(
 
 def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
     where = "phase_portrait(system=...)"
-    refuse_forced(where, system)
+    refuse_forces(where, system)
     instance(where, system, AbstractSystem, "be a system", "Pass `orbit.system` first, then the orbit.")
     if system.is_spatial:
         remedy = "Its momenta along the constraint are conserved: draw `overview` instead."

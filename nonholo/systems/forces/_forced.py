@@ -4,27 +4,29 @@ Questions about free motions (equilibria, conserved momenta, closed forms) are r
 """
 
 import dataclasses
+import operator
 from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
+import scipy.linalg
 
 from nonholo.base.checks import array, as_floats, error, shape_of, shown
 from nonholo.base.types import Array, Float
 from nonholo.systems._base import AbstractSystem
 from nonholo.systems.forces._friction import Friction
 from nonholo.systems.forces._gravity import Gravity
+from nonholo.systems.forces._midpoint import midpoint_impulse
 
 _OFFSET = 8e-3  # of a body direction, for central differences: its sixth power is at rounding
 _DIFFERENCES = np.array([45.0, -9.0, 1.0]) / 60  # of order 6, at one, two and three offsets
 
-Potential = Callable[[Any], Any] | Gravity
-Force = Callable[[float, Any, Any], Any] | Friction | Array
-
-
-def _same(name: str) -> Any:
-    """Return an attribute that is that of the system inside."""
-    return property(lambda self: getattr(self.system, name), doc=f"`{name}` of the system inside.")
+_SAME = """
+    group is_spatial has_blade homogeneous_mass_tensor inertia_operator inertia_along constraint_subspace annihilator
+    rank canonical frame frame_map frame_pose to_canonical from_canonical carried moved restrict_at restricted_velocity
+    restricted_momentum constrained_energy
+"""
+"""What is that of the system inside."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -69,54 +71,45 @@ class Forced(AbstractSystem):
     leaves: ClassVar[tuple[str, ...]] = ()
     structure: ClassVar[tuple[str, ...]] = ("system", "potential", "force")
     normal_form: ClassVar[None] = None
-    group = _same("group")
-    is_spatial = _same("is_spatial")
-    has_blade = _same("has_blade")
-    homogeneous_mass_tensor = _same("homogeneous_mass_tensor")
-    inertia_operator = _same("inertia_operator")
-    constraint_subspace = _same("constraint_subspace")
-    annihilator = _same("annihilator")
-    canonical = _same("canonical")
-    frame = _same("frame")
-    frame_map = _same("frame_map")
-    frame_pose = _same("frame_pose")
-    inertia_along = _same("inertia_along")
-    rank = _same("rank")
-    to_canonical = _same("to_canonical")
-    from_canonical = _same("from_canonical")
-    carried = _same("carried")
-    moved = _same("moved")
-    restrict_at = _same("restrict_at")
-    restricted_velocity = _same("restricted_velocity")
-    restricted_momentum = _same("restricted_momentum")
-    constrained_energy = _same("constrained_energy")
+    is_forced: ClassVar[bool] = True
+    locals().update((name, property(operator.attrgetter(f"system.{name}"))) for name in _SAME.split())
 
     def __post_init__(self) -> None:
         inside = self.system
         if not isinstance(inside, AbstractSystem) or isinstance(inside, Forced) or inside.is_wide:
             remedy = "Pass a SuslovTop, a sleigh or an LLSystem, with all forces at once."
             raise error("Forced(system=...)", "be a system on a group, with matrices", shown(inside), remedy)
-        if isinstance(self.potential, Gravity):
-            self.potential.check(inside.group)
+        if self.gravity is not None:
+            self.gravity.check(inside.group)
         elif self.potential is not None and not callable(self.potential):
             remedy = "Pass a function of a configuration, or Gravity."
             raise error("Forced(potential=...)", "be a potential", shown(self.potential), remedy)
-        if isinstance(self.force, Friction):
-            self.force.check(inside.group.dim)
-        elif self.force is not None and not callable(self.force):
+        if self.friction is not None:
+            self.friction.check(inside.group.dim)
+        elif self.table is not None:
             remedy = "Pass a function of time, configuration and body velocity, Friction, or one body covector a step."
             shape = (None, inside.group.dim)
             object.__setattr__(self, "force", array("Forced(force=...)", self.force, shape, remedy))
 
     @property
-    def table(self) -> Float[np.ndarray, "steps dim"] | None:
-        """The forces of the steps, where they are given one by one."""
-        return None if self.force is None or callable(self.force) or isinstance(self.force, Friction) else self.force
+    def gravity(self) -> Gravity | None:
+        """The potential, where it is that of a constant force."""
+        return self.potential if isinstance(self.potential, Gravity) else None
 
     @property
-    def is_free(self) -> bool:
-        """Whether there is neither a potential nor a force."""
-        return self.potential is None and self.force is None
+    def friction(self) -> Friction | None:
+        """The force, where it is viscous friction."""
+        return self.force if isinstance(self.force, Friction) else None
+
+    @property
+    def table(self) -> Float[np.ndarray, "steps dim"] | None:
+        """The forces of the steps, where they are given one by one."""
+        return None if callable(self.force) or self.friction is not None else self.force
+
+    @property
+    def forces(self) -> "Forced | None":
+        """The system itself; None with neither a potential nor a force."""
+        return None if self.potential is None and self.force is None else self
 
     @property
     def needs_function(self) -> bool:
@@ -133,8 +126,8 @@ class Forced(AbstractSystem):
             6.0
         """
         g = np.asarray(configuration)
-        if isinstance(self.potential, Gravity):
-            return self.potential.energy(self.group, g)
+        if self.gravity is not None:
+            return self.gravity.energy(self.group, g)
         if self.potential is None:
             return np.zeros(g.shape[:-2])
         return _each(self._value, g)
@@ -142,16 +135,16 @@ class Forced(AbstractSystem):
     def potential_force(self, configuration: Float[Array, "... N N"]) -> Float[np.ndarray, "... dim"]:
         """Return -dU, body covectors at configurations: exact of `Gravity`, by differences of a function."""
         g = np.asarray(configuration)
-        if isinstance(self.potential, Gravity):
-            return self.potential.covector(self.group, g)
+        if self.gravity is not None:
+            return self.gravity.covector(self.group, g)
         if self.potential is None:
             return np.zeros((*g.shape[:-2], self.group.dim))
         return _each(self._slope, g)
 
     def applied_force(self, time: float, configuration: np.ndarray, body_velocity: np.ndarray) -> np.ndarray:
         """Return f, one body covector, of `Friction` or of a function; zero of a table, which belongs to steps."""
-        if isinstance(self.force, Friction):
-            return self.force.covector(body_velocity)
+        if self.friction is not None:
+            return self.friction.covector(body_velocity)
         if not callable(self.force):
             return np.zeros(self.group.dim)
         found = as_floats(self.force(float(time), configuration, body_velocity))
@@ -167,6 +160,77 @@ class Forced(AbstractSystem):
             inside = (steps >= 0) & (steps < len(table))
             found[inside] = table[steps[inside]]
         return found
+
+    def directions(self, g: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "... dim k"]:
+        r"""Return E, whose columns are admissible body velocities: $S^T$, on LR systems $\mathrm{Ad}_{g^{-1}}S^T$."""
+        S = np.asarray(self.constraint_subspace)
+        return self.group.adjoint(self.group.inverse(g)) @ S.T if self.is_spatial else S.T
+
+    def propagator(self, E: Float[np.ndarray, "... dim k"], tau: float) -> Float[np.ndarray, "3 ... k k"]:
+        r"""Return A, V and W of $\dot r = a - Dr$, friction over a time: $r' = Ar + Va$ and $\int r\,dt = Vr + Wa$."""
+        k, along = E.shape[-1], np.swapaxes(E, -1, -2)
+        C = np.zeros((self.group.dim,) * 2) if self.friction is None else self.friction.matrix
+        D = along @ C @ E @ np.linalg.inv(along @ np.asarray(self.inertia_operator) @ E)
+        block = np.zeros((*D.shape[:-2], 3 * k, 3 * k))
+        block[..., :k, :k] = -tau * D
+        block[..., :k, k : 2 * k] = block[..., k : 2 * k, 2 * k :] = tau * np.eye(k)
+        found = scipy.linalg.expm(block)
+        return np.stack([found[..., :k, j * k : (j + 1) * k] for j in range(3)])
+
+    def impulses(
+        self,
+        r: Float[np.ndarray, "K k"],
+        g: Float[np.ndarray, "K N N"],
+        time: Float[np.ndarray, "K"],
+        steps: np.ndarray,
+        tau: float,
+    ) -> Float[np.ndarray, "K dim"]:
+        r"""Return the impulses j of kicks over a time $\tau$, body covectors; a kick takes r to $r + E^Tj$.
+
+        $$ j = \tau\,(-dU + f_k) - C\,E B^{-1}\!\int_0^\tau\! r\,dt \qquad\text{or}\qquad
+           j = \tau\,\bigl(-dU + f(t, g, E B^{-1}(r + r')/2)\bigr), \quad B = E^T\mathbb{I}E: $$
+
+        exact for friction, by the midpoint rule for a function. A kick over $-\tau$ takes back the kick over $\tau$.
+
+        Args:
+            r: Momenta before the kicks, along the rows of the constraint subspace; after them for a negative time.
+            g: Poses.
+            time: Times of the nodes.
+            steps: Numbers of the steps, whose row of a table acts.
+            tau: Half a time step, or its negative.
+        """
+        constant = self.potential_force(g) + self.rows(steps)
+        if not callable(self.force) and self.friction is None:
+            return tau * constant
+        E = self.directions(g)
+        along = np.swapaxes(E, -1, -2)
+        to_velocity = E @ np.linalg.inv(along @ np.asarray(self.inertia_operator) @ E)
+        if self.friction is not None:
+            _, push, gather = self.propagator(E, tau)
+            integral = push @ r[..., None] + gather @ (along @ constant[..., None])
+            return tau * constant + self.friction.covector((to_velocity @ integral)[..., 0])
+        found = np.empty((len(r), self.group.dim))
+        E, to_velocity = (np.broadcast_to(x, (len(r), *x.shape[-2:])) for x in (E, to_velocity))
+        for k in range(len(r)):
+
+            def force(velocity: np.ndarray, k: int = k) -> np.ndarray:
+                return tau * (constant[k] + self.applied_force(time[k], g[k], velocity))
+
+            found[k] = midpoint_impulse(force, r[k], E[k], to_velocity[k])
+        return found
+
+    def work(self, time: np.ndarray, g: np.ndarray, velocity: np.ndarray, every: int) -> Float[np.ndarray, "K"]:
+        """Return the work of the force along states since the first, by the trapezoidal rule."""
+        if self.table is not None:
+            if every > 1:
+                got = f"save_every {every} with a force for each step"
+                raise error("Orbit.work", "know every step", got, "Run with save_every=1.")
+            acting = self.rows(np.rint(time[:-1] / np.diff(time)).astype(int))
+            power = ((velocity[:-1] + velocity[1:]) * acting).sum(axis=1) / 2
+        else:
+            now = np.array([self.applied_force(*row) @ row[2] for row in zip(time, g, velocity, strict=True)])
+            power = (now[:-1] + now[1:]) / 2
+        return np.concatenate([np.zeros(min(1, len(time))), np.cumsum(np.diff(time) * power)])
 
     def _value(self, g: np.ndarray) -> np.float64:
         found = self.potential(g)  # type: ignore[misc]
@@ -186,15 +250,3 @@ def _each(function: Callable[[np.ndarray], Any], g: np.ndarray) -> np.ndarray:
     """Return the values of a function of one matrix at all of them."""
     found = np.array([function(each) for each in g.reshape(-1, *g.shape[-2:])])
     return found.reshape(*g.shape[:-2], *found.shape[1:])
-
-
-def as_forced(system: AbstractSystem) -> Forced | None:
-    """Return a system with forces; None of a free one."""
-    return system if isinstance(system, Forced) else None
-
-
-def refuse_forced(where: str, system: Any) -> None:
-    """Refuse a system with forces where only free motions are known."""
-    if isinstance(system, Forced):
-        remedy = "Ask it of the system inside, or measure it on an orbit of simulate or flow."
-        raise error(where, "be a system without forces", "Forced", remedy)
