@@ -73,7 +73,7 @@ def pulled(width: int, P: Any, q0: float, q1: float, q2: float, q3: float) -> tu
         first += (P[4] * a + P[5] * b) + (P[6] * c + P[7] * d) + (P[8] * e + P[9] * f)
         second += (P[14] * a + P[15] * b) + (P[16] * c + P[17] * d) + (P[18] * e + P[19] * f)
         return first, second
-    return P[0] * q0 + P[1] * q1, P[10] * q0 + P[11] * q1
+    return (P[0] * q0 + P[1] * q1, P[10] * q0 + P[11] * q1) if width > 0 else (0.0, 0.0)
 
 
 @njit(**COMPILED)

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 import scipy.linalg
 
-from nonholo.base.checks import array, as_floats, error, shape_of, shown
+from nonholo.base.checks import array, as_floats, error, shape_of, shown, trailing
 from nonholo.base.types import Array, Float
 from nonholo.systems._base import AbstractSystem
 from nonholo.systems.forces._friction import Friction
@@ -125,7 +125,7 @@ class Forced(AbstractSystem):
             >>> float(forced.potential_energy(nh.SE(2).exp([0.0, 0.0, 3.0])))
             6.0
         """
-        g = np.asarray(configuration)
+        g = self._at(configuration)
         if self.gravity is not None:
             return self.gravity.energy(self.group, g)
         if self.potential is None:
@@ -134,7 +134,7 @@ class Forced(AbstractSystem):
 
     def potential_force(self, configuration: Float[Array, "... N N"]) -> Float[np.ndarray, "... dim"]:
         """Return -dU, body covectors at configurations: exact of `Gravity`, by differences of a function."""
-        g = np.asarray(configuration)
+        g = self._at(configuration)
         if self.gravity is not None:
             return self.gravity.covector(self.group, g)
         if self.potential is None:
@@ -231,6 +231,10 @@ class Forced(AbstractSystem):
             now = np.array([self.applied_force(*row) @ row[2] for row in zip(time, g, velocity, strict=True)])
             power = (now[:-1] + now[1:]) / 2
         return np.concatenate([np.zeros(min(1, len(time))), np.cumsum(np.diff(time) * power)])
+
+    def _at(self, configuration: Float[Array, "... N N"]) -> Float[np.ndarray, "... N N"]:
+        where, shape = "Forced (configuration=...)", (self.group.size, self.group.size)
+        return trailing(where, configuration, shape, "Pass the matrix of a pose.", real=True)
 
     def _value(self, g: np.ndarray) -> np.float64:
         found = self.potential(g)  # type: ignore[misc]
