@@ -249,7 +249,7 @@ def discretize(
     variety = _constraint(system, constraint)
     made = Discretization(system, step, chosen, variety, checked_order(order, chosen, variety))
     if made.forces is not None:
-        made.route  # refused here where there is none  # noqa: B018
+        make_route(made)  # refused here where there is none
     return made
 
 

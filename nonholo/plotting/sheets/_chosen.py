@@ -1,5 +1,7 @@
 """The one place that chooses between a disc and a strip."""
 
+from typing import Any, cast
+
 from nonholo.analysis.planar import planar_variety
 from nonholo.plotting.sheets._base import AbstractSheet
 from nonholo.plotting.sheets._blade import Blade
@@ -17,6 +19,6 @@ def sheet_of(system: AbstractSystem) -> AbstractSheet | None:
 
 
 def blade_of_system(system: AbstractSystem) -> Blade | None:
-    """Return the blade of a sleigh in the plane; None for other systems."""
-    sheet = sheet_of(system)
+    """Return the blade of a sleigh in the plane, whatever acts on it; None for other systems."""
+    sheet = sheet_of(cast(Any, system).system if system.is_forced else system)
     return None if sheet is None else sheet.blade

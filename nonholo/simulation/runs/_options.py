@@ -14,7 +14,9 @@ from nonholo.discrete import (
 )
 
 
-def check_forces(discrete: Discretization, steps: int, branch: BranchRule, backend: str) -> None:
+def check_forces(
+    discrete: Discretization, steps: int, branch: BranchRule = PRINCIPAL.name, backend: str = "auto"
+) -> None:
     """Refuse what runs with forces do not have, and more steps than their table has rows."""
     if (forced := discrete.forces) is None:
         return
