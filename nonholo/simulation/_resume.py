@@ -72,7 +72,7 @@ def extend(
     with io.locked(stream.path):
         _refuse_ended(io.read_attributes(stream.path))
         longer = io.open_stream(stream.path).lengthened(steps)
-        check_forces(run.discrete, longer.plan.steps)
+        check_forces("extend", run.discrete, longer.plan.steps)
         return continue_run(run, longer, watch, throw=throw, progress=progress)
 
 

@@ -15,19 +15,17 @@ from nonholo.discrete import (
 
 
 def check_forces(
-    discrete: Discretization, steps: int, branch: BranchRule = PRINCIPAL.name, backend: str = "auto"
+    owner: str, discrete: Discretization, steps: int, branch: BranchRule = PRINCIPAL.name, backend: str = "auto"
 ) -> None:
     """Refuse what runs with forces do not have, and more steps than their table has rows."""
     if (forced := discrete.forces) is None:
         return
     if branch != PRINCIPAL.name or backend == "jax":
         got, remedy = f"branch {branch!r} and backend {backend!r}", "Leave both out."
-        raise error("simulate(discrete=...)", "have the principal branch under forces", got, remedy)
+        raise error(f"{owner}(discrete=...)", "have the principal branch under forces", got, remedy)
     if forced.table is not None and steps > len(forced.table):
         remedy = "Pass fewer steps, or a force for each step."
-        raise error(
-            "simulate(steps=...)", f"be at most {len(forced.table)}, the rows of the forces", f"{steps}", remedy
-        )
+        raise error(f"{owner}(steps=...)", "be at most one for each row of the forces", f"{steps}", remedy)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -68,7 +66,7 @@ class RunOptions:
         """Return checked options that a discretization can be run with."""
         as_discretization("simulate(discrete=...)", discrete, composed=True, forced=True)
         steps, every = step_counts(steps, save_every)
-        check_forces(discrete, steps, branch, backend)
+        check_forces("simulate", discrete, steps, branch, backend)
         rule = checked_rule("simulate", discrete, branch)
         if not rule.is_principal:
             remedy = "Leave branch out: each substep takes the principal root."
