@@ -330,9 +330,14 @@ def test_stiff_friction_of_a_function_is_solved() -> None:
     assert np.all(np.diff(np.abs(orbit.restricted_momentum), axis=0) < 0)
 
 
+def _late(states: Orbit) -> np.ndarray:
+    return states.time - 0.2
+
+
 _FORCED = nh.Forced(TOP, HEAVY, RUB)
 _MAP = nh.discretize(_FORCED, 0.1)
 _RUN = nh.simulate(_MAP, restricted_velocity=[0.5, -0.3], steps=5)
+_PUSHED = nh.discretize(nh.Forced(TOP, force=np.ones((5, 3))), 0.1)
 _PAIR = nh.Forced(TOP, force=lambda *state: state[2][:2])
 _REFUSED: dict[str, Callable[[], Any]] = {
     "step": lambda: nh.step(_MAP, [0.1, 0.2]),
@@ -354,14 +359,12 @@ _REFUSED: dict[str, Callable[[], Any]] = {
     "vector_field": lambda: nh.vector_field(_FORCED),
     "check_system": lambda: nh.testing.check_system(_FORCED),
     "check_discretization": lambda: nh.testing.check_discretization(_MAP),
-    "ensemble": lambda: nh.ensemble(_MAP, restricted_velocity=np.ones((2, 2)), steps=2),
+    "ensemble of longer runs": lambda: nh.ensemble(_PUSHED, restricted_velocity=np.ones((2, 2)), steps=9),
     "ensemble of flows": lambda: nh.ensemble(_FORCED, restricted_velocity=np.ones((2, 2)), times=(0.0, 1.0)),
     "EnsembleTask": lambda: nh.EnsembleTask(_MAP, steps=3),
     "phase_portrait": lambda: nh.plot.phase_portrait(_FORCED),
-    "events": lambda: nh.simulate(
-        _MAP, restricted_velocity=[0.5, -0.3], steps=5, events=[lambda orbit: orbit.time - 0.2]
-    ),
-    "crossings": lambda: nh.crossings(_RUN, lambda orbit: orbit.time - 0.2),
+    "events": lambda: nh.simulate(_PUSHED, restricted_velocity=[0.5, -0.3], steps=5, events=[_late]),
+    "crossings": lambda: nh.crossings(nh.simulate(_PUSHED, restricted_velocity=[0.5, -0.3], steps=5), _late),
     "branch": lambda: nh.simulate(_MAP, restricted_velocity=[0.5, -0.3], steps=5, branch="nearest"),
     "backend": lambda: nh.simulate(_MAP, restricted_velocity=[0.5, -0.3], steps=5, backend="jax"),
     "displacement": lambda: nh.simulate(_MAP, displacement=np.eye(3), steps=5),

@@ -82,6 +82,13 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
         """The body and its half impulse."""
         return kernels.ForcedBody(self.free.body, half_kick(self.free, self.forced))
 
+    def parts_of_steps(self, momenta: np.ndarray, poses: np.ndarray, fraction: float = 1.0) -> Rows:
+        """Take a step of a part of the length from each row; the forces must not depend on time."""
+        half = fraction * float(self.time_step) / 2
+        kick = functools.partial(kick_of, self.free, self.forced, half, np.zeros(len(momenta)))
+        after, moved, codes = self.free.parts_of_steps(momenta + kick(momenta, poses), poses, fraction)
+        return after + kick(after, moved), moved, codes
+
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class FunctionRoute(AbstractForcedRoute):
@@ -99,13 +106,9 @@ class FunctionRoute(AbstractForcedRoute):
 
     def impulse(self, node: int, step: int, m: np.ndarray, pose: np.ndarray) -> np.ndarray:
         """Return what half the impulse of a step at a node adds to the kernel's momenta."""
-        forced, free, half = self.forced, self.free, float(self.free.time_step) / 2
-        r = forced.from_canonical(free.decode(m[None].copy()))
-        g = forced.group.matrix_from_pose(free.decode_poses(pose[None])) @ forced.group.inverse(forced.frame)
-        j = forced.impulses(r, g, np.array([2 * half * node]), np.array([step]), half)
-        if not np.isfinite(j).all():  # the step will not be finite
-            return np.full_like(m, np.nan)
-        return free.encode(forced.to_canonical(forced.restrict_at(j, g)))[0]
+        half = float(self.free.time_step) / 2
+        time, steps = np.array([2 * half * node]), np.array([step])
+        return kick_of(self.free, self.forced, half, time, m[None], pose[None], steps)[0]
 
     def run(
         self, reduced: np.ndarray, pose: np.ndarray, steps: int, every: int, progress: bool
@@ -137,6 +140,24 @@ class FunctionRoute(AbstractForcedRoute):
         for k, row in enumerate(saved):
             momenta[k], charts[k], poses[k] = row
         return (free.decode(momenta), free.from_kernel(charts), free.decode_poses(poses)), Outcome(code), max(0, done)
+
+
+def kick_of(
+    free: AbstractCompiledRoute,
+    forced: Forced,
+    half: float,
+    time: np.ndarray,
+    momenta: np.ndarray,
+    poses: np.ndarray,
+    steps: np.ndarray | None = None,
+) -> np.ndarray:
+    """Return what the impulses of a time add to momenta of a kernel; NaN where they are not finite."""
+    group, steps = forced.group, np.full(len(momenta), -1) if steps is None else steps
+    g = group.matrix_from_pose(free.decode_poses(poses)) @ group.inverse(forced.frame)
+    j = forced.impulses(forced.from_canonical(free.decode(momenta.copy())), g, time, steps, half)
+    if not np.isfinite(j).all():
+        return np.full_like(momenta, np.nan)
+    return free.encode(forced.to_canonical(forced.restrict_at(j, g)))
 
 
 def _rows(number: int, sizes: tuple[int, int, int]) -> Rows:

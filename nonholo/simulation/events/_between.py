@@ -17,7 +17,6 @@ from nonholo.base.types import Float
 from nonholo.discrete import AbstractCompiledRoute, Discretization
 from nonholo.groups import SE
 from nonholo.orbit import Orbit, unwrapped
-from nonholo.systems import refuse_forces
 
 Between = Callable[[Orbit, Float[np.ndarray, "K"]], Orbit]
 
@@ -27,7 +26,6 @@ def between_states(discrete: Discretization) -> Between:
 
     Where no whole step starts its displacement is NaN.
     """
-    refuse_forces("Events of a discrete map", discrete.system)
     route = discrete.route.compiled
     moved = functools.partial(_by_definition, discrete) if route is None else functools.partial(_by_kernel, route)
 
