@@ -261,6 +261,29 @@ def _energy_errors(system: AbstractSystem, point: list[float], h: float, velocit
     return np.array([error[:tenth].max(), error[-tenth:].max()])
 
 
+@pytest.mark.parametrize("system", [TOP, SLEIGH, VESELOVA], ids=["top", "sleigh", "veselova"])
+def test_momenta_are_those_of_the_nodes(system: AbstractSystem) -> None:
+    """Along the constraint the full momenta are the momenta of the state, and each is a start that gives the rest."""
+    for forced in (nh.Forced(system, _weight(system), RUB), nh.Forced(system, _spring, lambda *state: -state[2])):
+        discrete = nh.discretize(forced, 0.05)
+        orbit = nh.simulate(discrete, **_start(system), steps=12)
+        along = system.restrict_at(orbit.momentum, orbit.configuration)
+        assert np.abs(along - orbit.restricted_momentum).max() < 1e-14
+        rest = nh.simulate(discrete, momentum=orbit.momentum[4], configuration=orbit.configuration[4], steps=8)
+        assert np.abs(rest.momentum - orbit.momentum[4:]).max() < 1e-13
+
+
+def test_a_flow_knows_its_time() -> None:
+    """A flow that begins later, and one backward, continue a flow under a force that depends on time."""
+    forced = nh.Forced(TOP, force=_drive)
+    flow = nh.flow(forced, **_start(TOP), times=(0.0, 0.7, 1.1))
+    start = {"momentum": flow.restricted_momentum[1], "configuration": flow.configuration[1]}
+    for time, state in ((1.1, 2), (0.0, 0)):
+        found = nh.flow(forced, **start, times=(0.7, time))
+        assert np.abs(found.momentum[1] - flow.momentum[state]).max() < 1e-11
+        assert np.abs(found.at(0.7).configuration[0] - flow.configuration[1]).max() < 1e-11
+
+
 def test_the_energy_error_stays_bounded_or_grows_at_a_rate_of_order_two() -> None:
     """Bounded for a free heavy top and for one symmetric in time; on another orbit a slow drift, of order 2."""
     tensor = np.diag([1.0, 1.2, 0.7])

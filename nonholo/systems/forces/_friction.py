@@ -24,8 +24,8 @@ class Friction:
         ValueError: A wrong shape, a value that is not finite, a symmetric part with a negative eigenvalue.
 
     Example:
-        >>> nh.Friction([0.1, 0.0, 0.2]).covector(np.array([1.0, 2.0, 3.0]))
-        array([-0.1, -0. , -0.6])
+        >>> nh.Friction([0.1, 0.3, 0.2]).covector(np.array([1.0, 2.0, 3.0]))
+        array([-0.1, -0.6, -0.6])
     """
 
     coefficients: Float[Array, "dim"] | Float[Array, "dim dim"]

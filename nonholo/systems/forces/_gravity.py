@@ -26,8 +26,8 @@ class Gravity:
 
     Example:
         >>> heavy = nh.Gravity(force=[0.0, 0.0, -2.0], point=[0.0, 0.0, 0.5])
-        >>> float(heavy.energy(nh.SO(3), np.eye(3))), heavy.covector(nh.SO(3), nh.SO(3).exp([0.1, 0.0, 0.0])).round(3)
-        (1.0, array([ 0.1, -0. ,  0. ]))
+        >>> float(heavy.energy(nh.SO(3), np.eye(3))), heavy.covector(nh.SO(3), nh.SO(3).exp([0.1, 0.2, 0.0])).round(3)
+        (1.0, array([0.099, 0.198, 0.   ]))
     """
 
     force: Float[Array, "n"]
