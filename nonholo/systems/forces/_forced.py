@@ -102,8 +102,8 @@ class Forced(AbstractSystem):
         return self.force if isinstance(self.force, Friction) else None
 
     @property
-    def table(self) -> Float[np.ndarray, "steps dim"] | None:
-        """The forces of the steps, where they are given one by one."""
+    def table(self) -> Array | None:
+        """The forces of the steps, (steps, dim), where they are given one by one."""
         return None if callable(self.force) or self.friction is not None else self.force
 
     @property
@@ -116,7 +116,7 @@ class Forced(AbstractSystem):
         """Whether a Python function has to be called, which no kernel does and no store holds."""
         return callable(self.potential) or callable(self.force)
 
-    def potential_energy(self, configuration: Float[Array, "... N N"]) -> Float[np.ndarray, "..."]:
+    def potential_energy(self, configuration: Float[Array, "... N N"]) -> Float[Array, "..."]:
         """Return U at configurations; zero without a potential.
 
         Example:

@@ -28,7 +28,7 @@ class Friction:
         array([-0.1, -0.6, -0.6])
     """
 
-    coefficients: Float[Array, "dim"] | Float[Array, "dim dim"]
+    coefficients: Array
 
     def __post_init__(self) -> None:
         where, shape = "Friction(coefficients=...)", shape_of(self.coefficients)

@@ -30,8 +30,8 @@ class Gravity:
         (1.0, array([0.099, 0.198, 0.   ]))
     """
 
-    force: Float[Array, "n"]
-    point: Float[Array, "n"]
+    force: Array
+    point: Array
 
     def __post_init__(self) -> None:
         point = array("Gravity(point=...)", self.point, (None,), "Pass the n body coordinates of a point.")
