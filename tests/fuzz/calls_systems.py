@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 from fuzz.calls import Call, call
-from fuzz.kinds import Argument, array, count, function, number, positive, text, thing
+from fuzz.kinds import Argument, anything, array, count, function, number, positive, text, thing
 
 import nonholo as nh
 
@@ -63,11 +63,11 @@ def _general() -> list[Call]:
 def _forces() -> list[Call]:
     heavy, top = nh.Gravity([0.0, 0.1, -1.0], [0.1, 0.0, 0.3]), nh.SuslovTop(J)
     forced, pose = nh.Forced(top, heavy, nh.Friction([0.1, 0.2, 0.3])), array(np.eye(3), "batch")
-    acting = {"potential": thing(heavy, none=True), "force": array(np.ones((4, 3)), "rows", none=True)}
+    acting = {"potential": anything(heavy), "force": anything(np.ones((4, 3)))}
     point = {"force": array([0.0, 0.1, -1.0]), "point": array([0.1, 0.0, 0.3])}
     return [
         call("Gravity", nh.Gravity, **point),
-        call("Friction", nh.Friction, coefficients=array(np.diag([0.1, 0.2, 0.3]))),
+        call("Friction", nh.Friction, coefficients=array(np.diag([0.1, 0.2, 0.3]), "any")),
         call("Forced", nh.Forced, system=thing(top), **acting),
         call("forced.potential_energy", forced.potential_energy, configuration=pose),
         call("forced.potential_force", forced.potential_force, configuration=pose),

@@ -110,7 +110,7 @@ def ensemble(
     if save_every is not None:
         save_every = count("ensemble(save_every=...)", save_every, "Pass the steps between saved states, or None.")
     _check_backend(discrete, backend)
-    check_forces("ensemble", discrete, steps, backend=backend)
+    check_forces("ensemble", discrete, steps, free="backend 'jax'" if backend == "jax" else None)
     plan = Plan(steps, save_every, bool(reconstruct), backend)
     motions = _motions(discrete, Start.of("ensemble", **starts), parameters, plan, whole=reduce is None)
     watched = None if events is None else watched_events("ensemble", discrete, events, PRINCIPAL.name, plan.posed)

@@ -4,7 +4,6 @@ import dataclasses
 
 from nonholo.base.checks import choice, error, step_counts
 from nonholo.discrete import (
-    PRINCIPAL,
     AbstractBranchRule,
     BranchRule,
     Discretization,
@@ -14,15 +13,12 @@ from nonholo.discrete import (
 )
 
 
-def check_forces(
-    owner: str, discrete: Discretization, steps: int, branch: BranchRule = PRINCIPAL.name, backend: str = "auto"
-) -> None:
-    """Refuse what runs with forces do not have, and more steps than their table has rows."""
+def check_forces(owner: str, discrete: Discretization, steps: int, *, free: str | None = None) -> None:
+    """Refuse what runs with forces do not have, which `free` names, and more steps than their table has rows."""
     if (forced := discrete.forces) is None:
         return
-    if branch != PRINCIPAL.name or backend == "jax":
-        got, remedy = f"branch {branch!r} and backend {backend!r}", "Leave both out."
-        raise error(f"{owner}(discrete=...)", "have the principal branch under forces", got, remedy)
+    if free is not None:
+        raise error(f"{owner}(discrete=...)", "have the principal branch under forces", free, "Leave both out.")
     if forced.table is not None and steps > len(forced.table):
         remedy = "Pass fewer steps, or a force for each step."
         raise error(f"{owner}(steps=...)", "be at most one for each row of the forces", f"{steps}", remedy)
@@ -66,10 +62,12 @@ class RunOptions:
         """Return checked options that a discretization can be run with."""
         as_discretization("simulate(discrete=...)", discrete, composed=True, forced=True)
         steps, every = step_counts(steps, save_every)
-        check_forces("simulate", discrete, steps, branch, backend)
         rule = checked_rule("simulate", discrete, branch)
         if not rule.is_principal:
             remedy = "Leave branch out: each substep takes the principal root."
             refuse_composition("simulate(branch=...)", discrete, remedy)
         choice("simulate(backend=...)", backend, ("auto", "numba", "jax"))
+        plain = rule.is_principal and backend != "jax"
+        free = None if plain else f"branch {rule.name!r} and backend {backend!r}"
+        check_forces("simulate", discrete, steps, free=free)
         return cls(steps, every, rule, backend, reconstruct, throw, progress)

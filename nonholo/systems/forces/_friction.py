@@ -34,9 +34,11 @@ class Friction:
         where, shape = "Friction(coefficients=...)", shape_of(self.coefficients)
         wanted = (None,) if len(shape) != 2 else (shape[0], shape[0])
         value = array(where, self.coefficients, wanted, "Pass (dim,) coefficients, or a (dim, dim) matrix.")
+        if not value.size:
+            raise error(where, "have a coefficient for each direction", "none", "Pass (dim,) coefficients.")
         object.__setattr__(self, "coefficients", value)
-        least = np.linalg.eigvalsh((self.matrix + self.matrix.T) / 2).min(initial=0.0)
-        if least < -_ROUNDING * np.abs(value).max(initial=0.0):
+        least = np.linalg.eigvalsh((self.matrix + self.matrix.T) / 2).min()
+        if least < -_ROUNDING * np.abs(value).max():
             got = f"a symmetric part with eigenvalue {least:.6g}"
             raise error(where, "never add energy", got, "Pass a function for a force that drives.")
 
