@@ -12,24 +12,16 @@ from nonholo.systems import AbstractSystem
 
 
 def solver_for(system: AbstractSystem, begins: float, method: str | None) -> Callable[..., Solved]:
-    """Return what solves the equations of a system from a time on; those with forces are solved by DOP853 alone."""
-    solver, forced = solver_of(method), system.forces
-    if forced is None:
-        return functools.partial(solver, system.canonical)
-    if method is not None:
-        remedy = "Leave it out: forces are integrated by DOP853."
-        raise error("flow(method=...)", "be None under forces", repr(method), remedy)
-    return functools.partial(by_runge_kutta, forced, begins)
-
-
-def solver_of(method: str | None) -> Callable[..., Solved]:
-    """Return what solves the equations, refused with a method that there is not."""
+    """Return what solves the equations of a system from a time on, refused with a method that it does not have."""
     choice("flow(method=...)", method, (None, "closed_form", "diffrax"))
-    if method is None:
-        return by_series
-    if method == "closed_form":
-        return closed_form
+    if system.forces is not None:
+        if method is not None:
+            remedy = "Leave it out: forces are integrated by DOP853."
+            raise error("flow(method=...)", "be None under forces", repr(method), remedy)
+        return functools.partial(by_runge_kutta, system.forces, begins)
+    if method != "diffrax":
+        return functools.partial(closed_form if method else by_series, system.canonical)
     with needs("jax", "flow(method='diffrax')"):
         from nonholo.continuous._integration_jax import integrate_by_diffrax
 
-    return integrate_by_diffrax
+    return functools.partial(integrate_by_diffrax, system.canonical)

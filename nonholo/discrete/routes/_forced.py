@@ -115,7 +115,12 @@ class FunctionRoute(AbstractForcedRoute):
     ) -> tuple[Rows, Outcome, int]:
         """Run from canonical momenta and pose; return canonical rows, the outcome and the last good step."""
         free, (n, width, size), code, done, saved = self.free, self.free.sizes, 0, -1, []
-        m, place, room, state = free.encode(reduced), free.encode_poses(pose), _rows(1, free.sizes), np.empty(0)
+        m, place, room, state = (
+            free.encode(reduced),
+            free.encode_poses(pose),
+            [np.empty((1, w)) for w in free.sizes],
+            np.empty(0),
+        )
         kick = kernels.Kick(_NONE, np.zeros((n, 0)), np.zeros((1, 2, n)))
         body = kernels.ForcedBody(free.body, kick)
         with progress_bar("steps", progress) as show, contextlib.suppress(OutcomeError):
@@ -136,9 +141,7 @@ class FunctionRoute(AbstractForcedRoute):
                 if done < steps:
                     code, place = Outcome.not_converged, state[2 * n : 2 * n + size].copy()
                     m = state[:n] + self.impulse(done + 1, done, state[:n], place)
-        momenta, charts, poses = _rows(len(saved), free.sizes)
-        for k, row in enumerate(saved):
-            momenta[k], charts[k], poses[k] = row
+        momenta, charts, poses = (np.array([row[j] for row in saved]).reshape(-1, w) for j, w in enumerate(free.sizes))
         return (free.decode(momenta), free.from_kernel(charts), free.decode_poses(poses)), Outcome(code), max(0, done)
 
 

@@ -55,12 +55,8 @@ class Gravity:
 
     def covector(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
         """Return -dU along the body directions at configurations."""
-        weight, _ = self._homogeneous(group)
-        return (weight @ configuration) @ self.arms(group).T
-
-    def arms(self, group: AbstractMatrixGroup) -> Float[np.ndarray, "dim N"]:
-        r"""Return the velocities $\hat e_a x$ of the point, one row for each direction of the algebra."""
-        return group.basis @ self._homogeneous(group)[1]
+        weight, place = self._homogeneous(group)
+        return (weight @ configuration) @ (group.basis @ place).T
 
     def _homogeneous(self, group: AbstractMatrixGroup) -> tuple[np.ndarray, np.ndarray]:
         if not is_affine(group):
