@@ -115,12 +115,8 @@ class FunctionRoute(AbstractForcedRoute):
     ) -> tuple[Rows, Outcome, int]:
         """Run from canonical momenta and pose; return canonical rows, the outcome and the last good step."""
         free, (n, width, size), code, done, saved = self.free, self.free.sizes, 0, -1, []
-        m, place, room, state = (
-            free.encode(reduced),
-            free.encode_poses(pose),
-            [np.empty((1, w)) for w in free.sizes],
-            np.empty(0),
-        )
+        m, place, state = free.encode(reduced), free.encode_poses(pose), np.empty(0)
+        room = np.empty((1, n)), np.empty((1, width)), np.empty((1, size))
         kick = kernels.Kick(_NONE, np.zeros((n, 0)), np.zeros((1, 2, n)))
         body = kernels.ForcedBody(free.body, kick)
         with progress_bar("steps", progress) as show, contextlib.suppress(OutcomeError):
