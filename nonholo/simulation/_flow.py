@@ -9,7 +9,7 @@ import numpy as np
 from nonholo.base.checks import error, flow_times, flow_tolerances, shown
 from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome, OutcomeError
-from nonholo.continuous import ContinuousFlow, Solved, solver_for
+from nonholo.continuous import ContinuousFlow, Solved, forced_solver, solver_of
 from nonholo.orbit import Orbit
 from nonholo.simulation.events import Event, check_functions, checked_events, flow_with_events
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, OrbitT, Start, System, refuse_in_coordinates
@@ -113,10 +113,11 @@ def flow(
         return system.flow(configuration=configuration, times=times, **starts, **errors)
     if not isinstance(system, AbstractSystem):
         raise error("flow(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
-    time = flow_times(times)
-    solver = solver_for(system, float(time[0]), method)
+    solver, time = solver_of(method), flow_times(times)
     tolerances = flow_tolerances((1e-10 if method == "diffrax" else 1e-14) if rtol is None else rtol, atol)
-    solve = functools.partial(solver, tolerances=tolerances)
+    solve = functools.partial(solver, system.canonical, tolerances=tolerances)
+    if system.forces is not None:
+        solve = functools.partial(forced_solver(system.forces, float(time[0]), method), tolerances=tolerances)
     first = _first_state(
         system, time, Start.of("flow", configuration, restricted_velocity=restricted_velocity, **starts)
     )
