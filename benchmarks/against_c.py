@@ -1,12 +1,15 @@
 """The compiled kernels beside hand-written C (`c/steps.c`, built here), in one run, in turns; medians of ratios.
 
-Both sides are checked to end at the same state before anything is timed. "stored" keeps every step with its pose, and
-for the library it is the whole `simulate` call, the decoding of the orbit included.
+Both sides are checked to end at the same state before anything is timed, and run in one thread. C is built twice: free
+to contract a product and a sum to one operation (FMA), and strict, with the arithmetic of the library. "stored" keeps
+every step with its pose; a call is the whole `simulate`, the decoding of the orbit included. "kept rows" are there
+before the run; "new rows" are asked for in each run, as a call that returns an orbit has to.
 
     python benchmarks/against_c.py
 """
 
 import ctypes
+import functools
 import shutil
 import statistics
 import subprocess
@@ -20,18 +23,22 @@ import numpy as np
 import nonholo as nh
 from nonholo import kernels
 
-STEPS, ROUNDS = 1_000_000, 11
-FLAGS = ["-O3", "-march=native", "-ffp-contract=fast", "-fno-math-errno", "-fopenmp-simd", "-shared", "-fPIC"]
+STEPS, ROUNDS, MANY = 1_000_000, 15, 1_000_000
+FLAGS = ["-O3", "-march=native", "-fno-math-errno", "-fopenmp-simd", "-shared", "-fPIC"]
+HEADER = f"{'case':36} {'library':>11} {'C':>11}  ratio {'strict C':>11}  ratio"
 
 
-def built(name: str = "steps.c", functions: tuple[str, ...] = ("suslov", "sleigh", "wide")) -> ctypes.CDLL:
-    """Compile a reference."""
+def built(
+    name: str = "steps.c", functions: tuple[str, ...] = ("suslov", "sleigh", "wide"), *, strict: bool = False
+) -> ctypes.CDLL:
+    """Compile a reference, with contracted operations or strictly."""
     compiler = shutil.which("cc") or shutil.which("gcc")
     if compiler is None:
         raise SystemExit("against_c needs a C compiler. Install gcc.")
     library = Path(tempfile.mkdtemp()) / "reference.so"
     source = Path(__file__).parent / "c" / name
-    subprocess.run([compiler, *FLAGS, str(source), "-o", str(library), "-lm"], check=True)  # noqa: S603
+    contract = f"-ffp-contract={'off' if strict else 'fast'}"
+    subprocess.run([compiler, *FLAGS, contract, str(source), "-o", str(library), "-lm"], check=True)  # noqa: S603
     found = ctypes.CDLL(str(library))
     for function in functions:
         getattr(found, function).restype = ctypes.c_long
@@ -43,55 +50,79 @@ def pointer(array: np.ndarray | None) -> ctypes.c_void_p:
     return ctypes.c_void_p(None if array is None else array.ctypes.data)
 
 
-def paired(library: Callable[[], None], reference: Callable[[], None], unit: float) -> tuple[float, float, float]:
-    """Return median times of both in nanoseconds per unit, run in turns, and the median of their ratios."""
-    times = ([], [])
-    for _ in range(ROUNDS):
-        for run, into in ((library, times[0]), (reference, times[1])):
+def paired(library: Callable[[], None], references: tuple[Callable[[], None], ...], unit: float, rounds: int) -> list:
+    """Return the median time of each, in turns, in seconds per unit, and with each reference the median ratio to it."""
+    runs = (library, *references)
+    times: list[list[float]] = [[] for _ in runs]
+    for _ in range(rounds):
+        for run, into in zip(runs, times, strict=True):
             begin = time.perf_counter()
             run()
-            into.append((time.perf_counter() - begin) / unit * 1e9)
-    ratios = [a / b for a, b in zip(*times, strict=True)]
-    return statistics.median(times[0]), statistics.median(times[1]), statistics.median(ratios)
+            into.append((time.perf_counter() - begin) / unit)
+    found = [statistics.median(times[0])]
+    for each in times[1:]:
+        found += [statistics.median(each), statistics.median(a / b for a, b in zip(times[0], each, strict=True))]
+    return found
 
 
-def one_orbit(found: ctypes.CDLL, name: str, system: nh.SuslovTop | nh.ChaplyginSleigh, velocity: tuple) -> None:
+def compare(
+    case: str,
+    library: Callable[[], None],
+    references: tuple[Callable[[], None], ...],
+    unit: float,
+    rounds: int = ROUNDS,
+) -> None:
+    """Print a row: the library, C and strict C in nanoseconds, and the ratios to both."""
+    ours, *beside = paired(library, references, unit, rounds)
+    cells = [f"{1e9 * c:8.1f} ns {ratio:6.2f}" for c, ratio in zip(beside[::2], beside[1::2], strict=True)]
+    print(f"{case:36} {1e9 * ours:8.1f} ns {' '.join(cells)}", flush=True)
+
+
+def one_orbit(both: tuple, name: str, system: nh.SuslovTop | nh.ChaplyginSleigh, velocity: tuple) -> None:
     """Compare one orbit, stored and not."""
     discrete = nh.discretize(system, 0.01)
     step = discrete.route
     body = np.array(step.body, dtype=np.float64)
     first = step.encode(system.to_canonical(system.restricted_momentum(velocity)))
-    momenta, charts, poses = np.empty((STEPS, 2)), np.empty((STEPS, 2)), np.empty((STEPS, 4))
-    run = getattr(found, name)
-    unit = np.array([1.0, 0.0, 0.0, 0.0])
+    unit, kept = np.array([1.0, 0.0, 0.0, 0.0]), new_rows(STEPS)
 
-    def reference(rows: tuple) -> None:
-        m, q = first.copy(), unit.copy()
-        done = run(pointer(body), pointer(m), pointer(q), ctypes.c_long(STEPS), *map(pointer, rows))
-        assert done == STEPS
+    def reference(found: ctypes.CDLL, rows: Callable[[], tuple]) -> Callable[[], None]:
+        def run() -> None:
+            m, q, into = first.copy(), unit.copy(), rows()
+            done = getattr(found, name)(*map(pointer, (body, m, q)), ctypes.c_long(STEPS), *map(pointer, into))
+            assert done == STEPS
 
-    def library_stored() -> None:
-        nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS)
+        return run
 
-    def library_bare() -> None:
+    def kernel(rows: tuple, every: int) -> None:
         _, state = kernels.start(step.body, first, unit)
-        empty = np.empty((0, 2)), np.empty((0, 2)), np.empty((0, 4))
-        kernels.advance(step.body, state, STEPS, STEPS + 1, empty)
+        kernels.advance(step.body, state, STEPS, every, rows)
 
-    reference((momenta, charts, poses))
-    orbit = nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS)
+    def call() -> nh.Orbit:
+        return nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS)
+
+    kernel(kept, 1)
+    momenta = kept[0].copy()
+    reference(both[0], lambda: kept)()
     scale = np.abs(first).max()
-    assert np.allclose(step.encode(orbit.reduced_momentum[1:]), momenta, rtol=0, atol=1e-11 * scale)
-    library_bare()
-    for case, run_library, rows in (
-        ("stored with pose", library_stored, (momenta, charts, poses)),
-        ("nothing stored", library_bare, (None, None, None)),
+    for found in (step.encode(call().reduced_momentum[1:]), momenta):
+        assert np.allclose(found, kept[0], rtol=0, atol=1e-11 * scale)
+    for case, library, rows in (
+        ("nothing stored", lambda: kernel(new_rows(0), STEPS + 1), lambda: (None, None, None)),
+        ("stored, kept rows", lambda: kernel(kept, 1), lambda: kept),
+        ("stored, new rows", lambda: kernel(new_rows(STEPS), 1), lambda: new_rows(STEPS)),
+        ("stored: call, C: kept rows", call, lambda: kept),
+        ("stored: call, C: new rows", call, lambda: new_rows(STEPS)),
     ):
-        ours, theirs, ratio = paired(run_library, lambda rows=rows: reference(rows), STEPS)
-        print(f"{name:8} {case:18} {ours:8.1f} ns {theirs:8.1f} ns {ratio:6.2f}")
+        compare(f"{name} {case}", library, tuple(reference(found, rows) for found in both), STEPS)
 
 
-def many_dimensions(found: ctypes.CDLL, n: int, slides: bool) -> None:
+def new_rows(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return rows of momenta, charts and poses."""
+    return np.empty((count, 2)), np.empty((count, 2)), np.empty((count, 4))
+
+
+def many_dimensions(both: tuple, n: int, slides: bool) -> None:
     """Compare tops on SO(n) or sleighs on SE(n), nothing stored."""
     rng, k = np.random.default_rng(n), n - 1
     diagonal, coupling = rng.uniform(1, 2, n), 0.3 * rng.normal(size=k) / np.sqrt(n)
@@ -102,12 +133,12 @@ def many_dimensions(found: ctypes.CDLL, n: int, slides: bool) -> None:
     discrete = nh.discretize(body, 0.1)
     step = discrete.route
     first = step.encode(body.restricted_momentum(velocity))
-    steps = max(10, 2_000_000 // n)
+    steps = max(30, 2_000_000 // n)
     b, c = step.body.b, step.body.c
     empty = np.empty((0, k + slides)), np.empty((0, k + slides)), np.empty((0, 0))
     ends = {}
 
-    def reference() -> None:
+    def reference(found: ctypes.CDLL) -> None:
         m, lost, blade = first[:k].copy(), np.zeros(k), np.array([first[k] if slides else 0.0, 0.0])
         numbers = ctypes.c_double(step.body.mass), ctypes.c_double(step.body.arm), pointer(blade)
         done = found.wide(ctypes.c_long(k), *map(pointer, (b, c, m, lost)), *numbers, ctypes.c_long(steps))
@@ -120,22 +151,24 @@ def many_dimensions(found: ctypes.CDLL, n: int, slides: bool) -> None:
         assert done == steps
         ends["library"] = state[:k]
 
-    reference()
     library()
-    assert np.allclose(ends["c"], ends["library"], rtol=0, atol=1e-12 * np.abs(first).max())
-    ours, theirs, ratio = paired(library, reference, steps * 1e3)
-    print(f"{'SE(n)' if slides else 'SO(n)'}    n = {n:<13} {ours:8.2f} us {theirs:8.2f} us {ratio:6.2f}")
+    for found in both:
+        reference(found)
+        assert np.allclose(ends["c"], ends["library"], rtol=0, atol=1e-12 * np.abs(first).max())
+    case = f"{'SE(n)' if slides else 'SO(n)'} n = {n}"
+    runs = tuple(functools.partial(reference, found) for found in both)
+    compare(case, library, runs, steps, ROUNDS if n < MANY else 5)
 
 
 def main() -> None:
     """Print the table."""
-    found = built()
-    print("case                         library           C  ratio")
-    one_orbit(found, "suslov", nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), (0.9, -0.4))
-    one_orbit(found, "sleigh", nh.ChaplyginSleigh(1.0, 1.0, 0.5), (1.0, -0.3))
+    both = built(), built(strict=True)
+    print(HEADER)
+    one_orbit(both, "suslov", nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), (0.9, -0.4))
+    one_orbit(both, "sleigh", nh.ChaplyginSleigh(1.0, 1.0, 0.5), (1.0, -0.3))
     for slides in (False, True):
-        for n in (10, 100, 1_000, 10_000, 100_000, 1_000_000):
-            many_dimensions(found, n, slides)
+        for n in (4, 10, 30, 100, 1_000, 10_000, 100_000, MANY):
+            many_dimensions(both, n, slides)
 
 
 if __name__ == "__main__":

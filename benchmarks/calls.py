@@ -1,12 +1,14 @@
 """Calls that cost nothing: what a warm call takes, and a first one in a fresh process above the import of numba.
 
-Every call returns what its tests check; here they are only timed. For the figures of another commit run the file with
-that commit on PYTHONPATH.
+Every call returns what its tests check; here they are only timed. With the folder of another commit the warm calls of
+both are timed in turns, process after process.
 
-    python benchmarks/calls.py [--rounds 11]
+    python benchmarks/calls.py [--rounds 11] [--against FOLDER]
 """
 
 import argparse
+import json
+import os
 import statistics
 import subprocess
 import sys
@@ -54,14 +56,14 @@ def calls() -> dict[str, Callable[[], Any]]:
 
 
 def microseconds(call: Callable[[], Any], rounds: int) -> float:
-    """Return the median of rounds of warm calls."""
+    """Return the median of rounds of warm calls, in time of the processor."""
     call()
     taken = []
     for _ in range(rounds):
-        begun = time.perf_counter()
+        begun = time.process_time()
         for _ in range(CALLS):
             call()
-        taken.append((time.perf_counter() - begun) / CALLS * 1e6)
+        taken.append((time.process_time() - begun) / CALLS * 1e6)
     return statistics.median(taken)
 
 
@@ -76,14 +78,45 @@ def seconds(programs: dict[str, Path], rounds: int) -> dict[str, float]:
     return {name: statistics.median(found[1:]) for name, found in taken.items()}
 
 
+def warm(rounds: int) -> dict[str, float]:
+    """Return the microseconds of the calls by name."""
+    return {name: microseconds(call, rounds) for name, call in calls().items()}
+
+
+def compared(other: str, rounds: int) -> None:
+    """Print medians of both commits, and of their ratios."""
+    command, found = [sys.executable, __file__, "--rounds", "11", "--json"], []
+    for _ in range(rounds):
+        pair = []
+        for folder in (other, str(Path(nh.__file__).parents[1])):
+            environment = {**os.environ, "PYTHONPATH": folder}
+            done = subprocess.run(command, check=True, env=environment, capture_output=True)  # noqa: S603
+            pair.append(json.loads(done.stdout))
+        found.append(pair)
+    print("| call | us there | us here | there / here |\n| --- | ---: | ---: | ---: |")
+    for name in found[0][0]:
+        there, here = ([pair[side][name] for pair in found] for side in (0, 1))
+        ratio = statistics.median(a / b for a, b in zip(there, here, strict=True))
+        print(f"| {name} | {statistics.median(there):.0f} | {statistics.median(here):.0f} | {ratio:.2f} |")
+
+
 def main() -> None:
     """Print both tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=11)
-    rounds = parser.parse_args().rounds
+    parser.add_argument("--against", default=None, help="folder of another commit")
+    parser.add_argument("--json", action="store_true", help="print the figures of warm calls alone")
+    arguments = parser.parse_args()
+    rounds = arguments.rounds
+    if arguments.json:
+        print(json.dumps(warm(rounds)))
+        return
+    if arguments.against is not None:
+        compared(arguments.against, rounds)
+        return
     print("| call | us |\n| --- | ---: |")
-    for name, call in calls().items():
-        print(f"| {name} | {microseconds(call, rounds):.0f} |", flush=True)
+    for name, taken in warm(rounds).items():
+        print(f"| {name} | {taken:.0f} |", flush=True)
     with tempfile.TemporaryDirectory() as folder:
         texts = {"numba and one function": FLOOR}
         texts |= {f"{what}, {body}": text.format(made) for what, text in FIRST.items() for body, made in BODIES.items()}

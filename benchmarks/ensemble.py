@@ -1,27 +1,35 @@
 """Ensembles beside vectorized C (`c/ensemble.c`, built here), in one run, in turns; medians of ratios.
 
-Both sides are checked to end at the same states before anything is timed. "kernel" is the compiled loop in one thread,
-"call" the whole `ensemble` with its checks, in one thread and in all threads; the C code runs in one. Then ten million
-members are reduced block by block, and the peak of the memory is shown beside that of their starts.
+Both sides are checked to end at the same states before anything is timed. "kernel" is the compiled loop, "call" the
+whole `ensemble` with its checks; each runs in one thread and in all threads, and beside it C in as many, on equal parts
+of the members. C is built with contracted operations (FMA) and strictly, as in `against_c.py`. Then ten million members
+are reduced block by block, and the peak of the memory is shown beside that of their starts; last comes the cost of the
+reduction "lyapunov", beside the plain run of the same members.
 
     python benchmarks/ensemble.py
 """
 
 import argparse
 import ctypes
+import functools
+import itertools
 import os
 import resource
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import numba
 import numpy as np
-from against_c import built, paired, pointer
+from against_c import HEADER, built, paired, pointer
+from against_c import compare as beside
 
 import nonholo as nh
 from nonholo import kernels
+from nonholo.ensembles import REDUCTIONS
 
 THREADS = numba.config.NUMBA_NUM_THREADS
 MEMBERS, STEPS, TIME_STEP = 100_000 - 100_000 % 32, 200, 0.05
+UNIT = MEMBERS * STEPS
 SYSTEMS = {
     "top": nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]),
     "sleigh": nh.ChaplyginSleigh(1.0, 1.0, 0.5),
@@ -35,39 +43,66 @@ def kernel_rows(posed: bool) -> kernels.MemberRows:
     return kernels.MemberRows(*states, *np.zeros((2, MEMBERS), dtype=np.int64))
 
 
-def compare(found: ctypes.CDLL, name: str, posed: bool) -> None:
+def compare(both: tuple, name: str, posed: bool) -> None:
     """Print nanoseconds per step and member of the kernel, the call in one thread and in all threads, and of C."""
     discrete = nh.discretize(SYSTEMS[name], TIME_STEP)
     velocities = np.random.default_rng(0).normal(size=(MEMBERS, 2))
-    step, run = discrete.route, getattr(found, name)
+    step = discrete.route
     body = np.array(step.body, dtype=np.float64)
     first = step.encode(velocities @ discrete.system.constrained_inertia)
     unit, rows = np.tile((1.0, 0.0, 0.0, 0.0), (MEMBERS, 1)), kernel_rows(posed)
     m, q = first.copy(), unit.copy()
 
-    def reference() -> None:
-        m[:], q[:] = first, unit
-        last = pointer(q if posed else None)
-        uncertain = run(pointer(body), pointer(m), last, ctypes.c_long(MEMBERS), ctypes.c_long(STEPS))
-        assert uncertain == 0
+    def part_of_c(found: ctypes.CDLL, part: slice) -> int:
+        m[part], q[part] = first[part], unit[part]
+        last, count = pointer(q[part] if posed else None), ctypes.c_long(part.stop - part.start)
+        return getattr(found, name)(pointer(body), pointer(m[part]), last, count, ctypes.c_long(STEPS))
 
-    def kernel() -> None:
-        kernels.advance_members(step.body, None, first, unit, STEPS, 0, rows, np.zeros(1, dtype=np.bool_))
+    def reference(found: ctypes.CDLL, pool: ThreadPoolExecutor) -> None:
+        assert not any(pool.map(functools.partial(part_of_c, found), parts(pool._max_workers)))
+
+    def kernel(part: slice) -> None:
+        own = kernels.MemberRows(*(array[part] for array in rows))
+        kernels.advance_members(step.body, None, first[part], unit[part], STEPS, 0, own, np.zeros(1, dtype=np.bool_))
 
     def call() -> nh.Ensemble:
         return nh.ensemble(discrete, restricted_velocity=velocities, steps=STEPS, reconstruct=posed)
 
-    reference()
-    kernel()
+    part_of_c(both[0], slice(0, MEMBERS))
+    kernel(slice(0, MEMBERS))
     scale = np.abs(first).max()
     assert np.abs(m - rows.momenta[:, 0]).max() < 1e-13 * scale
     assert not posed or np.abs(q - rows.poses[:, 0]).max() < 1e-11
     assert np.abs(step.encode(call().reduced_momentum[:, 0]) - m).max() < 1e-13 * scale
-    for label, threads, ours in (("kernel", 1, kernel), ("call", 1, call), ("call", THREADS, call)):
+    for threads in dict.fromkeys((1, THREADS)):
         numba.config.NUMBA_NUM_THREADS = threads
-        fast, slow, ratio = paired(ours, reference, MEMBERS * STEPS)
-        case = f"{name:7} {'pose' if posed else 'no pose':8} {label:7} {threads} thread{'s' if threads > 1 else ''}"
-        print(f"{case:36} {fast:7.2f} ns {slow:7.2f} ns {ratio:6.2f}")
+        with ThreadPoolExecutor(threads) as pool:
+            references = tuple(functools.partial(reference, found, pool) for found in both)
+            case = f"{name}{', pose' if posed else ''}, {threads} on each side"
+            beside(f"kernel {case}", lambda pool=pool: [*pool.map(kernel, parts(pool._max_workers))], references, UNIT)
+            beside(f"call {case}", call, references, UNIT)
+
+
+def parts(count: int) -> list[slice]:
+    """Return equal parts of the members, whole blocks of 32."""
+    ends = [MEMBERS // 32 * i // count * 32 for i in range(count + 1)]
+    return [slice(*pair) for pair in itertools.pairwise(ends)]
+
+
+def largest_exponent(block: nh.Ensemble) -> np.ndarray:
+    """Return the exponents of a block."""
+    return REDUCTIONS["lyapunov"].function(block)["lyapunov"][1]
+
+
+def tangents(name: str, members: int = 400, steps: int = 1000) -> None:
+    """Print what "lyapunov" takes beside the plain run of the same members, which keeps their last states."""
+    discrete, rng = nh.discretize(SYSTEMS[name], TIME_STEP), np.random.default_rng(2)
+    given = {"restricted_velocity": rng.normal(size=(members, 2)), "steps": steps}
+    plain = functools.partial(nh.ensemble, discrete, **given)
+    reduced = functools.partial(nh.ensemble, discrete, **given, save_every=1, reduce=largest_exponent)
+    reduced(), plain()
+    slow, fast, ratio = paired(reduced, (plain,), members, 11)
+    print(f"{name:7} lyapunov {1e6 * slow:8.1f} us a member of {steps} steps, plain {1e6 * fast:8.1f} us {ratio:6.1f}")
 
 
 def gain(name: str) -> None:
@@ -115,13 +150,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--members", type=int, default=10_000_000, help="of the reduced ensemble")
     chosen = parser.parse_args()
-    found = built("ensemble.c", ("top", "sleigh"))
-    print("case                                 library           C  ratio")
+    both = tuple(built("ensemble.c", ("top", "sleigh"), strict=strict) for strict in (False, True))
+    print(HEADER)
     for name in SYSTEMS:
         for posed in (True, False):
-            compare(found, name, posed)
+            compare(both, name, posed)
         gain(name)
     many(chosen.members, 10)
+    for name in SYSTEMS:
+        tangents(name)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,8 @@
 
 Both are warm, in double precision, one orbit with pose; heyoka's `propagate_until` in its default mode, at the
 tolerance of the row, or `propagate_grid` where samples are stored. Ends are checked against a reference of 18 digits
-before anything is timed; runs are taken in turns.
+before anything is timed; runs are taken in turns. First come momenta alone beside momenta and poses, and members with
+parameters beside members without.
 
     python benchmarks/flow.py [--rounds 31]
 """
@@ -21,7 +22,7 @@ from nonholo.continuous import solver_of
 from nonholo.simulation import in_one_thread
 
 ENDS, TOLERANCES, SAMPLES = (20.0, 100.0, 1000.0), (1e-6, 1e-10, 1e-13, 1e-14), 1_000_000
-MEMBERS = 20_000
+MEMBERS, MODERATE = 20_000, 100
 
 
 def _integration(problem: Problem, times: np.ndarray, tolerance: float) -> Callable[[], Any]:
@@ -112,11 +113,46 @@ def ensembles(problem: Problem, rounds: int) -> tuple[str, ...]:
     return problem.name, f"a member of {MEMBERS:,}", *us, f"{median_ratio(taken['call'], taken['heyoka']):.2f}"
 
 
+def momenta(n: int, rounds: int) -> tuple[str, ...]:
+    """Return times of a top on SO(n) over ten units of time, with poses where they are moderate, and momenta alone."""
+    rng = np.random.default_rng(n)
+    top = nh.SuslovTop.arrowhead(rng.uniform(1, 2, n), rng.normal(size=n - 1) / np.sqrt(n))
+    given = {"restricted_velocity": rng.normal(size=n - 1) / np.sqrt(n), "times": (0.0, 10.0)}
+    kinds = (True, False) if n <= MODERATE else (False,)
+    runs = {str(poses): lambda poses=poses: nh.flow(top, **given, reconstruct=poses) for poses in kinds}
+    taken = in_turns(runs, rounds)
+    ms = [f"{statistics.median(seconds) * 1e3:.3g} ms" for seconds in taken.values()]
+    ratio = f"{median_ratio(taken['True'], taken['False']):.0f}" if n <= MODERATE else ""
+    return f"top on SO({n:,})", *ms, ratio
+
+
+def parameters(system: nh.SuslovTop | nh.ChaplyginSleigh, name: str, rounds: int) -> tuple[str, ...]:
+    """Return times a member without and with parameters, in one thread."""
+    rng = np.random.default_rng(0)
+    scale = rng.uniform(1, 2, MEMBERS).reshape(-1, *(1,) * np.ndim(getattr(system, name)))
+    given = {"restricted_velocity": rng.normal(size=(MEMBERS, 2)) * 0.5, "times": (0.0, 1.0)}
+    with in_one_thread():
+        runs = {
+            "same": lambda: nh.ensemble(system, **given),
+            "own": lambda: nh.ensemble(system, **given, parameters={name: scale * getattr(system, name)}),
+        }
+        taken = in_turns(runs, rounds)
+    us = [f"{statistics.median(seconds) / MEMBERS * 1e6:.1f} us" for seconds in taken.values()]
+    return type(system).__name__, f"a member of {MEMBERS:,}, T = 1, each with its {name}", *us
+
+
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=31)
     rounds = parser.parse_args().rounds
+    for n in (10, 30, MODERATE, 1000, 100_000):
+        print("|", " | ".join(momenta(n, max(3, rounds // 10))), "|", flush=True)
+    for body, name in (
+        (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), "mass_tensor"),
+        (nh.ChaplyginSleigh(1, 1, 0.5), "mass"),
+    ):
+        print("|", " | ".join(parameters(body, name, max(3, rounds // 10))), "|", flush=True)
     if reason := missing("heyoka"):
         raise SystemExit(f"heyoka: {reason}")
     print("| body | T | rtol | heyoka us | integration us | call us | ratio | ratio of call | error heyoka | error |")

@@ -184,7 +184,7 @@ def __getattr__(name: str) -> Any:
         return _home(_ROOMS[name], name)
     if name not in _HOMES:
         raise AttributeError(f"module 'nonholo' has no attribute {name!r}")
-    return getattr(_home(_HOMES[name], name), name)
+    return globals().setdefault(name, getattr(_home(_HOMES[name], name), name))
 
 
 def _home(home: str, name: str) -> Any:

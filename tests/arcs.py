@@ -7,7 +7,6 @@ $$ z_0Bz + (z\cdot z)c - (c\cdot z)z + wz = s\,r, \qquad wz_0 = s\,a\,p + ma^2 \
 Steps of equal length along the curve in all unknowns, s among them: a fold is where s turns back.
 """
 
-import numba
 import numpy as np
 
 _LONGEST = 0.02  # of the steps along the curve
@@ -17,16 +16,15 @@ _NEWTON = 8
 REACHED, FOLDED, LOST = 0, 1, 2
 
 
-@numba.njit(cache=True)
 def _equations(B, c, r, lever, push, slides, x):  # noqa: ANN001, ANN202
     """Return the equations at (z0, z, w, s), sphere included, and their Jacobian."""
     k = len(c)
     z0, z, w, s = x[0], x[1 : k + 1], x[k + 1], x[k + 2]
-    along, square, turned = np.sum(c * z), np.sum(z * z), B @ z
+    along, square, turned = c @ z, z @ z, B @ z
     F, J = np.zeros(k + 3), np.zeros((k + 3, k + 3))
     F[:k] = z0 * turned + square * c - along * z + w * z - s * r
     J[:k, 0] = turned
-    J[:k, 1 : k + 1] = z0 * B + 2 * np.outer(c, z) - np.outer(z, c) + (w - along) * np.eye(k)
+    J[:k, 1 : k + 1] = z0 * B + 2 * c[:, None] * z - z[:, None] * c + (w - along) * np.eye(k)
     J[:k, k + 1], J[:k, k + 2] = z, -r
     F[k], J[k, 0], J[k, 1 : k + 1] = z0 * z0 + square - 1, 2 * z0, 2 * z
     if slides:
@@ -36,20 +34,18 @@ def _equations(B, c, r, lever, push, slides, x):  # noqa: ANN001, ANN202
     return F, J
 
 
-@numba.njit(cache=True)
 def _corrected(B, c, r, lever, push, slides, x, across, at):  # noqa: ANN001, ANN202
     """Correct a point with its component along `across` held at a value."""
     for _ in range(_NEWTON):
         F, J = _equations(B, c, r, lever, push, slides, x)
-        F[-1], J[-1] = np.sum(across * x) - at, across
+        F[-1], J[-1] = across @ x - at, across
         step = np.linalg.solve(J, F)
         x = x - step
-        if np.sum(step * step) < 1e-26 * np.sum(x * x):
+        if step @ step < 1e-26 * (x @ x):
             return True, x
     return False, x
 
 
-@numba.njit(cache=True)
 def _tangent(B, c, r, lever, push, slides, x, before):  # noqa: ANN001, ANN202
     """Return the unit tangent of the curve that points the way of the one before."""
     _, J = _equations(B, c, r, lever, push, slides, x)
@@ -57,10 +53,9 @@ def _tangent(B, c, r, lever, push, slides, x, before):  # noqa: ANN001, ANN202
     right = np.zeros(len(x))
     right[-1] = 1.0
     found = np.linalg.solve(J, right)
-    return found / np.sqrt(np.sum(found * found))
+    return found / np.sqrt(found @ found)
 
 
-@numba.njit(cache=True)
 def followed(B, c, r, lever, push, slides):  # noqa: ANN001, ANN201
     """Return how the path from momentum zero ended, (z0, z) there, its w and the least z0 on the way.
 
@@ -74,10 +69,10 @@ def followed(B, c, r, lever, push, slides):  # noqa: ANN001, ANN201
     last[k + 2] = 1.0
     while size > _SHORTEST:
         guess = x + size * t
-        good, found = _corrected(B, c, r, lever, push, slides, guess, t, np.sum(t * guess))
+        good, found = _corrected(B, c, r, lever, push, slides, guess, t, t @ guess)
         if good and np.sum((found - guess) ** 2) < 0.01 * size * size:
             ahead = _tangent(B, c, r, lever, push, slides, found, t)
-            if np.sum(ahead * t) > _BEND:
+            if ahead @ t > _BEND:
                 if found[k + 2] >= 1.0:
                     good, end = _corrected(B, c, r, lever, push, slides, found, last, 1.0)
                     return (REACHED if good else LOST), end[: k + 1], end[k + 1], least

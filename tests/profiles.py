@@ -94,7 +94,7 @@ MARKED = [DEFAULT, *(name for name, profile in PROFILES.items() if not profile.c
 _DALEMBERT = "nonholo.lagrange_dalembert."
 DOCTESTS = {  # examples that compile for long
     f"{_DALEMBERT}on_groups._discretization.GroupDiscretization.simulate": "routes",
-    f"{_DALEMBERT}on_groups._orbit.GroupOrbit": "routes",
+    f"{_DALEMBERT}_orbit.GroupOrbit": "routes",
     f"{_DALEMBERT}on_groups._system.GroupLagrangeDAlembert": "routes",
     f"{_DALEMBERT}on_groups._system.GroupLagrangeDAlembert.flow": "routes",
     f"{_DALEMBERT}_discretization.CoordinateDiscretization.simulate": "routes",

@@ -24,6 +24,7 @@ _SMALLEST = 1 / LARGEST  # mass, inertia and time step, so that squares do not u
 _MOST = 2**53  # the integers up to it are floats too
 _MOST_INDEX = 2**63 - 1
 _MOST_AXES = 16  # NumPy broadcasts 32
+_FEW = 1 << 12  # numbers that are looked at by one sum; one that is repeated without end has no sum
 _LONGEST_NAME = 255  # bytes; more is more than any file system has
 
 
@@ -108,6 +109,11 @@ def _too_large(where: str, value: np.ndarray, remedy: str) -> ValueError:
     return error(where, "fit into memory", f"shape {value.shape}", remedy)
 
 
+def _is_moderate(value: np.ndarray) -> bool:
+    """Tell by one sum of squares that no number lies beyond the largest; False says nothing."""
+    return value.size < _FEW and float(abs(np.vdot(value, value))) <= LARGEST**2
+
+
 def _check_finite(where: str, value: np.ndarray, remedy: str) -> None:
     finite = np.isfinite(value)
     if not finite.all():
@@ -118,14 +124,13 @@ def _check_finite(where: str, value: np.ndarray, remedy: str) -> None:
 
 def _check_size(where: str, value: np.ndarray, remedy: str) -> None:
     """Refuse numbers that are not finite, or whose squares overflow."""
-    most = np.abs(value).max(initial=0.0)
-    if not most <= LARGEST:
+    if not _is_moderate(value) and not (most := float(np.abs(value).max(initial=0.0))) <= LARGEST:
         _check_finite(where, value, remedy)
         raise error(where, f"have no number beyond {LARGEST:g}", f"{most:g}", "Use other units.")
 
 
 def _fits(actual: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
-    return len(actual) == len(wanted) and all(w is None or a == w for a, w in zip(actual, wanted, strict=True))
+    return len(actual) == len(wanted) and all(w in (None, a) for a, w in zip(actual, wanted, strict=True))
 
 
 def _shown(shape: tuple[int | None, ...]) -> str:
@@ -135,6 +140,8 @@ def _shown(shape: tuple[int | None, ...]) -> str:
 
 def number(where: str, value: Any, remedy: str = "Pass one real number.") -> Array:
     """Return a finite real scalar as float64 (or the tracer)."""
+    if type(value) in (float, np.float64) and abs(value) <= LARGEST:
+        return np.float64(value)
     result = array(where, value, (), remedy)
     return result if is_traced(result) else np.float64(result)
 
@@ -161,11 +168,12 @@ def trailing(where: str, value: Any, shape: tuple[int, ...], remedy: str, *, rea
     if real and raw.dtype.kind == "c":
         raise error(where, "be real", "complex numbers", remedy)
     try:
-        result = as_floats(raw)
-        _check_finite(where, result if result.ndim == len(shape) else np.where(np.isnan(result), 0, result), remedy)
+        found = as_floats(raw)
+        if not _is_moderate(found):
+            _check_finite(where, found if found.ndim == len(shape) else np.where(np.isnan(found), 0, found), remedy)
     except MemoryError:
         raise _too_large(where, raw, remedy) from None
-    return result
+    return found
 
 
 def shape_of(value: Any) -> tuple[int, ...]:
@@ -206,7 +214,7 @@ def scale(where: str, value: Any, remedy: str) -> Array:
 
 def check_scale(where: str, value: Array) -> None:
     """Refuse what sets a scale if its squares underflow; zeros set none."""
-    if not is_traced(value) and 0 < (most := np.abs(value).max(initial=0.0)) < _SMALLEST:
+    if not is_traced(value) and 0 < (most := np.abs(value).max()) < _SMALLEST:
         raise error(where, f"not lie below {_SMALLEST:g}", f"{most:g}", "Use other units.")
 
 
@@ -295,8 +303,8 @@ def pair(where: str, value: Any) -> tuple[Any, Any]:
 
 def flags(owner: str, **values: Any) -> None:
     """Refuse arguments of an owner that are neither True nor False."""
-    for name, value in values.items():
-        flag(f"{owner}({name}=...)", value)
+    for name in (name for name, value in values.items() if type(value) is not bool):
+        flag(f"{owner}({name}=...)", values[name])
 
 
 def path(where: str, value: Any) -> Path:
@@ -335,9 +343,9 @@ def symmetric(where: str, value: Array, remedy: str) -> Array:
     if is_traced(value):
         return value
     check_scale(where, value)
-    gap = np.abs(value - value.T)
-    if gap.max() > 8 * np.finfo(np.float64).eps * np.abs(value).max():
-        i, j = (int(k) for k in np.unravel_index(gap.argmax(), gap.shape))
+    gap = value - value.T
+    if np.count_nonzero(gap) and np.abs(gap).max() > 8 * np.finfo(np.float64).eps * np.abs(value).max():
+        i, j = (int(k) for k in np.unravel_index(np.abs(gap).argmax(), gap.shape))
         got = f"entries {float(value[i, j])!r} and {float(value[j, i])!r} at {(i, j)} and {(j, i)}"
         raise error(where, "be symmetric", got, remedy)
     return value
@@ -349,7 +357,7 @@ def positive_definite(where: str, matrix: Array, what: str, remedy: str) -> None
         return
     if not np.isfinite(matrix).all():
         raise error(where, f"make {what} finite", "an overflow", "Pass smaller numbers, in other units.")
-    units = np.sqrt(np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0))  # rows may mix lengths and angles
+    units = np.array([math.sqrt(x) if x > 0 else 1.0 for x in matrix.diagonal().tolist()])  # lengths and angles mix
     eigenvalues = np.linalg.eigvalsh(matrix / units / units[:, None])
     if not eigenvalues[0] > 4 * np.finfo(np.float64).eps * max(abs(eigenvalues[-1]), math.ulp(0.0)):
         got = f"an eigenvalue {np.linalg.eigvalsh(matrix)[0]:.6g}"
@@ -371,7 +379,7 @@ def flow_times(value: Any) -> Array:
     times = array(where, value, (None,), "Pass a sequence of times.")
     if times.size == 0:
         raise error(where, "hold at least one time", "none", "Pass the time of the start first.")
-    gaps = np.diff(times)
+    gaps = times[1:] - times[:-1]
     forward = gaps * np.sign(gaps[:1])
     if gaps.size and not forward.min() > 0:
         at = int(np.argmin(forward))

@@ -37,6 +37,7 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     """
 
     def decorate(function: Callable[..., Any]) -> Any:
+        options["no_cfunc_wrapper"] = True  # nothing calls kernels from C
         made = numba.njit(**options)(function)
         if isinstance(made, dispatcher.Dispatcher):  # NUMBA_DISABLE_JIT leaves the function as it is
             try:

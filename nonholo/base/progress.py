@@ -44,17 +44,18 @@ class _Rate(ProgressColumn):
         return Text("" if speed is None else f"{speed:,.0f}/s", style="progress.data.speed")
 
 
-@contextlib.contextmanager
-def progress_bar(title: str, wanted: bool) -> Iterator[Callable[[int, int], None]]:
+def progress_bar(title: str, wanted: bool) -> contextlib.AbstractContextManager[Callable[[int, int], None]]:
     """Give a function that reports how much is done, and of how much.
 
     Example:
         >>> with progress_bar("steps", wanted=False) as report:
         ...     report(3, 10)
     """
-    if not wanted:
-        yield lambda *_: _go_on()
-        return
+    return _shown_bar(title) if wanted else contextlib.nullcontext(lambda *_: _go_on())
+
+
+@contextlib.contextmanager
+def _shown_bar(title: str) -> Iterator[Callable[[int, int], None]]:
     columns = (*Progress.get_default_columns(), TimeElapsedColumn(), _Rate())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(title, total=None)  # the bar pulses until it is known of how much

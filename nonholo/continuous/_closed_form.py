@@ -38,7 +38,7 @@ def closed_form(
         at = functools.partial(_sleigh_states, system, form, motion, reduced_momentum, pose)
         return Solved(at(elapsed), Outcome.successful, at)
     posed = pose_by_series(system.group, motion, body_of(system)[2], pose, elapsed, tolerances)
-    reached = elapsed[: len(posed.states.poses)]
+    reached = elapsed[: len(posed.states.momenta)]
     at = functools.partial(_with_momenta, motion, posed.at)
     return posed._replace(states=posed.states._replace(momenta=motion.momentum(reached)), at=at)
 

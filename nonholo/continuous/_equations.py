@@ -82,7 +82,9 @@ class ContinuousFlow(AbstractMotion):
             raise error(where, f"lie between {first:.17g} and {last:.17g}", got, "Ask the flow for later times.")
         order = np.argsort(time if last >= first else -time, kind="stable")
         found = self.solution(time[order] - first).chosen(np.argsort(order))
-        rows = {"reduced_momentum": found.momenta, "canonical_pose": found.poses, "turned": found.turned}
+        rows: dict[str, Any] = {"reduced_momentum": found.momenta}
+        if states.canonical_pose is not None:
+            rows |= {"canonical_pose": found.poses, "turned": found.turned}
         return dataclasses.replace(states, time=time, **rows, save_every=1, events=None)
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:

@@ -1,6 +1,6 @@
 """Taylor series of many motions: side by side where the constraint is fixed in the body, else one by one."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
 
 import numpy as np
 
@@ -12,7 +12,9 @@ from nonholo.systems import AbstractSystem
 
 
 def members_by_series(
-    systems: Sequence[AbstractSystem],
+    system: AbstractSystem,
+    inertias: Float[np.ndarray, "m dim dim"],
+    each: Callable[[int], AbstractSystem],
     momenta: Float[np.ndarray, "M k"],
     poses: Float[np.ndarray, "M size"],
     elapsed: Float[np.ndarray, "K"],
@@ -22,32 +24,34 @@ def members_by_series(
     """Return the states of members at times since the start, NaN where there is none, and how many each has.
 
     Args:
-        systems: Canonical systems that differ in numbers only, one for each member or one for all.
+        system: A canonical system; those of the members differ from it in numbers only.
+        inertias: Their inertia operators, or with an axis of length 1 that of all.
+        each: Gives the canonical system of a member.
         momenta: First momenta.
         poses: First poses.
         elapsed: Times since the start.
         tolerance: Relative error of a step.
         stop: Ends the work when it becomes true.
     """
-    first = systems[0]
-    if first.is_spatial or not is_compact(first.group):
-        return _one_by_one(systems, momenta, poses, elapsed, tolerance, stop)
-    velocities, torques = (np.stack(x) for x in zip(*map(body_numbers, systems), strict=True))
+    group, S, k = system.group, system.constraint_subspace, momenta.shape[1]
+    if system.is_spatial or not is_compact(group):
+        return _one_by_one(each, momenta, poses, elapsed, tolerance, stop)
+    velocities, torques = body_numbers(group, S, inertias)
     used = (torques != 0).any(axis=0)
-    f = body_equations(first.group, first.constraint_subspace, velocities[0], used.astype(np.float64))
-    own, plane, k = torques[:, used], first.group == PLANE, momenta.shape[1]
-    factors = np.hstack([own, np.tile(f.factors[own.shape[1] :], (len(systems), 1))])
+    f = body_equations(group, S, velocities[0], used.astype(np.float64))
+    own = np.moveaxis(torques, -1, 1)[:, np.moveaxis(used, -1, 0)]  # row by row of the equations
+    factors = np.hstack([np.tile(f.factors[0, : f.factors.size - own.shape[1]], (len(own), 1)), own])
     units = np.array([power_of_two(w) for w in (velocities @ momenta[..., None])[..., 0]])
-    starts = np.hstack([momenta / units[:, None], poses, first_heading(first.group, poses)])
+    starts = np.hstack([poses, first_heading(group, poses), momenta / units[:, None]])
     rows = np.full((len(momenta), len(elapsed), starts.shape[1]), np.nan)
     reached = solve_members(f, (velocities, factors), starts, (elapsed, units), tolerance * GUARD, rows, stop)
-    found = first.group.normalize_pose(rows[..., k : k + poses.shape[1]])
-    turned = on_same_turn(rows[..., -1], found) if plane else None
-    return States(rows[..., :k] * units[:, None, None], found, turned), reached
+    found = group.normalize_pose(rows[..., : poses.shape[1]])
+    turned = on_same_turn(rows[..., poses.shape[1]], found) if group == PLANE else None
+    return States(rows[..., starts.shape[1] - k :] * units[:, None, None], found, turned), reached
 
 
 def _one_by_one(
-    systems: Sequence[AbstractSystem],
+    each: Callable[[int], AbstractSystem],
     momenta: np.ndarray,
     poses: np.ndarray,
     elapsed: np.ndarray,
@@ -56,13 +60,11 @@ def _one_by_one(
 ) -> tuple[States, np.ndarray]:
     reached = np.zeros(len(momenta), dtype=np.int64)
     r, g = (np.full((len(momenta), len(elapsed), rows.shape[1]), np.nan) for rows in (momenta, poses))
-    turned = np.full((len(momenta), len(elapsed)), np.nan) if systems[0].group == PLANE else None
+    turned = np.full((len(momenta), len(elapsed)), np.nan) if each(0).group == PLANE else None
     for member in range(len(momenta)):
         if stop[0]:
             break
-        states = by_series(
-            systems[member % len(systems)], momenta[member], poses[member], elapsed, (tolerance, 1.0)
-        ).states
+        states = by_series(each(member), momenta[member], poses[member], elapsed, (tolerance, 1.0)).states
         reached[member] = good = len(states.momenta)
         r[member, :good], g[member, :good] = states.momenta, states.poses
         if turned is not None:

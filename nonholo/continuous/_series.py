@@ -20,11 +20,12 @@ from nonholo.base.types import Float
 from nonholo.continuous._heteroclinic import Heteroclinic
 from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.kernels import SERIES_LANES, Quadratic, order_for, revisit_series, solve_series
+from nonholo.kernels import Quadratic, revisit_series, solve_series, sparse_products
 from nonholo.systems import AbstractSystem
 
 _COMPACT = 40
 """Poses of more numbers are integrated as matrices, whose rates need not be tried."""
+_LOOKS = 8  # in a step, for events
 GUARD = 1 / 64
 """The error of a step as a share of what was asked for, so that rounding is all that is left at the default."""
 
@@ -44,7 +45,7 @@ class Series:
     Attributes:
         group: Of the poses.
         equations: The quadratic equations.
-        head: The number of components before the pose.
+        head: The number of components behind the pose.
         compact: Whether poses are integrated as compact ones, not as matrices.
         momentum: r, if the constraint is fixed in space, where it is constant; else None.
         unit: The unit of time, inverted: a power of two that brings the velocities near to one, so that no coefficient
@@ -66,20 +67,18 @@ class Series:
 
     def __call__(self, elapsed: Float[np.ndarray, "K"]) -> States:
         """Return the states at times since the start, which lie in the order in which the motion was solved."""
-        rows = np.empty((len(elapsed), len(self.equations.blocks)))
-        limits = self.end * self.unit, order_for(self.tolerance), self.tolerance
-        revisit_series(self.equations, self.nodes, elapsed * self.unit, *limits, rows)
-        return self.decoded(rows)
+        limits = self.end * self.unit, self.tolerance
+        return self.decoded(revisit_series(self.equations, self.nodes, elapsed * self.unit, *limits))
 
     def decoded(self, rows: Float[np.ndarray, "K size"]) -> States:
         """Return momenta, poses and headings."""
-        group, head, unit = self.group, rows[:, : self.head], self.unit
-        end = len(self.equations.blocks) - (group == PLANE)
-        found = rows[:, self.head : end]
+        group, end = self.group, rows.shape[1] - self.head
+        pose_end = end - (group == PLANE)
+        found = rows[:, :pose_end]
         matrices = found.reshape(-1, *group.identity.shape) if not self.compact else None
         poses = group.normalize_pose(found if matrices is None else group.pose_from_matrix(matrices))
-        momenta = head * unit if self.momentum is None else np.tile(self.momentum, (len(rows), 1))
-        return States(momenta, poses, on_same_turn(rows[:, -1], poses) if group == PLANE else None)
+        momenta = rows[:, end:] * self.unit if self.momentum is None else np.tile(self.momentum, (len(rows), 1))
+        return States(momenta, poses, on_same_turn(rows[:, pose_end], poses) if group == PLANE else None)
 
 
 def by_series(
@@ -145,10 +144,18 @@ def _solved(
 ) -> Solved:
     compact, tolerance = is_compact(group) and not len(f.forms), tolerances[0] * GUARD
     g = pose if compact else group.matrix_from_pose(pose).ravel()
-    rows, nodes = solve_series(f, np.concatenate([head, g, first_heading(group, pose)]), elapsed * unit, tolerance)
+    rows, nodes = solve_series(f, np.concatenate([g, first_heading(group, pose), head]), elapsed * unit, tolerance)
     series = Series(group, f, len(head), compact, constant, unit, tolerance, float(elapsed[-1]), nodes)
     outcome = Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
-    return Solved(series.decoded(rows), outcome, series, nodes[:, 0, -1] / unit)
+    return Solved(
+        series.decoded(rows), outcome, series, looked_at(np.append(nodes[:, 0, -1], elapsed[-1] * unit)) / unit
+    )
+
+
+def looked_at(ends: Float[np.ndarray, "steps"]) -> Float[np.ndarray, "looks"]:
+    """Return times at which the state is looked at for events: steps are long, so within them too."""
+    looks = np.arange(_LOOKS * len(ends) - _LOOKS + 1) / _LOOKS
+    return np.interp(looks, np.arange(len(ends)), ends)
 
 
 @functools.lru_cache(maxsize=16)
@@ -157,19 +164,27 @@ def quadratic(system: AbstractSystem) -> Quadratic:
     group, S = system.group, system.constraint_subspace
     if system.is_spatial:
         return _space_equations(group, S, cast(np.ndarray, system.homogeneous_mass_tensor))
-    return body_equations(group, S, *body_numbers(system))
+    return body_equations(group, S, *body_numbers(group, S, system.inertia_operator))
 
 
-def body_numbers(system: AbstractSystem) -> tuple[Float[np.ndarray, "k k"], Float[np.ndarray, "k k k"]]:
-    """Return V and the coefficients of products of velocities in the rates of momenta."""
-    S, inertia = system.constraint_subspace, system.inertia_operator
-    return np.linalg.inv(S @ inertia @ S.T), _torques(system.group, S, S @ inertia.T)
+def body_numbers(
+    group: AbstractMatrixGroup, S: np.ndarray, inertia: Float[np.ndarray, "... dim dim"]
+) -> tuple[Float[np.ndarray, "... k k"], Float[np.ndarray, "... k k k"]]:
+    """Return V and the coefficients of products w_a w_b, a <= b, of velocities in the rates of momenta."""
+    momenta = S @ inertia.swapaxes(-1, -2)
+    torques = np.zeros((*inertia.shape[:-2], len(S), len(S), len(S)))
+    for a, row in enumerate(S):
+        torques[..., a, :, :] = group.coad(np.broadcast_to(row, momenta.shape), momenta) @ S.T
+    upper = (np.tri(len(S)).T - np.eye(len(S)) / 2)[..., None]
+    return np.linalg.inv(S @ inertia @ S.T), (torques + torques.swapaxes(-3, -2)) * upper
 
 
 def body_equations(group: AbstractMatrixGroup, S: np.ndarray, velocities: np.ndarray, torques: np.ndarray) -> Quadratic:
     """Return equations of momenta with rates torques[a, b] w_a w_b, w = V r, and of a pose that moves along rows S."""
     rates = _compact_rates(group, S) if is_compact(group) else _matrix_rates(group.hat(S), False)
-    return _assembled(velocities, _with_heading(group, S, rates), len(S), torques)
+    if group == PLANE:
+        rates = rates._replace(lone=np.concatenate([rates.lone, S[:, :1]], axis=1))
+    return _assembled(velocities, rates, torques)
 
 
 def _space_equations(group: AbstractMatrixGroup, S: np.ndarray, tensor: np.ndarray) -> Quadratic:
@@ -177,47 +192,42 @@ def _space_equations(group: AbstractMatrixGroup, S: np.ndarray, tensor: np.ndarr
     hats, N = group.hat(S), len(tensor)
     (a, b, m), values, _ = _matrix_rates(hats, True)
     # X J moves columns as X g does; J X^T is its transpose
-    sources = np.concatenate([b, b % N * N + b // N, b + N * N])
-    targets = np.concatenate([m, m % N * N + m // N, m + N * N])
-    rates = _Rates(np.stack([np.tile(a, 3), sources, targets]), np.tile(values, 3), np.zeros((len(S), 2 * N * N)))
+    J = N * N + (group == PLANE)
+    sources = np.concatenate([b, b + J, b % N * N + b // N + J])
+    targets = np.concatenate([m, m + J, m % N * N + m // N + J])
+    lone = np.zeros((len(S), J + N * N))
+    lone[:, N * N : J] = S[:, :1]
+    rates = _Rates(np.stack([np.tile(a, 3), sources, targets]), np.tile(values, 3), lone)
     forms = np.einsum("apq,brp->abqr", hats, group.form_adjoint(hats)).reshape(len(S), len(S), N * N)
-    made = _assembled(np.eye(len(S)), _with_heading(group, S, rates), 0, np.zeros((0, 0, 0)))
+    made = _assembled(np.eye(len(S)), rates, np.zeros((0, 0, 0)))
     return made._replace(forms=forms, tensor=np.ascontiguousarray(tensor))
 
 
-def _with_heading(group: AbstractMatrixGroup, S: np.ndarray, rates: _Rates) -> _Rates:
-    return rates._replace(lone=np.concatenate([rates.lone, S[:, :1]], axis=1)) if group == PLANE else rates
-
-
-def _assembled(
-    velocities: np.ndarray,
-    rates: _Rates,
-    head: int,
-    torques: np.ndarray,
-) -> Quadratic:
-    """Return equations of `head` momenta, with rates torques[a, b] w_a w_b, and of what moves by `rates`."""
-    k, ((a, b, m), values, lone) = len(velocities), rates
+def _assembled(velocities: np.ndarray, rates: _Rates, torques: np.ndarray) -> Quadratic:
+    """Return equations of what moves by `rates` and of momenta behind it, with rates torques[a, b] w_a w_b."""
+    k, before, head, ((a, b, m), values, lone) = len(velocities), rates.lone.shape[1], len(torques), rates
     (c, i), (d, o, n) = np.nonzero(lone), np.nonzero(torques)
-    # places in z: the velocities, 1, the state
-    left, right = np.concatenate([d, c, a]), np.concatenate([o, np.full(len(c), k), b + k + 1 + head])
-    targets, factors = np.concatenate([n, i + head, m + head]), np.concatenate([torques[d, o, n], lone[c, i], values])
-    pairs, products = np.unique(np.stack([left, right], axis=-1), axis=0, return_inverse=True)
-    pairs = np.concatenate([pairs, np.zeros((-len(pairs) % SERIES_LANES if k else 0, 2), dtype=np.int64)])
-    momenta = np.arange(head)  # all in one block
-    edges = np.stack([np.concatenate([momenta, b + head]), np.concatenate([np.roll(momenta, 1), m + head])])
-    blocks, closed = _blocks(head + lone.shape[1], edges, i + head)
-    integers = pairs[:, 0], pairs[:, 1], targets, products.ravel()
-    left, right, targets, products = (np.ascontiguousarray(x, dtype=np.int64) for x in integers)
+    places = np.arange(before) if not head else _side_by_side(k, before, a, b)
+    b, m, i = (np.argsort(places)[x] for x in (b, m, i))
+    # places in z: 1, the velocities, the state
+    left, right = np.concatenate([c, a, d]) + 1, np.concatenate([np.zeros_like(c), b + k + 1, o + 1])
+    targets, factors = np.concatenate([i, m, n + before]), np.concatenate([lone[c, i], values, torques[d, o, n]])
+    rows = np.argsort(targets, kind="stable")
+    products, found = sparse_products(left[rows], right[rows], 8)
+    first = np.searchsorted(targets[rows], np.arange(before + head + 1))
+    momenta = np.arange(before, before + head)  # all in one block
+    edges = np.stack([np.concatenate([momenta, b]), np.concatenate([np.roll(momenta, 1), m])])
+    order = np.append(places, momenta)
+    sparse = products, first, found, factors[None, rows], order
     nothing = np.zeros(0), np.zeros((0, 0)), np.zeros(0)
-    return Quadratic(velocities, left, right, targets, products, factors, blocks, closed, *nothing)
+    return Quadratic(velocities, *sparse, *_blocks(before + head, edges, i), *nothing)
 
 
-def _torques(group: AbstractMatrixGroup, S: np.ndarray, momenta: np.ndarray) -> Float[np.ndarray, "k k k"]:
-    """Return the coefficients of w_a w_b, a <= b, in the rates of the momenta along S."""
-    torques = np.zeros((len(S), len(S), len(S)))
-    for a, row in enumerate(S):
-        torques[a] = group.coad(np.broadcast_to(row, momenta.shape), momenta) @ S.T
-    return (torques + torques.transpose(1, 0, 2)) * (np.tri(len(S)).T - np.eye(len(S)) / 2)[..., None]
+def _side_by_side(k: int, size: int, velocities: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Return an order of the components in which those stand together that the same velocities multiply."""
+    multiplied = np.zeros((k, size), dtype=np.bool_)
+    multiplied[velocities, places] = True
+    return np.lexsort(~multiplied[::-1])
 
 
 def _compact_rates(group: AbstractMatrixGroup, S: np.ndarray) -> _Rates:

@@ -17,17 +17,18 @@ class States(NamedTuple):
 
     Attributes:
         momenta: Along the constraint subspace, (K, k).
-        poses: (K, size).
+        poses: (K, size), if they are solved for.
         turned: On SE(2) the heading without ambiguity of full turns, (K,).
     """
 
     momenta: Float[np.ndarray, "K k"]
-    poses: Float[np.ndarray, "K size"]
+    poses: Float[np.ndarray, "K size"] | None
     turned: Float[np.ndarray, "K"] | None
 
     def chosen(self, at: np.ndarray) -> "States":
         """Return the states at some places."""
-        return States(self.momenta[at], self.poses[at], None if self.turned is None else self.turned[at])
+        others = (None if rows is None else rows[at] for rows in (self.poses, self.turned))
+        return States(self.momenta[at], *others)
 
 
 class Solved(NamedTuple):
@@ -37,7 +38,8 @@ class Solved(NamedTuple):
         states: At the requested times; after a failure only the good ones.
         outcome: How it ended.
         at: Gives the states at times since the start, up to the last good one, in the order of the requested times.
-        steps: Where the steps of the solver begin; empty if that says nothing of the motion.
+        steps: Where steps of the solver begin and, if they are long, times within; empty if that says nothing of the
+            motion.
     """
 
     states: States

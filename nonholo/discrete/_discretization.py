@@ -115,13 +115,14 @@ class Discretization(Scheme, AbstractMotion):
         return after @ group.inverse(g) if moves else after
 
     def constraint_residual(self, states: Orbit) -> Float[np.ndarray, "K j"]:
-        """Return the forbidden parts of logarithms of displacements, or the residuals of the variety's equations."""
+        """Return the forbidden parts of (W - W^-1)/2, of log W where the chart is exp, or the variety's equations."""
         if self.system.is_wide:
             return np.zeros((len(states), 0))  # the chart has no forbidden directions
         D = self.variety.displaced(states.canonical_chart)
-        if self.variety.exact:
-            return self.system.group.log(D) @ self.variety.annihilator.T
-        return equations_of(self.variety, D)
+        if not self.variety.exact:
+            return equations_of(self.variety, D)
+        group, forbidden = self.system.group, self.variety.annihilator.T
+        return (group.log(D) if self.variety.exponential else group.vee(D - group.inverse(D)) / 2) @ forbidden
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         """Return the discrete momenta at the displacements, of a composition at those of first substeps."""

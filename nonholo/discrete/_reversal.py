@@ -1,5 +1,7 @@
 """The distance by which one step forward and one back miss the state they began at."""
 
+import functools
+
 import numpy as np
 
 from nonholo.base.results import Outcome
@@ -49,10 +51,10 @@ def _of_compositions(route: AbstractCompiledRoute, states: Orbit) -> Float[np.nd
     good = ahead == Outcome.successful
     back, _, behind = route.whole_steps(-after[good], there[good])
     missed = np.full(len(r), np.nan)
-    far = np.abs(back + r[good]).max(axis=1, initial=0.0) / np.abs(r[good]).max(axis=1, initial=0.0)
+    far = _largest(back + r[good]) / _largest(r[good])
     missed[good] = np.where(behind == Outcome.successful, far, np.inf)
     return missed
 
 
 def _largest(rows: np.ndarray) -> np.ndarray:
-    return np.abs(rows).max(axis=1, initial=0.0)
+    return functools.reduce(np.maximum, np.abs(rows).T, np.zeros(len(rows)))

@@ -1,5 +1,6 @@
 """The parts of the equations of a step: all of a discretization that they and the routes see."""
 
+import functools
 from collections.abc import Callable
 
 from nonholo.base.types import Array
@@ -29,7 +30,7 @@ class Scheme:
     constraint: Constraint
     order: int
 
-    @property
+    @functools.cached_property
     def variety(self) -> Variety:
         """The displacement variety in the canonical frame."""
         return variety_of(self.system, self.constraint)

@@ -59,6 +59,12 @@ class Variety:
         x = 2 * y @ y.__array_namespace__().asarray(self.chart, dtype=y.dtype)
         return self.group.exp_increment(x) if self.exponential else self.group.retract_increment(x)
 
+    def angle(self, y: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "..."]:
+        """Return the angles through which displacements turn; Cayley's map of a body takes t to 2 arctan(t / 2)."""
+        if self.exponential or not self.group.is_rigid:
+            return self.group.angle(self.group.log(self.displaced(y)))
+        return 2 * np.arctan(self.group.angle(2 * y @ self.chart) / 2)
+
     def coordinates(self, W: Float[np.ndarray, "N N"]) -> Float[np.ndarray, "m"]:
         """Return the chart coordinates of a displacement of less than half a turn."""
         if self.exponential or not self.group.has_skew_part:

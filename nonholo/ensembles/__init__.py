@@ -5,8 +5,7 @@ from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._ensemble_task import EnsembleTask
 from nonholo.ensembles._names import component_name
 from nonholo.ensembles._reductions import REDUCTIONS
-from nonholo.ensembles._resume import resume
-from nonholo.ensembles._sweep import load_sweep, sweep
+from nonholo.ensembles._sweep import load_sweep, resume, sweep
 from nonholo.ensembles.designs import (
     AbstractDesign,
     AbstractDistribution,

@@ -4,19 +4,19 @@ import copy
 import dataclasses
 import json
 import re
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from nonholo import io
 from nonholo.base.checks import array, count, error, flag, shown
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._names import OUTCOME, STARTS, start_component
 from nonholo.ensembles._reductions import REDUCTIONS, final_state_of_schema_1
-from nonholo.ensembles._starts import check_starts, rows_of_starts
 from nonholo.io import unstored
 from nonholo.simulation import Ensemble, Members, ensemble, run_in_lanes
 from nonholo.systems import one_start
@@ -25,6 +25,8 @@ _MEMBER = re.compile(r"This is member (\d+)\.")
 _BLOCK, _NUMBERS = 1 << 16, 1 << 22  # most members of a block, and numbers of all their states
 _LANES, _STEPS = 32, 1 << 28  # members that the compiled loop takes at once, and most steps of a block: some seconds
 _STEPS_EACH = 1 << 20  # the same for systems that run one by one
+
+Start: TypeAlias = tuple[str, Float[np.ndarray, "n"]]
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -100,7 +102,7 @@ class EnsembleTask:
     def __call__(self, block: MemberBlock) -> dict[str, Any]:
         """Run a block of members and reduce it."""
         parameters = self._parameters(block)
-        starts: dict[str, Any] = rows_of_starts(self.start, block)
+        starts: dict[str, Any] = _rows_of_starts(self.start, block)
         run = {"steps": self.steps, "save_every": self._every, "reconstruct": self.reconstruct}
         try:
             batch = ensemble(self.discrete, parameters=parameters or None, **run, **starts)
@@ -131,7 +133,7 @@ class EnsembleTask:
 
     def check_design(self, names: list[str]) -> None:
         """Refuse a design that names what the task does not know, no start, or several."""
-        check_starts(self.discrete, self.start, names)
+        _check_starts(self.discrete, self.start, names)
         for name in names:
             if name not in self._fields and name not in STARTS and start_component(name) is None:
                 kind, known = type(self.discrete.system).__name__, ", ".join(self._fields)
@@ -211,3 +213,60 @@ def _add(found: dict[str, Any], more: Any) -> None:
         if name in found:
             raise error("EnsembleTask(reductions=...)", "return each name once", shown(name), "Rename one.")
     found |= named
+
+
+def _check_starts(discrete: Discretization, start: Start | None, names: Sequence[str]) -> None:
+    """Refuse a design that varies several starts, components that the start does not have, or leaves none."""
+    whole = [name for name in names if name in STARTS]
+    if len(whole) > 1:
+        raise error("sweep(design=...)", "vary one start", " and ".join(whole), "Choose one.")
+    varied = {name: part for name in names if (part := start_component(name))}
+    if not whole and start is None:
+        _check_all(discrete, varied)
+    else:
+        _check_components(None if whole else start, varied)
+
+
+def _check_components(start: Start | None, varied: dict[str, tuple[str, int]]) -> None:
+    """Refuse components of another start than that of the task, whole or not, and those that it does not have."""
+    for name, (owner, component) in varied.items():
+        if start is None or start[0] != owner:
+            remedy = f"Pass EnsembleTask(..., {owner}=...) with what the other components are, or vary each of them."
+            raise error("sweep(design=...)", "vary components of the start of the task", shown(name), remedy)
+        if component >= len(start[1]):
+            got = f"{name!r} of a start with {len(start[1])}"
+            raise error("sweep(design=...)", "vary components that there are", got, "They are counted from 0.")
+
+
+def _rows_of_starts(start: Start | None, block: MemberBlock) -> dict[str, Float[np.ndarray, "count n"]]:
+    """Return the start of each member of a block, by its name."""
+    varied = {name: part for name in block if (part := start_component(name))}
+    whole = [name for name in block if name in STARTS]
+    if whole:
+        name, value = whole[0], block[whole[0]]
+    elif start is not None:
+        name, value = start
+    else:
+        name, value = next(iter(varied.values()))[0], np.zeros(len(varied))
+    rows = np.broadcast_to(value, (block.count, np.shape(value)[-1])).copy()
+    for given, (_, component) in varied.items():
+        rows[:, component] = block[given]
+    return {name: rows}
+
+
+def _check_all(discrete: Discretization, varied: dict[str, tuple[str, int]]) -> None:
+    """Refuse components that are not all of one start, where the task has none."""
+    owners = {owner for owner, _ in varied.values()}
+    if not owners:
+        raise error("sweep(task=...)", "have a start", "none", "Pass body_velocity=..., or vary it in the design.")
+    if len(owners) > 1:
+        raise error("sweep(design=...)", "vary components of one start", " and ".join(varied), "Choose one.")
+    (owner,) = owners
+    k, dim = discrete.system.rank, discrete.system.group.dim
+    lengths: dict[str, Any] = {"body_velocity": (dim,), "restricted_velocity": (k,), "momentum": (k, dim)}
+    given = sorted(component for _, component in varied.values())
+    if not any(given == list(range(length)) for length in lengths[owner]):
+        wanted = " or ".join(dict.fromkeys(map(str, lengths[owner])))
+        remedy = f"Vary {owner}_0 to the last one, or pass EnsembleTask(..., {owner}=...) with what the others are."
+        requirement = f"vary all {wanted} components of a start that is not given"
+        raise error("sweep(design=...)", requirement, str(given), remedy)

@@ -12,7 +12,7 @@ from nonholo.base.checks import error, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete import displacements_over, has_frame
-from nonholo.simulation import Ensemble, applied, have_kernel, scalar_members
+from nonholo.simulation import Ensemble, applied, have_kernel, scalar_members, tangents
 from nonholo.systems import AbstractSystem
 
 Reduced = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]
@@ -113,12 +113,7 @@ def _lyapunov(batch: Ensemble) -> Reduced:
     if discrete.order != 2 or not has_frame(discrete):
         requirement = "have a top or a sleigh with difference 'matrix' and order 2"
         raise error("reduction 'lyapunov'", requirement, shown(discrete), "Write your own reduction.")
-    slopes = np.stack([_jacobians(batch, member) for member in range(len(batch))])
-    product, growth = np.broadcast_to(np.eye(slopes.shape[-1]), slopes[:, 0].shape), np.zeros(len(batch))
-    for step in range(slopes.shape[1]):
-        product = slopes[:, step] @ product
-        norms = np.linalg.norm(product, axis=(1, 2))
-        product, growth = product / norms[:, None, None], growth + np.log(norms)
+    product, growth = _multiplied(_jacobians(batch))
     growth += np.log(np.linalg.norm(product, ord=2, axis=(1, 2)))
     elapsed = batch.steps_done * batch.members.time_step
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -126,12 +121,27 @@ def _lyapunov(batch: Ensemble) -> Reduced:
     return {"lyapunov": ((), exponent, _labels("largest finite-time Lyapunov exponent of momenta", "1 / time unit"))}
 
 
-def _jacobians(batch: Ensemble, member: int) -> Float[np.ndarray, "steps k k"]:
-    """Return the derivatives of the steps of a member, the identity after its end."""
-    done, k = int(batch.steps_done[member]), batch.reduced_momentum.shape[-1]
-    slopes = np.broadcast_to(np.eye(k), (batch.steps, k, k)).copy()
-    orbit = batch.orbit(member)[:done]
-    slopes[:done] = step_jacobians(batch.members.of(member), orbit.displacement)
+def _multiplied(slopes: Float[np.ndarray, "M K k k"]) -> tuple[Float[np.ndarray, "M k k"], Float[np.ndarray, "M"]]:
+    """Return the products of the steps, of norm one, and the logarithms of their norms; halves are paired again."""
+    growth = np.zeros(len(slopes))
+    while True:
+        norms = np.sqrt((slopes * slopes).sum(axis=(2, 3)))
+        slopes, growth = slopes / norms[..., None, None], growth + np.log(norms).sum(axis=1)
+        if slopes.shape[1] == 1:
+            return slopes[:, 0], growth
+        even = slopes.shape[1] // 2 * 2
+        slopes = np.concatenate([slopes[:, 1:even:2] @ slopes[:, :even:2], slopes[:, even:]], axis=1)
+
+
+def _jacobians(batch: Ensemble) -> Float[np.ndarray, "M K k k"]:
+    """Return the derivatives of the steps of members, the identity after their end."""
+    taken, k = np.arange(batch.steps) < batch.steps_done[:, None], batch.reduced_momentum.shape[-1]
+    if have_kernel(batch.members):
+        found = tangents(batch.members, batch.reduced_momentum[:, :-1], batch.cayley[:, :-1])
+        return np.where(taken[..., None, None], found, np.eye(k))
+    slopes = np.broadcast_to(np.eye(k), (*taken.shape, k, k)).copy()
+    for member, done in enumerate(batch.steps_done):
+        slopes[member, :done] = step_jacobians(batch.members.of(member), batch.orbit(member)[:done].displacement)
     return slopes
 
 

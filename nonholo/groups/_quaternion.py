@@ -14,12 +14,11 @@ def matrix_from_quaternion(q: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:
     xp = q.__array_namespace__()
     unit = normalized(q)
     w, x, y, z = (unit[..., i] for i in range(4))
-    rows = (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-    )
-    return xp.stack([xp.stack(row, axis=-1) for row in rows], axis=-2)
+    xx, yy, zz, xy, xz, yz, wx, wy, wz = x * x, y * y, z * z, x * y, x * z, y * z, w * x, w * y, w * z
+    first = 1 - 2 * (yy + zz), 2 * (xy - wz), 2 * (xz + wy)
+    second = 2 * (xy + wz), 1 - 2 * (xx + zz), 2 * (yz - wx)
+    third = 2 * (xz - wy), 2 * (yz + wx), 1 - 2 * (xx + yy)
+    return xp.stack([*first, *second, *third], axis=-1).reshape(*q.shape[:-1], 3, 3)
 
 
 def quaternion_from_matrix(R: Float[Array, "... 3 3"]) -> Float[Array, "... 4"]:
@@ -28,20 +27,10 @@ def quaternion_from_matrix(R: Float[Array, "... 3 3"]) -> Float[Array, "... 4"]:
     The symmetric matrix 4 q q^T is read off R; its row with the largest diagonal entry, normalized, is q.
     """
     xp = R.__array_namespace__()
-    products = _four_times_outer(R)
-    diagonal = xp.stack([products[..., i, i] for i in range(4)], axis=-1)
-    best = xp.argmax(diagonal, axis=-1)[..., None, None]
-    q = normalized(xp.take_along_axis(products, xp.broadcast_to(best, (*best.shape[:-1], 4)), axis=-2)[..., 0, :])
-    return xp.where(q[..., :1] < 0, -q, q)
-
-
-def _four_times_outer(R: Array) -> Array:
-    xp = R.__array_namespace__()
-    (a, b, c), (d, e, f), (g, h, i) = (tuple(R[..., j, k] for k in range(3)) for j in range(3))
-    rows = (
-        (1 + a + e + i, h - f, c - g, d - b),
-        (h - f, 1 + a - e - i, b + d, c + g),
-        (c - g, b + d, 1 - a + e - i, f + h),
-        (d - b, c + g, f + h, 1 - a - e + i),
-    )
-    return xp.stack([xp.stack(row, axis=-1) for row in rows], axis=-2)
+    a, b, c, d, e, f, g, h, i = R.reshape(-1, 9).T.copy()
+    more, less, wx, wy, wz, xy, xz, yz = 1 + a, 1 - a, h - f, c - g, d - b, b + d, c + g, f + h
+    ww, xx, yy, zz = more + e + i, more - e - i, less + e - i, less - e + i
+    products = xp.asarray([ww, wx, wy, wz, wx, xx, xy, xz, wy, xy, yy, yz, wz, xz, yz, zz])
+    best = xp.argmax(products[::5], axis=0)
+    q = normalized(products.reshape(4, 4, -1)[best, :, xp.arange(len(best))])
+    return xp.where(q[:, :1] < 0, -q, q).reshape(*R.shape[:-2], 4)

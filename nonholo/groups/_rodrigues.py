@@ -27,13 +27,13 @@ class AbstractRodriguesGroup(AbstractMatrixGroup):
     def exp_increment(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
         r"""Return $\frac{\sin\theta}{\theta}X + \frac{1-\cos\theta}{\theta^2}X^2$, `exp(x)` minus the identity."""
         x = self._vector(x)
-        X, squared = self.hat(x), self._squared_angle(x)
+        X, squared = self.coordinates.matrix(x), self._squared_angle(x)
         return sinc(squared)[..., None, None] * X + versine(squared)[..., None, None] * (X @ X)
 
     def cayley_increment(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:
         r"""Return $(I - X/2)^{-1}(I + X/2) - I = (X + X^2/2)/(1 + \theta^2/4)$ without the subtraction."""
         x = self._vector(x)
-        X = self.hat(x)
+        X = self.coordinates.matrix(x)
         return (X + X @ X / 2) / (1 + self._squared_angle(x) / 4)[..., None, None]
 
     def dexp_inverse(self, x: Float[Array, "... 3"]) -> Float[Array, "... 3 3"]:

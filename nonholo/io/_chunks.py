@@ -1,5 +1,6 @@
 """Chunks of a store: each must be there and intact; nothing missing is ever read as data."""
 
+import contextlib
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +40,17 @@ def checked_block(
     except DamagedError as wrong:
         requirement = f"hold {chunk_name(name, array, index)}" + (" free of NaN" if str(wrong) == _NAN else "")
         raise error(WHERE, requirement, str(wrong), AGAIN) from None
+
+
+def checked_array(root: Path, name: str, array: zarr.Array) -> np.ndarray:
+    """Return all chunks, read at once; refuse one that is missing or damaged, with its name."""
+    indices = list(np.ndindex(array.cdata_shape))
+    if all(chunk_path(root, name, array, index).is_file() for index in indices):
+        with contextlib.suppress(Exception):  # which one it is appears when they are read one by one
+            values = np.asarray(array[...])
+            if not np.isnan(values).any():
+                return values
+    return np.concatenate([checked_block(root, name, array, index) for index in indices])
 
 
 def chunk_name(name: str, array: zarr.Array, index: tuple[int, ...]) -> str:

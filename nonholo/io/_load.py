@@ -15,7 +15,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.io._attributes import FORMAT, READABLE, SWEEP_FORMAT, restore_motion
-from nonholo.io._chunks import AGAIN, WHERE, DamagedError, checked_block, opened_array
+from nonholo.io._chunks import AGAIN, WHERE, DamagedError, checked_array, checked_block, opened_array
 from nonholo.io._metadata import OrbitMetadata, SweepMetadata, check_metadata
 from nonholo.io._plan import Plan
 from nonholo.io._seals import CHECKPOINTS, Blocks, seal_of_whole
@@ -153,6 +153,4 @@ def format_of(path: str | Path) -> str | None:
 def _read(root: Path, name: str, shape: tuple[int, ...], last: bool) -> Float[np.ndarray, "..."]:
     array = opened_array(root, name, shape)
     ends = tuple(count - 1 for count in array.cdata_shape)
-    indices = (ends,) if last and min(ends, default=0) >= 0 else np.ndindex(array.cdata_shape)
-    blocks = [checked_block(root, name, array, index) for index in indices]
-    return np.concatenate(blocks) if blocks else np.empty(shape)
+    return checked_block(root, name, array, ends) if last and min(ends) >= 0 else checked_array(root, name, array)

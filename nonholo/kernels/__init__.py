@@ -5,22 +5,30 @@ from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
 from nonholo.kernels._forced import ForcedBody, Kick
-from nonholo.kernels._interface import Body, certified, correction, increment, move, residual
+from nonholo.kernels._interface import Body, certified, correction, increment, move, residual, tangent
 from nonholo.kernels._nearest import NearestBody
 from nonholo.kernels._nearest import advance as advance_to_nearest
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
-from nonholo.kernels._taylor import SERIES_LANES, Quadratic, order_for, revisit_series, solve_series
-from nonholo.kernels._taylor_members import solve_members
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.secular import SecularBody, secular_sleigh, secular_top
+from nonholo.kernels.taylor import (
+    Arrowhead,
+    Quadratic,
+    order_for,
+    revisit_series,
+    solve_arrowhead,
+    solve_members,
+    solve_series,
+    sparse_products,
+)
 
 __all__ = [
     "CORRECTIONS",
     "LANES",
-    "SERIES_LANES",
     "SETTLED",
     "AnyBody",
+    "Arrowhead",
     "Body",
     "ComposedBody",
     "ForcedBody",
@@ -47,12 +55,15 @@ __all__ = [
     "secular_sleigh",
     "secular_top",
     "sizes",
+    "solve_arrowhead",
     "solve_members",
     "solve_series",
+    "sparse_products",
     "start",
     "step_each",
     "suslov_body",
     "suslov_table",
     "tables_of",
+    "tangent",
     "whole_steps",
 ]

@@ -6,7 +6,7 @@ do: its corrections end when it has converged, and a root that is not certain go
 arithmetic is strict, its bits are those that it has in `_driver`.
 """
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numba
 import numpy as np
@@ -17,6 +17,7 @@ from nonholo.kernels import _driver
 from nonholo.kernels._interface import Body, certified, correction, increment, move, principal
 from nonholo.kernels._scalar import COMPILED, scalar
 
+Table: TypeAlias = np.ndarray | None
 LANES = 32
 _M, _K, _Y, _U, _V, _Q = 0, 64, 128, 192, 256, 320  # momenta, compensations, three charts (2 rows each), pose (4)
 _N, _L, _W, _OPEN = 448, 512, 576, 640  # next momenta, compensations and chart; whether a member needs more work
@@ -42,7 +43,7 @@ class MemberRows(NamedTuple):
     done: np.ndarray
 
 
-def member(p: Body, table: np.ndarray | None, j: int) -> Body:
+def member(p: Body, table: Table, j: int) -> Body:
     """Return the body of a member of a block, a column of the table of parameters; without a table that of all."""
     return p if table is None else type(p)(*table[j::LANES])
 
@@ -75,7 +76,7 @@ def _compiled_member(p: Any, table: Any, j: Any) -> Any:
     return _own(p.instance_class)
 
 
-def table_of(tables: np.ndarray | None, block: int) -> np.ndarray | None:
+def table_of(tables: Table, block: int) -> Table:
     """Return the table of a block."""
     return None if tables is None else tables[block]
 
@@ -92,7 +93,7 @@ def _compiled_table_of(tables: Any, block: Any) -> Any:
 
 
 @njit(nogil=True, **COMPILED)
-def _correct(p: Body, table: np.ndarray | None, s: np.ndarray) -> None:
+def _correct(p: Body, table: Table, s: np.ndarray) -> None:
     """Correct the guesses of the members that have not converged, until there are none or it takes too long."""
     s[_OPEN:] = 1.0
     for _ in range(_driver.CORRECTIONS):
@@ -112,7 +113,7 @@ def _correct(p: Body, table: np.ndarray | None, s: np.ndarray) -> None:
 
 
 @njit(nogil=True, **COMPILED)
-def _verify(p: Body, table: np.ndarray | None, s: np.ndarray) -> int:
+def _verify(p: Body, table: Table, s: np.ndarray) -> int:
     """Mark the members whose root is not certain, and return their number."""
     left = 0
     for j in range(LANES):
@@ -124,9 +125,7 @@ def _verify(p: Body, table: np.ndarray | None, s: np.ndarray) -> int:
 
 
 @njit(nogil=True, **COMPILED)
-def _rescue(
-    p: Body, table: np.ndarray | None, s: np.ndarray, first: int, good: int, every: int, rows: MemberRows
-) -> None:
+def _rescue(p: Body, table: Table, s: np.ndarray, first: int, good: int, every: int, rows: MemberRows) -> None:
     """Find the marked roots from momentum zero; a member without one ends after its good steps.
 
     Lanes behind the last member, and those of members that have ended, are at rest: they have no root to find.
@@ -143,7 +142,7 @@ def _rescue(
 
 
 @njit(nogil=True, **COMPILED)
-def _predict(p: Body, table: np.ndarray | None, s: np.ndarray) -> None:
+def _predict(p: Body, table: Table, s: np.ndarray) -> None:
     """Write the next momenta and guess the next charts."""
     for j in range(LANES):
         m1, m2, y1, y2 = s[_M + j], s[_M + 32 + j], s[_Y + j], s[_Y + 32 + j]
@@ -155,19 +154,13 @@ def _predict(p: Body, table: np.ndarray | None, s: np.ndarray) -> None:
 
 
 @njit(nogil=True, **COMPILED)
-def _accept(p: Body, table: np.ndarray | None, s: np.ndarray, posed: bool) -> None:
+def _accept(p: Body, table: Table, s: np.ndarray, posed: bool) -> None:
     """Move on to the next momenta and charts, and with them the poses."""
     if posed:
         for j in range(LANES):
-            s[_Q + j], s[_Q + 32 + j], s[_Q + 64 + j], s[_Q + 96 + j] = move(
-                member(p, table, j),
-                s[_Y + j],
-                s[_Y + 32 + j],
-                s[_Q + j],
-                s[_Q + 32 + j],
-                s[_Q + 64 + j],
-                s[_Q + 96 + j],
-            )
+            own, y1, y2 = member(p, table, j), s[_Y + j], s[_Y + 32 + j]
+            q0, q1, q2, q3 = move(own, y1, y2, s[_Q + j], s[_Q + 32 + j], s[_Q + 64 + j], s[_Q + 96 + j])
+            s[_Q + j], s[_Q + 32 + j], s[_Q + 64 + j], s[_Q + 96 + j] = q0, q1, q2, q3
     for j in range(2 * LANES):
         s[_M + j], s[_K + j] = s[_N + j], s[_L + j]
         s[_V + j], s[_U + j], s[_Y + j] = s[_U + j], s[_Y + j], s[_W + j]
@@ -192,7 +185,7 @@ def _save_good(s: np.ndarray, rows: MemberRows, first: int, state: int) -> None:
 
 
 @njit(nogil=True, **COMPILED)
-def _begin(p: Body, table: np.ndarray | None, momenta: np.ndarray, poses: np.ndarray, s: np.ndarray) -> int:
+def _begin(p: Body, table: Table, momenta: np.ndarray, poses: np.ndarray, s: np.ndarray) -> int:
     """Fill a block, at rest where there are no members, and correct the first roots; return how many are uncertain."""
     s[:] = 0.0
     for j in range(len(momenta)):
@@ -205,14 +198,7 @@ def _begin(p: Body, table: np.ndarray | None, momenta: np.ndarray, poses: np.nda
 
 @njit(nogil=True, **COMPILED)
 def _run_block(
-    p: Body,
-    table: np.ndarray | None,
-    s: np.ndarray,
-    first: int,
-    steps: int,
-    every: int,
-    rows: MemberRows,
-    stop: np.ndarray,
+    p: Body, table: Table, s: np.ndarray, first: int, steps: int, every: int, rows: MemberRows, stop: np.ndarray
 ) -> None:
     """Take all steps of a block whose first roots are found, or those until it shall stop."""
     for k in range(2 * LANES):
@@ -240,7 +226,7 @@ def _run_block(
 @njit(nogil=True, **COMPILED)
 def advance_members(
     p: Body,
-    tables: np.ndarray | None,
+    tables: Table,
     momenta: np.ndarray,
     poses: np.ndarray,
     steps: int,

@@ -54,16 +54,15 @@ def advance(body: AnyBody, state: np.ndarray, steps: int, every: int, rows: Rows
 
 
 def step_each(
-    body: PlainBody,
-    states: tuple[np.ndarray, np.ndarray, np.ndarray | None],
-    guesses: np.ndarray,
-    principal_only: bool,
+    body: PlainBody, states: tuple[np.ndarray, np.ndarray, np.ndarray | None], guesses: np.ndarray, principal_only: bool
 ) -> Rows:
     """Take one step from each row of momenta, charts and, for right-invariant constraints, poses as matrices."""
     each = _runs(body).step_each
     if each is None:
         raise TypeError(f"`step_each` needs a plain body. Got {type(body).__name__}. Use `whole_steps`.")
-    return each(body, *states, guesses, principal_only)
+    momenta, charts, poses = states
+    rows = (np.ascontiguousarray(part) for part in (momenta, charts))  # one layout, or each is compiled for two
+    return each(body, *rows, poses, np.ascontiguousarray(guesses), principal_only)
 
 
 def _scalar_start(body: Body, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
@@ -71,17 +70,13 @@ def _scalar_start(body: Body, momentum: np.ndarray, pose: np.ndarray) -> tuple[i
     return _driver.start(body, momentum, pose, state), state
 
 
-def _scalar_each(body: Body, momenta: np.ndarray, charts: np.ndarray, poses: None, *rest: Any) -> Rows:
-    return _driver.step_each(body, momenta, charts, *rest)
+def _without_poses(step_each: Callable[..., Rows]) -> Callable[..., Rows]:
+    return lambda body, momenta, charts, _, *rest: step_each(body, momenta, charts, *rest)
 
 
 def _secular_sizes(body: SecularBody) -> tuple[int, int, int]:
     k = len(body.b) + body.slides
     return k, k, (k + 1) ** 2
-
-
-def _secular_each(body: SecularBody, momenta: np.ndarray, charts: np.ndarray, poses: None, *rest: Any) -> Rows:
-    return secular_run.step_each(body, momenta, charts, *rest)
 
 
 def _general_sizes(body: GeneralBody) -> tuple[int, int, int]:
@@ -117,9 +112,10 @@ def _forced_chart(body: ForcedBody, state: np.ndarray) -> np.ndarray:
     return state[len(state) - sizes(body.body)[1] :]
 
 
-_SCALAR = _Runs(lambda _: (2, 2, 4), _scalar_start, lambda _, state: state[4:6], _driver.advance, _scalar_each)
+_EACH, _SECULAR_EACH = _without_poses(_driver.step_each), _without_poses(secular_run.step_each)
+_SCALAR = _Runs(lambda _: (2, 2, 4), _scalar_start, lambda _, state: state[4:6], _driver.advance, _EACH)
 _RUNS: dict[type, _Runs] = {
-    SecularBody: _Runs(_secular_sizes, secular_run.start, secular_run.chart_in, secular_run.advance, _secular_each),
+    SecularBody: _Runs(_secular_sizes, secular_run.start, secular_run.chart_in, secular_run.advance, _SECULAR_EACH),
     GeneralBody: _Runs(_general_sizes, general_run.start, _general_chart, general_run.advance, _general_each),
     ComposedBody: _Runs(lambda body: sizes(body.body), _composition.start, _composed_chart, _composed_advance, None),
     ForcedBody: _Runs(lambda body: sizes(body.body), _forced_start, _forced_chart, _forced.advance, None),

@@ -45,6 +45,16 @@ def move(p: Body, y1: Any, y2: Any, q0: Any, q1: Any, q2: Any, q3: Any) -> tuple
     return _file_of(type(p)).move(p, y1, y2, q0, q1, q2, q3)
 
 
+def tangent(p: Body, m1: Any, m2: Any, y1: Any, y2: Any) -> tuple[Any, Any, Any, Any]:
+    """Return the derivative of the momenta after a step by those before it: those after it are minus those at -y."""
+    d1, d2 = increment(p, m1, m2, y1, y2)
+    a11, a12, a21, a22 = _file_of(type(p)).slopes(p, -m1 - d1, -m2 - d2, -y1, -y2)
+    b11, b12, b21, b22 = _file_of(type(p)).slopes(p, m1, m2, y1, y2)
+    det = b11 * b22 - b12 * b21
+    first, second = (a11 * b22 - a12 * b21) / det, (a12 * b11 - a11 * b12) / det
+    return first, second, (a21 * b22 - a22 * b21) / det, (a22 * b11 - a21 * b12) / det
+
+
 def principal(p: Body, m1: float, m2: float) -> tuple[int, float, float]:
     """Return the outcome and the root reached from momentum zero along s m."""
     return _file_of(type(p)).principal(p, m1, m2)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from nonholo.base.compiled import njit
-from nonholo.kernels._small import eliminate
+from nonholo.kernels._small import assign, eliminate
 
 
 class NearestBody(NamedTuple):
@@ -139,7 +139,7 @@ def _corrected(p: NearestBody, goal: np.ndarray, guess: np.ndarray, predicted: f
     m = len(guess)
     J, correction = np.empty((m, m)), np.empty((m, 1))
     allowed = max(p.close * predicted, min(p.small, predicted))
-    x[:] = guess
+    assign(x, guess)
     for _ in range(p.corrections):
         slope(p, x, J)
         residual(p, goal, x, correction)
@@ -184,14 +184,14 @@ def follow(p: NearestBody, start: np.ndarray, end: np.ndarray, x: np.ndarray) ->
             det = _tangent(p, there, direction, tangent, J)
             clear = det != 0 and np.isfinite(det) and (det > 0) == positive
         if clear:
-            here[:] = there
+            assign(here, there)
             s, size = ahead, 2 * size
         elif size > p.shortest:
             size /= 4
             _tangent(p, here, direction, tangent, J)
         else:
             return False
-    x[:] = here
+    assign(x, here)
     return True
 
 
@@ -201,7 +201,7 @@ def advance(p: NearestBody, goal: np.ndarray, x: np.ndarray, goals: np.ndarray, 
     for step in range(len(points)):
         now, here = (goal, x) if step == 0 else (goals[step - 1], points[step - 1])
         kicked(p, now, here, goals[step])
-        points[step] = here
+        assign(points[step], here)
         if not follow(p, now, goals[step], points[step]):
             return step
     return len(points)

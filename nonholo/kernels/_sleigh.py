@@ -9,7 +9,7 @@ and the second is $y_2 = (p_1(1+t^2) + 2am\,t^2)/2m$, half the slide along the c
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from nonholo.base.compiled import njit
 from nonholo.base.numerics import real_cubic_roots
@@ -55,6 +55,13 @@ def correction(p: SleighBody, m1: float, m2: float, y1: float, y2: float) -> tup
     """Return the Newton correction of y1, and of y2 to what belongs to the corrected y1."""
     dt = -residual(p, m1, m2, y1, y2)[0] / slope(p, m1, m2, y1)
     return dt, slide(p, m2, y1 + dt) - y2
+
+
+def slopes(p: SleighBody, m1: Any, m2: Any, y1: Any, y2: Any) -> tuple[Any, Any, Any, Any]:
+    """Return the derivative of m by y at a root, times 1 + t^2."""
+    weight, pull = 1 + y1 * y1, -2 * y1 * (2 * p.mass * p.a + m2)
+    first = p_hat(p, m2) * weight + p.a * y1 * pull + 2 * p.inertia * (1 - y1 * y1) / weight
+    return first, 2 * p.a * p.mass * y1, pull, 2 * p.mass
 
 
 @scalar

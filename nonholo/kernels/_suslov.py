@@ -77,14 +77,20 @@ def residual(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> tuple
 
 
 @scalar
-def correction(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> tuple[float, float]:
-    """Return the Newton correction of y."""
+def slopes(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> tuple[float, float, float, float]:
+    """Return the derivative of the two quadratics by y; at a root that of m, times 1 + |y|^2."""
     s = c_perp(p, y1, y2)
-    g1, g2 = residual(p, m1, m2, y1, y2)
     j11 = p.b11 - p.c2 * y2 - 2 * y1 * m1
     j12 = p.b12 + p.c1 * y2 - s - 2 * y2 * m1
     j21 = p.b12 + p.c2 * y1 + s - 2 * y1 * m2
-    j22 = p.b22 - p.c1 * y1 - 2 * y2 * m2
+    return j11, j12, j21, p.b22 - p.c1 * y1 - 2 * y2 * m2
+
+
+@scalar
+def correction(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> tuple[float, float]:
+    """Return the Newton correction of y."""
+    g1, g2 = residual(p, m1, m2, y1, y2)
+    j11, j12, j21, j22 = slopes(p, m1, m2, y1, y2)
     inverse = 1 / (j11 * j22 - j12 * j21)
     return (j12 * g2 - j22 * g1) * inverse, (j21 * g1 - j11 * g2) * inverse
 

@@ -16,6 +16,7 @@ from nonholo.simulation.members import (
     in_one_thread,
     run_in_lanes,
     scalar_members,
+    tangents,
 )
 from nonholo.simulation.runs import closed_step, refuse_too_long
 from nonholo.simulation.stores import size_in_blocks
@@ -43,4 +44,5 @@ __all__ = [
     "scalar_members",
     "simulate",
     "size_in_blocks",
+    "tangents",
 ]

@@ -2,11 +2,11 @@
 
 import functools
 from collections.abc import Callable
-from typing import Any, cast, overload
+from typing import Any, overload
 
 import numpy as np
 
-from nonholo.base.checks import error, flow_times, flow_tolerances, shown
+from nonholo.base.checks import error, flags, flow_times, flow_tolerances, shown
 from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, Solved, forced_solver, solver_of
@@ -29,6 +29,7 @@ def flow(
     rtol: float | None = None,
     atol: float = 1e-12,
     method: str | None = None,
+    reconstruct: bool = True,
     events: Any = None,
 ) -> Orbit: ...
 @overload
@@ -53,6 +54,7 @@ def flow(
     rtol: float | None = None,
     atol: float = 1e-12,
     method: str | None = None,
+    reconstruct: bool = True,
     events: Any = None,
 ) -> Any:
     r"""Solve the Euler-Poincare-Suslov equations.
@@ -85,6 +87,8 @@ def flow(
             so near a repelling equilibrium leaves it at the wrong time.
         method: None (numerical), without forces also "closed_form" or "diffrax": numerical too, by JAX, from the extra
             `jax`.
+        reconstruct: Also keep poses. Without them momenta of tops and sleighs cost O(n) operations a Taylor
+            coefficient, and nothing of size n x n is made.
         events: `Event`s, or functions of an orbit, whose changes of sign from one requested time or step of the series
             to the next are found, and located on the solution; see `Orbit.events`. Two of them between two such times
             are not seen: ask for more times. A stopping event ends the orbit with the last requested time before it.
@@ -108,47 +112,61 @@ def flow(
     starts = {"body_velocity": body_velocity, "momentum": momentum}
     if isinstance(system, AbstractCoordinateSystem):
         refused = {"restricted_velocity": restricted_velocity, "method": method, "events": events}
-        refuse_in_coordinates("flow", **{name: (value, None) for name, value in refused.items()})
+        no_pose = {"reconstruct": (reconstruct, True)}
+        refuse_in_coordinates("flow", **{name: (value, None) for name, value in refused.items()}, **no_pose)
         errors = {"rtol": 1e-10 if rtol is None else rtol, "atol": atol}
         return system.flow(configuration=configuration, times=times, **starts, **errors)
     if not isinstance(system, AbstractSystem):
         raise error("flow(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
-    solver, time = solver_of(method), flow_times(times)
+    flags("flow", reconstruct=reconstruct)
+    form = None if reconstruct or system.forces is not None else system.canonical.normal_form
+    solver, time = solver_of(method, form), flow_times(times)
     tolerances = flow_tolerances((1e-10 if method == "diffrax" else 1e-14) if rtol is None else rtol, atol)
     solve = functools.partial(solver, system.canonical, tolerances=tolerances)
     if system.forces is not None:
         solve = functools.partial(forced_solver(system.forces, float(time[0]), method), tolerances=tolerances)
-    first = _first_state(
-        system, time, Start.of("flow", configuration, restricted_velocity=restricted_velocity, **starts)
-    )
-    return _flowed(first, time, tolerances, solve, None if events is None else checked_events("flow", events))
+    start = Start.of("flow", configuration, restricted_velocity=restricted_velocity, **starts)
+    first = _first_state(system, time, start, posed=solver is solver_of(method))
+    found = None if events is None else checked_events("flow", events)
+    return _flowed(system, first, time, tolerances, solve, found, reconstruct)
 
 
-def _first_state(system: System, time: np.ndarray, start: Start) -> Orbit:
-    """Return the checked state at the first time."""
+def _first_state(
+    system: System, time: np.ndarray, start: Start, *, posed: bool
+) -> tuple[np.ndarray, np.ndarray | None]:
+    """Return the checked momentum at the first time and the pose, where one is solved for."""
     group = system.group
-    within_memory("flow(times=...)", 32.0 * len(time) * (system.rank + group.pose_size), "Ask for fewer times.")
-    g = start.pose(group)
-    reduced, pose = start.momentum(system, g), start.canonical_pose(system, g)
-    first = Orbit(ContinuousFlow(system), time[:1], reduced[None], None, pose[None])
-    if start.name == "momentum":
-        _check_momentum(start.value, first.momentum[0])
-    return first
+    numbers = system.rank + posed * group.pose_size
+    remedy = "Ask for fewer times, or for momenta alone: reconstruct=False without a method."
+    within_memory("flow(times=...)", 32.0 * len(time) * numbers, remedy)
+    g = start.pose(group) if posed or start.configuration is not None else None
+    reduced, pose = start.momentum(system, g), start.canonical_pose(system, g) if posed and g is not None else None
+    if start.name == "momentum" and np.shape(start.value) != (system.rank,):
+        _check_momentum(start.value, _opening(system, time, (reduced, pose)).momentum[0])
+    return reduced, pose
+
+
+def _opening(system: System, time: np.ndarray, first: tuple[np.ndarray, np.ndarray | None]) -> Orbit:
+    """Return the first state alone."""
+    return Orbit(ContinuousFlow(system), time[:1], first[0][None], None, None if first[1] is None else first[1][None])
 
 
 def _flowed(
-    first: Orbit,
+    system: System,
+    first: tuple[np.ndarray, np.ndarray | None],
     time: np.ndarray,
     tolerances: tuple[float, float],
     solve: Callable[..., Solved],
     events: dict[str, Event] | None,
+    reconstruct: bool,
 ) -> Orbit:
     """Return the orbit from a first state, with what events found."""
     if events is not None:
-        check_functions(events, first)
-    solved = solve(first.reduced_momentum[0], cast(np.ndarray, first.canonical_pose)[0], time - time[0])
-    states, outcome, reached = solved.states, solved.outcome, len(solved.states.momenta)
-    motion = ContinuousFlow(first.system, (time[0], time[reached - 1]), solved.at)
+        check_functions(events, _opening(system, time, first if reconstruct else (first[0], None)))
+    solved = solve(*first, time - time[0])
+    states = solved.states if reconstruct else solved.states._replace(poses=None, turned=None)
+    outcome, reached = solved.outcome, len(states.momenta)
+    motion = ContinuousFlow(system, (time[0], time[reached - 1]), solved.at)
     orbit = Orbit(motion, time[:reached], states.momenta, None, states.poses, outcome, turned=states.turned)
     if events is not None:
         orbit = flow_with_events(events, orbit, time[0] + solved.steps)

@@ -98,9 +98,9 @@ def _blocks(
     rows = rows_of_block("iterate(block_steps=...)", run, options.steps, block_steps)
     watch = None if events is None else watched("iterate", discrete, events, options.rule.name, options.reconstruct)
     first_one = first_state(discrete, start, posed=options.reconstruct, compiled=True)
-    state, first = opened(run, first_one, options.steps, options.throw)
-    if not len(first):
-        return iter((searched_first(watch, first)[0],))
+    state, ended = opened(run, first_one, options.steps, options.throw)
+    if ended is not None:
+        return iter((searched_first(watch, ended)[0],))
     return _computed(run, state, watch, Plan(options.steps, options.every, rows), options)
 
 

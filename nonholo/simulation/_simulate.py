@@ -5,7 +5,7 @@ from typing import Any, overload
 
 from nonholo.base.checks import flags, path
 from nonholo.base.results import finished
-from nonholo.discrete import AbstractCompiledRoute, BranchRule, Discretization
+from nonholo.discrete import BranchRule, Discretization
 from nonholo.orbit import Orbit
 from nonholo.simulation.events import Watch, run_compiled, run_with_events, watched
 from nonholo.simulation.runs import (
@@ -150,20 +150,17 @@ def simulate(
         return discrete.simulate(configuration=configuration, **starts, **common)
     options = RunOptions.of(discrete, **common, **how)
     start = Start.of("simulate", configuration, **starts, restricted_velocity=restricted_velocity)
-    refuse_too_long("simulate", discrete, options.steps, compiled=_closed(discrete, options) is not None)
+    closed = closed_step(discrete, options.rule, options.backend)
+    refuse_too_long("simulate", discrete, options.steps, compiled=closed is not None)
     watch = None if events is None else watched("simulate", discrete, events, options.rule.name, options.reconstruct)
     return (_run_in_memory if store is None else _run_into_store)(discrete, start, options, watch, **kept)
-
-
-def _closed(discrete: Discretization, options: RunOptions) -> AbstractCompiledRoute | None:
-    return closed_step(discrete, options.rule, options.backend)
 
 
 def _run_into_store(
     discrete: Discretization, start: Start, options: RunOptions, watch: Watch | None, store: Any, **kept: Any
 ) -> Orbit:
-    store = path("simulate(store=...)", store)
-    closed, posed = _closed(discrete, options), options.reconstruct
+    store, posed = path("simulate(store=...)", store), options.reconstruct
+    closed = closed_step(discrete, options.rule, options.backend)
     run = compiled_run("simulate(store=...)", discrete, closed, options.every, posed)
     refuse_too_large("simulate", discrete, 1, posed)
     first = first_state(discrete, start, posed=posed, compiled=True)
@@ -174,8 +171,8 @@ def _run_in_memory(
     discrete: Discretization, start: Start, options: RunOptions, watch: Watch | None, **kept: Any
 ) -> Orbit:
     refuse_without_store(**kept)
+    closed = closed_step(discrete, options.rule, options.backend)
     steps, every, posed, throw = options.steps, options.every, options.reconstruct, options.throw
-    closed = _closed(discrete, options)
     if watch is None:  # an event may stop it long before
         refuse_too_large("simulate", discrete, 1 + steps // every, posed)
     first = first_state(discrete, start, posed=posed, compiled=closed is not None)

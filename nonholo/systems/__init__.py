@@ -1,7 +1,15 @@
 """Systems: a group, an inertia operator and the subspace that velocities are constrained to."""
 
 from nonholo.systems import families
-from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, AbstractSystem, Equilibria, System, refuse_forces
+from nonholo.systems._base import (
+    AbstractLLSystem,
+    AbstractLRSystem,
+    AbstractSystem,
+    Equilibria,
+    System,
+    refuse_forces,
+    unchecked,
+)
 from nonholo.systems._body import ImpossibleBodyWarning
 from nonholo.systems._coordinate_system import (
     AbstractCoordinateDiscretization,
@@ -88,4 +96,5 @@ __all__ = [
     "spanned",
     "symmetric_complement",
     "trace_constraints",
+    "unchecked",
 ]

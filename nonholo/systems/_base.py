@@ -11,7 +11,7 @@ from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
-from nonholo.base.checks import error, shape_of, trailing
+from nonholo.base.checks import error, is_traced, shape_of, trailing
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
@@ -248,6 +248,14 @@ class AbstractSystem(abc.ABC):
         return trailing(f"{type(self).__name__} ({name}=...)", value, (self.rank,), remedy)
 
 
+def unchecked(system: SystemT, **numbers: Array) -> SystemT:
+    """Return a system with other numbers, unchecked: they may have axes in front, where its formulas allow them."""
+    other = object.__new__(type(system))
+    for name in (*system.leaves, *system.structure):
+        object.__setattr__(other, name, numbers.get(name, getattr(system, name)))
+    return other
+
+
 class AbstractLLSystem(AbstractSystem):
     r"""A left-invariant Lagrangian with a left-invariant constraint: body velocities lie in $\mathfrak{d}$."""
 
@@ -423,5 +431,5 @@ def refuse_forces(where: str, system: Any) -> None:
 def _solve(matrix: Float[Array, "... k k"] | WideInertia, vector: Float[Array, "... k"]) -> Float[Array, "... k"]:
     if isinstance(matrix, WideInertia):
         return matrix.velocities(vector)
-    xp = (matrix @ vector[..., None]).__array_namespace__()  # either may be traced
+    xp = (vector if is_traced(vector) else matrix).__array_namespace__()
     return xp.linalg.solve(xp.asarray(matrix), xp.asarray(vector)[..., None])[..., 0]

@@ -10,7 +10,7 @@ from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._wide import narrow
 
 
-def inertia_tensor(mass_tensor: Float[Array, "3 3"]) -> Float[Array, "3 3"]:
+def inertia_tensor(mass_tensor: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:
     r"""Return $\mathrm{tr}(J)\,\mathrm{Id} - J$, the inertia tensor of a body with mass tensor $J = \int r r^T dm$.
 
     Example:
@@ -18,7 +18,7 @@ def inertia_tensor(mass_tensor: Float[Array, "3 3"]) -> Float[Array, "3 3"]:
         array([5., 4., 3.])
     """
     xp = mass_tensor.__array_namespace__()
-    return xp.trace(mass_tensor) * xp.eye(3) - mass_tensor
+    return xp.linalg.trace(mass_tensor)[..., None, None] * xp.eye(3) - mass_tensor
 
 
 def mass_tensor_from_inertia(inertia: Float[Array, "3 3"]) -> Float[Array, "3 3"]:

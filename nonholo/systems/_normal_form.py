@@ -103,6 +103,29 @@ class NormalForm:
         more = self.mass * self.arm**2
         return self.stiffness + (more if self.is_diagonal else more * np.eye(len(self.coupling)))
 
+    @functools.cached_property
+    def principal(self) -> tuple[Float[np.ndarray, "k"], Float[np.ndarray, "k k"] | None]:
+        """The diagonal of B in its principal axes, and these as columns; None where they are those of the form."""
+        if self.is_diagonal:
+            return np.asarray(self.stiffness), None
+        b, axes = np.linalg.eigh(self.stiffness)
+        return b, axes
+
+    def to_principal(self, vectors: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... m"]:
+        """Return vectors in the principal axes of B; a last component along the blade stays."""
+        axes = self.principal[1]
+        return vectors if axes is None else _first_turned(vectors, axes)
+
+    def from_principal(self, vectors: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... m"]:
+        """Return vectors in the axes of the form from those in the principal axes of B."""
+        axes = self.principal[1]
+        return vectors if axes is None else _first_turned(vectors, axes.T)
+
+
+def _first_turned(vectors: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    k = len(axes)
+    return np.concatenate([vectors[..., :k] @ axes, vectors[..., k:]], axis=-1)
+
 
 def top_form(mass_tensor: Float[Array, "n n"]) -> NormalForm:
     """Return the form of a top whose axis is the last one."""

@@ -59,7 +59,7 @@ class Start:
     def momentum(self, system: System, g: Float[np.ndarray, "N N"] | None) -> Float[np.ndarray, "k"]:
         """Return the canonical momentum along the constraint that a velocity or a momentum has at a pose."""
         along = {"momentum": _of_momentum, "body_velocity": _of_velocity}.get(self.name, _of_coordinates)
-        return of_finite_energy(self.owner, system, g, along(self, system, g))
+        return along(self, system, g)
 
 
 def one_start(owner: str, **starts: Any) -> str:
@@ -87,13 +87,17 @@ def inadmissible(where: str, residual: np.ndarray, nearest: np.ndarray) -> Value
     return error(where, "satisfy the constraint", got, f"The nearest admissible velocity is {nearest.tolist()}.")
 
 
-def of_finite_energy(owner: str, system: System, g: np.ndarray | None, along: np.ndarray) -> np.ndarray:
-    """Return canonical components of a momentum along the constraint, refused if its energy is not finite."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        energy = along @ system.restricted_velocity(along, g) / 2
-    if not np.isfinite(energy):
+def of_finite_energy(owner: str, system: System, g: np.ndarray | None, along: np.ndarray, pair: Any = ()) -> np.ndarray:
+    """Return canonical components of a momentum along the constraint, refused if its energy is not finite.
+
+    The energy is half the product of a momentum and its velocity, the `pair` where both are known.
+    """
+    if not pair:
+        with np.errstate(over="ignore", invalid="ignore"):
+            pair = along, system.restricted_velocity(along, g)
+    if not abs(energy := np.vdot(*pair) / 2) < np.inf:
         raise error(f"{owner}(...)", "start with a finite energy", f"{energy}", "Start slower, or use other units.")
-    return system.to_canonical(along)
+    return along if system.canonical is system else system.to_canonical(along)
 
 
 def _of_momentum(start: Start, system: System, g: np.ndarray | None) -> np.ndarray:
@@ -101,16 +105,19 @@ def _of_momentum(start: Start, system: System, g: np.ndarray | None) -> np.ndarr
     size = k if shape_of(start.value) == (k,) else dim
     remedy = f"Pass {dim} body momenta or the {k} along the constraint subspace."
     value = array(start.where, start.value, (size,), remedy)
-    return value if size == k else system.restrict_at(value, g)
+    return of_finite_energy(start.owner, system, g, value if size == k else system.restrict_at(value, g))
 
 
 def _of_velocity(start: Start, system: System, g: np.ndarray | None) -> np.ndarray:
-    return system.restrict_at(system.inertia_operator @ _admissible(start.where, system, g, start.value), g)
+    velocity = _admissible(start.where, system, g, start.value)
+    momentum = system.inertia_operator @ velocity
+    return of_finite_energy(start.owner, system, g, system.restrict_at(momentum, g), (momentum, velocity))
 
 
 def _of_coordinates(start: Start, system: System, g: np.ndarray | None) -> np.ndarray:
     rows = array(start.where, start.value, (system.rank,), "Pass one number per admissible direction.")
-    return system.restricted_momentum(rows, g)
+    along = system.restricted_momentum(rows, g)
+    return of_finite_energy(start.owner, system, g, along, (along, rows))
 
 
 def _admissible(where: str, system: System, g: np.ndarray | None, body_velocity: Any) -> np.ndarray:
@@ -118,7 +125,7 @@ def _admissible(where: str, system: System, g: np.ndarray | None, body_velocity:
     pose = system.group.identity if g is None else g
     carried = system.carried(pose) @ velocity if system.is_spatial else velocity
     forbidden = system.annihilator @ carried
-    if np.abs(forbidden).max(initial=0.0) > _TOLERANCE * np.abs(carried).max():
+    if np.count_nonzero(forbidden) and np.abs(forbidden).max() > _TOLERANCE * np.abs(carried).max():
         nearest = carried - np.linalg.pinv(system.annihilator) @ forbidden
         raise inadmissible(where, forbidden, system.carried(system.group.inverse(pose)) @ nearest)
     return velocity

@@ -1,14 +1,220 @@
 """Whether a system fits together and moves as its equations say."""
 
+import functools
+from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
+from nonholo.analysis import conserved_momenta
 from nonholo.base.checks import error, flags
-from nonholo.systems import AbstractSystem, refuse_forces
-from nonholo.testing._measures import seeded
-from nonholo.testing._report import Report, run_checks
-from nonholo.testing._system_motion import MOTION
-from nonholo.testing._system_samples import SystemSamples
-from nonholo.testing._system_statics import STATICS
+from nonholo.base.types import Float
+from nonholo.continuous import vector_field
+from nonholo.systems import AbstractSystem, Equilibria, refuse_forces
+from nonholo.testing._measures import derivative, gap, largest, relative, seeded
+from nonholo.testing._report import Check, NotApplicableError, Report, need, run_checks
+
+_COUNT = 4
+
+
+class SystemSamples:
+    """Random admissible states of a system, with momenta and velocities from the definitions.
+
+    Args:
+        system: The system.
+        rng: Where the numbers come from.
+    """
+
+    def __init__(self, system: AbstractSystem, rng: np.random.Generator) -> None:
+        self.system, self.group = system, system.group
+        self.spatial = system.is_spatial
+        self.S, self.A = np.asarray(system.constraint_subspace), np.asarray(system.annihilator)
+        self.inertia = np.asarray(system.inertia_operator)
+        self.covectors = rng.normal(size=(_COUNT, self.group.dim))
+        self._rows = rng.normal(size=(_COUNT, len(self.S)))
+        self._rng = rng
+
+    @functools.cached_property
+    def velocity(self) -> Float[np.ndarray, "4 k"]:
+        """Admissible velocities of norm one, in rows of the constraint subspace (spatial ones for an LR system)."""
+        return self._rows / np.linalg.norm(self._rows @ self.S, axis=1)[:, None]
+
+    @functools.cached_property
+    def g(self) -> Float[np.ndarray, "4 N N"]:
+        """Poses."""
+        return np.stack([self.group.random(self._rng) for _ in range(_COUNT)])
+
+    @functools.cached_property
+    def directions(self) -> Float[np.ndarray, "4 k dim"]:
+        """The admissible directions in the body."""
+        if not self.spatial:
+            return np.broadcast_to(self.S, (_COUNT, *self.S.shape))
+        return np.swapaxes(self.group.adjoint(np.linalg.inv(self.g)) @ self.S.T, -1, -2)
+
+    @functools.cached_property
+    def body_velocity(self) -> Float[np.ndarray, "4 dim"]:
+        """The body velocities."""
+        return (self.velocity[:, None, :] @ self.directions)[:, 0]
+
+    @functools.cached_property
+    def momentum(self) -> Float[np.ndarray, "4 dim"]:
+        """Their momenta."""
+        return self.body_velocity @ self.inertia.T
+
+    @functools.cached_property
+    def restricted(self) -> Float[np.ndarray, "4 k"]:
+        """The momenta along the admissible directions."""
+        return (self.directions @ self.momentum[:, :, None])[:, :, 0]
+
+    @functools.cached_property
+    def rate(self) -> tuple[Float[np.ndarray, "4 k"], Float[np.ndarray, "4 N N"]]:
+        """The rates of restricted momentum and pose by the vector field of the system."""
+        k = len(self.S)
+        state = np.concatenate([self.restricted, self.g.reshape(_COUNT, -1)], axis=-1)
+        rate = vector_field(self.system)(0.0, state)
+        return rate[:, :k], rate[:, k:].reshape(self.g.shape)
+
+    def along_the_motion(self, quantity: Callable[[np.ndarray, np.ndarray], Any]) -> np.ndarray:
+        """Return the rate of change of a function of restricted momentum and pose."""
+        momentum_rate, pose_rate = self.rate
+        turn = self.group.vee(np.linalg.inv(self.g) @ pose_rate)
+        return derivative(lambda t: quantity(self.restricted + t * momentum_rate, self.g @ self.group.exp(t * turn)))
+
+    def energy(self, restricted: np.ndarray, g: np.ndarray) -> np.ndarray:
+        """Return the constrained energy that the system states."""
+        system: Any = self.system
+        return system.constrained_energy(restricted, g) if self.spatial else system.constrained_energy(restricted)
+
+    def full_momentum(self, restricted: np.ndarray, g: np.ndarray) -> np.ndarray:
+        """Return the momentum of the admissible velocity with these momenta along the constraint."""
+        system: Any = self.system
+        if not self.spatial:
+            return system.restricted_velocity(restricted) @ self.S @ self.inertia.T
+        spatial = system.restricted_velocity(restricted, g) @ self.S
+        return (self.group.adjoint(np.linalg.inv(g)) @ spatial[..., None])[..., 0] @ self.inertia.T
+
+
+def _sizes(s: SystemSamples) -> float:
+    dim = s.group.dim
+    shapes = [(s.S, (len(s.S), dim)), (s.A, (dim - len(s.S), dim)), (s.inertia, (dim, dim))]
+    return sum(array.shape != shape for array, shape in shapes)
+
+
+def _complementary(s: SystemSamples) -> float:
+    rows = np.concatenate([s.S, s.A])
+    return s.group.dim - np.linalg.matrix_rank(rows / np.linalg.norm(rows, axis=1)[:, None])
+
+
+def _annihilator(s: SystemSamples) -> float:
+    scale = np.linalg.norm(s.A, axis=1)[:, None] * np.linalg.norm(s.S, axis=1)
+    return largest(s.A @ s.S.T / scale)
+
+
+def _mass_tensor(s: SystemSamples) -> float:
+    tensor = s.system.homogeneous_mass_tensor
+    need(tensor is not None, "the kinetic energy comes from an inertia operator")
+    E = s.group.basis
+    form = np.eye(s.group.size) if s.group.form is None else s.group.form  # tr(E_i J E_j*)
+    return relative(s.inertia, np.einsum("iab,bc,jdc,da->ij", E, np.asarray(tensor) @ np.linalg.inv(form), E, form))
+
+
+def _symmetry(s: SystemSamples) -> float:
+    return largest(s.inertia - s.inertia.T) / max(largest(s.inertia), np.finfo(float).tiny)
+
+
+def _positive(s: SystemSamples) -> float:
+    """Return the condition of the inertia along the constraint, infinite if an eigenvalue is not positive.
+
+    On a group with a form they may be negative.
+    """
+    need_motion(s)
+    Q = np.linalg.qr(s.S.T)[0]
+    eigenvalues = np.linalg.eigvalsh(Q.T @ (s.inertia + s.inertia.T) @ Q / 2)
+    if s.group.form is not None:
+        eigenvalues = np.sort(np.abs(eigenvalues))
+    return float(eigenvalues[-1] / eigenvalues[0]) if eigenvalues[0] > 0 else np.inf
+
+
+def _constrained_inertia(s: SystemSamples) -> float:
+    return relative(s.system.constrained_inertia, s.S @ s.inertia @ s.S.T)
+
+
+def _restriction(s: SystemSamples) -> float:
+    system = s.system
+    if s.spatial:
+        return relative(system.restrict_in_space(s.momentum, s.g), s.restricted)  # type: ignore[attr-defined]
+    return relative(system.restrict(s.momentum), s.restricted)
+
+
+def _velocity(s: SystemSamples) -> float:
+    need_motion(s)
+    return relative(s.full_momentum(s.restricted, s.g), s.momentum)
+
+
+def _kinetic_energy(s: SystemSamples) -> float:
+    need_motion(s)
+    kinetic = np.sum(s.momentum * s.body_velocity, axis=-1) / 2
+    return relative(s.energy(s.restricted, s.g), kinetic)
+
+
+def _full_energy(s: SystemSamples) -> float:
+    need_motion(s)
+    need(len(s.S) < s.group.dim, "nothing is forbidden: full momenta are restricted ones")
+    return relative(s.energy(s.momentum, s.g), s.energy(s.restricted, s.g))
+
+
+def _into_canonical(s: SystemSamples) -> np.ndarray:
+    """Return the matrix of Ad of the frame; refuse where the frame is the user's own."""
+    need(s.system.canonical is not s.system, "the canonical frame is the user's")
+    return s.group.adjoint(np.asarray(s.system.frame))
+
+
+def _frame_of_subspace(s: SystemSamples) -> float:
+    into = _into_canonical(s)
+    return largest(np.asarray(s.system.canonical.annihilator) @ np.linalg.solve(into, s.S.T))
+
+
+def _frame_of_inertia(s: SystemSamples) -> float:
+    into = _into_canonical(s)
+    return relative(s.system.canonical.inertia_operator, into.T @ s.inertia @ into)
+
+
+def _frame_of_momenta(s: SystemSamples) -> float:
+    into = _into_canonical(s)
+    return relative(s.restricted @ s.system.frame_map.T, s.system.canonical.restrict(s.momentum @ into))
+
+
+def _frame_of_energy(s: SystemSamples) -> float:
+    _into_canonical(s)
+    found = s.system.canonical.constrained_energy(s.restricted @ s.system.frame_map.T)  # type: ignore[attr-defined]
+    return relative(found, s.energy(s.restricted, s.g))
+
+
+def need_motion(s: SystemSamples) -> None:
+    need(len(s.S), "the constraint forbids all motion")
+
+
+STATICS = (
+    Check(
+        "sizes", "constraint_subspace (k, dim), annihilator (dim - k, dim), inertia_operator (dim, dim)", 0.0, _sizes
+    ),
+    Check("complementary", "rows of constraint_subspace and annihilator together span the space", 0.0, _complementary),
+    Check("annihilator", "annihilator @ constraint_subspace.T = 0", 1e-13, _annihilator),
+    Check("inertia of the mass tensor", "inertia_operator[i, j] = tr(E_i J E_j*)", 1e-12, _mass_tensor),
+    Check("inertia symmetric", "inertia_operator is symmetric", 1e-13, _symmetry),
+    Check("inertia positive", "inertia along the constraint is positive, with a form invertible", 1e13, _positive),
+    Check("constrained_inertia", "constrained_inertia = S I S^T", 1e-12, _constrained_inertia),
+    Check("restriction", "restrict(p) = S p (in space: S coadjoint(g^-1, p))", 1e-12, _restriction),
+    Check("restricted_velocity", "restricted_velocity inverts velocity -> momentum", 1e-11, _velocity),
+    Check("energy", "constrained_energy = kinetic energy of the admissible velocity", 1e-11, _kinetic_energy),
+    Check("energy of full momenta", "constrained_energy(p) = constrained_energy(p along S)", 1e-11, _full_energy),
+    Check("frame", "residual(frame) = 0", 1e-12, lambda s: largest(s.group.residual(np.asarray(s.system.frame)))),
+    Check("frame and constraint", "Ad of frame^-1 maps d to the canonical d", 1e-12, _frame_of_subspace),
+    Check("frame and inertia", "canonical inertia = Ad_T^T I Ad_T", 1e-11, _frame_of_inertia),
+    Check("frame and momenta", "frame_map takes momenta along d to canonical ones", 1e-11, _frame_of_momenta),
+    Check("frame and energy", "the canonical energy is the energy", 1e-11, _frame_of_energy),
+)
+"""In the order of the report; tolerances leave room for rounding at inertias of a few units."""
 
 
 def check_system(
@@ -55,3 +261,105 @@ def check_system(
 
 def _named(thing: Any) -> str:
     return type(thing).__name__
+
+
+def _equations(s: SystemSamples) -> float:
+    """Compare the rate of momentum with <p, [omega, S_i]>; momenta along a constraint fixed in space are constant."""
+    need_motion(s)
+    brackets = s.group.bracket(s.body_velocity[:, None, :], s.directions)
+    expected = 0 * s.restricted if s.spatial else (brackets @ s.momentum[:, :, None])[:, :, 0]
+    return largest(s.rate[0] - expected) / largest(s.momentum)
+
+
+def _reconstruction(s: SystemSamples) -> float:
+    return gap(s.rate[1], s.g @ s.group.hat(s.body_velocity))
+
+
+def _constraint(s: SystemSamples) -> float:
+    back = np.linalg.inv(s.g)
+    velocity = s.rate[1] @ back if s.spatial else back @ s.rate[1]
+    return largest(s.group.vee(velocity) @ s.A.T)
+
+
+def _energy(s: SystemSamples) -> float:
+    need_motion(s)
+    return largest(s.along_the_motion(s.energy)) / largest(s.energy(s.restricted, s.g))
+
+
+def _equilibria(s: SystemSamples) -> tuple[Equilibria, ...]:
+    """Return each linear space of equilibria."""
+    need_motion(s)
+    system: Any = s.system
+    need(not s.spatial, "a right-invariant constraint")
+    try:
+        known = system.equilibria()
+    except ValueError:
+        raise NotApplicableError("the system refuses to name its equilibria") from None
+    return known, *known.others
+
+
+def _rate_at(s: SystemSamples, velocity: np.ndarray) -> np.ndarray:
+    """Return the rate of change of body velocities, in rows of the subspace."""
+    w = velocity @ np.linalg.pinv(s.S)
+    brackets = s.group.bracket(velocity[:, None, :], s.S)
+    inertia = s.S @ s.inertia @ s.S.T
+    return np.linalg.solve(inertia, (brackets @ (w @ s.S @ s.inertia.T)[:, :, None])[:, :, 0].T).T
+
+
+def _at_rest(s: SystemSamples) -> float:
+    spaces = [known.subspace for known in _equilibria(s)]
+    mixed = np.concatenate([*spaces, *(rows.sum(axis=0)[None] for rows in spaces)])
+    forbidden = largest(mixed @ s.A.T)
+    return max(forbidden, largest(_rate_at(s, mixed)))
+
+
+def _growth(s: SystemSamples) -> float:
+    """Return the largest growth rate across the equilibria that attract, relative to the velocity."""
+    attracting = [known for known in _equilibria(s) if known.attracting is not None]
+    need(attracting, "no equilibrium attracts")
+    return max(_growth_beside(s, known) for known in attracting)
+
+
+def _growth_beside(s: SystemSamples, known: Equilibria) -> float:
+    velocity = np.asarray(known.attracting)
+    w = velocity @ np.linalg.pinv(s.S)
+
+    def nearby(t: float) -> np.ndarray:
+        return _rate_at(s, (w + t * np.eye(len(w))) @ s.S)
+
+    rates = np.sort(np.linalg.eigvals(derivative(nearby, 0.1).T).real)
+    across = len(w) - len(known.subspace)
+    return float(rates[across - 1] / np.linalg.norm(velocity))
+
+
+def _in_body(s: SystemSamples) -> float:
+    need_motion(s)
+    return _change(s, conserved_momenta(s.system).body, s.full_momentum)
+
+
+def _in_space(s: SystemSamples) -> float:
+    need_motion(s)
+
+    def spatial(restricted: np.ndarray, g: np.ndarray) -> np.ndarray:
+        return s.group.coadjoint(s.group.inverse(g), s.full_momentum(restricted, g))
+
+    return _change(s, conserved_momenta(s.system).spatial, spatial)
+
+
+def _change(s: SystemSamples, rows: np.ndarray, quantity: Any) -> float:
+    need(len(rows), "none is conserved")
+    slope = s.along_the_motion(quantity) @ rows.T
+    return largest(slope) / (1 + largest(quantity(s.restricted, s.g)))
+
+
+MOTION = (
+    Check("equations of motion", "rate of <p, S_i> = <p, [omega, S_i]> (in space: zero)", 1e-11, _equations),
+    Check("reconstruction", "g' = g hat(omega)", 1e-11, _reconstruction),
+    Check("constraint", "the vector field keeps the constraint", 1e-11, _constraint),
+    Check("energy conserved", "the constrained energy is constant along the vector field", 1e-8, _energy),
+    Check("equilibria", "equilibria are admissible and their velocities constant", 1e-11, _at_rest),
+    Check("attraction", "small deviations from the attracting equilibrium decay: negative growth rate", -1e-9, _growth),
+    Check("conserved body momenta", "conserved_momenta(...).body are constant along the vector field", 1e-8, _in_body),
+    Check("conserved spatial momenta", "conserved_momenta(...).spatial are constant along it", 1e-8, _in_space),
+)
+"""In the order of the report; rates of change are central differences of order four, good to 1e-11 or so."""

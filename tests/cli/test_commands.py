@@ -15,7 +15,7 @@ from typer.testing import Result
 
 import nonholo as nh
 from nonholo import plotting
-from nonholo.cli import _caches
+from nonholo.cli import _app
 from nonholo.cli.commands import _running
 from nonholo.cli.scenario.files import load_scenario
 from nonholo.simulation.stores import _stored_run
@@ -306,7 +306,7 @@ def test_the_cache_of_jax(set_by_user: bool, tmp_path: Path, monkeypatch: pytest
     if not set_by_user:
         monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR")
     monkeypatch.setenv("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "1")
-    _caches.use_cache_folder()
+    _app.use_cache_folder()
     there = os.environ["JAX_COMPILATION_CACHE_DIR"]
     monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", there)
     assert there == ("/mine" if set_by_user else str(tmp_path / ".cache" / "nonholo" / "jax"))
@@ -317,7 +317,7 @@ def test_no_cache_of_jax(cache: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where there is no place for it nothing is set, and no folder of the name ~ is made."""
     monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR", raising=False)
     monkeypatch.setattr("platformdirs.user_cache_path", lambda _: Path(cache))
-    _caches.use_cache_folder()
+    _app.use_cache_folder()
     assert "JAX_COMPILATION_CACHE_DIR" not in os.environ
     assert not Path("~").exists()
 

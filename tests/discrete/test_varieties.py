@@ -38,6 +38,19 @@ def test_functions_of_the_same_variety_give_the_same_orbit(name: str) -> None:
     assert nh.invariants(found).constraint_residual <= 1e-14
 
 
+@pytest.mark.parametrize(
+    "system",
+    [TOP, TILTED, SLEIGH, nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0]))],
+    ids=["top", "tilted top", "sleigh", "top on SO(4)"],
+)
+def test_angles_of_displacements_are_those_of_their_logarithms(system: nh.SuslovTop | nh.ChaplyginSleigh) -> None:
+    """At rest, near it, at any angle and near half-turns."""
+    variety, group = nh.discretize(system, 0.1).variety, system.group
+    directions = np.random.default_rng(3).normal(size=(60, len(variety.chart)))
+    y = directions * np.repeat([0.0, 1e-200, 1e-9, 0.3, 4.0, 1e4], 10)[:, None]
+    assert np.abs(variety.angle(y) - group.angle(group.log(variety.displaced(y)))).max() <= 1e-14
+
+
 @pytest.mark.profile("routes", instead="test_functions_of_the_same_variety_give_the_same_orbit")
 def test_the_naive_constraint_spirals() -> None:
     """With W - I in d the balanced sleigh turns by a constant angle D and its steps shrink by cos D: a spiral."""

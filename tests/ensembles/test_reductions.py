@@ -8,7 +8,9 @@ import pytest
 from bodies import GENERAL
 
 import nonholo as nh
+from nonholo.analysis import step_jacobians
 from nonholo.ensembles import REDUCTIONS
+from nonholo.simulation import tangents
 
 J = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 TOP = nh.discretize(nh.SuslovTop(J, axis=(0.6, 0.0, 0.8)), 0.1)
@@ -161,6 +163,19 @@ def test_lyapunov_is_the_growth_of_differences(discrete: nh.Discretization, star
         slopes = [(last(first + h * e) - last(first - h * e)) / (2 * h) for e in np.eye(len(first))]
         wanted = np.log(np.linalg.norm(slopes, 2)) / (steps * discrete.time_step)
         assert abs(exponent - wanted) < 1e-8  # differences: 1e-10 of the slopes, divided by a time of about one
+
+
+@BOTH
+@pytest.mark.parametrize("size", [0.0, 1e-9, 1.0, 4.0])
+def test_tangents_are_derivatives_of_steps(discrete: nh.Discretization, size: float) -> None:
+    """A derivative in closed form is that by the definition: at rest, near it and far, whatever the time step."""
+    own = {"time_step": np.array([1e-3, 0.1, 0.5])}
+    batch = nh.ensemble(discrete, restricted_velocity=size * STARTS, steps=20, save_every=1, parameters=own)
+    found = tangents(batch.members, batch.reduced_momentum, batch.cayley)
+    for member, done in enumerate(batch.steps_done):
+        assert done > 0
+        wanted = step_jacobians(batch.members.of(member), batch.orbit(member).displacement)
+        assert np.abs(found[member, : done + 1] - wanted).max() < 1e-12 * np.abs(wanted).max()
 
 
 def test_lyapunov_of_members_that_end_early() -> None:

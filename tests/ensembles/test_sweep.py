@@ -344,7 +344,7 @@ def test_two_sweeps_at_a_time(tmp_path: Path) -> None:
 
 def test_progress_counts_members(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every member is counted once, those of blocks that were there too."""
-    from nonholo.ensembles import _resume
+    from nonholo.ensembles import _sweep
 
     counted: list[tuple[int, int]] = []
 
@@ -355,7 +355,7 @@ def test_progress_counts_members(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         def __exit__(self, *_: object) -> None:
             pass
 
-    monkeypatch.setattr(_resume, "progress_bar", lambda *_: Bar())
+    monkeypatch.setattr(_sweep, "progress_bar", lambda *_: Bar())
     for _ in range(2):
         counted.clear()
         _swept(_calm, tmp_path, block=4, progress=True, resume=True)

@@ -92,7 +92,8 @@ def _flows() -> list[Call]:
     how = {"rtol": positive(1e-8), "atol": positive(1e-10), "method": text(None, True), "configuration": array(g)}
     state = array([0.3, 0.4, *np.eye(3).ravel()], "batch")
     return [
-        call("flow [options]", nh.flow, **given, **how, body_velocity=array([0.3, 0.4, 0.0])),
+        call("flow [options]", nh.flow, **given, **how, body_velocity=array([0.3, 0.4, 0.0]), reconstruct=flag(True)),
+        call("flow [momenta]", nh.flow, **given, momentum=array([0.3, 0.4]), reconstruct=flag(False)),
         call("flow [momentum]", nh.flow, **given, momentum=array([0.3, 0.4])),
         call("vector_field", lambda system: nh.vector_field(system), system=thing(SLEIGH.system)),
         call("vector_field [value]", by_position(nh.vector_field(SLEIGH.system)), time=number(0.0), state=state),

@@ -93,6 +93,13 @@ def flows(system: Any, method: str | None = None) -> Arrays:
     return [orbit.reduced_momentum, orbit.canonical_pose, between.reduced_momentum, between.canonical_pose]
 
 
+def momenta_of_flows(system: Any) -> Arrays:
+    """Return the momenta of a continuous motion, without its poses."""
+    velocity = np.random.default_rng(4).normal(size=system.rank) / np.sqrt(system.rank)
+    orbit = nh.flow(system, restricted_velocity=velocity, times=np.linspace(0.0, 5.0, 6), reconstruct=False)
+    return [orbit.reduced_momentum, orbit.at(np.linspace(4.9, 0.1, 7)).reduced_momentum]
+
+
 def members_of_flows(system: Any) -> Arrays:
     """Return the continuous motions of an ensemble."""
     velocities = SIZE * np.random.default_rng(7).normal(size=(MEMBERS // 4, 2))
@@ -138,6 +145,9 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     "a top past angle pi": lambda: past_pi(),
     "flow of a top": lambda: flows(TOP),
     "flow of a sleigh": lambda: flows(SLEIGH),
+    "momenta of a sleigh on SE(200)": lambda: momenta_of_flows(
+        nh.MultidimensionalSleigh.arrowhead(1.3, np.linspace(0.4, 0, 200), np.linspace(1, 2, 200), np.full(199, 0.01))
+    ),
     "flows of tops": lambda: members_of_flows(TOP),
     "flows of sleighs": lambda: members_of_flows(SLEIGH),
     "right-invariant flow on SE(3)": lambda: flows(GENERAL["right-invariant on SE(3)"][0]),

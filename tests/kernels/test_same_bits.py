@@ -16,7 +16,19 @@ from nonholo.kernels import _scalar
 LIVE = Path(__file__).parent / "live.py"
 ROUNDED_BY_IEEE = {
     "math": {"copysign", "inf", "isfinite", "nan", "sqrt"},
-    "np": {"abs", "all", "array", "concatenate", "empty", "empty_like", "int64", "isfinite", "nan", "ndarray"}
+    "np": {
+        "abs",
+        "all",
+        "array",
+        "concatenate",
+        "empty",
+        "empty_like",
+        "float64",
+        "int64",
+        "isfinite",
+        "nan",
+        "ndarray",
+    }
     | {"sqrt", "sum", "uint64", "zeros", "zeros_like"},
 }
 

@@ -9,7 +9,7 @@ from plotting.runs import sleigh_run, top_run
 
 import nonholo as nh
 from nonholo.plotting.animation._animation import _shown_states
-from nonholo.plotting.animation._top_scene import _box, _face, _way_out
+from nonholo.plotting.animation._scenes import _box, _face, _way_out
 
 
 @pytest.mark.parametrize("kind", ["top_orbit", "sleigh_orbit"])

@@ -8,7 +8,7 @@ from plotting.runs import body_tensor, made_up, run_of
 
 import nonholo as nh
 from nonholo.plotting.motion._time_series import _velocity_names
-from nonholo.plotting.overviews._panels import panels_of
+from nonholo.plotting.overviews import panels_of
 from nonholo.systems import SYSTEMS
 
 _HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])

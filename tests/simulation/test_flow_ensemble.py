@@ -7,6 +7,9 @@ import pytest
 from bodies import mass_tensor
 
 import nonholo as nh
+from nonholo.continuous._series import body_numbers, by_series
+from nonholo.simulation.members._families import inertias_and_frames
+from nonholo.simulation.members._members import Members
 from nonholo.systems import AbstractSystem
 
 RNG = np.random.default_rng(8)
@@ -23,6 +26,24 @@ SYSTEMS: dict[str, AbstractSystem] = {
     "right-invariant in the plane": nh.LRSystem(
         nh.SE(2), mass_tensor(nh.SE(2), RNG), [[1.0, 0.2, 0.0], [0.0, 1.0, 0.3]]
     ),
+}
+
+
+TENSORS = {n: np.stack([mass_tensor(nh.SO(n), RNG) for _ in range(7)]) for n in (3, 4)}
+OPERATORS = np.stack([A @ A.T + np.eye(6) for A in RNG.normal(size=(7, 6, 6))])
+ROWS = RNG.normal(size=(3, 6))
+OWN: dict[str, tuple[AbstractSystem, dict[str, np.ndarray]]] = {
+    "top": (nh.SuslovTop(TENSORS[3][0]), {"mass_tensor": TENSORS[3]}),
+    "top with an axis": (TOP, {"mass_tensor": TENSORS[3]}),
+    "sleigh": (SLEIGH, {"mass": RNG.uniform(1, 2, 7), "a": RNG.normal(size=7)}),
+    "frames of sleighs": (SLEIGH, {"b": RNG.normal(size=7)}),
+    "top on SO(4)": (SYSTEMS["top on SO(4)"], {"mass_tensor": TENSORS[4]}),
+    "free bodies": (nh.RigidBody(TENSORS[3][0]), {"mass_tensor": TENSORS[3]}),
+    "any tensor": (nh.LLSystem(nh.SO(4), TENSORS[4][0], ROWS), {"mass_tensor": TENSORS[4]}),
+    "any operator": (nh.LLSystem(nh.SE(3), None, ROWS, inertia_operator=OPERATORS[0]), {"inertia_operator": OPERATORS}),
+    "sleigh on SE(3)": (nh.MultidimensionalSleigh(1.0, np.ones(3), TENSORS[3][0]), {"mass": RNG.uniform(1, 2, 7)}),
+    "arrowhead": (nh.SuslovTop.arrowhead(np.arange(1.0, 5.0), np.ones(3)), {"coupling": RNG.normal(size=(7, 3))}),
+    "right-invariant": (SYSTEMS["right-invariant"], {"mass_tensor": TENSORS[3]}),
 }
 
 
@@ -72,6 +93,28 @@ def test_members_with_their_own_parameters() -> None:
     for member, tensor in enumerate(tensors):
         alone = nh.flow(nh.SuslovTop(tensor), restricted_velocity=(1.0, 1.0, 1.0), times=TIMES)
         assert _same(batch.orbit(member), alone, bits=True)
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_numbers_of_members_are_those_of_each_alone(name: str) -> None:
+    """Inertias, frames and equations, made for all members in one go, have the bits of one alone; the motions too."""
+    system, own = OWN[name]
+    members = Members(nh.discretize(system, 1.0), own, 7)
+    inertias, frames = inertias_and_frames(members)
+    batch = nh.ensemble(system, restricted_velocity=RNG.normal(size=(7, system.rank)), times=(0.0, 2.0), parameters=own)
+    for member in range(7):
+        alone = members.of(member).system
+        seen = alone.canonical
+        assert np.array_equal(inertias[member], seen.inertia_operator)
+        assert np.array_equal(frames[member % len(frames)], alone.frame_pose)
+        S, group = seen.constraint_subspace, seen.group
+        for made, expected in zip(
+            body_numbers(group, S, inertias), body_numbers(group, S, inertias[member]), strict=True
+        ):
+            assert np.array_equal(made[member], expected)
+        solved = by_series(seen, batch.first_momentum[member], alone.frame_pose, np.array([0.0, 2.0]), (1e-14, 1.0))
+        assert np.array_equal(batch.reduced_momentum[member], solved.states.momenta)
+        assert np.array_equal(np.asarray(batch.canonical_pose)[member], solved.states.poses)
 
 
 def test_reduction_block_by_block(monkeypatch: pytest.MonkeyPatch) -> None:

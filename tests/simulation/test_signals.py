@@ -49,7 +49,7 @@ CALLS = {
         "for n in (1000, 10**8)))"
     ),
     "sweep": (
-        "def task(block):\n    return {'x': np.ones(len(block['x']))}\n"
+        "def task(block):\n    return {'y': np.ones(len(block['x']))}\n"
         "design = lambda n: nh.RandomDesign(n, {'x': nh.Uniform(0, 1)})\n"
         "begin(lambda: None, lambda: nh.sweep(task, design(10**7), 'run.zarr', 'synchronous', block=10))"
     ),

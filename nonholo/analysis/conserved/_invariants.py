@@ -25,8 +25,8 @@ class Invariants:
         energy_drift: Largest change of the reduced constrained energy, relative to it (absolute at rest). Under forces
             what is left of the balance: the largest change of the energy less the work of the force, relative to the
             largest energy.
-        constraint_residual: Largest forbidden part of the logarithm of a displacement, or of a velocity; where the
-            variety is given by equations, their largest residual.
+        constraint_residual: Largest forbidden part of (W - W^-1)/2 of a displacement, of log W where the variety is
+            exp d alone, or of a velocity; where the variety is given by equations, their largest residual.
         group_residual: Largest distance of a pose from the group.
         reversal_defect: Largest relative miss of one step forward and back.
         largest_step_angle: In degrees.
@@ -61,43 +61,45 @@ def invariants(orbit: Orbit) -> Invariants:
     if len(orbit) == 0:
         raise error("invariants(orbit=...)", "have at least one state", str(orbit), "Its outcome says why it has none.")
     group = orbit.system.group
-    sample = orbit[:: max(1, len(orbit) // (_SAMPLED if group.dim == 3 else _SAMPLED_LARGE))]
-    discrete = sample.cayley is not None
+    stride = max(1, len(orbit) // (_SAMPLED if group.dim == 3 else _SAMPLED_LARGE))
+    sample = orbit[::stride] if stride > 1 else orbit
+    discrete = orbit.motion if isinstance(orbit.motion, Discretization) else None
     energy, work = orbit.energy, orbit.work
     size = np.abs(energy if orbit.system.forces is not None else energy[0]).max()
     return Invariants(
         states=len(orbit),
-        steps=(len(orbit) - 1) * orbit.save_every if discrete else 0,
+        steps=0 if discrete is None else (len(orbit) - 1) * orbit.save_every,
         energy_drift=float(np.abs(energy - energy[0] - work).max() / (size or 1.0)),
         constraint_residual=float(np.abs(orbit.motion.constraint_residual(sample)).max(initial=0.0)),
         group_residual=None if orbit.canonical_pose is None else _group_residual(sample),
-        reversal_defect=_reversal_defect(sample),
-        largest_step_angle=_largest_angle(sample) if discrete else None,
+        reversal_defect=None if discrete is None else _reversal_defect(discrete, sample),
+        largest_step_angle=None if discrete is None else _largest_angle(discrete, sample),
         outcome=orbit.outcome,
         work=float(work[-1]) if orbit.system.forces is not None else None,
     )
 
 
-def _largest_angle(orbit: Orbit) -> float:
-    group = orbit.system.group
-    if orbit.system.is_wide:
-        turning = len(cast(NormalForm, orbit.system.normal_form).coupling)
-        y = orbit.canonical_chart[:, :turning]  # tan of half the angle, in planes through one axis
-        return float(np.degrees(2 * np.arctan(np.linalg.norm(y, axis=1)).max()))
-    return float(np.degrees(group.angle(group.log(orbit.displacement)).max()))
+def _largest_angle(discrete: Discretization, orbit: Orbit) -> float:
+    group, y = discrete.system.group, orbit.canonical_chart
+    if discrete.system.is_wide:
+        turning = len(cast(NormalForm, discrete.system.normal_form).coupling)
+        angles = 2 * np.arctan(np.linalg.norm(y[:, :turning], axis=1))  # of planes through one axis
+    else:
+        angles = discrete.variety.angle(y) if discrete.order == 2 else group.angle(group.log(orbit.displacement))
+    return float(np.degrees(angles.max()))
 
 
 def _group_residual(orbit: Orbit) -> float:
+    """Return the largest change that normalizing makes in a pose, and the residual of those that are matrices."""
     group, pose = orbit.system.group, orbit.canonical_pose
-    decoded = group.residual(orbit.configuration).max()
-    return float(max(decoded, np.abs(pose - group.normalize_pose(pose)).max()))
+    moved = np.abs(pose - group.normalize_pose(pose)).max()
+    return float(moved if group.pose_size < group.size**2 else max(moved, group.residual(orbit.configuration).max()))
 
 
-def _reversal_defect(orbit: Orbit) -> float | None:
-    motion = orbit.motion
-    route = motion.route.compiled if isinstance(motion, Discretization) and motion.forces is None else None
+def _reversal_defect(discrete: Discretization, orbit: Orbit) -> float | None:
+    route = discrete.route.compiled if discrete.forces is None else None
     if route is None:
         return None
-    moving = np.abs(orbit.canonical_chart).sum(axis=1) > 0
-    defects = reversal_defects(route, orbit.chosen(moving))
-    return float(np.max(defects, initial=0.0, where=~np.isnan(defects)))
+    moving = np.asarray(orbit.canonical_chart.any(axis=1))
+    defects = reversal_defects(route, orbit if moving.all() else orbit.chosen(moving))
+    return float(np.fmax.reduce(defects, initial=0.0))  # without NaN

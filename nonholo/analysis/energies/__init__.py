@@ -2,5 +2,3 @@
 
 from nonholo.analysis.energies._critical import CriticalEnergies, CriticalPoint, critical_energies
 from nonholo.analysis.energies._single_valued_region import SingleValuedRegion, single_valued_region
-
-__all__ = ["CriticalEnergies", "CriticalPoint", "SingleValuedRegion", "critical_energies", "single_valued_region"]

@@ -4,15 +4,3 @@ from nonholo.analysis.limits._asymptotics import Asymptotics, asymptotics, turn_
 from nonholo.analysis.limits._flow_obstruction import FlowObstruction, flow_obstruction
 from nonholo.analysis.limits._half_planes import HalfPlanes, half_planes
 from nonholo.analysis.limits._heteroclinic import HeteroclinicOrbit, heteroclinic
-
-__all__ = [
-    "Asymptotics",
-    "FlowObstruction",
-    "HalfPlanes",
-    "HeteroclinicOrbit",
-    "asymptotics",
-    "flow_obstruction",
-    "half_planes",
-    "heteroclinic",
-    "turn_of_flow",
-]

@@ -16,8 +16,6 @@ from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization, legendre
 from nonholo.systems import AbstractSystem
 
-__all__ = ["AbstractPlanarVariety", "Disc", "HalfPlanes", "Strip", "momenta_at", "planar_map", "planar_variety"]
-
 
 def planar_variety(system: AbstractSystem) -> AbstractPlanarVariety | None:
     """Return the displacements of a top in space or a sleigh in the plane; None for another system."""

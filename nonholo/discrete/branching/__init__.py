@@ -19,28 +19,3 @@ from nonholo.discrete.branching._rules import (
 from nonholo.discrete.branching._steps import Place, first_place, next_place, next_places
 from nonholo.discrete.branching._tree import BranchTree, branch_tree
 from nonholo.discrete.branching._values import Branches
-
-__all__ = [
-    "PRINCIPAL",
-    "AbstractBranchRule",
-    "BranchRule",
-    "BranchTree",
-    "Branches",
-    "Frame",
-    "Landscape",
-    "Place",
-    "branch_rule",
-    "branch_tree",
-    "branches",
-    "checked_rule",
-    "displacement_at",
-    "displacements_over",
-    "first_place",
-    "fold_distance",
-    "frame_of",
-    "has_frame",
-    "inverse_discrete_legendre",
-    "landscape",
-    "next_place",
-    "next_places",
-]

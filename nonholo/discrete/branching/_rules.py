@@ -65,9 +65,9 @@ class AbstractBranchRule(abc.ABC):
     """
 
     name: str
-    is_principal: ClassVar[bool]
-    is_nearest: ClassVar[bool]
-    needs_all_values: ClassVar[bool]
+    is_principal: ClassVar[bool] = False
+    is_nearest: ClassVar[bool] = False
+    needs_all_values: ClassVar[bool] = True
 
     @abc.abstractmethod
     def check(self, where: str, discrete: Discretization) -> None:
@@ -88,7 +88,6 @@ class Principal(AbstractBranchRule):
 
     name: str = "principal"
     is_principal: ClassVar[bool] = True
-    is_nearest: ClassVar[bool] = False
     needs_all_values: ClassVar[bool] = False
 
     def check(self, where: str, discrete: Discretization) -> None:
@@ -107,7 +106,6 @@ class Nearest(AbstractBranchRule):
     """The root that the present displacement reaches while the momentum moves along a segment."""
 
     name: str = "nearest"
-    is_principal: ClassVar[bool] = False
     is_nearest: ClassVar[bool] = True
     needs_all_values: ClassVar[bool] = False
 
@@ -129,9 +127,6 @@ class Extreme(AbstractBranchRule):
 
     name: str
     sign: int
-    is_principal: ClassVar[bool] = False
-    is_nearest: ClassVar[bool] = False
-    needs_all_values: ClassVar[bool] = True
 
     def check(self, where: str, discrete: Discretization) -> None:
         """Refuse systems of whose values not all are known."""
@@ -156,9 +151,6 @@ class Region(AbstractBranchRule):
     """The value in one part of the invariant curve of a top; the nearest where there are several."""
 
     name: str
-    is_principal: ClassVar[bool] = False
-    is_nearest: ClassVar[bool] = False
-    needs_all_values: ClassVar[bool] = True
 
     def check(self, where: str, discrete: Discretization) -> None:
         """Refuse systems whose invariant curves have no parts."""
@@ -192,9 +184,6 @@ class Chosen(AbstractBranchRule):
 
     function: Chooser
     name: str = "callable"
-    is_principal: ClassVar[bool] = False
-    is_nearest: ClassVar[bool] = False
-    needs_all_values: ClassVar[bool] = True
 
     def check(self, where: str, discrete: Discretization) -> None:
         """Refuse systems of whose values not all are known."""

@@ -14,23 +14,3 @@ from nonholo.discrete.definition._step import (
     run_by_definition,
     sample_displacements,
 )
-
-__all__ = [
-    "allow_float32",
-    "displaced",
-    "in_double",
-    "is_even",
-    "map_each",
-    "momenta_by_derivative",
-    "momentum_of",
-    "nearest_displacement",
-    "next_charts_by_definition",
-    "principal_displacement",
-    "principal_root",
-    "restricted",
-    "run_by_definition",
-    "run_composed_by_definition",
-    "sample_displacements",
-    "value_and_slope",
-    "whole_steps_by_definition",
-]

@@ -38,22 +38,13 @@ class SecularRoute(AbstractCompiledRoute):
         return not form.is_planar or form.is_diagonal
 
     @functools.cached_property
-    def _diagonal(self) -> tuple[Float[np.ndarray, "k"], Float[np.ndarray, "k k"] | None]:
-        """The diagonal of B in its principal axes, and these as columns; None where they are those of the form."""
-        if self.form.is_diagonal:
-            return np.asarray(self.form.stiffness), None
-        b, axes = np.linalg.eigh(self.form.stiffness)
-        return b, axes
-
-    @functools.cached_property
     def body(self) -> kernels.SecularBody:
         """The numbers of the body in the principal axes of B."""
-        form, (b, axes) = self.form, self._diagonal
-        c = form.coupling if axes is None else form.coupling @ axes
+        form, (b, _) = self.form, self.form.principal
+        c = form.to_principal(form.coupling)
         if not form.is_sleigh:
             return kernels.secular_top(b, c)
-        offset = form.offset if axes is None else form.offset @ axes
-        return kernels.secular_sleigh(b, -c, float(form.mass), float(form.arm), offset)
+        return kernels.secular_sleigh(b, -c, float(form.mass), float(form.arm), form.to_principal(form.offset))
 
     @property
     def scale(self) -> Array:
@@ -71,22 +62,22 @@ class SecularRoute(AbstractCompiledRoute):
         if self.form.is_sleigh:
             along = momenta[..., -1:]
             momenta = np.concatenate([momenta[..., :-1] - along * self.form.offset, along], axis=-1)
-        return self._turned(self.scale * momenta)
+        return self.form.to_principal(self.scale * momenta)
 
     def decode(self, momenta: np.ndarray) -> np.ndarray:
         """Return canonical momenta from those of the kernel."""
-        momenta = self._turned_back(momenta) / self.scale
+        momenta = self.form.from_principal(momenta) / self.scale
         if self.form.is_sleigh:
             momenta[..., :-1] += momenta[..., -1:] * self.form.offset
         return self._axes.canonical_momenta(momenta)
 
     def to_kernel(self, charts: np.ndarray) -> np.ndarray:
         """Return the chart coordinates of the kernel from canonical ones."""
-        return self._turned(self._axes.charts(charts))
+        return self.form.to_principal(self._axes.charts(charts))
 
     def from_kernel(self, charts: np.ndarray) -> np.ndarray:
         """Return canonical chart coordinates from those of the kernel."""
-        return self._axes.canonical_charts(self._turned_back(charts))
+        return self._axes.canonical_charts(self.form.from_principal(charts))
 
     def encode_poses(self, poses: np.ndarray) -> np.ndarray:
         """Return the matrices of poses of the kernel's axes, row by row."""
@@ -101,19 +92,10 @@ class SecularRoute(AbstractCompiledRoute):
         g = g if self._turn is None else g @ self._turn.T
         return self.system.group.pose_from_matrix(self._axes.turned_back(g))
 
-    def _turned(self, vectors: np.ndarray) -> np.ndarray:
-        """Return vectors in the kernel's axes; a last component along the blade stays."""
-        axes = self._diagonal[1]
-        return vectors if axes is None else _first_turned(vectors, axes)
-
-    def _turned_back(self, vectors: np.ndarray) -> np.ndarray:
-        axes = self._diagonal[1]
-        return vectors if axes is None else _first_turned(vectors, axes.T)
-
     @functools.cached_property
     def _turn(self) -> Float[np.ndarray, "N N"] | None:
         """The body frame of the kernel as seen from that of the normal form; None where they are the same."""
-        axes = self._diagonal[1]
+        axes = self.form.principal[1]
         if axes is None:
             return None
         turn, first = np.eye(self.system.group.size), int(self.form.is_sleigh)
@@ -124,8 +106,3 @@ class SecularRoute(AbstractCompiledRoute):
     @functools.cached_property
     def _axes(self) -> Axes:
         return Axes(self.system.group, self.form.frame, self.form.frame_map)
-
-
-def _first_turned(vectors: np.ndarray, axes: np.ndarray) -> np.ndarray:
-    k = len(axes)
-    return np.concatenate([vectors[..., :k] @ axes, vectors[..., k:]], axis=-1)

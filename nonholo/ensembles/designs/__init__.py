@@ -1,6 +1,13 @@
 """Which members a sweep has: designs, what they draw from, random numbers by member."""
 
-from nonholo.ensembles.designs._design import AbstractDesign, Design, Grid, RandomDesign, axis_dimensions
+from nonholo.ensembles.designs._design import (
+    AbstractDesign,
+    Design,
+    Grid,
+    RandomDesign,
+    axis_dimensions,
+    uniform_numbers,
+)
 from nonholo.ensembles.designs._distributions import (
     DISTRIBUTIONS,
     AbstractDistribution,
@@ -11,21 +18,3 @@ from nonholo.ensembles.designs._distributions import (
     Normal,
     Uniform,
 )
-from nonholo.ensembles.designs._uniform import uniform_numbers
-
-__all__ = [
-    "DISTRIBUTIONS",
-    "AbstractDesign",
-    "AbstractDistribution",
-    "Choice",
-    "Design",
-    "Direction",
-    "Grid",
-    "LogUniform",
-    "MassTensor",
-    "Normal",
-    "RandomDesign",
-    "Uniform",
-    "axis_dimensions",
-    "uniform_numbers",
-]

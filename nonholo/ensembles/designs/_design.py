@@ -1,8 +1,12 @@
-"""Designs: which members a sweep has, as a grid or as random draws; values of any members, without the others."""
+"""Designs: which members a sweep has, as a grid or as random draws; values of any members, without the others.
+
+Random numbers of a member depend on the seed, the stream and its index, and on nothing else.
+"""
 
 import abc
 import dataclasses
 import math
+import zlib
 from collections.abc import Mapping
 from typing import Any, TypeAlias
 
@@ -12,7 +16,25 @@ from nonholo.base.checks import count, error, natural, shown
 from nonholo.base.types import Float
 from nonholo.ensembles._names import OUTCOME, array_name, component_name, stream_name
 from nonholo.ensembles.designs._distributions import AbstractDistribution, listed
-from nonholo.ensembles.designs._uniform import uniform_numbers
+
+_WORDS = 4  # numbers for each value of Philox's counter
+
+
+def uniform_numbers(seed: int, stream: str, first: int, count: int, width: int) -> Float[np.ndarray, "count width"]:
+    """Return numbers in [0, 1) of the members `first` to `first + count - 1`, this many of each.
+
+    The generator is Philox, whose counter is set to the first member, so nothing before it is drawn.
+
+    Example:
+        >>> several = uniform_numbers(7, "a", first=0, count=10, width=3)
+        >>> bool((several[4:6] == uniform_numbers(7, "a", first=4, count=2, width=3)).all())
+        True
+    """
+    rounds = -(-width // _WORDS)
+    key = np.array([seed, zlib.crc32(stream.encode())], dtype=np.uint64)
+    bits = np.random.Philox(key=key, counter=first * rounds)
+    return np.random.Generator(bits).random((count, _WORDS * rounds))[:, :width]
+
 
 _REMEDY, _SEED = "Pass a dictionary of names to", "Pass 0, 1, 2, ..."
 Values = dict[str, np.ndarray]

@@ -1,29 +1,15 @@
 """The store of a sweep: how it is cut, what a task returns, how far it came, its poses as CSV."""
 
-from nonholo.ensembles.stores._layout import Layout, layout_of
 from nonholo.ensembles.stores._poses_csv import sweep_to_csv
 from nonholo.ensembles.stores._results import OUTCOME, RAISED, Output, Results, Task, attempted, probed
 from nonholo.ensembles.stores._standing import SweepStanding, opened_result, standing_of
-from nonholo.ensembles.stores._store import Mark, SweepStore, attributes_of, create_store, open_store, store_of
-
-__all__ = [
-    "OUTCOME",
-    "RAISED",
-    "Layout",
-    "Mark",
-    "Output",
-    "Results",
-    "SweepStanding",
-    "SweepStore",
-    "Task",
-    "attempted",
-    "attributes_of",
-    "create_store",
-    "layout_of",
-    "open_store",
-    "opened_result",
-    "probed",
-    "standing_of",
-    "store_of",
-    "sweep_to_csv",
-]
+from nonholo.ensembles.stores._store import (
+    Layout,
+    Mark,
+    SweepStore,
+    attributes_of,
+    create_store,
+    layout_of,
+    open_store,
+    store_of,
+)

@@ -2,12 +2,3 @@
 
 from nonholo.io.datasets._dataset import CANONICAL, HEADED, stored_variables
 from nonholo.io.datasets._pose_columns import Stretch, column_names, rows_of
-
-__all__ = [
-    "CANONICAL",
-    "HEADED",
-    "Stretch",
-    "column_names",
-    "rows_of",
-    "stored_variables",
-]

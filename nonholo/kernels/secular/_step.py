@@ -154,14 +154,7 @@ def _added(s: Sums, t: Sums) -> Sums:
 
 @njit(nogil=True, **COMPILED)
 def newton(
-    p: SecularBody,
-    m: np.ndarray,
-    m0: float,
-    share: float,
-    nu: float,
-    tau: float,
-    any_sheet: bool,
-    room: np.ndarray,
+    p: SecularBody, m: np.ndarray, m0: float, share: float, nu: float, tau: float, any_sheet: bool, room: np.ndarray
 ) -> tuple[bool, float, float, float]:
     """Correct nu and tau; tell whether they converged, on the sheet of the principal root if not on any.
 

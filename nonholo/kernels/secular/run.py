@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from nonholo.base.compiled import njit
-from nonholo.kernels._scalar import COMPILED
+from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import assign
 from nonholo.kernels.secular._path import principal
 from nonholo.kernels.secular._root import certain_radius, level_of
@@ -25,6 +25,12 @@ def coordinates(p: SecularBody, m: np.ndarray, nu: float, tau: float, y: np.ndar
         y[i], _, _ = coordinate(p.b[i], p.c[i], m[i], nu, tau)
 
 
+@scalar
+def _is_principal(good: bool, size: float, tau: float, lever: float, certain: float) -> bool:
+    """Tell whether a corrected guess is certainly the principal root; `size` is the sum of b y y."""
+    return good and tau < 1 and 4 * (size + lever * tau) <= certain * (1 + tau) ** 2
+
+
 @njit(nogil=True, **COMPILED)
 def solve(
     p: SecularBody, m: np.ndarray, certain: float, nu: float, tau: float, room: np.ndarray
@@ -32,7 +38,7 @@ def solve(
     """Correct a guess and verify that it is the principal root, or restart from momentum zero."""
     m0 = m[-1] if p.slides else 0.0
     good, nu, tau, size = newton(p, m, m0, 1.0, nu, max(tau, 0.0), False, room)
-    if good and tau < 1 and 4 * (size + p.mass * p.arm * p.arm * tau) <= certain * (1 + tau) ** 2:
+    if _is_principal(good, size, tau, p.mass * p.arm * p.arm, certain):
         return 0, nu, tau
     return principal(p, m, m0, room)
 
@@ -47,25 +53,25 @@ def _compensated(total: float, lost: float, change: float, settled: float) -> tu
     return result, (result - total) - change
 
 
+@njit(**COMPILED)
+def _settled(m: np.ndarray) -> float:
+    """Return below what momenta count as zero."""
+    largest = 0.0
+    for i in range(len(m)):
+        largest = max(largest, abs(m[i]))
+    return _SETTLED * largest
+
+
 @njit(nogil=True, **COMPILED)
-def pushed(
-    p: SecularBody,
-    m: np.ndarray,
-    lost: np.ndarray,
-    nu: float,
-    tau: float,
-    settled: float,
-    total: np.ndarray,
-    rest: np.ndarray,
-) -> None:
-    """Write the momenta after one step, and their compensations."""
-    lever, b, c = p.mass * p.arm * p.arm, p.b, p.c
-    for i in range(len(b)):
-        y, _, _ = coordinate(b[i], c[i], m[i], nu, tau)
-        total[i], rest[i] = _compensated(m[i], lost[i], term(c[i], y, nu, tau, lever), settled)
-    if p.slides:
-        change = 2 * p.mass * p.arm * tau / (1 + tau)
-        total[-1], rest[-1] = _compensated(m[-1], lost[-1], change, settled)
+def push(p: SecularBody, m: np.ndarray, lost: np.ndarray, nu: float, tau: float, settled: float) -> None:
+    """Replace the momenta, and their compensations, by those after one step."""
+    lever = p.mass * p.arm * p.arm
+    for i in range(len(p.b)):
+        k = np.uint64(i)  # a signed index would be tested for counting from the end
+        y, _, _ = coordinate(p.b[k], p.c[k], m[k], nu, tau)
+        m[k], lost[k] = _compensated(m[k], lost[k], term(p.c[k], y, nu, tau, lever), settled)
+    for i in range(len(p.b), len(m)):
+        m[i], lost[i] = _compensated(m[i], lost[i], 2 * p.mass * p.arm * tau / (1 + tau), settled)
 
 
 @njit(nogil=True, **COMPILED)
@@ -135,8 +141,11 @@ def start(p: SecularBody, m: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndar
     m0 = m[-1] if p.slides else 0.0
     certain = certain_radius(p, level_of(p, m[:k], m0))
     code, nu, tau = solve(p, m, certain, p.mass * p.arm * p.arm, 0.0, room_for_sums())
-    unknowns = np.array((nu, tau, nu, tau, nu, tau, certain))
-    return code, np.concatenate((m, np.zeros(len(m)), unknowns, pose))
+    state = np.zeros(2 * len(m) + 7 + len(pose))
+    assign(state, m)
+    assign(state[2 * len(m) :], np.array((nu, tau, nu, tau, nu, tau, certain)))
+    assign(state[2 * len(m) + 7 :], pose)
+    return code, state
 
 
 @njit(nogil=True, **COMPILED)
@@ -170,31 +179,44 @@ def advance(
 
     After a failure the state is that of the last good step.
     """
+    first = state.copy()
+    done, code = _take(p, state, steps, every, momenta, charts, poses)
+    if code != 0:  # the state before the last push is gone: what led to it is done again
+        assign(state, first)
+        _take(p, state, done, every, momenta, charts, poses)
+    return done, code
+
+
+@njit(nogil=True, **COMPILED)
+def _take(
+    p: SecularBody, s: np.ndarray, steps: int, every: int, momenta: np.ndarray, charts: np.ndarray, poses: np.ndarray
+) -> tuple[int, int]:
+    """Take steps; where a root is missing the state is good for nothing."""
     k, size = len(p.b), len(p.b) + (1 if p.slides else 0)
-    m, lost, y = state[:size].copy(), state[size : 2 * size].copy(), np.zeros(k)
-    nu, tau, nu1, tau1, nu2, tau2, certain = state[2 * size : 2 * size + 7]
-    rows = state[2 * size + 7 :].copy().reshape(-1, size + 1)
-    settled = _SETTLED * np.abs(m).max()
-    total, rest, room = np.empty_like(m), np.empty_like(m), room_for_sums()
+    m, lost, pose, room = s[:size], s[size : 2 * size], s[2 * size + 7 :], room_for_sums()
+    nu, tau, nu1, tau1, nu2, tau2, certain = s[2 * size : 2 * size + 7]
+    rows = pose.reshape(-1, size + 1)
+    y, settled, lever = np.zeros(k if len(rows) else 0), _settled(m), p.mass * p.arm * p.arm
     code, done = 0, 0
     while done < steps:
-        pushed(p, m, lost, nu, tau, settled, total, rest)
-        code, nu3, tau3 = solve(p, total, certain, 3 * (nu - nu1) + nu2, 3 * (tau - tau1) + tau2, room)
-        if code != 0:
-            break
         if len(rows):
             coordinates(p, m, nu, tau, y)
             move(p, m[-1], nu, tau, y, rows)
-        m, total, lost, rest = total, m, rest, lost
+        push(p, m, lost, nu, tau, settled)
+        m0, guess = m[-1] if p.slides else 0.0, max(3 * (tau - tau1) + tau2, 0.0)
+        good, nu3, tau3, moved = newton(p, m, m0, 1.0, 3 * (nu - nu1) + nu2, guess, False, room)
+        if not _is_principal(good, moved, tau3, lever, certain):
+            code, nu3, tau3 = principal(p, m, m0, room)
+            if code != 0:
+                break
         nu2, tau2, nu1, tau1, nu, tau = nu1, tau1, nu, tau, nu3, tau3
         done += 1
         if done % every == 0:
             row = done // every - 1
             assign(momenta[row], m)
             chart_of(p, m, nu, tau, charts[row])
-            assign(poses[row], rows.ravel())
-    unknowns = np.array((nu, tau, nu1, tau1, nu2, tau2, certain))
-    assign(state, np.concatenate((m, lost, unknowns, rows.ravel())))
+            assign(poses[row], pose)
+    assign(s[2 * size :], np.array((nu, tau, nu1, tau1, nu2, tau2)))
     return done, code
 
 
@@ -209,11 +231,12 @@ def step_each(
     k = len(p.b)
     room = room_for_sums()
     next_momenta, next_charts = np.empty_like(momenta), np.empty_like(charts)
-    codes, none = np.zeros(len(momenta), dtype=np.int64), np.zeros(momenta.shape[1])
+    codes = np.zeros(len(momenta), dtype=np.int64)
     for row in range(len(momenta)):
         before, m = momenta[row], next_momenta[row]
         nu, tau = unknowns_of(p, before[k] if p.slides else 0.0, charts[row])
-        pushed(p, before, none, nu, tau, 0.0, m, none.copy())
+        assign(m, before)
+        push(p, m, np.zeros_like(m), nu, tau, 0.0)
         m0 = m[k] if p.slides else 0.0
         nu, tau = unknowns_of(p, m0, guesses[row])
         if principal_only:

@@ -1,12 +1,5 @@
 """The discrete Lagrange-d'Alembert principle on groups."""
 
+from nonholo.lagrange_dalembert._orbit import GroupOrbit
 from nonholo.lagrange_dalembert.on_groups._discretization import GroupDiscretization
-from nonholo.lagrange_dalembert.on_groups._orbit import GroupOrbit
 from nonholo.lagrange_dalembert.on_groups._system import GroupLagrangeDAlembert, mass_tensor_lagrangian
-
-__all__ = [
-    "GroupDiscretization",
-    "GroupLagrangeDAlembert",
-    "GroupOrbit",
-    "mass_tensor_lagrangian",
-]

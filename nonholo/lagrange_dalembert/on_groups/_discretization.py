@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from nonholo.lagrange_dalembert._orbit import GroupOrbit
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._simulate import Start, checked_counts, set_out, simulated
 from nonholo.lagrange_dalembert._start import fixed_time_step
 from nonholo.lagrange_dalembert.on_groups import _start as start
-from nonholo.lagrange_dalembert.on_groups._orbit import GroupOrbit
 from nonholo.lagrange_dalembert.on_groups._system import GroupLagrangeDAlembert
 from nonholo.systems import AbstractCoordinateDiscretization, one_start
 

@@ -15,8 +15,8 @@ from nonholo.lagrange_dalembert._tracing import check_forms, check_value, count_
 from nonholo.systems import AbstractCoordinateSystem, checked_group, group_mass_tensor, inertia_form
 
 if TYPE_CHECKING:
+    from nonholo.lagrange_dalembert._orbit import GroupOrbit
     from nonholo.lagrange_dalembert.on_groups._discretization import GroupDiscretization
-    from nonholo.lagrange_dalembert.on_groups._orbit import GroupOrbit
 
 
 @dataclasses.dataclass(frozen=True)

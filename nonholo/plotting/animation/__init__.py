@@ -1,7 +1,3 @@
 """Moving pictures of orbits."""
 
 from nonholo.plotting.animation._animation import animate
-
-__all__ = [
-    "animate",
-]

@@ -17,8 +17,7 @@ from nonholo.base.types import Int
 from nonholo.io import check_file
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
-from nonholo.plotting.animation._sleigh_scene import sleigh_motion, sleigh_scene
-from nonholo.plotting.animation._top_scene import top_motion, top_scene
+from nonholo.plotting.animation._scenes import sleigh_motion, sleigh_scene, top_motion, top_scene
 from nonholo.plotting.parts import drawable, posed, window
 from nonholo.plotting.sheets import sheet_of
 

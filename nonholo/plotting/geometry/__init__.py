@@ -6,18 +6,3 @@ from nonholo.plotting.geometry._branches import BranchesPicture, branches
 from nonholo.plotting.geometry._invariant_curves import InvariantCurvesPicture, invariant_curves
 from nonholo.plotting.geometry._locus_section import LocusSection, locus_section
 from nonholo.plotting.geometry._momentum_locus import MomentumLocusPicture, momentum_locus
-
-__all__ = [
-    "BranchCounts",
-    "BranchTreePicture",
-    "BranchesPicture",
-    "InvariantCurvesPicture",
-    "LocusSection",
-    "MomentumLocusPicture",
-    "branch_counts",
-    "branch_tree",
-    "branches",
-    "invariant_curves",
-    "locus_section",
-    "momentum_locus",
-]

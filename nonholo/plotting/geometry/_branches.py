@@ -16,8 +16,8 @@ from nonholo.base.types import Float
 from nonholo.discrete import Branches, Discretization, discrete_legendre, displacements_over, inverse_discrete_legendre
 from nonholo.discrete import branches as values_of
 from nonholo.plotting import theme
-from nonholo.plotting.geometry._deltoid_plane import draw_deltoid, name_inside
-from nonholo.plotting.geometry._deltoid_plane import dress as dress_momenta
+from nonholo.plotting.geometry._branch_counts import draw_deltoid, name_inside
+from nonholo.plotting.geometry._branch_counts import dress as dress_momenta
 from nonholo.plotting.sheets import AbstractSheet, on_plane, sheet_of
 
 _BEYOND = 0.3  # how far a tangent continues beyond its ends, in its length

@@ -8,25 +8,3 @@ from nonholo.plotting.motion._phase_portrait import PhasePortrait, phase_portrai
 from nonholo.plotting.motion._point_track import PointTrack, point_track
 from nonholo.plotting.motion._section import Section, section
 from nonholo.plotting.motion._time_series import heading_and_speed, momentum_components, velocity_components
-
-__all__ = [
-    "BladeTrack",
-    "BodyAxisTrack",
-    "EnergyError",
-    "MomentumSphere",
-    "PhasePortrait",
-    "PointTrack",
-    "Section",
-    "blade_track",
-    "body_axis_track",
-    "energy_error",
-    "heading_and_speed",
-    "known_axes",
-    "momentum_components",
-    "momentum_sphere",
-    "phase_portrait",
-    "point_track",
-    "rotation_axes",
-    "section",
-    "velocity_components",
-]

@@ -5,25 +5,13 @@ What differs between tops and sleighs in pictures is in `_disc` and `_strip`, tw
 
 from nonholo.plotting.sheets._base import AbstractSheet
 from nonholo.plotting.sheets._blade import Blade
-from nonholo.plotting.sheets._chosen import blade_of_system, sheet_of
-from nonholo.plotting.sheets._momentum_plane import (
+from nonholo.plotting.sheets._chosen import (
+    blade_of_system,
     ellipse,
     half_axes,
     momenta_on_plane,
     name_axes,
     on_plane,
     plane_inertia,
+    sheet_of,
 )
-
-__all__ = [
-    "AbstractSheet",
-    "Blade",
-    "blade_of_system",
-    "ellipse",
-    "half_axes",
-    "momenta_on_plane",
-    "name_axes",
-    "on_plane",
-    "plane_inertia",
-    "sheet_of",
-]

@@ -44,9 +44,9 @@ def run_compiled(
     run: CompiledRun, start: FirstState, watch: Watch | None, steps: int, *, throw: bool, progress: bool
 ) -> Orbit:
     """Run a compiled step from a start, looking for events if there is a watch; return the orbit."""
-    state, first = opened(run, start, steps, throw)
-    if not len(first):
-        return searched_first(watch, first)[0]
+    state, ended = opened(run, start, steps, throw)
+    if ended is not None:
+        return searched_first(watch, ended)[0]
     whole = Plan(steps, run.every, 1 + steps // run.every)  # one block
     with progress_bar("steps", progress) as report:
         block = computed_block(run, state, watch, whole, 0, lambda now: report(now, steps))

@@ -1,7 +1,7 @@
 """Many motions at once: the members of an ensemble, their starts, their loops, and what is returned."""
 
 from nonholo.simulation.members._ensemble import ensemble
-from nonholo.simulation.members._families import have_kernel, run_in_lanes, scalar_members
+from nonholo.simulation.members._families import have_kernel, run_in_lanes, scalar_members, tangents
 from nonholo.simulation.members._flows import FlowEnsemble
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._result import Ensemble
@@ -18,4 +18,5 @@ __all__ = [
     "in_one_thread",
     "run_in_lanes",
     "scalar_members",
+    "tangents",
 ]

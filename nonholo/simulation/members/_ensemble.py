@@ -21,6 +21,7 @@ from nonholo.simulation.members._start import are_others, checked_rows, first_mo
 from nonholo.simulation.runs import check_forces, refuse_too_large, refuse_too_long
 from nonholo.systems import AbstractSystem, Start, System, refuse_forces
 
+Watched: TypeAlias = dict[str, Event] | None
 Motions: TypeAlias = tuple[Members, np.ndarray, np.ndarray | None]
 
 _KINDS = "A discretization has steps, a system times and rtol."
@@ -119,11 +120,7 @@ def ensemble(
 
 
 def _joined(
-    motions: Motions,
-    plan: Plan,
-    watched: dict[str, Event] | None,
-    reduce: Callable[[Ensemble], Any] | None,
-    report: Report,
+    motions: Motions, plan: Plan, watched: Watched, reduce: Callable[[Ensemble], Any] | None, report: Report
 ) -> Any:
     """Run all members, block by block where only what is found of them is kept, and join that."""
     if reduce is not None:
@@ -156,12 +153,7 @@ def _check_backend(discrete: Discretization, backend: str) -> None:
 
 
 def _block(
-    members: Members,
-    momenta: np.ndarray,
-    full: np.ndarray | None,
-    plan: Plan,
-    events: dict[str, Event] | None,
-    report: Report,
+    members: Members, momenta: np.ndarray, full: np.ndarray | None, plan: Plan, events: Watched, report: Report
 ) -> Ensemble:
     """Run a block of members; those whose full momentum is not that of the principal root do not start."""
     done = run_members(members, momenta, plan if events is None else plan._replace(every=1), report=report)
@@ -184,7 +176,7 @@ def _blocks(
     momenta: np.ndarray,
     full: np.ndarray | None,
     plan: Plan,
-    events: dict[str, Event] | None,
+    events: Watched,
     reduce: Callable[[Ensemble], Any],
     report: Report,
 ) -> Iterator[tuple[int, Any]]:

@@ -15,6 +15,8 @@ from nonholo.simulation.members._event_log import MemberCrossings, MemberEvents
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._result import Ensemble
 
+_STATES = ("reduced_momentum", "cayley", "canonical_pose")
+
 
 class Flat(NamedTuple):
     """Single steps of some members, one member after another, and what of their crossings is left.
@@ -120,15 +122,10 @@ def _located(events: dict[str, Event], flat: Flat, event: int, at: np.ndarray) -
 
 def _nowhere(block: Ensemble) -> Ensemble:
     """Return one state of each member, still unknown."""
-    rows = (block.reduced_momentum, block.cayley, block.canonical_pose)
-    momenta, charts, poses = (None if row is None else np.full((len(block), 1, row.shape[2]), np.nan) for row in rows)
-    unknown = {
-        "reduced_momentum": momenta,
-        "cayley": charts,
-        "canonical_pose": poses,
-        "steps_done": np.full(len(block), np.nan),
-    }
-    return dataclasses.replace(block, save_every=None, **unknown)
+    rows = [getattr(block, name) for name in _STATES]
+    unknown = [None if row is None else np.full((len(block), 1, row.shape[2]), np.nan) for row in rows]
+    states = dict(zip(_STATES, unknown, strict=True))
+    return dataclasses.replace(block, save_every=None, **states, steps_done=np.full(len(block), np.nan))
 
 
 def _fill(states: Ensemble, flat: Flat, found: Crossings, at: np.ndarray) -> None:
@@ -142,20 +139,20 @@ def _fill(states: Ensemble, flat: Flat, found: Crossings, at: np.ndarray) -> Non
 
 def _thinned(block: Ensemble, every: int | None, end: np.ndarray, stopped: np.ndarray) -> Ensemble:
     """Return the states that are kept of members that end with certain steps."""
-    rows = (block.reduced_momentum, block.cayley, block.canonical_pose)
+    rows = [getattr(block, name) for name in _STATES]
     if every is None:
         kept = [None if row is None else np.take_along_axis(row, end[:, None, None], axis=1) for row in rows]
     else:
         late = every * np.arange(block.cayley[:, ::every].shape[1]) > end[:, None]
         kept = [None if row is None else np.where(late[..., None], np.nan, row[:, ::every]) for row in rows]
     outcome = np.where(stopped, int(Outcome.successful), block.outcome)
-    states = dict(zip(("reduced_momentum", "cayley", "canonical_pose"), kept, strict=True))
+    states = dict(zip(_STATES, kept, strict=True))
     return dataclasses.replace(block, save_every=every, **states, outcome=outcome, steps_done=end)
 
 
 def joined_blocks(whole: Members, blocks: Sequence[Ensemble]) -> Ensemble:
     """Return the ensemble of all members from blocks of them."""
-    names = ("reduced_momentum", "cayley", "canonical_pose", "outcome", "steps_done", "first_momentum")
+    names = (*_STATES, "outcome", "steps_done", "first_momentum")
     columns = {name: [getattr(block, name) for block in blocks] for name in names}
     arrays = {name: None if rows[0] is None else np.concatenate(rows) for name, rows in columns.items()}
     logs = [block.events for block in blocks if block.events is not None]

@@ -12,7 +12,7 @@ from nonholo.base.checks import error
 from nonholo.base.types import Bool, Float
 from nonholo.discrete import Discretization
 from nonholo.simulation.members._members import STEP, Members, refused
-from nonholo.systems import ChaplyginSleigh, SuslovTop, System
+from nonholo.systems import ChaplyginSleigh, LLSystem, RigidBody, SuslovTop, System
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -91,6 +91,8 @@ _FAMILIES = {
     ChaplyginSleigh: Family(kernels.SleighBody, _sleighs, frozenset({"mass", "inertia", "a"}), _doubtful_sleighs),
     SuslovTop: Family(kernels.SuslovBody, _tops, frozenset({"mass_tensor"}), _doubtful_tensors),
 }
+_STACKED = (ChaplyginSleigh, SuslovTop, RigidBody, LLSystem)
+"""Systems whose formulas allow for an axis of members in front of all numbers."""
 
 
 def family_of(system: System) -> Family | None:
@@ -117,6 +119,26 @@ def body_of(members: Members) -> type[Any]:
 def scalar_members(members: Members) -> ScalarMembers:
     """Return the numbers of tops and plane sleighs."""
     return _FAMILIES[type(members.discrete.system)].numbers(members)
+
+
+def tangents(
+    members: Members, momenta: Float[np.ndarray, "M K 2"], charts: Float[np.ndarray, "M K 2"]
+) -> Float[np.ndarray, "M K 2 2"]:
+    """Return the derivatives of steps of tops and plane sleighs by the momenta of their rows before them."""
+    scalar = scalar_members(members)
+    m1, m2 = np.moveaxis(momenta * scalar.scale[:, None, None], -1, 0)
+    C, body = scalar.frame_map[:, None], body_of(members)(*scalar.fields[..., None])
+    canonical = np.stack(kernels.tangent(body, m1, m2, *np.moveaxis(charts, -1, 0)), axis=-1).reshape(*m1.shape, 2, 2)
+    return np.linalg.inv(C) @ canonical @ C
+
+
+def inertias_and_frames(members: Members) -> tuple[Float[np.ndarray, "m dim dim"], Float[np.ndarray, "m size"]]:
+    """Return canonical inertia operators and frames as poses; an axis of length 1 where all members agree."""
+    if members.parameters and type(members.discrete.system) in _STACKED:
+        stack = members.stacked
+        return stack.canonical.inertia_operator, np.atleast_2d(stack.frame_pose)
+    systems = [members.of(member).system for member in range(len(members) if members.parameters else 1)]
+    return np.stack([s.canonical.inertia_operator for s in systems]), np.stack([s.frame_pose for s in systems])
 
 
 def check_systems(members: Members) -> None:

@@ -14,7 +14,7 @@ from nonholo.base.types import Float
 from nonholo.continuous import ContinuousFlow, members_by_series
 from nonholo.discrete import Discretization, discretize
 from nonholo.orbit import Orbit
-from nonholo.simulation.members._families import check_systems
+from nonholo.simulation.members._families import check_systems, inertias_and_frames
 from nonholo.simulation.members._members import Members, checked_parameters
 from nonholo.simulation.members._reduce import Reduced, joined
 from nonholo.simulation.members._result import Ensemble
@@ -105,16 +105,20 @@ def _check_momenta(given: np.ndarray, full: np.ndarray) -> None:
 
 def _solved(members: Members, momenta: np.ndarray, time: np.ndarray, rtol: float, report: Report) -> FlowEnsemble:
     """Solve for a block of members, pieces of it in threads."""
-    count, pieces = len(members), {}
-    systems = [members.of(member).system for member in range(count if members.parameters else 1)]
-    poses = np.broadcast_to([system.frame_pose for system in systems], (count, systems[0].group.pose_size))
-    canonical = [system.canonical for system in systems]
+    count, pieces, system = len(members), {}, members.discrete.system
+    numbers = system.rank + system.group.pose_size
 
     def work(part: slice, stop: np.ndarray) -> None:
-        own = canonical[part] if members.parameters else canonical
-        pieces[part.start] = members_by_series(own, momenta[part], poses[part], time - time[0], rtol, stop)
+        own = members.part(part)
+        inertias, frames = inertias_and_frames(own)
+        poses, each = (
+            np.broadcast_to(frames, (len(own), frames.shape[1])),
+            lambda member: own.of(member).system.canonical,
+        )
+        given = momenta[part], poses, time - time[0], rtol, stop
+        pieces[part.start] = members_by_series(system.canonical, inertias, each, *given)
 
-    size = max(1, min(_PART, _NUMBERS // ((momenta.shape[1] + poses.shape[1]) * len(time)), -(-count // 8)))
+    size = max(1, min(_PART, _NUMBERS // (numbers * len(time)), -(-count // 8)))
     parts = [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]
     in_threads(work, parts, threads_to_use(), report)
     states, reached = zip(*(pieces[part.start] for part in parts), strict=True)

@@ -9,6 +9,7 @@ import numpy as np
 from nonholo.base.checks import array, error, shown
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
+from nonholo.systems import System, unchecked
 
 STEP = "time_step"
 _ARGUMENTS = {"given_inertia": "inertia_operator"}  # fields that the constructor calls otherwise
@@ -51,6 +52,13 @@ class Members:
         system = _rebuilt(self.discrete.system, own) if own else self.discrete.system
         return dataclasses.replace(self.discrete, system=system, time_step=step)
 
+    @property
+    def stacked(self) -> System:
+        """The systems of all members in one, numbers with an axis of members in front: for formulas that allow it."""
+        system = self.discrete.system
+        values = {name: self.values(_ARGUMENTS.get(name, name)) for name in _numbers(system)}
+        return unchecked(system, **{name: np.broadcast_to(x, (len(self), *x.shape[1:])) for name, x in values.items()})
+
     def part(self, chosen: slice) -> "Members":
         """Return some of the members."""
         kept = {name: values[chosen] for name, values in self.parameters.items()}
@@ -62,6 +70,10 @@ def _rebuilt(system: Any, own: dict[str, Any]) -> Any:
     return type(system)(**{**kept, **own})
 
 
+def _numbers(system: System) -> list[str]:
+    return [name for name in system.leaves if getattr(system, name) is not None]
+
+
 def checked_parameters(discrete: Discretization, parameters: Any) -> dict[str, Any]:
     """Return the parameters of an ensemble as arrays, refused with names that the system does not have."""
     if parameters is None:
@@ -69,8 +81,7 @@ def checked_parameters(discrete: Discretization, parameters: Any) -> dict[str, A
     system = discrete.system
     if not isinstance(parameters, Mapping):
         raise error("ensemble(parameters=...)", "be a mapping of names to arrays", shown(parameters), "Pass a dict.")
-    fields = [name for name in system.leaves if getattr(system, name) is not None]
-    known = [*(_ARGUMENTS.get(name, name) for name in fields), STEP]
+    known = [*(_ARGUMENTS.get(name, name) for name in _numbers(system)), STEP]
     checked = {}
     for name, value in parameters.items():
         if name not in known:

@@ -5,7 +5,7 @@ import contextvars
 import functools
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numba
 import numpy as np
@@ -26,6 +26,7 @@ _PART = 8192  # members in a piece of work of one thread, a multiple of what a c
 _THREADS: contextvars.ContextVar[int | None] = contextvars.ContextVar("threads", default=None)
 
 Report: TypeAlias = Callable[[int], None]
+Starts: TypeAlias = tuple[np.ndarray, np.ndarray]  # scaled momenta and poses
 
 
 @contextlib.contextmanager
@@ -72,11 +73,7 @@ class Plan(NamedTuple):
 
 
 def run_members(
-    members: Members,
-    momenta: np.ndarray,
-    plan: Plan,
-    threads: int | None = None,
-    report: Report = lambda _: None,
+    members: Members, momenta: np.ndarray, plan: Plan, threads: int | None = None, report: Report = lambda _: None
 ) -> Ensemble:
     """Run a block of members from canonical momenta.
 
@@ -97,67 +94,59 @@ def _run_scalar(members: Members, momenta: np.ndarray, plan: Plan, threads: int,
     scalar = scalar_members(members)
     steps, every, posed, backend = plan
     count, states = len(members), states_of(steps, every)
-    scaled = np.ascontiguousarray(momenta * scalar.scale[:, None])
-    poses = np.array(np.broadcast_to(scalar.pose, (count, 4)), order="C")  # never read-only: compiled once
     rows = _rows(count, states, posed)
-    fields, one = scalar.fields, members.parameters.keys() <= {"time_step"}
-    advance = functools.partial(_advance_by_jax if backend == "jax" else _advance, body_of(members))
+    fields, run = scalar.fields, _advance_by_jax if backend == "jax" else _advance
+    advance = functools.partial(run, body_of(members))
 
     def work(part: slice, stop: np.ndarray) -> None:
-        pieces = kernels.MemberRows(*(array[part] for array in rows))
-        advance(fields if one else fields[:, part], one, scaled[part], poses[part], plan, pieces, stop)
+        pieces = _unfilled(kernels.MemberRows(*(array[part] for array in rows)))
+        scale = np.broadcast_to(scalar.scale, (count,))[part, None]
+        poses = np.array(np.broadcast_to(scalar.pose, (count, 4))[part], order="C")  # never read-only: compiled once
+        own = fields if fields.shape[1] == 1 else fields[:, part]
+        advance(own, (momenta[part] * scale, poses), plan, pieces, stop)
+        np.divide(pieces.momenta, scale[:, None], out=pieces.momenta)
 
     if backend == "jax":
         threads = 1  # XLA has its own
     in_threads(work, _parts(count, threads, backend), threads, report)
-    reduced = rows.momenta / scalar.scale[:, None, None]
-    found = rows.poses if posed else None
-    return Ensemble(members, steps, every, reduced, rows.charts, found, rows.codes, rows.done, momenta)
+    return Ensemble(members, steps, every, *rows[:2], rows.poses if posed else None, *rows[3:], momenta)
 
 
 def _rows(count: int, states: int, posed: bool) -> kernels.MemberRows:
-    """Return rows for the states of members, NaN before they run."""
-    momenta, charts = (np.full((count, states, 2), np.nan) for _ in range(2))
-    poses = np.full((count, states * posed, 4), np.nan)
-    codes, done = np.zeros((2, count), dtype=np.int64)
-    return kernels.MemberRows(momenta, charts, poses, codes, done)
+    """Return rows for the states of members, not yet NaN: threads that run a part of them touch its memory first."""
+    empty = (np.empty((count, kept, size)) for kept, size in ((states, 2), (states, 2), (states * posed, 4)))
+    return kernels.MemberRows(*empty, *np.zeros((2, count), dtype=np.int64))
+
+
+def _unfilled(rows: kernels.MemberRows) -> kernels.MemberRows:
+    """Return rows whose states are NaN, as those of members that do not get there stay."""
+    for states in rows[:3]:
+        states.fill(np.nan)
+    return rows
 
 
 def _advance(
-    body: Callable[..., kernels.Body],
-    fields: np.ndarray,
-    one: bool,
-    momenta: np.ndarray,
-    poses: np.ndarray,
-    plan: Plan,
-    rows: kernels.MemberRows,
-    stop: np.ndarray,
+    body: Any, fields: np.ndarray, starts: Starts, plan: Plan, rows: kernels.MemberRows, stop: np.ndarray
 ) -> None:
     """Run members by the compiled loop."""
-    one_body = body(*(float(x) for x in fields[:, 0]))
-    tables = None if one else kernels.tables_of(fields)
-    kernels.advance_members(one_body, tables, momenta, poses, plan.steps, plan.every or 0, rows, stop)
+    one = body(*(float(x) for x in fields[:, 0]))
+    tables = None if fields.shape[1] == 1 else kernels.tables_of(fields)
+    kernels.advance_members(one, tables, *starts, plan.steps, plan.every or 0, rows, stop)
 
 
 def _advance_by_jax(
-    body: Callable[..., kernels.Body],
-    fields: np.ndarray,
-    one: bool,
-    momenta: np.ndarray,
-    poses: np.ndarray,
-    plan: Plan,
-    rows: kernels.MemberRows,
-    stop: np.ndarray,
+    body: Any, fields: np.ndarray, starts: Starts, plan: Plan, rows: kernels.MemberRows, stop: np.ndarray
 ) -> None:
     """Run members by JAX, and those whose roots are not certain by the compiled loop."""
     with needs("jax", "ensemble(backend='jax')"):
         from nonholo.simulation.members._by_jax import advance_by_jax
 
-    uncertain = advance_by_jax(body(*fields), momenta, poses, plan.steps, plan.every or 0, rows)
+    uncertain = advance_by_jax(body(*fields), *starts, plan.steps, plan.every or 0, rows)
     again = np.flatnonzero(uncertain)
     if again.size:
-        found = _rows(len(again), rows.momenta.shape[1], plan.posed)
-        _advance(body, fields if one else fields[:, again], one, momenta[again], poses[again], plan, found, stop)
+        found = _unfilled(_rows(len(again), rows.momenta.shape[1], plan.posed))
+        own, (momenta, poses) = fields if fields.shape[1] == 1 else fields[:, again], starts
+        _advance(body, own, (momenta[again], poses[again]), plan, found, stop)
         for array, values in zip(rows, found, strict=True):
             array[again] = values
 

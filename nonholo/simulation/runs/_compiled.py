@@ -121,13 +121,13 @@ def compiled_run(
     return CompiledRun(discrete, closed, every, posed)
 
 
-def opened(run: CompiledRun, start: FirstState, steps: int, throw: bool) -> tuple[RunState, Orbit]:
-    """Return a run at its start and its first state as an orbit, empty (or an error) if there is none."""
+def opened(run: CompiledRun, start: FirstState, steps: int, throw: bool) -> tuple[RunState, Orbit | None]:
+    """Return a run at its start, and its empty orbit (or an error) if it cannot continue from there."""
     state, outcome = run.start(start)
-    first = run.first(state)
     if outcome != Outcome.successful:
-        empty = dataclasses.replace(first.chosen(slice(0, 0)), outcome=outcome)
+        empty = dataclasses.replace(run.first(state).chosen(slice(0, 0)), outcome=outcome)
         return state, finished(empty, float(run.discrete.time_step), 0, steps, throw)
     if start.demanded is not None:
+        first = run.first(state)
         check_first_state(start.demanded, first.displacement[0], first.momentum[0])
-    return state, first
+    return state, None

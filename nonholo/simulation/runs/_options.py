@@ -1,6 +1,6 @@
 """The options of a run, checked."""
 
-import dataclasses
+from typing import NamedTuple
 
 from nonholo.base.checks import choice, error, step_counts
 from nonholo.discrete import (
@@ -24,8 +24,7 @@ def check_forces(owner: str, discrete: Discretization, steps: int, *, free: str 
         raise error(f"{owner}(steps=...)", "be at most one for each row of the forces", f"{steps}", remedy)
 
 
-@dataclasses.dataclass(frozen=True)
-class RunOptions:
+class RunOptions(NamedTuple):
     """The options of a run, whatever its start.
 
     Attributes:

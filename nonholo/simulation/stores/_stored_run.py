@@ -38,23 +38,18 @@ def run_into_store(
     io.check_target(store, new="simulate(store=...)")
     steps = options.steps
     plan = Plan(steps, run.every, rows_of_block("simulate(checkpoint_every=...)", run, steps, checkpoint_every))
-    state, first = opened(run, start, steps, options.throw)
-    first, found = searched_first(watch, first)
-    if not len(first):
+    state, ended = opened(run, start, steps, options.throw)
+    first, found = searched_first(watch, run.first(state) if ended is None else ended)
+    if ended is not None:
         return first
     opening, events = Checkpoint(0, Outcome.successful, state.vector), None
     if found is not None:
         opening, events = opening._replace(seen=seen_by(found, 0)), descriptions(found.events)
     remedy = "Raise save_every to keep fewer states."
-    within_disk("simulate(store=...)", _bytes(run, steps), store, remedy)
+    within_disk("simulate(store=...)", 8.0 * (1 + steps // run.every) * (1 + sum(run.sizes)), store, remedy)
     stream = io.create_stream(store, first, plan, opening, events, scenario)
     with io.locked(stream.path):
         return continue_run(run, stream, watch, throw=options.throw, progress=options.progress)
-
-
-def _bytes(run: CompiledRun, steps: int) -> float:
-    """Return the size of all states."""
-    return 8.0 * (1 + steps // run.every) * (1 + sum(run.sizes))
 
 
 def rows_of_block(where: str, run: CompiledRun, steps: int, block_steps: int | None) -> int:

@@ -10,7 +10,7 @@ from nonholo.base.checks import number, scale
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem
+from nonholo.systems._base import AbstractLLSystem, unchecked
 from nonholo.systems._normal_form import NormalForm
 
 
@@ -66,7 +66,7 @@ class ChaplyginSleigh(AbstractLLSystem):
         xp = (m * a * b * self.inertia).__array_namespace__()
         half = self.inertia / 2
         rows = ((half + m * a * a, m * a * b, m * a), (m * a * b, half + m * b * b, m * b), (m * a, m * b, m))
-        return xp.stack([xp.stack(row) for row in rows])
+        return xp.stack([xp.stack(row, axis=-1) for row in rows], axis=-2)
 
     @kept
     def constraint_subspace(self) -> Float[np.ndarray, "2 3"]:
@@ -84,12 +84,12 @@ class ChaplyginSleigh(AbstractLLSystem):
         xp = (self.b * self.mass).__array_namespace__()
         zero, one = xp.zeros_like(self.b), xp.ones_like(self.b)
         rows = ((one, zero, zero), (zero, one, self.b), (zero, zero, one))
-        return xp.stack([xp.stack(row) for row in rows])
+        return xp.stack([xp.stack(row, axis=-1) for row in rows], axis=-2)
 
     @functools.cached_property
     def canonical(self) -> "ChaplyginSleigh":
         """The same sleigh with b = 0: the offset across the blade does not enter the reduced motion."""
-        return ChaplyginSleigh(self.mass, self.inertia, self.a)
+        return unchecked(self, b=np.zeros(np.shape(self.b))[()])
 
     @functools.cached_property
     def normal_form(self) -> NormalForm:

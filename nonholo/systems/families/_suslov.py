@@ -10,7 +10,7 @@ from nonholo.base.checks import array, error, is_traced, positive_definite, symm
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem
+from nonholo.systems._base import AbstractLLSystem, unchecked
 from nonholo.systems._body import lines_of, possible, tensors_shown
 from nonholo.systems._mass import body_tensor, inertia_tensor, mass_tensor_from_inertia, rotation_to
 from nonholo.systems._normal_form import NormalForm, top_form
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from nonholo.systems.families._arrowhead import ArrowheadTop
 
 _E3 = (0.0, 0.0, 1.0)
+_LAST = array("SuslovTop(axis=...)", _E3, (3,))
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
@@ -144,10 +145,11 @@ class SuslovTop(AbstractLLSystem):
     @kept
     def canonical(self) -> "SuslovTop":
         """The same top in body axes whose last one is the forbidden axis."""
-        if self.axis is None or np.array_equal(self.axis, _E3):
+        if self.axis is None or tuple(self.axis) == _E3:
             return self
         turned = self.frame.T @ self.mass_tensor @ self.frame
-        return SuslovTop((turned + turned.T) / 2)
+        halves = turned + turned.__array_namespace__().swapaxes(turned, -1, -2)
+        return unchecked(self, mass_tensor=halves / 2, axis=np.array(_E3))
 
     @property
     def coupling(self) -> Float[Array, "k"]:
@@ -166,7 +168,9 @@ def _forbidden_axis(where: str, value: Array, n: int) -> Array:
             remedy = "Turn the body so that its planes of rotation contain e_n."
             raise error(where, "be left out for n > 3", f"an axis for n = {n}", remedy)
         return None
-    axis = array(where, _E3 if value is None else value, (3,), "Pass a unit vector in body coordinates.")
+    if value is None:
+        return _LAST
+    axis = array(where, value, (3,), "Pass a unit vector in body coordinates.")
     if is_traced(axis):
         raise error(where, "be concrete", "a traced value", "Differentiate with respect to mass_tensor instead.")
     length = np.linalg.norm(axis)

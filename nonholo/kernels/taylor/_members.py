@@ -10,10 +10,13 @@ import numpy as np
 
 from nonholo.base.compiled import njit
 from nonholo.base.types import Bool, Float, Int
-from nonholo.kernels._scalar import COMPILED
-from nonholo.kernels._taylor import Quadratic, Room, make_room, move, order_for, prepare, read
+from nonholo.kernels._scalar import COMPILED, scalar
+from nonholo.kernels._small import assign
+from nonholo.kernels.taylor._expansion import Quadratic, Room, expand, make_room, sparse_products
+from nonholo.kernels.taylor._lanes import EIGHT
+from nonholo.kernels.taylor._solve import move, read
+from nonholo.kernels.taylor._steps import order_for, write_steps
 
-_LANES = (0,) * 8
 _LOOK = 64  # steps between two looks at whether to stop
 
 
@@ -37,14 +40,18 @@ def solve_members(
         rows: Where the states go; the others are left as they are.
         stop: Ends the work when it becomes true.
     """
-    reached, used = np.zeros(len(starts), dtype=np.int64), f.products.max(initial=-1) + 1
-    spread = f._replace(left=f.left[:used], right=f.right[:used], velocities=np.tile(f.velocities, len(_LANES)))
-    spread = spread._replace(factors=np.zeros(len(f.factors) * len(_LANES)))
-    _advance_members(spread, *numbers, starts, *times, order_for(tolerance), tolerance, rows, reached, stop)
+    reached, L = np.zeros(len(starts), dtype=np.int64), len(EIGHT)
+    velocity, eight = f.rows[:, f.found // L]
+    rows_found = sparse_products(velocity, eight * L + f.found % L, 1)
+    wide = f._replace(velocities=np.tile(f.velocities, L), factors=np.tile(f.factors, L))
+    wide, size = wide._replace(rows=rows_found[0], found=rows_found[1]), starts.shape[1]
+    room, state, ends = make_room(wide, order_for(tolerance), EIGHT), np.zeros((2, (size + 1) * L)), np.zeros(L)
+    members = np.full(L, -1)
+    _advance_members(wide, *numbers, starts, *times, tolerance, rows, reached, stop, (state, ends, members), room)
     return reached
 
 
-@njit(nogil=True, **COMPILED)
+@njit(nogil=True, _nrt=False, **COMPILED)
 def _advance_members(
     f: Quadratic,
     velocities: np.ndarray,
@@ -52,16 +59,17 @@ def _advance_members(
     starts: np.ndarray,
     times: np.ndarray,
     units: np.ndarray,
-    order: int,
     tolerance: float,
     rows: np.ndarray,
     reached: np.ndarray,
     stop: np.ndarray,
+    lanes: tuple[np.ndarray, np.ndarray, np.ndarray],
+    room: Room,
 ) -> None:
-    L, following = len(_LANES), 0
-    room, state, ends = make_room(f, order, _LANES), np.zeros((2, (starts.shape[1] + 1) * L)), np.zeros(L)
-    members, direction, looked = np.zeros(L, np.int64) - 1, math.copysign(1.0, times[-1] - times[0]), 0
-    while following < len(starts) or members.max() >= 0:
+    state, ends, members = lanes
+    L, following, busy, looked = len(EIGHT), 0, True, 0
+    direction = math.copysign(1.0, times[-1] - times[0])
+    while busy:
         if looked % _LOOK == 0 and stop[0]:
             break
         looked += 1
@@ -70,15 +78,19 @@ def _advance_members(
                 own = following if len(velocities) > 1 else 0
                 span = times[0] * units[following], times[-1] * units[following]
                 ends[lane] = _load(f, velocities[own], factors[own], starts[following], span, lane, state)
-                rows[following, 0], reached[following], members[lane] = starts[following], 1, following
+                assign(rows[following, 0], starts[following])
+                reached[following], members[lane] = 1, following
                 following += 1
-        prepare(f, state, order, tolerance, ends, room, _LANES)
+        expand(f, state, room, EIGHT)
+        write_steps(f, state, ends, tolerance, room, EIGHT)
+        busy = following < len(starts)
         for lane in range(L):
-            room.steps[lane] *= direction * _continue(room, state, times, units, lane, members, reached, rows)
-        move(room.series, room.steps, state, _LANES)
+            room.steps[0, lane] *= direction * _continue(f, room, state, times, units, lane, members, reached, rows)
+            busy |= members[lane] >= 0
+        move(f, room, state, EIGHT)
 
 
-@njit(inline="always", **COMPILED)
+@scalar
 def _load(
     f: Quadratic,
     velocities: np.ndarray,
@@ -89,20 +101,21 @@ def _load(
     state: np.ndarray,
 ) -> float:
     """Give a lane to a motion: its numbers, its first state and time; return its last time."""
-    L, size = len(_LANES), len(start)
+    L, size = len(EIGHT), len(start)
     for a in range(len(velocities)):
         for i in range(len(velocities)):
             f.velocities[a, i * L + lane] = velocities[a, i]
     for i in range(len(factors)):
-        f.factors[i * L + lane] = factors[i]
+        f.factors[0, i * L + lane] = factors[i]
     for m in range(size):
-        state[0, m * L + lane], state[1, m * L + lane] = start[m], 0.0
+        state[0, m * L + lane], state[1, m * L + lane] = start[f.order[m]], 0.0
     state[0, size * L + lane], state[1, size * L + lane] = span[0], 0.0
     return span[1]
 
 
-@njit(inline="always", **COMPILED)
+@scalar
 def _continue(
+    f: Quadratic,
     room: Room,
     state: np.ndarray,
     times: np.ndarray,
@@ -115,8 +128,8 @@ def _continue(
     """Write what the motion in a lane reaches in this step; tell whether it takes the step, else free the lane."""
     at, going = members[lane], members[lane] >= 0 and reached[members[lane]] < len(times)
     if going:
-        reached[at], going = read(room, state, times, units[at], reached[at], rows[at], lane, _LANES)
+        reached[at], going = read(f, room, state, times, units[at], reached[at], rows[at], lane, EIGHT)
     if going and reached[at] < len(times):
         return True
-    members[lane], room.steps[lane] = -1, 0.0
+    members[lane], room.steps[0, lane] = -1, 0.0
     return False

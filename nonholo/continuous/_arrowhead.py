@@ -1,0 +1,74 @@
+r"""Momenta of tops and sleighs without poses, in O(n) operations a Taylor coefficient.
+
+In the principal axes of B, with $D = B + ma_1^2$, $\pi = Dw$ and $p_1 = mu$ (`NormalForm`), the momenta along the rows
+of the form are $(\pi + \alpha p_1, p_1)$. The kernel's numbers are $\pi/\sqrt D$ and $p_1/\sqrt m$.
+"""
+
+import functools
+from typing import cast
+
+import numpy as np
+
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
+from nonholo.continuous._series import GUARD, looked_at, power_of_two
+from nonholo.continuous._solution import Solved, States
+from nonholo.kernels import Arrowhead, solve_arrowhead
+from nonholo.systems import AbstractSystem, NormalForm
+
+
+def momenta_by_series(
+    system: AbstractSystem,
+    reduced_momentum: Float[np.ndarray, "k"],
+    _pose: None,
+    elapsed: Float[np.ndarray, "K"],
+    tolerances: tuple[float, float],
+) -> Solved:
+    """Solve for the momenta of a top or sleigh, without its pose; times elapse from zero."""
+    form, tolerance = cast(NormalForm, system.normal_form), tolerances[0] * GUARD
+    f, x = equations(form)[0], encoded(form, reduced_momentum)
+    unit = power_of_two(np.append(np.sqrt(f.rates) * x, f.rates.max() * (f.coupling @ x)))
+    start, end = np.zeros((2, len(x) + 1)), float(elapsed[-1]) * unit
+    start[0, :-1] = x / unit
+    rows, nodes = solve_arrowhead(f, start, elapsed[1:] * unit, end, tolerance)
+    outcome = Outcome.successful if len(rows) == len(elapsed) - 1 else Outcome.not_converged
+    states = States(decoded(form, np.vstack([start[0, :-1], rows]) * unit), None, None)
+    at = functools.partial(_between, form, nodes, unit, end, tolerance)
+    return Solved(states, outcome, at, looked_at(np.array([*(node[0, -1] for node in nodes), end])) / unit)
+
+
+def _between(
+    form: NormalForm, nodes: list[np.ndarray], unit: float, end: float, tolerance: float, elapsed: np.ndarray
+) -> States:
+    """Return the states at times since the start, in the order of the solve, from the nodes before them."""
+    f, times, begins = equations(form)[0], elapsed * unit, np.array([node[0, -1] for node in nodes])
+    backward = np.copysign(1.0, end)
+    after = np.maximum(np.searchsorted(backward * begins, backward * times) - 1, 0)
+    parts = (solve_arrowhead(f, nodes[node], times[after == node], end, tolerance)[0] for node in np.unique(after))
+    return States(decoded(form, np.concatenate([np.empty((0, len(f.rates))), *parts]) * unit), None, None)
+
+
+def equations(form: NormalForm) -> tuple[Arrowhead, Float[np.ndarray, "k"]]:
+    r"""Return the equations that the kernel solves, and the units $\sqrt D$, of a sleigh then $\sqrt m$."""
+    b, c = form.principal[0], form.to_principal(form.coupling)
+    if not form.is_sleigh:
+        return Arrowhead(1 / b, c / np.sqrt(b)), np.sqrt(b)
+    D, slide = b + form.mass * form.arm**2, np.sqrt(form.mass)
+    f = Arrowhead(np.append(1 / D, 0.0), np.append(c / np.sqrt(D), -form.arm * slide))
+    return f, np.append(np.sqrt(D), slide)
+
+
+def encoded(form: NormalForm, momentum: Float[np.ndarray, "k"]) -> Float[np.ndarray, "k"]:
+    """Return the numbers of the kernel from canonical momenta."""
+    r = momentum if form.frame_map is None else form.frame_map @ momentum
+    if form.is_sleigh:
+        r = np.append(r[:-1] - r[-1] * form.offset, r[-1])
+    return form.to_principal(r) / equations(form)[1]
+
+
+def decoded(form: NormalForm, rows: Float[np.ndarray, "K k"]) -> Float[np.ndarray, "K k"]:
+    """Return canonical momenta from the numbers of the kernel, row by row: BLAS may add otherwise in company."""
+    momenta = form.from_principal((rows * equations(form)[1])[:, None])
+    if form.is_sleigh:
+        momenta[..., :-1] += momenta[..., -1:] * form.offset
+    return (momenta if form.frame_map is None else momenta @ np.linalg.inv(form.frame_map).T)[:, 0]

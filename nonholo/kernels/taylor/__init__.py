@@ -1,0 +1,18 @@
+"""Continuous motions by Taylor series: their quadratic equations, one motion, many side by side."""
+
+from nonholo.kernels.taylor._arrowhead import Arrowhead, solve_arrowhead
+from nonholo.kernels.taylor._expansion import Quadratic, sparse_products
+from nonholo.kernels.taylor._members import solve_members
+from nonholo.kernels.taylor._solve import revisit_series, solve_series
+from nonholo.kernels.taylor._steps import order_for
+
+__all__ = [
+    "Arrowhead",
+    "Quadratic",
+    "order_for",
+    "revisit_series",
+    "solve_arrowhead",
+    "solve_members",
+    "solve_series",
+    "sparse_products",
+]

@@ -1,0 +1,227 @@
+r"""Quadratic equations and the Taylor coefficients of their solutions.
+
+With velocities w the state x obeys $x_m' = \sum_q C_{mq}\,z_{a(q)}\,z_{b(q)}$, where z is (1, w, x) and a(q) the place
+of a velocity. If the constraint is fixed in the body, x ends with momenta r, and w = V r. If it is fixed in space, x
+ends with the inertia tensor $\mathbb{J}_g = g\mathbb{J}g^T$, and $B(\mathbb{J}_g)\,w = r$ with a linear map B and
+constant r: a division of series. Taylor coefficients of products are Cauchy products.
+
+A single motion has eight places of z side by side, several motions have one place of all of them; in both, the terms
+of a sum are added in the same order.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba.extending import overload
+
+from nonholo.base.types import Int
+from nonholo.kernels._scalar import COMPILED, scalar
+from nonholo.kernels._small import eliminate
+from nonholo.kernels.taylor._lanes import EIGHT, load, spread, store
+
+
+class Quadratic(NamedTuple):
+    """Equations as the module states them.
+
+    Attributes:
+        velocities: V, (k, k L), for each of L lanes.
+        rows: Which products are taken: the place in z of a velocity, and which eight places of z, or, of several
+            motions side by side, which place, (2, R).
+        first: Where the terms of each row of C begin, and the last one ends, (size + 1,).
+        found: Which of the products each term needs, (Q,).
+        factors: The value of C in each term, (1, Q L).
+        order: The component of the state of a solution that each component of x is, (size,).
+        blocks: The block of each component of x, whose errors are measured together, (size,).
+        closed: Whether nothing outside moves a block, (blocks,).
+        forms: The coefficients of B, (k, k, N N), or none, (0,), if the constraint is fixed in the body.
+        tensor: J, (N, N).
+        momentum: r, (k,), of a constraint fixed in space.
+    """
+
+    velocities: np.ndarray
+    rows: np.ndarray
+    first: np.ndarray
+    found: np.ndarray
+    factors: np.ndarray
+    order: np.ndarray
+    blocks: np.ndarray
+    closed: np.ndarray
+    forms: np.ndarray
+    tensor: np.ndarray
+    momentum: np.ndarray
+
+
+class Room(NamedTuple):
+    """Where a kernel works, which allocates nothing.
+
+    Attributes:
+        series: Coefficients of z, (order + 1, width).
+        sums: Coefficients of the products, (1, 8 R).
+        inertia: Coefficients of B, (order, k, k).
+        matrix: B, (k, k).
+        solution: w, (k, 1).
+        change: A sum of a series, (1, width).
+        sizes: Of the coefficients of blocks, (order + 1, blocks L).
+        steps: The length of a step, (1, L).
+    """
+
+    series: np.ndarray
+    sums: np.ndarray
+    inertia: np.ndarray
+    matrix: np.ndarray
+    solution: np.ndarray
+    change: np.ndarray
+    sizes: np.ndarray
+    steps: np.ndarray
+
+
+def make_room(f: Quadratic, order: int, lanes: tuple[int, ...]) -> Room:
+    """Return room for the series of some lanes."""
+    L, k = len(lanes), len(f.velocities)
+    places = 1 + k + len(f.blocks)
+    width = L * (places if L > 1 else places + -places % len(EIGHT))
+    series = _aligned(order + 1, width)
+    series[0, :L] = 1.0
+    return Room(
+        series,
+        _aligned(1, len(EIGHT) * f.rows.shape[1]),
+        np.zeros((order, len(f.forms), len(f.forms))),
+        np.zeros((len(f.forms), len(f.forms))),
+        np.zeros((len(f.forms), 1)),
+        np.zeros((1, width)),
+        np.zeros((order + 1, len(f.closed) * L)),
+        np.zeros((1, L)),
+    )
+
+
+def _aligned(rows: int, width: int) -> np.ndarray:
+    """Return zeros that begin where eight numbers do that a processor loads at once."""
+    room = np.zeros(rows * width + len(EIGHT))
+    skipped = -(room.ctypes.data // room.itemsize) % len(EIGHT)
+    return room[skipped : skipped + rows * width].reshape(rows, width)
+
+
+def sparse_products(
+    left: Int[np.ndarray, "Q"], right: Int[np.ndarray, "Q"], width: int
+) -> tuple[Int[np.ndarray, "2 R"], Int[np.ndarray, "Q"]]:
+    """Return which products are taken, a number of places at once, and which of them each term needs.
+
+    Args:
+        left: The place of the velocity in each term.
+        right: The place of the other factor.
+        width: How many places stand side by side.
+    """
+    rows, found = np.unique(np.stack([left, right // width]), axis=1, return_inverse=True)
+    return np.ascontiguousarray(rows), found.reshape(-1) * width + right % width
+
+
+@scalar
+def expand(f: Quadratic, state: np.ndarray, room: Room, lanes: tuple[int, ...]) -> None:
+    """Write the Taylor coefficients of the solution from a state."""
+    if len(lanes) == 1 and len(f.forms) > 0:
+        _see_tensor(f.tensor, len(f.blocks) - f.tensor.size, state)
+    series, before = room.series, len(f.velocities) + 1
+    for m in range(len(f.blocks)):
+        store(series, 0, before + m, lanes, load(state, 0, m, lanes))
+    for j in range(len(series) - 1):
+        _write_velocities(f, j, room, lanes)
+        for q in range(f.rows.shape[1]):
+            _convolve(f.rows, q, series, j, lanes, room.sums)
+        _collect(f.first, f.found, f.factors, room.sums, j, before, series, lanes)
+
+
+@scalar
+def _see_tensor(tensor: np.ndarray, before: int, state: np.ndarray) -> None:
+    """Write the inertia tensor in space, which its own equations carry through one step, from the pose."""
+    N, g = len(tensor), state[0]
+    for i in range(N):
+        for j in range(N):
+            seen = 0.0
+            for a in range(N):
+                half = 0.0
+                for b in range(N):
+                    half += tensor[a, b] * g[j * N + b]
+                seen += g[i * N + a] * half
+            state[0, before + i * N + j], state[1, before + i * N + j] = seen, 0.0
+
+
+def _write_velocities(f: Any, order: Any, room: Any, lanes: Any) -> Any:
+    """Write a coefficient of w: with numba one of the two that follow, by the axes of the forms."""
+    (_divide if f.forms.ndim == 3 else _apply)(f, order, room, lanes)
+
+
+@overload(_write_velocities, jit_options=COMPILED)
+def _choose(f: Any, order: Any, room: Any, lanes: Any) -> Any:
+    """Choose when a kernel is compiled."""
+    return _divide if f.types[f.fields.index("forms")].ndim == 3 else _apply
+
+
+def _apply(f: Any, order: Any, room: Any, lanes: Any) -> Any:
+    """Write the coefficient of w = V r."""
+    V, series, k, before = f.velocities, room.series, len(f.velocities), 1 + len(f.blocks)
+    for a in range(k):
+        velocity = spread(0.0, lanes)
+        for i in range(k):
+            velocity = velocity + load(V, a, i, lanes) * load(series, order, before + i, lanes)
+        store(series, order, 1 + a, lanes, velocity)
+
+
+def _divide(f: Any, order: Any, room: Any, lanes: Any) -> Any:
+    """Write the coefficient of w in B w = r: B_0 w_j = r_j - B_1 w_(j-1) - ... - B_j w_0."""
+    k, inertia, series, matrix, w = len(f.momentum), room.inertia, room.series, room.matrix, room.solution
+    before = 1 + k + len(f.blocks) - f.forms.shape[2]
+    for a in range(k):
+        for b in range(k):
+            inertia[order, a, b] = 0.0
+            for e in range(f.forms.shape[2]):
+                inertia[order, a, b] += f.forms[a, b, e] * series[order, before + e]
+            matrix[a, b] = inertia[0, a, b]
+        w[a, 0] = f.momentum[a] if order == 0 else 0.0
+        for i in range(1, order + 1):
+            for b in range(k):
+                w[a, 0] -= inertia[i, a, b] * series[order - i, 1 + b]
+    eliminate(matrix, w)
+    for a in range(k):
+        series[order, 1 + a] = w[a, 0]
+
+
+@scalar
+def _convolve(
+    rows: np.ndarray, q: int, series: np.ndarray, order: int, lanes: tuple[int, ...], sums: np.ndarray
+) -> None:
+    """Write the sums of z_a[i] z_b[order - i] of a row of products, with the newest coefficients last."""
+    a, b, even, odd = rows[0, q], rows[1, q], spread(0.0, EIGHT), spread(0.0, EIGHT)
+    for i in range(1, order - 1, 2):
+        odd = odd + _product(series, i, a, order - i, b, lanes)
+        even = even + _product(series, i + 1, a, order - i - 1, b, lanes)
+    if order % 2 == 0 and order > 0:
+        odd = odd + _product(series, order - 1, a, 1, b, lanes)
+    outer = _product(series, 0, a, order, b, lanes)
+    if order > 0:
+        outer = outer + _product(series, order, a, 0, b, lanes)
+    store(sums, 0, q, EIGHT, odd + even + outer)
+
+
+@scalar
+def _product(series: np.ndarray, i: int, a: int, j: int, b: int, lanes: tuple[int, ...]) -> Any:
+    return spread(load(series, i, a, lanes), EIGHT) * load(series, j, b, EIGHT)
+
+
+@scalar
+def _collect(
+    first: np.ndarray,
+    found: np.ndarray,
+    factors: np.ndarray,
+    sums: np.ndarray,
+    order: int,
+    before: int,
+    series: np.ndarray,
+    lanes: tuple[int, ...],
+) -> None:
+    """Write the next coefficients of x: those of its rates, divided."""
+    divisor = spread(order + 1.0, lanes)
+    for m in range(len(first) - 1):
+        rate = spread(0.0, lanes)
+        for i in range(first[m], first[m + 1]):
+            rate = rate + load(factors, 0, i, lanes) * load(sums, 0, found[i], lanes)
+        store(series, order + 1, before + m, lanes, rate / divisor)

@@ -1,0 +1,208 @@
+"""One motion by Taylor series.
+
+Steps do not depend on the times that are asked for, which are read from the series. What rounding takes from state and
+time is carried along (Kahan).
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from nonholo.base.compiled import njit
+from nonholo.base.types import Float
+from nonholo.kernels._scalar import COMPILED, scalar
+from nonholo.kernels._small import assign_rows
+from nonholo.kernels.taylor._expansion import Quadratic, Room, expand, make_room
+from nonholo.kernels.taylor._lanes import EIGHT, ONE, load, spread, store
+from nonholo.kernels.taylor._steps import order_for, write_steps
+
+_STEPS = 2048  # between two looks at the keyboard
+_NUMBERS = 1 << 24  # in the nodes of a solve, 128 MiB
+_SMALLEST_STEP = 1e-13  # of an interval between requested times; below it a solve is given up
+
+
+def solve_series(
+    f: Quadratic, start: Float[np.ndarray, "size"], times: Float[np.ndarray, "K"], tolerance: float
+) -> tuple[Float[np.ndarray, "reached size"], Float[np.ndarray, "steps 2 state"]]:
+    """Return the states at the times, which rise or fall, up to the first that cannot be reached, and the nodes.
+
+    Nodes are the beginnings of steps: the state and its time, above what rounding took from them. When they fill much
+    memory every second one is left out.
+    """
+    rows = np.empty((len(times), len(start)))
+    rows[0] = start
+    state = np.zeros((2, len(start) + 1))
+    state[0] = *start[f.order], times[0]
+    block = max(16, min(_STEPS, _NUMBERS // (8 * state.size)))
+    nodes: list[np.ndarray] = []
+    reached, going, stride = 1, True, 1
+    room = make_room(f, order_for(tolerance), ONE)
+    while going and reached < len(times):
+        passed = np.empty((block, *state.shape))
+        reached, steps, going = advance(f, times, tolerance, reached, state, rows, passed, room)
+        nodes.append(passed[:steps:stride].copy())
+        if len(nodes) * block * state.size > stride * _NUMBERS:
+            nodes, stride = [part[::2].copy() for part in nodes], 2 * stride
+    return rows[:reached], np.concatenate(nodes) if nodes else state[None]
+
+
+def revisit_series(
+    f: Quadratic,
+    nodes: Float[np.ndarray, "steps 2 state"],
+    times: Float[np.ndarray, "K"],
+    end: float,
+    tolerance: float,
+) -> Float[np.ndarray, "K size"]:
+    """Return the states at times in the order of the nodes, the bits as if they had been requested with `end`."""
+    rows, room = np.empty((len(times), len(f.blocks))), make_room(f, order_for(tolerance), ONE)
+    revisit(f, nodes, times, np.array([end]), tolerance, nodes[0].copy(), rows, room)
+    return rows
+
+
+@njit(nogil=True, _nrt=False, **COMPILED)
+def advance(
+    f: Quadratic,
+    times: np.ndarray,
+    tolerance: float,
+    reached: int,
+    state: np.ndarray,
+    rows: np.ndarray,
+    nodes: np.ndarray,
+    room: Room,
+) -> tuple[int, int, bool]:
+    """Take a step from each node, which is written; return how many rows and nodes are filled and whether one failed.
+
+    `state` holds x and time, and what rounding took from them.
+    """
+    going, at = True, 0
+    while at < len(nodes) and going and reached < len(times):
+        assign_rows(nodes[at], state)
+        at += 1
+        expand(f, state, room, ONE)
+        write_steps(f, state, times[-1:], tolerance, room, ONE)
+        reached, going = read(f, room, state, times, 1.0, reached, rows, 0, ONE)
+        if going and reached < len(times):
+            room.steps[0, 0] = math.copysign(room.steps[0, 0], times[-1] - times[0])
+            move(f, room, state, ONE)
+    return reached, at, going
+
+
+@njit(nogil=True, _nrt=False, **COMPILED)
+def revisit(
+    f: Quadratic,
+    nodes: np.ndarray,
+    times: np.ndarray,
+    ends: np.ndarray,
+    tolerance: float,
+    state: np.ndarray,
+    rows: np.ndarray,
+    room: Room,
+) -> None:
+    """Write the states at times in the order of the nodes."""
+    at, direction = -1, math.copysign(1.0, ends[0] - nodes[0, 0, -1])
+    for i in range(len(times)):
+        after = max(at, 0)
+        while after + 1 < len(nodes) and direction * since(nodes[after + 1], times[i], 0, ONE) > 0:
+            after += 1
+        if after != at:
+            at = after
+            assign_rows(state, nodes[at])
+            expand(f, state, room, ONE)
+            write_steps(f, state, ends, tolerance, room, ONE)
+        while abs(since(state, times[i], 0, ONE)) > room.steps[0, 0]:  # nodes between were left out
+            room.steps[0, 0] *= direction
+            move(f, room, state, ONE)
+            expand(f, state, room, ONE)
+            write_steps(f, state, ends, tolerance, room, ONE)
+        evaluate(f, room, since(state, times[i], 0, ONE), state, rows[i], 0, ONE)
+
+
+@scalar
+def since(state: np.ndarray, time: float, lane: int, lanes: tuple[int, ...]) -> float:
+    """Return how long after the state of a lane a time is."""
+    at = state.shape[1] - len(lanes) + lane
+    return time - state[0, at] - state[1, at]
+
+
+@scalar
+def read(
+    f: Quadratic,
+    room: Room,
+    state: np.ndarray,
+    times: np.ndarray,
+    unit: Any,
+    reached: Any,
+    rows: np.ndarray,
+    lane: int,
+    lanes: tuple[int, ...],
+) -> tuple[int, bool]:
+    """Write the rows whose times lie within the step of a lane; return how many are filled, and whether all went well.
+
+    Times are in other units than the state's: `unit` is the factor to them.
+    """
+    step = room.steps[0, lane]
+    going = step > _SMALLEST_STEP * unit * abs(times[reached] - times[reached - 1])
+    while going and reached < len(times) and abs(since(state, times[reached] * unit, lane, lanes)) <= step:
+        evaluate(f, room, since(state, times[reached] * unit, lane, lanes), state, rows[reached], lane, lanes)
+        going = _is_finite(rows[reached])
+        reached += going
+    return reached, going
+
+
+@scalar
+def _is_finite(row: np.ndarray) -> bool:
+    total = 0.0
+    for x in row:
+        total += x
+    return math.isfinite(total)
+
+
+@scalar
+def evaluate(
+    f: Quadratic, room: Room, time: float, state: np.ndarray, out: np.ndarray, lane: int, lanes: tuple[int, ...]
+) -> None:
+    """Write the state of a lane some time after the beginning of its step."""
+    L, before, series, change = len(lanes), len(f.velocities) + 1, room.series, room.change
+    order = len(series) - 1
+    if L == 1:
+        _sum(series, before // len(EIGHT), spread(time, EIGHT), change)
+    else:
+        for m in range(before, before + len(out)):
+            total = series[order, m * L + lane]
+            for j in range(order - 1, 0, -1):
+                total = total * time + series[j, m * L + lane]
+            change[0, m * L + lane] = total * time
+    for m in range(len(out)):
+        out[f.order[m]] = state[0, m * L + lane] + (change[0, (before + m) * L + lane] + state[1, m * L + lane])
+
+
+@scalar
+def move(f: Quadratic, room: Room, state: np.ndarray, lanes: tuple[int, ...]) -> None:
+    """Carry states and times of all lanes to the ends of their steps."""
+    size, before, change, step = len(f.blocks), len(f.velocities) + 1, room.change, load(room.steps, 0, 0, lanes)
+    _sum(room.series, before // len(EIGHT) if len(lanes) == 1 else before, spread(step, EIGHT), change)
+    for m in range(size):
+        _add(state, m, load(change, 0, before + m, lanes), lanes)
+    _add(state, size, step, lanes)
+
+
+@scalar
+def _sum(series: np.ndarray, first: int, time: Any, change: np.ndarray) -> None:
+    """Write what the terms of the series beyond the first add up to, eight of them side by side."""
+    order = len(series) - 1
+    for m in range(first, series.shape[1] // len(EIGHT)):
+        total = load(series, order, m, EIGHT)
+        for j in range(order - 1, 0, -1):
+            total = total * time + load(series, j, m, EIGHT)
+        store(change, 0, m, EIGHT, total * time)
+
+
+@scalar
+def _add(state: np.ndarray, m: int, term: Any, lanes: tuple[int, ...]) -> None:
+    """Add a term to a number, and keep what rounding took from it."""
+    before = load(state, 0, m, lanes)
+    term = term + load(state, 1, m, lanes)
+    after = before + term
+    store(state, 0, m, lanes, after)
+    store(state, 1, m, lanes, term - (after - before))

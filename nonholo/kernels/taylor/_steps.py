@@ -1,0 +1,120 @@
+"""How far a series reaches: the order and the length of a step [jorba-zou-2005], without a library's logarithm.
+
+The last two terms of a step are within the tolerance of the first, block by block; where something outside drives a
+block, of its largest one. The size of a block is the sum of what its components have.
+"""
+
+import math
+
+import numpy as np
+
+from nonholo.kernels._scalar import scalar
+from nonholo.kernels.taylor._expansion import Quadratic, Room
+from nonholo.kernels.taylor._lanes import load, spread, store
+
+_STRETCH = 0.8  # of the logarithm of the tolerance
+_REPAIRS = 50  # of a step; one or two do
+_ENOUGH, _FAR = 0.99, 2.0**-32  # of the step that the last terms allow (roots have two digits), or that overflows
+_BEND = 0.34  # of the logarithm between powers of two: log2(1 + t) is near t + _BEND t (1 - t)
+_SMALLEST, _SCALE, _RAISED = 2.0**-1022, 2.0**54, 54  # normal number; what makes others normal; its exponent
+_FRACTION, _UNIT = (1 << 52) - 1, 1023  # the bits of a number that follow its exponent; the exponent of one
+
+
+def order_for(tolerance: float) -> int:
+    """Return the order of the series.
+
+    Half of the logarithm takes the fewest products [jorba-zou-2005]; but a processor waits for one order after another,
+    whatever their number, so that longer steps of a higher order take less time.
+    """
+    return max(8, math.floor(1 - _STRETCH * math.log(tolerance)))
+
+
+@scalar
+def write_steps(
+    f: Quadratic, state: np.ndarray, ends: np.ndarray, tolerance: float, room: Room, lanes: tuple[int, ...]
+) -> None:
+    """Write the lengths of the steps, not much longer than is left; NaN where the series is not finite."""
+    L, closed, sizes = len(lanes), f.closed, room.sizes
+    _measure(f, room, lanes)
+    for lane in range(L):
+        left = ends[lane] - state[0, len(f.blocks) * L + lane]
+        step = _limited(closed, sizes, tolerance, 2 * abs(left), lane, L)
+        for block in range(len(closed)):
+            if not closed[block]:
+                step = _repaired(sizes, block * L + lane, tolerance, step)
+        room.steps[0, lane] = step
+
+
+@scalar
+def _limited(closed: np.ndarray, sizes: np.ndarray, tolerance: float, step: float, lane: int, L: int) -> float:
+    """Return a step, shortened until the last terms of all closed blocks are small enough; NaN if nothing helps."""
+    order = len(sizes) - 1
+    for late in range(order - 1, order + 1):
+        share = _late_share(closed, sizes, late, lane, L)
+        if share > 0:
+            step = min(step, root(tolerance / share, late))
+        elif share != 0:
+            return np.nan
+    return step
+
+
+@scalar
+def _measure(f: Quadratic, room: Room, lanes: tuple[int, ...]) -> None:
+    """Write the sizes of each block's coefficients: of all orders where it is driven, else of those that are needed."""
+    sizes, series, blocks, closed = room.sizes, room.series, f.blocks, f.closed
+    before, order = len(f.velocities) + 1, len(series) - 1
+    for block in range(len(closed)):
+        for j in range(order + 1):
+            store(sizes, j, block, lanes, spread(0.0, lanes))
+    for m in range(len(blocks)):
+        block = blocks[m]
+        for j in range(order + 1):
+            if j == 0 or j >= order - 1 or not closed[block]:
+                size = load(sizes, j, block, lanes) + abs(load(series, j, before + m, lanes))
+                store(sizes, j, block, lanes, size)
+
+
+@scalar
+def _late_share(closed: np.ndarray, sizes: np.ndarray, late: int, lane: int, L: int) -> float:
+    """Return the largest ratio of a late coefficient to the first one of its closed block; NaN if one is not finite."""
+    share = 0.0
+    for block in range(len(closed)):
+        at = block * L + lane
+        if closed[block] and sizes[late, at] != 0:
+            ratio = sizes[late, at] / sizes[0, at]
+            share = ratio if ratio > share else share
+            if not math.isfinite(ratio):
+                return np.nan
+    return share
+
+
+@scalar
+def _repaired(sizes: np.ndarray, at: int, tolerance: float, step: float) -> float:
+    """Return a step, shortened until the last terms of a driven block are within the tolerance of its largest one."""
+    order = len(sizes) - 1
+    for _ in range(_REPAIRS):
+        power, largest, late = 1.0, 0.0, 0.0
+        for j in range(order + 1):
+            largest = max(largest, sizes[j, at] * power)
+            late = max(late, sizes[j, at] * power) if j >= order - 1 else late
+            power *= step
+        if late <= tolerance * largest:
+            return step
+        step *= _ENOUGH * root(tolerance * largest / late, order) if math.isfinite(late) else _FAR
+    return np.nan
+
+
+@scalar
+def root(x: float, degree: int) -> float:
+    """Return the root of a positive number to two digits, from its bits; of zero a number that is small."""
+    raised = 0
+    if x < _SMALLEST:
+        x, raised = max(x * _SCALE, _SMALLEST), _RAISED
+    if not math.isfinite(x):
+        return math.inf
+    bits = np.float64(x).view(np.int64)
+    part = np.int64((bits & _FRACTION) | (_UNIT << 52)).view(np.float64) - 1
+    power = ((bits >> 52) - _UNIT - raised + part + _BEND * part * (1 - part)) / degree
+    whole = int(power + _UNIT)  # rounds toward zero, so from a positive number
+    part = power + _UNIT - whole
+    return np.int64(whole << 52).view(np.float64) * (1 + part - _BEND * part * (1 - part))

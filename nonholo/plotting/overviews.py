@@ -1,0 +1,246 @@
+"""The picture of an orbit: its panels in one figure with a head, for the screen, a slide or a page.
+
+Which panels it has is chosen by the group, the kind of constraint and the number of free directions. The head says what
+moves, its parameters, how long, and how the run ended.
+"""
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+from nonholo.base.checks import error
+from nonholo.base.checks import path as checked_path
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
+from nonholo.groups import SE, SO
+from nonholo.io import check_file
+from nonholo.orbit import Orbit
+from nonholo.plotting import motion, theme
+from nonholo.plotting.parts import drawable, is_free, time_step
+from nonholo.plotting.sheets import blade_of_system, sheet_of
+from nonholo.systems import AbstractLLSystem, LLSystem, System
+
+
+class Panel(NamedTuple):
+    """A panel: what draws it on its axes, whether its abscissa is time, and the projection that its axes need."""
+
+    draw: Callable[[Axes], object]
+    is_timed: bool = False
+    projection: str | None = None
+
+
+def panels_of(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
+    """Return the panels of an orbit, the large one first; there is always one."""
+    energy = Panel(functools.partial(motion.energy_error, orbit), is_timed=True)
+    if orbit.system.is_wide and sheet_of(orbit.system) is None:
+        return [_components(orbit, flow), energy]
+    path, momentum = _path(orbit, flow), _momentum(orbit, flow)
+    velocity = Panel(functools.partial(_velocity, orbit, flow), is_timed=True)
+    if not orbit.system.is_spatial:
+        return [*path, *momentum, velocity, energy]
+    if orbit.canonical_pose is None:
+        return [_components(orbit, flow)]
+    return [*path, velocity, *momentum, energy]  # the momenta along such a constraint are constant: nothing to enlarge
+
+
+def _path(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
+    if orbit.canonical_pose is None:
+        return []
+    group, flow = orbit.system.group, flow if flow is not None and flow.canonical_pose is not None else None
+    if blade_of_system(orbit.system) is not None:
+        return [Panel(lambda axes: motion.blade_track(orbit, axes=axes, flow=flow))]
+    if group == SO(3):
+        return [Panel(functools.partial(_body_axis, orbit, flow))]
+    if group.size > 2 and group == SE(group.size - 1):
+        projection = "3d" if group.size > 3 else None
+        return [Panel(lambda axes: motion.point_track(orbit, axes=axes, flow=flow), projection=projection)]
+    return []
+
+
+def _momentum(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
+    system, directions = orbit.system, orbit.system.rank
+    if directions == 0:
+        return []
+    if system.is_forced:
+        return [_components(orbit, flow)]
+    if not system.is_spatial and directions == 2:
+        return [Panel(lambda axes: motion.phase_portrait(cast(AbstractLLSystem, system), orbit, axes=axes))]
+    if not system.is_spatial and directions == 3:
+        return [Panel(lambda axes: motion.momentum_sphere(orbit, axes=axes))]
+    return [_components(orbit, flow)]
+
+
+def _components(orbit: Orbit, flow: Orbit | None) -> Panel:
+    return Panel(lambda axes: motion.momentum_components(orbit, axes, flow), is_timed=True)
+
+
+def _body_axis(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
+    motion.body_axis_track(orbit, axes=axes, flow=flow)
+    tensor: Any = orbit.system.homogeneous_mass_tensor
+    if tensor is not None:
+        _write_mass_tensor(axes, np.asarray(tensor))
+
+
+def _velocity(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
+    headed = blade_of_system(orbit.system) is not None and orbit.canonical_pose is not None
+    if flow is not None and flow.canonical_pose is None and (headed or orbit.system.is_spatial):
+        flow = None
+    (motion.heading_and_speed if headed else motion.velocity_components)(orbit, axes, flow)
+
+
+def _write_mass_tensor(axes: Axes, mass_tensor: Float[np.ndarray, "3 3"]) -> None:
+    cells = [[f"{number:.3g}".replace("-", "\u2212") for number in row] for row in mass_tensor + 0.0]
+    width = max(len(cell) for row in cells for cell in row)
+    lines = ["  ".join(cell.rjust(width) for cell in row) for row in cells]
+    text = f"    \u23a1{lines[0]}\u23a4\nJ = \u23a2{lines[1]}\u23a5\n    \u23a3{lines[2]}\u23a6"
+    look: Any = {"family": "monospace", "fontsize": 9.5, "linespacing": 1.05, "color": "#555a62"}
+    axes.text(0.0, 0.0, text, transform=axes.transAxes, **look)
+
+
+_FIXED = {False: "System with a left-invariant constraint", True: "System with a right-invariant constraint"}
+
+
+def _write_head(figure: Figure, orbit: Orbit) -> None:
+    """Write what moves, and how, above the panels."""
+    figure.text(0.012, 0.985, _name(orbit.system), va="top", fontsize=17, fontweight="bold")
+    facts = "      ".join(_facts(orbit)).replace("-", "\u2212")
+    figure.text(0.012, 0.934, facts, va="top", fontsize=10.5, color="#555a62")
+
+
+def _facts(orbit: Orbit) -> list[str]:
+    step = time_step(orbit)
+    if step is None:
+        run = f"continuous flow from time {orbit.time[0]:g} to {orbit.time[-1]:g}"
+    else:
+        steps = (len(orbit) - 1) * orbit.save_every
+        run = f"{steps:,} step{'s' * (steps != 1)} of $h$ = {step:g}".replace(",", "\u2009")
+    stopped = [] if orbit.outcome == Outcome.successful else [f"stopped: {orbit.outcome}"]
+    return [_parameters(orbit.system), run, *stopped]
+
+
+def _name(system: System) -> str:
+    form = system.normal_form
+    if form is not None:
+        sleigh = "Chaplygin sleigh" if form.is_planar else "Multidimensional sleigh"
+        return sleigh if form.is_sleigh else "Suslov top"
+    if system.homogeneous_mass_tensor is not None and system.group.is_rigid:
+        if is_free(system):
+            return "Free rigid body"
+        if system.is_spatial and _is_top_in_body(system):
+            return "Veselova top"
+    return _FIXED[system.is_spatial]
+
+
+def _is_top_in_body(system: System) -> bool:
+    """Tell whether the body would be a top if its constraint were fixed in it."""
+    form = LLSystem(system.group, system.homogeneous_mass_tensor, system.constraint_subspace).normal_form
+    return form is not None and not form.is_sleigh
+
+
+def _parameters(system: System) -> str:
+    sheet = sheet_of(system)
+    if sheet is not None:
+        return sheet.facts(system)
+    free, all_directions = system.rank, system.group.dim
+    if free == all_directions:
+        return f"{system.group},  no constraint"
+    side = "space" if system.is_spatial else "the body"
+    return f"{system.group},  {free} of {all_directions} directions of velocity allowed, fixed in {side}"
+
+
+_SIZE = (13.0, 7.6)
+_LARGER = 2.2  # times as high as a panel against time
+_SMOOTH = 1000  # states of a flow, in which a curve has no corners
+
+
+@theme.styled
+def overview(
+    orbit: Orbit, path: str | Path | None = None, flow: Orbit | None = None, *, overwrite: bool = False
+) -> Figure:
+    """Draw an orbit of any system: its path in space, its momentum, its velocity and the error of its energy.
+
+    The path is that of a body axis on SO(3), of the blade of a sleigh, of the reference point on SE(n); other groups,
+    and orbits without poses, have none. Momenta along the constraint are drawn as a phase portrait where they are two,
+    on their energy sphere where they are three, against time otherwise. With a right-invariant constraint velocity and
+    energy need poses, and are left out without them. Color is time in all panels; the strip under a panel against time
+    is the key.
+
+    Args:
+        orbit: An orbit of any system, discrete or continuous.
+        path: Where to save the figure, a new file; the suffix (.png, .svg, .pdf) chooses the format.
+        flow: The continuous motion from the same initial data, drawn beside a discrete orbit.
+        overwrite: Replace an older picture at the path.
+
+    Raises:
+        FileExistsError: The path exists, and is not to be replaced.
+        ValueError: No orbit, one without states, or a suffix that is not a picture format.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        >>> orbit = nh.simulate(sleigh, body_velocity=(1, 0, 0), steps=50)
+        >>> [axes.get_title(loc="left") for axes in nh.plot.overview(orbit).axes[:2]]
+        ['Track of the blade', 'Phase portrait']
+    """
+    drawable("overview(orbit=...)", orbit)
+    if flow is not None:
+        drawable("overview(flow=...)", flow)
+    below_title = ConstrainedLayoutEngine(rect=(0.004, 0.004, 0.992, 0.905), hspace=0.05, wspace=0.03)
+    figure = Figure(figsize=_SIZE, layout=below_title)
+    if path is not None:
+        check_suffix(figure, path)
+        check_file(path, overwrite=overwrite, where="overview(path=...)")
+    panels = panels_of(_smooth(orbit), None if flow is None else _smooth(flow))
+    axes = _axes(figure, panels)
+    for panel, own in zip(panels, axes, strict=True):
+        panel.draw(own)
+    if panels[0].is_timed:
+        axes[0].set_xlabel("time")
+    _share_time([own for panel, own in zip(panels[1:], axes[1:], strict=True) if panel.is_timed])
+    _write_head(figure, orbit)
+    if path is not None:
+        figure.savefig(path)
+    return figure
+
+
+def _smooth(orbit: Orbit) -> Orbit:
+    """Return a flow that knows its states between the saved ones with enough for curves; others as they are."""
+    if orbit.motion.span is None or not 1 < len(orbit) < _SMOOTH:
+        return orbit
+    more = np.linspace(orbit.time[0], orbit.time[-1], _SMOOTH)
+    times = np.union1d(orbit.time, more)
+    return orbit.at(times if more[-1] > more[0] else times[::-1])
+
+
+def check_suffix(figure: Figure, path: str | Path) -> None:
+    """Refuse a path whose suffix is no picture format."""
+    known = figure.canvas.get_supported_filetypes()
+    if checked_path("overview(path=...)", path).suffix[1:].lower() not in known:
+        remedy = "Use a path that ends in .png, .svg or .pdf."
+        raise error("overview(path=...)", "end in a picture format", f"{str(path)!r}", remedy)
+
+
+def _axes(figure: Figure, panels: list[Panel]) -> list[Axes]:
+    """Return the large axes on the left and the others on the right, those against time lower."""
+    first, *others = panels
+    heights = [1.0 if panel.is_timed else _LARGER for panel in others]
+    if len(heights) == 0:
+        return [figure.add_subplot(projection=first.projection)]
+    grid = figure.add_gridspec(len(others), 2, width_ratios=(1.3, 1.0), height_ratios=heights)
+    large = figure.add_subplot(grid[:, 0], projection=first.projection)
+    return [large, *(figure.add_subplot(grid[row, 1], projection=each.projection) for row, each in enumerate(others))]
+
+
+def _share_time(panels: list[Axes]) -> None:
+    if not panels:
+        return
+    *upper, lowest = panels
+    lowest.set_xlabel("time")
+    for axes in upper:
+        axes.sharex(lowest)
+        axes.tick_params(labelbottom=False)

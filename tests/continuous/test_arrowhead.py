@@ -1,0 +1,188 @@
+"""Momenta of tops and sleighs without poses, in O(n): against the definition, with poses, and in many dimensions."""
+
+import tracemalloc
+
+import numpy as np
+import pytest
+from bodies import mass_tensor, random_rows
+
+import nonholo as nh
+from nonholo.continuous import _arrowhead
+from nonholo.kernels.taylor import _arrowhead as _kernel
+from nonholo.systems import AbstractLLSystem
+
+RNG = np.random.default_rng(29)
+
+
+def _top(n: int, coupling: np.ndarray, values: np.ndarray) -> nh.SuslovTop:
+    """Return a top with an axis and principal axes of B that are turned at random."""
+    J = np.diag(np.append(values, 1.0))
+    J[-1, :-1] = J[:-1, -1] = coupling
+    turn = np.eye(n)
+    turn[:-1, :-1] = nh.SO(n - 1).random(RNG)
+    return nh.SuslovTop(turn @ J @ turn.T)
+
+
+def _in_other_axes(n: int) -> nh.LLSystem:
+    """Return a top with oblique rows about an oblique axis."""
+    g = nh.SO(n).random(RNG)
+    rows = random_rows(nh.SO(n), n - 1, RNG)[:, : n - 1] @ nh.SuslovTop(np.eye(n)).constraint_subspace
+    return nh.LLSystem(nh.SO(n), mass_tensor(nh.SO(n), RNG), rows @ nh.SO(n).adjoint(g).T)
+
+
+def _sleigh(n: int, arm: float = 0.4) -> nh.MultidimensionalSleigh:
+    center = np.append(arm, RNG.normal(size=n - 1))
+    return nh.MultidimensionalSleigh(1.3, center, mass_tensor(nh.SO(n), RNG))
+
+
+SYSTEMS = {
+    **{f"top {n}": nh.SuslovTop(mass_tensor(nh.SO(n), RNG)) for n in (3, 4, 7, 12)},
+    **{f"sleigh {n}": _sleigh(n) for n in (3, 5, 9)},
+    "top with an axis": nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 1.5]), axis=(2 / 3, -1 / 3, 2 / 3)),
+    "plane sleigh": nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3),
+    "sleigh without an arm": _sleigh(4, 0.0),
+    "top in other axes": _in_other_axes(5),
+    "balanced": _top(5, np.zeros(4), np.arange(1.0, 5.0)),
+    "c along an eigenvector": _top(5, np.array([0.0, 0.3, 0.0, 0.0]), np.arange(1.0, 5.0)),
+    "equal eigenvalues": _top(5, 0.2 * RNG.normal(size=4), np.ones(4)),
+    "a long body": _top(6, 1e-4 * RNG.normal(size=5), np.logspace(-6, 6, 5)),
+    "arrowhead top": nh.SuslovTop.arrowhead(RNG.uniform(1, 2, 6), 0.3 * RNG.normal(size=5)),
+    "arrowhead sleigh": nh.MultidimensionalSleigh.arrowhead(
+        0.7, RNG.normal(size=6), RNG.uniform(1, 2, 6), 0.3 * RNG.normal(size=5)
+    ),
+}
+
+
+def _velocity(system: AbstractLLSystem) -> np.ndarray:
+    return np.cos(1.0 + np.arange(system.rank)) / 2
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_the_equations_are_the_vector_field(name: str) -> None:
+    """The rates of the momenta are those of the definition, at several momenta and at rest."""
+    system = SYSTEMS[name].canonical
+    form, field = system.normal_form, nh.vector_field(system)
+    f, pose = _arrowhead.equations(form)[0], system.group.identity.ravel()
+    for size in (1.0, 1e3, 0.0):
+        r = system.restricted_momentum(size * RNG.normal(size=system.rank))
+        x = _arrowhead.encoded(form, r)
+        rate = (f.coupling @ x) * f.rates * x - (f.rates * x @ x) * f.coupling
+        expected = field(0.0, np.append(r, pose))[: system.rank]
+        scale = (
+            np.abs(f.coupling).max() * f.rates.max() * (x @ x) * np.abs(_arrowhead.decoded(form, np.eye(len(x)))).max()
+        )
+        assert np.abs(_arrowhead.decoded(form, rate[None])[0] - expected).max() <= 1e-13 * scale
+        assert np.abs(_arrowhead.decoded(form, x[None])[0] - r).max() <= 1e-14 * np.abs(r).max()
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_momenta_alone_are_those_with_poses(name: str) -> None:
+    """Forward and backward, to rounding; the energy too."""
+    system = SYSTEMS[name]
+    start = {"restricted_velocity": _velocity(system), "times": np.array([2.0, 2.5, 9.0]) * (-1) ** len(name)}
+    alone, posed = (nh.flow(system, **start, reconstruct=poses) for poses in (False, True))
+    size = np.abs(posed.restricted_momentum).max()
+    assert np.abs(alone.restricted_momentum - posed.restricted_momentum).max() <= 1e-14 * size
+    assert np.abs(alone.energy / posed.energy - 1).max() <= 1e-14
+    assert alone.pose is None
+    assert alone.turned is None
+
+
+@pytest.mark.parametrize("name", ["top 12", "sleigh 9"])
+def test_energy_over_a_long_time(name: str) -> None:
+    """Over 1e4 units of time the energy is kept to 1e-13: nothing in the equations knows of it."""
+    system = SYSTEMS[name]
+    times = np.linspace(0.0, 1e4, 11)
+    orbit = nh.flow(system, restricted_velocity=_velocity(system), times=times, reconstruct=False)
+    assert np.abs(orbit.energy / orbit.energy[0] - 1).max() <= 1e-13
+
+
+def test_at_rest_and_at_an_equilibrium() -> None:
+    """Nothing moves from rest; a turn along c stays."""
+    top = SYSTEMS["arrowhead top"]
+    for velocity in (np.zeros(5), -top.coupling):
+        orbit = nh.flow(top, restricted_velocity=velocity, times=(0.0, 1.0, 5.0), reconstruct=False)
+        first = top.restricted_momentum(velocity)
+        assert np.abs(orbit.restricted_momentum - first).max() <= 1e-15 * np.abs(first).max()
+
+
+@pytest.mark.parametrize("few", [False, True])
+@pytest.mark.parametrize("last", [30.0, -30.0])
+def test_states_between_are_those_that_had_been_requested(
+    last: float, few: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`Orbit.at` gives the same bits in any order, also where most nodes were left out."""
+    if few:
+        monkeypatch.setattr(_kernel, "_NUMBERS", 0)
+    top, rng = SYSTEMS["top 7"], np.random.default_rng(3)
+    times = np.sort(np.append(rng.uniform(0, 1, 40), [0.0, 1.0])) * last
+    start = {"restricted_velocity": _velocity(top), "reconstruct": False}
+    wanted, ends = (nh.flow(top, **start, times=t) for t in (times, (0.0, last)))
+    mixed = rng.permutation(len(times))
+    found = ends.at(times[mixed])
+    assert np.array_equal(found.reduced_momentum, wanted.reduced_momentum[mixed])
+    assert found.canonical_pose is None
+    assert len(ends.at([])) == 0
+    alone = nh.flow(top, **start, times=[3.0])
+    assert np.array_equal(alone.at(3.0).reduced_momentum, wanted.reduced_momentum[:1])
+
+
+def test_units_of_time_change_no_bit() -> None:
+    """A motion slower or quicker by a power of two takes the same path to the last bit."""
+    sleigh = SYSTEMS["sleigh 5"]
+    path, *others = (
+        nh.flow(sleigh, restricted_velocity=_velocity(sleigh) * u, times=np.array([0.0, 3.0]) / u, reconstruct=False)
+        for u in (1.0, 2.0**-300, 2.0**300)
+    )
+    for factor, other in zip((2.0**-300, 2.0**300), others, strict=True):
+        assert np.array_equal(path.reduced_momentum * factor, other.reduced_momentum)
+
+
+def test_a_hundred_thousand_dimensions() -> None:
+    """Memory is that of the series, the energy is kept; what has n x n numbers is refused, with what to do."""
+    n = 100_000
+    top = nh.SuslovTop.arrowhead(RNG.uniform(1, 2, n), RNG.normal(size=n - 1) / np.sqrt(n))
+    start = {"restricted_velocity": RNG.normal(size=n - 1) / np.sqrt(n), "times": (0.0, 0.1, 0.2)}
+    tracemalloc.start()
+    orbit = nh.flow(top, **start, reconstruct=False)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak <= 60 * 8 * n
+    assert np.ptp(orbit.energy) <= 1e-14
+    assert np.abs(np.diff(orbit.restricted_momentum, axis=0)).max() >= 1e-4
+    for name in ("momentum", "body_velocity", "multipliers"):
+        with pytest.raises(ValueError, match=r"Use restricted_momentum, chart and energy, and reconstruct=False"):
+            getattr(orbit, name)
+    with pytest.raises(ValueError, match=r"flow\(times=...\).*reconstruct=False"):
+        nh.flow(top, **start)
+    again = nh.flow(top, momentum=orbit.restricted_momentum[1], times=(0.1, 0.2), reconstruct=False)
+    assert np.abs(again.restricted_momentum[-1] - orbit.restricted_momentum[-1]).max() <= 1e-15
+
+
+def test_a_failed_flow_is_known_up_to_where_it_came() -> None:
+    """Past the last good state nothing is."""
+    start = {"restricted_velocity": 1e140 * np.ones(5), "times": (0.0, 1e-141, 2e-141, 1.0), "reconstruct": False}
+    with pytest.raises(nh.OutcomeError) as failure:
+        nh.flow(SYSTEMS["arrowhead top"], **start)
+    assert len(failure.value.orbit) == 3
+    assert len(failure.value.orbit.at(1.5e-141)) == 1
+
+
+@pytest.mark.parametrize("method", [None, "closed_form"])
+def test_other_motions_leave_their_poses_out(method: str | None) -> None:
+    """Other systems and methods solve for poses and do not keep them: the momenta have the same bits."""
+    body = nh.RigidBody(np.diag([1.0, 2.0, 3.0])) if method is None else SYSTEMS["plane sleigh"]
+    start = {"restricted_velocity": np.ones(body.rank), "times": (0.0, 1.0, 3.0), "method": method}
+    alone, posed = (nh.flow(body, **start, reconstruct=poses) for poses in (False, True))
+    assert np.array_equal(alone.reduced_momentum, posed.reduced_momentum)
+    assert np.array_equal(alone.at(2.0).reduced_momentum, posed.at(2.0).reduced_momentum)
+    assert alone.pose is alone.turned is alone.at(2.0).pose is None
+
+
+def test_an_event_of_momenta_alone() -> None:
+    """A crossing is found on the series, where poses are not known."""
+    top = SYSTEMS["top 4"]
+    start = {"restricted_velocity": _velocity(top), "times": (0.0, 9.0), "reconstruct": False}
+    middle = nh.flow(top, **start).at(4.0).restricted_momentum[0, 0]
+    found = nh.flow(top, **start, events=[lambda orbit: orbit.restricted_momentum[:, 0] - middle]).events[0]
+    assert np.abs(found.time - 4.0).min() <= 1e-12
