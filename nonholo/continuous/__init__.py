@@ -2,9 +2,8 @@
 
 from nonholo.continuous._closed_form import closed_form
 from nonholo.continuous._equations import ContinuousFlow, vector_field
-from nonholo.continuous._forced import forced_solver
 from nonholo.continuous._members import members_by_series
 from nonholo.continuous._methods import solver_of
 from nonholo.continuous._solution import Solved
 
-__all__ = ["ContinuousFlow", "Solved", "closed_form", "forced_solver", "members_by_series", "solver_of", "vector_field"]
+__all__ = ["ContinuousFlow", "Solved", "closed_form", "members_by_series", "solver_of", "vector_field"]

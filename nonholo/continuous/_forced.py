@@ -7,7 +7,6 @@ $$ \dot r = S\,\mathrm{ad}^*_\omega p + E^Tf \quad\text{(left)}, \qquad \dot r =
    \dot g = g\hat\omega, \quad \omega = E(E^T\mathbb{I}E)^{-1}r. $$
 """
 
-import functools
 from collections.abc import Callable
 
 import numpy as np
@@ -21,14 +20,6 @@ from nonholo.orbit import Orbit
 from nonholo.systems import Forced
 
 _LEAST_RTOL, _SHARE = 1e-13, 1e-3  # SciPy allows no less; absolute errors are that part of the relative ones
-
-
-def forced_solver(forced: Forced, begins: float, method: str | None) -> Callable[..., Solved]:
-    """Return what solves the equations from a time on, refused with a method of free motions."""
-    if method is not None:
-        remedy = "Leave it out: forces are integrated by DOP853."
-        raise error("flow(method=...)", "be None under forces", repr(method), remedy)
-    return functools.partial(by_runge_kutta, forced, begins)
 
 
 def by_runge_kutta(

@@ -9,7 +9,7 @@ import numpy as np
 from nonholo.base.checks import error, flags, flow_times, flow_tolerances, shown
 from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome, OutcomeError
-from nonholo.continuous import ContinuousFlow, Solved, forced_solver, solver_of
+from nonholo.continuous import ContinuousFlow, Solved, solver_of
 from nonholo.orbit import Orbit
 from nonholo.simulation.events import Event, check_functions, checked_events, flow_with_events
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, OrbitT, Start, System, refuse_in_coordinates
@@ -119,14 +119,12 @@ def flow(
     if not isinstance(system, AbstractSystem):
         raise error("flow(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
     flags("flow", reconstruct=reconstruct)
-    form = None if reconstruct or system.forces is not None else system.canonical.normal_form
-    solver, time = solver_of(method, form), flow_times(times)
+    time = flow_times(times)
+    solver, posed = solver_of(system, method, float(time[0]), reconstruct=reconstruct)
     tolerances = flow_tolerances((1e-10 if method == "diffrax" else 1e-14) if rtol is None else rtol, atol)
-    solve = functools.partial(solver, system.canonical, tolerances=tolerances)
-    if system.forces is not None:
-        solve = functools.partial(forced_solver(system.forces, float(time[0]), method), tolerances=tolerances)
+    solve = functools.partial(solver, tolerances=tolerances)
     start = Start.of("flow", configuration, restricted_velocity=restricted_velocity, **starts)
-    first = _first_state(system, time, start, posed=solver is solver_of(method))
+    first = _first_state(system, time, start, posed=posed)
     found = None if events is None else checked_events("flow", events)
     return _flowed(system, first, time, tolerances, solve, found, reconstruct)
 

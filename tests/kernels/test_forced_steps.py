@@ -7,7 +7,7 @@ from bodies import GENERAL
 import nonholo as nh
 from nonholo import kernels
 from nonholo.kernels._driver import _solve
-from nonholo.kernels._forced import add_compensated, kicked, pulled
+from nonholo.kernels._forced import _numbers, add_compensated, kicked, leaned, pulled, seen, turned
 from nonholo.kernels._substeps import at_rest, charted, prepared, pushed, solved
 from nonholo.systems import AbstractSystem
 
@@ -27,28 +27,29 @@ def _forced(system: AbstractSystem, kind: str) -> nh.Forced:
     return nh.Forced(system, heavy, {"weight": None, "friction": rub, "table": table}[kind])
 
 
-def _kicked(kick: kernels.Kick, row: int, half: int, m: np.ndarray, pose: np.ndarray) -> np.ndarray:
+def _kicked(kick: kernels.Kick, row: int, m: np.ndarray, force: np.ndarray) -> np.ndarray:
     """Return momenta after half an impulse, from the numbers of the kick, in plain Python."""
     if len(m) > 2:
         out = np.empty_like(m)
-        kicked.py_func(kick, row, half, m, pose, out)
+        kicked.py_func(kick, row, m, force, out)
         return out
-    kept = m.tolist()
-    if len(kick.keep):
-        kept = [row[0] * m[0] + row[1] * m[1] for row in kick.keep]
-    width = kick.pull.shape[1]
-    force = pulled(width, [*np.pad(kick.pull, ((0, 0), (0, 10 - width))).ravel()], *pose)
-    rows = kick.rows[row, half] if row < len(kick.rows) else (0.0, 0.0)
+    kept = [row[0] * m[0] + row[1] * m[1] for row in kick.keep] if len(kick.keep) else m
+    rows = kick.rows[min(row, len(kick.rows) - 1)]
     return np.array([total + (f + r) for total, f, r in zip(kept, force, rows, strict=True)])
 
 
 def _run(forced: kernels.ForcedBody, m: np.ndarray, pose: np.ndarray, steps: int) -> list[tuple[np.ndarray, ...]]:
     """Run the steps one by one with the pieces of a body; return momenta, chart and pose of each node."""
     body, kick = forced
-    lost, pose, found = np.zeros_like(m), pose.copy(), []
+    lost, pose, found, force = np.zeros_like(m), pose.copy(), [], np.empty_like(m)
     y = u = v = at_rest(body)
+    n, F, L, _ = _numbers.py_func(kick) if len(m) == 2 else (0, 0, 0, 0)
     for k in range(steps + 1):
-        s, w = _kicked(kick, k, 0, m, pose), None
+        if len(m) > 2:
+            pulled.py_func(kick, pose, force)
+        elif k == 0:
+            force[:] = leaned(L, *seen(n, F, *pose))
+        s, w = _kicked(kick, k, m, force), None
         root, chart, change = y.copy(), np.empty_like(m), np.empty_like(m)
         if len(m) == 2:
             code, *root[:] = _solve(body, *s, *(3 * (y - u) + v))  # type: ignore[misc]
@@ -61,12 +62,30 @@ def _run(forced: kernels.ForcedBody, m: np.ndarray, pose: np.ndarray, steps: int
         v, u, y = (u, y, root) if k else (root, root, root)
         found.append((m, chart, pose.copy()))
         if len(m) == 2:
+            force[:] = leaned(L, *turned(n, *root, *seen(n, F, *pose)))
             change[:], pose[:] = kernels.increment(body, *s, *root), kernels.move(body, *root, *pose)
         else:
             pushed(body, w, s, root, change, pose)
+            pulled.py_func(kick, pose, force)
         add_compensated(s, lost, change)
-        m = _kicked(kick, k, 1, s, pose)
+        m = _kicked(kick, k, s, force)
     return found
+
+
+def test_weights_seen_from_the_body_are_those_of_matrices() -> None:
+    """Of quaternions and headings of every size of turn the weight is R^T F, and after a displacement W^T R^T F."""
+    rng, F = np.random.default_rng(9), (0.3, -0.7, 1.1)
+    for y in [*rng.normal(size=(20, 2)), *(10.0 ** rng.uniform(-200, 4, (9, 2))), np.zeros(2), np.array([1.0, 0.0])]:
+        for group, n in ((nh.SO(3), 3), (nh.SE(2), 2)):
+            pose = np.pad(group.pose_from_matrix(group.random(rng)), (0, 4 - group.pose_size))
+            body = nh.discretize(BODIES["top" if n == 3 else "sleigh"][0], 0.1).route.compiled.body  # type: ignore[union-attr]
+            here = seen(n, F, *pose)
+            R, after = (
+                group.matrix_from_pose(q[: group.pose_size])[:n, :n]
+                for q in (pose, np.array(kernels.move(body, *y, *pose)))
+            )
+            assert np.abs(here[:n] - R.T @ F[:n]).max() < 1e-15
+            assert np.abs(turned(n, *y, *here)[:n] - after.T @ F[:n]).max() < 2e-15
 
 
 @pytest.mark.parametrize("kind", ["weight", "friction", "table"])

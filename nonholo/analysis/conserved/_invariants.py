@@ -64,19 +64,23 @@ def invariants(orbit: Orbit) -> Invariants:
     stride = max(1, len(orbit) // (_SAMPLED if group.dim == 3 else _SAMPLED_LARGE))
     sample = orbit[::stride] if stride > 1 else orbit
     discrete = orbit.motion if isinstance(orbit.motion, Discretization) else None
-    energy, work = orbit.energy, orbit.work
-    size = np.abs(energy if orbit.system.forces is not None else energy[0]).max()
+    work, forced = orbit.work, orbit.system.forces is not None
     return Invariants(
         states=len(orbit),
         steps=0 if discrete is None else (len(orbit) - 1) * orbit.save_every,
-        energy_drift=float(np.abs(energy - energy[0] - work).max() / (size or 1.0)),
+        energy_drift=_energy_drift(orbit.energy, work, forced=forced),
         constraint_residual=float(np.abs(orbit.motion.constraint_residual(sample)).max(initial=0.0)),
         group_residual=None if orbit.canonical_pose is None else _group_residual(sample),
         reversal_defect=None if discrete is None else _reversal_defect(discrete, sample),
         largest_step_angle=None if discrete is None else _largest_angle(discrete, sample),
         outcome=orbit.outcome,
-        work=float(work[-1]) if orbit.system.forces is not None else None,
+        work=float(work[-1]) if forced else None,
     )
+
+
+def _energy_drift(energy: np.ndarray, work: np.ndarray, *, forced: bool) -> float:
+    size = np.abs(energy if forced else energy[0]).max()
+    return float(np.abs(energy - energy[0] - work).max() / (size or 1.0))
 
 
 def _largest_angle(discrete: Discretization, orbit: Orbit) -> float:

@@ -11,7 +11,6 @@ from nonholo import kernels
 from nonholo.base.checks import error
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome, OutcomeError
-from nonholo.base.types import Float
 from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Rows
 from nonholo.discrete.routes._outer import AbstractOuterRoute
 from nonholo.groups import SE
@@ -117,17 +116,17 @@ class FunctionRoute(AbstractForcedRoute):
         free, (n, width, size), code, done, saved = self.free, self.free.sizes, 0, -1, []
         m, place, state = free.encode(reduced), free.encode_poses(pose), np.empty(0)
         room = np.empty((1, n)), np.empty((1, width)), np.empty((1, size))
-        kick = kernels.Kick(_NONE, np.zeros((n, 0)), np.zeros((1, 2, n)))
-        body = kernels.ForcedBody(free.body, kick)
+        none = kernels.Kick(np.zeros((0, 0)), np.zeros(0), np.zeros((n, 0)), np.zeros((1, n)))
+        body = kernels.ForcedBody(free.body, none)
         with progress_bar("steps", progress) as show, contextlib.suppress(OutcomeError):
             while done < steps:
                 code = Outcome.not_converged  # the midpoint rule of a half impulse may say so
-                kick.rows[0, 0] = self.impulse(done + 1, done + 1, m, place)
+                pushed = m + self.impulse(done + 1, done + 1, m, place)
                 if done < 0:
-                    code, state = kernels.start(body, m, place)
+                    code, state = kernels.start(body, pushed, place)
                     room[1][0] = kernels.chart_of(body, state)
                 else:
-                    state[:n], state[-1 - width] = m, 0.0  # the one row of the table acts
+                    state[:n] = pushed
                     _, code = kernels.advance(body, state, 1, 1, room)
                 if code != 0:
                     break
@@ -159,41 +158,20 @@ def kick_of(
     return free.encode(forced.to_canonical(forced.restrict_at(j, g)))
 
 
-def _rows(number: int, sizes: tuple[int, int, int]) -> Rows:
-    momenta, charts, poses = (np.empty((number, width)) for width in sizes)
-    return momenta, charts, poses
-
-
 def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
     """Return half the impulse of a step in the units and axes of a kernel."""
-    S, k = np.asarray(forced.constraint_subspace), forced.rank
+    S, k, group = np.asarray(forced.constraint_subspace), forced.rank, forced.group
     keep, push, _ = forced.propagator(S.T, float(free.time_step) / 2)
     to_kernel = free.encode(forced.to_canonical(np.eye(k)))
-    along = S.T @ push.T @ to_kernel
-    rows = np.zeros((0, k)) if forced.table is None else forced.table @ along
-    kept = _NONE if forced.friction is None else np.linalg.solve(to_kernel, keep.T @ to_kernel).T
-    parts = kept, _pull(free, forced, along), np.stack([rows, rows], axis=1)
-    return kernels.Kick(*(np.array(part, order="C") for part in parts))
-
-
-def _pull(
-    free: AbstractCompiledRoute, forced: Forced, along: Float[np.ndarray, "dim k"]
-) -> Float[np.ndarray, "k size"]:
-    """Return the coefficients of gravity in the entries of a pose of the kernel: it is linear in the matrix."""
-    gravity, group, N = forced.gravity, forced.group, forced.group.size
-    if gravity is None:
-        return np.zeros((along.shape[1], 0))
-    matrix = group.matrix_from_pose if free.is_scalar else lambda pose: pose.reshape(-1, N, N)
-    back = np.linalg.inv(matrix(free.encode_poses(forced.frame_pose[None]))[0])
-
-    def at(poses: np.ndarray) -> np.ndarray:
-        return gravity.covector(group, matrix(poses) @ back) @ along
-
-    if not free.is_scalar or group == SE(2):
-        return at(np.eye(2 if free.is_scalar else N * N, 4 if free.is_scalar else N * N)).T
-    first, second = np.triu_indices(4, 1)
-    squares, pairs = at(np.eye(4)), at((np.eye(4)[first] + np.eye(4)[second]) / np.sqrt(2))
-    return np.concatenate([squares, 2 * pairs - squares[first] - squares[second]]).T
-
-
-_NONE = np.zeros((0, 0))
+    along, kept, weight, arms = S.T @ push.T @ to_kernel, np.zeros((0, 0)), np.zeros(0), np.zeros((k, 0))
+    if forced.friction is not None:
+        kept = np.linalg.solve(to_kernel, keep.T @ to_kernel).T
+    if forced.gravity is not None:
+        frame = free.encode_poses(forced.frame_pose[None])
+        frame = group.matrix_from_pose(frame) if free.is_scalar else frame.reshape(-1, group.size, group.size)
+        weight, levers = forced.gravity.levers(group)
+        arms = along.T @ levers @ np.linalg.inv(frame[0]).T
+    if free.is_scalar and group == SE(2):
+        weight, arms = weight[:2], arms[:, :2]
+    rows = np.zeros((1, k)) if forced.table is None else np.vstack([forced.table @ along, np.zeros(k)])
+    return kernels.Kick(*(np.array(part, order="C") for part in (kept, weight, arms, rows)))

@@ -55,8 +55,13 @@ class Gravity:
 
     def covector(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
         """Return -dU along the body directions at configurations."""
+        force, levers = self.levers(group)
+        return (force @ configuration) @ levers.T
+
+    def levers(self, group: AbstractMatrixGroup) -> tuple[Float[np.ndarray, "N"], Float[np.ndarray, "dim N"]]:
+        """Return F and L for matrices of the group, homogeneous on SE(n): -dU is L g^T F."""
         weight, place = self._homogeneous(group)
-        return (weight @ configuration) @ (group.basis @ place).T
+        return weight, group.basis @ place
 
     def _homogeneous(self, group: AbstractMatrixGroup) -> tuple[np.ndarray, np.ndarray]:
         if not is_affine(group):
