@@ -219,18 +219,23 @@ def test_a_knife_edge_on_an_incline_is_a_cycloid() -> None:
     assert np.abs(orbit.position - np.stack([x, y], axis=1)).max() < 1e-6
 
 
-def test_friction_never_adds_energy() -> None:
-    """The kinetic energy falls in every step, for random bodies, friction and step sizes up to a thousand."""
-    rng = np.random.default_rng(8)
-    for case in range(60):
-        system = nh.ChaplyginSleigh(*rng.uniform(0.2, 3, 2), *rng.normal(size=2)) if case % 2 else TOP
+@pytest.mark.profile("problems", keep=["1000 cases"])
+@pytest.mark.parametrize("bodies", [10, 100], ids=["1000 cases", "10,000"])
+def test_friction_never_adds_energy(bodies: int) -> None:
+    """The kinetic energy falls in every step, for random bodies, friction, step sizes and a hundred starts of each."""
+    rng, seen = np.random.default_rng(8), 0
+    for case in range(bodies):
+        root = rng.normal(size=(3, 3))
+        top, sleigh = nh.SuslovTop(root @ root.T + 0.1 * np.eye(3)), (*rng.uniform(0.2, 3, 2), *rng.normal(size=2))
+        system = nh.ChaplyginSleigh(*sleigh) if case % 2 else top
         root, turning = rng.normal(size=(2, 3, 3)) * 10 ** rng.uniform(-3, 3)
         forced = nh.Forced(system, force=nh.Friction(root @ root.T + turning - turning.T))
-        h = 10 ** rng.uniform(-3, 3)
-        slow = 0.1 / h * rng.normal(size=2)
-        energy = nh.simulate(nh.discretize(forced, h), restricted_velocity=slow, steps=40, throw=False).energy
-        assert len(energy)
-        assert np.all(np.diff(energy) <= 1e-14 * energy[0])
+        discrete = nh.discretize(forced, 10 ** rng.uniform(-3, 3))
+        slow = 10 ** rng.uniform(-3, -0.5, (100, 1)) / discrete.time_step * rng.normal(size=(100, 2))
+        energy = nh.ensemble(discrete, restricted_velocity=slow, steps=4, save_every=1).energy
+        seen += np.isfinite(energy[:, 1]).sum()
+        assert np.all(np.diff(np.nan_to_num(energy), axis=1) <= 1e-14 * energy[:, :1])
+    assert seen > 90 * bodies
 
 
 def test_friction_of_a_balanced_body_is_exact() -> None:
