@@ -401,8 +401,11 @@ _REFUSED: dict[str, Callable[[], Any]] = {
     "check_system": lambda: nh.testing.check_system(_FORCED),
     "check_discretization": lambda: nh.testing.check_discretization(_MAP),
     "ensemble of longer runs": lambda: nh.ensemble(_PUSHED, restricted_velocity=np.ones((2, 2)), steps=9),
-    "ensemble of flows": lambda: nh.ensemble(_FORCED, restricted_velocity=np.ones((2, 2)), times=(0.0, 1.0)),
-    "EnsembleTask": lambda: nh.EnsembleTask(_MAP, steps=3),
+    "ensemble of flows of a table": lambda: nh.ensemble(
+        nh.Forced(TOP, force=np.ones((3, 3))), restricted_velocity=np.ones((2, 2)), times=(0.0, 1.0)
+    ),
+    "sweep of longer runs": lambda: nh.EnsembleTask(_PUSHED, steps=9),
+    "reduction of free motions": lambda: nh.EnsembleTask(_MAP, steps=3, reductions=["final_state", "energy_drift"]),
     "phase_portrait": lambda: nh.plot.phase_portrait(_FORCED),
     "events": lambda: nh.simulate(_PUSHED, restricted_velocity=[0.5, -0.3], steps=5, events=[_late]),
     "crossings": lambda: nh.crossings(nh.simulate(_PUSHED, restricted_velocity=[0.5, -0.3], steps=5), _late),

@@ -90,6 +90,37 @@ def test_members_are_single_runs(forced: nh.Forced) -> None:
 
 
 @pytest.mark.parametrize(
+    "forced", [FORCED["weight and friction"], FORCED["a matrix of friction"], nh.Forced(TOP, force=_brake)]
+)
+def test_members_of_flows_are_single_flows(forced: nh.Forced) -> None:
+    """Each member of an ensemble of flows, also one that begins later, is the flow of `flow`, to the last bit."""
+    starts, times = np.random.default_rng(2).normal(size=(3, 2)), (0.5, 1.0, 1.5)
+    batch = nh.ensemble(forced, restricted_velocity=starts, times=times)
+    for member, start in enumerate(starts):
+        flow = nh.flow(forced, restricted_velocity=start, times=times)
+        assert np.array_equal(batch.momentum[member], flow.momentum)
+        assert np.array_equal(batch.configuration[member], flow.configuration)
+        assert np.array_equal(batch.energy[member], flow.energy)
+
+
+def test_sweeps_end_where_single_runs_do(tmp_path: Path) -> None:
+    """A sweep of starts and time steps keeps the last states of single runs; its store knows forces that are data."""
+    steps = np.array([0.05, 0.025])
+    for name, forced in (FORCED | {"function": nh.Forced(TOP, force=_brake)}).items():
+        task = nh.EnsembleTask(nh.discretize(forced, 0.05), steps=30, **START)
+        found = nh.sweep(task, nh.Grid({"time_step": steps}), tmp_path / f"{name}.zarr")
+        for row, h in enumerate(steps):
+            orbit = nh.simulate(nh.discretize(forced, h), **START, steps=30)
+            assert np.array_equal(found["final_momentum"][row], orbit.restricted_momentum[-1])
+            assert float(found["final_energy"][row]) == orbit.energy[-1]
+        if name == "function":
+            with pytest.raises(ValueError, match="force is a callable"):
+                nh.resume(tmp_path / f"{name}.zarr")
+        else:
+            assert nh.resume(tmp_path / f"{name}.zarr").equals(found)
+
+
+@pytest.mark.parametrize(
     ("system", "heavy"), [(TOP, HEAVY), (SLEIGH, nh.Gravity([0.2, -1.0], [0.1, 0.2]))], ids=["top", "sleigh"]
 )
 def test_events_are_located_to_rounding(system: AbstractSystem, heavy: nh.Gravity) -> None:

@@ -173,5 +173,5 @@ def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
         arms = along.T @ levers @ np.linalg.inv(frame[0]).T
     if free.is_scalar and group == SE(2):
         weight, arms = weight[:2], arms[:, :2]
-    rows = np.zeros((1, k)) if forced.table is None else np.vstack([forced.table @ along, np.zeros(k)])
+    rows = forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))) @ along
     return kernels.Kick(*(np.array(part, order="C") for part in (kept, weight, arms, rows)))

@@ -19,7 +19,7 @@ from nonholo.simulation.members._result import Ensemble
 from nonholo.simulation.members._run import Plan, Report, counting, run_members, states_of
 from nonholo.simulation.members._start import are_others, checked_rows, first_momenta
 from nonholo.simulation.runs import check_forces, refuse_too_large, refuse_too_long
-from nonholo.systems import AbstractSystem, Start, System, refuse_forces
+from nonholo.systems import AbstractSystem, Start, System
 
 Watched: TypeAlias = dict[str, Event] | None
 Motions: TypeAlias = tuple[Members, np.ndarray, np.ndarray | None]
@@ -100,7 +100,6 @@ def ensemble(
         raise error("ensemble(reduce=...)", "be a function", f"a {type(reduce).__name__}", "Pass a function, or None.")
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
     if isinstance(discrete, AbstractSystem):
-        refuse_forces("ensemble(discrete=...)", discrete)
         of_steps = {"steps": (steps, None), "save_every": (save_every, None), "events": (events, None)}
         how = {"backend": (backend, "auto"), "reconstruct": (reconstruct, True)}
         refuse_given("ensemble", "be left out for a flow", _KINDS, **of_steps, **how)

@@ -3,5 +3,3 @@
 from nonholo.systems.forces._forced import Forced
 from nonholo.systems.forces._friction import Friction
 from nonholo.systems.forces._gravity import Gravity
-
-__all__ = ["Forced", "Friction", "Gravity"]

@@ -154,12 +154,9 @@ class Forced(AbstractSystem):
         return found
 
     def rows(self, steps: np.ndarray) -> Float[np.ndarray, "K dim"]:
-        """Return the rows of the table for numbers of steps; zero after its end, and without one."""
-        found, table = np.zeros((len(steps), self.group.dim)), self.table
-        if table is not None:
-            inside = (steps >= 0) & (steps < len(table))
-            found[inside] = table[steps[inside]]
-        return found
+        """Return the rows of the table for numbers of steps from -1; zero before it, after its end, and without one."""
+        table = np.zeros((0, self.group.dim)) if self.table is None else self.table
+        return np.vstack([table, np.zeros(self.group.dim)])[np.minimum(steps, len(table))]
 
     def directions(self, g: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "... dim k"]:
         r"""Return E, whose columns are admissible body velocities: $S^T$, on LR systems $\mathrm{Ad}_{g^{-1}}S^T$."""
