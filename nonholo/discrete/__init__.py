@@ -29,7 +29,7 @@ from nonholo.discrete.branching import (
     landscape,
     next_places,
 )
-from nonholo.discrete.routes import AbstractCompiledRoute, ScalarRoute
+from nonholo.discrete.routes import AbstractCompiledRoute, FunctionRoute, ScalarRoute
 
 __all__ = [
     "PRINCIPAL",
@@ -40,6 +40,7 @@ __all__ = [
     "Branches",
     "Discretization",
     "Frame",
+    "FunctionRoute",
     "Landscape",
     "Place",
     "ScalarRoute",

@@ -1,7 +1,7 @@
 """Functions of bodies for a substep of a composition: a root over given momenta, the push and the move at that root.
 
 The same pieces for every body, chosen by its type; numba chooses when it compiles. Tops in space and sleighs in the
-plane have a loop of their own, in `_composition`.
+plane have loops of their own, in `_composition` and `_forced`.
 """
 
 from collections.abc import Callable

@@ -68,6 +68,8 @@ def _momentum(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
     system, directions = orbit.system, orbit.system.rank
     if directions == 0:
         return []
+    if system.is_forced:
+        return [_components(orbit, flow)]
     if not system.is_spatial and directions == 2:
         return [Panel(lambda axes: motion.phase_portrait(cast(AbstractLLSystem, system), orbit, axes=axes))]
     if not system.is_spatial and directions == 3:

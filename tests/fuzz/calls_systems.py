@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 from fuzz.calls import Call, call
-from fuzz.kinds import Argument, array, count, function, number, positive, text, thing
+from fuzz.kinds import Argument, anything, array, count, function, number, positive, text, thing
 
 import nonholo as nh
 
@@ -20,7 +20,7 @@ def _kinetic(_: Any, v: Any) -> Any:
 
 def calls() -> list[Call]:
     """Return the calls of this file."""
-    return [*_tops(), *_sleighs(), *_general(), *_methods(), *_in_coordinates(), *_examples()]
+    return [*_tops(), *_sleighs(), *_general(), *_forces(), *_methods(), *_in_coordinates(), *_examples()]
 
 
 def _tops() -> list[Call]:
@@ -57,6 +57,20 @@ def _general() -> list[Call]:
         call("LRSystem [annihilator]", nh.LRSystem, group=group, mass_tensor=tensor, annihilator=annihilator),
         call("is_symmetric_pair", nh.is_symmetric_pair, group=group, constraint_subspace=rows),
         call("reference_point_subspace", nh.reference_point_subspace, n=count(3), plane=array(np.eye(3)[:2], "rows")),
+    ]
+
+
+def _forces() -> list[Call]:
+    heavy, top = nh.Gravity([0.0, 0.1, -1.0], [0.1, 0.0, 0.3]), nh.SuslovTop(J)
+    forced, pose = nh.Forced(top, heavy, nh.Friction([0.1, 0.2, 0.3])), array(np.eye(3), "batch")
+    acting = {"potential": anything(heavy), "force": anything(np.ones((4, 3)))}
+    point = {"force": array([0.0, 0.1, -1.0]), "point": array([0.1, 0.0, 0.3])}
+    return [
+        call("Gravity", nh.Gravity, **point),
+        call("Friction", nh.Friction, coefficients=array(np.diag([0.1, 0.2, 0.3]), "any")),
+        call("Forced", nh.Forced, system=thing(top), **acting),
+        call("forced.potential_energy", forced.potential_energy, configuration=pose),
+        call("forced.potential_force", forced.potential_force, configuration=pose),
     ]
 
 

@@ -159,6 +159,26 @@ def test_a_table_acts_row_by_row() -> None:
     assert np.ptp(table.energy[40:]) <= 1e-13 < np.ptp(table.energy[:40])
 
 
+def test_forced_in_coordinates() -> None:
+    """A potential and friction as in the Lagrangian and by hand; neither gives the system itself; not twice."""
+    start = {"configuration": (0.5, 0.0, 0.0), "body_velocity": (1.0, 0.0, 0.3), "steps": 20}
+    forced = nh.Forced(_skate(), lambda q: 2.0 * q[0] ** 2, nh.Friction([0.2, 0.2, 0.1]))
+    by_hand = LagrangeDAlembert(
+        lambda q, v: (v[0] ** 2 + v[1] ** 2 + 0.3 * v[2] ** 2) / 2 - 2.0 * q[0] ** 2,
+        _blade,
+        dimension=3,
+        force=lambda _t, _q, v: -jnp.array([0.2, 0.2, 0.1]) * v,
+    )
+    orbits = [nh.simulate(nh.discretize(system, 0.1), **start) for system in (forced, by_hand)]
+    assert np.abs(orbits[0].configuration - orbits[1].configuration).max() <= 1e-14
+    free = _skate()
+    assert nh.Forced(free) is free
+    with pytest.raises(ValueError, match="have no force yet"):
+        nh.Forced(forced, None, nh.Friction([0.1, 0.1, 0.1]))
+    with pytest.raises(ValueError, match="be a system that forces act on"):
+        nh.Forced(nh.examples.chaplygin_ball().system, None, nh.Friction([0.1, 0.1, 0.1]))
+
+
 def test_what_a_driven_system_refuses() -> None:
     """Each with what is wanted: starts off the motion, functions of its own, indices, tables."""
     racer = nh.examples.roller_racer()

@@ -22,13 +22,16 @@ class Invariants:
     Attributes:
         states: Saved states.
         steps: Steps they span (0 for a flow).
-        energy_drift: Largest change of the reduced constrained energy, relative to it (absolute at rest).
+        energy_drift: Largest change of the reduced constrained energy, relative to it (absolute at rest). Under forces
+            what is left of the balance: the largest change of the energy less the work of the force, relative to the
+            largest energy.
         constraint_residual: Largest forbidden part of (W - W^-1)/2 of a displacement, of log W where the variety is
             exp d alone, or of a velocity; where the variety is given by equations, their largest residual.
         group_residual: Largest distance of a pose from the group.
         reversal_defect: Largest relative miss of one step forward and back.
         largest_step_angle: In degrees.
         outcome: How the run ended.
+        work: What the force did on the whole, minus what friction dissipated; None of a free system.
     """
 
     states: int
@@ -39,6 +42,7 @@ class Invariants:
     reversal_defect: float | None
     largest_step_angle: float | None
     outcome: Outcome
+    work: float | None = None
 
 
 def invariants(orbit: Orbit) -> Invariants:
@@ -60,17 +64,23 @@ def invariants(orbit: Orbit) -> Invariants:
     stride = max(1, len(orbit) // (_SAMPLED if group.dim == 3 else _SAMPLED_LARGE))
     sample = orbit[::stride] if stride > 1 else orbit
     discrete = orbit.motion if isinstance(orbit.motion, Discretization) else None
-    energy = orbit.energy
+    work, forced = orbit.work, orbit.system.forces is not None
     return Invariants(
         states=len(orbit),
         steps=0 if discrete is None else (len(orbit) - 1) * orbit.save_every,
-        energy_drift=float(np.abs(energy - energy[0]).max() / (abs(energy[0]) or 1.0)),
+        energy_drift=_energy_drift(orbit.energy, work, forced=forced),
         constraint_residual=float(np.abs(orbit.motion.constraint_residual(sample)).max(initial=0.0)),
         group_residual=None if orbit.canonical_pose is None else _group_residual(sample),
         reversal_defect=None if discrete is None else _reversal_defect(discrete, sample),
         largest_step_angle=None if discrete is None else _largest_angle(discrete, sample),
         outcome=orbit.outcome,
+        work=float(work[-1]) if forced else None,
     )
+
+
+def _energy_drift(energy: np.ndarray, work: np.ndarray, *, forced: bool) -> float:
+    size = np.abs(energy if forced else energy[0]).max()
+    return float(np.abs(energy - energy[0] - work).max() / (size or 1.0))
 
 
 def _largest_angle(discrete: Discretization, orbit: Orbit) -> float:
@@ -91,7 +101,7 @@ def _group_residual(orbit: Orbit) -> float:
 
 
 def _reversal_defect(discrete: Discretization, orbit: Orbit) -> float | None:
-    route = discrete.route.compiled
+    route = discrete.route.compiled if discrete.forces is None else None
     if route is None:
         return None
     moving = np.asarray(orbit.canonical_chart.any(axis=1))

@@ -49,7 +49,7 @@ class EnergyError:
 
 @theme.styled
 def energy_error(orbit: Orbit, axes: Axes | None = None, **look: Unpack[theme.Look]) -> EnergyError:
-    r"""Draw the relative error of the reduced constrained energy against time.
+    r"""Draw the relative error of the reduced constrained energy, under forces that of their balance, against time.
 
     $$ (E_k - E_0)/E_0 , $$
 
@@ -75,7 +75,7 @@ def energy_error(orbit: Orbit, axes: Axes | None = None, **look: Unpack[theme.Lo
     if orbit.system.is_spatial:
         posed("energy_error(orbit=...)", orbit)
     axes = theme.axes_or_new(axes, (6.0, 2.6))
-    energy = orbit.energy
+    energy = orbit.energy - orbit.work
     error = (energy - energy[0]) / (energy[0] or 1.0)
     unit = _unit(float(np.abs(error).max()))
     shown = "machine epsilon" if _EPS / unit > _VISIBLE else "_machine epsilon"  # a legend of what can be seen

@@ -20,7 +20,7 @@ from nonholo.orbit import Orbit
 from nonholo.plotting import parts, theme
 from nonholo.plotting.parts import evenly_in_box
 from nonholo.plotting.sheets import ellipse, half_axes, momenta_on_plane, name_axes, on_plane, plane_inertia
-from nonholo.systems import AbstractLLSystem, AbstractSystem
+from nonholo.systems import AbstractLLSystem, AbstractSystem, refuse_forces
 
 _SEEDS = 3  # states of the orbit whose images are drawn
 _GENERATIONS = 3
@@ -148,6 +148,7 @@ def phase_portrait(
 
 def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
     where = "phase_portrait(system=...)"
+    refuse_forces(where, system)
     instance(where, system, AbstractSystem, "be a system", "Pass `orbit.system` first, then the orbit.")
     if system.is_spatial:
         remedy = "Its momenta along the constraint are conserved: draw `overview` instead."

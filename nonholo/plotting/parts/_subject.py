@@ -58,8 +58,8 @@ def time_step(orbit: Orbit) -> float | None:
 
 
 def is_free(system: System) -> bool:
-    """Tell whether nothing constrains the body, whose spatial momentum is then conserved."""
-    return system.rank == system.group.dim
+    """Tell whether nothing constrains the body or acts on it, whose spatial momentum is then conserved."""
+    return system.rank == system.group.dim and not system.is_forced
 
 
 def forbidden_axis(system: AbstractSystem) -> Float[np.ndarray, "3"] | None:
@@ -90,7 +90,7 @@ def own_orbit(where: str, orbit: Any, discrete: Discretization) -> None:
 
 def known_equilibria(system: System) -> Equilibria | None:
     """Return the equilibria of a system; None where they are no linear space, or where the library has none."""
-    if system.is_spatial:
+    if system.is_spatial or system.is_forced:
         return None
     try:
         equilibria = cast(AbstractLLSystem, system).equilibria()
