@@ -379,10 +379,10 @@ def flow_times(value: Any) -> Array:
     times = array(where, value, (None,), "Pass a sequence of times.")
     if times.size == 0:
         raise error(where, "hold at least one time", "none", "Pass the time of the start first.")
-    gaps = times[1:] - times[:-1]
-    forward = gaps * np.sign(gaps[:1])
-    if gaps.size and not forward.min() > 0:
-        at = int(np.argmin(forward))
+    rising = np.count_nonzero(times[1:] > times[:-1])
+    if rising < len(times) - 1 and (rising or np.count_nonzero(times[1:] < times[:-1]) < len(times) - 1):
+        gaps = times[1:] - times[:-1]
+        at = int(np.argmin(gaps * np.sign(gaps[0])))
         got = f"{times[at + 1]} after {times[at]}"
         raise error(where, "be strictly increasing or strictly decreasing", got, remedy)
     return times

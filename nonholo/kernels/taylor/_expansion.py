@@ -9,6 +9,8 @@ A single motion has eight places of z side by side, several motions have one pla
 of a sum are added in the same order.
 """
 
+import functools
+import threading
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +20,8 @@ from nonholo.base.types import Int
 from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import eliminate
 from nonholo.kernels.taylor._lanes import EIGHT, load, spread, store
+
+_SMALL = 128  # components, below which rooms are kept
 
 
 class Quadratic(NamedTuple):
@@ -77,21 +81,40 @@ class Room(NamedTuple):
 
 def make_room(f: Quadratic, order: int, lanes: tuple[int, ...]) -> Room:
     """Return room for the series of some lanes."""
-    L, k = len(lanes), len(f.velocities)
-    places = 1 + k + len(f.blocks)
+    return _room(_sizes(f, order), len(lanes))
+
+
+def kept_room(f: Quadratic, order: int) -> Room:
+    """Return room for one series, which this thread keeps if it is small."""
+    sizes = _sizes(f, order)
+    return _room_of(threading.get_ident(), sizes) if len(f.blocks) < _SMALL else _room(sizes, 1)
+
+
+def _sizes(f: Quadratic, order: int) -> tuple[int, ...]:
+    return len(f.velocities), len(f.blocks), f.rows.shape[1], len(f.forms), len(f.closed), order
+
+
+def _room(sizes: tuple[int, ...], L: int) -> Room:
+    k, size, products, forms, blocks, order = sizes
+    places = 1 + k + size
     width = L * (places if L > 1 else places + -places % len(EIGHT))
     series = _aligned(order + 1, width)
     series[0, :L] = 1.0
     return Room(
         series,
-        _aligned(1, len(EIGHT) * f.rows.shape[1]),
-        np.zeros((order, len(f.forms), len(f.forms))),
-        np.zeros((len(f.forms), len(f.forms))),
-        np.zeros((len(f.forms), 1)),
+        _aligned(1, len(EIGHT) * products),
+        np.zeros((order, forms, forms)),
+        np.zeros((forms, forms)),
+        np.zeros((forms, 1)),
         np.zeros((1, width)),
-        np.zeros((order + 1, len(f.closed) * L)),
+        np.zeros((order + 1, blocks * L)),
         np.zeros((1, L)),
     )
+
+
+@functools.lru_cache(maxsize=16)
+def _room_of(_thread: int, sizes: tuple[int, ...]) -> Room:
+    return _room(sizes, 1)
 
 
 def _aligned(rows: int, width: int) -> np.ndarray:
