@@ -82,7 +82,11 @@ class Series:
         found = rows[:, :pose_end]
         matrices = found.reshape(-1, *group.identity.shape) if not self.compact else None
         poses = group.normalize_pose(found if matrices is None else group.pose_from_matrix(matrices))
-        momenta = rows[:, end:] * self.unit if self.momentum is None else np.tile(self.momentum, (len(rows), 1))
+        momenta = (
+            rows[:, end:] * self.unit
+            if self.momentum is None
+            else np.broadcast_to(self.momentum, (len(rows), len(self.momentum))).copy()
+        )
         return States(momenta, poses, on_same_turn(rows[:, pose_end], poses) if group == PLANE else None)
 
 

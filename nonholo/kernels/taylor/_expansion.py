@@ -62,8 +62,8 @@ class Room(NamedTuple):
         series: Coefficients of z, (order + 1, width).
         sums: Coefficients of the products, (1, 8 R).
         inertia: Coefficients of B, (order, k, k).
-        matrix: B, (k, k).
-        solution: w, (k, 1).
+        matrix: B, then right sides, (k, k).
+        inverse: Of B, (k, k).
         change: A sum of a series, (1, width).
         sizes: Of the coefficients of blocks, (order + 1, blocks L).
         steps: The length of a step, (1, L).
@@ -73,7 +73,7 @@ class Room(NamedTuple):
     sums: np.ndarray
     inertia: np.ndarray
     matrix: np.ndarray
-    solution: np.ndarray
+    inverse: np.ndarray
     change: np.ndarray
     sizes: np.ndarray
     steps: np.ndarray
@@ -105,7 +105,7 @@ def _room(sizes: tuple[int, ...], L: int) -> Room:
         _aligned(1, len(EIGHT) * products),
         np.zeros((order, forms, forms)),
         np.zeros((forms, forms)),
-        np.zeros((forms, 1)),
+        np.zeros((forms, forms)),
         np.zeros((1, width)),
         np.zeros((order + 1, blocks * L)),
         np.zeros((1, L)),
@@ -190,22 +190,39 @@ def _apply(f: Any, order: Any, room: Any, lanes: Any) -> Any:
 
 
 def _divide(f: Any, order: Any, room: Any, lanes: Any) -> Any:
-    """Write the coefficient of w in B w = r: B_0 w_j = r_j - B_1 w_(j-1) - ... - B_j w_0."""
-    k, inertia, series, matrix, w = len(f.momentum), room.inertia, room.series, room.matrix, room.solution
+    """Write the coefficient of w in B w = r: B_0 w_j = r_j - B_1 w_(j-1) - ... - B_j w_0, with the inverse of B_0."""
+    k, inertia, series, matrix, inverse = len(f.momentum), room.inertia, room.series, room.matrix, room.inverse
     before = 1 + k + len(f.blocks) - f.forms.shape[2]
     for a in range(k):
         for b in range(k):
-            inertia[order, a, b] = 0.0
+            entry = 0.0
             for e in range(f.forms.shape[2]):
-                inertia[order, a, b] += f.forms[a, b, e] * series[order, before + e]
-            matrix[a, b] = inertia[0, a, b]
-        w[a, 0] = f.momentum[a] if order == 0 else 0.0
-        for i in range(1, order + 1):
-            for b in range(k):
-                w[a, 0] -= inertia[i, a, b] * series[order - i, 1 + b]
-    eliminate(matrix, w)
+                entry += f.forms[a, b, e] * series[order, before + e]
+            inertia[order, a, b] = entry
+            if order == 0:
+                matrix[a, b], inverse[a, b] = entry, 1.0 if a == b else 0.0
+    if order == 0:
+        eliminate(matrix, inverse)
     for a in range(k):
-        series[order, 1 + a] = w[a, 0]
+        matrix[0, a] = (f.momentum[a] if order == 0 else 0.0) - _earlier(inertia, series, a, order)
+    for a in range(k):
+        total = 0.0
+        for b in range(k):
+            total += inverse[a, b] * matrix[0, b]
+        series[order, 1 + a] = total
+
+
+@scalar
+def _earlier(inertia: np.ndarray, series: np.ndarray, a: int, order: int) -> float:
+    """Return a row of B_1 w_(j-1) + ... + B_j w_0."""
+    even, odd = 0.0, 0.0
+    for b in range(inertia.shape[1]):
+        for i in range(1, order, 2):
+            odd += inertia[i, a, b] * series[order - i, 1 + b]
+            even += inertia[i + 1, a, b] * series[order - i - 1, 1 + b]
+        if order % 2 == 1:
+            odd += inertia[order, a, b] * series[0, 1 + b]
+    return odd + even
 
 
 @scalar
