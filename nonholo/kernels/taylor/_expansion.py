@@ -195,12 +195,9 @@ def _divide(f: Any, order: Any, room: Any, lanes: Any) -> Any:
     before = 1 + k + len(f.blocks) - f.forms.shape[2]
     for a in range(k):
         for b in range(k):
-            entry = 0.0
-            for e in range(f.forms.shape[2]):
-                entry += f.forms[a, b, e] * series[order, before + e]
-            inertia[order, a, b] = entry
+            inertia[order, a, b] = _entry(f.forms, a, b, series, order, before)
             if order == 0:
-                matrix[a, b], inverse[a, b] = entry, 1.0 if a == b else 0.0
+                matrix[a, b], inverse[a, b] = inertia[0, a, b], 1.0 if a == b else 0.0
     if order == 0:
         eliminate(matrix, inverse)
     for a in range(k):
@@ -210,6 +207,15 @@ def _divide(f: Any, order: Any, room: Any, lanes: Any) -> Any:
         for b in range(k):
             total += inverse[a, b] * matrix[0, b]
         series[order, 1 + a] = total
+
+
+@scalar
+def _entry(forms: np.ndarray, a: int, b: int, series: np.ndarray, order: int, before: int) -> float:
+    """Return an entry of B of a coefficient of the tensor."""
+    entry = 0.0
+    for e in range(forms.shape[2]):
+        entry += forms[a, b, e] * series[order, before + e]
+    return entry
 
 
 @scalar
