@@ -137,8 +137,8 @@ def _first_state(
     numbers = system.rank + posed * group.pose_size
     remedy = "Ask for fewer times, or for momenta alone: reconstruct=False without a method."
     within_memory("flow(times=...)", 32.0 * len(time) * numbers, remedy)
-    g = start.pose(group) if posed or start.configuration is not None else None
-    reduced, pose = start.momentum(system, g), start.canonical_pose(system, g) if posed and g is not None else None
+    g = start.pose(group) if system.is_spatial or start.configuration is not None else None
+    reduced, pose = start.momentum(system, g), start.canonical_pose(system, g) if posed else None
     if start.name == "momentum" and np.shape(start.value) != (system.rank,):
         _check_momentum(start.value, _opening(system, time, (reduced, pose)).momentum[0])
     return reduced, pose
@@ -167,7 +167,7 @@ def _flowed(
     motion = ContinuousFlow(system, (time[0], time[reached - 1]), solved.at)
     orbit = Orbit(motion, time[:reached], states.momenta, None, states.poses, outcome, turned=states.turned)
     if events is not None:
-        orbit = flow_with_events(events, orbit, time[0] + solved.steps)
+        orbit = flow_with_events(events, orbit, time[0] + solved.steps())
     if orbit.outcome != Outcome.successful:
         rtol, atol = tolerances
         where = f"Flow from time {time[reached - 1]:g} to {time[reached]:g} (rtol {rtol:g}, atol {atol:g})"
