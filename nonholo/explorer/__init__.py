@@ -1,0 +1,5 @@
+"""The live page: one file that runs the library's own kernel in the browser."""
+
+from nonholo.explorer._kernel import kernel
+
+__all__ = ["kernel"]
