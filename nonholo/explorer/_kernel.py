@@ -18,7 +18,9 @@ from nonholo.base.compiled import kept_bytes
 from nonholo.explorer._object import module_of
 from nonholo.kernels import SleighBody, SuslovBody, flat_run
 
-_BODIES = {"top": SuslovBody, "sleigh": SleighBody}
+KINDS = {"top": SuslovBody, "sleigh": SleighBody}
+"""The bodies that have a kernel for the page."""
+
 _TRIPLE = "wasm32-unknown-unknown"
 _ADDRESS = types.CPointer(types.float64)
 _SIGNATURE = types.int64(_ADDRESS, _ADDRESS, types.int64, _ADDRESS, _ADDRESS, _ADDRESS)
@@ -38,7 +40,7 @@ def kernel(body: str) -> bytes:
     own = hashlib.sha256()
     for file in ("_kernel.py", "_object.py"):
         own.update(Path(__file__).with_name(file).read_bytes())
-    function = flat_run(_BODIES[body])
+    function = flat_run(KINDS[body])
     return kept_bytes(function, f"wasm32 {body} {own.hexdigest()}", lambda: module_of(_object(function)))
 
 
