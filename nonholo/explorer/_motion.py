@@ -1,6 +1,7 @@
 """What a page shows of a motion: a state from which its kernel starts, or the saved states themselves."""
 
 import base64
+import re
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -73,7 +74,13 @@ def _live(orbit: Orbit) -> Shown | None:
 def _kind(discrete: Discretization) -> str | None:
     """Return the kernel of a discretization that runs in the axes of the canonical frame, or None."""
     form = discrete.system.normal_form
-    if form is None or discrete.route_name != "scalar" or form.frame is not None or np.any(form.offset):
+    if (
+        form is None
+        or discrete.route_name != "scalar"
+        or discrete.order != 2
+        or form.frame is not None
+        or np.any(form.offset)
+    ):
         return None
     return "sleigh" if form.is_sleigh else "top" if form.frame_map is None else None
 
@@ -98,9 +105,9 @@ def _state(discrete: Discretization, kind: str, momentum: np.ndarray, pose: np.n
 
 
 def _name(system: AbstractSystem) -> str:
-    known = {"SuslovTop": "Suslov top", "ChaplyginSleigh": "Chaplygin sleigh"}
-    name = type(system).__name__
-    return known.get(name, name)
+    words = re.findall("[A-Z][a-z]+|[A-Z]+(?![a-z])", type(system).__name__)
+    name = " ".join([words[0], *(word.lower() for word in words[1:])])
+    return name if system.normal_form is not None and system.normal_form.is_planar else f"{name}, {system.group}"
 
 
 def _frame_note(system: AbstractSystem) -> str:

@@ -8,7 +8,7 @@ import { flowOf, orbitOf } from "./orbit.mjs";
 import { EnergyError, PhasePortrait } from "./plots.mjs";
 import { AxesView, noFlow, replayed } from "./replay.mjs";
 import { SleighView } from "./sleigh_view.mjs";
-import { Stage } from "./stage.mjs";
+import { isSoftware, Stage } from "./stage.mjs";
 import { checked, fragmentOf, stateOf } from "./state.mjs";
 import { SurfaceView } from "./surface_view.mjs";
 import { TopView } from "./top_view.mjs";
@@ -17,7 +17,7 @@ import { WORDS } from "./words.mjs";
 const SECONDS = 16;
 const HOLD = 1.2;
 const VIEWS = { top: TopView, sleigh: SleighView, replay: AxesView };
-const EYES = { top: [1.6, -2, 0.9], sleigh: [0.35, -1.35, 1.5], replay: [1.6, -2, 1.1] };
+const EYES = { top: [1.6, -2, 0.9], sleigh: [0.25, -1.1, 1.25], replay: [1.6, -2, 1.1] };
 const byId = (id) => document.getElementById(id);
 
 export class App {
@@ -83,7 +83,7 @@ export class App {
     if (refusal) return this.say(refusal, true);
     const run = replay ? null : this.kernels[this.state.kind];
     this.orbit = replay ? replayed(this.data.replay) : orbitOf(this.body, this.state, run);
-    this.took = performance.now() - began;
+    this.took = { compute: performance.now() - began };
     this.flow = replay ? noFlow(this.orbit) : this.withAxis(flowOf(this.body, this.state));
     const kind = replay ? "replay" : this.state.kind;
     if (this.shown !== kind) this.enter(kind);
@@ -97,6 +97,7 @@ export class App {
     this.report();
     this.show();
     this.remember();
+    this.took.refresh = performance.now() - began;
   }
 
   /** The body axis of permanent rotation of a top: its velocity along the rows is that of c. */
@@ -106,10 +107,8 @@ export class App {
   }
 
   enter(kind) {
-    if (this.view) {
-      this.bodyStage.scene.remove(this.view.fixed, this.view.moving);
-      this.bodyStage.turned = false;
-    }
+    if (this.view) this.bodyStage.scene.remove(this.view.fixed, this.view.moving);
+    this.bodyStage.turned = false;
     this.bodyStage.eye.set(...EYES[kind]).normalize();
     this.view = new VIEWS[kind](this.bodyStage);
     this.shown = kind;
@@ -127,7 +126,7 @@ export class App {
       const where = count === 0 ? "The motion cannot start" : `The motion ends after ${count - 1} of ${steps} steps`;
       return this.say(`${where}: ${name.replaceAll("_", " ")}. ${message}`, true);
     }
-    const work = this.kind === "replay" ? "replayed: this body has no kernel in the page" : `computed here in ${short(this.took, 2)} ms`;
+    const work = this.kind === "replay" ? "replayed: this body has no kernel in the page" : `computed here in ${short(this.took.compute, 2)} ms`;
     const drawn = this.view.enlarged > 1.05 ? ` · body drawn ${short(this.view.enlarged, 2)} times larger` : "";
     this.say(`${count - 1} steps ${work} · energy kept to ${short(worst, 2)}${drawn}`, false);
   }
@@ -147,8 +146,11 @@ export class App {
       if (this.clock > last + (HOLD * (last + 1)) / SECONDS) this.clock = 0;
       this.show();
     }
+    const began = performance.now();
     this.bodyStage.draw();
-    this.surfaceStage.draw();
+    this.frames = (this.frames ?? 0) + 1;
+    if (!isSoftware || !this.playing || this.frames % 3 === 0) this.surfaceStage.draw();
+    this.took.draw = performance.now() - began;
   }
 
   get k() {
@@ -160,6 +162,7 @@ export class App {
     this.drawn = { k: this.k, orbit: this.orbit };
     if (this.orbit.count) for (const view of [this.view, this.surface, this.phase, this.energy]) view.show(this.k);
     this.controls.clock();
+    this.controls.now();
   }
 
   remember() {

@@ -95,6 +95,22 @@ export class Controls {
     byId("play").dataset.playing = app.playing;
   }
 
+  /** Show the numbers of the present state. */
+  now() {
+    const { app } = this, { k, orbit, body } = app, list = byId("now");
+    const known = orbit.count ? [
+      [body.momenta[0], short(orbit.r[2 * k], 6)], [body.momenta[1], short(orbit.r[2 * k + 1], 6)],
+      ["energy", short(orbit.energy[k], 6)],
+      ...(body.angle ? [["step angle", `${short((body.angle(orbit.y[2 * k], orbit.y[2 * k + 1]) * 180) / Math.PI, 4)}°`]] : []),
+    ] : [];
+    if (list.children.length !== 2 * known.length) {
+      list.replaceChildren(...known.flatMap(() => [element("dt"), element("dd")]));
+    }
+    known.flat().forEach((text, place) => {
+      if (list.children[place].textContent !== text) list.children[place].textContent = text;
+    });
+  }
+
   clockButtons() {
     const { app } = this;
     const play = (on) => {

@@ -20,4 +20,8 @@ globalThis.nonholo = {
   get orbit() {
     return app.orbit;
   },
+  /** Milliseconds of the last computation, of all that a change took, and of the last picture in space. */
+  get took() {
+    return { ...app.took };
+  },
 };

@@ -173,6 +173,7 @@ export class EnergyError extends Picture {
       pen.fillStyle = look.muted;
       pen.fillText(`10${raised(power)}`, box.left - 6, y);
     }
+    pen.fillText("0", box.left - 6, box.bottom);
     const epsilon = this.place(0, EPSILON)[1];
     pen.strokeStyle = look.flow;
     pen.setLineDash([5, 4]);

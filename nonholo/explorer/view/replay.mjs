@@ -1,7 +1,6 @@
 // A motion without a kernel: its numbers are in the page, and its body axes are drawn.
 
 import { CapsuleGeometry, Group, Mesh, Vector3 } from "three";
-import { timeColor } from "./look.mjs";
 import { clear, ribbon, solid } from "./stage.mjs";
 
 const numbersOf = (text) => new Float64Array(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer);
@@ -30,23 +29,21 @@ export class AxesView {
     clear(this.moving);
     this.orbit = orbit;
     let low = [Infinity, Infinity, Infinity], high = low.map((x) => -x);
-    const { frames, count } = orbit, origins = [], tips = [], shades = [];
+    const { frames, count } = orbit;
     for (let k = 0; k < count; k++) {
-      const f = frames.subarray(12 * k, 12 * k + 12);
-      origins.push([f[0], f[1], f[2]]);
+      const f = frames.subarray(12 * k, 12 * k + 3);
       low = low.map((x, i) => Math.min(x, f[i]));
       high = high.map((x, i) => Math.max(x, f[i]));
-      shades.push(timeColor(k / Math.max(1, count - 1), look.dark));
     }
     const extent = Math.hypot(...high.map((x, i) => x - low[i])) / 2, center = high.map((x, i) => (x + low[i]) / 2);
     this.length = extent > 0 ? Math.max(1, extent / 4) : 1;
+    const tips = new Float32Array(3 * count), far = extent > 0 ? 0 : this.length; // the last axis of a body in its place
     for (let k = 0; k < count; k++) {
-      const f = frames.subarray(12 * k, 12 * k + 12);
-      tips.push(extent > 0 ? origins[k] : origins[k].map((x, i) => x + this.length * f[9 + i]));
+      for (let i = 0; i < 3; i++) tips[3 * k + i] = frames[12 * k + i] + far * frames[12 * k + 9 + i];
     }
-    const reach = extent + this.length;
-    const toward = (p) => this.stage.camera.position.toArray().map((c, i) => c - p[i]);
-    this.trace = count > 1 ? ribbon(tips, toward, 0.02 * reach, shades) : null;
+    const reach = extent + this.length, eye = this.stage.camera.position.toArray();
+    const toward = (p, normal) => ([normal[0], normal[1], normal[2]] = [eye[0] - p[0], eye[1] - p[1], eye[2] - p[2]]);
+    this.trace = count > 1 ? ribbon(tips, toward, 0.02 * reach, look.dark) : null;
     if (this.trace) this.fixed.add(this.trace);
     this.rods = [look.stripe, look.flow, look.accent].map((color) => {
       const rod = new Mesh(new CapsuleGeometry(0.025 * this.length, 1, 4, 12), solid(color));

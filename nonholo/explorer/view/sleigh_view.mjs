@@ -1,11 +1,10 @@
 // The sleigh on the plane: an elliptic plate on a blade, its center of mass, and the track of the contact point.
 
 import {
-  BoxGeometry, BufferGeometry, CylinderGeometry, ExtrudeGeometry, Group, LineBasicMaterial, LineSegments, Mesh,
+  BoxGeometry, BufferGeometry, CylinderGeometry, ExtrudeGeometry, Group, LineSegments, Mesh,
   Shape, SphereGeometry, Vector3,
 } from "three";
-import { timeColor } from "./look.mjs";
-import { clear, ribbon, solid } from "./stage.mjs";
+import { clear, ribbon, solid, thin } from "./stage.mjs";
 
 const SLENDER = 1.6;
 
@@ -23,36 +22,36 @@ export class SleighView {
     this.orbit = orbit;
     const { mass, inertia, a } = state.parameters;
     const long = SLENDER * Math.sqrt((4 * inertia) / mass / (1 + SLENDER * SLENDER));
-    const track = [], shades = [];
+    const { count, g } = orbit, track = new Float32Array(3 * count);
     let box = [Infinity, Infinity, -Infinity, -Infinity];
-    for (let k = 0; k < orbit.count; k++) {
-      const [x, y] = orbit.g.subarray(4 * k + 2, 4 * k + 4);
-      track.push([x, y, 0]);
-      shades.push(timeColor(k / Math.max(1, orbit.count - 1), look.dark));
+    for (let k = 0; k < count; k++) {
+      const x = g[4 * k + 2], y = g[4 * k + 3];
+      track[3 * k] = x;
+      track[3 * k + 1] = y;
       box = [Math.min(box[0], x), Math.min(box[1], y), Math.max(box[2], x), Math.max(box[3], y)];
     }
     if (!orbit.count) box = [-1, -1, 1, 1];
     const extent = Math.hypot(box[2] - box[0], box[3] - box[1]);
-    this.enlarged = Math.max(1, extent / (9 * (long + Math.abs(a))));
+    this.enlarged = Math.max(1, extent / (7 * (long + Math.abs(a))));
     const reach = extent / 2 + this.enlarged * (long + Math.abs(a)) * 0.9;
     const center = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2, 0];
     this.ground(center, reach, look);
-    this.track = track.length > 1 ? ribbon(track.map(([x, y]) => [x, y, 0.002 * reach]), () => [0, 0, 1], 0.014 * reach, shades) : null;
+    this.track = count > 1 ? ribbon(track, () => {}, 0.02 * reach, look.dark) : null;
+    if (this.track) this.track.position.z = 0.002 * reach;
     if (this.track) this.fixed.add(this.track);
     this.body(long, a, look);
     this.moving.scale.setScalar(this.enlarged);
-    this.stage.look(center, 0.94 * reach);
+    this.stage.look(center, 0.8 * reach);
   }
 
   ground(center, reach, look) {
     const step = 10 ** Math.floor(Math.log10(reach)), size = reach > 5 * step ? 2 * step : reach > 2 * step ? step : step / 2;
-    const [x0, y0] = center.map((x) => Math.round(x / size) * size), count = Math.ceil((2 * reach) / size), points = [];
+    const [x0, y0] = center.map((x) => Math.round(x / size) * size), count = Math.ceil((1.6 * reach) / size), points = [];
     for (let k = -count; k <= count; k++) {
       points.push(new Vector3(x0 + k * size, y0 - count * size, 0), new Vector3(x0 + k * size, y0 + count * size, 0));
       points.push(new Vector3(x0 - count * size, y0 + k * size, 0), new Vector3(x0 + count * size, y0 + k * size, 0));
     }
-    const material = new LineBasicMaterial({ color: look.ground });
-    this.fixed.add(new LineSegments(new BufferGeometry().setFromPoints(points), material));
+    this.fixed.add(new LineSegments(new BufferGeometry().setFromPoints(points), thin(look.ground)));
   }
 
   body(long, a, look) {

@@ -1,8 +1,7 @@
 // The surface of discrete momenta, and the orbit that runs on it: the part near the orbit, or as much as asked for.
 
-import { BufferAttribute, BufferGeometry, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, SphereGeometry } from "three";
-import { timeColor } from "./look.mjs";
-import { clear, plain, ribbon, solid } from "./stage.mjs";
+import { BufferAttribute, BufferGeometry, DoubleSide, Group, LineSegments, Mesh, SphereGeometry } from "three";
+import { clear, isSoftware, plain, ribbon, solid, thin } from "./stage.mjs";
 
 export class SurfaceView {
   constructor(stage) {
@@ -22,14 +21,14 @@ export class SurfaceView {
       most = Math.max(most, body.angle(y[2 * k], y[2 * k + 1]));
     }
     const reach = whole ? Math.PI : Math.min(Math.PI, Math.max(1.6 * most, 1e-3));
-    const mesh = body.mesh(p, path, reach);
+    const mesh = body.mesh(p, path, reach, ...(isSoftware ? (body.kind === "top" ? [18, 48] : [40, 16]) : []));
     const fit = this.fitted(mesh.points.concat(path));
     this.surface(mesh, fit, look);
     this.path = path.map(fit);
-    const shades = path.map((_, k) => timeColor(k / Math.max(1, count - 1), look.dark));
     if (count > 1) {
-      const band = ribbon(this.path, (q) => this.stage.camera.position.toArray().map((c, i) => c - q[i]), 0.028, shades);
-      band.material.depthTest = false;
+      const eye = this.stage.camera.position.toArray();
+      const toward = (q, normal) => ([normal[0], normal[1], normal[2]] = [eye[0] - q[0], eye[1] - q[1], eye[2] - q[2]]);
+      const band = ribbon(Float32Array.from(this.path.flat()), toward, 0.028, look.dark, { depthTest: false });
       band.renderOrder = 2;
       this.group.add(band);
     }
@@ -37,7 +36,8 @@ export class SurfaceView {
     dot.renderOrder = 3;
     this.marker.add(dot);
     this.marker.visible = count > 0;
-    this.stage.look([0, 0, 0], 1.6);
+    const reachOf = (point) => Math.hypot(...fit(point));
+    this.stage.look([0, 0, 0], 1.04 * mesh.points.reduce((most, point) => Math.max(most, reachOf(point)), 1));
   }
 
   /** Return the map of momenta into the box, each axis in its own scale. */
@@ -76,7 +76,7 @@ export class SurfaceView {
     net.setIndex(lines);
     const sides = { side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
     this.group.add(new Mesh(geometry, solid(look.surface, sides)));
-    this.group.add(new LineSegments(net, new LineBasicMaterial({ color: look.ink, transparent: true, opacity: 0.22 })));
+    this.group.add(new LineSegments(net, thin(look.ink, { transparent: true, opacity: 0.22 })));
   }
 
   show(k) {

@@ -1,11 +1,10 @@
 // The top in space: its ellipsoid of inertia in two tones, the forbidden axis with its trace on a sphere.
 
 import {
-  BufferAttribute, CapsuleGeometry, Group, LineBasicMaterial, LineLoop, BufferGeometry, Mesh, Quaternion, SphereGeometry,
+  BufferAttribute, CapsuleGeometry, Group, LineLoop, BufferGeometry, Mesh, Quaternion, SphereGeometry,
   Vector3, Matrix4,
 } from "three";
-import { timeColor } from "./look.mjs";
-import { clear, isSoftware, plain, ribbon, solid } from "./stage.mjs";
+import { clear, isSoftware, plain, ribbon, solid, thin } from "./stage.mjs";
 
 const Z = new Vector3(0, 0, 1);
 
@@ -33,20 +32,32 @@ export class TopView {
   }
 
   set(state, orbit, look, flow) {
-    clear(this.fixed);
-    clear(this.moving);
+    const drawn = JSON.stringify([state.parameters, look]), { count, g } = orbit;
     this.orbit = orbit;
-    this.globe(look);
-    this.body(state.parameters, look, flow);
-    const tips = [], shades = [];
-    for (let k = 0; k < orbit.count; k++) {
-      const [w, x, y, z] = orbit.g.subarray(4 * k, 4 * k + 4);
-      tips.push([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)]);
-      shades.push(timeColor(k / Math.max(1, orbit.count - 1), look.dark));
+    if (drawn !== this.drawn) {
+      clear(this.fixed);
+      clear(this.moving);
+      this.globe(look);
+      this.body(state.parameters, look, flow);
+      this.drawn = drawn;
     }
-    this.trace = tips.length > 1 ? ribbon(tips, (p) => p, 0.028, shades) : null;
+    if (this.trace) {
+      this.fixed.remove(this.trace);
+      this.trace.geometry.dispose();
+    }
+    const tips = new Float32Array(3 * count);
+    for (let k = 0; k < count; k++) {
+      const w = g[4 * k], x = g[4 * k + 1], y = g[4 * k + 2], z = g[4 * k + 3];
+      const out = 1 + (0.03 * k) / count; // so that turns over each other stay apart
+      tips[3 * k] = out * 2 * (x * z + w * y);
+      tips[3 * k + 1] = out * 2 * (y * z - w * x);
+      tips[3 * k + 2] = out * (1 - 2 * (x * x + y * y));
+    }
+    const outwards = (p, normal) => ([normal[0], normal[1], normal[2]] = p);
+    this.trace = count > 1 ? ribbon(tips, outwards, 0.028, look.dark) : null;
     if (this.trace) this.fixed.add(this.trace);
-    this.stage.look([0, 0, 0], 1.16);
+    if (!this.framed) this.stage.look([0, 0, 0], 1.16);
+    this.framed = true;
   }
 
   globe(look) {
@@ -55,7 +66,7 @@ export class TopView {
         const angle = (2 * Math.PI * k) / 96;
         return turn(new Vector3(scale * Math.cos(angle), scale * Math.sin(angle), height));
       });
-      const line = new LineLoop(new BufferGeometry().setFromPoints(points), new LineBasicMaterial({ color: look.ground }));
+      const line = new LineLoop(new BufferGeometry().setFromPoints(points), thin(look.ground));
       this.fixed.add(line);
     };
     circle((p) => p);
