@@ -125,7 +125,7 @@ def test_presets(visit: Callable, files: dict) -> None:
 
 
 def test_no_real_branch(visit: Callable, files: dict) -> None:
-    """Where the map has no real value the page says so in words, and goes on when there is one again."""
+    """Where the map has no real value the page says so in words, and runs again when there is one."""
     page = visit(files["top"])
     page.set("time_step", 2.0)
     assert "cannot start: no real branch" in page.status

@@ -114,6 +114,7 @@ export class App {
     this.shown = kind;
     document.documentElement.dataset.kind = kind;
     for (const [name, text] of Object.entries(WORDS[kind])) byId(`${name}-words`).innerHTML = text;
+    byId("surface-axes").textContent = this.body.axes ? `${this.body.axes.join(", ")}, each in its own scale` : "";
     byId("title").textContent = this.data.title && kind === this.data.kind ? this.data.title : this.body.name;
   }
 

@@ -1,7 +1,7 @@
 // The sleigh on the plane: an elliptic plate on a blade, its center of mass, and the track of the contact point.
 
 import {
-  BoxGeometry, BufferGeometry, CylinderGeometry, ExtrudeGeometry, Group, LineSegments, Mesh,
+  BoxGeometry, BufferAttribute, BufferGeometry, CylinderGeometry, ExtrudeGeometry, Group, Line, LineSegments, Mesh,
   Shape, SphereGeometry, Vector3,
 } from "three";
 import { clear, ribbon, solid, thin } from "./stage.mjs";
@@ -37,11 +37,21 @@ export class SleighView {
     const center = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2, 0];
     this.ground(center, reach, look);
     this.track = count > 1 ? ribbon(track, () => {}, 0.02 * reach, look.dark) : null;
-    if (this.track) this.track.position.z = 0.002 * reach;
+    if (this.track) this.track.position.z = 0.004 * reach;
+    if (count > 1) this.fixed.add(this.whole(track, 0.002 * reach, look));
     if (this.track) this.fixed.add(this.track);
     this.body(long, a, look);
     this.moving.scale.setScalar(this.enlarged);
     this.stage.look(center, 0.8 * reach);
+  }
+
+  /** The track that is still to come, as a thin line. */
+  whole(track, height, look) {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(track, 3));
+    const line = new Line(geometry, thin(look.muted));
+    line.position.z = height;
+    return line;
   }
 
   ground(center, reach, look) {
