@@ -22,6 +22,7 @@ KINDS = {"top": SuslovBody, "sleigh": SleighBody}
 """The bodies that have a kernel for the page."""
 
 _TRIPLE = "wasm32-unknown-unknown"
+_OPTIONS: Any = {"nopython": True, "error_model": "numpy"}
 _ADDRESS = types.CPointer(types.float64)
 _SIGNATURE = types.int64(_ADDRESS, _ADDRESS, types.int64, _ADDRESS, _ADDRESS, _ADDRESS)
 _OF_THIS_MACHINE = r'"(?:target-cpu|target-features|probe-stack)"="[^"]*"'
@@ -46,7 +47,7 @@ def kernel(body: str) -> bytes:
 
 def _object(function: Any) -> bytes:
     """Return a relocatable object with one global function."""
-    made = numba.cfunc(_SIGNATURE, nopython=True, error_model="numpy")(function)
+    made = numba.cfunc(_SIGNATURE, **_OPTIONS)(function)
     text = re.sub(r"(?m)^target (?:triple|datalayout) = .*$", "", made.inspect_llvm())
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()

@@ -2,7 +2,7 @@
 
 import base64
 import re
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -34,7 +34,7 @@ class Shown(NamedTuple):
 def shown_motion(where: str, value: Any) -> Shown:
     """Return what a page shows of a system, a discretization or an orbit."""
     if isinstance(value, AbstractSystem):
-        value = discretize(value, _TIME_STEP)
+        value = discretize(cast(Any, value), _TIME_STEP)
     if isinstance(value, Discretization):
         return _of_discretization(where, value)
     orbit = as_orbit(where, value, "one in coordinates has no page.")
@@ -96,7 +96,7 @@ def _parameters(form: NormalForm) -> dict[str, float]:
 def _state(discrete: Discretization, kind: str, momentum: np.ndarray, pose: np.ndarray, steps: int) -> dict[str, Any]:
     return {
         "kind": kind,
-        "parameters": _parameters(discrete.system.normal_form),
+        "parameters": _parameters(cast(NormalForm, discrete.system.normal_form)),
         "momentum": [float(r) for r in momentum],
         "pose": [float(x) + 0.0 for x in pose],
         "time_step": float(discrete.time_step),
@@ -120,7 +120,7 @@ def _replay(orbit: Orbit) -> Shown:
     part = orbit.chosen(chosen) if len(chosen) < len(orbit) else orbit
     momenta = np.pad(part.restricted_momentum, ((0, 0), (0, 2)))[:, :2]
     arrays = {"time": part.time, "energy": part.energy, "frames": _frames(part), "momentum": momenta}
-    replay = {name: base64.b64encode(np.ascontiguousarray(rows, "<f8")).decode() for name, rows in arrays.items()}
+    replay = {name: base64.b64encode(rows.astype("<f8").tobytes()).decode() for name, rows in arrays.items()}
     data = {"kind": "replay", "replay": {**replay, "outcome": int(orbit.outcome)}, "momenta": ["r\u2081", "r\u2082"]}
     thinned = f" {len(part):,} of {len(orbit):,} saved states." if part is not orbit else ""
     note = f"A replay of numbers from Python: there is no kernel in the page for this motion.{thinned}"

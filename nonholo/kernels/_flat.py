@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from numba import carray
+from numba.np.numpy_support import carray
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from nonholo.kernels._driver import STATE_SIZE, advance, start
@@ -20,7 +20,7 @@ def flat_run(kind: type[Body]) -> Callable[..., int]:
     count = len(kind._fields)  # pyright: ignore[reportAttributeAccessIssue]
 
     def run(body: Any, state: Any, steps: int, momenta: Any, charts: Any, poses: Any) -> int:
-        p = kind(*to_fixed_tuple(carray(body, count), count))
+        p = kind(*to_fixed_tuple(carray(body, count), count))  # pyright: ignore
         s = carray(state, STATE_SIZE + 1)
         code = start(p, s[:2], s[10:STATE_SIZE], s) if math.isnan(s[4]) else 0
         done = 0

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
+from nonholo import kernels
 from nonholo.explorer import explore
 
 pytestmark = pytest.mark.profile("browser", instead="test_data_of_a_page")
@@ -188,6 +189,24 @@ def test_bad_links(visit: Callable, files: dict, fragment: str) -> None:
     assert page.errors == []
 
 
+@pytest.mark.parametrize("name", list(BODIES))
+def test_ten_thousand(visit: Callable, files: dict, name: str) -> None:
+    """Members of the crowd move by the same kernel: forwards, and after the time was set back."""
+    page = visit(files[name])
+    page.page.click("#play")
+    page.page.click("#many")
+    body = nh.discretize(BODIES[name], 0.1).route.body
+    for step in (60, 17):
+        page.page.fill("#scrub", str(step))
+        for k in (0, 137, 9999):
+            member = page.page.evaluate(f"nonholo.crowd.member({k})")
+            code, state = kernels.start(body, np.array(member["first"]), np.array([1.0, 0.0, 0.0, 0.0]))
+            assert code == 0
+            kernels.advance(body, state, step, step, (np.empty((1, 2)), np.empty((1, 2)), np.empty((1, 4))))
+            assert (member["now"], member["outcome"], member["step"]) == (state[:2].tolist(), 0, step)
+    assert page.errors == []
+
+
 def test_save_and_open(visit: Callable, files: dict, tmp_path: Path) -> None:
     """The saved page is a page: it opens with the motion that was saved, and as quietly."""
     page = visit(files["top"])
@@ -229,6 +248,17 @@ def test_pictures(visit: Callable, files: dict, view: str) -> None:
     with page.page.expect_download() as saved:
         page.page.click(f"#{view} .picture")
     assert Path(saved.value.path()).read_bytes().startswith(b"\x89PNG")
+
+
+def test_film(visit: Callable, files: dict) -> None:
+    """A film of the body is a WebM file of the motion from its start to its end."""
+    page = visit(files["sleigh"])
+    page.page.select_option("#speed", "4")
+    with page.page.expect_download(timeout=60_000) as saved:
+        page.page.click("#film")
+    assert Path(saved.value.path()).read_bytes().startswith(b"\x1a\x45\xdf\xa3")
+    assert page.page.text_content("#film") == "Film"
+    assert page.errors == []
 
 
 def test_time(visit: Callable, files: dict) -> None:

@@ -89,7 +89,8 @@ export class App {
     if (this.shown !== kind) this.enter(kind);
     this.view.set(this.state, this.orbit, look, this.flow);
     if (!replay) this.surface.set(this.body, this.state, this.orbit, look, this.whole);
-    const picture = { orbit: this.orbit, flow: this.flow, body: this.body };
+    if (this.crowd) this.crowd.set(this.body, this.state, this.flow, run);
+    const picture = { crowd: this.crowd, orbit: this.orbit, flow: this.flow, body: this.body };
     this.phase.set(picture, look);
     this.energy.set(picture, look);
     this.clock = Math.min(this.clock, Math.max(0, this.orbit.count - 1));
@@ -125,6 +126,7 @@ export class App {
       const [name, message] = this.data.outcomes[outcome] ?? ["unknown", ""];
       const steps = this.kind === "replay" ? count - 1 : this.state.steps;
       const where = count === 0 ? "The motion cannot start" : `The motion ends after ${count - 1} of ${steps} steps`;
+      byId("stop").textContent = name.replaceAll("_", " ");
       return this.say(`${where}: ${name.replaceAll("_", " ")}. ${message}`, true);
     }
     const work = this.kind === "replay" ? "replayed: this body has no kernel in the page" : `computed here in ${short(this.took.compute, 2)} ms`;
@@ -136,7 +138,6 @@ export class App {
     byId("status").textContent = text;
     byId("status").classList.toggle("wrong", wrong);
     byId("stop").hidden = !(wrong && this.orbit && this.orbit.count === 0);
-    byId("stop").textContent = "No real branch here";
   }
 
   tick(seconds) {
@@ -144,6 +145,7 @@ export class App {
     const last = this.orbit.count - 1;
     if (this.playing && last > 0) {
       this.clock += (Math.min(seconds, 0.1) * this.speed * (last + 1)) / SECONDS;
+      if (this.clock > last && this.filming?.state === "recording") this.filming.stop();
       if (this.clock > last + (HOLD * (last + 1)) / SECONDS) this.clock = 0;
       this.show();
     }
@@ -161,6 +163,7 @@ export class App {
   show() {
     if (this.k === this.drawn?.k && this.orbit === this.drawn.orbit) return;
     this.drawn = { k: this.k, orbit: this.orbit };
+    this.crowd?.to(this.k);
     if (this.orbit.count) for (const view of [this.view, this.surface, this.phase, this.energy]) view.show(this.k);
     this.controls.clock();
     this.controls.now();

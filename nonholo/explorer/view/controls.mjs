@@ -2,6 +2,8 @@
 
 import { BODIES } from "./bodies.mjs";
 import { MOST_STEPS } from "./kernel.mjs";
+import { Crowd } from "./crowd.mjs";
+import { film } from "./film.mjs";
 import { colors, short } from "./look.mjs";
 import { download, pageWith, pictureOf, pythonOf, tomlOf } from "./share.mjs";
 import { fragmentOf } from "./state.mjs";
@@ -32,6 +34,7 @@ export class Controls {
     PRESETS.forEach(({ name }, k) => select.append(element("option", { value: k }, name)));
     select.addEventListener("change", () => {
       const { data } = this.app;
+      this.chosen = null;
       const chosen = select.value === "own" ? data.state : { pose: [1, 0, 0, 0], ...PRESETS[select.value] };
       this.app.clock = 0;
       this.app.change({ ...chosen, pose: chosen.pose ?? [1, 0, 0, 0] });
@@ -75,6 +78,9 @@ export class Controls {
     const { app } = this, scrub = byId("scrub");
     if (app.kind !== "replay") {
       if (this.kind !== app.state.kind) this.build();
+      const text = JSON.stringify(app.state);
+      this.chosen ??= text;
+      if (text !== this.chosen) byId("preset").value = "changed";
       for (const { slider, number, get } of this.fields) {
         slider.value = get();
         if (document.activeElement !== number) number.value = String(+get().toPrecision(12));
@@ -190,6 +196,14 @@ export class Controls {
         download(await pictureOf(card.querySelector("canvas"), colors().card), `nonholo-${card.id}.png`);
       });
     }
+    byId("film").addEventListener("click", () => film(app, byId("film")));
+    byId("many").addEventListener("click", () => {
+      app.crowd = app.crowd ? null : new Crowd();
+      byId("many").setAttribute("aria-pressed", String(Boolean(app.crowd)));
+      app.refresh();
+      app.drawn = null;
+      app.show();
+    });
     byId("whole").addEventListener("click", () => {
       app.whole = !app.whole;
       byId("whole").setAttribute("aria-pressed", String(app.whole));

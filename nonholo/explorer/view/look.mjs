@@ -19,7 +19,7 @@ export function colors() {
   return {
     dark: get("scheme") === "dark",
     ...Object.fromEntries(
-      ["ink", "muted", "line", "card", "accent", "flow", "unstable", "body", "stripe", "ground", "surface"].map((n) => [n, get(n)]),
+      ["ink", "muted", "line", "card", "accent", "flow", "unstable", "body", "stripe", "ground", "surface", "crowd"].map((n) => [n, get(n)]),
     ),
   };
 }

@@ -20,6 +20,9 @@ globalThis.nonholo = {
   get orbit() {
     return app.orbit;
   },
+  get crowd() {
+    return app.crowd;
+  },
   /** Milliseconds of the last computation, of all that a change took, and of the last picture in space. */
   get took() {
     return { ...app.took };

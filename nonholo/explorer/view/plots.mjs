@@ -133,6 +133,7 @@ export class PhasePortrait extends Picture {
 
   marks(pen, k) {
     const { orbit, flow } = this.data, { look } = this;
+    if (this.data.crowd) this.data.crowd.draw(pen, this);
     if (!orbit.count) return;
     this.dot(pen, ...this.place(flow.at(orbit.time(k))), 7, null, look.flow);
     this.dot(pen, ...this.place([orbit.r[2 * k], orbit.r[2 * k + 1]]), 4.2, look.accent, look.card);

@@ -24,8 +24,8 @@ export const WORDS = {
       ${math(i("B"), i("y"), o("+"), o("("), i("c"), o("·"), perp, o(")"), perp, o("="), o("("), n(1), o("+"), square, o(")"), frac(i("h"), n(2)), i("r"), o(","), sub("g", next), o("="), sub("g", i("k")), sub("W", i("k")))}`,
     phase: `<p>The two momenta r along the constraint. Dots are the states of the discrete map; the ring moves with the continuous motion, which
       runs on the <em class="flow">orange ellipse</em> of its energy in closed form. Gray ellipses are other energies. The full line is made of attracting
-      permanent rotations, the dashed one of repelling ones. Drag anywhere to start there.</p>
-      ${math(i("r"), o("′"), o("="), i("r"), o("−"), n(2), frac(o("(") + i("c") + o("·") + perp + o(")"), i("h") + o("(") + n(1) + o("+") + square + o(")")), n(2), perp)}`,
+      permanent rotations, the dashed one of repelling ones. Drag anywhere to start there. “10,000” runs as many motions at once, with the same kernel.</p>
+      ${math(i("r"), o("′"), o("="), i("r"), o("−"), frac(n(4) + o("(") + i("c") + o("·") + perp + o(")"), i("h") + o("(") + n(1) + o("+") + square + o(")")), perp)}`,
     surface: `<p>The momenta of all displacements form a Steiner surface of degree four, the image of a projective plane. The orbit jumps on it from
       point to point. Several sheets over one point are the several values of the discrete map; where the surface folds, a value ends. Only the part near
       the orbit is shown, each axis in its own scale; “whole” unfolds all of it.</p>
@@ -39,7 +39,7 @@ export const WORDS = {
       ${math(i("p̂"), sup(i("t"), n(3)), o("−"), i("π"), sup(i("t"), n(2)), o("+"), o("("), n(2), i("J"), o("+"), i("p̂"), o(")"), i("t"), o("−"), i("π"), o("="), n(0), o(","), i("p̂"), o("="), i("a"), sub("p", n(1)), o("+"), n(2), i("m"), sup(i("a"), n(2)))}`,
     phase: `<p>The angular momentum π about the contact point and the momentum p₁ along the blade. Dots are the states of the discrete map; the ring
       moves with the continuous motion, which runs on the <em class="flow">orange ellipse</em> of its energy in closed form. The full line is straight motion
-      with the mass in front, which attracts; the dashed one is the mass behind. Drag anywhere to start there.</p>
+      with the mass in front, which attracts; the dashed one is the mass behind. Drag anywhere to start there. “10,000” runs as many motions at once, with the same kernel.</p>
       ${math(sup(i("π"), o("·")), o("="), o("−"), i("a"), i("ω"), sub("p", n(1)), o(","), sub(`ṗ`, n(1)), o("="), i("m"), i("a"), sup(i("ω"), n(2)))}`,
     surface: `<p>The momenta of all displacements form Plücker's conoid, a cubic surface ruled by lines that meet one axis. The orbit jumps on it
       from point to point. Several sheets over one point are the several values of the discrete map. Only the part near the orbit is shown, each axis in its own
