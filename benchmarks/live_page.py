@@ -73,17 +73,16 @@ def main() -> None:
             path = Path(folder) / f"{name}.html"
             began = time.process_time()
             nh.explore(body).save(path)
-            print(
-                f"{name}: {path.stat().st_size / 1e3:.0f} kB, written in {time.process_time() - began:.3f} s of processor"
-            )
+            took = time.process_time() - began
+            print(f"{name}: {path.stat().st_size / 1e3:.0f} kB, {took:.3f} s of processor to write")
             page = browser.new_page(viewport={"width": 1280, "height": 800})
             page.goto(path.as_uri())
             page.wait_for_timeout(1000)
             change = page.evaluate(_CHANGE, key)
-            print("  " + ", ".join(f"{part} {took:.1f} ms" for part, took in change.items()))
-            print(
-                f"  {page.evaluate(_FRAMES):.0f} frames a second, {page.evaluate(_CROWD):.1f} ms a step of 10,000 motions"
-            )
+            print("  " + ", ".join(f"{part} {milliseconds:.1f} ms" for part, milliseconds in change.items()))
+            frames, crowd = page.evaluate(_FRAMES), page.evaluate(_CROWD)
+            print(f"  {frames:.0f} frames a second, {crowd:.1f} ms for a step of 10,000 motions")
+            page.close()
         browser.close()
 
 
