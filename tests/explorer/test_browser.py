@@ -317,4 +317,6 @@ def test_in_a_notebook(visit: Callable, tmp_path: Path) -> None:
     page = visit(tmp_path / "notebook.html")
     frame = page.page.frame_locator("iframe").locator("#status")
     frame.filter(has_text="computed here").wait_for(timeout=10_000)
+    page.page.frame_locator("iframe").locator("#slide-J13").press("ArrowRight")
+    page.page.wait_for_timeout(500)
     assert page.errors == []

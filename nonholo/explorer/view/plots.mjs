@@ -1,15 +1,17 @@
 // Pictures in the plane, drawn on a canvas: the phase portrait and the energy error.
 
 import { css, raised, short, timeColor } from "./look.mjs";
+import { isSoftware } from "./stage.mjs";
 
 const EPSILON = 2 ** -52;
+const PEN = { willReadFrequently: isSoftware }; // drawn by the processor where there is nothing else
 const FONT = "11px system-ui, sans-serif";
 
 /** A canvas that is drawn anew at its own size, sharp on every screen. */
 class Picture {
   constructor(canvas) {
     this.canvas = canvas;
-    this.pen = canvas.getContext("2d");
+    this.pen = canvas.getContext("2d", PEN);
     this.still = document.createElement("canvas");
     new ResizeObserver(() => this.redraw()).observe(canvas);
   }
@@ -28,7 +30,7 @@ class Picture {
       canvas.height = Math.round(h * ratio);
     }
     Object.assign(this, { w, h, ratio });
-    const pen = this.still.getContext("2d");
+    const pen = this.still.getContext("2d", PEN);
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.font = FONT;
     this.frame();
@@ -108,7 +110,7 @@ export class PhasePortrait extends Picture {
     pen.strokeStyle = look.flow;
     pen.lineWidth = 2.2;
     curve(pen, Array.from({ length: 65 }, (_, turn) => this.place(this.level(1, turn))));
-    const stride = Math.max(1, Math.floor(orbit.count / 1500));
+    const stride = Math.max(1, Math.floor(orbit.count / 600));
     for (let k = 0; k < orbit.count; k += stride) {
       const color = css(timeColor(k / Math.max(1, orbit.count - 1), look.dark));
       this.dot(pen, ...this.place([orbit.r[2 * k], orbit.r[2 * k + 1]]), 2.3, color);
@@ -180,9 +182,11 @@ export class EnergyError extends Picture {
     pen.setLineDash([5, 4]);
     curve(pen, [[box.left, epsilon], [box.right, epsilon]]);
     pen.setLineDash([]);
-    const stride = Math.max(1, Math.floor(orbit.count / 2000));
+    const stride = Math.max(1, Math.floor(orbit.count / 800));
     for (let k = 0; k < orbit.count; k += stride) {
-      this.dot(pen, ...this.place(k, orbit.error[k]), 1.5, css(timeColor(k / Math.max(1, orbit.count - 1), look.dark)));
+      const [x, y] = this.place(k, orbit.error[k]);
+      pen.fillStyle = css(timeColor(k / Math.max(1, orbit.count - 1), look.dark));
+      pen.fillRect(x - 1.4, y - 1.4, 2.8, 2.8);
     }
     pen.fillStyle = look.muted;
     pen.textBaseline = "alphabetic";
