@@ -52,17 +52,20 @@ def module_of(content: bytes, name: bytes = b"run") -> bytes:
         ValueError: The object has data, tables of functions, calls of functions elsewhere, or not one global function.
     """
     sections = list(_sections(content))
-    linking = [block for kind, block in sections if kind == _CUSTOM and block[1:8] == b"linking"]
-    functions = [index for block in linking for index in _global_functions(block)]
-    needed = [kind for kind, _ in sections if kind in (_ELEMENT, _DATA)]
-    elsewhere = [wanted for kind, block in sections if kind == _IMPORT for wanted in _imports(block)]
-    if len(functions) != 1 or needed or any(wanted not in _HOST for wanted in elsewhere):
-        raise ValueError(f"The object needs a linker. Got {functions=}, {needed=}, {elsewhere=}.")
-    export = _encoded(1) + _encoded(len(name)) + name + bytes([_FUNCTION]) + _encoded(functions[0])
+    export = _encoded(1) + _encoded(len(name)) + name + bytes([_FUNCTION]) + _encoded(_only_function(sections))
     kept = [(kind, block) for kind, block in sections if kind != _CUSTOM]
-    place = sum(kind < _EXPORT for kind, _ in kept)
-    kept.insert(place, (_EXPORT, export))
+    kept.insert(sum(kind < _EXPORT for kind, _ in kept), (_EXPORT, export))
     return content[:_HEAD] + b"".join(bytes([kind]) + _encoded(len(block)) + block for kind, block in kept)
+
+
+def _only_function(sections: list[tuple[int, bytes]]) -> int:
+    """Return the index of the one function that others may call, of an object that needs nothing else."""
+    functions = [index for kind, block in sections if kind == _CUSTOM for index in _global_functions(block)]
+    elsewhere = {wanted for kind, block in sections if kind == _IMPORT for wanted in _imports(block)}
+    missing = elsewhere.difference(_HOST).union(kind for kind, _ in sections if kind in (_ELEMENT, _DATA))
+    if len(functions) != 1 or missing:
+        raise ValueError(f"The object needs a linker. Got {functions=}, {missing=}.")
+    return functions[0]
 
 
 def _sections(content: bytes) -> Iterator[tuple[int, bytes]]:
@@ -74,7 +77,7 @@ def _sections(content: bytes) -> Iterator[tuple[int, bytes]]:
 
 
 def _imports(block: bytes) -> Iterator[bytes]:
-    """Yield the names of what is imported; for a function, whose import has the fewest bytes, nothing else is read."""
+    """Yield the names of what is imported."""
     reader = _Reader(block)
     for _ in range(reader.number()):
         reader.block()
@@ -92,9 +95,10 @@ def _imports(block: bytes) -> Iterator[bytes]:
 
 
 def _global_functions(block: bytes) -> Iterator[int]:
-    """Yield the indices of the functions of the symbol table that others may call."""
+    """Yield the indices of the functions that others may call, where a custom section has a symbol table."""
     reader = _Reader(block)
-    reader.block()
+    if reader.block() != b"linking":
+        return
     reader.number()
     while not reader.is_at_end:
         kind = reader.number()
