@@ -45,7 +45,7 @@ export class AxesView {
     const toward = (p, normal) => ([normal[0], normal[1], normal[2]] = [eye[0] - p[0], eye[1] - p[1], eye[2] - p[2]]);
     this.trace = count > 1 ? ribbon(tips, toward, 0.02 * reach, look.dark) : null;
     if (this.trace) this.fixed.add(this.trace);
-    this.rods = [look.stripe, look.flow, look.accent].map((color) => {
+    this.rods = [look.body, look.flow, look.accent].map((color) => {
       const rod = new Mesh(new CapsuleGeometry(0.025 * this.length, 1, 4, 12), solid(color));
       this.moving.add(rod);
       return rod;
