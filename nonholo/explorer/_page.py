@@ -24,6 +24,7 @@ def page_text(data: dict[str, Any], title: str, note: str, version: str) -> str:
     script, style = _text("view.js"), _text("style.css")
     whole = _template().render(
         data=text,
+        licence=_text("three-LICENSE.txt"),
         note=note,
         script=script,
         script_hash=_hash(script),

@@ -52,6 +52,7 @@ def test_size_and_policy() -> None:
     text = explore(TOP).text
     assert len(text) <= LARGEST
     assert text.isascii()
+    assert "three.js authors\n\nPermission is hereby granted" in text
     script, style = (
         re.findall(r"<script>(.*?)</script>", text, re.DOTALL),
         re.findall(r"<style>(.*?)</style>", text, re.DOTALL),
