@@ -16,6 +16,7 @@ PAGE_ROOMS = {  # each page and its rooms, whose classes are described too: what
     "motions": ("Motions", ["simulation", "orbit", "continuous", "base"]),
     "analysis": ("Questions", ["analysis"]),
     "plot": ("Pictures", ["plotting"]),
+    "explorer": ("The live page", ["explorer"]),
     "sweeps": ("Sweeps", ["ensembles"]),
     "stores": ("Stores", ["io"]),
     "lagrange-dalembert": ("Lagrange-d'Alembert", ["lagrange_dalembert"]),

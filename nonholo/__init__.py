@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from nonholo.ensembles import load_sweep as load_sweep
     from nonholo.ensembles import resume as resume
     from nonholo.ensembles import sweep as sweep
+    from nonholo.explorer import explore as explore
     from nonholo.groups import SE as SE
     from nonholo.groups import SO as SO
     from nonholo.groups import MatrixGroup as MatrixGroup
@@ -142,6 +143,7 @@ _HOMES = {
     "ensemble": "simulation",
     "equilibria": "analysis",
     "euler_angle_discrete_lagrangian": "systems",
+    "explore": "explorer",
     "extend": "simulation",
     "flow": "simulation",
     "flow_obstruction": "analysis",

@@ -69,6 +69,10 @@ PROFILES = {
         f"NUMBA_BOUNDSCHECK=1 {PYTHON} -m pytest -q tests/kernels tests/base tests/continuous "
         "tests/simulation/test_ensemble.py tests/simulation/test_flow_ensemble.py",
     ),
+    "browser": Profile(
+        "the live page in Chromium, and its bundle, made anew by npm and compared",
+        ("explorer", "kernels"),
+    ),
     "site": Profile(
         "the pages and the docstrings of public names as a site; broken links and unknown names are errors",
         (*_MECHANICS[2:], *_RUNS[1:], *_QUESTIONS, "lagrange_dalembert", "base", "docs"),

@@ -13,7 +13,7 @@ LIBRARY = ROOT / "nonholo"
 FOLDERS = [path.parent for path in LIBRARY.rglob("__init__.py")]
 FILES = sorted(LIBRARY.rglob("*.py"))
 _FAMILIES = ("Top", "Sleigh", "RigidBody", "LLSystem", "LRSystem")
-_BOXES, _LINES = 16, 40
+_BOXES, _ROOMS, _LINES = 16, 17, 40
 
 
 def _boxes(folder: Path) -> list[Path]:
@@ -57,7 +57,7 @@ def test_what_it_names_is_there(place: str) -> None:
 
 def test_what_it_counts() -> None:
     """No crowded folder, no long function, no question about the class of a system."""
-    crowded = [str(folder) for folder in FOLDERS if len(_boxes(folder)) > _BOXES]
+    crowded = [str(folder) for folder in FOLDERS if len(_boxes(folder)) > (_ROOMS if folder == LIBRARY else _BOXES)]
     long, asked = [], []
     for file in FILES:
         tree, text = _tree(file), file.read_text().splitlines()
@@ -69,6 +69,7 @@ def test_what_it_counts() -> None:
                 asked += [f"{file}:{node.lineno}"] * any(kind.endswith(name) for name in _FAMILIES)
     assert (crowded, long, asked) == ([], [], [])
     assert f"at most {_BOXES} files and folders" in PAGE
+    assert f"the house itself has {_ROOMS} rooms" in PAGE
     assert f"at most {_LINES} lines of code" in PAGE
 
 

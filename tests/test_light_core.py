@@ -52,6 +52,7 @@ COMMANDS = [
     "info sleigh.zarr",
     "plot sleigh.zarr -o picture.png",
     "export sleigh.zarr -o poses.csv",
+    "explore sleigh.zarr -o page.html --no-browser",
     "extend sleigh.zarr --steps 60",
     "resume sleigh.zarr",
     "sweep SWEEP --members 20",

@@ -88,7 +88,7 @@ def _complete(request: pytest.FixtureRequest) -> bool:
         (["docs/house.md", "README.md", "benchmarks/gpu.py"], {"site"}),
         (["nonholo/cli/commands/plot.py"], {"faults"}),
         (["tests/plotting/test_section.py", "docs/paper.md"], {"paper", "site"}),
-        (["nonholo/kernels/_sleigh.py"], {"routes", "faults", "problems", "shapes", "bounds"}),
+        (["nonholo/kernels/_sleigh.py"], {"routes", "faults", "problems", "shapes", "bounds", "browser"}),
         (["nonholo/base/checks.py"], {"routes", "problems", "shapes", "bounds", "site"}),
         (["pyproject.toml"], set(PROFILES) - {"fuzz", "long", "mutants"}),
         (["tests/bodies.py"], set(PROFILES) - {"fuzz", "long", "mutants"}),

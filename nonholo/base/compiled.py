@@ -17,6 +17,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import llvmlite
 import numba
 from numba.core import caching, config, dispatcher, serialize
 
@@ -127,6 +128,21 @@ class _Cache(caching.FunctionCache):
     def save_overload(self, sig: Any, data: Any) -> None:
         with contextlib.suppress(OSError):  # a full disk
             super().save_overload(sig, data)
+
+
+def kept_bytes(function: Callable[..., Any], name: str, make: Callable[[], bytes]) -> bytes:
+    """Return what `make` compiles of a function for another machine, kept beside its other code under a name."""
+    try:
+        file = _Cache(function)._cache_file
+    except RuntimeError:
+        return make()
+    key = (name, llvmlite.__version__)
+    code = file.load(key)
+    if code is None:
+        code = make()
+        with contextlib.suppress(OSError):
+            file.save(key, code)
+    return code
 
 
 class _Files(caching.IndexDataCacheFile):

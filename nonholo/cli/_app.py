@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from nonholo import __version__
+from nonholo.cli.commands.explore import explore
 from nonholo.cli.commands.export import export
 from nonholo.cli.commands.extend import extend
 from nonholo.cli.commands.info import info
@@ -60,7 +61,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for _command in (simulate, sweep, new, systems, info, plot, export, resume, extend, paper):
+for _command in (simulate, sweep, new, systems, info, plot, explore, export, resume, extend, paper):
     app.command()(_command if _command in (new, systems) else with_cache_folder(_command))  # these two compile nothing
 
 
@@ -98,6 +99,7 @@ def describe(
     nonholo simulate my.toml            run it; the result is kept under runs/
     nonholo sweep sweep.toml            many motions: a grid or random draws
     nonholo info runs/my-001.zarr       what was run, and how exact it is
+    nonholo explore suslov              the live page, in the browser
     nonholo export run.zarr -o run.csv  its poses, for other programs
     nonholo resume run.zarr             resume what stopped, run or sweep
     nonholo paper                       the paper behind it, recomputed

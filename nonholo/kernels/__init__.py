@@ -4,6 +4,7 @@ from nonholo.kernels._composition import ComposedBody, whole_steps
 from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
+from nonholo.kernels._flat import flat_run
 from nonholo.kernels._forced import ForcedBody, Kick
 from nonholo.kernels._interface import Body, certified, correction, increment, move, residual, tangent
 from nonholo.kernels._nearest import NearestBody
@@ -47,6 +48,7 @@ __all__ = [
     "chart_of",
     "converged",
     "correction",
+    "flat_run",
     "increment",
     "move",
     "order_for",

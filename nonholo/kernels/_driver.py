@@ -54,7 +54,9 @@ def advance(
             momenta[row, 0], momenta[row, 1] = m1, m2
             charts[row, 0], charts[row, 1] = y1, y2
             poses[row, 0], poses[row, 1], poses[row, 2], poses[row, 3] = q0, q1, q2, q3
-    assign(state, np.array((m1, m2, k1, k2, y1, y2, u1, u2, v1, v2, q0, q1, q2, q3)))
+    state[0], state[1], state[2], state[3] = m1, m2, k1, k2
+    state[4], state[5], state[6], state[7], state[8], state[9] = y1, y2, u1, u2, v1, v2
+    state[10], state[11], state[12], state[13] = q0, q1, q2, q3
     return done, code
 
 

@@ -134,6 +134,9 @@ def _results() -> list[Call]:
         call("Orbit.at", flow.at, times=array([0.0, 0.7], "any")),
         call("Orbit.chosen", orbit.chosen, states=anything(slice(2))),
         call("Orbit.to_csv", orbit.to_csv, path=path("new.csv"), overwrite=flag(False)),
+        call("Orbit.to_html", orbit.to_html, path=path("new.html"), overwrite=flag(False)),
+        call("explore", by_position(nh.explore), value=thing(orbit)),
+        call("explore [system]", by_position(nh.explore), value=thing(SLEIGH.system)),
         call("Orbit.to_dataset", lambda: orbit.to_dataset()),
         call("Discretization.displaced", TOP.displaced, cayley=array(orbit.cayley[0], "batch")),
     ]

@@ -1,0 +1,6 @@
+"""The live page: one file that runs the library's own kernel in the browser."""
+
+from nonholo.explorer._explore import Page, explore, orbit_to_html
+from nonholo.explorer._kernel import kernel
+
+__all__ = ["Page", "explore", "kernel", "orbit_to_html"]

@@ -1,0 +1,62 @@
+r"""The compiled loops of `nonholo.kernels` as WebAssembly: the same functions for another processor.
+
+numba types and lowers them as it does for this one; llvmlite, which numba brings, turns the intermediate code into an
+object for wasm32, and `module_of` makes that a module that can be instantiated. Arithmetic is strict on both sides,
+and a module may import no function, so its numbers are those of Python to the last bit.
+"""
+
+import hashlib
+import re
+from pathlib import Path
+from typing import Any
+
+import llvmlite.binding as llvm
+import numba
+from numba import types
+
+from nonholo.base.compiled import kept_bytes
+from nonholo.explorer._object import module_of
+from nonholo.kernels import SleighBody, SuslovBody, flat_run
+
+KINDS = {"top": SuslovBody, "sleigh": SleighBody}
+"""The bodies that have a kernel for the page."""
+
+_TRIPLE = "wasm32-unknown-unknown"
+_OPTIONS: Any = {"nopython": True, "error_model": "numpy"}
+_ADDRESS = types.CPointer(types.float64)
+_SIGNATURE = types.int64(_ADDRESS, _ADDRESS, types.int64, _ADDRESS, _ADDRESS, _ADDRESS)
+_OF_THIS_MACHINE = r'"(?:target-cpu|target-features|probe-stack)"="[^"]*"'
+
+
+def kernel(body: str) -> bytes:
+    r"""Return the WebAssembly module that runs a body, "top" or "sleigh": compiled once, then kept on disk.
+
+    Its only export is `run`, with the arguments of `nonholo.kernels.flat_run`; it imports a memory and the top of its
+    stack.
+
+    Example:
+        >>> kernel("sleigh")[:4]
+        b'\x00asm'
+    """
+    own = hashlib.sha256()
+    for file in ("_kernel.py", "_object.py"):
+        own.update(Path(__file__).with_name(file).read_bytes())
+    function = flat_run(KINDS[body])
+    return kept_bytes(function, f"wasm32 {body} {own.hexdigest()}", lambda: module_of(_object(function)))
+
+
+def _object(function: Any) -> bytes:
+    """Return a relocatable object with one global function."""
+    made = numba.cfunc(_SIGNATURE, **_OPTIONS)(function)
+    text = re.sub(r"(?m)^target (?:triple|datalayout) = .*$", "", made.inspect_llvm())
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    machine = llvm.Target.from_triple(_TRIPLE).create_target_machine(cpu="generic", opt=3, reloc="static")
+    code = llvm.parse_assembly(re.sub(_OF_THIS_MACHINE, "", text))
+    code.triple, code.data_layout = _TRIPLE, str(machine.target_data)
+    for item in (*code.functions, *code.global_variables):
+        if not item.is_declaration and item.name != made.native_name:
+            item.linkage = "internal"
+    passes = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
+    passes.getModulePassManager().run(code, passes)
+    return machine.emit_object(code)

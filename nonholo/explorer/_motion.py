@@ -1,0 +1,146 @@
+"""What a page shows of a motion: a state from which its kernel starts, or the saved states themselves."""
+
+import base64
+import re
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+
+from nonholo.base.checks import error, shown
+from nonholo.base.types import Float
+from nonholo.discrete import Discretization, discretize
+from nonholo.orbit import Orbit, as_orbit
+from nonholo.systems import AbstractSystem, NormalForm
+
+MOST_STEPS = 20_000
+"""Steps that the kernel of a page takes."""
+
+MOST_STATES = 4_000
+"""States that a page replays."""
+
+_LARGEST = 1e6
+_TIME_STEPS = (1e-6, 100.0)
+_TIME_STEP, _STEPS = 0.1, 400
+
+
+class Shown(NamedTuple):
+    """The data of a page, its title, and a note on what is shown."""
+
+    data: dict[str, Any]
+    title: str
+    note: str
+
+
+def shown_motion(where: str, value: Any) -> Shown:
+    """Return what a page shows of a system, a discretization or an orbit."""
+    if isinstance(value, AbstractSystem):
+        value = discretize(cast(Any, value), _TIME_STEP)
+    if isinstance(value, Discretization):
+        return _of_discretization(where, value)
+    orbit = as_orbit(where, value, "one in coordinates has no page.")
+    if orbit.canonical_pose is None or not len(orbit):
+        got = "reconstruct=False" if len(orbit) else "no state"
+        raise error(where, "have poses", got, "Run with reconstruct=True, from a start that has a real branch.")
+    return _live(orbit) or _replay(orbit)
+
+
+def _of_discretization(where: str, discrete: Discretization) -> Shown:
+    kind = _kind(discrete)
+    if kind is None:
+        remedy = "Run it, and pass the orbit: a page replays any."
+        raise error(where, "be a top with n = 3 or a sleigh in the plane, of order 2", shown(discrete.system), remedy)
+    lower = np.linalg.cholesky(discrete.system.canonical.constrained_inertia)
+    state = _state(discrete, kind, lower @ np.array([0.4, -0.9]) * lower[0, 0], np.array([1.0, 0, 0, 0]), _STEPS)
+    return Shown({"kind": kind, "state": state}, _name(discrete.system), _frame_note(discrete.system))
+
+
+def _live(orbit: Orbit) -> Shown | None:
+    """Return the state that a kernel of the page starts from; None where there is no kernel for it."""
+    discrete = orbit.motion
+    if not isinstance(discrete, Discretization) or orbit.branch != "principal" or orbit.canonical_pose is None:
+        return None
+    kind, wanted = _kind(discrete), round(float(orbit.time[-1] - orbit.time[0]) / float(discrete.time_step))
+    if kind is None or wanted < 1:
+        return None
+    steps = min(wanted, MOST_STEPS)
+    state = _state(discrete, kind, orbit.reduced_momentum[0], orbit.canonical_pose[0], steps)
+    numbers = [*state["parameters"].values(), *state["momentum"], *state["pose"]]
+    if not (np.max(np.abs(numbers)) <= _LARGEST and _TIME_STEPS[0] <= state["time_step"] <= _TIME_STEPS[1]):
+        return None
+    cut = f" The first {steps:,} of {wanted:,} steps." if steps < wanted else ""
+    return Shown({"kind": kind, "state": state}, _name(orbit.system), _frame_note(orbit.system) + cut)
+
+
+def _kind(discrete: Discretization) -> str | None:
+    """Return the kernel of a discretization that runs in the axes of the canonical frame, or None."""
+    form = discrete.system.normal_form
+    if (
+        form is None
+        or discrete.route_name != "scalar"
+        or discrete.order != 2
+        or form.frame is not None
+        or np.any(form.offset)
+    ):
+        return None
+    return "sleigh" if form.is_sleigh else "top" if form.frame_map is None else None
+
+
+def _parameters(form: NormalForm) -> dict[str, float]:
+    if form.is_sleigh:
+        return {"mass": float(form.mass), "inertia": float(form.stiffness[0, 0]), "a": float(form.arm)}
+    A, d, c = np.asarray(form.across), float(form.along), form.coupling
+    names = {"J11": A[0, 0], "J12": A[0, 1], "J22": A[1, 1], "J13": c[0], "J23": c[1], "J33": d}
+    return {name: float(value) for name, value in names.items()}
+
+
+def _state(discrete: Discretization, kind: str, momentum: np.ndarray, pose: np.ndarray, steps: int) -> dict[str, Any]:
+    return {
+        "kind": kind,
+        "parameters": _parameters(cast(NormalForm, discrete.system.normal_form)),
+        "momentum": [float(r) for r in momentum],
+        "pose": [float(x) + 0.0 for x in pose],
+        "time_step": float(discrete.time_step),
+        "steps": steps,
+    }
+
+
+def _name(system: AbstractSystem) -> str:
+    words = re.findall("[A-Z][a-z]+|[A-Z]+(?![a-z])", type(system).__name__)
+    name = " ".join([words[0], *(word.lower() for word in words[1:])])
+    return name if system.normal_form is not None and system.normal_form.is_planar else f"{name}, {system.group}"
+
+
+def _frame_note(system: AbstractSystem) -> str:
+    turned = system.canonical is not system and np.any(system.frame != np.eye(len(system.frame)))
+    return "Shown in the canonical body frame: its last axis is the forbidden one, or b = 0." if turned else ""
+
+
+def _replay(orbit: Orbit) -> Shown:
+    chosen = np.unique(np.linspace(0, len(orbit) - 1, min(len(orbit), MOST_STATES)).round().astype(np.int64))
+    part = orbit.chosen(chosen) if len(chosen) < len(orbit) else orbit
+    momenta = np.pad(part.restricted_momentum, ((0, 0), (0, 2)))[:, :2]
+    arrays = {"time": part.time, "energy": part.energy, "frames": _frames(part), "momentum": momenta}
+    replay = {name: base64.b64encode(rows.astype("<f8").tobytes()).decode() for name, rows in arrays.items()}
+    data = {"kind": "replay", "replay": {**replay, "outcome": int(orbit.outcome)}, "momenta": ["r\u2081", "r\u2082"]}
+    thinned = f" {len(part):,} of {len(orbit):,} saved states." if part is not orbit else ""
+    note = f"A replay of numbers from Python: there is no kernel in the page for this motion.{thinned}"
+    return Shown(data, _name(orbit.system), note)
+
+
+def _frames(orbit: Orbit) -> Float[np.ndarray, "K 12"]:
+    """Return for each state an origin and three body axes in space: the first two and the last, in three coordinates.
+
+    What a matrix does not have is zero.
+    """
+    g, group = orbit.configuration, orbit.system.group
+    turns = g[:, :-1, :-1] if group.is_rigid else g
+    n = turns.shape[1]
+    axes = turns.transpose(0, 2, 1)[:, [0, 1, n - 1] if n > 2 else list(range(n)), :3]
+    frames = np.zeros((len(g), 4, 3))
+    frames[:, 1 : 1 + axes.shape[1], : axes.shape[2]] = axes
+    if group.is_rigid:
+        places = g[:, :-1, -1][:, :3]
+        frames[:, 0, : places.shape[1]] = places
+    if n == 2:
+        frames[:, 3, 2] = 1.0
+    return frames.reshape(len(g), 12)

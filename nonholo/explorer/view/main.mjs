@@ -1,0 +1,30 @@
+// The page as a file: its data stand in it, and nothing is fetched.
+
+import { App } from "./app.mjs";
+
+const original = document.documentElement.outerHTML;
+const data = JSON.parse(document.getElementById("data").textContent);
+const app = new App(data);
+app.original = original;
+app.begin().catch((failure) => {
+  const status = document.getElementById("status");
+  status.textContent = `The page could not begin: ${failure.message}`;
+  status.classList.add("wrong");
+  throw failure;
+});
+
+globalThis.nonholo = {
+  get state() {
+    return app.state;
+  },
+  get orbit() {
+    return app.orbit;
+  },
+  get crowd() {
+    return app.crowd;
+  },
+  /** Milliseconds of the last computation, of all that a change took, and of the last picture in space. */
+  get took() {
+    return { ...app.took };
+  },
+};

@@ -1,0 +1,93 @@
+// The sleigh on the plane: an elliptic plate on a blade, its center of mass, and the track of the contact point.
+
+import {
+  BoxGeometry, BufferAttribute, BufferGeometry, CylinderGeometry, ExtrudeGeometry, Group, Line, LineSegments, Mesh,
+  Shape, SphereGeometry, Vector3,
+} from "three";
+import { clear, ribbon, solid, thin } from "./stage.mjs";
+
+const SLENDER = 1.6;
+
+export class SleighView {
+  constructor(stage) {
+    this.stage = stage;
+    this.fixed = new Group();
+    this.moving = new Group();
+    stage.scene.add(this.fixed, this.moving);
+  }
+
+  set(state, orbit, look) {
+    clear(this.fixed);
+    clear(this.moving);
+    this.orbit = orbit;
+    const { mass, inertia, a } = state.parameters;
+    const long = SLENDER * Math.sqrt((4 * inertia) / mass / (1 + SLENDER * SLENDER));
+    const { count, g } = orbit, track = new Float32Array(3 * count);
+    let box = [Infinity, Infinity, -Infinity, -Infinity];
+    for (let k = 0; k < count; k++) {
+      const x = g[4 * k + 2], y = g[4 * k + 3];
+      track[3 * k] = x;
+      track[3 * k + 1] = y;
+      box = [Math.min(box[0], x), Math.min(box[1], y), Math.max(box[2], x), Math.max(box[3], y)];
+    }
+    if (!orbit.count) box = [-1, -1, 1, 1];
+    const extent = Math.hypot(box[2] - box[0], box[3] - box[1]);
+    this.enlarged = Math.max(1, extent / (7 * (long + Math.abs(a))));
+    const reach = extent / 2 + this.enlarged * (long + Math.abs(a)) * 0.9;
+    const center = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2, 0];
+    this.ground(center, reach, look);
+    this.track = count > 1 ? ribbon(track, () => {}, 0.02 * reach, look.dark) : null;
+    if (this.track) this.track.position.z = 0.004 * reach;
+    if (count > 1) this.fixed.add(this.whole(track, 0.002 * reach, look));
+    if (this.track) this.fixed.add(this.track);
+    this.body(long, a, look);
+    this.moving.scale.setScalar(this.enlarged);
+    this.stage.look(center, 0.8 * reach);
+  }
+
+  /** The track that is still to come, as a thin line. */
+  whole(track, height, look) {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(track, 3));
+    const line = new Line(geometry, thin(look.muted));
+    line.position.z = height;
+    return line;
+  }
+
+  ground(center, reach, look) {
+    const step = 10 ** Math.floor(Math.log10(reach)), size = reach > 5 * step ? 2 * step : reach > 2 * step ? step : step / 2;
+    const [x0, y0] = center.map((x) => Math.round(x / size) * size), count = Math.ceil((1.6 * reach) / size), points = [];
+    for (let k = -count; k <= count; k++) {
+      points.push(new Vector3(x0 + k * size, y0 - count * size, 0), new Vector3(x0 + k * size, y0 + count * size, 0));
+      points.push(new Vector3(x0 - count * size, y0 + k * size, 0), new Vector3(x0 + count * size, y0 + k * size, 0));
+    }
+    this.fixed.add(new LineSegments(new BufferGeometry().setFromPoints(points), thin(look.ground)));
+  }
+
+  body(long, a, look) {
+    const wide = long / SLENDER, high = 0.13 * long, shape = new Shape();
+    shape.absellipse(a, 0, long, wide, 0, 2 * Math.PI);
+    const options = { depth: high, bevelEnabled: true, bevelSize: 0.04 * long, bevelThickness: 0.04 * long, curveSegments: 48 };
+    const plate = new Mesh(new ExtrudeGeometry(shape, options), solid(look.body));
+    plate.position.z = 0.2 * long;
+    const blade = new Mesh(new BoxGeometry(0.8 * long, 0.05 * long, 0.26 * long), solid(look.ink));
+    blade.position.z = 0.13 * long;
+    const bow = new Mesh(new BoxGeometry(0.8 * long, 0.045 * long, 0.01 * long), solid(look.ink));
+    bow.position.z = 0.385 * long;
+    const mass = new Mesh(new SphereGeometry(0.1 * long, 24, 16), solid(look.accent));
+    mass.position.set(a, 0, 0.42 * long);
+    const contact = new Mesh(new CylinderGeometry(0.05 * long, 0.05 * long, 0.012 * long, 24), solid(look.card));
+    contact.rotation.x = Math.PI / 2;
+    contact.position.z = 0.395 * long;
+    this.moving.add(plate, blade, bow, mass, contact);
+  }
+
+  show(k) {
+    const { g, count } = this.orbit;
+    if (!count) return;
+    this.moving.rotation.z = Math.atan2(g[4 * k + 1], g[4 * k]);
+    this.moving.position.set(g[4 * k + 2], g[4 * k + 3], 0);
+    this.track?.geometry.setDrawRange(0, 6 * k);
+    this.stage.dirty = true;
+  }
+}

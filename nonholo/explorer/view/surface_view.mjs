@@ -1,0 +1,87 @@
+// The surface of discrete momenta, and the orbit that runs on it: the part near the orbit, or as much as asked for.
+
+import { BufferAttribute, BufferGeometry, DoubleSide, Group, LineSegments, Mesh, SphereGeometry } from "three";
+import { clear, isSoftware, plain, ribbon, solid, thin } from "./stage.mjs";
+
+export class SurfaceView {
+  constructor(stage) {
+    this.stage = stage;
+    this.group = new Group();
+    this.marker = new Group();
+    stage.scene.add(this.group, this.marker);
+  }
+
+  set(body, state, orbit, look, whole) {
+    clear(this.group);
+    clear(this.marker);
+    const { parameters: p, time_step: h } = state, { count, r, y } = orbit, path = [];
+    let most = 0;
+    for (let k = 0; k < count; k++) {
+      path.push(body.onLocus(p, h, r[2 * k], r[2 * k + 1], y[2 * k], y[2 * k + 1]));
+      most = Math.max(most, body.angle(y[2 * k], y[2 * k + 1]));
+    }
+    const reach = whole ? Math.PI : Math.min(Math.PI, Math.max(1.6 * most, 1e-3));
+    const mesh = body.mesh(p, path, reach, ...(isSoftware ? (body.kind === "top" ? [18, 48] : [40, 16]) : []));
+    const fit = this.fitted(mesh.points.concat(path));
+    this.surface(mesh, fit, look);
+    this.path = path.map(fit);
+    if (count > 1) {
+      const eye = this.stage.camera.position.toArray();
+      const toward = (q, normal) => ([normal[0], normal[1], normal[2]] = [eye[0] - q[0], eye[1] - q[1], eye[2] - q[2]]);
+      const band = ribbon(Float32Array.from(this.path.flat()), toward, 0.028, look.dark, { depthTest: false });
+      band.renderOrder = 2;
+      this.group.add(band);
+    }
+    const dot = new Mesh(new SphereGeometry(0.05, 20, 14), plain(look.accent, { depthTest: false }));
+    dot.renderOrder = 3;
+    this.marker.add(dot);
+    this.marker.visible = count > 0;
+    const reachOf = (point) => Math.hypot(...fit(point));
+    this.stage.look([0, 0, 0], 1.04 * mesh.points.reduce((most, point) => Math.max(most, reachOf(point)), 1));
+  }
+
+  /** Return the map of momenta into the box, each axis in its own scale. */
+  fitted(points) {
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    for (const point of points) {
+      for (let i = 0; i < 3; i++) {
+        low[i] = Math.min(low[i], point[i]);
+        high[i] = Math.max(high[i], point[i]);
+      }
+    }
+    return (point) => point.map((x, i) => (2 * x - low[i] - high[i]) / (high[i] - low[i] || 1));
+  }
+
+  surface({ points, rows, columns }, fit, look) {
+    const place = new Float32Array(points.flatMap(fit)), faces = [], lines = [];
+    for (let i = 0; i + 1 < rows; i++) {
+      for (let j = 0; j + 1 < columns; j++) {
+        const k = i * columns + j;
+        faces.push(k, k + 1, k + columns, k + 1, k + columns + 1, k + columns);
+      }
+    }
+    const every = 4;
+    for (let i = 0; i < rows; i++) {
+      for (let j = 0; j < columns; j++) {
+        const k = i * columns + j;
+        if (i % every === 0 && j + 1 < columns) lines.push(k, k + 1);
+        if (j % every === 0 && i + 1 < rows) lines.push(k, k + columns);
+      }
+    }
+    const geometry = new BufferGeometry(), net = new BufferGeometry(), attribute = new BufferAttribute(place, 3);
+    geometry.setAttribute("position", attribute);
+    geometry.setIndex(faces);
+    geometry.computeVertexNormals();
+    net.setAttribute("position", attribute);
+    net.setIndex(lines);
+    const sides = { side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
+    this.group.add(new Mesh(geometry, solid(look.surface, sides)));
+    this.group.add(new LineSegments(net, thin(look.ink, { transparent: true, opacity: 0.22 })));
+  }
+
+  show(k) {
+    if (!this.path?.length) return;
+    this.marker.position.set(...this.path[k]);
+    this.stage.dirty = true;
+  }
+}

@@ -1,0 +1,67 @@
+// What the views show, in words and formulas. The formulas are MathML, which browsers set by themselves.
+
+const i = (name) => `<mi>${name}</mi>`;
+const o = (sign) => `<mo>${sign}</mo>`;
+const n = (value) => `<mn>${value}</mn>`;
+const sub = (base, index) => `<msub>${i(base)}<mrow>${index}</mrow></msub>`;
+const sup = (base, power) => `<msup>${base}<mrow>${power}</mrow></msup>`;
+const frac = (above, below) => `<mfrac><mrow>${above}</mrow><mrow>${below}</mrow></mfrac>`;
+const math = (...parts) => `<math display="block"><mrow>${parts.join("")}</mrow></math>`;
+const next = i("k") + o("+") + n(1);
+const perp = sup(i("y"), o("⊥"));
+const square = sup(`<mrow>${o("|")}${i("y")}${o("|")}</mrow>`, n(2));
+const transposed = (matrix) => sup(matrix, i("T"));
+
+const ENERGY = (formula) => `<p>The relative error of the energy at each step, on a logarithmic axis; zeros stand on its floor.
+  The discrete map conserves the energy exactly, so what is seen is rounding. The dashed line is the spacing of double
+  precision, 2.2·10<sup>−16</sup>.</p>${formula}`;
+
+export const WORDS = {
+  top: {
+    body: `<p>A rigid body about a fixed point that may not spin about the <em class="accent">axis with the ball</em>, which is fixed in the body. It is drawn as
+      the ellipsoid of its mass tensor. The tip of the axis leaves its trace on the unit sphere, from violet to yellow. The dark rod is the axis of permanent
+      rotation, to which the motion settles. Each pose is the one before, times a displacement W whose Cayley coordinates y solve two quadratics:</p>
+      ${math(i("B"), i("y"), o("+"), o("("), i("c"), o("·"), perp, o(")"), perp, o("="), o("("), n(1), o("+"), square, o(")"), frac(i("h"), n(2)), i("r"), o(","), sub("g", next), o("="), sub("g", i("k")), sub("W", i("k")))}`,
+    phase: `<p>The two momenta r along the constraint. Dots are the states of the discrete map; the ring moves with the continuous motion, which
+      runs on the <em class="flow">orange ellipse</em> of its energy in closed form. Gray ellipses are other energies. The full line is made of attracting
+      permanent rotations, the dashed one of repelling ones. Drag anywhere to start there. “10,000” runs as many motions at once, with the same kernel.</p>
+      ${math(i("r"), o("′"), o("="), i("r"), o("−"), frac(n(4) + o("(") + i("c") + o("·") + perp + o(")"), i("h") + o("(") + n(1) + o("+") + square + o(")")), perp)}`,
+    surface: `<p>The momenta of all displacements form a Steiner surface of degree four, the image of a projective plane. The orbit jumps on it from
+      point to point. Several sheets over one point are the several values of the discrete map; where the surface folds, a value ends. Only the part near
+      the orbit is shown, each axis in its own scale; “whole” unfolds all of it.</p>
+      ${math(i("h"), i("M"), o("="), i("W"), i("J"), o("−"), i("J"), transposed(i("W")))}`,
+    energy: ENERGY(math(i("E"), o("="), frac(n(1), n(2)), transposed(i("r")), sup(i("B"), o("−") + n(1)), i("r"))),
+  },
+  sleigh: {
+    body: `<p>A rigid body in the plane on a blade that cannot slip sideways. The dark edge is the blade, the light dot its contact point, the
+      <em class="accent">ball</em> the center of mass; the ribbon is the track, from violet to yellow. Where the blade reverses the track has a cusp.
+      With t the tangent of half the step angle, each step solves a cubic:</p>
+      ${math(i("p̂"), sup(i("t"), n(3)), o("−"), i("π"), sup(i("t"), n(2)), o("+"), o("("), n(2), i("J"), o("+"), i("p̂"), o(")"), i("t"), o("−"), i("π"), o("="), n(0), o(","), i("p̂"), o("="), i("a"), sub("p", n(1)), o("+"), n(2), i("m"), sup(i("a"), n(2)))}`,
+    phase: `<p>The angular momentum π about the contact point and the momentum p₁ along the blade. Dots are the states of the discrete map; the ring
+      moves with the continuous motion, which runs on the <em class="flow">orange ellipse</em> of its energy in closed form. The full line is straight motion
+      with the mass in front, which attracts; the dashed one is the mass behind. Drag anywhere to start there. “10,000” runs as many motions at once, with the same kernel.</p>
+      ${math(sup(i("π"), o("·")), o("="), o("−"), i("a"), i("ω"), sub("p", n(1)), o(","), sub(`ṗ`, n(1)), o("="), i("m"), i("a"), sup(i("ω"), n(2)))}`,
+    surface: `<p>The momenta of all displacements form Plücker's conoid, a cubic surface ruled by lines that meet one axis. The orbit jumps on it
+      from point to point. Several sheets over one point are the several values of the discrete map. Only the part near the orbit is shown, each axis in its own
+      scale; “whole” shows all step angles.</p>
+      ${math(i("X"), o(":"), i("Y"), o("="), i("cos"), frac(i("Δ"), n(2)), o(":"), i("sin"), frac(i("Δ"), n(2)), o(","), i("Z"), o("="), i("J"), i("sin"), i("Δ"))}`,
+    energy: ENERGY(math(i("E"), o("="), frac(sup(i("π"), n(2)), n(2) + o("(") + i("J") + o("+") + i("m") + sup(i("a"), n(2)) + o(")")), o("+"), frac(`<msubsup>${i("p")}${n(1)}${n(2)}</msubsup>`, n(2) + i("m")))),
+  },
+  replay: {
+    body: `<p>The motion was computed by nonholo and is replayed from numbers in this file: its step has no kernel for the page. The three body axes are
+      drawn where they point; in more than three dimensions their first three coordinates.</p>`,
+    phase: "<p>The first two momenta along the constraint. Dots are the saved states, from violet to yellow.</p>",
+    energy: "<p>The relative change of the energy since the first state, on a logarithmic axis; zeros stand on its floor. The dashed line is the spacing of double precision, 2.2·10<sup>−16</sup>.</p>",
+  },
+};
+
+export const PRESETS = [
+  { name: "Top: from one permanent rotation to the other", kind: "top", parameters: { J11: 1.4, J12: 0.2, J13: 0.5, J22: 1, J23: -0.3, J33: 0.9 }, momentum: [1.632, -0.7335], time_step: 0.1, steps: 800 },
+  { name: "Top: large steps, the surface unfolds", kind: "top", parameters: { J11: 1.4, J12: 0.2, J13: 0.5, J22: 1, J23: -0.3, J33: 0.9 }, momentum: [1.2, -0.5], time_step: 0.9, steps: 120 },
+  { name: "Top: balanced, steady rotation", kind: "top", parameters: { J11: 1.4, J12: 0, J13: 0, J22: 1, J23: 0, J33: 0.6 }, momentum: [1, 0.6], time_step: 0.1, steps: 300 },
+  { name: "Top: no real branch", kind: "top", parameters: { J11: 1.4, J12: 0.2, J13: 0.5, J22: 1, J23: -0.3, J33: 0.9 }, momentum: [2.4, -1.1], time_step: 1.6, steps: 100 },
+  { name: "Sleigh: turns round through a cusp", kind: "sleigh", parameters: { mass: 1, inertia: 1, a: 0.5 }, momentum: [0.0625, -1], time_step: 0.1, steps: 300 },
+  { name: "Sleigh: a loop and away", kind: "sleigh", parameters: { mass: 1, inertia: 1, a: 0.2 }, momentum: [1.2, -0.7], time_step: 0.1, steps: 500 },
+  { name: "Sleigh: balanced, circles", kind: "sleigh", parameters: { mass: 1, inertia: 1, a: 0 }, momentum: [0.5, 1], time_step: 0.2, steps: 100 },
+  { name: "Sleigh: no real branch", kind: "sleigh", parameters: { mass: 1, inertia: 1, a: 0.5 }, momentum: [1.9, -1.5], time_step: 1.2, steps: 60 },
+];

@@ -1,0 +1,322 @@
+"""The live page in Chromium: what it computes, shows, shares and refuses."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo import kernels
+from nonholo.explorer import explore
+
+pytestmark = pytest.mark.profile("browser", instead="test_data_of_a_page")
+TENSOR = [[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]
+BODIES = {"top": nh.SuslovTop(TENSOR), "sleigh": nh.ChaplyginSleigh(1.0, 1.0, 0.5)}
+VELOCITY = {"top": (0.465, 0.75, 0.0), "sleigh": (0.05, -1.0, 0.0)}
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """The pages of a top, of a sleigh, and of a top in four dimensions, which is replayed."""
+    folder = tmp_path_factory.mktemp("pages")
+    found = {name: folder / f"{name}.html" for name in (*BODIES, "replay")}
+    for name, body in BODIES.items():
+        nh.simulate(nh.discretize(body, 0.1), body_velocity=VELOCITY[name], steps=300).to_html(found[name])
+    wide = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0]) + 0.3), 0.1)
+    nh.simulate(wide, restricted_velocity=(1.0, 0.5, 0.2), steps=100).to_html(found["replay"])
+    return found
+
+
+def _same(page: Any, orbit: nh.Orbit) -> None:
+    """The page has the momenta, charts and poses of an orbit, to the last bit."""
+    for name, rows in (("r", orbit.reduced_momentum), ("y", orbit.cayley), ("g", orbit.canonical_pose)):
+        np.testing.assert_array_equal(page.numbers(name), rows.ravel())
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("size", [(1280, 800), (390, 844)], ids=["desk", "phone"])
+@pytest.mark.parametrize("name", ["top", "sleigh", "replay"])
+def test_opens_quietly(visit: Callable, files: dict, name: str, size: tuple[int, int], scheme: str) -> None:
+    """No error, no request but the file, nothing wider than the screen, and pictures that are not empty."""
+    look = {"viewport": {"width": size[0], "height": size[1]}, "color_scheme": scheme}
+    page = visit(files[name], **look)
+    page.settle()
+    assert page.errors == []
+    assert page.requests == [files[name].as_uri()]
+    assert page.page.evaluate("document.documentElement.scrollWidth") <= size[0]
+    dark = page.page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(20, 23, 28)"
+    assert dark == (scheme == "dark")
+    drawn = """(id) => {
+        const canvas = document.getElementById(id), pen = canvas.getContext("2d");
+        const { data } = pen.getImageData(0, 0, canvas.width, canvas.height);
+        return new Set(new Uint32Array(data.buffer)).size;
+    }"""
+    assert all(page.page.evaluate(drawn, name) > 20 for name in ("phase-canvas", "energy-canvas"))
+
+
+def test_requests_are_counted(visit: Callable, files: dict) -> None:
+    """The counter of requests counts, and the policy of the page refuses what is asked for."""
+    page = visit(files["top"])
+    refused = page.page.evaluate("fetch('https://example.org/').then(() => false, () => true)")
+    assert refused
+    assert any("Content Security Policy" in text for text in page.errors)
+    page.page.route("**/*", lambda route: route.fulfill(body=""))
+    page.page.goto("https://example.org/")
+    assert len(page.requests) == 2
+
+
+@pytest.mark.parametrize("name", list(BODIES))
+def test_same_numbers(visit: Callable, files: dict, name: str) -> None:
+    """The motion as it was sent, and a hundred thousand steps of others, are those of Python to the last bit."""
+    page, body = visit(files[name]), BODIES[name]
+    _same(page, nh.simulate(nh.discretize(body, 0.1), body_velocity=VELOCITY[name], steps=300))
+    rng = np.random.default_rng(5)
+    for _ in range(5):
+        momentum, step = rng.normal(size=2).round(3).tolist(), round(float(rng.uniform(0.01, 0.2)), 4)
+        link = "&".join([f"h={step!r}", "steps=20000", "r={!r}+{!r}".format(*momentum)])
+        numbers = page.page.evaluate("new URLSearchParams(Object.entries(nonholo.state.parameters)).toString()")
+        page.page.evaluate("(link) => { location.hash = link; }", f"kind={name}&{numbers}&{link}")
+        page.until(f"nonholo.state.time_step === {step!r}")
+        page.settle()
+        _same(page, nh.simulate(nh.discretize(body, step), momentum=momentum, steps=20000))
+
+
+SLIDERS = {
+    "top": {"J11": 1.7, "J22": 1.3, "J33": 0.75, "J12": -0.15, "J13": 0.31, "J23": 0.12, "r1": 0.4, "r2": 0.9},
+    "sleigh": {"mass": 1.35, "inertia": 0.8, "a": -0.3, "r1": 0.45, "r2": -0.6},
+}
+RUN = {"time_step": 0.17, "steps": 120}
+
+
+@pytest.mark.parametrize("name", list(BODIES))
+def test_sliders(visit: Callable, files: dict, name: str) -> None:
+    """Each slider changes its number, and the motion is then that of Python."""
+    page, before = visit(files[name]), None
+    for key, value in {**RUN, **SLIDERS[name]}.items():
+        page.set(key, value)
+        state = page.page.evaluate("JSON.stringify(nonholo.state)")
+        assert state != before
+        before, state = state, json.loads(state)
+        p = state["parameters"]
+        body = _top(p) if name == "top" else nh.ChaplyginSleigh(**p)
+        discrete = nh.discretize(body, state["time_step"])
+        _same(page, nh.simulate(discrete, momentum=state["momentum"], steps=state["steps"]))
+    assert {**p, **RUN, "r1": state["momentum"][0], "r2": state["momentum"][1]} == {**SLIDERS[name], **RUN}
+    assert page.errors == []
+
+
+def _top(p: dict[str, float]) -> nh.SuslovTop:
+    rows = [("J11", "J12", "J13"), ("J12", "J22", "J23"), ("J13", "J23", "J33")]
+    return nh.SuslovTop([[p[name] for name in row] for row in rows])
+
+
+def test_presets(visit: Callable, files: dict) -> None:
+    """Every ready motion runs, or says that it has no real branch."""
+    page = visit(files["top"])
+    names = page.page.eval_on_selector_all("#preset option", "all => all.map((o) => [o.value, o.textContent])")
+    for value, label in names:
+        page.page.select_option("#preset", value)
+        page.settle()
+        assert ("no real branch" in page.status) == ("no real branch" in label), label
+        assert page.page.text_content("#title") == ("Chaplygin sleigh" if "Sleigh" in label else "Suslov top")
+    assert page.errors == []
+
+
+def test_no_real_branch(visit: Callable, files: dict) -> None:
+    """Where the map has no real value the page says so in words, and runs again when there is one."""
+    page = visit(files["top"])
+    page.set("time_step", 2.0)
+    assert "cannot start: no real branch" in page.status
+    assert page.page.is_visible("#stop")
+    page.set("time_step", 0.1)
+    assert page.page.is_hidden("#stop")
+    assert "computed here" in page.status
+
+
+def test_impossible_body(visit: Callable, files: dict) -> None:
+    """A body that cannot be is refused in words."""
+    page = visit(files["top"])
+    page.page.fill("#number-J12", "5")
+    page.page.keyboard.press("Enter")
+    page.settle()
+    assert "positive definite" in page.status
+
+
+def test_drag_to_start(visit: Callable, files: dict) -> None:
+    """Pressing on the phase portrait starts the motion there."""
+    page = visit(files["sleigh"])
+    before = page.page.evaluate("nonholo.state.momentum")
+    box = page.page.locator("#phase-canvas").bounding_box()
+    page.page.mouse.click(box["x"] + 0.75 * box["width"], box["y"] + 0.5 * box["height"])
+    page.settle()
+    r1, r2 = page.page.evaluate("nonholo.state.momentum")
+    assert [r1, r2] != before
+    assert r1 > 0.2
+    assert abs(r2) < 0.1 * r1
+
+
+def test_link(visit: Callable, files: dict) -> None:
+    """A link opens the motion it was made of."""
+    page = visit(files["sleigh"])
+    page.set("a", 0.25)
+    page.set("r1", 1.1)
+    page.page.click("#share summary")
+    page.page.click("#copy-link")
+    link = page.page.input_value("#dialog-text")
+    again = visit(files["sleigh"], link.partition("#")[1] + link.partition("#")[2])
+    assert again.page.evaluate("JSON.stringify(nonholo.state)") == page.page.evaluate("JSON.stringify(nonholo.state)")
+
+
+@pytest.mark.parametrize(
+    "fragment",
+    [
+        "#kind=top&J11=1",
+        "#kind=%3Cscript%3E",
+        "#kind=__proto__",
+        "#kind=sleigh&mass=1&inertia=1&a=alert(1)&h=.1&steps=5&r=1+1",
+        "#kind=sleigh&mass=1&inertia=1&a=1&h=.1&steps=1e9&r=1+1",
+        "#kind=sleigh&mass=1&inertia=1&a=1&h=NaN&steps=5&r=1+1",
+    ],
+)
+def test_bad_links(visit: Callable, files: dict, fragment: str) -> None:
+    """What a link holds is read as data: the motion in the file stays, and the page says what is wrong."""
+    page = visit(files["sleigh"], fragment)
+    assert "This link could not be read" in page.status
+    assert page.numbers("r")[:2] == pytest.approx([0.0625, -1.0])
+    assert page.errors == []
+
+
+@pytest.mark.parametrize("name", list(BODIES))
+def test_ten_thousand(visit: Callable, files: dict, name: str) -> None:
+    """Members of the crowd move by the same kernel: forwards, and after the time was set back."""
+    page = visit(files[name])
+    page.page.click("#play")
+    page.page.click("#many")
+    body = nh.discretize(BODIES[name], 0.1).route.body
+    for step in (60, 17):
+        page.page.fill("#scrub", str(step))
+        for k in (0, 137, 9999):
+            member = page.page.evaluate(f"nonholo.crowd.member({k})")
+            code, state = kernels.start(body, np.array(member["first"]), np.array([1.0, 0.0, 0.0, 0.0]))
+            assert code == 0
+            kernels.advance(body, state, step, step, (np.empty((1, 2)), np.empty((1, 2)), np.empty((1, 4))))
+            assert (member["now"], member["outcome"], member["step"]) == (state[:2].tolist(), 0, step)
+    assert page.errors == []
+
+
+def test_save_and_open(visit: Callable, files: dict, tmp_path: Path) -> None:
+    """The saved page is a page: it opens with the motion that was saved, and as quietly."""
+    page = visit(files["top"])
+    page.set("J13", 0.2)
+    page.page.click("#share summary")
+    with page.page.expect_download() as saved:
+        page.page.click("#save")
+    saved.value.save_as(tmp_path / "saved.html")
+    again = visit(tmp_path / "saved.html")
+    assert again.errors == []
+    assert again.page.evaluate("nonholo.state.parameters.J13") == 0.2
+    assert again.numbers("r") == page.numbers("r")
+
+
+@pytest.mark.parametrize("name", list(BODIES))
+def test_copied_programs(visit: Callable, files: dict, name: str, tmp_path: Path) -> None:
+    """Copied Python and a copied scenario give the numbers of the page."""
+    from nonholo.cli.scenario.files import load_scenario
+
+    page, text = visit(files[name]), {}
+    page.set("r2", 0.35)
+    for kind in ("python", "toml"):
+        page.page.click("#share summary")
+        page.page.click(f"#copy-{kind}")
+        text[kind] = page.page.input_value("#dialog-text")
+        page.page.click("#dialog-close")
+    names: dict[str, Any] = {}
+    exec(text["python"], names)  # noqa: S102
+    _same(page, names["orbit"])
+    (tmp_path / "copied.toml").write_text(text["toml"])
+    scenario = load_scenario(str(tmp_path / "copied.toml"), []).scenario
+    _same(page, nh.simulate(scenario.discretization(), steps=scenario.run.steps, **scenario.options()))
+
+
+@pytest.mark.parametrize("view", ["body", "phase", "surface", "energy"])
+def test_pictures(visit: Callable, files: dict, view: str) -> None:
+    """Each view gives its picture as a PNG file."""
+    page = visit(files["top"])
+    with page.page.expect_download() as saved:
+        page.page.click(f"#{view} .picture")
+    assert Path(saved.value.path()).read_bytes().startswith(b"\x89PNG")
+
+
+def test_film(visit: Callable, files: dict) -> None:
+    """A film of the body is a WebM file of the motion from its start to its end."""
+    page = visit(files["sleigh"])
+    page.page.select_option("#speed", "4")
+    with page.page.expect_download(timeout=60_000) as saved:
+        page.page.click("#film")
+    assert Path(saved.value.path()).read_bytes().startswith(b"\x1a\x45\xdf\xa3")
+    assert page.page.text_content("#film") == "Film"
+    assert page.errors == []
+
+
+def test_time(visit: Callable, files: dict) -> None:
+    """Play moves, pause holds, the space bar does both, and the scrub bar goes to a state."""
+    page = visit(files["top"])
+    page.until("Number(document.getElementById('scrub').value) > 3")
+    page.page.keyboard.press("Space")
+    page.settle()
+    held = page.page.input_value("#scrub")
+    page.page.wait_for_timeout(150)
+    assert page.page.input_value("#scrub") == held
+    page.page.focus("#scrub")
+    page.page.keyboard.press("Home")
+    page.page.keyboard.press("ArrowRight")
+    assert page.page.text_content("#step") == "step 1"
+
+
+def test_names_for_everybody(visit: Callable, files: dict) -> None:
+    """Every control that can be reached has a name."""
+    page = visit(files["top"])
+    nameless = page.page.evaluate(
+        """() => [...document.querySelectorAll("button, input, select, summary, textarea, canvas")].filter((e) =>
+            !(e.getAttribute("aria-label") || e.textContent.trim() || e.labels?.length)).map((e) => e.outerHTML)"""
+    )
+    assert nameless == []
+
+
+def test_explanations(visit: Callable, files: dict) -> None:
+    """Each view says what it shows, with a formula that the browser sets."""
+    page = visit(files["sleigh"])
+    for view in ("body", "phase", "surface", "energy"):
+        page.page.click(f"#{view} .about")
+        assert page.page.locator(f"#{view}-words math").bounding_box()["width"] > 60
+        page.page.click(f"#{view} .about")
+
+
+def test_what_a_title_cannot_do(visit: Callable, tmp_path: Path) -> None:
+    """Text that comes with a motion is text."""
+    from nonholo.explorer._motion import shown_motion
+    from nonholo.explorer._page import page_text
+
+    evil = "</script><script>document.title = 'run'</script><img src=x onerror=\"document.title='run'\">"
+    data, _, _ = shown_motion("test", BODIES["sleigh"])
+    (tmp_path / "evil.html").write_text(page_text(data, evil, evil, evil))
+    page = visit(tmp_path / "evil.html")
+    page.settle()
+    assert page.page.title() != "run"
+    assert page.page.text_content("#title") == evil
+    assert len(page.requests) == 1
+
+
+def test_in_a_notebook(visit: Callable, tmp_path: Path) -> None:
+    """The frame that a notebook shows runs, though it may not touch the notebook."""
+    text = explore(BODIES["top"])._repr_html_()
+    (tmp_path / "notebook.html").write_text(f"<!doctype html><p id=status>notebook</p>{text}")
+    page = visit(tmp_path / "notebook.html")
+    frame = page.page.frame_locator("iframe").locator("#status")
+    frame.filter(has_text="computed here").wait_for(timeout=10_000)
+    page.page.frame_locator("iframe").locator("#slide-J13").press("ArrowRight")
+    page.page.wait_for_timeout(500)
+    assert page.errors == []

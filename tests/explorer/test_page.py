@@ -1,0 +1,150 @@
+"""Pages as Python writes them: what is in them, how large they are, and what is refused."""
+
+import base64
+import hashlib
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import nonholo as nh
+from nonholo.cli._app import app
+from nonholo.explorer import explore
+
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
+LARGEST = 700_000
+
+
+def _data(text: str) -> dict[str, Any]:
+    found = re.search(r'<script type="application/json" id="data">(.*?)</script>', text)
+    assert found is not None
+    return json.loads(found[1])
+
+
+def test_data_of_a_page() -> None:
+    """The state of a page is the first state of the orbit, in the canonical frame."""
+    orbit = nh.simulate(nh.discretize(SLEIGH, 0.1), body_velocity=(0.3, -1.0, 0.0), steps=20, save_every=5)
+    state = _data(explore(orbit).text)["state"]
+    assert state["parameters"] == {"mass": 1.0, "inertia": 1.0, "a": 0.5}
+    assert state["momentum"] == orbit.reduced_momentum[0].tolist()
+    assert state["pose"] == orbit.canonical_pose[0].tolist()
+    assert (state["steps"], state["time_step"]) == (20, 0.1)
+
+
+def test_data_of_a_top() -> None:
+    """A top in other axes is shown in those of its canonical frame, and the page says so."""
+    turned = nh.SuslovTop(TOP.mass_tensor, axis=(1.0, 0.0, 0.0))
+    page = explore(turned)
+    p = _data(page.text)["state"]["parameters"]
+    rows = [[p["J11"], p["J12"], p["J13"]], [p["J12"], p["J22"], p["J23"]], [p["J13"], p["J23"], p["J33"]]]
+    np.testing.assert_array_equal(rows, turned.canonical.mass_tensor)
+    assert "canonical body frame" in page.text
+    assert "canonical body frame" not in explore(TOP).text
+
+
+def test_size_and_policy() -> None:
+    """A page without data is small, in ASCII, fetches nothing, and names the only script and style that may run."""
+    text = explore(TOP).text
+    assert len(text) <= LARGEST
+    assert text.isascii()
+    assert "three.js authors\n\nPermission is hereby granted" in text
+    script, style = (
+        re.findall(r"<script>(.*?)</script>", text, re.DOTALL),
+        re.findall(r"<style>(.*?)</style>", text, re.DOTALL),
+    )
+    (policy,) = re.findall(r'Content-Security-Policy" content="([^"]*)"', text)
+    for (own,) in (script, style):
+        assert f"'sha256-{base64.b64encode(hashlib.sha256(own.encode()).digest()).decode()}'" in policy.replace(
+            "&#39;", "'"
+        )
+    assert policy.startswith("default-src 'none'")
+    assert "unsafe-inline" not in policy
+    assert "'unsafe-eval'" not in policy
+    assert not re.search(r'(?:src|href)="(?!data:,)', text.replace(script[0], ""))
+
+
+@pytest.mark.parametrize(
+    "orbit",
+    [
+        lambda: nh.simulate(nh.discretize(nh.SuslovTop(np.eye(4)), 0.1), restricted_velocity=(1, 0.5, 0), steps=9),
+        lambda: nh.flow(SLEIGH, body_velocity=(1.0, 0.5, 0.0), times=np.linspace(0, 1, 10)),
+        lambda: nh.simulate(nh.discretize(TOP, 0.1, order=4), restricted_velocity=(1.0, 0.5), steps=9),
+    ],
+    ids=["four dimensions", "flow", "composition"],
+)
+def test_replays(orbit: Any) -> None:
+    """What has no kernel in the page comes with its numbers: times, energies, and axes that are those of the poses."""
+    motion = orbit()
+    text = explore(motion).text
+    data = _data(text)
+    assert (data["kind"], data["kernels"]) == ("replay", {})
+    assert "A replay of numbers from Python" in text
+    replay = {name: np.frombuffer(base64.b64decode(data["replay"][name])) for name in ("time", "energy", "frames")}
+    np.testing.assert_array_equal(replay["time"], motion.time)
+    np.testing.assert_array_equal(replay["energy"], motion.energy)
+    frames, g = replay["frames"].reshape(-1, 4, 3), motion.configuration
+    shown = min(3, g.shape[1])
+    np.testing.assert_array_equal(
+        frames[:, 1, : 2 if shown == 3 and motion.system.group == nh.SE(2) else 3][:, :2], g[:, :2, 0]
+    )
+
+
+def test_long_orbits_are_thinned() -> None:
+    """A replay of many states has some of them, the first and the last too, and says how many."""
+    orbit = nh.simulate(nh.discretize(TOP, 0.1, order=4), restricted_velocity=(1.0, 0.5), steps=10_000)
+    text = explore(orbit).text
+    time = np.frombuffer(base64.b64decode(_data(text)["replay"]["time"]))
+    assert (len(time), time[0], time[-1]) == (4000, 0.0, orbit.time[-1])
+    assert "4,000 of 10,001 saved states" in text
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        (3.0, "explore"),
+        (nh.discretize(nh.RigidBody(np.eye(3)), 0.1), "be a top with n = 3"),
+        (nh.SuslovTop(np.eye(4)), "be a top with n = 3"),
+        (
+            nh.simulate(nh.discretize(TOP, 0.1), restricted_velocity=(1.0, 0.5), steps=2, reconstruct=False),
+            "have poses",
+        ),
+        (nh.simulate(nh.discretize(TOP, 2.0), momentum=(3.0, 3.0), steps=2, throw=False), "have poses"),
+    ],
+    ids=["number", "free body", "wide top", "no poses", "no state"],
+)
+def test_refusals(value: Any, message: str) -> None:
+    """What cannot be shown is refused with a remedy."""
+    with pytest.raises((TypeError, ValueError), match=message):
+        explore(value)
+
+
+def test_writing(tmp_path: Path) -> None:
+    """A page is a new file, unless it may replace one."""
+    orbit, path = nh.simulate(nh.discretize(TOP, 0.1), restricted_velocity=(1.0, 0.5), steps=2), tmp_path / "page.html"
+    orbit.to_html(path)
+    assert path.read_text("ascii") == explore(orbit).text
+    with pytest.raises(FileExistsError, match="to_html"):
+        orbit.to_html(path)
+    orbit.to_html(path, overwrite=True)
+
+
+def test_command(tmp_path: Path) -> None:
+    """`nonholo explore` writes the page of a scenario and of a store."""
+    page, store = tmp_path / "page.html", tmp_path / "run.zarr"
+    run = CliRunner().invoke(app, ["explore", "sleigh", "--steps", "7", "-o", str(page), "--no-browser"])
+    assert (run.exit_code, run.stdout.strip()) == (0, str(page))
+    assert _data(page.read_text())["state"]["steps"] == 7
+    orbit = nh.simulate(nh.discretize(TOP, 0.1), restricted_velocity=(1.0, 0.5), steps=11)
+    nh.save_orbit(orbit, store)
+    run = CliRunner().invoke(app, ["explore", str(store), "-o", str(page), "--no-browser", "--overwrite"])
+    assert run.exit_code == 0
+    assert _data(page.read_text())["state"]["steps"] == 11
+    run = CliRunner().invoke(app, ["explore", "sleigh", "-o", str(page), "--no-browser"])
+    assert run.exit_code == 2
+    run = CliRunner().invoke(app, ["explore", "no such thing", "--no-browser"])
+    assert run.exit_code == 2

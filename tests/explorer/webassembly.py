@@ -1,0 +1,51 @@
+"""The modules of the page under wasmtime, with numpy views of their memory."""
+
+import ctypes
+
+import numpy as np
+
+from nonholo.explorer import kernel
+
+STACK = 65536
+BODY, STATE, OUTCOME = 8, 16, 14
+
+
+class Module:
+    """A kernel that is instantiated, with room for a number of steps."""
+
+    def __init__(self, body: str, steps: int) -> None:
+        import wasmtime
+
+        engine = wasmtime.Engine()
+        self.module = wasmtime.Module(engine, kernel(body))
+        self.store = wasmtime.Store(engine)
+        size = STACK + 8 * (BODY + STATE + 8 * steps)
+        pages = wasmtime.MemoryType(wasmtime.Limits(-(-size // 65536), None))
+        memory = wasmtime.Memory(self.store, pages)
+        kind = wasmtime.GlobalType(wasmtime.ValType.i32(), True)
+        given = {
+            "__linear_memory": memory,
+            "__stack_pointer": wasmtime.Global(self.store, kind, wasmtime.Val.i32(STACK)),
+        }
+        instance = wasmtime.Instance(self.store, self.module, [given[item.name] for item in self.module.imports])
+        self.run = instance.exports(self.store)["run"]
+        start = ctypes.addressof(memory.data_ptr(self.store).contents)
+        numbers = (ctypes.c_double * (memory.data_len(self.store) // 8)).from_address(start)
+        self.memory, self.kept = np.frombuffer(numbers, dtype=np.float64), memory
+        self.steps = steps
+
+    def orbit(self, body: tuple, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, int, np.ndarray]:
+        """Return how many steps were good, the outcome, and rows of momenta, charts and poses."""
+        at = STACK // 8
+        self.memory[at : at + len(body)] = body
+        state = self.memory[at + BODY : at + BODY + STATE]
+        state[:] = 0.0
+        state[:2], state[4], state[10:14] = momentum, np.nan, pose
+        rows = at + BODY + STATE
+        steps = self.steps
+        first = [8 * at, 8 * (at + BODY)]
+        done = self.run(self.store, *first, steps, *(8 * (rows + k * steps) for k in (0, 2, 4)))
+        parts = [
+            self.memory[rows + k * steps : rows + end * steps].reshape(steps, -1) for k, end in ((0, 2), (2, 4), (4, 8))
+        ]
+        return done, int(state[OUTCOME]), np.hstack(parts)[:done]
