@@ -1,10 +1,9 @@
 """The compiled steps: scalar arithmetic written once for numba and JAX, the matrix step for any body, the loops."""
 
 from nonholo.kernels._composition import ComposedBody, whole_steps
-from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged
+from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged, flat_run
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
-from nonholo.kernels._flat import flat_run
 from nonholo.kernels._forced import ForcedBody, Kick
 from nonholo.kernels._interface import Body, certified, correction, increment, move, residual, tangent
 from nonholo.kernels._nearest import NearestBody

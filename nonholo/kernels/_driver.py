@@ -4,7 +4,13 @@ The state is one array, so that a run can stop after any step and continue with 
 momentum (2), its compensation (2), the last three Cayley coordinates (6), pose (4).
 """
 
+import math
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
+from numba.np.numpy_support import carray
+from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from nonholo.base.compiled import njit
 from nonholo.kernels._interface import Body, certified, correction, increment, move, principal
@@ -127,3 +133,26 @@ def step_each(
         next_momenta[k, 0], next_momenta[k, 1] = m1, m2
         next_charts[k, 0], next_charts[k, 1] = w1, w2
     return next_momenta, next_charts, codes
+
+
+def flat_run(kind: type[Body]) -> Callable[..., int]:
+    """Return the run of a kind of body on bare memory, for hosts without Python: a plain function to compile for them.
+
+    Its arguments are addresses of numbers but for `steps`. It takes up to `steps` steps into rows of momenta, charts
+    and poses, and returns how many were good. A state whose chart is NaN is started first, from its momentum and pose.
+    The outcome is written behind the state.
+    """
+    count = len(kind._fields)  # pyright: ignore[reportAttributeAccessIssue]
+
+    def run(body: Any, state: Any, steps: int, momenta: Any, charts: Any, poses: Any) -> int:
+        p = kind(*to_fixed_tuple(carray(body, count), count))  # pyright: ignore
+        s = carray(state, STATE_SIZE + 1)
+        code = start(p, s[:2], s[10:STATE_SIZE], s) if math.isnan(s[4]) else 0
+        done = 0
+        if code == 0:
+            rows = carray(momenta, (steps, 2)), carray(charts, (steps, 2)), carray(poses, (steps, 4))
+            done, code = advance(p, s, steps, 1, rows[0], rows[1], rows[2])
+        s[STATE_SIZE] = code
+        return done
+
+    return run
