@@ -49,7 +49,7 @@ def simulated(
     (q, v, impulses), code, done = _run(system, h, start, steps, every, progress)
     *displaced, momentum, energy, residual = _decoded(system, h, q, v)
     displacement, time = displaced[0] if displaced else h * v, h * (every * np.arange(len(q)))
-    orbit = kind(time, q, displacement, v, momentum, impulses, energy, residual, Outcome(int(code)))
+    orbit = kind(time, q, displacement, v, momentum, impulses, energy, residual, Outcome(int(code)), system, float(h))
     return finished(orbit, h, done, steps, throw)
 
 

@@ -15,7 +15,8 @@ import numpy as np
 from nonholo.base.checks import error, instance, selection, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.groups import SE
+from nonholo.groups import SE, AbstractMatrixGroup
+from nonholo.orbit._base import AbstractOrbit
 from nonholo.orbit._poses import configurations, poses, unwrapped
 from nonholo.systems import System
 
@@ -73,7 +74,7 @@ class AbstractMotion(abc.ABC):
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
-class Orbit:
+class Orbit(AbstractOrbit):
     r"""A motion at K saved states, from `simulate` or `flow`.
 
     What an orbit tells is in the user's body frame, momenta in physical units; the compact states that it is made of
@@ -119,9 +120,6 @@ class Orbit:
         span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
         return f"<Orbit of {type(self.system).__name__}: {len(self)} states{span}, {self.outcome}>"
 
-    def __len__(self) -> int:
-        return len(self.time)
-
     def __getitem__(self, states: slice) -> "Orbit":
         """Return the orbit at a forward slice of its states."""
         if not isinstance(states, slice):
@@ -161,6 +159,27 @@ class Orbit:
     def system(self) -> System:
         """The system that moves."""
         return self.motion.system
+
+    @property
+    def space(self) -> AbstractMatrixGroup:
+        """The group on which it moves."""
+        return self.system.group
+
+    @property
+    def time_step(self) -> float | None:
+        """The time step of a discrete orbit; None for a flow."""
+        step = getattr(self.motion, "time_step", None)
+        return None if step is None else float(step)
+
+    @property
+    def span(self) -> tuple[float, float] | None:
+        """The first and the last time between which `at` knows all states; None if saved states are all there is."""
+        return self.motion.span
+
+    @property
+    def has_poses(self) -> bool:
+        """Whether poses were reconstructed."""
+        return self.canonical_pose is not None
 
     @property
     def restricted_momentum(self) -> Float[np.ndarray, "K k"]:
@@ -280,18 +299,6 @@ class Orbit:
         `nonholo.io.orbit_to_dataset` names its variables; with `decoded` there are matrices and multipliers too.
         """
         return importlib.import_module("nonholo.io").orbit_to_dataset(self, decoded=decoded)
-
-    def to_pandas(self) -> Any:
-        """Return the orbit as a `pandas.DataFrame` with one column for each number of `to_dataset`, indexed by time."""
-        return importlib.import_module("nonholo.io").orbit_to_pandas(self)
-
-    def to_csv(self, path: Any, *, overwrite: bool = False) -> None:
-        """Write the times and poses to a new CSV file; `nonholo.io.orbit_to_csv` names its columns."""
-        importlib.import_module("nonholo.io").orbit_to_csv(self, path, overwrite=overwrite)
-
-    def plot(self, path: str | None = None, *, overwrite: bool = False) -> Any:
-        """Draw the overview picture of the orbit; return the matplotlib figure, saved to a new `path` if given."""
-        return importlib.import_module("nonholo.plotting").overview(self, path, overwrite=overwrite)
 
     def _posed(self) -> np.ndarray:
         if self.canonical_pose is None:

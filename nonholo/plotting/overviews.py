@@ -12,17 +12,13 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from nonholo.base.checks import error
-from nonholo.base.checks import path as checked_path
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.groups import SE, SO
-from nonholo.io import check_file
 from nonholo.orbit import Orbit
 from nonholo.plotting import motion, theme
-from nonholo.plotting.parts import drawable, is_free, time_step
+from nonholo.plotting.parts import drawable, finish_page, is_free, new_page
 from nonholo.plotting.sheets import blade_of_system, sheet_of
 from nonholo.systems import AbstractLLSystem, LLSystem, System
 
@@ -104,15 +100,8 @@ def _write_mass_tensor(axes: Axes, mass_tensor: Float[np.ndarray, "3 3"]) -> Non
 _FIXED = {False: "System with a left-invariant constraint", True: "System with a right-invariant constraint"}
 
 
-def _write_head(figure: Figure, orbit: Orbit) -> None:
-    """Write what moves, and how, above the panels."""
-    figure.text(0.012, 0.985, _name(orbit.system), va="top", fontsize=17, fontweight="bold")
-    facts = "      ".join(_facts(orbit)).replace("-", "\u2212")
-    figure.text(0.012, 0.934, facts, va="top", fontsize=10.5, color="#555a62")
-
-
 def _facts(orbit: Orbit) -> list[str]:
-    step = time_step(orbit)
+    step = orbit.time_step
     if step is None:
         run = f"continuous flow from time {orbit.time[0]:g} to {orbit.time[-1]:g}"
     else:
@@ -188,11 +177,7 @@ def overview(
     drawable("overview(orbit=...)", orbit)
     if flow is not None:
         drawable("overview(flow=...)", flow)
-    below_title = ConstrainedLayoutEngine(rect=(0.004, 0.004, 0.992, 0.905), hspace=0.05, wspace=0.03)
-    figure = Figure(figsize=_SIZE, layout=below_title)
-    if path is not None:
-        check_suffix(figure, path)
-        check_file(path, overwrite=overwrite, where="overview(path=...)")
+    figure = new_page("overview", _SIZE, path, overwrite=overwrite)
     panels = panels_of(_smooth(orbit), None if flow is None else _smooth(flow))
     axes = _axes(figure, panels)
     for panel, own in zip(panels, axes, strict=True):
@@ -200,10 +185,7 @@ def overview(
     if panels[0].is_timed:
         axes[0].set_xlabel("time")
     _share_time([own for panel, own in zip(panels[1:], axes[1:], strict=True) if panel.is_timed])
-    _write_head(figure, orbit)
-    if path is not None:
-        figure.savefig(path)
-    return figure
+    return finish_page(figure, _name(orbit.system), _facts(orbit), path)
 
 
 def _smooth(orbit: Orbit) -> Orbit:
@@ -213,14 +195,6 @@ def _smooth(orbit: Orbit) -> Orbit:
     more = np.linspace(orbit.time[0], orbit.time[-1], _SMOOTH)
     times = np.union1d(orbit.time, more)
     return orbit.at(times if more[-1] > more[0] else times[::-1])
-
-
-def check_suffix(figure: Figure, path: str | Path) -> None:
-    """Refuse a path whose suffix is no picture format."""
-    known = figure.canvas.get_supported_filetypes()
-    if checked_path("overview(path=...)", path).suffix[1:].lower() not in known:
-        remedy = "Use a path that ends in .png, .svg or .pdf."
-        raise error("overview(path=...)", "end in a picture format", f"{str(path)!r}", remedy)
 
 
 def _axes(figure: Figure, panels: list[Panel]) -> list[Axes]:

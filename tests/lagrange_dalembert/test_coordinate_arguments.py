@@ -53,6 +53,21 @@ def test_integer_forms_are_forms() -> None:
     assert np.abs(orbit.configuration[-1] - [1.0, 2.0, 1.0]).max() <= 1e-14
 
 
+def test_coordinates_have_names() -> None:
+    """Numbered ones by default, or words of the user's own."""
+    assert SYSTEM.coordinates == ("q1", "q2", "q3")
+    assert nh.LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=["x", "y", "z"]).coordinates == tuple("xyz")
+
+
+@pytest.mark.parametrize(
+    "names", [("x", "y"), ("x", "y", "x"), ("x", "y", "energy"), ("x", "y", "a b"), "xyz", (1, 2, 3), 5]
+)
+def test_what_cannot_name_columns_is_refused(names: object) -> None:
+    """Too few, twice the same, a name of another column, no word, one text, numbers."""
+    with pytest.raises(ValueError, match=r"LagrangeDAlembert\(coordinates=...\)` must be 3 different words"):
+        nh.LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=names)
+
+
 FOREIGN = {
     "difference": (lambda: nh.discretize(SYSTEM, 0.1, difference="matrix"), r"discretize\(difference"),
     "constraint": (lambda: nh.discretize(SYSTEM, 0.1, constraint=np.linalg.norm), r"discretize\(constraint"),

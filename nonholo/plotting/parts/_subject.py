@@ -42,11 +42,6 @@ def is_discrete(orbit: Orbit) -> bool:
     return orbit.cayley is not None
 
 
-def time_step(orbit: Orbit) -> float | None:
-    """Return the time step of a discrete orbit."""
-    return float(orbit.motion.time_step) if isinstance(orbit.motion, Discretization) else None
-
-
 def is_free(system: System) -> bool:
     """Tell whether nothing constrains the body, whose spatial momentum is then conserved."""
     return system.rank == system.group.dim
@@ -73,7 +68,7 @@ def own_orbit(where: str, orbit: Any, discrete: Discretization) -> None:
     """Refuse an orbit that belongs to another discretized system."""
     if orbit is None:
         return
-    same = time_step(drawable(where, orbit)) == float(discrete.time_step)
+    same = drawable(where, orbit).time_step == float(discrete.time_step)
     if not (same and is_same_body(orbit.system, discrete.system)):
         raise error(where, "be an orbit of the same discretized system", shown(orbit), "Run `nh.simulate` with it.")
 
