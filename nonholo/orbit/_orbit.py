@@ -36,6 +36,8 @@ class AbstractMotion(abc.ABC):
     system: System
     span: tuple[float, float] | None = None
     """The first and the last time between which `at` knows all states; None if saved states are all there is."""
+    is_measured: bool = False
+    """Whether poses were given, and everything else follows from them."""
 
     @property
     @abc.abstractmethod
@@ -115,6 +117,36 @@ class Orbit(AbstractOrbit):
     turned: Float[np.ndarray, "K"] | None = None
     branch: str = "principal"
     events: Any = None
+
+    @staticmethod
+    def from_poses(system: System, time: Any, configuration: Any) -> "Orbit":
+        r"""Return the orbit of given poses, of a camera or another integrator: it has pictures, invariants and tables.
+
+        With $W_k = g_k^{-1}g_{k+1}$ and $h_k = t_{k+1} - t_k$ the momentum of a state is the discrete momentum at
+        $W_k$ over $h_k$; the displacement of the last state leads back. Momenta along the constraint, and with them
+        `body_velocity` and `energy`, are means of the discrete momenta before and after each pose: of second order
+        whatever forces act (at both ends of first order, unless there are none). Of an orbit of `simulate` all these
+        are its own. Noise of size e in the poses is noise of size e/h in velocities: nothing is smoothed. How far the
+        poses are from admissible is the `constraint_residual` of `nh.invariants`, a velocity.
+
+        Args:
+            system: What moves.
+            time: Times of the poses, strictly increasing, in steps of any length.
+            configuration: The poses, matrices (K, N, N) of the group. Small errors, up to the digits of single
+                precision, are removed: the nearest element of the group is taken.
+
+        Raises:
+            ValueError: No system on a group, fewer than two rows, times that do not increase, a matrix that is far
+                from the group (the message names its row).
+
+        Example:
+            >>> t = np.linspace(0.0, 6.0, 61)
+            >>> g = nh.SE(2).exp(np.stack([0.5 * t, t, 0 * t], axis=1))  # a circle, its tangent along the blade
+            >>> orbit = nh.Orbit.from_poses(nh.ChaplyginSleigh(1.0, 1.0, 0.5), t, g)
+            >>> orbit.body_velocity[30].round(3), bool(nh.invariants(orbit).constraint_residual < 1e-13)
+            (array([0.5, 1. , 0. ]), True)
+        """
+        return importlib.import_module("nonholo.discrete").orbit_of_poses(system, time, configuration)
 
     def __repr__(self) -> str:
         span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""

@@ -101,9 +101,11 @@ _FIXED = {False: "System with a left-invariant constraint", True: "System with a
 
 
 def _facts(orbit: Orbit) -> list[str]:
-    step = orbit.time_step
-    if step is None:
-        run = f"continuous flow from time {orbit.time[0]:g} to {orbit.time[-1]:g}"
+    run, step = f"from time {orbit.time[0]:g} to {orbit.time[-1]:g}", orbit.time_step
+    if orbit.motion.is_measured:
+        run = f"{len(orbit):,} given poses {run}".replace(",", "\u2009")
+    elif step is None:
+        run = f"continuous flow {run}"
     else:
         steps = (len(orbit) - 1) * orbit.save_every
         run = f"{steps:,} step{'s' * (steps != 1)} of $h$ = {step:g}".replace(",", "\u2009")

@@ -21,10 +21,11 @@ class Invariants:
 
     Attributes:
         states: Saved states.
-        steps: Steps they span (0 for a flow).
+        steps: Steps they span (0 for a flow); of given poses the times between them.
         energy_drift: Largest change of the reduced constrained energy, relative to it (absolute at rest).
         constraint_residual: Largest forbidden part of (W - W^-1)/2 of a displacement, of log W where the variety is
-            exp d alone, or of a velocity; where the variety is given by equations, their largest residual.
+            exp d alone, or of a velocity, of a flow and of given poses; where the variety is given by equations, their
+            largest residual.
         group_residual: Largest distance of a pose from the group.
         reversal_defect: Largest relative miss of one step forward and back.
         largest_step_angle: In degrees.
@@ -63,23 +64,25 @@ def invariants(orbit: Orbit) -> Invariants:
     energy = orbit.energy
     return Invariants(
         states=len(orbit),
-        steps=0 if discrete is None else (len(orbit) - 1) * orbit.save_every,
+        steps=0 if orbit.cayley is None else (len(orbit) - 1) * orbit.save_every,
         energy_drift=float(np.abs(energy - energy[0]).max() / (abs(energy[0]) or 1.0)),
         constraint_residual=float(np.abs(orbit.motion.constraint_residual(sample)).max(initial=0.0)),
         group_residual=None if orbit.canonical_pose is None else _group_residual(sample),
         reversal_defect=None if discrete is None else _reversal_defect(discrete, sample),
-        largest_step_angle=None if discrete is None else _largest_angle(discrete, sample),
+        largest_step_angle=None if orbit.cayley is None else _largest_angle(sample),
         outcome=orbit.outcome,
     )
 
 
-def _largest_angle(discrete: Discretization, orbit: Orbit) -> float:
-    group, y = discrete.system.group, orbit.canonical_chart
-    if discrete.system.is_wide:
-        turning = len(cast(NormalForm, discrete.system.normal_form).coupling)
+def _largest_angle(orbit: Orbit) -> float:
+    system, y, motion = orbit.system, orbit.canonical_chart, orbit.motion
+    if system.is_wide:
+        turning = len(cast(NormalForm, system.normal_form).coupling)
         angles = 2 * np.arctan(np.linalg.norm(y[:, :turning], axis=1))  # of planes through one axis
+    elif isinstance(motion, Discretization) and motion.order == 2:
+        angles = motion.variety.angle(y)
     else:
-        angles = discrete.variety.angle(y) if discrete.order == 2 else group.angle(group.log(orbit.displacement))
+        angles = system.group.angle(system.group.log(orbit.displacement))
     return float(np.degrees(angles.max()))
 
 

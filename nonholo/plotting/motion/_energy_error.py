@@ -12,7 +12,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
 from nonholo.base.types import Float
-from nonholo.orbit import Orbit
+from nonholo.orbit import AbstractMotion, Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.parts import drawable, evenly_in_box, is_discrete, posed
 
@@ -84,8 +84,12 @@ def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
     drawn = (_error if is_discrete(orbit) else _curve)(axes, orbit.time, error / unit)
     _dress(axes, error / unit, unit, relative=bool(energy[0]))
     look: Any = {"color": "#555a62", "fontsize": 9, "va": "top", "path_effects": theme.HALO, "zorder": 6}
-    expected = axes.text(0.012, 0.97, _EXPECTED[orbit.motion.conserves_energy], transform=axes.transAxes, **look)
+    expected = axes.text(0.012, 0.97, _expected(orbit.motion), transform=axes.transAxes, **look)
     return EnergyError(axes, drawn, rounding, unit, expected)
+
+
+def _expected(motion: AbstractMotion) -> str:
+    return "of given poses" if motion.is_measured else _EXPECTED[motion.conserves_energy]
 
 
 def _unit(largest: float) -> float:

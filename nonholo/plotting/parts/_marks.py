@@ -41,7 +41,7 @@ def draw_in_time(
     colors = {"cmap": theme.TIME, "norm": theme.time_scale(orbit if whole is None else whole), "zorder": zorder}
     if label is not None or is_discrete(orbit):
         size = theme.dot_size(len(orbit)) if size is None else size
-        colors |= {"c": time, "label": label or "discrete orbit"}
+        colors |= {"c": time, "label": label or ("given poses" if orbit.motion.is_measured else "discrete orbit")}
         return axes.scatter(*points.T, s=size, linewidths=0, **_flat(points), **colors)
     path = segments(points[:-1], points[1:], linewidth=2, **colors)
     path.set(array=time[1:], label="flow")
