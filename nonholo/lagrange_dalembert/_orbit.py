@@ -42,6 +42,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     time_step: float | None = None
     span: ClassVar[None] = None
     has_poses: ClassVar[bool] = True
+    is_measured: ClassVar[bool] = False
     _labels: ClassVar[Labels]
 
     @abc.abstractmethod
@@ -51,6 +52,16 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     def __repr__(self) -> str:
         span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
         return f"<{type(self).__name__}: {len(self)} states of {self._configurations()}{span}, {self.outcome}>"
+
+    @property
+    def is_discrete(self) -> bool:
+        """Whether it has displacements: a flow has none."""
+        return self.displacement is not None
+
+    @property
+    def conserves_energy(self) -> bool | None:
+        """False for a discrete orbit, None for a flow."""
+        return False if self.is_discrete else None
 
     @property
     def restricted_momentum(self) -> Float[np.ndarray, "K n"]:
@@ -65,7 +76,10 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         raise error("Orbit.at(...)", "be asked of a flow of a body on a group", got, "Ask `flow` for these times.")
 
     def to_dataset(self) -> Any:
-        """Return the orbit as a labeled `xarray.Dataset`; rows that do not exist, of multipliers, are NaN."""
+        """Return the orbit as a labeled `xarray.Dataset`; rows that do not exist, of multipliers, are NaN.
+
+        Along `coordinate` numbers have the names of the coordinates: `dataset.configuration.sel(coordinate="x")`.
+        """
         import xarray
 
         variables = {}
@@ -74,8 +88,13 @@ class AbstractCoordinateOrbit(AbstractOrbit):
             if rows is not None:
                 missing = np.full((len(self) - len(rows), *rows.shape[1:]), np.nan)
                 variables[name] = (("step", *dimensions), np.concatenate([rows, missing]), {"long_name": meaning})
-        time = ("step", self.time, {"long_name": "time"})
-        return xarray.Dataset(variables, coords={"time": time}, attrs={"outcome": self.outcome.name})
+        coords: dict[str, Any] = {"time": ("step", self.time, {"long_name": "time"}), **self._names()}
+        step = {} if self.time_step is None else {"time_step": self.time_step}
+        return xarray.Dataset(variables, coords=coords, attrs={"outcome": self.outcome.name, **step})
+
+    @abc.abstractmethod
+    def _names(self) -> dict[str, Any]:
+        """Return the names of numbers along dimensions."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -111,9 +130,17 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
     }
 
     @property
+    def coordinates(self) -> tuple[str, ...]:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """The names of the coordinates."""
+        return self.system.coordinates
+
+    @property
     def space(self) -> tuple[str, ...]:
         """The names of the coordinates."""
         return self.system.coordinates
+
+    def _names(self) -> dict[str, Any]:
+        return {"coordinate": np.array(self.coordinates, dtype=object)}
 
     def _configurations(self) -> str:
         return f"{self.configuration.shape[1]} coordinates"
@@ -155,6 +182,9 @@ class GroupOrbit(AbstractCoordinateOrbit):
     def space(self) -> AbstractMatrixGroup:
         """The group."""
         return self.system.group
+
+    def _names(self) -> dict[str, Any]:
+        return {}
 
     def _configurations(self) -> str:
         n = self.configuration.shape[-1]

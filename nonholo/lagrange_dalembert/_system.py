@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import jax
 
-from nonholo.base.checks import choice, count, error, shown
+from nonholo.base.checks import choice, count, error, shown, text
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._room import room
@@ -45,6 +45,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             rule.
         coordinates: Names of the coordinates, for tables and pictures, such as ("x", "y", "theta"); by default "q1",
             "q2" and so on.
+        name: What pictures call the system.
 
     Raises:
         ValueError: A function that JAX cannot trace, or whose result is not real or has the wrong shape; an unknown
@@ -71,12 +72,14 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     discrete_lagrangian: Callable[[Array, Array, Array], Array] | None = dataclasses.field(default=None, kw_only=True)
     discrete_constraints: Callable[[Array, Array, Array], Array] | None = dataclasses.field(default=None, kw_only=True)
     coordinates: tuple[str, ...] = dataclasses.field(default=(), kw_only=True)
+    name: str = dataclasses.field(default="System in coordinates", kw_only=True)
     _equations: ClassVar[str] = "_equations"
 
     def __post_init__(self) -> None:
         dimension = count(_named("dimension"), self.dimension, "Pass the number of coordinates.")
         object.__setattr__(self, "dimension", dimension)
         object.__setattr__(self, "coordinates", _names(self.coordinates, dimension))
+        text(_named("name"), self.name)
         choice(_named("rule"), self.rule, ("midpoint", "trapezoidal"))
         object.__setattr__(self, "discrete_lagrangian", with_time_step(self.discrete_lagrangian))
         object.__setattr__(self, "discrete_constraints", with_time_step(self.discrete_constraints))

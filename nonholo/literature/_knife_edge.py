@@ -98,4 +98,5 @@ def _system(m: float, J: float, G: float) -> LagrangeDAlembert:
     def forms(q: Array) -> Array:
         return jnp.array([[jnp.sin(q[2]), -jnp.cos(q[2]), 0.0]])
 
-    return LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=("x", "y", "phi"))
+    names = ("x", "y", "phi")
+    return LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=names, name="Knife edge on an incline")

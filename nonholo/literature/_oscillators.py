@@ -64,7 +64,7 @@ def _quartic(n: int) -> LagrangeDAlembert:
         return jnp.concatenate([jnp.ones(1), jnp.zeros(n), q[1 : n + 1]])[None]
 
     names = ("x", *(f"{letter}{i}" for letter in "yz" for i in range(1, n + 1)))
-    return LagrangeDAlembert(lagrangian, forms, dimension=2 * n + 1, coordinates=names)
+    return LagrangeDAlembert(lagrangian, forms, dimension=2 * n + 1, coordinates=names, name="Chaotic oscillator")
 
 
 def non_reversible(*, asymmetry: float = 0.5, turning: float = 2.6) -> Example:
@@ -123,4 +123,5 @@ def _gearbox(epsilon: float) -> LagrangeDAlembert:
     def forms(q: Array) -> Array:
         return jnp.stack([jnp.ones(()), jnp.sin(q[2]), jnp.zeros(())])[None]
 
-    return LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=("x", "y", "xi"))
+    name = "Oscillators, not reversible" if epsilon else "Oscillators, reversible"
+    return LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=("x", "y", "xi"), name=name)

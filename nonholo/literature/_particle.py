@@ -73,4 +73,5 @@ def _system(m: float) -> LagrangeDAlembert:
     def forms(q: Array) -> Array:
         return jnp.array([[-q[1], 0.0, 1.0]])
 
-    return LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=("x", "y", "z"))
+    names = ("x", "y", "z")
+    return LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=names, name="Nonholonomic particle")

@@ -103,4 +103,5 @@ def _system(m: float, about_axle: float, ell: float, c: float, R: float, Jw: flo
         turn = R / (2 * c)
         return jnp.array([[-sin, cos, 0.0, 0.0, 0.0], [cos, sin, 0.0, -R / 2, -R / 2], [0.0, 0.0, 1.0, -turn, turn]])
 
-    return LagrangeDAlembert(lagrangian, forms, dimension=5, coordinates=("x", "y", "theta", "right", "left"))
+    names = ("x", "y", "theta", "right", "left")
+    return LagrangeDAlembert(lagrangian, forms, dimension=5, coordinates=names, name="Two-wheeled robot")

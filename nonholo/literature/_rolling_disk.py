@@ -76,4 +76,5 @@ def _system(m: float, R: float, rolling: float, turning: float) -> LagrangeDAlem
     def forms(q: Array) -> Array:
         return jnp.array([[1.0, 0.0, -R * jnp.cos(q[3]), 0.0], [0.0, 1.0, -R * jnp.sin(q[3]), 0.0]])
 
-    return LagrangeDAlembert(lagrangian, forms, dimension=4, coordinates=("x", "y", "theta", "phi"))
+    names = ("x", "y", "theta", "phi")
+    return LagrangeDAlembert(lagrangian, forms, dimension=4, coordinates=names, name="Rolling disk")

@@ -98,4 +98,5 @@ def _system(m: float, r: float, J0: float, J1: float) -> LagrangeDAlembert:
 
         return jnp.stack([row(1.0), row(-1.0)])
 
-    return LagrangeDAlembert(lagrangian, forms, dimension=5, coordinates=("x", "y", "theta", "psi", "phi"))
+    names = ("x", "y", "theta", "psi", "phi")
+    return LagrangeDAlembert(lagrangian, forms, dimension=5, coordinates=names, name="Snakeboard")

@@ -25,7 +25,11 @@ class AbstractOrbit(abc.ABC):
         outcome: How the run ended.
         time_step: h; None where there is none.
         span: The first and the last time between which `at` knows all states; None if saved states are all there is.
+        coordinates: The names of the coordinates; none on a group.
         has_poses: Whether it has configurations.
+        is_discrete: Whether it has displacements: a flow has none.
+        is_measured: Whether configurations were given, and everything else follows from them.
+        conserves_energy: Whether its map conserves the energy exactly; None for a flow, and where there is no map.
     """
 
     system: Any
@@ -39,7 +43,11 @@ class AbstractOrbit(abc.ABC):
     outcome: Outcome
     time_step: float | None
     span: tuple[float, float] | None
+    coordinates: tuple[str, ...] = ()
     has_poses: bool
+    is_discrete: bool
+    is_measured: bool
+    conserves_energy: bool | None
 
     @property
     @abc.abstractmethod

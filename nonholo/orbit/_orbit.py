@@ -209,6 +209,21 @@ class Orbit(AbstractOrbit):
         return self.motion.span
 
     @property
+    def is_discrete(self) -> bool:
+        """Whether it has displacements: a flow has none."""
+        return self.cayley is not None
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether poses were given, and everything else follows from them."""
+        return self.motion.is_measured
+
+    @property
+    def conserves_energy(self) -> bool | None:
+        """Whether the map conserves the energy exactly; None for a flow and for given poses."""
+        return self.motion.conserves_energy
+
+    @property
     def has_poses(self) -> bool:
         """Whether poses were reconstructed."""
         return self.canonical_pose is not None

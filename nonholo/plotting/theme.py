@@ -4,6 +4,7 @@ Colors are from the palette of Okabe and Ito, legible to color-blind readers; th
 """
 
 import functools
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
@@ -19,7 +20,7 @@ from matplotlib.figure import Figure
 
 from nonholo.base.checks import instance
 from nonholo.base.types import Float
-from nonholo.orbit import Orbit
+from nonholo.orbit import AbstractOrbit, Orbit
 
 STABLE = "#1a1a1a"
 UNSTABLE = "#d55e00"
@@ -32,6 +33,7 @@ MUTED = "#8a8f98"
 TIME = ListedColormap(matplotlib.colormaps["viridis"](np.linspace(0.0, 0.93, 256)), name="nonholo_time")
 HALO = (matplotlib.patheffects.withStroke(linewidth=3, foreground="white"),)
 
+_COMMANDS, _SIGNS = re.compile(r"\\[A-Za-z]+"), re.compile(r"[${}_^]")  # of formulas
 _SETTLED = 0.01  # part of the largest momentum
 _NARROW = 3.7  # inches
 _RAISED = 24.0  # of a title above a legend, in points
@@ -58,14 +60,14 @@ def axes_or_new(axes: Axes | None, size: tuple[float, float] = (6.0, 5.0)) -> Ax
     return instance("plot(axes=...)", axes, Axes, "be axes of matplotlib", "Pass axes, or None.")
 
 
-def time_scale(orbit: Orbit) -> Normalize:
+def time_scale(orbit: AbstractOrbit) -> Normalize:
     """Return the map from times of an orbit to the colors of `TIME`.
 
     The colors are spent on the transition and as long again, so that they do not fade in the uniform motion of a long
     run; earlier and later times have the colors of the ends.
     """
     first, last = float(orbit.time.min()), float(orbit.time.max())
-    momentum = orbit.reduced_momentum
+    momentum = orbit.reduced_momentum if isinstance(orbit, Orbit) else orbit.body_velocity
     near = _SETTLED * np.abs(momentum).max(initial=0.0)
     left = np.flatnonzero(np.abs(momentum - momentum[0]).max(axis=1, initial=0.0) > near)
     settled = np.flatnonzero(np.abs(momentum - momentum[-1]).max(axis=1, initial=0.0) > near)
@@ -83,7 +85,7 @@ def component_colors(count: int) -> list[Any]:
     return [tuple(shade) for shade in matplotlib.colormaps["plasma"](np.linspace(0.0, 0.88, count))]
 
 
-def end_colors(orbit: Orbit) -> list[tuple[float, float, float, float]]:
+def end_colors(orbit: AbstractOrbit) -> list[tuple[float, float, float, float]]:
     """Return the colors of the first and the last state."""
     first, last = TIME(time_scale(orbit)(orbit.time[[0, -1]]))
     return [tuple(first), tuple(last)]
@@ -92,7 +94,7 @@ def end_colors(orbit: Orbit) -> list[tuple[float, float, float, float]]:
 component_colours, end_colours = component_colors, end_colors  # names they had, which still work
 
 
-def mark_time(axes: Axes, orbit: Orbit) -> LineCollection | None:
+def mark_time(axes: Axes, orbit: AbstractOrbit) -> LineCollection | None:
     """Lay the colors of time along the bottom of axes whose abscissa is time: the key to the other panels."""
     if len(orbit) < 2:
         return None
@@ -145,4 +147,5 @@ def legend_above(axes: Axes) -> None:
 
 def _length(title: str, labels: list[str]) -> float:
     """Return about how long a title and a legend in one line are, in inches."""
-    return 0.085 * len(title) + sum(0.067 * len(label) + 0.3 for label in labels) if title else 0.0
+    seen = (_SIGNS.sub("", _COMMANDS.sub("x", label)) for label in labels)
+    return 0.085 * len(title) + sum(0.067 * len(label) + 0.3 for label in seen) if title else 0.0

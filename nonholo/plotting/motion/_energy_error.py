@@ -11,10 +11,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
+from nonholo.base.checks import error as refusal
 from nonholo.base.types import Float
-from nonholo.orbit import AbstractMotion, Orbit
+from nonholo.orbit import AbstractOrbit
 from nonholo.plotting import theme
-from nonholo.plotting.parts import drawable, evenly_in_box, is_discrete, posed
+from nonholo.plotting.parts import drawable_in_time, evenly_in_box
 
 _MOST_DOTS = 2000
 _COLUMNS = 600
@@ -48,7 +49,7 @@ class EnergyError:
 
 
 @theme.styled
-def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
+def energy_error(orbit: AbstractOrbit, axes: Axes | None = None) -> EnergyError:
     r"""Draw the relative error of the reduced constrained energy against time.
 
     $$ (E_k - E_0)/E_0 , $$
@@ -70,26 +71,46 @@ def energy_error(orbit: Orbit, axes: Axes | None = None) -> EnergyError:
         >>> nh.plot.energy_error(orbit).unit
         1e-16
     """
-    drawable("energy_error(orbit=...)", orbit)
-    if orbit.system.is_spatial:
-        posed("energy_error(orbit=...)", orbit)
+    drawable_in_time("energy_error(orbit=...)", orbit)
+    if not orbit.has_poses and orbit.system.is_spatial:
+        raise refusal("energy_error(orbit=...)", "have poses", "an orbit without them", "Run with reconstruct=True.")
     axes = theme.axes_or_new(axes, (6.0, 2.6))
     energy = orbit.energy
     error = (energy - energy[0]) / (energy[0] or 1.0)
     unit = _unit(float(np.abs(error).max()))
+    rounding, drawn = _over_rounding(orbit, axes, error / unit, unit)
+    _dress(axes, error / unit, unit, rf"\Delta E{'/E' if energy[0] else ''}")
+    axes.set_title("Energy error")
+    theme.legend_above(axes)
+    look: Any = {"color": "#555a62", "fontsize": 9, "va": "top", "path_effects": theme.HALO, "zorder": 6}
+    expected = axes.text(0.012, 0.97, _expected(orbit), transform=axes.transAxes, **look)
+    return EnergyError(axes, drawn, rounding, unit, expected)
+
+
+def draw_residual(orbit: Any, axes: Axes) -> None:
+    """Draw the residual of the constraint of an orbit that knows it, in the same way."""
+    residual = orbit.constraint_residual
+    unit = _unit(float(np.abs(residual).max()))
+    _over_rounding(orbit, axes, residual / unit, unit)
+    _dress(axes, residual / unit, unit, "|F|" if orbit.is_discrete else r"|A\,v|")
+    axes.set_ylim(bottom=0.0)
+    axes.set_title("Residual of the constraint")
+    theme.legend_above(axes)
+
+
+def _over_rounding(
+    orbit: AbstractOrbit, axes: Axes, error: Float[np.ndarray, "K"], unit: float
+) -> tuple[Rectangle, PathCollection | PolyCollection | Line2D]:
+    """Draw errors in a unit over the band of rounding."""
     shown = "machine epsilon" if _EPS / unit > _VISIBLE else "_machine epsilon"  # a legend of what can be seen
     band: Any = {"color": theme.LEVEL, "alpha": 0.45, "linewidth": 0, "zorder": 0, "label": shown}
     rounding = axes.axhspan(-_EPS / unit, _EPS / unit, **band)
     axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
-    drawn = (_error if is_discrete(orbit) else _curve)(axes, orbit.time, error / unit)
-    _dress(axes, error / unit, unit, relative=bool(energy[0]))
-    look: Any = {"color": "#555a62", "fontsize": 9, "va": "top", "path_effects": theme.HALO, "zorder": 6}
-    expected = axes.text(0.012, 0.97, _expected(orbit.motion), transform=axes.transAxes, **look)
-    return EnergyError(axes, drawn, rounding, unit, expected)
+    return rounding, (_error if orbit.is_discrete else _curve)(axes, orbit.time, error)
 
 
-def _expected(motion: AbstractMotion) -> str:
-    return "of given poses" if motion.is_measured else _EXPECTED[motion.conserves_energy]
+def _expected(orbit: AbstractOrbit) -> str:
+    return "of given poses" if orbit.is_measured else _EXPECTED[orbit.conserves_energy]
 
 
 def _unit(largest: float) -> float:
@@ -109,9 +130,7 @@ def _curve(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K
     return axes.plot(time[chosen], error[chosen], color=theme.CONTINUOUS, linewidth=1.0, zorder=3)[0]
 
 
-def _dress(axes: Axes, error: Float[np.ndarray, "K"], unit: float, relative: bool) -> None:
+def _dress(axes: Axes, error: Float[np.ndarray, "K"], unit: float, name: str) -> None:
     exponent = math.floor(math.log10(unit) + 0.5)
     reach = 1.4 * max(float(np.abs(error).max()), 1.6 * _EPS / unit)
-    ylabel = rf"$\Delta E{'/E' if relative else ''}$   [$10^{{{exponent}}}$]"
-    axes.set(xlabel="time", ylabel=ylabel, ylim=(-reach, reach), title="Energy error")
-    theme.legend_above(axes)
+    axes.set(xlabel="time", ylabel=rf"${name}$   [$10^{{{exponent}}}$]", ylim=(-reach, reach))

@@ -7,8 +7,8 @@ from nonholo.plotting.parts._sphere import View, arcs, best_view, draw_curve, dr
 from nonholo.plotting.parts._sphere_path import draw_named_axes, draw_path, mark_ends, name_beside
 from nonholo.plotting.parts._subject import (
     drawable,
+    drawable_in_time,
     forbidden_axis,
-    is_discrete,
     is_free,
     is_same_body,
     known_equilibria,

@@ -7,10 +7,10 @@ from typing import Any, cast
 
 import numpy as np
 
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import error, instance, shown
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
-from nonholo.orbit import Orbit, as_orbit
+from nonholo.orbit import AbstractOrbit, Orbit, as_orbit
 from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System
 
 _ROUNDING = 1e-12  # relative
@@ -19,7 +19,14 @@ NEAR_EQUILIBRIUM = 0.03  # sine, in the metric of the energy, of the angle to th
 
 def drawable(where: str, orbit: Any) -> Orbit:
     """Return an orbit with at least one state."""
-    if len(as_orbit(where, orbit, "for one in coordinates plot its arrays, as docs/gallery does.")) == 0:
+    as_orbit(where, orbit, "for one in coordinates use `overview` and `energy_error`.")
+    return drawable_in_time(where, orbit)
+
+
+def drawable_in_time(where: str, orbit: Any) -> Any:
+    """Return an orbit of any kind, on a group or in coordinates, with at least one state."""
+    remedy = "Pass what `simulate` or `flow` returned."
+    if len(instance(where, orbit, AbstractOrbit, "be an orbit", remedy)) == 0:
         raise error(where, "have a state to draw", "none", "See `orbit.outcome` for why the run did not start.")
     return orbit
 
@@ -35,11 +42,6 @@ def same_group(where: str, orbit: Any, other: Orbit) -> None:
     """Refuse an orbit, if there is one, that moves on another group than the orbit it is drawn beside."""
     if orbit is not None and posed(where, orbit).system.group != other.system.group:
         raise error(where, f"move on {other.system.group}", f"{orbit.system.group}", "Pass a motion of the same body.")
-
-
-def is_discrete(orbit: Orbit) -> bool:
-    """Tell a discrete orbit from a continuous flow."""
-    return orbit.cayley is not None
 
 
 def is_free(system: System) -> bool:
