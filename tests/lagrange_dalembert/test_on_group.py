@@ -353,3 +353,12 @@ def test_orbits_on_groups_have_tables_files_and_pictures(tmp_path) -> None:  # n
     assert np.array_equal(np.ma.getdata(panels[0].collections[0].get_offsets()), orbit.configuration[:, :2, 2])
     titles = ["Reference point", "Body velocity", "Energy error", "Residual of the constraint"]
     assert [axes.get_title(loc="left") for axes in panels] == titles
+
+
+def test_blocks_on_groups_are_the_run() -> None:
+    """Bit for bit, as in coordinates."""
+    start = {**START, "body_velocity": admissible(0.9, 1.0)}
+    blocks = list(nh.iterate(MIXED.discretize(0.1), **start, steps=10, block_steps=4))
+    assert [len(block) for block in blocks] == [4, 4, 3]
+    for rows in ("time", "configuration", "displacement", "momentum", "multipliers"):
+        assert np.array_equal(np.concatenate([getattr(each, rows) for each in blocks]), getattr(run(0.1, 10), rows))

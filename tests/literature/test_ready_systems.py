@@ -89,6 +89,20 @@ def test_files_are_read_back_exactly(name: str, tmp_path) -> None:  # noqa: ANN0
 
 @HERE
 @pytest.mark.parametrize("name", NAMES)
+def test_blocks_together_are_the_run(name: str) -> None:
+    """Bit for bit, thinned too; the last block has the states that are left."""
+    start = {"configuration": ready(name).configuration, "body_velocity": ready(name).body_velocity}
+    discrete = nh.discretize(ready(name).system, 0.1)
+    for every, block, sizes in ((1, 12, [12, 12, 12, 5]), (3, 12, [4, 4, 4, 2]), (1, 40, [41]), (1, 39, [39, 2])):
+        whole = nh.simulate(discrete, **start, steps=40, save_every=every)
+        blocks = list(nh.iterate(discrete, **start, steps=40, save_every=every, block_steps=block))
+        assert [len(each) for each in blocks] == sizes
+        for rows in ("time", "configuration", "displacement", "momentum", "multipliers", "energy"):
+            assert np.array_equal(np.concatenate([getattr(each, rows) for each in blocks]), getattr(whole, rows))
+
+
+@HERE
+@pytest.mark.parametrize("name", NAMES)
 def test_the_errors_against_the_flow_are_of_order_two(name: str) -> None:
     """Of configurations and of momenta along admissible directions, where they are not only rounding."""
     study = nh.compare([run(name), run(name, 80)], flow(name))
