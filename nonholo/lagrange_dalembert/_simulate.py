@@ -142,7 +142,7 @@ def _blocks(
     The last block ends with the last state, whose impulse is not known.
     """
     state, sign, code = start
-    done, given, tables = 0, 0, []
+    started, done, given, tables = int(code == 0), 0, 0, []
     with progress_bar("steps", progress) as report:
         while code == 0 and done < steps:
             left, open_rows = steps - done, most - sum(len(table[0]) for table in tables)
@@ -154,12 +154,16 @@ def _blocks(
             done += int(taken)
             report(done, steps)
             if code == 0 and begun == open_rows and done < steps:
-                yield [np.concatenate(column) for column in zip(*tables, strict=True)], code, done
+                yield _joined(tables), code, done
                 given, tables = given + most, []
-    kept = 1 + done // every - given if given or tables else 0
+    kept = started * (1 + done // every - given)
     last = [np.asarray(state[0])[None], np.asarray(state[1])[None], np.empty((0, system.constraints))]
-    columns = [np.concatenate(column)[:kept] for column in zip(*tables, last, strict=True)]
-    yield [*columns[:2], columns[2][: max(kept - 1, 0)]], code, done
+    q, v, impulses = _joined([*tables, last])
+    yield [q[:kept], v[:kept], impulses[: max(kept - 1, 0)]], code, done
+
+
+def _joined(tables: list[list[np.ndarray]]) -> list[np.ndarray]:
+    return [np.concatenate(column) for column in zip(*tables, strict=True)]
 
 
 def _decoded(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> list[np.ndarray]:
