@@ -349,6 +349,7 @@ def test_orbits_on_groups_have_tables_files_and_pictures(tmp_path) -> None:  # n
     orbit.to_csv(tmp_path / "poses.csv")
     rows = np.loadtxt(tmp_path / "poses.csv", delimiter=",", skiprows=1)
     assert np.array_equal(rows, np.column_stack([orbit.time, table[["x", "y", "heading"]].to_numpy()]))
+    assert nh.invariants(orbit).group_residual <= 1e-15
     panels = orbit.plot().axes
     assert np.array_equal(np.ma.getdata(panels[0].collections[0].get_offsets()), orbit.configuration[:, :2, 2])
     titles = ["Reference point", "Body velocity", "Energy error", "Residual of the constraint"]

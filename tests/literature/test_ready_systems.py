@@ -113,6 +113,17 @@ def test_the_errors_against_the_flow_are_of_order_two(name: str) -> None:
 
 @HERE
 @pytest.mark.parametrize("name", NAMES)
+def test_invariants_are_measured(name: str) -> None:
+    """Drift of the energy and residual of the constraint are those of the orbit's own numbers."""
+    orbit = run(name)
+    found = nh.invariants(orbit)
+    assert (found.states, found.steps, found.group_residual, found.outcome) == (41, 40, None, nh.Outcome.successful)
+    assert found.energy_drift == max(abs(e - orbit.energy[0]) / abs(orbit.energy[0]) for e in orbit.energy)
+    assert found.constraint_residual == max(orbit.constraint_residual)
+
+
+@HERE
+@pytest.mark.parametrize("name", NAMES)
 def test_restricted_momenta_act_on_admissible_velocities_alone(name: str) -> None:
     """They agree with the momentum on every admissible velocity, and vanish across: they lie in their span."""
     orbit, system = run(name), ready(name).system
