@@ -74,6 +74,9 @@ if TYPE_CHECKING:
     from nonholo.simulation import iterate as iterate
     from nonholo.simulation import simulate as simulate
     from nonholo.systems import ChaplyginSleigh as ChaplyginSleigh
+    from nonholo.systems import Forced as Forced
+    from nonholo.systems import Friction as Friction
+    from nonholo.systems import Gravity as Gravity
     from nonholo.systems import ImpossibleBodyWarning as ImpossibleBodyWarning
     from nonholo.systems import LLSystem as LLSystem
     from nonholo.systems import LRSystem as LRSystem
@@ -98,6 +101,9 @@ _HOMES = {
     "FlowEnsemble": "simulation",
     "Event": "simulation",
     "EventLog": "simulation",
+    "Forced": "systems",
+    "Friction": "systems",
+    "Gravity": "systems",
     "Grid": "ensembles",
     "GroupLagrangeDAlembert": "lagrange_dalembert",
     "ImpossibleBodyWarning": "systems",

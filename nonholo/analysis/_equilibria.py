@@ -11,7 +11,7 @@ import numpy as np
 from nonholo.base.checks import error, positive
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.discrete import Discretization, weights
-from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, NormalForm
+from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, NormalForm, refuse_forces
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -142,6 +142,7 @@ def _checked(where: str, value: Any) -> tuple[AbstractLLSystem, Float[np.ndarray
     """Return the body and the time steps of the substeps, one for order 2."""
     remedy = "Pass a left-invariant system, or a discretization of a top or a sleigh."
     body = value.system if isinstance(value, Discretization) else value
+    refuse_forces(where, body)
     if not isinstance(body, AbstractSystem) or body.is_spatial:
         raise error(where, "have a left-invariant constraint", type(body).__name__, remedy)
     left = cast(AbstractLLSystem, body)

@@ -34,7 +34,8 @@ def momenta_by_series(
     outcome = Outcome.successful if len(rows) == len(elapsed) - 1 else Outcome.not_converged
     states = States(decoded(form, np.vstack([start[0, :-1], rows]) * unit), None, None)
     at = functools.partial(_between, form, nodes, unit, end, tolerance)
-    return Solved(states, outcome, at, looked_at(np.array([*(node[0, -1] for node in nodes), end])) / unit)
+    ends = [*(node[0, -1] for node in nodes), end]
+    return Solved(states, outcome, at, functools.partial(looked_at, ends, unit))
 
 
 def _between(

@@ -13,10 +13,11 @@ import numpy as np
 
 from nonholo.base.checks import array, error, number, shape_of, shown, trailing
 from nonholo.base.types import Array, Float
+from nonholo.continuous._forced import forced_reaction
 from nonholo.continuous._solution import States
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.systems import AbstractSystem, inertia_form
+from nonholo.systems import AbstractSystem, inertia_form, refuse_forces
 
 Body = tuple[Array, Array, Array]
 r"""Constraint subspace $S$, inertia operator $\mathbb{I}$ and $(S\mathbb{I}S^T)^{-1}S$, which takes r to $\omega$."""
@@ -95,8 +96,10 @@ class ContinuousFlow(AbstractMotion):
 
         For a right-invariant constraint the last term is $\sum_j \lambda_j \mathrm{Ad}^*_g a^j$.
         """
-        system = self.system
-        if system.is_spatial:
+        system, forced = self.system, self.system.forces
+        if forced is not None:
+            force = forced_reaction(forced, states)
+        elif system.is_spatial:
             force = spatial_reaction(system, states.configuration, states.body_velocity)
         else:
             force = reaction(system.group, body_of(system), states.restricted_momentum)
@@ -175,6 +178,7 @@ def vector_field(system: AbstractSystem) -> Callable[[Array, Float[Array, "size"
     """
     if not isinstance(system, AbstractSystem):
         raise error("vector_field(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
+    refuse_forces("vector_field(system=...)", system)
     group, S = system.group, system.constraint_subspace
     k, shape = len(S), group.identity.shape
     body = None if system.is_spatial else body_of(system)

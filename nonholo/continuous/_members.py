@@ -1,12 +1,12 @@
-"""Taylor series of many motions: side by side where the constraint is fixed in the body, else one by one."""
+"""Flows of many motions: by series side by side where the constraint is in the body and nothing acts, or alone."""
 
 from collections.abc import Callable
 
 import numpy as np
 
 from nonholo.base.types import Bool, Float, Int
-from nonholo.continuous._series import GUARD, body_equations, body_numbers, by_series, is_compact, power_of_two
-from nonholo.continuous._solution import PLANE, States, first_heading, on_same_turn
+from nonholo.continuous._series import GUARD, body_equations, body_numbers, is_compact, power_of_two
+from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
 from nonholo.kernels import solve_members
 from nonholo.systems import AbstractSystem
 
@@ -14,7 +14,7 @@ from nonholo.systems import AbstractSystem
 def members_by_series(
     system: AbstractSystem,
     inertias: Float[np.ndarray, "m dim dim"],
-    each: Callable[[int], AbstractSystem],
+    each: Callable[[int], Callable[..., Solved]],
     momenta: Float[np.ndarray, "M k"],
     poses: Float[np.ndarray, "M size"],
     elapsed: Float[np.ndarray, "K"],
@@ -24,18 +24,18 @@ def members_by_series(
     """Return the states of members at times since the start, NaN where there is none, and how many each has.
 
     Args:
-        system: A canonical system; those of the members differ from it in numbers only.
+        system: A system; those of the members differ from it in numbers only.
         inertias: Their inertia operators, or with an axis of length 1 that of all.
-        each: Gives the canonical system of a member.
+        each: Gives what solves for a member alone.
         momenta: First momenta.
         poses: First poses.
         elapsed: Times since the start.
         tolerance: Relative error of a step.
         stop: Ends the work when it becomes true.
     """
-    group, S, k = system.group, system.constraint_subspace, momenta.shape[1]
-    if system.is_spatial or not is_compact(group):
-        return _one_by_one(each, momenta, poses, elapsed, tolerance, stop)
+    group, S, k = system.group, system.canonical.constraint_subspace, momenta.shape[1]
+    if system.is_spatial or not is_compact(group) or system.forces is not None:
+        return _one_by_one(group == PLANE, each, momenta, poses, elapsed, tolerance, stop)
     velocities, torques = body_numbers(group, S, inertias)
     used = (torques != 0).any(axis=0)
     f = body_equations(group, S, velocities[0], used.astype(np.float64))
@@ -51,7 +51,8 @@ def members_by_series(
 
 
 def _one_by_one(
-    each: Callable[[int], AbstractSystem],
+    turns: bool,
+    each: Callable[[int], Callable[..., Solved]],
     momenta: np.ndarray,
     poses: np.ndarray,
     elapsed: np.ndarray,
@@ -60,11 +61,11 @@ def _one_by_one(
 ) -> tuple[States, np.ndarray]:
     reached = np.zeros(len(momenta), dtype=np.int64)
     r, g = (np.full((len(momenta), len(elapsed), rows.shape[1]), np.nan) for rows in (momenta, poses))
-    turned = np.full((len(momenta), len(elapsed)), np.nan) if each(0).group == PLANE else None
+    turned = np.full((len(momenta), len(elapsed)), np.nan) if turns else None
     for member in range(len(momenta)):
         if stop[0]:
             break
-        states = by_series(each(member), momenta[member], poses[member], elapsed, (tolerance, 1.0)).states
+        states = each(member)(momenta[member], poses[member], elapsed, (tolerance, 1.0)).states
         reached[member] = good = len(states.momenta)
         r[member, :good], g[member, :good] = states.momenta, states.poses
         if turned is not None:

@@ -11,6 +11,7 @@ $$ \mathbb{J}_g' = X\mathbb{J}_g + \mathbb{J}_g X^T, \qquad g' = X g, \qquad X =
 import dataclasses
 import functools
 import math
+from collections.abc import Sequence
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -70,6 +71,10 @@ class Series:
         limits = self.end * self.unit, self.tolerance
         return self.decoded(revisit_series(self.equations, self.nodes, elapsed * self.unit, *limits))
 
+    def looks(self) -> Float[np.ndarray, "looks"]:
+        """Return times since the start at which the state is looked at for events."""
+        return looked_at([*self.nodes[:, 0, -1], self.end * self.unit], self.unit)
+
     def decoded(self, rows: Float[np.ndarray, "K size"]) -> States:
         """Return momenta, poses and headings."""
         group, end = self.group, rows.shape[1] - self.head
@@ -77,7 +82,11 @@ class Series:
         found = rows[:, :pose_end]
         matrices = found.reshape(-1, *group.identity.shape) if not self.compact else None
         poses = group.normalize_pose(found if matrices is None else group.pose_from_matrix(matrices))
-        momenta = rows[:, end:] * self.unit if self.momentum is None else np.tile(self.momentum, (len(rows), 1))
+        momenta = (
+            rows[:, end:] * self.unit
+            if self.momentum is None
+            else np.broadcast_to(self.momentum, (len(rows), len(self.momentum))).copy()
+        )
         return States(momenta, poses, on_same_turn(rows[:, pose_end], poses) if group == PLANE else None)
 
 
@@ -147,15 +156,16 @@ def _solved(
     rows, nodes = solve_series(f, np.concatenate([g, first_heading(group, pose), head]), elapsed * unit, tolerance)
     series = Series(group, f, len(head), compact, constant, unit, tolerance, float(elapsed[-1]), nodes)
     outcome = Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
-    return Solved(
-        series.decoded(rows), outcome, series, looked_at(np.append(nodes[:, 0, -1], elapsed[-1] * unit)) / unit
-    )
+    return Solved(series.decoded(rows), outcome, series, series.looks)
 
 
-def looked_at(ends: Float[np.ndarray, "steps"]) -> Float[np.ndarray, "looks"]:
-    """Return times at which the state is looked at for events: steps are long, so within them too."""
+def looked_at(ends: Sequence[float], unit: float) -> Float[np.ndarray, "looks"]:
+    """Return times at which the state is looked at for events: steps are long, so within them too.
+
+    Ends of steps are in another unit of time.
+    """
     looks = np.arange(_LOOKS * len(ends) - _LOOKS + 1) / _LOOKS
-    return np.interp(looks, np.arange(len(ends)), ends)
+    return np.interp(looks, np.arange(len(ends)), ends) / unit
 
 
 @functools.lru_cache(maxsize=16)

@@ -38,14 +38,14 @@ class Solved(NamedTuple):
         states: At the requested times; after a failure only the good ones.
         outcome: How it ended.
         at: Gives the states at times since the start, up to the last good one, in the order of the requested times.
-        steps: Where steps of the solver begin and, if they are long, times within; empty if that says nothing of the
-            motion.
+        steps: Gives where steps of the solver begin and, if they are long, times within; none if that says nothing of
+            the motion.
     """
 
     states: States
     outcome: Outcome
     at: Callable[[Float[np.ndarray, "K"]], States]
-    steps: Float[np.ndarray, "steps"] = np.zeros(0)
+    steps: Callable[[], Float[np.ndarray, "steps"]] = lambda: np.zeros(0)
 
 
 def first_heading(group: AbstractMatrixGroup, pose: Float[np.ndarray, "... size"]) -> Float[np.ndarray, "... j"]:

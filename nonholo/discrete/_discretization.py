@@ -3,7 +3,7 @@
 import dataclasses
 import functools
 from collections.abc import Callable
-from typing import Any, ClassVar, overload
+from typing import Any, ClassVar, cast, overload
 
 import numpy as np
 
@@ -16,7 +16,15 @@ from nonholo.discrete._scheme import Difference, Scheme
 from nonholo.discrete._variety import Constraint, checked_constraint, equations_of
 from nonholo.discrete.routes import AbstractRoute, make_route
 from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, DiscretizationT, System, refuse_in_coordinates
+from nonholo.systems import (
+    AbstractCoordinateSystem,
+    AbstractSystem,
+    DiscretizationT,
+    Forced,
+    System,
+    refuse_forces,
+    refuse_in_coordinates,
+)
 
 
 @pytree
@@ -53,6 +61,11 @@ class Discretization(Scheme, AbstractMotion):
         return make_route(self, self.wanted_route)
 
     @property
+    def forces(self) -> Forced | None:
+        """The system with its forces; None of a free one."""
+        return self.system.forces
+
+    @property
     def route_name(self) -> str:
         """How stores call the route."""
         return self.route.name
@@ -65,7 +78,7 @@ class Discretization(Scheme, AbstractMotion):
             >>> discretize(ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, difference="logarithmic").conserves_energy
             False
         """
-        if self.difference != "matrix" or self.system.is_spatial:
+        if self.difference != "matrix" or self.system.is_spatial or self.forces is not None:
             return False
         if self.constraint != "exponential":
             return self.constraint == "skew"
@@ -116,7 +129,8 @@ class Discretization(Scheme, AbstractMotion):
         first = self
         if self.order > 2:
             first = dataclasses.replace(self, time_step=weights(self.order)[0] * self.time_step, order=2)
-        return first._momentum(states, states.canonical_chart, "left")
+        momentum = first._momentum(states, states.canonical_chart, "left")
+        return momentum if self.forces is None else momentum - self._impulses(states, 0)
 
     def multipliers(self, states: Orbit) -> Float[np.ndarray, "L s"]:
         r"""Return the impulses $\lambda$ in $P_{k+1} - \mathrm{Ad}^*_{W_k} P_k = \sum_j \lambda_j a^j$.
@@ -131,6 +145,8 @@ class Discretization(Scheme, AbstractMotion):
         before = states.chosen(slice(None, -1))
         charts = states.canonical_chart[1:] if states.save_every == 1 else self.route.next_charts(before)
         arriving = self._momentum(before, before.canonical_chart, "right")
+        if self.forces is not None:
+            arriving = arriving + self._impulses(states[1:], 0) + self._impulses(states[1:], -1)
         if not self.system.is_spatial:
             jump = legendre_of_chart(self, charts, "left") - arriving
             return jump @ np.linalg.pinv(self.system.annihilator)
@@ -138,6 +154,13 @@ class Discretization(Scheme, AbstractMotion):
         g = self.displaced(before.canonical_chart) @ before.configuration
         jump = _in_body(self, charts, g, "left") - arriving
         return group.coadjoint(group.inverse(g), jump) @ np.linalg.pinv(self.system.annihilator)
+
+    def _impulses(self, states: Orbit, shift: int) -> Float[np.ndarray, "K dim"]:
+        """Return the half impulses at nodes of the steps that begin there, or with shift -1 of those that end there."""
+        forced, half = cast(Forced, self.forces), float(self.time_step) * (0.5 + shift)
+        steps = np.rint(states.time / self.time_step).astype(int) + shift
+        found = forced.impulses(states.restricted_momentum, states.configuration, states.time, steps, half)
+        return found if shift == 0 else -found
 
     def _momentum(self, states: Orbit, cayley: np.ndarray, side: str) -> np.ndarray:
         if self.system.is_spatial:
@@ -150,12 +173,14 @@ def _in_body(discrete: Discretization, cayley: np.ndarray, g: np.ndarray, side: 
     return legendre(discrete, discrete.system.group.inverse(g) @ discrete.variety.increment(cayley) @ g, side)
 
 
-def as_discretization(where: str, value: Any, *, composed: bool = False) -> Discretization:
-    """Refuse what is not a discretized system on a group, and compositions unless they are welcome."""
+def as_discretization(where: str, value: Any, *, composed: bool = False, forced: bool = False) -> Discretization:
+    """Refuse what is not a discretized system on a group, and compositions and forces unless they are welcome."""
     if not isinstance(value, Discretization):
         raise error(where, "be a discretized system on a group", shown(value), "Pass what `discretize` returned.")
     if not composed:
         refuse_composition(where, value, "Pass the discretization of order 2 that is composed.")
+    if not forced:
+        refuse_forces(where, value.system)
     return value
 
 
@@ -223,7 +248,10 @@ def discretize(
     step = scale("discretize(time_step=...)", time_step, "Pass a positive real time step.")
     chosen = _difference(system, difference)
     variety = _constraint(system, constraint)
-    return Discretization(system, step, chosen, variety, checked_order(order, chosen, variety))
+    made = Discretization(system, step, chosen, variety, checked_order(order, chosen, variety))
+    if made.forces is not None:
+        make_route(made)  # refused here where there is none
+    return made
 
 
 def _difference(system: AbstractSystem, difference: Difference | None) -> Difference:

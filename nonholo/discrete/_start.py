@@ -11,7 +11,7 @@ from nonholo.discrete._composition import refuse_composition
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete._variety import equations_of
-from nonholo.systems import Start, in_group, of_finite_energy
+from nonholo.systems import Start, in_group, of_finite_energy, refuse_forces
 
 _TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in floating point
 
@@ -27,6 +27,7 @@ def initial_state(
     if start.name == "displacement":
         remedy = "A whole step does not lie on the variety: start from a momentum or a velocity."
         refuse_composition(start.where, discrete, remedy)
+        refuse_forces(start.where, discrete.system)
         W = on_variety(start.where, discrete, g, start.value)
         momentum = legendre(discrete, W - system.group.identity, "left")
         return of_finite_energy(start.owner, system, g, system.restrict_at(momentum, g)), W

@@ -19,7 +19,8 @@ from nonholo.ensembles._names import OUTCOME, STARTS, start_component
 from nonholo.ensembles._reductions import REDUCTIONS, final_state_of_schema_1
 from nonholo.io import unstored
 from nonholo.simulation import Ensemble, Members, ensemble, run_in_lanes
-from nonholo.systems import one_start
+from nonholo.simulation.runs import check_forces
+from nonholo.systems import one_start, refuse_forces
 
 _MEMBER = re.compile(r"This is member (\d+)\.")
 _BLOCK, _NUMBERS = 1 << 16, 1 << 22  # most members of a block, and numbers of all their states
@@ -89,7 +90,7 @@ class EnsembleTask:
         if save_every is not None:
             save_every = count("EnsembleTask(save_every=...)", save_every, "Pass the steps between states, or None.")
         kept = {
-            "discrete": as_discretization("EnsembleTask(discrete=...)", discrete, composed=True),
+            "discrete": as_discretization("EnsembleTask(discrete=...)", discrete, composed=True, forced=True),
             "steps": count("EnsembleTask(steps=...)", steps, "Pass the number of steps."),
             "start": given[0] if given else None,
             "reductions": _checked_reductions(reductions),
@@ -98,6 +99,9 @@ class EnsembleTask:
         }
         for name, value in kept.items():
             object.__setattr__(self, name, value)
+        check_forces("EnsembleTask", discrete, self.steps)
+        if free := ({*REDUCTIONS} - {"final_state"}) & {*self.reductions}:
+            refuse_forces(f"EnsembleTask(reductions={sorted(free)})", discrete.system)
 
     def __call__(self, block: MemberBlock) -> dict[str, Any]:
         """Run a block of members and reduce it."""

@@ -6,7 +6,7 @@ from nonholo.base.types import Array, Float
 def normalized(q: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
     """Return a quaternion divided by its length."""
     xp = q.__array_namespace__()
-    return q / xp.sqrt(xp.sum(q * q, axis=-1, keepdims=True))
+    return q / xp.sqrt((q * q).sum(axis=-1, keepdims=True))
 
 
 def matrix_from_quaternion(q: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:

@@ -8,18 +8,22 @@ import numpy as np
 from nonholo import systems
 from nonholo.base.checks import error
 from nonholo.groups import SE, SO, AbstractMatrixGroup, MatrixGroup, ProductGroup, Translations
-from nonholo.systems import AbstractSystem
+from nonholo.systems import AbstractSystem, Friction, Gravity
 
 _CALLABLE = "callable"  # schema 1 wrote the same word
 _OWN = "of your own"
 _ARGUMENTS = {"given_inertia": "inertia_operator"}  # fields that the constructor calls otherwise
+_FORCES = {"Gravity": Gravity, "Friction": Friction}
 _FAMILIES = {"SO": SO, "SE": SE, "Translations": Translations}
 
 
 def fields_of(owner: Any) -> dict[str, Any]:
     """Return the fields of a dataclass as plain data, floating-point numbers such that they are read back exactly."""
     stored = (field.name for field in dataclasses.fields(owner) if field.metadata.get("stored", True))
-    return {name: _plain(getattr(owner, name)) for name in stored}
+    plain = {name: _plain(getattr(owner, name)) for name in stored}
+    if getattr(owner, "is_forced", False):
+        plain["system"] = {"kind": type(owner.system).__name__, "parameters": fields_of(owner.system)}
+    return plain
 
 
 def unstored(described: dict[str, Any]) -> str | None:
@@ -27,6 +31,8 @@ def unstored(described: dict[str, Any]) -> str | None:
     for name, value in described.items():
         if value == _CALLABLE:
             return f"{name} is a callable"
+        if isinstance(value, dict) and (inside := unstored(value.get("parameters", {}))):
+            return f"{name}: {inside}"
         if isinstance(value, dict) and _is_own(value):
             return f"{name} holds a custom object"
     return None
@@ -75,6 +81,8 @@ def restore_group(described: dict[str, Any]) -> AbstractMatrixGroup:
 def _plain(value: Any) -> Any:
     if isinstance(value, AbstractMatrixGroup):
         return describe_group(value)
+    if type(value).__name__ in _FORCES:
+        return {"kind": type(value).__name__, "parameters": fields_of(value)}
     if callable(value) or (isinstance(value, tuple) and any(map(callable, value))):
         return _CALLABLE
     if value is None or isinstance(value, str | AbstractSystem):
@@ -84,7 +92,13 @@ def _plain(value: Any) -> Any:
 
 
 def _restored(value: Any) -> Any:
-    return restore_group(value) if isinstance(value, dict) else value
+    if not isinstance(value, dict):
+        return value
+    if "kind" not in value:
+        return restore_group(value)
+    if value["kind"] in _FORCES:
+        return _FORCES[value["kind"]](**value["parameters"])
+    return restore_system(value["kind"], value["parameters"])
 
 
 def _is_own(described: dict[str, Any]) -> bool:

@@ -4,6 +4,7 @@ from nonholo.kernels._composition import ComposedBody, whole_steps
 from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
+from nonholo.kernels._forced import ForcedBody, Kick
 from nonholo.kernels._interface import Body, certified, correction, increment, move, residual, tangent
 from nonholo.kernels._nearest import NearestBody
 from nonholo.kernels._nearest import advance as advance_to_nearest
@@ -30,7 +31,9 @@ __all__ = [
     "Arrowhead",
     "Body",
     "ComposedBody",
+    "ForcedBody",
     "GeneralBody",
+    "Kick",
     "MemberRows",
     "NearestBody",
     "Quadratic",

@@ -5,8 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo.kernels import _composition, _driver
+from nonholo.kernels import _composition, _driver, _forced
 from nonholo.kernels._composition import ComposedBody
+from nonholo.kernels._forced import ForcedBody
 from nonholo.kernels._interface import Body
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.general import run as general_run
@@ -14,7 +15,7 @@ from nonholo.kernels.secular import SecularBody
 from nonholo.kernels.secular import run as secular_run
 
 PlainBody = Body | GeneralBody | SecularBody
-AnyBody = PlainBody | ComposedBody
+AnyBody = PlainBody | ComposedBody | ForcedBody
 Rows = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
@@ -103,10 +104,19 @@ def _composed_advance(body: ComposedBody, state: np.ndarray, steps: int, every: 
     return _composition.advance(body, state, steps, every, rows)
 
 
+def _forced_start(body: ForcedBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
+    return _forced.start(body, momentum, pose, sizes(body.body))
+
+
+def _forced_chart(body: ForcedBody, state: np.ndarray) -> np.ndarray:
+    return state[len(state) - sizes(body.body)[1] :]
+
+
 _EACH, _SECULAR_EACH = _without_poses(_driver.step_each), _without_poses(secular_run.step_each)
 _SCALAR = _Runs(lambda _: (2, 2, 4), _scalar_start, lambda _, state: state[4:6], _driver.advance, _EACH)
 _RUNS: dict[type, _Runs] = {
     SecularBody: _Runs(_secular_sizes, secular_run.start, secular_run.chart_in, secular_run.advance, _SECULAR_EACH),
     GeneralBody: _Runs(_general_sizes, general_run.start, _general_chart, general_run.advance, _general_each),
     ComposedBody: _Runs(lambda body: sizes(body.body), _composition.start, _composed_chart, _composed_advance, None),
+    ForcedBody: _Runs(lambda body: sizes(body.body), _forced_start, _forced_chart, _forced.advance, None),
 }

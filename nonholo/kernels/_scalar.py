@@ -8,6 +8,16 @@ from numba.extending import overload, register_jitable
 COMPILED: Any = {"error_model": "numpy"}
 """Options of the scalar kernels: no exceptions on division; arithmetic is strict (docs/conventions.md, "Bits")."""
 
+BORROWING: Any = {**COMPILED, "_nrt": False, "forceinline": False}
+"""Options of kernels that only write to arrays of their callers, and return numbers: what makes an array is refused.
+
+numba counts the references to each array at each call, which takes longer than the arithmetic of a small matrix.
+Without `forceinline` they would take it from their callers.
+"""
+
+INLINED: Any = {**BORROWING, "forceinline": True}
+"""The same for functions with many arrays that are called in few places: passing them along takes time, too."""
+
 PIECES = 100_000
 """Most pieces of a path that is followed: some tens are usual, and no loop of a kernel is without end."""
 

@@ -7,31 +7,44 @@ the order of the loops.
 import numpy as np
 
 from nonholo.base.compiled import njit
+from nonholo.kernels._lanes import FOUR, load, spread, store
+from nonholo.kernels._scalar import BORROWING
 
-_WIDE = 8  # rows from which a sandwich is made of two products
-_SPLIT = 2.0**27 + 1  # halves the digits of a number
 
-
-@njit()
+@njit(**BORROWING)
 def multiply(A: np.ndarray, B: np.ndarray, out: np.ndarray) -> None:
     """Write A B, for square matrices."""
     if len(A) == 4:  # a constant bound lets the compiler unroll: three times as fast
-        _product(A, B, out, 4)
+        _four_columns(A, B, out, 4)
+    elif len(A) == 5:
+        _four_columns(A, B, out, 5)
+        _product(A, B, out, 4, 5)
+    elif len(A) == 3:
+        _product(A, B, out, 0, 3)
     else:
         _wide_product(A, B, out, len(A))
 
 
-@njit(inline="always")
-def _product(A: np.ndarray, B: np.ndarray, out: np.ndarray, n: int) -> None:
+@njit(inline="always", **BORROWING)
+def _four_columns(A: np.ndarray, B: np.ndarray, out: np.ndarray, n: int) -> None:
     for i in range(n):
-        for j in range(n):
+        row = spread(A[i, 0], FOUR) * load(B, 0, 0, FOUR)
+        for k in range(1, n):
+            row = row + spread(A[i, k], FOUR) * load(B, k, 0, FOUR)
+        store(out, i, 0, FOUR, row)
+
+
+@njit(inline="always", **BORROWING)
+def _product(A: np.ndarray, B: np.ndarray, out: np.ndarray, first: int, n: int) -> None:
+    for i in range(n):
+        for j in range(first, n):
             total = 0.0
             for k in range(n):
                 total += A[i, k] * B[k, j]
             out[i, j] = total
 
 
-@njit(inline="always")
+@njit(**BORROWING)
 def _wide_product(A: np.ndarray, B: np.ndarray, out: np.ndarray, n: int) -> None:
     """Write A B row by row, which runs in vector registers; four terms at a time spare the memory."""
     fours = n - n % 4
@@ -47,44 +60,14 @@ def _wide_product(A: np.ndarray, B: np.ndarray, out: np.ndarray, n: int) -> None
                 out[i, j] += A[i, k] * B[k, j]
 
 
-@njit()
-def sandwich(G: np.ndarray, Q: np.ndarray, half: np.ndarray, out: np.ndarray) -> None:
-    """Write G^T Q G^T; `half` is scratch."""
-    n = len(G)
-    if n == 4:
-        _sandwich(G, Q, half, out, 4)
-    elif n < _WIDE:
-        _sandwich(G, Q, half, out, n)
-    else:
-        transpose(G, out)
-        _wide_product(Q, out, half, n)
-        _wide_product(G.T, half, out, n)
-
-
-@njit(inline="always")
-def _sandwich(G: np.ndarray, Q: np.ndarray, half: np.ndarray, out: np.ndarray, n: int) -> None:
-    for i in range(n):
-        for j in range(n):
-            total = 0.0
-            for k in range(n):
-                total += Q[i, k] * G[j, k]
-            half[i, j] = total
-    for i in range(n):
-        for j in range(n):
-            total = 0.0
-            for k in range(n):
-                total += G[k, i] * half[k, j]
-            out[i, j] = total
-
-
-@njit()
+@njit(**BORROWING)
 def assign(target: np.ndarray, source: np.ndarray) -> None:
     """Write the numbers of a row to another one; numba compiles `target[:] = source` for seconds."""
     for i in range(len(source)):
         target[i] = source[i]
 
 
-@njit()
+@njit(**BORROWING)
 def assign_rows(target: np.ndarray, source: np.ndarray) -> None:
     """Write the numbers of a matrix to another one."""
     for i in range(source.shape[0]):
@@ -92,7 +75,7 @@ def assign_rows(target: np.ndarray, source: np.ndarray) -> None:
             target[i, j] = source[i, j]
 
 
-@njit()
+@njit(**BORROWING)
 def transpose(A: np.ndarray, out: np.ndarray) -> None:
     """Write the transpose of a square matrix."""
     for i in range(len(A)):
@@ -100,7 +83,7 @@ def transpose(A: np.ndarray, out: np.ndarray) -> None:
             out[i, j] = A[j, i]
 
 
-@njit()
+@njit(**BORROWING)
 def paired(A: np.ndarray, B: np.ndarray) -> float:
     """Return the sum of products of entries."""
     total = 0.0
@@ -110,33 +93,7 @@ def paired(A: np.ndarray, B: np.ndarray) -> float:
     return total
 
 
-@njit()
-def paired_twice(A: np.ndarray, rest: np.ndarray, B: np.ndarray, less: float) -> float:
-    """Return the sum of products of entries of A + rest with B, less a number, as if with twice the digits.
-
-    Dot2 of Ogita, Rump and Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26 (2005).
-    """
-    total, lost = -less, 0.0
-    for i in range(A.shape[0]):
-        for j in range(A.shape[1]):
-            term, error = _product_and_error(A[i, j], B[i, j])
-            before = total
-            total = before + term
-            part = total - before
-            lost += (error + rest[i, j] * B[i, j]) + ((before - (total - part)) + (term - part))
-    return total + lost
-
-
-@njit(inline="always")
-def _product_and_error(a: float, b: float) -> tuple[float, float]:
-    """Return the rounded product and its rounding error, by Dekker's halves."""
-    large_a, large_b, product = _SPLIT * a, _SPLIT * b, a * b
-    a1, b1 = large_a - (large_a - a), large_b - (large_b - b)
-    a2, b2 = a - a1, b - b1
-    return product, a2 * b2 - (((product - a1 * b1) - a2 * b1) - a1 * b2)
-
-
-@njit()
+@njit(**BORROWING)
 def eliminate(A: np.ndarray, B: np.ndarray) -> float:
     """Replace B by the solution of A X = B and return the determinant of A, zero or NaN if there is none.
 
@@ -159,7 +116,7 @@ def eliminate(A: np.ndarray, B: np.ndarray) -> float:
     return det
 
 
-@njit(inline="always")
+@njit(inline="always", **BORROWING)
 def _swap(A: np.ndarray, B: np.ndarray, k: int) -> float:
     """Bring the largest entry of column k to row k; return the sign of the exchange."""
     pivot = k
@@ -175,7 +132,7 @@ def _swap(A: np.ndarray, B: np.ndarray, k: int) -> float:
     return -1.0
 
 
-@njit(inline="always")
+@njit(inline="always", **BORROWING)
 def _subtract(A: np.ndarray, row: int, factor: float, other: int, begin: int) -> None:
     """Subtract a multiple of another row, from a column on."""
     for j in range(begin, A.shape[1]):

@@ -1,7 +1,7 @@
 """Functions of bodies for a substep of a composition: a root over given momenta, the push and the move at that root.
 
 The same pieces for every body, chosen by its type; numba chooses when it compiles. Tops in space and sleighs in the
-plane have a loop of their own, in `_composition`.
+plane have loops of their own, in `_composition` and `_forced`.
 """
 
 from collections.abc import Callable
@@ -88,10 +88,11 @@ def _general_prepared(p: GeneralBody, m: np.ndarray, weights: np.ndarray) -> Wor
 def _general_solved(
     p: GeneralBody, w: Workspace, stage: int, m: np.ndarray, guess: np.ndarray, pose: np.ndarray, root: np.ndarray
 ) -> int:
-    general_run.see_pose(p, w, pose.reshape(w.X.shape))
-    code, found = general_root.solve(p, w, m, guess)
-    assign(root, found)
-    return 5 if general_run.overflowed(p, pose) else code
+    g = pose.reshape(w.X.shape)
+    general_run.see_pose(p, w, g)
+    assign(root, guess)
+    code = general_root.solve(p, w, m, root)
+    return 5 if general_run.overflowed(p, g) else code
 
 
 @njit()

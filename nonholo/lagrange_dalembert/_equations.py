@@ -1,71 +1,133 @@
 r"""The equations: discrete Lagrangian and constraints by rule, momenta as their derivatives, the scaled matrix.
 
-Steps are described by (q, v) with $v = (q' - q)/h$, not by (q, q'), so that rules do not lose digits in q' - q.
+Steps are described by (x, v) with $v = (q' - q)/h$, not by (q, q'), so that rules do not lose digits in q' - q. A place
+x is the configuration q, of a driven system (q, t): time is one more coordinate, whose rate is one.
 """
 
 from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 from nonholo.base.types import Array
-from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-from nonholo.lagrange_dalembert._tracing import TwoPoint
+from nonholo.lagrange_dalembert._system import ForceTable, LagrangeDAlembert
+from nonholo.lagrange_dalembert._tracing import TwoPoint, takes_time
+
+_CORRECTIONS = 8  # of a velocity that belongs to a momentum: Newton's, one where L is quadratic
 
 
-def forms(system: LagrangeDAlembert, q: Array) -> Array:
-    """Return the rows A(q), none for a free system."""
-    if system.constraint_forms is None:
-        return jnp.zeros((0, q.shape[0]))
-    return jnp.asarray(system.constraint_forms(q), dtype=q.dtype)
+def place(system: LagrangeDAlembert, q: Array, time: Any) -> Array:
+    """Return where a system is: its configuration, of a driven one with the time."""
+    return np.append(q, time) if system.is_driven else q
 
 
-def discrete_lagrangian(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> Array:
+def _called(function: Any, system: LagrangeDAlembert, x: Array, *velocity: Array) -> Array:
+    """Return the value of a user's function at a place, with the time if it takes it."""
+    time = (x[-1],) if takes_time(function, 1 + len(velocity)) else ()
+    return jnp.asarray(function(x[: system.dimension], *velocity, *time), dtype=x.dtype)
+
+
+def lagrangian(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
+    """Return L."""
+    return _called(system.lagrangian, system, x, v)
+
+
+def forms(system: LagrangeDAlembert, x: Array) -> Array:
+    """Return the rows A, none for a free system; those of prescribed coordinates are the last."""
+    given = system.constraint_forms
+    rows = jnp.zeros((0, system.dimension)) if given is None else _called(given, system, x)
+    return (
+        jnp.concatenate([rows, jnp.eye(system.dimension)[np.array([i for i, _ in system.prescribed])]])
+        if system.prescribed
+        else rows
+    )
+
+
+def constraint(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
+    """Return A v - b."""
+    rates = forms(system, x) @ v
+    if system.constraint_velocities is not None:
+        b = jnp.asarray(system.constraint_velocities(x[:-1], x[-1]), dtype=x.dtype)
+        rates = rates.at[: len(b)].add(-b)
+    if system.prescribed:
+        rates = rates.at[-len(system.prescribed) :].add(-jnp.stack([jax.grad(s)(x[-1]) for _, s in system.prescribed]))
+    return rates
+
+
+def discrete_lagrangian(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:
     """Return L_d(q, q + h v)."""
     if system.discrete_lagrangian is not None:
-        return jnp.asarray(system.discrete_lagrangian(q, q + h * v, h))
+        return jnp.asarray(system.discrete_lagrangian(x, x + h * v, h))
     if system.rule == "midpoint":
-        return h * system.lagrangian(q + h * v / 2, v)
-    return h * (system.lagrangian(q, v) + system.lagrangian(q + h * v, v)) / 2
+        return h * lagrangian(system, ahead(system, x, v, h / 2), v)
+    return h * (lagrangian(system, x, v) + lagrangian(system, ahead(system, x, v, h), v)) / 2
 
 
-def discrete_constraints(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> Array:
-    """Return F(q, q + h v)."""
+def discrete_constraints(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:
+    """Return F(q, q + h v); prescribed coordinates move by exactly what is prescribed."""
     if system.discrete_constraints is not None:
-        return jnp.asarray(system.discrete_constraints(q, q + h * v, h))
+        return jnp.asarray(system.discrete_constraints(x, x + h * v, h))
     if system.rule == "midpoint":
-        return forms(system, q + h * v / 2) @ v
-    return (forms(system, q) + forms(system, q + h * v)) @ v / 2
+        found = constraint(system, ahead(system, x, v, h / 2), v)
+    else:
+        found = (constraint(system, x, v) + constraint(system, ahead(system, x, v, h), v)) / 2
+    if system.prescribed:
+        missed = [v[i] - (s(x[-1] + h) - s(x[-1])) / h for i, s in system.prescribed]
+        found = found.at[-len(missed) :].set(jnp.stack(missed))
+    return found
 
 
-def momenta(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> tuple[Array, Array]:
-    r"""Return $P = -D_1 L_d$ and $P^+ = D_2 L_d$."""
-    along_q, along_v = jax.grad(discrete_lagrangian, argnums=(1, 2))(system, q, v, h)
+def momenta(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Array, Array]:
+    r"""Return $P = -D_1 L_d - f^-$ and $P^+ = D_2 L_d + f^+$."""
+    along_x, along_v = jax.grad(discrete_lagrangian, argnums=(1, 2))(system, x, v, h)
     arriving = along_v / h  # at fixed q the end point moves by h times the change of v
-    return arriving - along_q, arriving
+    leaving = arriving - along_x[: system.dimension]
+    if system.force is None:
+        return leaving, arriving
+    at_start, at_end = _impulses(system, x, v, h)
+    return leaving - at_start, arriving + at_end
 
 
-def momentum(system: LagrangeDAlembert, q: Array, v: Array) -> Array:
+def _impulses(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Array, Array]:
+    """Return half the impulse of a step at each of its ends: of a table, half its row at both."""
+    if isinstance(system.force, ForceTable):
+        row = h / 2 * system.force.row(x[-1] / h)
+        return row, row
+    return h / 2 * applied(system, x, v), h / 2 * applied(system, ahead(system, x, v, h), v)
+
+
+def applied(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
+    """Return the force f(t, q, v)."""
+    return jnp.asarray(system.force(x[-1], x[:-1], v), dtype=x.dtype)  # type: ignore[misc]
+
+
+def momentum(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     r"""Return $\partial L/\partial v$."""
-    return jax.grad(system.lagrangian, argnums=1)(q, v)
+    return jax.grad(lagrangian, argnums=2)(system, x, v)
 
 
-def discrete_energy(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> Array:
-    r"""Return $E = -\partial L_d/\partial h$ at fixed end points; where h is not known to L_d, E at the midpoint."""
+def discrete_energy(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:
+    r"""Return $E = -\partial L_d/\partial h$ at fixed end points; where h is not known to L_d, E at the midpoint.
+
+    Of a driven system it is E at the node, of the velocity that belongs to the momentum P.
+    """
+    if system.is_driven:
+        return energy(system, x, inverse_legendre(system, x, momenta(system, x, v, h)[0]))
     d = h * v
     if isinstance(system.discrete_lagrangian, TwoPoint):
-        return energy(system, q + d / 2, v)
-    return -jax.grad(lambda step: discrete_lagrangian(system, q, d / step, step))(h)
+        return energy(system, x + d / 2, v)
+    return -jax.grad(lambda step: discrete_lagrangian(system, x, d / step, step))(h)
 
 
-def energy(system: LagrangeDAlembert, q: Array, v: Array) -> Array:
+def energy(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     r"""Return $v\cdot\partial L/\partial v - L$."""
-    return v @ momentum(system, q, v) - system.lagrangian(q, v)
+    return v @ momentum(system, x, v) - lagrangian(system, x, v)
 
 
-def ahead(_: LagrangeDAlembert, q: Array, v: Array, h: Array) -> Array:
-    """Return the configuration after a step."""
-    return q + h * v
+def ahead(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:
+    """Return the place after a step."""
+    return x + h * rate(system, x, v)
 
 
 def displaced(*_: object) -> tuple[()]:
@@ -73,21 +135,33 @@ def displaced(*_: object) -> tuple[()]:
     return ()
 
 
-def rate(_: LagrangeDAlembert, _q: Array, v: Array) -> Array:
-    """Return the rate of change of a configuration."""
-    return v
+def rate(system: LagrangeDAlembert, _x: Array, v: Array) -> Array:
+    """Return the rate of change of a place."""
+    return jnp.append(v, 1.0) if system.is_driven else v
 
 
-def normalized(_: LagrangeDAlembert, q: Array) -> Array:
-    """Return the configuration as it is: rounding errors lead to another one."""
-    return q
+def normalized(_: LagrangeDAlembert, x: Array) -> Array:
+    """Return the place as it is: rounding errors lead to another one."""
+    return x
 
 
-def force(system: LagrangeDAlembert, q: Array, v: Array) -> Array:
-    r"""Return $\partial L/\partial q$ less the change of $\partial L/\partial v$ with q."""
-    along_q = jax.grad(system.lagrangian)(q, v)
-    _, carried = jax.jvp(lambda x: momentum(system, x, v), (q,), (v,))
-    return along_q - carried
+def force(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
+    r"""Return $\partial L/\partial q + f$ less the change of $\partial L/\partial v$ with q and t."""
+    along_q = jax.grad(lagrangian, argnums=1)(system, x, v)[: system.dimension]
+    _, carried = jax.jvp(lambda y: momentum(system, y, v), (x,), (rate(system, x, v),))
+    free = along_q - carried
+    return free if system.force is None else free + applied(system, x, v)
+
+
+def inverse_legendre(system: LagrangeDAlembert, x: Array, p: Array) -> Array:
+    """Return the admissible velocity with the components of a momentum along the constraint."""
+
+    def correct(_: Array, v: Array) -> Array:
+        matrix, units = acceleration_matrix(system, x, v)
+        missed = p - momentum(system, x, v)
+        return v + solve_bordered(matrix, units, missed, -constraint(system, x, v))[0]
+
+    return jax.lax.fori_loop(0, _CORRECTIONS, correct, jnp.zeros_like(p))
 
 
 class Scaled(NamedTuple):
@@ -123,7 +197,7 @@ def solve_bordered(matrix: Array, units: Scaled, force: Array, off: Array) -> tu
 
 def kinetic_matrix(system: LagrangeDAlembert, q: Array, v: Array, _h: Any = None) -> Array:
     r"""Return $\partial^2 L/\partial v^2$."""
-    return jax.hessian(system.lagrangian, argnums=1)(q, v)
+    return jax.hessian(lagrangian, argnums=2)(system, q, v)
 
 
 def newton_matrix(

@@ -15,7 +15,7 @@ from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._equations import solve_bordered
 from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._room import equations_of
+from nonholo.lagrange_dalembert._room import configurations, equations_of
 
 OrbitT = TypeVar("OrbitT")
 State = tuple[Array, Array]
@@ -34,13 +34,14 @@ def flow(
 ) -> OrbitT:
     """Check the arguments, solve the equations and return the orbit of a kind, whose start is checked by a function."""
     time, errors = flow_times(times), flow_tolerances(rtol, atol)
-    first = start(system, configuration, starts)
+    first = start(system, configuration, starts, time[0])
     rest, good = in_double(_sweep, system, first, padded(time), errors)
     rows = reached(first, rest, good, len(time))
     count = len(rows[0])
     columns = (x[:count] for x in in_double(_decode, system, *map(padded, rows)))
     outcome = Outcome.successful if count == len(time) else Outcome.not_converged
-    orbit = kind(time[:count], rows[0], None, rows[1], *columns, outcome, system)
+    q = configurations(system, rows[0])
+    orbit = kind(time[:count], q, None, rows[1], *columns, outcome, system)
     if outcome != Outcome.successful:
         rtol, atol = errors
         where = f"Flow from time {time[count - 1]:g} to {time[count]:g} (rtol {rtol:g}, atol {atol:g})"
@@ -54,7 +55,7 @@ def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array])
     def settled(current: State) -> State:
         """Return the state with the admissible velocity next to its own in the kinetic energy."""
         q, v = equations.normalized(system, current[0]), current[1]
-        return q, v - _bordered_solve(system, q, v, jnp.zeros_like(v), equations.forms(system, q) @ v)[0]
+        return q, v - _bordered_solve(system, q, v, jnp.zeros_like(v), equations.constraint(system, q, v))[0]
 
     def rate(current: State) -> State:
         return equations.rate(system, *current), _acceleration(system, *current)[0]
@@ -63,10 +64,10 @@ def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array])
 
 
 def _acceleration(system: Any, q: Array, v: Array) -> tuple[Array, Array]:
-    r"""Return the rate of v and the forces $\lambda$, from the equations and $\tfrac{d}{dt}(A(q) v) = 0$."""
+    r"""Return the rate of v and the forces $\lambda$, from the equations and $\tfrac{d}{dt}(A v - b) = 0$."""
     equations = equations_of(system)
     force = equations.force(system, q, v)
-    _, turned = jax.jvp(lambda x: equations.forms(system, x) @ v, (q,), (equations.rate(system, q, v),))
+    _, turned = jax.jvp(lambda x: equations.constraint(system, x, v), (q,), (equations.rate(system, q, v),))
     return _bordered_solve(system, q, v, force, -turned)
 
 
@@ -81,7 +82,7 @@ def _decode(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
     equations = equations_of(system)
 
     def one(q: Array, v: Array) -> tuple[Array, ...]:
-        residual = jnp.max(jnp.abs(equations.forms(system, q) @ v), initial=0.0)
+        residual = jnp.max(jnp.abs(equations.constraint(system, q, v)), initial=0.0)
         momentum, force = equations.momentum(system, q, v), _acceleration(system, q, v)[1]
         return momentum, force, equations.energy(system, q, v), residual
 

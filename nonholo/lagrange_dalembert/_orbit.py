@@ -12,7 +12,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._room import equations_of
+from nonholo.lagrange_dalembert._room import equations_of, places
 from nonholo.orbit import AbstractOrbit
 
 Labels = dict[str, tuple[tuple[str, ...], str]]
@@ -43,6 +43,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     span: ClassVar[None] = None
     has_poses: ClassVar[bool] = True
     is_measured: ClassVar[bool] = False
+    work: ClassVar[None] = None
     _labels: ClassVar[Labels]
 
     @abc.abstractmethod
@@ -66,7 +67,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     @property
     def restricted_momentum(self) -> Float[np.ndarray, "K n"]:
         r"""Momenta less their parts $A^T\mu$ across the constraint: those along admissible directions."""
-        A = in_double(_forms_at, self.system, self.configuration)
+        A = in_double(_forms_at, self.system, places(self.system, self.configuration, self.time))
         p = self.momentum[..., None]
         return (p - np.linalg.pinv(A) @ (A @ p))[..., 0]
 

@@ -1,7 +1,11 @@
 """Precision: every call of JAX is compiled, runs in a local 64-bit scope and gives NumPy arrays."""
 
+import contextlib
 import functools
-from collections.abc import Callable
+import os
+import sys
+import threading
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import jax
@@ -9,10 +13,29 @@ import numpy as np
 
 from nonholo.base.numerics import double_precision
 
+_PATIENCE = 1.0  # seconds of silence
 _compiled = functools.cache(functools.partial(jax.jit, static_argnums=0))
+_called: set[tuple[Any, Any]] = set()
 
 
 def in_double(function: Callable[..., Any], system: Any, *arguments: Any) -> Any:
     """Call a JAX function of a system, for which it is compiled, with 64-bit numbers; return NumPy arrays."""
-    with double_precision():
-        return jax.tree.map(np.asarray, _compiled(function)(system, *arguments))
+    with double_precision(), contextlib.nullcontext() if (function, system) in _called else _said():
+        found = jax.tree.map(np.asarray, _compiled(function)(system, *arguments))
+    _called.add((function, system))
+    return found
+
+
+@contextlib.contextmanager
+def _said() -> Iterator[None]:
+    """Say on standard error what is waited for: JAX compiles at the first call."""
+    kept = os.environ.get("JAX_COMPILATION_CACHE_DIR")
+    remedy = "" if kept else "; set JAX_COMPILATION_CACHE_DIR to a folder to keep what is compiled"
+    text = f"compiling a system in coordinates, once{remedy} ..."
+    timer = threading.Timer(_PATIENCE, print, (text,), {"file": sys.stderr, "flush": True})
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()

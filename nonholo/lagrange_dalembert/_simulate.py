@@ -14,7 +14,7 @@ from nonholo.base.results import Outcome, finished
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._room import equations_of
+from nonholo.lagrange_dalembert._room import configurations, equations_of
 
 _ROWS = 1024  # saved states of one block: one size of table, one compilation
 _LEAST = 1e-6  # seconds of a step, at least
@@ -88,7 +88,8 @@ def _orbit(
     q, v, impulses = columns
     *displaced, momentum, energy, residual = _decoded(system, h, q, v)
     displacement, time = displaced[0] if displaced else h * v, h * (every * np.arange(first, first + len(q)))
-    return kind(time, q, displacement, v, momentum, impulses, energy, residual, Outcome(int(code)), system, float(h))
+    arrays = time, configurations(system, q), displacement, v, momentum, impulses, energy, residual
+    return kind(*arrays, Outcome(int(code)), system, float(h))
 
 
 def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> Start:

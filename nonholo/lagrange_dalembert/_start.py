@@ -7,8 +7,16 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.checks import array, error, is_traced, scale
+from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._equations import acceleration_matrix, forms, momentum
+from nonholo.lagrange_dalembert._equations import (
+    acceleration_matrix,
+    constraint,
+    forms,
+    inverse_legendre,
+    lagrangian,
+    place,
+)
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._room import equations_of
@@ -18,7 +26,7 @@ from nonholo.systems import inadmissible, one_start
 _TOLERANCE = 1e-9  # relative, for velocities and displacements that a user computed in floating point
 DEGENERATE = 1e-10  # least singular value of scaled matrices, below which they are called singular
 _CONSISTENT = 1e-7  # relative; looser, since the functions may difference numerically
-_CORRECTIONS = 8
+_CORRECTIONS = 8  # of a displacement
 
 
 def fixed_time_step(value: Any) -> float:
@@ -30,14 +38,21 @@ def fixed_time_step(value: Any) -> float:
     return float(scale(where, value, "Pass a positive real time step."))
 
 
-def point(owner: str, system: LagrangeDAlembert, configuration: Any) -> Float[np.ndarray, "n"]:
-    """Return a configuration at which the constraint forms are finite and independent."""
+def point(owner: str, system: LagrangeDAlembert, configuration: Any, time: float = 0.0) -> Float[np.ndarray, "x"]:
+    """Return the place of a configuration at which the constraint forms are finite and independent."""
     where, n = f"{owner}(configuration=...)", system.dimension
     if configuration is None:
         raise error(where, "be given for a system in coordinates", "none", f"Pass the {n} coordinates of the start.")
     q = array(where, configuration, (n,), f"Pass the {n} coordinates.")
-    check_rows("LagrangeDAlembert(constraint_forms=...)", in_double(forms, system, q), q)
-    return q
+    for index, motion in system.prescribed:
+        with double_precision():
+            given = float(motion(np.float64(time)))
+        if not abs(q[index] - given) <= _TOLERANCE * (1 + abs(given)):
+            got, remedy = f"{q[index]:.17g}", f"Set coordinate {index} to {given:.17g}."
+            raise error(where, "agree with prescribed motions", got, remedy)
+    x = place(system, q, time)
+    check_rows("LagrangeDAlembert(constraint_forms=...)", in_double(forms, system, x), q)
+    return x
 
 
 def check_rows(what: str, A: Float[np.ndarray, "s n"], at: np.ndarray) -> None:
@@ -60,9 +75,11 @@ def least_value(rows: Float[np.ndarray, "s n"]) -> float:
     return float(np.linalg.svd(unit_rows(rows), compute_uv=False)[-1]) if len(rows) else 1.0
 
 
-def of_flow(system: LagrangeDAlembert, configuration: Any, starts: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+def of_flow(
+    system: LagrangeDAlembert, configuration: Any, starts: dict[str, Any], time: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Return the checked start of a flow."""
-    q = point("flow", system, configuration)
+    q = point("flow", system, configuration, time)
     if one_start("flow", **starts) == "momentum":
         return q, velocity_of_momentum("flow", system, q, starts["momentum"])[1]
     return q, velocity("flow", system, q, starts["body_velocity"])
@@ -90,13 +107,15 @@ def velocity(owner: str, system: LagrangeDAlembert, q: Float[np.ndarray, "n"], g
     where = f"{owner}(body_velocity=...)"
     v = array(where, given, (system.dimension,), f"Pass the {system.dimension} velocities.")
     regular(system, q, v)
-    return admissible(where, in_double(forms, system, q), v)
+    A, missed = in_double(forms, system, q), in_double(constraint, system, q, v)
+    return admissible(where, A, v, missed)
 
 
-def admissible(where: str, A: Float[np.ndarray, "s n"], v: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
-    """Return a velocity that satisfies A v = 0, refused with its residual and the nearest one that does."""
-    missed = A @ v
-    if np.any(np.abs(missed) > _TOLERANCE * (np.abs(A) @ np.abs(v))):
+def admissible(
+    where: str, A: Float[np.ndarray, "s n"], v: Float[np.ndarray, "n"], missed: Float[np.ndarray, "s"]
+) -> Float[np.ndarray, "n"]:
+    """Return a velocity that misses A v = b by nothing, refused with its residual and the nearest one that does."""
+    if np.any(np.abs(missed) > _TOLERANCE * (np.abs(A) @ np.abs(v) + np.abs(A @ v - missed))):
         raise inadmissible(where, missed, v - np.linalg.pinv(A) @ missed)
     return v
 
@@ -122,7 +141,7 @@ def velocity_of_momentum(
     where = f"{owner}(momentum=...)"
     p = array(where, given, (n,), f"Pass the {n} momenta; only their action on admissible velocities counts.")
     regular(system, q, np.zeros(n))
-    v = in_double(_inverse_legendre, system, q, p)
+    v = in_double(inverse_legendre, system, q, p)
     regular(system, q, v)
     return p, v
 
@@ -134,7 +153,7 @@ def velocity_of_displacement(system: LagrangeDAlembert, q: np.ndarray, given: An
     v = d / h
     regular(system, q, v)
     missed, slope = in_double(constraint_slope, system, q, v, h)
-    if np.any(np.abs(missed) > _TOLERANCE * (np.abs(slope) @ np.abs(v))):
+    if np.any(np.abs(missed) > _TOLERANCE * (np.abs(slope) @ np.abs(v) + np.abs(slope @ v - missed))):
         nearest = h * in_double(_admissible, system, q, v, h)
         got = f"residual {np.array2string(missed, precision=6)}"
         remedy = f"The nearest admissible displacement is {nearest.tolist()}."
@@ -148,7 +167,7 @@ def regularity(system: LagrangeDAlembert, q: Any, q_next: Any, time_step: Any) -
     h = scale(f"{owner}(time_step=...)", time_step, "Pass a positive time step.")
     first = array(f"{owner}(q=...)", q, (n,), f"Pass the {n} coordinates.")
     second = array(f"{owner}(q_next=...)", q_next, (n,), f"Pass the {n} coordinates.")
-    return float(in_double(orientation, system, first, (second - first) / h, h)[1])
+    return float(in_double(orientation, system, place(system, first, 0.0), (second - first) / h, h)[1])
 
 
 def constraint_slope(system: Any, q: Array, v: Array, h: Array) -> tuple[Array, Array]:
@@ -159,22 +178,11 @@ def constraint_slope(system: Any, q: Array, v: Array, h: Array) -> tuple[Array, 
 
 
 def _differentiated(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, tuple[Array, Array]]:
-    return jax.value_and_grad(system.lagrangian, argnums=(0, 1))(q, v)
+    return jax.value_and_grad(lagrangian, argnums=(1, 2))(system, q, v)
 
 
 def _least(system: LagrangeDAlembert, q: Array, v: Array) -> Array:
     return jnp.linalg.svd(acceleration_matrix(system, q, v)[0], compute_uv=False)[-1]
-
-
-def _inverse_legendre(system: LagrangeDAlembert, q: Array, p: Array) -> Array:
-    def correct(_: Array, v: Array) -> Array:
-        matrix, units = acceleration_matrix(system, q, v)
-        missed = p - momentum(system, q, v)
-        off = -(forms(system, q) @ v) / units.constraints
-        step = jnp.linalg.solve(matrix, jnp.concatenate([missed * units.velocity, off]))
-        return v + step[: q.shape[0]] * units.velocity
-
-    return jax.lax.fori_loop(0, _CORRECTIONS, correct, jnp.zeros_like(q))
 
 
 def _admissible(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> Array:

@@ -1,16 +1,24 @@
 """A system in coordinates: a Lagrangian, constraint forms, and the rule that discretizes both."""
 
 import dataclasses
+import functools
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import jax
 
-from nonholo.base.checks import choice, count, error, shown, text
+from nonholo.base.checks import array, choice, count, error, shown, text
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._room import room
-from nonholo.lagrange_dalembert._tracing import check_forms, check_value, count_of, with_time_step
+from nonholo.lagrange_dalembert._tracing import (
+    ForceTable,
+    check_forms,
+    check_value,
+    count_of,
+    takes_time,
+    with_time_step,
+)
 from nonholo.systems import AbstractCoordinateSystem
 
 _TAKEN = {"constraint_residual", "energy", "t", "time"}  # columns of their own
@@ -31,11 +39,17 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     $L_d = h L((q + q')/2, v)$, $F = A((q + q')/2) v$; "trapezoidal" takes the means of L and A over both ends.
     Nothing needs to be invariant under a group.
 
+    A *driven* system has constraints $A(q, t)\,v = b(q, t)$, prescribed coordinates, a Lagrangian of the time or a
+    force f(t, q, v): then
+    $P_k = -D_1L_d - f^-_k$ and $P^+_k = D_2L_d + f^+_k$ with half the impulse of a step at each of its
+    ends, $f^-_k = \tfrac h2f(t_k, q_k, v)$, $f^+_k = \tfrac h2f(t_{k+1}, q_{k+1}, v)$. The map is of order 2.
+
     Reference: [cortes-martinez-2001]; [fedorov-zenkov-2004], section 2. The signs: docs/theory, "lagrange-dalembert".
 
     Args:
-        lagrangian: `lagrangian(q, v)` -> scalar, written with `jax.numpy`.
-        constraint_forms: `constraint_forms(q)` -> (s, n), the rows $A^j(q)$; None for an unconstrained system.
+        lagrangian: `lagrangian(q, v)` or `lagrangian(q, v, time)` -> scalar, written with `jax.numpy`.
+        constraint_forms: `constraint_forms(q)` or `constraint_forms(q, time)` -> (s, n), the rows $A^j$; None for an
+            unconstrained system.
         dimension: n.
         rule: "midpoint" or "trapezoidal".
         discrete_lagrangian: `discrete_lagrangian(q, q_next, time_step)` -> scalar, in place of the rule; it includes
@@ -43,13 +57,18 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             is then that of the Lagrangian at the midpoint.
         discrete_constraints: `discrete_constraints(q, q_next, time_step)` or `(q, q_next)` -> (s,), in place of the
             rule.
+        constraint_velocities: `constraint_velocities(q, time)` -> (s,), the right-hand side b of moving constraints.
+        prescribed: Motions s(time) of coordinates, by index: joints that are driven. Discrete motions follow them
+            exactly; their multipliers, the last ones, are what drives them.
+        force: `force(time, q, v)` -> (n,); or `nonholo.Friction`; or an array (steps, n), whose row k acts over step k.
+            `nonholo.Forced(system, potential, force)` adds one.
         coordinates: Names of the coordinates, for tables and pictures, such as ("x", "y", "theta"); by default "q1",
             "q2" and so on.
         name: What pictures call the system.
 
     Raises:
         ValueError: A function that JAX cannot trace, or whose result is not real or has the wrong shape; an unknown
-            rule; names that are not n different words.
+            rule; a driven system with discrete functions of its own; names that are not n different words.
 
     Example:
         A particle in space with the constraint z' = y x':
@@ -71,6 +90,9 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     rule: str = dataclasses.field(default="midpoint", kw_only=True)
     discrete_lagrangian: Callable[[Array, Array, Array], Array] | None = dataclasses.field(default=None, kw_only=True)
     discrete_constraints: Callable[[Array, Array, Array], Array] | None = dataclasses.field(default=None, kw_only=True)
+    constraint_velocities: Callable[[Array, Array], Array] | None = dataclasses.field(default=None, kw_only=True)
+    prescribed: Any = dataclasses.field(default=(), kw_only=True)
+    force: Any = dataclasses.field(default=None, kw_only=True)
     coordinates: tuple[str, ...] = dataclasses.field(default=(), kw_only=True)
     name: str = dataclasses.field(default="System in coordinates", kw_only=True)
     _equations: ClassVar[str] = "_equations"
@@ -83,24 +105,59 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         choice(_named("rule"), self.rule, ("midpoint", "trapezoidal"))
         object.__setattr__(self, "discrete_lagrangian", with_time_step(self.discrete_lagrangian))
         object.__setattr__(self, "discrete_constraints", with_time_step(self.discrete_constraints))
+        object.__setattr__(self, "prescribed", _motions(self.prescribed, dimension))
+        object.__setattr__(self, "force", _force(self.force, dimension))
+        self._check_functions()
+
+    def _check_functions(self) -> None:
+        n = self.dimension
+        q, time = jax.ShapeDtypeStruct((n,), float), jax.ShapeDtypeStruct((), float)
         with double_precision():
-            q, h = jax.ShapeDtypeStruct((self.dimension,), float), jax.ShapeDtypeStruct((), float)
-            self._check("lagrangian", (), q, q)
+            self._check("lagrangian", (), q, q, *self._time("lagrangian", 2))
             if self.constraint_forms is not None:
                 where, remedy = _named("constraint_forms"), "Stack one row per constraint; pass None for no constraint."
-                check_forms(where, self.constraint_forms, self.dimension, q, f"{self.dimension} coordinates", remedy)
-            self._check("discrete_lagrangian", (), q, q, h)
-            self._check("discrete_constraints", (self.constraints,), q, q, h)
+                arguments = (q, *self._time("constraint_forms", 1))
+                check_forms(where, self.constraint_forms, n, arguments, f"{n} coordinates", remedy)
+            self._check("discrete_lagrangian", (), q, q, time)
+            self._check("discrete_constraints", (self.constraints,), q, q, time)
+            self._check("constraint_velocities", (self.constraints - len(self.prescribed),), q, time)
+            if callable(self.force):
+                self._check("force", (n,), time, q, q)
+        if self.is_driven and (self.discrete_lagrangian or self.discrete_constraints):
+            remedy = 'Use rule="midpoint" or "trapezoidal".'
+            raise error(_named("discrete_lagrangian"), "be left out of a driven system", "discrete functions", remedy)
+
+    def _time(self, name: str, others: int) -> tuple[Any, ...]:
+        return (jax.ShapeDtypeStruct((), float),) if takes_time(getattr(self, name), others) else ()
 
     def _check(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
         function, of = getattr(self, name), f"{self.dimension} coordinates"
         if function is not None or name == "lagrangian":
             check_value(_named(name), function, shape, arguments, of, of)
 
-    @property
+    @functools.cached_property
+    def is_driven(self) -> bool:
+        """Whether a force acts, or anything depends on time or moves by itself."""
+        given = self.force is not None or self.constraint_velocities is not None or bool(self.prescribed)
+        return given or takes_time(self.lagrangian, 2) or takes_time(self.constraint_forms, 1)
+
+    @functools.cached_property
     def constraints(self) -> int:
-        """The number s of constraints."""
-        return count_of(self.constraint_forms, (self.dimension,))
+        """The number s of constraints, those of prescribed coordinates with them."""
+        arguments = ((self.dimension,), *(() for _ in self._time("constraint_forms", 1)))
+        return count_of(self.constraint_forms, *arguments) + len(self.prescribed)
+
+    def forced(self, potential: Any, force: Any) -> "LagrangeDAlembert":
+        """Return the system with a potential U(q) and a force; itself with neither. `nonholo.Forced` calls it."""
+        if potential is None and force is None:
+            return self
+        if self.force is not None:
+            raise error("Forced(system=...)", "have no force yet", repr(self), "Pass all forces at once.")
+        if potential is not None:
+            q = jax.ShapeDtypeStruct((self.dimension,), float)
+            with double_precision():
+                check_value("Forced(potential=...)", potential, (), (q,), *2 * (f"{self.dimension} coordinates",))
+        return dataclasses.replace(self, lagrangian=_with_potential(self.lagrangian, potential), force=force)
 
     def regularity(self, q: Any, q_next: Any, *, time_step: float = 1.0) -> float:
         r"""Return the smallest singular value of the scaled regularity matrix; zero at a fold of the map.
@@ -187,6 +244,38 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         starts = {"body_velocity": body_velocity, "momentum": momentum}
         kind, start = room("_orbit").CoordinateOrbit, room("_start").of_flow
         return room("_flow").flow(kind, self, start, configuration, starts, times, rtol, atol)
+
+
+def _with_potential(lagrangian: Callable[..., Array], potential: Any) -> Callable[..., Array]:
+    if potential is None:
+        return lagrangian
+    if takes_time(lagrangian, 2):
+        return lambda q, v, time: lagrangian(q, v, time) - potential(q)
+    return lambda q, v: lagrangian(q, v) - potential(q)
+
+
+def _motions(given: Any, dimension: int) -> tuple[tuple[int, Callable[[Array], Array]], ...]:
+    """Return prescribed motions as pairs of index and function, in the order of the coordinates."""
+    where = _named("prescribed")
+    pairs = sorted(dict(given).items(), key=lambda pair: pair[0])
+    for index, motion in pairs:
+        if not isinstance(index, int) or not 0 <= index < dimension:
+            raise error(where, f"have indices from 0 to {dimension - 1}", shown(index), "Name coordinates by index.")
+        with double_precision():
+            check_value(where, motion, (), (jax.ShapeDtypeStruct((), float),), "the time", "the time")
+    return tuple(pairs)
+
+
+def _force(given: Any, dimension: int) -> Any:
+    """Return a force as a function, a table or None; of `Friction` the function."""
+    if given is None or callable(given) or isinstance(given, ForceTable):
+        return given
+    matrix = getattr(given, "matrix", None)
+    if matrix is not None:
+        given.check(dimension)
+        return lambda _time, _q, v: -(matrix @ v)
+    remedy = "Pass a function of time, configuration and velocity, Friction, or one force a step."
+    return ForceTable(array(_named("force"), given, (None, dimension), remedy))
 
 
 def _named(argument: str) -> str:

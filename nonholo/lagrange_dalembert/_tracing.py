@@ -7,10 +7,11 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 from nonholo.base.checks import error, shown
 from nonholo.base.numerics import double_precision
-from nonholo.base.types import Array
+from nonholo.base.types import Array, Float
 
 
 def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str) -> tuple[int, ...]:
@@ -43,19 +44,19 @@ def check_value(
         raise error(where, f"return {wanted}", f"shape {found}", f"It is called with arrays of {called}.")
 
 
-def check_forms(where: str, forms: Any, n: int, configuration: Any, of: str, remedy: str) -> None:
+def check_forms(where: str, forms: Any, n: int, arguments: tuple[Any, ...], of: str, remedy: str) -> None:
     """Refuse constraint forms that are not s rows of n numbers."""
-    found = traced_shape(where, forms, (configuration,), of)
+    found = traced_shape(where, forms, arguments, of)
     if len(found) != 2 or found[1] != n or not 0 < found[0] < n:
         raise error(where, f"return an array of shape (s, {n}) with 0 < s < {n}", f"shape {found}", remedy)
 
 
-def count_of(forms: Any, shape: tuple[int, ...]) -> int:
-    """Return the number s of constraint forms at configurations of a shape."""
+def count_of(forms: Any, *shapes: tuple[int, ...]) -> int:
+    """Return the number s of constraint forms, of arguments of given shapes."""
     if forms is None:
         return 0
     with double_precision():
-        return jax.eval_shape(forms, jax.ShapeDtypeStruct(shape, float)).shape[0]
+        return jax.eval_shape(forms, *(jax.ShapeDtypeStruct(shape, float) for shape in shapes)).shape[0]
 
 
 def _array(value: Any) -> Any:
@@ -63,6 +64,29 @@ def _array(value: Any) -> Any:
     if isinstance(value, list | tuple):
         raise TypeError(f"it returned a {type(value).__name__}, jnp.array makes an array of it")
     return jnp.asarray(value)
+
+
+def takes_time(function: Any, others: int) -> bool:
+    """Return whether a function must be called with one argument more than the others."""
+    try:
+        parameters = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError):  # a builtin that does not tell
+        return False
+    positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    return sum(each.kind in positional and each.default is each.empty for each in parameters) > others
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class ForceTable:
+    """Forces of the steps, one row a step; after the last one nothing acts."""
+
+    rows: Float[np.ndarray, "steps n"]
+
+    def row(self, step: Array) -> Array:
+        """Return the force of a step, whose number may carry rounding errors."""
+        k = jnp.rint(step).astype(int)
+        inside = (k >= 0) & (k < len(self.rows))
+        return jnp.where(inside, jnp.asarray(self.rows)[jnp.clip(k, 0, max(len(self.rows) - 1, 0))], 0.0)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from nonholo.base.checks import array, scale
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert import LagrangeDAlembert
+from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -31,7 +31,7 @@ class Example:
     """
 
     name: str
-    system: LagrangeDAlembert
+    system: LagrangeDAlembert | GroupLagrangeDAlembert
     configuration: Float[np.ndarray, "n"]
     body_velocity: Float[np.ndarray, "n"]
     facts: tuple[str, ...]
@@ -40,8 +40,8 @@ class Example:
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """Names of the coordinates."""
-        return self.system.coordinates
+        """Names of the coordinates; on a group ("pose",)."""
+        return self.system.coordinates or ("pose",)
 
     def __repr__(self) -> str:
         return f"<Example {self.name}: {', '.join(self.coordinates)}>"

@@ -21,6 +21,7 @@ class AbstractOrbit(abc.ABC):
         momentum: Momenta.
         restricted_momentum: Momenta along admissible directions, which follow the flow to second order.
         energy: Energies, shape (K,).
+        work: Work of forces on the motion since the first state, shape (K,); None in coordinates.
         multipliers: Impulses or forces of constraint.
         outcome: How the run ended.
         time_step: h; None where there is none.
@@ -39,6 +40,7 @@ class AbstractOrbit(abc.ABC):
     momentum: Float[np.ndarray, "K n"]
     restricted_momentum: Float[np.ndarray, "K k"]
     energy: Float[np.ndarray, "K"]
+    work: Float[np.ndarray, "K"] | None
     multipliers: Float[np.ndarray, "L s"]
     outcome: Outcome
     time_step: float | None

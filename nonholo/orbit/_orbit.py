@@ -335,10 +335,26 @@ class Orbit(AbstractOrbit):
 
     @property
     def energy(self) -> Float[np.ndarray, "K"]:
-        """Reduced constrained energy."""
-        if self.system.is_spatial:
-            return self.system.constrained_energy(self.reduced_momentum, self.configuration)
-        return self.system.canonical.constrained_energy(self.reduced_momentum)
+        """Reduced constrained energy; with the potential energy under forces, that of the nodes."""
+        system, forced = self.system, self.system.forces
+        potential = None if forced is None or forced.potential is None else forced.potential_energy(self.configuration)
+        if system.is_spatial:
+            kinetic = system.constrained_energy(self.reduced_momentum, self.configuration)
+        else:
+            kinetic = system.canonical.constrained_energy(self.reduced_momentum)
+        return kinetic if potential is None else kinetic + potential
+
+    @property
+    def work(self) -> Float[np.ndarray, "K"]:
+        r"""Work of the force on the motion since the first state, by the trapezoidal rule; zero without one.
+
+        Of friction it is minus the dissipated energy. The energy less this work is constant up to an error of order 2
+        in the time between states.
+        """
+        forced = self.system.forces
+        if forced is None or forced.force is None:
+            return np.zeros(len(self))
+        return forced.work(self.time, self.configuration, self.body_velocity, self.save_every)
 
     def to_dataset(self, *, decoded: bool = False) -> Any:
         """Return the orbit as a labeled `xarray.Dataset`, in the user's body frame.

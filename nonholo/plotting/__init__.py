@@ -37,6 +37,7 @@ from nonholo.plotting.motion import (
 )
 from nonholo.plotting.overviews import overview
 from nonholo.plotting.sweeps import SweepMap, sweep_map
+from nonholo.plotting.theme import Look
 
 __all__ = [
     "BladeTrack",
@@ -47,6 +48,7 @@ __all__ = [
     "EnergyError",
     "InvariantCurvesPicture",
     "LocusSection",
+    "Look",
     "MomentumLocusPicture",
     "MomentumSphere",
     "PhasePortrait",

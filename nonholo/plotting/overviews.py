@@ -7,7 +7,7 @@ moves, its parameters, how long, and how the run ended.
 import functools
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple, Unpack, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -86,6 +86,8 @@ def _momentum(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
     system, directions = orbit.system, orbit.system.rank
     if directions == 0:
         return []
+    if system.is_forced:
+        return [_components(orbit, flow)]
     if not system.is_spatial and directions == 2:
         return [Panel(lambda axes: motion.phase_portrait(cast(AbstractLLSystem, system), orbit, axes=axes))]
     if not system.is_spatial and directions == 3:
@@ -116,7 +118,7 @@ def _write_mass_tensor(axes: Axes, mass_tensor: Float[np.ndarray, "3 3"]) -> Non
     width = max(len(cell) for row in cells for cell in row)
     lines = ["  ".join(cell.rjust(width) for cell in row) for row in cells]
     text = f"    \u23a1{lines[0]}\u23a4\nJ = \u23a2{lines[1]}\u23a5\n    \u23a3{lines[2]}\u23a6"
-    look: Any = {"family": "monospace", "fontsize": 9.5, "linespacing": 1.05, "color": "#555a62"}
+    look: Any = {"family": "monospace", "fontsize": "medium", "linespacing": 1.05, "color": theme.QUIET}
     axes.text(0.0, 0.0, text, transform=axes.transAxes, **look)
 
 
@@ -180,12 +182,16 @@ def _parameters(system: System) -> str:
 
 _SIZE = (13.0, 7.6)
 _LARGER = 2.2  # times as high as a panel against time
-_SMOOTH = 1000  # states of a flow, in which a curve has no corners
 
 
 @theme.styled
 def overview(
-    orbit: AbstractOrbit, path: str | Path | None = None, flow: AbstractOrbit | None = None, *, overwrite: bool = False
+    orbit: AbstractOrbit,
+    path: str | Path | None = None,
+    flow: AbstractOrbit | None = None,
+    *,
+    overwrite: bool = False,
+    **look: Unpack[theme.Look],
 ) -> Figure:
     """Draw an orbit of any system: its path in space, its momentum, its velocity and the error of its energy.
 
@@ -203,6 +209,7 @@ def overview(
         path: Where to save the figure, a new file; the suffix (.png, .svg, .pdf) chooses the format.
         flow: The continuous motion from the same initial data, drawn beside a discrete orbit.
         overwrite: Replace an older picture at the path.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         FileExistsError: The path exists, and is not to be replaced.
@@ -214,29 +221,21 @@ def overview(
         >>> [axes.get_title(loc="left") for axes in nh.plot.overview(orbit).axes[:2]]
         ['Track of the blade', 'Phase portrait']
     """
-    drawable_in_time("overview(orbit=...)", orbit)
-    if flow is not None and drawable_in_time("overview(flow=...)", flow).space != orbit.space:
-        raise error(
-            "overview(flow=...)", f"move in {orbit.space}", f"{flow.space}", "Pass a motion of the same system."
-        )
+    smooth = drawable_in_time("overview(orbit=...)", orbit)
+    flow = None if flow is None else drawable_in_time("overview(flow=...)", flow)
+    if flow is not None and flow.space != orbit.space:
+        remedy = "Pass a motion of the same system."
+        raise error("overview(flow=...)", f"move in {orbit.space}", f"{flow.space}", remedy)
     figure = new_page("overview", _SIZE, path, overwrite=overwrite)
-    panels = panels_of(_smooth(orbit), None if flow is None else _smooth(flow))
+    panels = panels_of(smooth, flow)
     axes = _axes(figure, panels)
     for panel, own in zip(panels, axes, strict=True):
+        theme.begin(own)
         panel.draw(own)
     if panels[0].is_timed:
         axes[0].set_xlabel("time")
     _share_time([own for panel, own in zip(panels[1:], axes[1:], strict=True) if panel.is_timed])
     return finish_page(figure, _name(orbit), _facts(orbit), path)
-
-
-def _smooth(orbit: AbstractOrbit) -> AbstractOrbit:
-    """Return a flow that knows its states between the saved ones with enough for curves; others as they are."""
-    if orbit.span is None or not 1 < len(orbit) < _SMOOTH:
-        return orbit
-    more = np.linspace(orbit.time[0], orbit.time[-1], _SMOOTH)
-    times = np.union1d(orbit.time, more)
-    return orbit.at(times if more[-1] > more[0] else times[::-1])
 
 
 def _axes(figure: Figure, panels: list[Panel]) -> list[Axes]:

@@ -67,6 +67,9 @@ def flow(
     momentum along the constraint is $r_\perp\,\mathrm{sech}\,s + r_\parallel\tanh s$, $s = s_0 + \nu t$, exact.
     Exact are also heading and path of the sleigh (a hypergeometric function); the pose of the top is a quadrature.
 
+    Of a `Forced` system the force -dU + f stands beside ad*; it is solved by DOP853 of SciPy, with `rtol` of 1e-13 and
+    more, which also gives the states between.
+
     For a `LagrangeDAlembert` these are the equations of its `flow`, with q in place of the pose: it starts at a
     `configuration`, and takes neither `restricted_velocity` nor `method`.
 
@@ -82,7 +85,8 @@ def flow(
         rtol: Relative error of a step, at least 1e-14, which is the default; with "diffrax" 1e-10.
         atol: Absolute error of a step with "diffrax". Smaller components are not resolved there: a solution that starts
             so near a repelling equilibrium leaves it at the wrong time.
-        method: None (numerical), "closed_form", or "diffrax": numerical too, by JAX, from the extra `jax`.
+        method: None (numerical), without forces also "closed_form" or "diffrax": numerical too, by JAX, from the extra
+            `jax`.
         reconstruct: Also keep poses. Without them momenta of tops and sleighs cost O(n) operations a Taylor
             coefficient, and nothing of size n x n is made.
         events: `Event`s, or functions of an orbit, whose changes of sign from one requested time or step of the series
@@ -115,11 +119,12 @@ def flow(
     if not isinstance(system, AbstractSystem):
         raise error("flow(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
     flags("flow", reconstruct=reconstruct)
-    solver, time = solver_of(method, None if reconstruct else system.canonical.normal_form), flow_times(times)
+    time = flow_times(times)
+    solver, posed = solver_of(system, method, float(time[0]), reconstruct=reconstruct)
     tolerances = flow_tolerances((1e-10 if method == "diffrax" else 1e-14) if rtol is None else rtol, atol)
-    solve = functools.partial(solver, system.canonical, tolerances=tolerances)
+    solve = functools.partial(solver, tolerances=tolerances)
     start = Start.of("flow", configuration, restricted_velocity=restricted_velocity, **starts)
-    first = _first_state(system, time, start, posed=solver is solver_of(method))
+    first = _first_state(system, time, start, posed=posed)
     found = None if events is None else checked_events("flow", events)
     return _flowed(system, first, time, tolerances, solve, found, reconstruct)
 
@@ -132,8 +137,8 @@ def _first_state(
     numbers = system.rank + posed * group.pose_size
     remedy = "Ask for fewer times, or for momenta alone: reconstruct=False without a method."
     within_memory("flow(times=...)", 32.0 * len(time) * numbers, remedy)
-    g = start.pose(group) if posed or start.configuration is not None else None
-    reduced, pose = start.momentum(system, g), start.canonical_pose(system, g) if posed and g is not None else None
+    g = start.pose(group) if system.is_spatial or start.configuration is not None else None
+    reduced, pose = start.momentum(system, g), start.canonical_pose(system, g) if posed else None
     if start.name == "momentum" and np.shape(start.value) != (system.rank,):
         _check_momentum(start.value, _opening(system, time, (reduced, pose)).momentum[0])
     return reduced, pose
@@ -162,7 +167,7 @@ def _flowed(
     motion = ContinuousFlow(system, (time[0], time[reached - 1]), solved.at)
     orbit = Orbit(motion, time[:reached], states.momenta, None, states.poses, outcome, turned=states.turned)
     if events is not None:
-        orbit = flow_with_events(events, orbit, time[0] + solved.steps)
+        orbit = flow_with_events(events, orbit, time[0] + solved.steps())
     if orbit.outcome != Outcome.successful:
         rtol, atol = tolerances
         where = f"Flow from time {time[reached - 1]:g} to {time[reached]:g} (rtol {rtol:g}, atol {atol:g})"

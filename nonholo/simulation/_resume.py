@@ -9,7 +9,7 @@ from nonholo.base.results import Outcome
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.simulation.events import Watch
-from nonholo.simulation.runs import CompiledRun, closed_step, compiled_run
+from nonholo.simulation.runs import CompiledRun, check_forces, closed_step, compiled_run
 from nonholo.simulation.stores import continue_run, watch_of_store
 
 if TYPE_CHECKING:
@@ -72,6 +72,7 @@ def extend(
     with io.locked(stream.path):
         _refuse_ended(io.read_attributes(stream.path))
         longer = io.open_stream(stream.path).lengthened(steps)
+        check_forces("extend", run.discrete, longer.plan.steps)
         return continue_run(run, longer, watch, throw=throw, progress=progress)
 
 

@@ -1,7 +1,15 @@
 """Systems: a group, an inertia operator and the subspace that velocities are constrained to."""
 
 from nonholo.systems import families
-from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, AbstractSystem, Equilibria, System, unchecked
+from nonholo.systems._base import (
+    AbstractLLSystem,
+    AbstractLRSystem,
+    AbstractSystem,
+    Equilibria,
+    System,
+    refuse_forces,
+    unchecked,
+)
 from nonholo.systems._body import ImpossibleBodyWarning
 from nonholo.systems._coordinate_system import (
     AbstractCoordinateDiscretization,
@@ -36,6 +44,7 @@ from nonholo.systems.families import (
     SuslovTop,
     VeselovaTop,
 )
+from nonholo.systems.forces import Forced, Friction, Gravity
 
 SYSTEMS = tuple(vars(families)[name] for name in families.__all__)
 """Every final class of this room."""
@@ -52,6 +61,9 @@ __all__ = [
     "ChaplyginSleigh",
     "DiscretizationT",
     "Equilibria",
+    "Forced",
+    "Friction",
+    "Gravity",
     "ImpossibleBodyWarning",
     "LLSystem",
     "LRSystem",
@@ -79,6 +91,7 @@ __all__ = [
     "of_finite_energy",
     "one_start",
     "reference_point_subspace",
+    "refuse_forces",
     "refuse_in_coordinates",
     "spanned",
     "symmetric_complement",

@@ -7,7 +7,7 @@ $\mathrm{Ad}_g\omega \in \mathfrak{d}$ (LR systems). Time steps and solvers live
 
 import abc
 import functools
-from typing import ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
@@ -38,6 +38,8 @@ class AbstractSystem(abc.ABC):
     """Fields that are fixed: groups, subspaces, axes."""
     is_spatial: ClassVar[bool]
     """Whether the constraint is fixed in space (right-invariant) instead of in the body (left-invariant)."""
+    is_forced: ClassVar[bool] = False
+    """Whether it is a `Forced`; questions about free motions are then refused."""
     has_blade: ClassVar[bool] = False
     """Whether the last row of the constraint subspace is the velocity along a blade, at its point of contact."""
 
@@ -108,6 +110,11 @@ class AbstractSystem(abc.ABC):
     @functools.cached_property
     def normal_form(self) -> NormalForm | None:
         """The top or sleigh that the system is, in the axes of its constraint; None if it is neither."""
+        return None
+
+    @property
+    def forces(self) -> Any:
+        """The system itself where a potential or a force acts on it (`Forced`); None of a free one."""
         return None
 
     @property
@@ -410,8 +417,15 @@ class AbstractLRSystem(AbstractSystem):
         return velocity @ inertia if inertia.ndim == 2 else (velocity[..., None, :] @ inertia)[..., 0, :]
 
 
-System = AbstractLLSystem | AbstractLRSystem
+System = AbstractSystem
 """Any system on a group."""
+
+
+def refuse_forces(where: str, system: Any) -> None:
+    """Refuse a system with forces where only free motions are known."""
+    if getattr(system, "is_forced", False):
+        remedy = "Ask it of the system inside, or measure it on an orbit of simulate or flow."
+        raise error(where, "be a system without forces", "Forced", remedy)
 
 
 def _solve(matrix: Float[Array, "... k k"] | WideInertia, vector: Float[Array, "... k"]) -> Float[Array, "... k"]:

@@ -4,7 +4,7 @@ import abc
 from collections.abc import Iterator
 from typing import Any, Generic, TypeVar
 
-from nonholo.base.checks import refuse_given
+from nonholo.base.checks import error, refuse_given
 
 OrbitT = TypeVar("OrbitT")
 DiscretizationT = TypeVar("DiscretizationT")
@@ -46,7 +46,13 @@ class AbstractCoordinateDiscretization(abc.ABC, Generic[OrbitT]):
 
 
 class AbstractCoordinateSystem(abc.ABC, Generic[DiscretizationT, OrbitT]):
-    """A system in coordinates: `nonholo.discretize` and `nonholo.flow` hand their arguments on to it."""
+    """A system in coordinates: `nonholo.discretize`, `flow` and `Forced` hand their arguments on to it."""
+
+    def forced(self, potential: Any, force: Any) -> Any:
+        """Return the system with a potential and a force; refused where there is no way to have them."""
+        del potential, force
+        remedy = "Put them into a LagrangeDAlembert or an LLSystem."
+        raise error("Forced(system=...)", "be a system that forces act on", type(self).__name__, remedy)
 
     @abc.abstractmethod
     def discretize(self, time_step: Any) -> DiscretizationT:

@@ -52,7 +52,7 @@ class Start:
             return group.identity
         return in_group(f"{self.owner}(configuration=...)", group, self.configuration)
 
-    def canonical_pose(self, system: System, g: Float[np.ndarray, "N N"]) -> Float[np.ndarray, "size"]:
+    def canonical_pose(self, system: System, g: Float[np.ndarray, "N N"] | None) -> Float[np.ndarray, "size"]:
         """Return the checked pose as a compact one in the canonical frame."""
         return system.frame_pose if self.configuration is None else system.group.pose_from_matrix(g @ system.frame)
 

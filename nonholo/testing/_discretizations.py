@@ -8,6 +8,7 @@ from nonholo.analysis import invariants
 from nonholo.base.checks import count, error, flags
 from nonholo.discrete import Discretization, discrete_legendre, refuse_composition
 from nonholo.simulation import simulate
+from nonholo.systems import refuse_forces
 from nonholo.testing._measures import derivative, gap, largest, relative, seeded
 from nonholo.testing._orbit_samples import COUNTS, PATH, STEP, OrbitSamples
 from nonholo.testing._report import Check, Report, need, run_checks
@@ -53,6 +54,7 @@ def check_discretization(
         >>> exact["energy"].status, exact["order of poses"].value < 0.1
         ('ok', True)
     """
+    refuse_forces("check_discretization(discrete=...)", getattr(discrete, "system", None))
     if not isinstance(discrete, Discretization):
         remedy = "Pass `discretize(system, time_step)` of an LLSystem or another system on a group; not in coordinates."
         requirement = "be a discretization of a system on a group"

@@ -10,7 +10,7 @@ from nonholo.analysis import conserved_momenta
 from nonholo.base.checks import error, flags
 from nonholo.base.types import Float
 from nonholo.continuous import vector_field
-from nonholo.systems import AbstractSystem, Equilibria
+from nonholo.systems import AbstractSystem, Equilibria, refuse_forces
 from nonholo.testing._measures import derivative, gap, largest, relative, seeded
 from nonholo.testing._report import Check, NotApplicableError, Report, need, run_checks
 
@@ -249,6 +249,7 @@ def check_system(
         >>> report["energy conserved"].status, report["attraction"].value < 0
         ('ok', True)
     """
+    refuse_forces("check_system(system=...)", system)
     if not isinstance(system, AbstractSystem):
         remedy = "Pass an LLSystem, another system on a group or your own class; not a system in coordinates."
         raise error("check_system(system=...)", "be a system on a group", _named(system), remedy)

@@ -4,6 +4,7 @@ Evaluated on a particle with the constraint z' = y x' that falls along y.
 """
 
 import itertools
+from typing import cast
 
 import numpy as np
 
@@ -214,7 +215,8 @@ def regularity() -> Measured:
         defects.append(_regularity_matrix(q, after) - _newton_matrix(q, after))
     fold = ctx.det(_regularity_matrix(twin.column([0, 1, 0]), twin.column([1, -3, 0])))
     near = ctx.det(_regularity_matrix(twin.column([0, 1, 0]), twin.column([0, 1, 0])))
-    library = nh.examples.particle().system.regularity([0.0, 1.0, 0.0], [1.0, -3.0, 0.0])
+    particle = cast(nh.LagrangeDAlembert, nh.examples.particle().system)
+    library = particle.regularity([0.0, 1.0, 0.0], [1.0, -3.0, 0.0])
     return Measured(twin.both(twin.worst(*defects, [fold, abs(near) - 2]), library), note="3 random pairs and a fold")
 
 

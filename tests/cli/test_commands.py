@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from typer.testing import Result
 
 import nonholo as nh
-from nonholo import plotting
 from nonholo.cli import _app
 from nonholo.cli.commands import _running
 from nonholo.cli.scenario.files import load_scenario
@@ -186,7 +186,7 @@ def test_a_failing_picture_does_not_cost_the_run(nonholo: Command, monkeypatch: 
         Path(path).write_text("half")
         raise RuntimeError("no ink")
 
-    monkeypatch.setattr(plotting, "overview", fail)
+    monkeypatch.setattr(Figure, "savefig", fail)
     result = nonholo("simulate", "suslov", "--steps", 5)
     assert result.exit_code == 0
     assert "no picture: RuntimeError: no ink" in result.stderr

@@ -1,7 +1,9 @@
 """Taylor series of the flow: their equations, what their steps depend on, accuracy over long times, singular starts."""
 
+import functools
 import itertools
 import pickle
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import mpmath
@@ -103,6 +105,18 @@ def test_states_do_not_depend_on_the_other_times(system: AbstractSystem) -> None
     among = nh.flow(system, **START, times=np.arange(50 * 256 + 1) / 256)
     for value in ("reduced_momentum", "canonical_pose"):
         assert np.array_equal(getattr(alone, value), getattr(among, value)[[0, 20 * 256, 50 * 256]])
+
+
+def test_kept_room_leaves_no_trace() -> None:
+    """A flow has the same bits after another one of as many components, in its thread and in a new one."""
+    flows = [
+        functools.partial(nh.flow, TOP, restricted_velocity=w, times=(0.0, 9.0)) for w in ((0.8, -0.5), (90.0, 7.0))
+    ]
+    found = [flow().canonical_pose for flow in (*flows, flows[0])]
+    with ThreadPoolExecutor(1) as pool:
+        found.append(pool.submit(flows[0]).result().canonical_pose)
+    assert all(np.array_equal(found[0], again) for again in found[2:])
+    assert not np.array_equal(found[0], found[1])
 
 
 @pytest.mark.parametrize("size", [2.0**-400, 2.0**-40, 2.0**300])

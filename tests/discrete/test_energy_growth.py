@@ -10,7 +10,7 @@ from bodies import mass_tensor
 import nonholo as nh
 from nonholo.base.numerics import product_and_remainder
 from nonholo.discrete.routes import make_route
-from nonholo.kernels._small import paired_twice
+from nonholo.kernels.general._rows import pair_twice, put
 
 GROUPS = (nh.SO(3), nh.SO(4), nh.SO(5), nh.SE(2), nh.SE(3), nh.SE(4))
 ALLOWED = 5e-18  # relative, per step; rows rounded twice gave up to 6e-17, at every step of the same sign
@@ -97,4 +97,11 @@ def test_products_with_twice_the_digits(size: int) -> None:
     assert np.all(np.abs(rest) <= 2.0**-53 * np.abs(product))
     small = A * rng.uniform(-1e-16, 1e-16, A.shape)
     whole = float(sum(((exact(A) + exact(small)) * exact(B)).ravel()))
-    assert abs(paired_twice(A, small, B, 0.0) - whole) <= 2.0**-52 * abs(whole) + 2.0**-95 * np.abs(A * B).sum()
+    rows, kinds, sums = np.zeros((2, size * size, 8)), np.zeros((2, 8)), np.zeros((1, 8))
+    for lane in range(8):  # the same row with both kinds of partners
+        put(A, lane, rows[0])
+        put(small, lane, rows[1])
+        kinds[lane % 2, lane] = 1.0
+    pair_twice(rows[0], rows[1], kinds, size, B, B, sums)
+    assert np.all(sums == sums[0, 0])
+    assert abs(sums[0, 0] - whole) <= 2.0**-52 * abs(whole) + 2.0**-95 * np.abs(A * B).sum()

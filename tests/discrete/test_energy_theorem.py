@@ -65,7 +65,7 @@ def test_all_branches_conserve_energy() -> None:
     body, m = make_route(discrete, "matrix").body, 0.5 * orbit.restricted_momentum[1]
     found, work, term = set(), workspace(body), np.zeros(3)
     for y in rng.normal(size=(200, 3)) * 3:
-        good, _ = newton(body, work, m, y)
+        good, _ = newton(body, work, 1.0, m, y)
         if good:
             displaced(body, work, y)
             increments(body, work, term)

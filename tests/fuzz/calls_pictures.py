@@ -46,11 +46,18 @@ def _of_orbits() -> list[Call]:
     free = thing(nh.simulate(DISCRETE["free"], body_velocity=(0.3, 0.2, 0.1), steps=6))
     sleigh = thing(nh.simulate(SLEIGH, body_velocity=(1.0, 0.3, 0.0), steps=6))
     axes, view, flow = anything(None), anything((30.0, 20.0)), anything(None)
+    look = {
+        "title": text("mine", none=True),
+        "label": text("one", none=True),
+        "color": anything("C1"),
+        "size": anything((4.0, 3.0)),
+    }
+    look |= {name: anything(True) for name in ("legend", "annotate", "dark")}
     movie = {"path": path("new.gif"), "frames": count(2), "fps": positive(5.0)}
     return [
         _drawn("blade_track", orbit=sleigh, axes=axes, flow=flow, enlarge=flag(True)),
         _drawn("body_axis_track", orbit=top, axes=axes, flow=flow, view=view, body_axis=array([0, 0, 1.0], none=True)),
-        _drawn("energy_error", orbit=top, axes=axes),
+        _drawn("energy_error", orbit=top, axes=axes, **look),
         _drawn("momentum_sphere", orbit=free, axes=axes, view=view),
         _drawn("overview", orbit=top, path=path("new.png", none=True), flow=flow),
         _drawn("point_track", orbit=sleigh, axes=axes, flow=flow),

@@ -54,6 +54,13 @@ def _runs() -> list[Call]:
             call(f"iterate [{name}]", nh.iterate, **given, block_steps=count(2, none=True)),
             call(f"flow [{name}]", nh.flow, **_flow(discrete)),
         ]
+    forced = nh.Forced(TOP.system, nh.Gravity([0.0, 0.1, -1.0], [0.1, 0.0, 0.3]), nh.Friction([0.1, 0.2, 0.3]))
+    velocity = array(_velocity(TOP))
+    given = {"discrete": thing(nh.discretize(forced, 0.1)), "steps": count(5), "restricted_velocity": velocity}
+    found += [
+        call("simulate [forced]", nh.simulate, **given, **_HOW, save_every=count(1)),
+        call("flow [forced]", nh.flow, **_flow(TOP) | {"system": thing(forced)}),
+    ]
     stored = {
         "store": path("new.zarr", none=True),
         "checkpoint_every": count(2, none=True),

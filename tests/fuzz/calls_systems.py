@@ -20,7 +20,7 @@ def _kinetic(_: Any, v: Any) -> Any:
 
 def calls() -> list[Call]:
     """Return the calls of this file."""
-    return [*_tops(), *_sleighs(), *_general(), *_methods(), *_in_coordinates(), *_examples()]
+    return [*_tops(), *_sleighs(), *_general(), *_forces(), *_methods(), *_in_coordinates(), *_examples()]
 
 
 def _tops() -> list[Call]:
@@ -57,6 +57,20 @@ def _general() -> list[Call]:
         call("LRSystem [annihilator]", nh.LRSystem, group=group, mass_tensor=tensor, annihilator=annihilator),
         call("is_symmetric_pair", nh.is_symmetric_pair, group=group, constraint_subspace=rows),
         call("reference_point_subspace", nh.reference_point_subspace, n=count(3), plane=array(np.eye(3)[:2], "rows")),
+    ]
+
+
+def _forces() -> list[Call]:
+    heavy, top = nh.Gravity([0.0, 0.1, -1.0], [0.1, 0.0, 0.3]), nh.SuslovTop(J)
+    forced, pose = nh.Forced(top, heavy, nh.Friction([0.1, 0.2, 0.3])), array(np.eye(3), "batch")
+    acting = {"potential": anything(heavy), "force": anything(np.ones((4, 3)))}
+    point = {"force": array([0.0, 0.1, -1.0]), "point": array([0.1, 0.0, 0.3])}
+    return [
+        call("Gravity", nh.Gravity, **point),
+        call("Friction", nh.Friction, coefficients=array(np.diag([0.1, 0.2, 0.3]), "any")),
+        call("Forced", nh.Forced, system=thing(top), **acting),
+        call("forced.potential_energy", forced.potential_energy, configuration=pose),
+        call("forced.potential_force", forced.potential_force, configuration=pose),
     ]
 
 
@@ -141,7 +155,12 @@ def _examples() -> list[Call]:
     place, upright = array([0.0, 0.0, 0.0]), array([0.0, 0.0, 0.0, 0.0])
     odd = {"asymmetry": number(0.5), "turning": number(2.6)}
     velocity = array([1.0, 1.0])
+    racer = {"mass": positive(1.0), "inertia": positive(0.2), "joint": positive(1.0), "amplitude": number(0.5)}
+    driven = {**common, "moving_mass": positive(0.3), "ahead": number(-0.3), "frequency": positive(1.0)}
     return [
+        call("examples.chaplygin_ball", made.chaplygin_ball, mass=positive(1.0), radius=positive(1.0), slow=True),
+        call("examples.driven_sleigh", made.driven_sleigh, **driven, slow=True),
+        call("examples.roller_racer", made.roller_racer, **racer, slow=True),
         call("examples.chaotic_quartic_oscillator", made.chaotic_quartic_oscillator, pairs=count(3), slow=True),
         call("examples.knife_edge_on_incline", made.knife_edge_on_incline, **common, configuration=place, slow=True),
         call("examples.non_reversible", made.non_reversible, **odd, slow=True),

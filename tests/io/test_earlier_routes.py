@@ -21,6 +21,8 @@ _FOLDER = Path(__file__).with_name("earlier_routes")
 _EXPECTED = json.loads((_FOLDER / "expected.json").read_text())
 _SAME_LAPACK = rounding_of_lapack() == _EXPECTED["lapack"]
 _ORBITS = list(_EXPECTED["orbits"])
+_ROUNDED_ANEW = {name for name in _ORBITS if "LLSystem" in name} | {"any d on SE(3)", "veselova", "free body"}
+"""Motions of the general step, whose arithmetic is another one since: the same numbers, not the same bits."""
 _QUICK = ["suslov top", "LLSystem that is a top", "veselova"]
 
 
@@ -43,11 +45,15 @@ def _whatever_versions() -> Iterator[None]:
         yield
 
 
+def _same_bits(name: str) -> bool:
+    return _SAME_LAPACK and name not in _ROUNDED_ANEW
+
+
 def _check_longer(orbit: nh.Orbit, name: str) -> None:
-    """Compare with the run without a stop: bit for bit where LAPACK rounds as it did then."""
+    """Compare with the run without a stop: bit for bit where LAPACK and the kernel round as they did then."""
     expected = _EXPECTED["orbits"][name]
     assert len(orbit) == 1 + STEPS + MORE
-    if _SAME_LAPACK:
+    if _same_bits(name):
         assert digest_of(orbit) == expected["longer"]
     assert np.allclose(orbit.reduced_momentum[-1], expected["momentum"], rtol=0, atol=1e-12)  # numbers of order one
     assert np.allclose(orbit.canonical_pose[-1], expected["pose"], rtol=0, atol=1e-12)
@@ -76,7 +82,7 @@ def test_stopped_runs_go_on(name: str, stores: Path, tmp_path: Path) -> None:
     path = _copied(stores, f"{name}, stopped", tmp_path)
     with _whatever_versions():
         orbit = nh.resume(path)
-        assert digest_of(orbit) == _EXPECTED["orbits"][name]["digest"] or not _SAME_LAPACK
+        assert digest_of(orbit) == _EXPECTED["orbits"][name]["digest"] or not _same_bits(name)
         _check_longer(nh.extend(path, MORE), name)
 
 
@@ -87,7 +93,7 @@ def test_stopped_sweeps_go_on(name: str, given: bool, stores: Path, tmp_path: Pa
     path, expected = _copied(stores, f"{name}, stopped sweep", tmp_path), _EXPECTED["sweeps"][name]
     with _whatever_versions(), nh.resume(path, task=sweep_of(motions()[name])[0] if given else None) as found:
         numbers = [found[key].values for key in ("final_momentum", "final_pose")]
-    if _SAME_LAPACK:
+    if _same_bits(name):
         assert digest(*numbers) == expected["digest"]
     assert np.allclose(numbers[0], expected["final_momentum"], rtol=0, atol=1e-12)  # numbers of order one
 

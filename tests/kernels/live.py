@@ -50,6 +50,18 @@ def orbits(system: Any, order: int = 2, rank: int | None = None, size: float = S
     return found
 
 
+def forced(system: Any) -> Arrays:
+    """Run single orbits under a weight with friction, and with a force for each step."""
+    rng, found = np.random.default_rng(3), []
+    n, velocity = system.group.size - system.has_blade, rng.normal(size=system.rank)
+    heavy, rub = nh.Gravity(rng.normal(size=n), rng.normal(size=n)), nh.Friction(rng.uniform(0, 1, system.group.dim))
+    for force in (rub, rng.normal(size=(STEPS, system.group.dim))):
+        discrete = nh.discretize(nh.Forced(system, heavy, force), STEP / 10)
+        orbit = nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS, throw=False)
+        found += [orbit.reduced_momentum, orbit.cayley, orbit.pose]
+    return found
+
+
 def nearest(system: Any) -> Arrays:
     """Follow every real value over a momentum, some to the end."""
     discrete, found = nh.discretize(system, STEP), []
@@ -140,6 +152,10 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     "flows of sleighs": lambda: members_of_flows(SLEIGH),
     "right-invariant flow on SE(3)": lambda: flows(GENERAL["right-invariant on SE(3)"][0]),
     "pose of a top in closed form": lambda: flows(TOP, "closed_form"),
+    "top with forces": lambda: forced(TOP),
+    "sleigh with forces": lambda: forced(SLEIGH),
+    "top on SO(4) with forces": lambda: forced(nh.SuslovTop(mass_tensor(nh.SO(4), np.random.default_rng(4)))),
+    "any d on SO(4) with forces": lambda: forced(GENERAL["any d on SO(4)"][0]),
     "a fold on SO(4)": lambda: orbits(GENERAL["any d on SO(4)"][0], size=20.0),
     "a fold of a top on SO(5)": lambda: orbits(
         nh.SuslovTop(mass_tensor(nh.SO(5), np.random.default_rng(5))), size=20.0

@@ -84,10 +84,15 @@ def test_long_runs_are_thinned_but_keep_the_turn() -> None:
 
 
 def test_the_flow_is_drawn_over_it(sleigh_orbit: nh.Orbit) -> None:
-    """The continuous curve has the positions of the flow."""
+    """The continuous curve has the positions of the flow at its times, and many more between them."""
     flow = nh.flow(sleigh_orbit.system, body_velocity=(0.1, -1.0, 0.0), times=np.linspace(0.0, 20.0, 300))
     line = nh.plot.blade_track(sleigh_orbit, flow=flow).flow
-    assert np.array_equal(line.get_xydata(), flow.position)
+    drawn = line.get_xydata()
+    missed = np.linalg.norm(drawn[:, None] - flow.position, axis=2).min(axis=0)
+    assert missed.max() < 1e-13
+    exact = nh.flow(flow.system, body_velocity=(0.1, -1.0, 0.0), times=np.linspace(0.0, 20.0, 2000)).position
+    assert len(drawn) > 1000
+    assert np.linalg.norm(drawn[:, None] - exact, axis=2).min(axis=1).max() < 0.01
 
 
 def test_refuses_a_top_and_an_orbit_without_poses(top_orbit: nh.Orbit) -> None:

@@ -91,6 +91,8 @@ def test_files(suffix: str, sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
     if suffix == "png":
         with Image.open(path) as picture:
             assert picture.size == (1950, 1140)
+    if suffix == "svg":
+        assert ">Chaplygin sleigh</text>" in path.read_text()
 
 
 def test_refuses_other_suffixes(sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 
 import nonholo as nh
+from nonholo.plotting.sheets import plane_inertia
 
 SYSTEMS = {
     "top": nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]),
@@ -75,11 +76,16 @@ def test_orbit_dots_are_its_momenta(sleigh_orbit: nh.Orbit) -> None:
 
 
 def test_a_flow_is_a_line(sleigh_orbit: nh.Orbit) -> None:
-    """A continuous motion is drawn as a line through its momenta."""
+    """A continuous motion is drawn as a line through its momenta, with enough of them for a smooth curve."""
     flow = nh.flow(sleigh_orbit.system, body_velocity=(0.1, -1.0, 0.0), times=np.linspace(0.0, 20.0, 50))
     path = nh.plot.phase_portrait(flow.system, flow).orbit
     assert isinstance(path, LineCollection)
-    assert np.allclose([segment[0] for segment in path.get_segments()], flow.reduced_momentum[:-1])
+    drawn = np.array([segment[0] for segment in path.get_segments()])
+    assert len(drawn) > 1000
+    missed = np.linalg.norm(drawn[:, None] - flow.reduced_momentum[:-1], axis=2).min(axis=0)
+    assert missed.max() < 1e-13
+    energy = np.einsum("ki,ij,kj->k", drawn, np.linalg.inv(plane_inertia(flow.system)), drawn) / 2
+    assert np.allclose(energy, flow.energy[0], rtol=1e-12)
 
 
 def test_refuses_what_it_cannot_draw(sleigh_orbit: nh.Orbit) -> None:

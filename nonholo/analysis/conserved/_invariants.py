@@ -23,7 +23,9 @@ class Invariants:
     Attributes:
         states: Saved states.
         steps: Steps they span (0 for a flow); of given poses the times between them.
-        energy_drift: Largest change of the reduced constrained energy, relative to it (absolute at rest).
+        energy_drift: Largest change of the reduced constrained energy, relative to it (absolute at rest). Under forces
+            what is left of the balance: the largest change of the energy less the work of the force, relative to the
+            largest energy. Of a driven system in coordinates, whose balance is not known, the change of its energy.
         constraint_residual: Largest forbidden part of (W - W^-1)/2 of a displacement, of log W where the variety is
             exp d alone, or of a velocity, of a flow and of given poses; where the variety is given by equations, and in
             coordinates, their largest residual.
@@ -31,6 +33,7 @@ class Invariants:
         reversal_defect: Largest relative miss of one step forward and back; not measured in coordinates.
         largest_step_angle: In degrees.
         outcome: How the run ended.
+        work: What the force did on the whole, minus what friction dissipated; None of a free system.
     """
 
     states: int
@@ -41,6 +44,7 @@ class Invariants:
     reversal_defect: float | None
     largest_step_angle: float | None
     outcome: Outcome
+    work: float | None = None
 
 
 def invariants(orbit: AbstractOrbit) -> Invariants:
@@ -67,7 +71,7 @@ def _in_coordinates(orbit: Any) -> Invariants:
     return Invariants(
         states=len(orbit),
         steps=0 if h is None else round(duration / h),
-        energy_drift=_drift(orbit.energy),
+        energy_drift=_energy_drift(orbit.energy, 0.0, forced=False),
         constraint_residual=float(orbit.constraint_residual.max()),
         group_residual=on_group,
         reversal_defect=None,
@@ -76,25 +80,28 @@ def _in_coordinates(orbit: Any) -> Invariants:
     )
 
 
-def _drift(energy: Float[np.ndarray, "K"]) -> float:
-    return float(np.abs(energy - energy[0]).max() / (abs(energy[0]) or 1.0))
-
-
 def _of_body(orbit: Orbit) -> Invariants:
     group = orbit.system.group
     stride = max(1, len(orbit) // (_SAMPLED if group.dim == 3 else _SAMPLED_LARGE))
     sample = orbit[::stride] if stride > 1 else orbit
     discrete = orbit.motion if isinstance(orbit.motion, Discretization) else None
+    work, forced = orbit.work, orbit.system.forces is not None
     return Invariants(
         states=len(orbit),
         steps=0 if orbit.cayley is None else (len(orbit) - 1) * orbit.save_every,
-        energy_drift=_drift(orbit.energy),
+        energy_drift=_energy_drift(orbit.energy, work, forced=forced),
         constraint_residual=float(np.abs(orbit.motion.constraint_residual(sample)).max(initial=0.0)),
         group_residual=None if orbit.canonical_pose is None else _group_residual(sample),
         reversal_defect=None if discrete is None else _reversal_defect(discrete, sample),
         largest_step_angle=None if orbit.cayley is None else _largest_angle(sample),
         outcome=orbit.outcome,
+        work=float(work[-1]) if forced else None,
     )
+
+
+def _energy_drift(energy: Float[np.ndarray, "K"], work: Any, *, forced: bool) -> float:
+    size = np.abs(energy if forced else energy[0]).max()
+    return float(np.abs(energy - energy[0] - work).max() / (size or 1.0))
 
 
 def _largest_angle(orbit: Orbit) -> float:
@@ -117,7 +124,7 @@ def _group_residual(orbit: Orbit) -> float:
 
 
 def _reversal_defect(discrete: Discretization, orbit: Orbit) -> float | None:
-    route = discrete.route.compiled
+    route = discrete.route.compiled if discrete.forces is None else None
     if route is None:
         return None
     moving = np.asarray(orbit.canonical_chart.any(axis=1))

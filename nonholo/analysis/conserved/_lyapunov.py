@@ -9,7 +9,7 @@ import numpy as np
 
 from nonholo.base.checks import error, shape_of, trailing
 from nonholo.base.types import Array, Float
-from nonholo.systems import AbstractLLSystem, AbstractSystem
+from nonholo.systems import AbstractLLSystem, AbstractSystem, refuse_forces
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -57,6 +57,7 @@ def lyapunov_function(system: AbstractLLSystem) -> LyapunovFunction:
         >>> bool(np.all(np.diff(lyapunov_function(sleigh)(orbit.momentum)) < 0))
         True
     """
+    refuse_forces("lyapunov_function(system=...)", system)
     if not isinstance(system, AbstractSystem) or system.is_spatial:
         remedy = "Pass a SuslovTop, a sleigh, or another left-invariant system."
         raise error("lyapunov_function(system=...)", "have a left-invariant constraint", type(system).__name__, remedy)

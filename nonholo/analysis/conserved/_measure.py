@@ -15,7 +15,7 @@ from nonholo.base.checks import array, error, instance, shape_of, shown, trailin
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
-from nonholo.systems import AbstractLLSystem, AbstractSystem
+from nonholo.systems import AbstractLLSystem, AbstractSystem, refuse_forces
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -148,6 +148,7 @@ def invariant_measure(motion: AbstractLLSystem | Discretization, energy: Array =
         True
     """
     system = motion.system if isinstance(motion, Discretization) else motion
+    refuse_forces("invariant_measure(motion=...)", system)
     if not isinstance(system, AbstractSystem) or system.normal_form is None:
         remedy = "Pass a SuslovTop, a sleigh, or a discretization of one."
         raise error("invariant_measure(motion=...)", "be a top or a sleigh", type(motion).__name__, remedy)

@@ -10,7 +10,7 @@ import numpy as np
 from nonholo.base.checks import instance
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.systems import AbstractSystem, gyroscopic_form, null_space, spanned
+from nonholo.systems import AbstractSystem, gyroscopic_form, null_space, refuse_forces, spanned
 
 _RANK = 1e-11  # relative size below which a rate of change counts as zero
 
@@ -66,6 +66,7 @@ def conserved_momenta(system: AbstractSystem) -> ConservedMomenta:
     """
     remedy = "Pass a SuslovTop, an LLSystem, ..."
     instance("conserved_momenta(system=...)", system, AbstractSystem, "be a system", remedy)
+    refuse_forces("conserved_momenta(system=...)", system)
     return _right(system) if system.is_spatial else _left(system)
 
 

@@ -16,7 +16,7 @@ from nonholo.base.results import OutcomeError
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
-from nonholo.systems import AbstractLLSystem, AbstractSystem, NormalForm
+from nonholo.systems import AbstractLLSystem, AbstractSystem, NormalForm, refuse_forces
 
 _SAME = 1e-6  # relative distance of displacements beyond which two orbits are on different branches
 
@@ -82,6 +82,7 @@ def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
     """
     orbit = subject if isinstance(subject, Orbit) else None
     system = subject if orbit is None else orbit.system
+    refuse_forces("asymptotics(subject=...)", system)
     form = system.normal_form if isinstance(system, AbstractSystem) else None
     if form is None:
         remedy = "Pass a SuslovTop, a sleigh, or an orbit of one."

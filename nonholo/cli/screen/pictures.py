@@ -5,10 +5,11 @@ import os
 import uuid
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from nonholo.base.progress import progress_bar, waiting
 from nonholo.cli.screen.errors import warn
+from nonholo.cli.screen.kinds import KINDS, figure_of
 
 if TYPE_CHECKING:
     from nonholo.orbit import Orbit
@@ -21,8 +22,19 @@ def beside(store: Path, suffix: str) -> Path:
     return store.with_name(f"{store.name.removesuffix('.zarr')}.{suffix}")
 
 
-def draw(orbit: "Orbit", picture: Path | None, animation: Path | None, *, progress: bool) -> dict[str, str | None]:
+def draw(
+    orbit: "Orbit",
+    picture: Path | None,
+    animation: Path | None,
+    *,
+    progress: bool,
+    look: dict[str, Any] | None = None,
+    kind: str = KINDS[0],
+    dpi: float = 150,
+    **names: str | None,
+) -> dict[str, str | None]:
     """Draw what is asked for, with progress if wanted; return the paths of what was drawn, None for the rest."""
+    look = look or {}
     drawn: dict[str, str | None] = {"picture": None, "animation": None}
     if picture is None and animation is None:
         return drawn
@@ -32,11 +44,11 @@ def draw(orbit: "Orbit", picture: Path | None, animation: Path | None, *, progre
 
         if picture is not None:
             with complete(picture) as part, waiting("drawing", progress):
-                plotting.overview(orbit, part, flow=_flow(orbit))
+                figure_of(kind, orbit, _flow, look, **names).savefig(part, dpi=dpi)
             drawn["picture"] = str(picture)
         if animation is not None:
             with complete(animation) as part, progress_bar("frames", progress) as report:
-                plotting.animate(orbit, part, progress=report)
+                plotting.animate(orbit, part, progress=report, **look)
             drawn["animation"] = str(animation)
     except Exception as failure:
         warn(f"no picture: {type(failure).__name__}: {failure}")

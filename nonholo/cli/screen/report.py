@@ -89,6 +89,9 @@ def _rows(figures: dict[str, Any]) -> list[tuple[str, str, str]]:
         "reversal_defect": ("one-step reversal defect", "", ROUNDING),
         "largest_step_angle": ("largest step angle", " degrees", "well below 90 degrees"),
     }
+    if figures["work"] is not None:
+        expected["energy_drift"] = ("energy less work of forces", "", "of order 2 in the time step")
+        expected["work"] = ("work of forces", "", "")
     rows = [(figures[name], *entry) for name, entry in expected.items()]
     lines = [(label, f"{value:.3g}{unit}", note) for value, label, unit, note in rows if value is not None]
     return [*lines, ("outcome", figures["outcome"], "successful")]
@@ -118,6 +121,8 @@ def _shown(value: Any) -> str:
     """Write a name, a number, or the rows of an array in columns."""
     if isinstance(value, str):
         return value
+    if isinstance(value, dict):  # a system inside another, or a force
+        return "\n".join(f"{_label(name)}: {_shown(inside)}" for name, inside in value.items())
     shape = np.shape(value)
     if 0 in shape or max(shape, default=0) > _WIDEST:
         return " x ".join(map(str, shape)) if shape != (0,) else "none"

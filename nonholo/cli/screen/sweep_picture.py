@@ -15,16 +15,18 @@ if TYPE_CHECKING:
     import xarray
 
 
-def draw_sweep(result: "xarray.Dataset", picture: Path, color: str | None, x: str | None, y: str | None) -> str | None:
+def draw_sweep(
+    result: "xarray.Dataset", picture: Path, *names: str | None, dpi: float = 150, **look: Any
+) -> str | None:
     """Draw a quantity over the design; return the path of the picture, None if there is none."""
     os.environ.setdefault("MPLBACKEND", "agg")
-    quantity, across, up = (None if name is None else _named(result, name) for name in (color, x, y))
+    quantity, across, up = (None if name is None else _named(result, name) for name in names)
     try:
         from nonholo import plotting
 
-        figure: Any = plotting.sweep_map(result, quantity, across, up).axes.figure
+        figure: Any = plotting.sweep_map(result, quantity, across, up, **look).axes.figure
         with complete(picture) as part, waiting("drawing", sys.stderr.isatty()):
-            figure.savefig(part, dpi=150)
+            figure.savefig(part, dpi=dpi)
     except Exception as failure:
         warn(f"no picture: {type(failure).__name__}: {failure}")
         return None
@@ -39,7 +41,9 @@ def _named(result: "xarray.Dataset", path: str) -> str:
     return name if name in result.variables else component_name(name)
 
 
-def draw_stored_sweep(store: Path, picture: Path, color: str | None, x: str | None, y: str | None) -> tuple[str | None]:
+def draw_stored_sweep(
+    store: Path, picture: Path, color: str | None, x: str | None, y: str | None, **options: Any
+) -> tuple[str | None]:
     """Draw the sweep of a store: what is asked for, or what its scenario shows."""
     from nonholo.ensembles import load_sweep
     from nonholo.ensembles.stores import attributes_of
@@ -49,7 +53,7 @@ def draw_stored_sweep(store: Path, picture: Path, color: str | None, x: str | No
     if not (color or x or y):
         shown = _output_of(attributes_of(store).get("scenario", ""))
         color, x, y = (shown.get(name) for name in ("color", "x", "y"))
-    return (draw_sweep(result, picture, color, x, y),)
+    return (draw_sweep(result, picture, color, x, y, **options),)
 
 
 def _output_of(scenario: str) -> dict[str, Any]:

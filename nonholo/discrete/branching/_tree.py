@@ -55,8 +55,8 @@ def branch_tree(discrete: Discretization, displacement: Any, depth: int) -> Bran
 
     $$ P(W')|_{\mathfrak{d}} = (\mathrm{Ad}^*_W P(W))|_{\mathfrak{d}}, \qquad W, W' \in S \ \text{complex}. $$
 
-    The images of a Chaplygin sleigh are 3, 9, 27, ...: their number grows exponentially, which no integrable
-    correspondence does. Images at infinity, and those that are not isolated, are left out.
+    The images of a Chaplygin sleigh are 3, 9, 27, ..., as far as counted. Images at infinity, and those that are not
+    isolated, are left out.
 
     Reference: docs/theory/branches.md, "The tree of images".
 

@@ -7,12 +7,14 @@
 | `MatrixRoute` | any constraint with difference "matrix", by the matrix equations |
 | `DefinitionRoute` | everything, by derivatives of the discrete Lagrangian in JAX |
 | `ComposedRoute` | compositions of one of the first three |
+| `ForcedRoute` | one of the first three, with half an impulse at each end of its steps; `FunctionRoute` in Python |
 """
 
 from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute
 from nonholo.discrete.routes._choice import make_route
 from nonholo.discrete.routes._composed import ComposedRoute
 from nonholo.discrete.routes._definition import DefinitionRoute
+from nonholo.discrete.routes._forced import ForcedRoute, FunctionRoute
 from nonholo.discrete.routes._matrix import MatrixRoute
 from nonholo.discrete.routes._reversal import reversal_defects
 from nonholo.discrete.routes._scalar import ScalarRoute, ScalarStep
@@ -23,6 +25,8 @@ __all__ = [
     "AbstractRoute",
     "ComposedRoute",
     "DefinitionRoute",
+    "ForcedRoute",
+    "FunctionRoute",
     "MatrixRoute",
     "ScalarRoute",
     "ScalarStep",

@@ -1,14 +1,19 @@
 """Which route a discretization takes: the first of its system that computes what is asked for."""
 
+import dataclasses
+from typing import Any, cast
+
 from nonholo.discrete._scheme import Scheme
 from nonholo.discrete._variety import variety_of
 from nonholo.discrete.routes._base import AbstractRoute
 from nonholo.discrete.routes._closed_forms import closed_form
 from nonholo.discrete.routes._composed import ComposedRoute
 from nonholo.discrete.routes._definition import DefinitionRoute
+from nonholo.discrete.routes._forced import forced_route
 from nonholo.discrete.routes._matrix import MatrixRoute
 from nonholo.discrete.routes._scalar import ScalarRoute
 from nonholo.discrete.routes._secular import SecularRoute
+from nonholo.systems import Forced
 
 _SCALAR = (None, "scalar")
 _SECULAR = (*_SCALAR, "secular")
@@ -23,6 +28,9 @@ def make_route(scheme: Scheme, wanted: str | None = None) -> AbstractRoute:
         wanted: None for the best one; or the name of one, which then, or where it is not known for the system the next
             more general one, is taken. Stores name the route that began them.
     """
+    if scheme.system.is_forced:
+        forced = cast(Forced, scheme.system)
+        return forced_route(make_route(dataclasses.replace(cast(Any, scheme), system=forced.system), wanted), forced)
     single = _single(scheme, wanted)
     compiled = single.compiled
     return single if compiled is None or scheme.order == 2 else ComposedRoute(compiled, scheme.order)

@@ -21,7 +21,10 @@ from typing import NamedTuple
 import numpy as np
 
 from nonholo.base.compiled import njit
-from nonholo.kernels._small import eliminate, multiply, paired, paired_twice, sandwich, transpose
+from nonholo.kernels._lanes import EIGHT
+from nonholo.kernels._scalar import BORROWING, COMPILED, INLINED
+from nonholo.kernels._small import assign, eliminate, multiply, paired, transpose
+from nonholo.kernels.general._rows import add_slopes, pair_twice, put
 
 LOST = 1e12  # turning of a displacement of an iteration that runs away
 
@@ -76,9 +79,19 @@ class Workspace(NamedTuple):
         H: (I + Y)^{-1}, or scratch.
         scratch: One more.
         half: Another.
-        Q: D_i J, (k, N, N), with the mass tensor that the equations see.
-        slope: The Jacobian, (m, m).
-        residual: The residual, then the correction, (m, 1).
+        rows: D_i J, with the mass tensor that the equations see, then A_j, side by side, (N^2, R).
+        rests: Their remainders, (N^2, R).
+        kinds: Ones for rows that pair with X, ones for those that pair with K; factors of slopes with G, (3, R).
+        others: Ones but on the diagonal, (8, 8).
+        halves: Eight rows, halfway, (N^2, 8).
+        slope: The Jacobian, a row for each unknown, (m, R).
+        sums: The residual, (1, R).
+        terms: The change of the momenta, (1, K).
+        order: The equation that is solved for each unknown, (m,).
+        inverses: One over its pivot, (m,).
+        correction: The last correction, (m,).
+        slopes: Jacobians along a path, at its point and further on, and their quotient, (3, m, R).
+        charts: What is foretold and found there; where the path leads from both, (4, m).
     """
 
     G: np.ndarray
@@ -87,16 +100,37 @@ class Workspace(NamedTuple):
     H: np.ndarray
     scratch: np.ndarray
     half: np.ndarray
-    Q: np.ndarray
+    rows: np.ndarray
+    rests: np.ndarray
+    kinds: np.ndarray
+    others: np.ndarray
+    halves: np.ndarray
     slope: np.ndarray
-    residual: np.ndarray
+    sums: np.ndarray
+    terms: np.ndarray
+    order: np.ndarray
+    inverses: np.ndarray
+    correction: np.ndarray
+    slopes: np.ndarray
+    charts: np.ndarray
 
 
-@njit()
+@njit(**COMPILED)
 def workspace(p: GeneralBody) -> Workspace:
     """Return a workspace for a body, with the mass tensor of the body."""
-    N, m = len(p.tensor), len(p.stretch)
-    many = np.zeros((6, N, N))
+    N, m, k, L = len(p.tensor), len(p.stretch), len(p.directions), len(EIGHT)
+    R, K = (m + L - 1) // L * L, (k + L - 1) // L * L
+    many, rows, kinds = np.zeros((6, N, N)), np.zeros((2, N * N, R)), np.zeros((3, R))
+    for i in range(m):
+        put(p.pairings[i] if i < k else p.forbidden[i - k], i, rows[0])
+        put(p.remainders[i], i, rows[1])
+        kinds[0 if i < k else 1, i] = 1.0
+        kinds[2, i] = 2.0 if i < k or _turns(p) else 1.0
+    others = np.zeros((L, L))
+    for i in range(L):
+        for j in range(L):
+            others[i, j] = i != j
+    slopes, charts = np.zeros((4, m, R)), np.zeros((6, m))
     return Workspace(
         many[0],
         many[1],
@@ -104,46 +138,70 @@ def workspace(p: GeneralBody) -> Workspace:
         many[3],
         many[4],
         many[5],
-        p.pairings.copy(),
-        np.zeros((m, m)),
-        np.zeros((m, 1)),
+        rows[0],
+        rows[1],
+        kinds,
+        others,
+        np.zeros((N * N, L)),
+        slopes[3],
+        np.zeros((1, R)),
+        np.zeros((1, K)),
+        np.zeros(m, dtype=np.int64),
+        charts[4],
+        charts[5],
+        slopes[:3],
+        charts[:4],
     )
 
 
-@njit()
+@njit(inline="always", **BORROWING)
+def _turns(p: GeneralBody) -> bool:
+    """Tell whether the group has rotations alone, where G^T = (I + Y)^{-1}."""
+    return p.size == len(p.tensor) and len(p.form) == 0
+
+
+@njit(**BORROWING)
 def see_tensor(p: GeneralBody, w: Workspace, J: np.ndarray) -> None:
     """Let the equations see a mass tensor."""
-    for i in range(len(p.directions)):
-        multiply(p.directions[i], J, w.Q[i])
+    for r in range(len(p.directions)):
+        multiply(p.directions[r], J, w.half)
+        put(w.half, r, w.rows)
 
 
-@njit()
+@njit(**INLINED)
 def displaced(p: GeneralBody, w: Workspace, y: np.ndarray) -> float:
     """Compute X = 2 (I - Y)^{-1} Y and G = I + X / 2; return how far it turns, the sum of tan^2(angle / 2).
 
     Beyond `LOST`, where I - Y may be singular to rounding, they are not computed; nor where its determinant is not
     positive, beyond the edge of the chart on groups with boosts.
     """
-    return _displaced(p.places, p.entries, p.size, y, w.X, w.G, w.scratch)
+    small = p.size <= 4 and len(p.form) == 0
+    return _displaced(p.places, p.entries, p.size, small, y, w.X, w.G, w.scratch)
 
 
-@njit()
+@njit(**BORROWING)
 def _displaced(
-    places: np.ndarray, entries: np.ndarray, n: int, y: np.ndarray, X: np.ndarray, G: np.ndarray, scratch: np.ndarray
+    places: np.ndarray,
+    entries: np.ndarray,
+    n: int,
+    small: bool,
+    y: np.ndarray,
+    X: np.ndarray,
+    G: np.ndarray,
+    Y: np.ndarray,
 ) -> float:
-    X[:] = 0.0
+    Y[:] = 0.0
     for e in range(len(entries)):
-        X[places[e, 1], places[e, 2]] += 2 * y[places[e, 0]] * entries[e]
+        Y[places[e, 1], places[e, 2]] += y[places[e, 0]] * entries[e]
     turning = 0.0
-    for i in range(len(X)):
-        for j in range(len(X)):
-            if i < n and j < n:
-                turning += X[i, j] ** 2 / 8
-            scratch[i, j] = -X[i, j] / 2
-        scratch[i, i] += 1.0
+    for i in range(n):
+        for j in range(n):
+            turning += Y[i, j] ** 2 / 2
     if not (turning < LOST):
         return turning
-    if not eliminate(scratch, X) > 0:
+    if small:
+        displace_by_squares(Y, n, turning, X)
+    elif not displace_by_elimination(Y, X) > 0:
         return LOST
     for i in range(len(X)):
         for j in range(len(X)):
@@ -152,7 +210,47 @@ def _displaced(
     return turning
 
 
-@njit()
+@njit(**BORROWING)
+def displace_by_elimination(Y: np.ndarray, X: np.ndarray) -> float:
+    """Write X; return the determinant of I - Y, which takes the place of Y."""
+    for i in range(len(X)):
+        for j in range(len(X)):
+            X[i, j] = 2 * Y[i, j]
+            Y[i, j] = -Y[i, j]
+        Y[i, i] += 1.0
+    return eliminate(Y, X)
+
+
+@njit(**BORROWING)
+def displace_by_squares(Y: np.ndarray, n: int, turning: float, X: np.ndarray) -> None:
+    r"""Write X for rotations and motions in up to four dimensions, in closed form.
+
+    With $s = \tfrac12\sum Y_{ij}^2$ and the Pfaffian $-q$ one has $Y^4 + sY^2 + q^2I = 0$ and
+    $X = 2(Y + q\tilde Y + Y^2 - q^2I)/(1 + s + q^2)$, where $Y\tilde Y = -qI$; q = 0 in up to three dimensions. The
+    translation is 2 v + X v.
+    """
+    q = Y[2, 1] * Y[0, 3] + Y[0, 2] * Y[1, 3] + Y[1, 0] * Y[2, 3] if n == 4 else 0.0
+    factor = 2 / (1 + turning + q * q)
+    for i in range(n):
+        for j in range(i + 1):
+            square = 0.0
+            for k in range(n):
+                square += Y[i, k] * Y[j, k]
+            X[i, j], X[j, i] = factor * (Y[i, j] - square), factor * (Y[j, i] - square)
+        X[i, i] -= factor * q * q
+    if n == 4:
+        for i, j, k in ((2, 1, 0), (0, 2, 1), (1, 0, 2)):
+            there, here = factor * q * Y[k, 3], factor * q * Y[i, j]
+            X[i, j], X[j, i], X[k, 3], X[3, k] = X[i, j] + there, X[j, i] - there, X[k, 3] + here, X[3, k] - here
+    for j in range(n, len(X)):
+        for i in range(n):
+            total = 2 * Y[i, j]
+            for k in range(n):
+                total += X[i, k] * Y[k, j]
+            X[i, j] = total
+
+
+@njit(inline="always", **BORROWING)
 def _adjoint(p: GeneralBody, X: np.ndarray, half: np.ndarray, out: np.ndarray) -> None:
     """Write X* = G^{-1} X^T G, the transpose where there is no form."""
     transpose(X, out)
@@ -161,7 +259,7 @@ def _adjoint(p: GeneralBody, X: np.ndarray, half: np.ndarray, out: np.ndarray) -
         multiply(half, p.form, out)
 
 
-@njit()
+@njit(inline="always", **BORROWING)
 def _invert(p: GeneralBody, X: np.ndarray, half: np.ndarray, V: np.ndarray) -> None:
     """Write the inverse of the group element I + X."""
     n = p.size
@@ -176,7 +274,7 @@ def _invert(p: GeneralBody, X: np.ndarray, half: np.ndarray, V: np.ndarray) -> N
                 V[i, n] -= X[j, i] * X[j, n]
 
 
-@njit()
+@njit(**INLINED)
 def skew_part(p: GeneralBody, w: Workspace) -> None:
     """Write K = (W - W^{-1})/2 to the scratch matrix, and W^{-1} to V."""
     X, V, K = w.X, w.V, w.scratch
@@ -187,46 +285,39 @@ def skew_part(p: GeneralBody, w: Workspace) -> None:
         K[i, i] += 0.5
 
 
-@njit()
-def _pair_with_chart(S: np.ndarray, factor: float, places: np.ndarray, entries: np.ndarray, row: np.ndarray) -> None:
-    """Add the pairings of a matrix with each C_a, times a factor, to a row."""
-    for e in range(len(entries)):
-        row[places[e, 0]] += factor * S[places[e, 1], places[e, 2]] * entries[e]
+@njit(inline="always", **BORROWING)
+def residual(p: GeneralBody, w: Workspace, s: float, m: np.ndarray) -> None:
+    """Compute the residual for momenta s m at the displacement in the workspace."""
+    k, K = len(p.directions), w.X
+    if len(p.stretch) > k:
+        skew_part(p, w)
+        K = w.scratch
+    w.sums[:] = 0.0
+    for i in range(k):
+        w.sums[0, i] = -s * m[i]
+    pair_twice(w.rows, w.rests, w.kinds, p.size, w.X, K, w.sums)
 
 
-@njit()
-def equations(p: GeneralBody, w: Workspace, m: np.ndarray) -> None:
-    """Compute the residual and its Jacobian at the displacement in the workspace.
+@njit(inline="always", **BORROWING)
+def jacobian(p: GeneralBody, w: Workspace) -> None:
+    """Compute the Jacobian at the displacement in the workspace, right after its residual.
 
     The pairing of Q with G C_a G is that of G^T Q G^T with C_a.
     """
-    k, unknowns, places, entries = len(p.directions), len(p.stretch), p.places, p.entries
-    G, X, Q, half, scratch, slope, residual = w.G, w.X, w.Q, w.half, w.scratch, w.slope, w.residual
-    slope[:] = 0.0
-    if unknowns > k:
-        H, A = w.H, p.forbidden
-        skew_part(p, w)
-        for j in range(k, unknowns):
-            residual[j, 0] = paired_twice(A[j - k], p.remainders[j], scratch, 0.0)
-        multiply(G, w.V, H)
-        for j in range(k, unknowns):
-            sandwich(G, A[j - k], half, scratch)
-            _pair_with_chart(scratch, 1.0, places, entries, slope[j])
-            sandwich(H, A[j - k], half, scratch)
-            _pair_with_chart(scratch, 1.0, places, entries, slope[j])
-    for i in range(k):
-        residual[i, 0] = paired_twice(Q[i], p.remainders[i], X, m[i])
-        sandwich(G, Q[i], half, scratch)
-        _pair_with_chart(scratch, 2.0, places, entries, slope[i])
+    w.slope[:] = 0.0
+    add_slopes(w.rows, w.kinds, 2, p.size, w.G, p.places, p.entries, w.halves, w.slope)
+    if len(p.stretch) > len(p.directions) and not _turns(p):
+        multiply(w.G, w.V, w.H)
+        add_slopes(w.rows, w.kinds, 1, p.size, w.H, p.places, p.entries, w.halves, w.slope)
 
 
-@njit()
+@njit(**INLINED)
 def increments(p: GeneralBody, w: Workspace, term: np.ndarray) -> None:
     r"""Compute the change of the scaled momenta in one step, $\mathrm{tr}(X D_i J X^*) = \langle Q_i, X^*X\rangle$.
 
     Where boosts make X large, $X^*X = -(X + X^*)$ cancels less than the product.
     """
-    X, transposed, square, Q = w.X, w.V, w.scratch, w.Q
+    X, transposed, square = w.X, w.V, w.scratch
     _adjoint(p, X, w.half, transposed)
     if len(p.form) > 0 and paired(X, X) > 1.0:
         for i in range(len(X)):
@@ -234,5 +325,6 @@ def increments(p: GeneralBody, w: Workspace, term: np.ndarray) -> None:
                 square[i, j] = -(X[i, j] + transposed[i, j])
     else:
         multiply(transposed, X, square)
-    for i in range(len(Q)):
-        term[i] = paired_twice(Q[i], p.remainders[i], square, 0.0)
+    w.terms[:] = 0.0
+    pair_twice(w.rows, w.rests, w.kinds, p.size, square, square, w.terms)
+    assign(term, w.terms[0, : len(term)])

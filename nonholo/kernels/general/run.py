@@ -3,33 +3,28 @@
 import numpy as np
 
 from nonholo.base.compiled import njit
+from nonholo.kernels._scalar import COMPILED, INLINED
 from nonholo.kernels._small import assign, assign_rows, multiply, transpose
 from nonholo.kernels.general._step import GeneralBody, Workspace, displaced, increments, see_tensor, workspace
-from nonholo.kernels.general.root import newton, solve
+from nonholo.kernels.general.root import finite, newton, solve
 
 
-@njit()
+@njit(**INLINED)
 def see_pose(p: GeneralBody, w: Workspace, g: np.ndarray) -> None:
     """Let the equations of a right-invariant constraint see the mass tensor that a pose carries to space."""
     if p.spatial:
-        scaled = _in_units(p, g, 1 / p.unit)
+        scaled, n, N = w.G, p.size, len(g)
+        assign_rows(scaled, g)
+        for i in range(n):
+            for j in range(n, N):
+                scaled[i, j] *= 1 / p.unit
         multiply(scaled, p.tensor, w.half)
         transpose(scaled, w.scratch)
         multiply(w.half, w.scratch, w.H)
         see_tensor(p, w, w.H)
 
 
-@njit()
-def _in_units(p: GeneralBody, g: np.ndarray, factor: float) -> np.ndarray:
-    """Return a motion with its translation multiplied by a factor."""
-    scaled = g.copy()
-    if len(g) > p.size:
-        for i in range(p.size):
-            scaled[i, p.size] *= factor
-    return scaled
-
-
-@njit()
+@njit(**INLINED)
 def move(p: GeneralBody, w: Workspace, g: np.ndarray) -> None:
     """Advance a pose by the displacement; bring its rotation back to the group by one Newton-Schulz step.
 
@@ -53,13 +48,13 @@ def move(p: GeneralBody, w: Workspace, g: np.ndarray) -> None:
         _rectify(moved, n, w.scratch, g)
 
 
-@njit()
+@njit(**INLINED)
 def overflowed(p: GeneralBody, g: np.ndarray) -> bool:
     """Tell whether a pose of a group with a form, which may grow without bound, is no longer finite."""
-    return len(p.form) > 0 and not np.all(np.isfinite(g))
+    return len(p.form) > 0 and not finite(g)
 
 
-@njit()
+@njit(**INLINED)
 def _rectify(moved: np.ndarray, n: int, scratch: np.ndarray, g: np.ndarray) -> None:
     """Write a pose with its rotation R replaced by R (3 I - R^T R) / 2."""
     for i in range(n):
@@ -77,7 +72,7 @@ def _rectify(moved: np.ndarray, n: int, scratch: np.ndarray, g: np.ndarray) -> N
                 g[i, j] += moved[i, k] * scratch[k, j]
 
 
-@njit(nogil=True)
+@njit(nogil=True, **COMPILED)
 def advance(
     p: GeneralBody,
     state: np.ndarray,
@@ -93,47 +88,49 @@ def advance(
     a failure it is that of the last good step.
     """
     k, c, N, w = len(p.directions), len(p.stretch), len(p.tensor), workspace(p)
-    m, lost = state[:k].copy(), state[k : 2 * k].copy()
-    charts_now = state[2 * k : 2 * k + 3 * c].copy().reshape(3, c)
-    y, u, v = charts_now[0], charts_now[1], charts_now[2]
-    g = state[2 * k + 3 * c :].copy().reshape(N, N)
-    term, code, done = np.zeros(k), 0, 0
-    displaced(p, w, y)
+    m, lost, g = state[:k], state[k : 2 * k], state[2 * k + 3 * c :].reshape(N, N)
+    past, found = state[2 * k : 2 * k + 3 * c].reshape(3, c), np.empty(c)
+    term, total, after, code, done = np.zeros(k), np.empty(k), np.empty((N, N)), 0, 0
+    displaced(p, w, past[0])
     while done < steps:
         if not p.spatial:
             increments(p, w, term)
-        change = term - lost
-        total = m + change
-        after = g.copy()
+        for i in range(k):
+            total[i] = m[i] + (term[i] - lost[i])
+        assign_rows(after, g)
         move(p, w, after)
         see_pose(p, w, after)
-        code, found = solve(p, w, total, 3 * (y - u) + v)
-        if overflowed(p, after):
-            code = 5
+        for a in range(c):
+            found[a] = 3 * (past[0, a] - past[1, a]) + past[2, a]
+        code = 5 if overflowed(p, after) else solve(p, w, total, found)
         if code != 0:
             break
-        lost = (total - m) - change
-        m, v, u, y, g = total, u, y, found, after
+        for i in range(k):
+            lost[i] = (total[i] - m[i]) - (term[i] - lost[i])
+            m[i] = total[i]
+        for a in range(c):
+            past[2, a], past[1, a], past[0, a] = past[1, a], past[0, a], found[a]
+        assign_rows(g, after)
         done += 1
         if done % every == 0:
             row = done // every - 1
             assign(momenta[row], m)
-            assign(charts[row], y * p.stretch)
+            assign(charts[row], found * p.stretch)
             assign(poses[row], g.ravel())
-    assign(state, np.concatenate((m, lost, y, u, v, g.ravel())))
     return done, code
 
 
-@njit(nogil=True)
+@njit(nogil=True, **COMPILED)
 def start(p: GeneralBody, m: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
     """Return the outcome of the first root and the state of a run that begins with scaled momenta and a pose."""
     w, N = workspace(p), len(p.tensor)
     see_pose(p, w, pose.copy().reshape(N, N))
-    code, y = solve(p, w, m, np.zeros(len(p.stretch)))
+    y = np.zeros(len(p.stretch))
+    code = solve(p, w, m, y)
     return code, np.concatenate((m, np.zeros(len(p.directions)), y, y, y, pose))
 
 
-@njit(nogil=True)
+@njit(nogil=True, **COMPILED)
 def step_each(
     p: GeneralBody,
     momenta: np.ndarray,
@@ -160,9 +157,9 @@ def step_each(
         assign(next_momenta[row], momenta[row] + term)
         y = guesses[row] / p.stretch
         if principal_only:
-            codes[row], y = solve(p, w, next_momenta[row], y)
+            codes[row] = solve(p, w, next_momenta[row], y)
         else:
-            good, _ = newton(p, w, next_momenta[row], y)
+            good, _ = newton(p, w, 1.0, next_momenta[row], y)
             codes[row] = 0 if good else 3
         assign(next_charts[row], y * p.stretch)
     return next_momenta, next_charts, codes

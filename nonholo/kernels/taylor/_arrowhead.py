@@ -17,9 +17,9 @@ import numpy as np
 
 from nonholo.base.compiled import njit
 from nonholo.base.types import Float
+from nonholo.kernels._lanes import ONE
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._small import assign
-from nonholo.kernels.taylor._lanes import ONE
 from nonholo.kernels.taylor._solve import since
 from nonholo.kernels.taylor._steps import root
 

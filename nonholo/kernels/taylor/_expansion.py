@@ -9,15 +9,19 @@ A single motion has eight places of z side by side, several motions have one pla
 of a sum are added in the same order.
 """
 
+import functools
+import threading
 from typing import Any, NamedTuple
 
 import numpy as np
 from numba.extending import overload
 
 from nonholo.base.types import Int
+from nonholo.kernels._lanes import EIGHT, load, spread, store
 from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import eliminate
-from nonholo.kernels.taylor._lanes import EIGHT, load, spread, store
+
+_SMALL = 128  # components, below which rooms are kept
 
 
 class Quadratic(NamedTuple):
@@ -58,8 +62,8 @@ class Room(NamedTuple):
         series: Coefficients of z, (order + 1, width).
         sums: Coefficients of the products, (1, 8 R).
         inertia: Coefficients of B, (order, k, k).
-        matrix: B, (k, k).
-        solution: w, (k, 1).
+        matrix: B, then right sides, (k, k).
+        inverse: Of B, (k, k).
         change: A sum of a series, (1, width).
         sizes: Of the coefficients of blocks, (order + 1, blocks L).
         steps: The length of a step, (1, L).
@@ -69,7 +73,7 @@ class Room(NamedTuple):
     sums: np.ndarray
     inertia: np.ndarray
     matrix: np.ndarray
-    solution: np.ndarray
+    inverse: np.ndarray
     change: np.ndarray
     sizes: np.ndarray
     steps: np.ndarray
@@ -77,21 +81,40 @@ class Room(NamedTuple):
 
 def make_room(f: Quadratic, order: int, lanes: tuple[int, ...]) -> Room:
     """Return room for the series of some lanes."""
-    L, k = len(lanes), len(f.velocities)
-    places = 1 + k + len(f.blocks)
+    return _room(_sizes(f, order), len(lanes))
+
+
+def kept_room(f: Quadratic, order: int) -> Room:
+    """Return room for one series, which this thread keeps if it is small."""
+    sizes = _sizes(f, order)
+    return _room_of(threading.get_ident(), sizes) if len(f.blocks) < _SMALL else _room(sizes, 1)
+
+
+def _sizes(f: Quadratic, order: int) -> tuple[int, ...]:
+    return len(f.velocities), len(f.blocks), f.rows.shape[1], len(f.forms), len(f.closed), order
+
+
+def _room(sizes: tuple[int, ...], L: int) -> Room:
+    k, size, products, forms, blocks, order = sizes
+    places = 1 + k + size
     width = L * (places if L > 1 else places + -places % len(EIGHT))
     series = _aligned(order + 1, width)
     series[0, :L] = 1.0
     return Room(
         series,
-        _aligned(1, len(EIGHT) * f.rows.shape[1]),
-        np.zeros((order, len(f.forms), len(f.forms))),
-        np.zeros((len(f.forms), len(f.forms))),
-        np.zeros((len(f.forms), 1)),
+        _aligned(1, len(EIGHT) * products),
+        np.zeros((order, forms, forms)),
+        np.zeros((forms, forms)),
+        np.zeros((forms, forms)),
         np.zeros((1, width)),
-        np.zeros((order + 1, len(f.closed) * L)),
+        np.zeros((order + 1, blocks * L)),
         np.zeros((1, L)),
     )
+
+
+@functools.lru_cache(maxsize=16)
+def _room_of(_thread: int, sizes: tuple[int, ...]) -> Room:
+    return _room(sizes, 1)
 
 
 def _aligned(rows: int, width: int) -> np.ndarray:
@@ -167,22 +190,45 @@ def _apply(f: Any, order: Any, room: Any, lanes: Any) -> Any:
 
 
 def _divide(f: Any, order: Any, room: Any, lanes: Any) -> Any:
-    """Write the coefficient of w in B w = r: B_0 w_j = r_j - B_1 w_(j-1) - ... - B_j w_0."""
-    k, inertia, series, matrix, w = len(f.momentum), room.inertia, room.series, room.matrix, room.solution
+    """Write the coefficient of w in B w = r: B_0 w_j = r_j - B_1 w_(j-1) - ... - B_j w_0, with the inverse of B_0."""
+    k, inertia, series, matrix, inverse = len(f.momentum), room.inertia, room.series, room.matrix, room.inverse
     before = 1 + k + len(f.blocks) - f.forms.shape[2]
     for a in range(k):
         for b in range(k):
-            inertia[order, a, b] = 0.0
-            for e in range(f.forms.shape[2]):
-                inertia[order, a, b] += f.forms[a, b, e] * series[order, before + e]
-            matrix[a, b] = inertia[0, a, b]
-        w[a, 0] = f.momentum[a] if order == 0 else 0.0
-        for i in range(1, order + 1):
-            for b in range(k):
-                w[a, 0] -= inertia[i, a, b] * series[order - i, 1 + b]
-    eliminate(matrix, w)
+            inertia[order, a, b] = _entry(f.forms, a, b, series, order, before)
+            if order == 0:
+                matrix[a, b], inverse[a, b] = inertia[0, a, b], 1.0 if a == b else 0.0
+    if order == 0:
+        eliminate(matrix, inverse)
     for a in range(k):
-        series[order, 1 + a] = w[a, 0]
+        matrix[0, a] = (f.momentum[a] if order == 0 else 0.0) - _earlier(inertia, series, a, order)
+    for a in range(k):
+        total = 0.0
+        for b in range(k):
+            total += inverse[a, b] * matrix[0, b]
+        series[order, 1 + a] = total
+
+
+@scalar
+def _entry(forms: np.ndarray, a: int, b: int, series: np.ndarray, order: int, before: int) -> float:
+    """Return an entry of B of a coefficient of the tensor."""
+    entry = 0.0
+    for e in range(forms.shape[2]):
+        entry += forms[a, b, e] * series[order, before + e]
+    return entry
+
+
+@scalar
+def _earlier(inertia: np.ndarray, series: np.ndarray, a: int, order: int) -> float:
+    """Return a row of B_1 w_(j-1) + ... + B_j w_0."""
+    even, odd = 0.0, 0.0
+    for b in range(inertia.shape[1]):
+        for i in range(1, order, 2):
+            odd += inertia[i, a, b] * series[order - i, 1 + b]
+            even += inertia[i + 1, a, b] * series[order - i - 1, 1 + b]
+        if order % 2 == 1:
+            odd += inertia[order, a, b] * series[0, 1 + b]
+    return odd + even
 
 
 @scalar

@@ -11,10 +11,10 @@ import numpy as np
 
 from nonholo.base.compiled import njit
 from nonholo.base.types import Float
+from nonholo.kernels._lanes import EIGHT, ONE, load, spread, store
 from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import assign_rows
-from nonholo.kernels.taylor._expansion import Quadratic, Room, expand, make_room
-from nonholo.kernels.taylor._lanes import EIGHT, ONE, load, spread, store
+from nonholo.kernels.taylor._expansion import Quadratic, Room, expand, kept_room
 from nonholo.kernels.taylor._steps import order_for, write_steps
 
 _STEPS = 2048  # between two looks at the keyboard
@@ -33,11 +33,11 @@ def solve_series(
     rows = np.empty((len(times), len(start)))
     rows[0] = start
     state = np.zeros((2, len(start) + 1))
-    state[0] = *start[f.order], times[0]
+    state[0, :-1], state[0, -1] = start[f.order], times[0]
     block = max(16, min(_STEPS, _NUMBERS // (8 * state.size)))
     nodes: list[np.ndarray] = []
     reached, going, stride = 1, True, 1
-    room = make_room(f, order_for(tolerance), ONE)
+    room = kept_room(f, order_for(tolerance))
     while going and reached < len(times):
         passed = np.empty((block, *state.shape))
         reached, steps, going = advance(f, times, tolerance, reached, state, rows, passed, room)
@@ -55,7 +55,7 @@ def revisit_series(
     tolerance: float,
 ) -> Float[np.ndarray, "K size"]:
     """Return the states at times in the order of the nodes, the bits as if they had been requested with `end`."""
-    rows, room = np.empty((len(times), len(f.blocks))), make_room(f, order_for(tolerance), ONE)
+    rows, room = np.empty((len(times), len(f.blocks))), kept_room(f, order_for(tolerance))
     revisit(f, nodes, times, np.array([end]), tolerance, nodes[0].copy(), rows, room)
     return rows
 

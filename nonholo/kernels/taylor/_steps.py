@@ -8,9 +8,9 @@ import math
 
 import numpy as np
 
+from nonholo.kernels._lanes import load, spread, store
 from nonholo.kernels._scalar import scalar
 from nonholo.kernels.taylor._expansion import Quadratic, Room
-from nonholo.kernels.taylor._lanes import load, spread, store
 
 _STRETCH = 0.8  # of the logarithm of the tolerance
 _REPAIRS = 50  # of a step; one or two do

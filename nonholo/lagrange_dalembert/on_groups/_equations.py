@@ -21,6 +21,11 @@ def forms(system: GroupLagrangeDAlembert, g: Array) -> Array:
     return jnp.asarray(system.constraint_forms(g))
 
 
+def constraint(system: GroupLagrangeDAlembert, g: Array, v: Array) -> Array:
+    """Return a(g) v."""
+    return forms(system, g) @ v
+
+
 def displaced(system: GroupLagrangeDAlembert, v: Array, h: Array) -> tuple[Array]:
     """Return the displacement W."""
     return (_displacement(system, v, h),)

@@ -35,7 +35,7 @@ def pose(owner: str, system: GroupLagrangeDAlembert, configuration: Any) -> Floa
 
 
 def of_flow(
-    system: GroupLagrangeDAlembert, configuration: Any, starts: dict[str, Any]
+    system: GroupLagrangeDAlembert, configuration: Any, starts: dict[str, Any], _time: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the checked start of a flow."""
     given = one_start("flow", **starts)
@@ -49,7 +49,8 @@ def of_velocity(owner: str, system: GroupLagrangeDAlembert, g: np.ndarray, given
     where = f"{owner}(body_velocity=...)"
     w = array(where, given, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
     p = regular(system, g, w)
-    return admissible(where, in_double(equations.forms, system, g), w), p
+    A = in_double(equations.forms, system, g)
+    return admissible(where, A, w, A @ w), p
 
 
 def of_momentum(

@@ -71,6 +71,8 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     constraint_forms: Callable[[Array], Array] | None
     discrete_constraints: Callable[[Array, Array, Array], Array] | None = None
     lagrangian: Callable[[Array], Array] | None = dataclasses.field(default=None, kw_only=True)
+    is_driven: ClassVar[bool] = False
+    coordinates: ClassVar[tuple[str, ...]] = ()
     name: ClassVar[str] = "System with constraints that depend on the pose"
     _equations: ClassVar[str] = "on_groups._equations"
 
@@ -84,7 +86,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
             if self.constraint_forms is not None:
                 where = _named("constraint_forms")
                 remedy = "Stack one row per constraint, in body coordinates; pass None for no constraint."
-                check_forms(where, self.constraint_forms, self.group.dim, g, repr(self.group), remedy)
+                check_forms(where, self.constraint_forms, self.group.dim, (g,), repr(self.group), remedy)
             if self.discrete_constraints is not None:
                 self._check("discrete_constraints", (self.constraints,), g, g, h)
             if self.lagrangian is not None:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from pathlib import Path
+from typing import Unpack
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -34,6 +35,7 @@ def animate(
     progress: Callable[[int, int], None] | None = None,
     *,
     overwrite: bool = False,
+    **look: Unpack[theme.Look],
 ) -> Path:
     """Make a GIF of the moving body: a top with its forbidden axis on the sphere, or a sleigh with its track.
 
@@ -48,6 +50,7 @@ def animate(
         fps: Frames per second.
         progress: Called with the number of finished frames and their total.
         overwrite: Replace an older animation at the path.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Returns:
         The path.
@@ -129,7 +132,7 @@ def _palette(samples: list[Image.Image]) -> Image.Image:
         sheet.paste(sample, (0, row * height))
     common = sheet.quantize(colors=_COLORS, method=Image.Quantize.MEDIANCUT).getpalette() or []
     # thin lines are too few pixels to be given a color of their own, so theirs are added
-    lines = np.vstack([theme.TIME(np.linspace(0, 1, 24)), to_rgba_array(["white", theme.UNSTABLE, theme.INK])])
+    lines = np.vstack([theme.TIME(np.linspace(0, 1, 24)), to_rgba_array([theme.PAPER, theme.UNSTABLE, theme.INK])])
     palette = Image.new("P", (1, 1))
     palette.putpalette(common[: 3 * _COLORS] + (255 * lines[:, :3]).round().astype(int).ravel().tolist())
     return palette

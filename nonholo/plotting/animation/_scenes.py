@@ -38,16 +38,17 @@ _SIZE = 4.8  # inches; 480 pixels
 
 def stage(title: str, orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Figure, Axes, Callable[[int], None]]:
     """Return a figure, its axes, and what sets the clock to a frame."""
-    figure = Figure(figsize=(_SIZE, _SIZE), dpi=100)
+    figure = theme.new_figure((_SIZE, _SIZE), None)
     axes = figure.add_axes((0.02, 0.05, 0.96, 0.88))
-    figure.text(0.03, 0.965, title, va="center", fontsize=12, fontweight="bold")
-    clock = figure.text(0.97, 0.965, "", va="center", ha="right", family="monospace", fontsize=10, color="#555a62")
+    title = theme.asked("title", title)
+    figure.text(0.03, 0.965, title, va="center", fontsize="large", fontweight="bold")
+    clock = figure.text(0.97, 0.965, "", va="center", ha="right", family="monospace", color=theme.QUIET)
     strip = figure.add_axes((0.03, 0.022, 0.94, 0.012), xlim=(0, 1), ylim=(0, 1))
     strip.set_axis_off()
     times = orbit.time[shown]
     colors = theme.TIME(theme.time_scale(orbit)(np.linspace(times[0], times[-1], 256)))
     strip.imshow(colors[None], extent=(0, 1, 0, 1), aspect="auto", alpha=0.9)
-    cover = strip.axvspan(0.0, 1.0, color="#e6e8ec", linewidth=0)
+    cover = strip.axvspan(0.0, 1.0, color=theme.LEVEL, linewidth=0)
 
     def set_clock(frame: int) -> None:
         done = (frame + 1) / len(shown)
@@ -128,7 +129,7 @@ def _ground(
     bodies = outline[::10] @ np.swapaxes(poses[:, :2, :2], 1, 2) + poses[:, None, :2, 2]
     view = square_about(np.concatenate([points, bodies.reshape(-1, 2)]))
     axes.set(xlim=view[0], ylim=view[1], aspect="equal")
-    axes.grid(color="#eceef1", linewidth=0.8)
+    axes.grid(color=theme.LEVEL, linewidth=0.8, alpha=0.3)
     axes.tick_params(length=0, labelleft=False, labelbottom=False)
     axes.spines[:].set_visible(False)
     axes.set_axisbelow(True)
@@ -139,7 +140,7 @@ def _parts(axes: Axes) -> tuple[Polygon, Line2D, Line2D]:
     body = Polygon(np.zeros((1, 2)), closed=True, zorder=3, **look)
     axes.add_patch(body)
     blade = axes.plot([], [], color=theme.INK, linewidth=4, zorder=5)[0]
-    center = axes.plot([], [], "o", markersize=6, markerfacecolor="white", markeredgecolor=theme.INK, zorder=6)[0]
+    center = axes.plot([], [], "o", markersize=6, markerfacecolor=theme.PAPER, markeredgecolor=theme.INK, zorder=6)[0]
     return body, blade, center
 
 
@@ -149,11 +150,11 @@ _THINNEST = 0.12  # of the drawn box, over its longest side
 _BOX = "#a8d4f2"
 _LIGHT = np.array([-0.4, 0.6, 0.7]) / np.linalg.norm([-0.4, 0.6, 0.7])  # right, up, toward the eye
 _BODY_AXES: tuple[dict[str, Any], ...] = (
-    {"color": theme.MUTED, "linewidth": 1.6},
-    {"color": theme.MUTED, "linewidth": 1.6},
-    {"color": theme.INK, "linewidth": 3.0, "marker": "o", "markersize": 6, "label": "forbidden axis"},
+    {"color": "MUTED", "linewidth": 1.6},
+    {"color": "MUTED", "linewidth": 1.6},
+    {"color": "INK", "linewidth": 3.0, "marker": "o", "markersize": 6, "label": "forbidden axis"},
 )
-_SPIN = {"color": theme.UNSTABLE, "linewidth": 2.0, "marker": "D", "markersize": 4, "label": "angular velocity"}
+_SPIN = {"color": "UNSTABLE", "linewidth": 2.0, "marker": "D", "markersize": 4, "label": "angular velocity"}
 
 
 def top_motion(orbit: Orbit) -> float:
@@ -173,7 +174,7 @@ def top_scene(orbit: Orbit, shown: Int[np.ndarray, "F"]) -> tuple[Figure, Callab
     show_box = _faces(axes, view, half)
     show_axes = [_stick(axes, view, look) for look in _BODY_AXES]
     show_spin = _stick(axes, view, _SPIN)
-    axes.legend(loc="lower left", fontsize=9, borderaxespad=0.0)
+    theme.legend(axes, loc="lower left", borderaxespad=0.0)
     frame_axes = np.column_stack([orbit.system.form_frame[:, :2], cast(np.ndarray, forbidden_axis(orbit.system))])
 
     def show(frame: int) -> None:
@@ -252,7 +253,8 @@ def _stick(
     axes: Axes, view: View, look: dict[str, Any]
 ) -> Callable[[Float[np.ndarray, "3"], Float[np.ndarray, "3"]], None]:
     """Return what shows a stick from one point of space to another, under the box if it points away from the eye."""
-    line = axes.plot([], [], solid_capstyle="round", markevery=[1], **look)[0]
+    own = look | {"color": getattr(theme, look["color"])}
+    line = axes.plot([], [], solid_capstyle="round", markevery=[1], **own)[0]
 
     def show(foot: Float[np.ndarray, "3"], tip: Float[np.ndarray, "3"]) -> None:
         flat, depth = view(np.stack([foot, tip]))

@@ -4,7 +4,7 @@ Coordinates are those of the canonical frame, pi = p_theta + b p_1 and p_1.
 """
 
 import dataclasses
-from typing import Any
+from typing import Any, Unpack
 
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
@@ -18,13 +18,11 @@ from nonholo.plotting import theme
 from nonholo.plotting.parts import draw_orbit, own_orbit
 from nonholo.plotting.sheets import ellipse, momenta_on_plane, on_plane
 
-INSIDE = "#dbe9f3"
-
 
 def draw_deltoid(axes: Axes, found: Deltoid) -> tuple[Polygon, Line2D, PathCollection]:
     """Draw the region with three real values, its boundary and its cusps."""
     around, cusps = on_plane(found.discrete.system, found.boundary(601)), on_plane(found.discrete.system, found.cusps)
-    inside = axes.fill(*around.T, color=INSIDE, linewidth=0, zorder=1)[0]
+    inside = axes.fill(*around.T, color=theme.INSIDE, linewidth=0, zorder=1)[0]
     boundary = axes.plot(*around.T, color=theme.DISCRETE, linewidth=1.8, zorder=2, label="two meet")[0]
     dots = axes.scatter(*cusps.T, s=34, color=theme.DISCRETE, zorder=4, label="three meet")
     return inside, boundary, dots
@@ -44,8 +42,9 @@ def dress(axes: Axes, found: Deltoid, title: str) -> None:
     side, anchor = (0.03, "left") if points_down else (0.97, "right")
     axes.margins(0.1)
     axes.text(side, 0.96, "1 real value", transform=axes.transAxes, ha=anchor, va="top", fontweight="bold")
-    axes.set(xlabel=r"$\pi = p_\theta + b\,p_1$", ylabel=r"momentum along the blade  $p_1$", title=title)
-    axes.legend(loc="lower left" if points_down else "upper left")
+    axes.set(xlabel=r"$\pi = p_\theta + b\,p_1$", ylabel=r"momentum along the blade  $p_1$")
+    theme.write_title(axes, title)
+    theme.legend(axes, loc="lower left" if points_down else "upper left")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -72,7 +71,9 @@ class BranchCounts:
 
 
 @theme.styled
-def branch_counts(discrete: Discretization, orbit: Orbit | None = None, axes: Axes | None = None) -> BranchCounts:
+def branch_counts(
+    discrete: Discretization, orbit: Orbit | None = None, axes: Axes | None = None, **look: Unpack[theme.Look]
+) -> BranchCounts:
     r"""Draw where the discrete sleigh has one real value and where it has three: the deltoid.
 
     The plane is that of $\pi = p_\theta + bp_1$ and $p_1$. On the boundary two values meet, in the cusps three. The
@@ -82,6 +83,7 @@ def branch_counts(discrete: Discretization, orbit: Orbit | None = None, axes: Ax
         discrete: A discretized sleigh with a not zero.
         orbit: An orbit of it.
         axes: Where to draw; a new figure by default.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         ValueError: Another system or discretization, a = 0, an orbit of another discretized system.
@@ -95,8 +97,8 @@ def branch_counts(discrete: Discretization, orbit: Orbit | None = None, axes: Ax
     own_orbit("plot.branch_counts(orbit=...)", orbit, discrete)
     axes = theme.axes_or_new(axes, (6.4, 5.4))
     inside, boundary, dots = draw_deltoid(axes, found)
-    look = {"color": theme.MUTED, "linewidth": 1.3, "dashes": (4, 3), "zorder": 2}
-    resting = axes.plot(*on_plane(discrete.system, found.resting()).T, label="no translation", **look)[0]
+    dashed: Any = {"color": theme.MUTED, "linewidth": 1.3, "dashes": (4, 3), "zorder": 2}
+    resting = axes.plot(*on_plane(discrete.system, found.resting()).T, label="no translation", **dashed)[0]
     level = path = None
     if orbit is not None:
         around = ellipse(orbit.system, float(orbit.energy[0]))

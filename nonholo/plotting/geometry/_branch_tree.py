@@ -1,12 +1,11 @@
 """The tree of all images under the multivalued map: real images in the plane of momenta, and how many there are."""
 
 import dataclasses
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, NullLocator
 
@@ -44,7 +43,9 @@ class BranchTreePicture:
 
 
 @theme.styled
-def branch_tree(discrete: Discretization, tree: BranchTree, axes: tuple[Axes, Axes] | None = None) -> BranchTreePicture:
+def branch_tree(
+    discrete: Discretization, tree: BranchTree, axes: tuple[Axes, Axes] | None = None, **look: Unpack[theme.Look]
+) -> BranchTreePicture:
     r"""Draw the tree of all images: the real ones in the plane of restricted momenta, and how many there are.
 
     Dots are colored by generation, later ones are smaller. All lie on one ellipse, that of their energy, and the
@@ -59,6 +60,7 @@ def branch_tree(discrete: Discretization, tree: BranchTree, axes: tuple[Axes, Ax
         discrete: What the tree was made of; with three or more restricted momenta the first two are drawn.
         tree: What `nh.branch_tree` returned, with one generation or more.
         axes: Where to draw the momenta and the counts; a new figure by default.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         ValueError: No tree, a tree of the root alone, a tree of another group.
@@ -72,9 +74,10 @@ def branch_tree(discrete: Discretization, tree: BranchTree, axes: tuple[Axes, Ax
     """
     system = _checked(discrete, tree)
     if axes is None:
-        plane, growth = Figure(figsize=(10.4, 4.8), layout="constrained").subplots(1, 2, width_ratios=(1.25, 1.0))
+        plane, growth = theme.new_figure((10.4, 4.8)).subplots(1, 2, width_ratios=(1.25, 1.0))
     else:
-        plane, growth = map(theme.axes_or_new, pair("plot.branch_tree(axes=...)", axes))
+        plane, growth = pair("plot.branch_tree(axes=...)", axes)
+    plane, growth = map(theme.axes_or_new, (plane, growth))
     restricted = system.restrict(tree.momentum.real)
     momentum = on_plane(system, restricted)
     if momentum.shape[1] == 2:
@@ -84,8 +87,8 @@ def branch_tree(discrete: Discretization, tree: BranchTree, axes: tuple[Axes, Ax
     edges = _edges(plane, tree, momentum[:, :2], colors)
     images = tuple(_images(plane, tree, momentum[:, :2], *one) for one in enumerate(colors))
     name_axes(plane, system)
-    plane.set_title("Real images")
-    plane.legend(title="generation", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    theme.write_title(plane, "Real images")
+    theme.legend(plane, title="generation", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return BranchTreePicture(plane, growth, edges, images, *_growth(growth, tree))
 
 
@@ -117,7 +120,7 @@ def _images(
 ) -> PathCollection:
     chosen = tree.is_real & (tree.level == level)
     size = np.geomspace(_LARGEST, _SMALLEST, len(tree.counts))[level]
-    look: Any = {"color": color, "edgecolors": "white", "linewidths": 0.6, "zorder": 4 + level / 100}
+    look: Any = {"color": color, "edgecolors": theme.PAPER, "linewidths": 0.6, "zorder": 4 + level / 100}
     return axes.scatter(*momentum[chosen].T, s=size, label=str(level), **look)
 
 
@@ -125,11 +128,13 @@ def _growth(axes: Axes, tree: BranchTree) -> tuple[Line2D, Line2D, Line2D]:
     level, images = np.arange(len(tree.counts)), int(tree.counts[1])
     real = np.bincount(tree.level[tree.is_real], minlength=len(level))
     bound = axes.plot(level, images**level, color=theme.MUTED, dashes=(4, 3), label=f"${images}^k$", zorder=1)[0]
-    counts = axes.plot(level, tree.counts, "o", color=theme.DISCRETE, markersize=7, label="distinct images")[0]
-    look: Any = {"markerfacecolor": "white", "markeredgewidth": 1.6, "linestyle": "none"}
+    own = theme.named(theme.DISCRETE, "distinct images")
+    counts = axes.plot(level, tree.counts, "o", markersize=7, **own)[0]
+    look: Any = {"markerfacecolor": theme.PAPER, "markeredgewidth": 1.6, "linestyle": "none"}
     reals = axes.plot(level, real, "o", color=theme.UNSTABLE, markersize=7, label="real ones", **look)[0]
-    axes.set(xlabel="generation k", ylabel="number of images", yscale="log", title="Growth")
+    axes.set(xlabel="generation k", ylabel="number of images", yscale="log")
+    axes.set_title("Growth", loc="left")
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.yaxis.set_minor_locator(NullLocator())
-    axes.legend(loc="upper left")
+    theme.legend(axes, loc="upper left")
     return counts, bound, reals

@@ -1,7 +1,7 @@
 """All values of the discrete map from one point: on the variety of displacements, or as tangents of the deltoid."""
 
 import dataclasses
-from typing import Any, cast
+from typing import Any, Unpack, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -57,6 +57,7 @@ def branches(
     displacement: Any = None,
     plane: str | None = None,
     axes: Axes | None = None,
+    **look: Unpack[theme.Look],
 ) -> BranchesPicture:
     r"""Draw every value of the discrete map from one displacement: the principal one filled, other real ones empty.
 
@@ -78,6 +79,7 @@ def branches(
         displacement: As in `nh.branches`.
         plane: "displacements" or "momenta"; by default "momenta" for a sleigh that has a deltoid.
         axes: Where to draw; a new figure by default.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         ValueError: Another system or discretization; a top, or a sleigh with a = 0, on the plane of momenta; as
@@ -129,7 +131,7 @@ def _on_displacements(axes: Axes, discrete: Discretization, found: Branches, W: 
     here = sheet.places(sheet.variety.points(W[None]))
     dots = _dots(axes, found, places, here)
     labels = _labels(axes, sheet, found, places, places * sheet.inwards(places))
-    axes.set_title(_title(found))
+    theme.write_title(axes, _title(found))
     sheet.dress(axes, curves, places)
     return BranchesPicture(axes, found, *dots, level, (), labels)
 
@@ -168,12 +170,14 @@ def _dots(axes: Axes, found: Branches, places: np.ndarray, here: np.ndarray) -> 
     """Draw the values and the present displacement; count the complex values in the legend."""
     real = np.flatnonzero(found.is_real)
     is_principal = real == found.principal if found.principal is not None else np.zeros(len(real), dtype=bool)
-    look: Any = {"edgecolors": theme.STABLE, "linewidths": 1.6, "s": 58, "zorder": 7}
+    own, look = theme.named(theme.STABLE, "principal"), {"linewidths": 1.6, "s": 58, "zorder": 7}
     principal = others = None
     if is_principal.any():
-        principal = axes.scatter(*places[is_principal].T, facecolors=theme.STABLE, label="principal", **look)
+        principal = axes.scatter(*places[is_principal].T, **look, **own)
     if not is_principal.all():
-        others = axes.scatter(*places[~is_principal].T, facecolors="white", label="other real", **look)
+        others = axes.scatter(
+            *places[~is_principal].T, facecolors=theme.PAPER, edgecolors=own["color"], label="other real", **look
+        )
     present = axes.scatter(*here.T, marker="x", s=70, color=theme.UNSTABLE, linewidths=2.2, zorder=8, label="present")
     if not found.is_real.all():
         axes.plot([], [], " ", label=f"and {np.count_nonzero(~found.is_real)} complex")

@@ -1,7 +1,7 @@
 """The variety of displacements, foliated by its energy levels: a projective plane for a top, a Moebius band else."""
 
 import dataclasses
-from typing import Any, cast
+from typing import Any, Unpack, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -43,7 +43,11 @@ class InvariantCurvesPicture:
 
 @theme.styled
 def invariant_curves(
-    discrete: Discretization, orbit: Orbit | None = None, axes: Axes | None = None, energies: Any = None
+    discrete: Discretization,
+    orbit: Orbit | None = None,
+    axes: Axes | None = None,
+    energies: Any = None,
+    **look: Unpack[theme.Look],
 ) -> InvariantCurvesPicture:
     r"""Draw the displacements, foliated by energy, with the equilibria and an orbit on its curve.
 
@@ -57,6 +61,7 @@ def invariant_curves(
         orbit: An orbit of it.
         axes: Where to draw; a new figure by default.
         energies: Energies of the curves; by default nine.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         ValueError: Another system or discretization, an orbit of another one, energies that are not positive.
@@ -84,6 +89,6 @@ def invariant_curves(
     stable = unstable = None
     if cast(AbstractLLSystem, checked.system).equilibria().attracting is not None:
         stable, unstable = draw_equilibria(axes, *sheet.attracting(curves), 40 if len(curves) == 1 else 22)
-    axes.set_title("Displacements")
+    theme.write_title(axes, "Displacements")
     sheet.dress(axes, curves, np.empty((0, 2)))
     return InvariantCurvesPicture(axes, levels, own, stable, unstable, path)

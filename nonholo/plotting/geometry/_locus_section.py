@@ -1,7 +1,7 @@
 """A plane section of the momentum locus."""
 
 import dataclasses
-from typing import Any, cast
+from typing import Any, Unpack, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -40,7 +40,11 @@ class LocusSection:
 
 @theme.styled
 def locus_section(
-    locus: MomentumLocus, normal: Array = (0.0, 0.0, 1.0), offset: Array = 0.0, axes: Axes | None = None
+    locus: MomentumLocus,
+    normal: Array = (0.0, 0.0, 1.0),
+    offset: Array = 0.0,
+    axes: Axes | None = None,
+    **look: Unpack[theme.Look],
 ) -> LocusSection:
     r"""Draw the section of the momentum locus by the plane $n\cdot P = $ `offset`, n the unit vector along `normal`.
 
@@ -52,6 +56,7 @@ def locus_section(
         normal: Three components of the body momentum, not all zero.
         offset: The component of the momentum along the normal.
         axes: Where to draw; a new figure by default.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         ValueError: No locus, a normal that is zero, an offset that is no number.
@@ -74,8 +79,8 @@ def locus_section(
     curve = _curve(axes, locus, plane, height * n)
     crossings = _meeting(axes, locus.double_lines, plane, n, height, color=theme.UNSTABLE, label="crosses itself")
     outside = locus.whiskers(_WHISKER)
-    look = {"facecolors": "white", "edgecolors": theme.UNSTABLE, "linewidths": 1.5}
-    isolated = _meeting(axes, outside, plane, n, height, label="equation alone", **look)
+    empty: Any = {"facecolors": theme.PAPER, "edgecolors": theme.UNSTABLE, "linewidths": 1.5}
+    isolated = _meeting(axes, outside, plane, n, height, label="equation alone", **empty)
     _dress(axes, locus, plane, n, height)
     return LocusSection(axes, curve, plane, crossings, isolated)
 
@@ -94,8 +99,10 @@ def _curve(axes: Axes, locus: MomentumLocus, plane: np.ndarray, foot: np.ndarray
     room = _MARGIN * (high - low)
     across, up = (np.linspace(*ends, _GRID) for ends in zip(low - room, high + room, strict=True))
     x, y = np.meshgrid(across, up)
+    own = theme.named(theme.DISCRETE)
+    axes.plot([], [], **own)
     values = locus.implicit(foot + np.stack([x, y], axis=-1) @ plane)
-    return axes.contour(x, y, values, levels=[0.0], colors=[theme.DISCRETE], linewidths=1.8, zorder=2)
+    return axes.contour(x, y, values, levels=[0.0], colors=[own["color"]], linewidths=1.8, zorder=2)
 
 
 def _meeting(
@@ -114,7 +121,8 @@ def _meeting(
 def _dress(axes: Axes, locus: MomentumLocus, plane: np.ndarray, n: np.ndarray, height: float) -> None:
     names = cast(AbstractSheet, sheet_of(locus.discrete.system)).component_names
     across, up, normal = (_words(row, names) for row in (*plane, n))
-    axes.set(xlabel=across, ylabel=up, title=f"Section  {normal} = {height:g}")
+    axes.set(xlabel=across, ylabel=up)
+    theme.write_title(axes, f"Section  {normal} = {height:g}")
     axes.set_aspect("equal", adjustable="datalim")
     theme.legend_above(axes)
 

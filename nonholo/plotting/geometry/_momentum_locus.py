@@ -2,10 +2,9 @@
 
 import dataclasses
 from collections.abc import Iterable
-from typing import Any, cast
+from typing import Any, Unpack, cast
 
 import numpy as np
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3D, Path3DCollection, Poly3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
@@ -59,6 +58,7 @@ def momentum_locus(
     curve: InvariantCurve | None = None,
     axes: Axes3D | None = None,
     view: tuple[float, float] | None = None,
+    **look: Unpack[theme.Look],
 ) -> MomentumLocusPicture:
     """Draw the surface of discrete momenta, where it meets itself, where it is pinched, and an orbit that runs on it.
 
@@ -74,6 +74,7 @@ def momentum_locus(
         curve: What `nh.invariant_curve` returned: all momenta of one energy, on the surface.
         axes: Axes in space; new ones by default.
         view: Elevation and azimuth of the eye in degrees.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         ValueError: No locus, an orbit of another discretization.
@@ -89,7 +90,8 @@ def momentum_locus(
     own_orbit(f"{where}(orbit=...)", orbit, locus.discrete)
     space: Any = axes
     if space is None:
-        space = Figure(figsize=(7.2, 6.4)).add_axes((-0.02, 0.01, 0.94, 0.97), projection="3d")
+        space = theme.new_figure((7.2, 6.4), None).add_axes((-0.02, 0.01, 0.94, 0.97), projection="3d")
+    theme.begin(space)
     sheet = cast(AbstractSheet, sheet_of(locus.discrete.system))
     drawn = sheet.locus_map()
     if curve is not None:
@@ -99,7 +101,7 @@ def momentum_locus(
     doubles = _lines(space, locus.double_lines @ drawn, "meets itself", linewidth=2.6, **singular)
     outside = locus.whiskers(_WHISKER) @ drawn
     whiskers = _lines(space, outside, "equation alone", linewidth=1.6, dashes=(3, 2), **singular)
-    pinch = _dots(space, locus.pinch_points @ drawn, s=44, facecolors="white", label="pinch points")
+    pinch = _dots(space, locus.pinch_points @ drawn, s=44, facecolors=theme.PAPER, label="pinch points")
     triple = None if locus.triple_point is None else locus.triple_point[None] @ drawn
     triple_dot = _dots(space, triple, s=64, facecolors=theme.INK, marker="D", label="triple point")
     rest = space.scatter(0.0, 0.0, 0.0, s=26, color=theme.INK, depthshade=False, label="rest")
@@ -139,12 +141,11 @@ def _dress(axes: Any, locus: MomentumLocus, sheet: AbstractSheet, view: tuple[fl
     axes.computed_zorder = False
     axes.grid(False)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
-        axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
+        axis.set_pane_color((0.0, 0.0, 0.0, 0.0))
         axis.set_major_locator(MaxNLocator(4))
         axis.line.set_color(theme.MUTED)
-    title = f"Momentum locus: {sheet.locus_kind(locus)}"
-    axes.text2D(0.03, 0.97, title, transform=axes.transAxes, fontsize="large", fontweight="bold")
-    axes.legend(loc="upper right", bbox_to_anchor=(1.02, 1.0))
+    theme.write_title(axes, f"Momentum locus: {sheet.locus_kind(locus)}", x=0.03, y=0.95)
+    theme.legend(axes, loc="upper right", bbox_to_anchor=(1.02, 1.0))
 
 
 def _best_view(locus: MomentumLocus) -> tuple[float, float]:

@@ -4,7 +4,7 @@
 """
 
 import dataclasses
-from typing import Any
+from typing import Any, Unpack, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -44,7 +44,9 @@ class BladeTrack:
 
 
 @theme.styled
-def blade_track(orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = None, enlarge: bool = True) -> BladeTrack:
+def blade_track(
+    orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = None, enlarge: bool = True, **look: Unpack[theme.Look]
+) -> BladeTrack:
     r"""Draw the path of the contact point of a sleigh, the blade now and then, and the cusp.
 
     The cusp is where the velocity along the blade changes sign, $v_1 = 0$; between two states it is interpolated. It is
@@ -56,7 +58,8 @@ def blade_track(orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = Non
         orbit: An orbit of a sleigh in the plane, with poses.
         axes: Where to draw; a new figure by default.
         flow: The continuous motion from the same initial data, drawn over it.
-        enlarge: Whether to show the cusp enlarged.
+        enlarge: Whether to show the cusp enlarged, in axes that hold no other track.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         ValueError: An orbit of another system, or without poses.
@@ -69,34 +72,35 @@ def blade_track(orbit: Orbit, axes: Axes | None = None, flow: Orbit | None = Non
         (121, 1)
     """
     flags("blade_track", enlarge=enlarge)
-    blade = _blade("blade_track(orbit=...)", orbit)
-    if flow is not None:
-        _blade("blade_track(flow=...)", flow)
+    orbit, blade = _bladed("blade_track(orbit=...)", orbit)
+    flow = None if flow is None else _bladed("blade_track(flow=...)", flow)[0]
     axes = theme.axes_or_new(axes, (6.0, 6.0))
+    enlarge = enlarge and not axes.has_data()
+    parts.remove_detail(axes)
     position = blade.contact(orbit)
-    cusps, view = _cusps(position, blade.speed(orbit)), parts.square_about(position)
+    cusps, view = _cusps(position, blade.speed(orbit)), parts.fit_view(axes, position)
     track, blades, masses, line = _draw(axes, orbit, orbit, flow, view, blades=18, length=0.032)
     ends = parts.draw_ends(axes, position, orbit)
     _name_ends(axes, position)
     stars = _stars(axes, position, cusps) if len(cusps) else None
-    axes.set(xlim=view[0], ylim=view[1], xlabel="$x$", ylabel="$y$", title="Track of the blade", aspect="equal")
+    theme.write_title(axes, "Track of the blade")
     theme.legend_above(axes)
-    enlarged = _enlarged(axes, orbit, flow, cusps) if enlarge and len(cusps) else None
+    enlarged = _enlarged(axes, orbit, flow, cusps, view) if enlarge and len(cusps) else None
     return BladeTrack(axes, track, blades, masses, stars, ends, line, enlarged)
 
 
-def _blade(where: str, orbit: Any) -> Blade:
-    """Return the blade of an orbit that has one, and poses."""
-    blade = blade_of_system(parts.drawable(where, orbit).system)
+def _bladed(where: str, orbit: Any) -> tuple[Orbit, Blade]:
+    """Return an orbit with poses, dense enough for a curve, and its blade."""
+    orbit = parts.drawable(where, orbit)
+    blade = blade_of_system(orbit.system)
     if blade is None:
         remedy = "Use `body_axis_track` for a top."
         raise error(where, "be an orbit of a sleigh in the plane", shown(orbit), remedy)
-    parts.posed(where, orbit)
-    return blade
+    return parts.posed(where, orbit), blade
 
 
 def _contact(orbit: Orbit) -> Float[np.ndarray, "K 2"]:
-    return _blade("blade_track", orbit).contact(orbit)
+    return cast(Blade, blade_of_system(orbit.system)).contact(orbit)
 
 
 def _cusps(position: Float[np.ndarray, "K 2"], speed: Float[np.ndarray, "K"]) -> Float[np.ndarray, "C 2"]:
@@ -114,19 +118,19 @@ def _draw(
     """Draw a part of the orbit with the colors of the whole; the length of blades is in parts of the view."""
     position = _contact(part)
     track = parts.draw_in_time(axes, part, position, parts.evenly_spread(position), zorder=3, whole=whole)
-    strokes, masses = _blades(axes, part, blades, length * np.ptp(view[0]))
+    strokes, masses = _blades(axes, part, blades, length * np.ptp(view, axis=1).min())
     return track, strokes, masses, None if flow is None else parts.draw_flow(axes, _contact(flow))
 
 
 def _blades(axes: Axes, orbit: Orbit, count: int, length: float) -> tuple[LineCollection, PathCollection]:
-    blade = _blade("blade_track", orbit)
+    blade = cast(Blade, blade_of_system(orbit.system))
     poses = blade.poses(orbit.chosen(_now_and_then(orbit, count)))
     points, half = poses[:, :2, 2], length / 2 * poses[:, :2, 0]
     center = (poses @ np.append(blade.center, 1.0))[:, :2]
     blades = parts.segments(points - half, points + half, colors=theme.INK, linewidth=1.5, zorder=5)
     axes.add_collection(parts.segments(points, center, colors=theme.MUTED, linewidth=0.7, zorder=2))
     axes.add_collection(blades)
-    look: Any = {"facecolors": "white", "edgecolors": theme.MUTED, "linewidths": 0.8, "zorder": 2.2}
+    look: Any = {"facecolors": theme.PAPER, "edgecolors": theme.MUTED, "linewidths": 0.8, "zorder": 2.2}
     return blades, axes.scatter(*center.T, s=9, label="center of mass", **look)
 
 
@@ -160,9 +164,10 @@ def _name(axes: Axes, word: str, point: Float[np.ndarray, "2"], middle: Float[np
     axes.annotate(word, tuple(point), zorder=9, path_effects=theme.HALO, annotation_clip=False, **place)
 
 
-def _enlarged(axes: Axes, orbit: Orbit, flow: Orbit | None, cusps: Float[np.ndarray, "C 2"]) -> Axes:
+def _enlarged(
+    axes: Axes, orbit: Orbit, flow: Orbit | None, cusps: Float[np.ndarray, "C 2"], view: parts.Square
+) -> Axes:
     position = _contact(orbit)
-    view = parts.square_about(position)
     rows, near = parts.detail(position, orbit.body_velocity[:, 0], cusps[0], view)
     inset = parts.corner_axes(axes, position[parts.evenly_spread(position)], view, near)
     _draw(inset, orbit[rows], orbit, flow, near, blades=10, length=0.11)

@@ -4,7 +4,7 @@
 """
 
 import dataclasses
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, Unpack
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -59,6 +59,7 @@ def body_axis_track(
     flow: Orbit | None = None,
     view: tuple[float, float] | None = None,
     body_axis: Any = None,
+    **look: Unpack[theme.Look],
 ) -> BodyAxisTrack:
     r"""Draw the path of a body axis, $R_k\gamma$, on the unit sphere in space.
 
@@ -76,6 +77,7 @@ def body_axis_track(
         view: Azimuth and elevation of the eye in degrees; by default chosen so that most of the path is in front.
         body_axis: $\gamma$ in body coordinates, scaled to length 1; by default the body axis about which there is
             no rotation, as for a Suslov top, otherwise body axis 3.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         ValueError: An orbit on another group, or without poses; a body axis of length 0.
@@ -88,9 +90,10 @@ def body_axis_track(
         (True, True)
     """
     where = "body_axis_track(orbit=...)"
-    if parts.posed(where, orbit).system.group != SO(3):
+    orbit = parts.posed(where, orbit)
+    if orbit.system.group != SO(3):
         raise error(where, "be an orbit on SO(3)", shown(orbit), _REMEDY)
-    parts.same_group("body_axis_track(flow=...)", flow, orbit)
+    flow = parts.same_group("body_axis_track(flow=...)", flow, orbit)
     gamma = _body_axis(orbit, body_axis)
     axes = theme.axes_or_new(axes, (6.0, 6.0))
     part = _part(orbit)
@@ -103,7 +106,7 @@ def body_axis_track(
     path, dots = parts.draw_path(axes, eye, orbit[part], points, orbit)
     parts.draw_named_axes(axes, eye, _named(before, after, fixed, orbit))
     parts.mark_ends(axes, eye, points, part, orbit)
-    axes.set_title(_title(orbit, body_axis))
+    theme.write_title(axes, _title(orbit, body_axis))
     theme.legend_above(axes)
     return BodyAxisTrack(axes, eye, points, path, dots, before, after, fixed, curve)
 

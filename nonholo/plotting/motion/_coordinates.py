@@ -71,16 +71,17 @@ def track_of(orbit: AbstractOrbit) -> Track | None:
     return Track(title, names, functools.partial(_columns, [space.index(name) for name in shown]), is_place)
 
 
+@theme.styled
 def draw_path(track: Track, orbit: AbstractOrbit, flow: AbstractOrbit | None, axes: Any) -> None:
     """Draw the path in the colors of time, its ends, and that of a flow beside it."""
     points = track.points(orbit)
     chosen = parts.evenly_in_box(points)
+    theme.write_title(axes, track.title)
     if track.is_place:
         dress_path(axes, points[chosen], track.names)
     else:
         axes.set(xlabel=track.names[0], ylabel=track.names[1])
         axes.margins(0.1)
-    axes.set_title(track.title, loc="left")
     parts.draw_in_time(axes, orbit, points, chosen, zorder=3)
     if flow is not None:
         parts.draw_flow(axes, track.points(flow))
@@ -88,22 +89,26 @@ def draw_path(track: Track, orbit: AbstractOrbit, flow: AbstractOrbit | None, ax
     theme.legend_above(axes)
 
 
+@theme.styled
 def draw_shape(orbit: AbstractOrbit, flow: AbstractOrbit | None, axes: Axes) -> None:
     """Draw the coordinates that the path does not show against time; all if it shows all."""
     names = orbit.coordinates
     places = [name for name in _PLACES if name in names]
     shown = places if places[:2] == ["x", "y"] else list(names[:2])
     others = [i for i, name in enumerate(names) if name not in shown] or list(range(len(names)))
-    axes.set_title("Coordinates")
+    theme.write_title(axes, "Coordinates")
     draw_components(axes, orbit, flow, functools.partial(_columns, others), [symbol(names[i]) for i in others])
+    axes.set_ylabel("coordinates")
 
 
+@theme.styled
 def draw_velocity(orbit: AbstractOrbit, flow: AbstractOrbit | None, axes: Axes) -> None:
     """Draw the velocities against time."""
     named = [symbol(name, is_rate=True) for name in orbit.coordinates]
     names = named or velocity_names(orbit.space)
-    axes.set_title("Velocity" if named else "Body velocity")
+    theme.write_title(axes, "Velocity" if named else "Body velocity")
     draw_components(axes, orbit, flow, lambda states: states.body_velocity, names)
+    axes.set_ylabel("velocity")
 
 
 def symbol(name: str, *, is_rate: bool = False) -> str:

@@ -2,7 +2,7 @@
 
 import dataclasses
 import math
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,11 +11,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
-from nonholo.base.checks import error as refusal
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit
 from nonholo.plotting import theme
-from nonholo.plotting.parts import drawable_in_time, evenly_in_box
+from nonholo.plotting.parts import drawable_in_time, evenly_in_box, posed
 
 _MOST_DOTS = 2000
 _COLUMNS = 600
@@ -49,8 +48,8 @@ class EnergyError:
 
 
 @theme.styled
-def energy_error(orbit: AbstractOrbit, axes: Axes | None = None) -> EnergyError:
-    r"""Draw the relative error of the reduced constrained energy against time.
+def energy_error(orbit: AbstractOrbit, axes: Axes | None = None, **look: Unpack[theme.Look]) -> EnergyError:
+    r"""Draw the relative error of the reduced constrained energy, under forces that of their balance, against time.
 
     $$ (E_k - E_0)/E_0 , $$
 
@@ -61,6 +60,7 @@ def energy_error(orbit: AbstractOrbit, axes: Axes | None = None) -> EnergyError:
     Args:
         orbit: The orbit.
         axes: Where to draw; a new figure by default.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         ValueError: No orbit, one without states, or one without poses whose energy depends on them.
@@ -71,31 +71,30 @@ def energy_error(orbit: AbstractOrbit, axes: Axes | None = None) -> EnergyError:
         >>> nh.plot.energy_error(orbit).unit
         1e-16
     """
-    drawable_in_time("energy_error(orbit=...)", orbit)
+    orbit = drawable_in_time("energy_error(orbit=...)", orbit)
     if not orbit.has_poses and orbit.system.is_spatial:
-        raise refusal("energy_error(orbit=...)", "have poses", "an orbit without them", "Run with reconstruct=True.")
+        posed("energy_error(orbit=...)", orbit)
     axes = theme.axes_or_new(axes, (6.0, 2.6))
-    energy = orbit.energy
+    energy = orbit.energy if orbit.work is None else orbit.energy - orbit.work
     error = (energy - energy[0]) / (energy[0] or 1.0)
     unit = _unit(float(np.abs(error).max()))
     rounding, drawn = _over_rounding(orbit, axes, error / unit, unit)
-    _dress(axes, error / unit, unit, rf"\Delta E{'/E' if energy[0] else ''}")
-    axes.set_title("Energy error")
-    theme.legend_above(axes)
-    look: Any = {"color": "#555a62", "fontsize": 9, "va": "top", "path_effects": theme.HALO, "zorder": 6}
-    expected = axes.text(0.012, 0.97, _expected(orbit), transform=axes.transAxes, **look)
+    theme.write_title(axes, "Change of energy" if _is_driven(orbit) else "Energy error")
+    _dress(axes, orbit.time, error / unit, unit, rf"\Delta E{'/E' if energy[0] else ''}")
+    small: Any = {"color": theme.QUIET, "fontsize": "medium", "va": "top", "path_effects": theme.HALO, "zorder": 6}
+    expected = axes.text(0.012, 0.97, _expected(orbit), transform=axes.transAxes, **small)
     return EnergyError(axes, drawn, rounding, unit, expected)
 
 
+@theme.styled
 def draw_residual(orbit: Any, axes: Axes) -> None:
     """Draw the residual of the constraint of an orbit that knows it, in the same way."""
     residual = orbit.constraint_residual
     unit = _unit(float(np.abs(residual).max()))
     _over_rounding(orbit, axes, residual / unit, unit)
-    _dress(axes, residual / unit, unit, "|F|" if orbit.is_discrete else r"|A\,v|")
+    theme.write_title(axes, "Residual of the constraint")
+    _dress(axes, orbit.time, residual / unit, unit, "|F|" if orbit.is_discrete else r"|A\,v|")
     axes.set_ylim(bottom=0.0)
-    axes.set_title("Residual of the constraint")
-    theme.legend_above(axes)
 
 
 def _over_rounding(
@@ -109,8 +108,15 @@ def _over_rounding(
     return rounding, (_error if orbit.is_discrete else _curve)(axes, orbit.time, error)
 
 
+def _is_driven(orbit: AbstractOrbit) -> bool:
+    """Tell whether an orbit in coordinates is one of a driven system, whose balance of work is not known."""
+    return orbit.work is None and orbit.system.is_driven
+
+
 def _expected(orbit: AbstractOrbit) -> str:
-    return "of given poses" if orbit.is_measured else _EXPECTED[orbit.conserves_energy]
+    if orbit.is_measured:
+        return "of given poses"
+    return "changed by what drives the system" if _is_driven(orbit) else _EXPECTED[orbit.conserves_energy]
 
 
 def _unit(largest: float) -> float:
@@ -119,18 +125,22 @@ def _unit(largest: float) -> float:
 
 def _error(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K"]) -> PathCollection | PolyCollection:
     if len(time) <= _MOST_DOTS:
-        return axes.scatter(time, error, s=5, color=theme.DISCRETE, linewidths=0, zorder=3)
+        return axes.scatter(time, error, s=5, linewidths=0, zorder=3, **theme.named(theme.DISCRETE))
     starts = np.arange(0, len(time), math.ceil(len(time) / _COLUMNS))
     low, high = np.minimum.reduceat(error, starts), np.maximum.reduceat(error, starts)
-    return axes.fill_between(time[starts], low, high, color=theme.DISCRETE, linewidth=0.8, zorder=3)
+    return axes.fill_between(time[starts], low, high, linewidth=0.8, zorder=3, **theme.named(theme.DISCRETE))
 
 
 def _curve(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K"]) -> Line2D:
     chosen = evenly_in_box(np.stack([time, error], axis=1), _MOST_DOTS)
-    return axes.plot(time[chosen], error[chosen], color=theme.CONTINUOUS, linewidth=1.0, zorder=3)[0]
+    return axes.plot(time[chosen], error[chosen], linewidth=1.0, zorder=3, **theme.named(theme.CONTINUOUS))[0]
 
 
-def _dress(axes: Axes, error: Float[np.ndarray, "K"], unit: float, name: str) -> None:
+def _dress(axes: Axes, time: Any, error: Float[np.ndarray, "K"], unit: float, name: str) -> None:
     exponent = math.floor(math.log10(unit) + 0.5)
     reach = 1.4 * max(float(np.abs(error).max()), 1.6 * _EPS / unit)
-    axes.set(xlabel="time", ylabel=rf"${name}$   [$10^{{{exponent}}}$]", ylim=(-reach, reach))
+    axes.set(xlabel="time", ylabel=rf"${name}$   [$10^{{{exponent}}}$]")
+    axes.margins(y=0.0)
+    axes.update_datalim([(time[0], -reach), (time[-1], reach)])
+    axes.autoscale_view()
+    theme.legend_above(axes)

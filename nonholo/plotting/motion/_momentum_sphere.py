@@ -1,7 +1,7 @@
 """The momenta along a three-dimensional constraint subspace, on their energy ellipsoid drawn as a sphere."""
 
 import dataclasses
-from typing import Any, cast
+from typing import Any, Unpack, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -41,7 +41,9 @@ class MomentumSphere:
 
 
 @theme.styled
-def momentum_sphere(orbit: Orbit, axes: Axes | None = None, view: tuple[float, float] | None = None) -> MomentumSphere:
+def momentum_sphere(
+    orbit: Orbit, axes: Axes | None = None, view: tuple[float, float] | None = None, **look: Unpack[theme.Look]
+) -> MomentumSphere:
     r"""Draw the momenta along a three-dimensional constraint subspace on the sphere of their energy.
 
     The ellipsoid of constant energy is drawn as the unit sphere,
@@ -55,6 +57,7 @@ def momentum_sphere(orbit: Orbit, axes: Axes | None = None, view: tuple[float, f
         orbit: An orbit with a left-invariant constraint whose subspace has dimension 3.
         axes: Where to draw (plain two-dimensional axes; the projection is orthographic); a new figure by default.
         view: Azimuth and elevation of the eye in degrees; by default chosen so that most of the path is in front.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         ValueError: No orbit, one without states, a right-invariant constraint, or a subspace of another dimension.
@@ -66,6 +69,7 @@ def momentum_sphere(orbit: Orbit, axes: Axes | None = None, view: tuple[float, f
         True
     """
     system = _check(orbit)
+    orbit = parts.drawable("momentum_sphere(orbit=...)", orbit)
     values, directions = np.linalg.eigh(np.asarray(system.canonical.constrained_inertia))
     to_sphere = directions @ np.diag(values**-0.5) @ directions.T
     size = np.sqrt(2 * orbit[:1].energy[0]) or 1.0
@@ -79,10 +83,11 @@ def momentum_sphere(orbit: Orbit, axes: Axes | None = None, view: tuple[float, f
     _rows(axes, eye, to_sphere)
     parts.mark_ends(axes, eye, points, part, orbit)
     stable, unstable = _equilibria(axes, eye, attracting)
-    axes.set_title("Momentum on its energy sphere")
-    if stable is not None:
+    theme.write_title(axes, "Momentum on its energy sphere")
+    if axes.get_legend_handles_labels()[0]:
         is_narrow = theme.is_narrow(axes)  # then beside the axes, otherwise in the corner beside the sphere
-        axes.legend(loc="lower left" if is_narrow else "lower right", bbox_to_anchor=(1.0, 0.0) if is_narrow else None)
+        place = ("lower left", (1.0, 0.0)) if is_narrow else ("lower right", None)
+        theme.legend(axes, loc=place[0], bbox_to_anchor=place[1])
     return MomentumSphere(axes, eye, points, path, dots, stable, unstable)
 
 
@@ -134,5 +139,5 @@ def _equilibria(
     alpha = parts.opacity(depth)
     look: Any = {"s": 60, "linewidths": 1.6, "zorder": 8}
     stable = axes.scatter(*here, color=theme.STABLE, alpha=alpha[0], label="stable", **look)
-    look |= {"facecolors": "white", "edgecolors": theme.UNSTABLE, "alpha": alpha[1]}
+    look |= {"facecolors": theme.PAPER, "edgecolors": theme.UNSTABLE, "alpha": alpha[1]}
     return stable, axes.scatter(*there, label="unstable", **look)

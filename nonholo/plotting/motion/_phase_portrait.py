@@ -4,7 +4,7 @@
 """
 
 import dataclasses
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,12 +20,11 @@ from nonholo.orbit import Orbit
 from nonholo.plotting import parts, theme
 from nonholo.plotting.parts import evenly_in_box
 from nonholo.plotting.sheets import ellipse, half_axes, momenta_on_plane, name_axes, on_plane, plane_inertia
-from nonholo.systems import AbstractLLSystem, AbstractSystem
+from nonholo.systems import AbstractLLSystem, AbstractSystem, refuse_forces
 
 _SEEDS = 3  # states of the orbit whose images are drawn
 _GENERATIONS = 3
 _SAME = 1e-6  # relative distance of an image from a state of the orbit that it is
-_OTHER = theme.COMPONENTS[1]
 
 
 def _trees_of(orbit: Orbit | None, branches: str) -> list[BranchTree]:
@@ -44,9 +43,9 @@ def _draw_images(axes: Axes, orbit: Orbit, trees: list[BranchTree]) -> tuple[Pat
     """Draw the real images that are not on the orbit, later generations smaller, and lines that lead to them."""
     found = [_other_images(orbit, tree) for tree in trees]
     ends, level = (np.concatenate(column) for column in zip(*found, strict=True))
-    edges = LineCollection(list(ends), colors=_OTHER, linewidths=0.8, zorder=4)
+    edges = LineCollection(list(ends), colors=theme.COMPONENTS[1], linewidths=0.8, zorder=4)
     axes.add_collection(edges)
-    look: Any = {"facecolors": "white", "edgecolors": _OTHER, "linewidths": 1.4, "zorder": 7}
+    look: Any = {"facecolors": theme.PAPER, "edgecolors": theme.COMPONENTS[1], "linewidths": 1.4, "zorder": 7}
     return axes.scatter(*ends[:, 1].T, s=90.0 / level, marker="D", label="other values", **look), edges
 
 
@@ -94,6 +93,7 @@ def phase_portrait(
     axes: Axes | None = None,
     energies: Any = None,
     branches: str = "principal",
+    **look: Unpack[theme.Look],
 ) -> PhasePortrait:
     r"""Draw the momenta along the constraint subspace: energy levels, equilibria, direction of motion, an orbit.
 
@@ -118,6 +118,7 @@ def phase_portrait(
         axes: Where to draw; a new figure by default.
         energies: Energies of the ellipses; by default four, evenly spread in size, one of them through the orbit.
         branches: "principal" or "all".
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         ValueError: A right-invariant constraint, a subspace of another dimension, an orbit of another body,
@@ -130,22 +131,24 @@ def phase_portrait(
         (2, 2)
     """
     _check(system, orbit)
+    orbit = None if orbit is None else parts.drawable("phase_portrait(orbit=...)", orbit)
     trees = _trees_of(orbit, branches)
     levels = _energies(system, orbit, energies)
     axes = theme.axes_or_new(axes)
-    look: Any = {"color": theme.LEVEL, "linewidth": 1.1, "zorder": 1}
-    drawn = tuple(axes.plot(*ellipse(system, level).T, **look)[0] for level in levels)
+    thin: Any = {"color": theme.LEVEL, "linewidth": 1.1, "zorder": 1}
+    drawn = tuple(axes.plot(*ellipse(system, level).T, **thin)[0] for level in levels)
     stable, unstable, neutral, arrows = _equilibria(axes, system, half_axes(system), np.sqrt(2 * levels))
     path = None if orbit is None else _orbit(axes, orbit)
     images, edges = _draw_images(axes, orbit, trees) if orbit is not None and trees else (None, None)
     name_axes(axes, system)
-    axes.set_title("Phase portrait")
+    theme.write_title(axes, "Phase portrait")
     theme.legend_above(axes)
     return PhasePortrait(axes, drawn, stable, unstable, neutral, arrows, path, images, edges)
 
 
 def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
     where = "phase_portrait(system=...)"
+    refuse_forces(where, system)
     instance(where, system, AbstractSystem, "be a system", "Pass `orbit.system` first, then the orbit.")
     if system.is_spatial:
         remedy = "Its momenta along the constraint are conserved: draw `overview` instead."

@@ -1,12 +1,12 @@
 """The path in space of the point of the body at the origin of its frame, for motions of the plane and of space."""
 
 import dataclasses
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from nonholo.base.checks import error, shown
 from nonholo.base.types import Float
@@ -16,6 +16,7 @@ from nonholo.plotting import parts, theme
 
 _BODIES = 14  # places at which the axes of the body are drawn
 _ARM = 0.055  # of a body axis, in parts of the picture
+_THIN = 0.35  # shortest side of the box in space, in parts of its longest
 
 
 @dataclasses.dataclass(frozen=True)
@@ -40,7 +41,7 @@ class PointTrack:
 
 
 @theme.styled
-def point_track(orbit: Orbit, axes: Any = None, flow: Orbit | None = None) -> PointTrack:
+def point_track(orbit: Orbit, axes: Any = None, flow: Orbit | None = None, **look: Unpack[theme.Look]) -> PointTrack:
     """Draw the path of the reference point of a body, with its body axes now and then.
 
     Motions of the plane are drawn in the plane, others in three dimensions: the three coordinates of space in which
@@ -50,6 +51,7 @@ def point_track(orbit: Orbit, axes: Any = None, flow: Orbit | None = None) -> Po
         orbit: An orbit on SE(n), with poses.
         axes: Where to draw, three-dimensional (projection="3d") from SE(3) on; a new figure by default.
         flow: The continuous motion from the same initial data, drawn over it.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         ValueError: An orbit on another group, one without poses, or axes of the wrong dimension.
@@ -61,36 +63,34 @@ def point_track(orbit: Orbit, axes: Any = None, flow: Orbit | None = None) -> Po
         (31, 3)
     """
     where = "point_track(orbit=...)"
-    group = parts.posed(where, orbit).system.group
+    orbit = parts.posed(where, orbit)
+    group = orbit.system.group
     n = group.size - 1
     if n < 2 or group != SE(n):
         remedy = "Use `body_axis_track` on SO(3), `overview` on other groups."
         raise error(where, "be an orbit on SE(n)", f"{group}", remedy)
-    parts.same_group("point_track(flow=...)", flow, orbit)
+    flow = parts.same_group("point_track(flow=...)", flow, orbit)
     axes = _axes(axes, 2 if n == 2 else 3)
     shown = _largest(orbit.position)
     chosen = parts.evenly_spread(orbit.position)
     position = orbit.position[:, shown]
     points = position[chosen]
     names = [f"${letter}$" for letter in "xyz"] if shown.max() < 3 else [f"$x_{i + 1}$" for i in shown]
+    theme.write_title(axes, "Reference point")
     view = dress_path(axes, points, names[: len(shown)])
-    axes.set_title("Reference point", loc="left")
     track = parts.draw_in_time(axes, orbit, position, chosen, zorder=3)
     curve = None if flow is None else parts.draw_flow(axes, flow.position[:, shown])
-    frames = _frames(axes, orbit, shown, _ARM * np.ptp(view[0]))
+    frames = _frames(axes, orbit, shown, _ARM * np.ptp(view, axis=1).max())
     mark_path_ends(axes, points, orbit)
     theme.legend_above(axes)
     return PointTrack(axes, tuple(shown.tolist()), points, track, frames, curve)
 
 
 def _axes(axes: Any, dimension: int) -> Any:
-    if axes is None:
-        figure = Figure(figsize=(6.0, 6.0), layout="constrained")
-        return figure.add_subplot(projection="3d" if dimension == 3 else None)
-    if not isinstance(axes, Axes) or hasattr(axes, "get_zlim") != (dimension == 3):
+    if axes is not None and (not isinstance(axes, Axes) or hasattr(axes, "get_zlim") != (dimension == 3)):
         remedy = 'Make them with projection="3d".' if dimension == 3 else "Make them without a projection."
         raise error("point_track(axes=...)", f"be axes of dimension {dimension}", shown(axes), remedy)
-    return axes
+    return theme.axes_or_new(axes, (6.0, 6.0), "3d" if dimension == 3 else None)
 
 
 def _largest(position: Float[np.ndarray, "K n"]) -> np.ndarray:
@@ -101,17 +101,33 @@ def _largest(position: Float[np.ndarray, "K n"]) -> np.ndarray:
 
 def dress_path(axes: Any, points: Float[np.ndarray, "L d"], names: list[str]) -> Float[np.ndarray, "d 2"]:
     """Set up axes of the plane or of space, with one unit, about the points of a path; return what they show."""
-    view = parts.square_about(points)
-    axes.set(xlim=view[0], ylim=view[1], xlabel=names[0], ylabel=names[1], aspect="equal")
-    if len(names) == 3:
-        axes.set(zlim=view[2], zlabel=names[2])
-        axes.view_init(elev=24, azim=-58)
-        axes.set_box_aspect((1, 1, 1), zoom=0.92)
-        for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
-            axis.pane.set(facecolor="#f7f8fa", edgecolor=theme.LEVEL)
-        floor = np.column_stack([points[:, :2], np.full(len(points), view[2, 0])])
-        axes.plot(*floor.T, color=theme.LEVEL, linewidth=1.2, zorder=1)
-    return view
+    if len(names) == 2:
+        view = parts.fit_view(axes, points)
+        axes.set(xlabel=names[0], ylabel=names[1])
+        return view
+    limits = _box_about(points)
+    if axes.has_data():
+        before = np.array([axes.get_xlim(), axes.get_ylim(), axes.get_zlim()])
+        limits = np.column_stack([np.minimum(before, limits)[:, 0], np.maximum(before, limits)[:, 1]])
+    axes.set(xlim=limits[0], ylim=limits[1], zlim=limits[2])
+    axes.set(xlabel=names[0], ylabel=names[1], zlabel=names[2])
+    axes.view_init(elev=24, azim=-58)
+    sides = np.ptp(limits, axis=1)
+    axes.set_box_aspect(sides, zoom=0.88)
+    for axis, side in zip((axes.xaxis, axes.yaxis, axes.zaxis), sides / sides.max(), strict=True):
+        axis.pane.set(facecolor=theme.PAPER, edgecolor=theme.LEVEL)
+        axis.set_major_locator(MaxNLocator(max(2, round(5 * side))))
+        axis.labelpad = 4 + (14 if side == 1.0 else -7) * (1 - sides.min() / sides.max())  # away from numbers
+    floor = np.column_stack([points[:, :2], np.full(len(points), limits[2, 0])])
+    axes.plot(*floor.T, color=theme.LEVEL, linewidth=1.2, zorder=1)
+    return limits
+
+
+def _box_about(points: Float[np.ndarray, "L 3"]) -> Float[np.ndarray, "3 2"]:
+    """Return a box with a margin about the points, no side much shorter than the longest."""
+    square, extent = parts.square_about(points), np.ptp(points, axis=0)
+    half = np.maximum(0.57 * extent, _THIN * np.ptp(square[0]) / 2)
+    return square.mean(axis=1)[:, None] + half[:, None] * [-1.0, 1.0]
 
 
 def _frames(axes: Any, orbit: Orbit, shown: np.ndarray, length: float) -> tuple[Artist, ...]:

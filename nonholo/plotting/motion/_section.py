@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable
+from typing import Any, Unpack
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -35,7 +36,12 @@ class Section:
 
 @theme.styled
 def section(
-    crossings: Crossings, across: Quantity, up: Quantity, axes: Axes | None = None, labels: tuple[str, str] = ("", "")
+    crossings: Crossings,
+    across: Quantity,
+    up: Quantity,
+    axes: Axes | None = None,
+    labels: tuple[str, str] = ("", ""),
+    **look: Unpack[theme.Look],
 ) -> Section:
     """Draw a Poincare section: one dot for each crossing of an event, colored from early to late.
 
@@ -44,7 +50,8 @@ def section(
         across: The abscissa, a function of an orbit that returns one number for each of its states.
         up: The ordinate.
         axes: Where to draw; a new figure by default.
-        labels: Names of the axes.
+        labels: Names of the axes; by default those of the functions.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         ValueError: No crossings at all, or quantities of the wrong shape.
@@ -64,14 +71,24 @@ def section(
         raise error("section(crossings=...)", "hold crossings of an event", shown(crossings), remedy)
     function("section(across=...)", across)
     function("section(up=...)", up)
-    across_label, up_label = (text("section(labels=...)", label) for label in pair("section(labels=...)", labels))
+    given = [text("section(labels=...)", label) for label in pair("section(labels=...)", labels)]
+    across_label, up_label = given[0] or _name_of(across, "across"), given[1] or _name_of(up, "up")
     points = np.stack([_values("across", across, crossings), _values("up", up, crossings)], axis=1)
     axes = theme.axes_or_new(axes, (6.0, 5.0))
     area = _LARGE if len(points) <= _FEW else _SMALL
-    dots = axes.scatter(*points.T, c=crossings.time, cmap=theme.TIME, s=area, linewidths=0)
-    axes.set(xlabel=across_label, ylabel=up_label, title=f"{len(points)} crossings")
+    color = theme.asked("color", None)
+    colors: Any = {"c": crossings.time, "cmap": theme.TIME} if color is None else {"color": color}
+    dots = axes.scatter(*points.T, s=area, linewidths=0, label=theme.asked("label", None), **colors)
+    axes.set(xlabel=across_label, ylabel=up_label)
     axes.margins(0.06)
+    theme.write_title(axes, f"{len(points)} crossings")
+    theme.legend_above(axes)
     return Section(axes, points, dots)
+
+
+def _name_of(quantity: Quantity, otherwise: str) -> str:
+    name = getattr(quantity, "__name__", "<lambda>")
+    return otherwise if name == "<lambda>" else name.strip("_").replace("_", " ")
 
 
 def _values(name: str, quantity: Quantity, crossings: Crossings) -> Float[np.ndarray, "C"]:

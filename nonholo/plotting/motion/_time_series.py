@@ -19,16 +19,19 @@ _MOST_POINTS = 2000
 _MOST_LINES = 60  # momenta in one panel
 
 
+@theme.styled
 def velocity_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> None:
     """Draw the components of the body velocity that the constraint leaves free, against time."""
     system = orbit.system
     allowed = np.eye(system.group.dim) if system.is_spatial else system.constraint_subspace
     free = np.flatnonzero(np.abs(allowed).max(axis=0, initial=0.0) > 0)
     names = velocity_names(system.group)
-    axes.set_title("Body velocity")
+    theme.write_title(axes, "Body velocity")
     draw_components(axes, orbit, flow, lambda states: states.body_velocity[:, free], [names[i] for i in free])
+    axes.set_ylabel("velocity")
 
 
+@theme.styled
 def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> None:
     """Draw the momenta along the rows of the constraint subspace, in space for a right-invariant one, against time.
 
@@ -39,12 +42,13 @@ def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> 
     shown = np.sort(np.argsort(-np.abs(momentum).max(axis=0, initial=0.0), kind="stable")[:_MOST_LINES])
     kind = "Spatial momentum" if orbit.system.is_spatial else "Momentum"
     of_many = "" if k <= _MOST_LINES else f", the {_MOST_LINES} largest of {k}"
-    axes.set_title(f"{kind} along the constraint{of_many}")
-    draw_components(
-        axes, orbit, flow, lambda states: states.restricted_momentum[:, shown], [f"$r_{{{i + 1}}}$" for i in shown]
-    )
+    theme.write_title(axes, f"{kind} along the constraint{of_many}")
+    names = [f"$r_{{{i + 1}}}$" for i in shown]
+    draw_components(axes, orbit, flow, lambda states: states.restricted_momentum[:, shown], names)
+    axes.set_ylabel("momentum")
 
 
+@theme.styled
 def heading_and_speed(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> None:
     """Draw the heading of a sleigh (left scale) and the speed along its blade (right scale) against time."""
     right = axes.twinx()
@@ -58,7 +62,7 @@ def heading_and_speed(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> No
         one.margins(y=0.12)
     right.spines["right"].set_visible(True)
     right.axhline(0.0, color=theme.COMPONENTS[1], linewidth=0.7, dashes=(4, 3), zorder=1)
-    axes.set_title("Heading and speed")
+    theme.write_title(axes, "Heading and speed")
     theme.mark_time(right, orbit)
     theme.legend_above(right)
 

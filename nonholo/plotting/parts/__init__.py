@@ -1,6 +1,6 @@
 """The common parts of pictures: which orbits are drawn, which of their states, marks, spheres, enlarged corners."""
 
-from nonholo.plotting.parts._enlargement import Square, corner_axes, detail, square_about
+from nonholo.plotting.parts._enlargement import Square, corner_axes, detail, fit_view, remove_detail, square_about
 from nonholo.plotting.parts._marks import draw_ends, draw_equilibria, draw_flow, draw_in_time, draw_orbit, segments
 from nonholo.plotting.parts._page import finish_page, new_page
 from nonholo.plotting.parts._sphere import View, arcs, best_view, draw_curve, draw_globe, opacity, set_curve, view_of

@@ -36,14 +36,15 @@ def draw_in_time(
         label: Name of the dots; where it is given there are dots of any orbit.
         whole: The orbit whose colors these are, where `orbit` is a part of it.
     """
-    points, time = points[states], orbit.time[states]
-    colors = {"cmap": theme.TIME, "norm": theme.time_scale(orbit if whole is None else whole), "zorder": zorder}
+    points, time, own = points[states], orbit.time[states], theme.asked("color", None)
+    colors = {"cmap": theme.TIME, "norm": theme.time_scale(orbit if whole is None else whole)} if own is None else {}
     if label is not None or orbit.is_discrete:
         size = theme.dot_size(len(orbit)) if size is None else size
-        colors |= {"c": time, "label": label or ("given poses" if orbit.is_measured else "discrete orbit")}
-        return axes.scatter(*points.T, s=size, linewidths=0, **_flat(points), **colors)
-    path = segments(points[:-1], points[1:], linewidth=2, **colors)
-    path.set(array=time[1:], label="flow")
+        name = theme.asked("label", label or ("given poses" if orbit.is_measured else "discrete orbit"))
+        colors |= {"c": time if own is None else [own], "label": name}
+        return axes.scatter(*points.T, s=size, linewidths=0, zorder=zorder, **_flat(points), **colors)
+    path = segments(points[:-1], points[1:], linewidth=2, zorder=zorder, **colors)
+    path.set(label=theme.asked("label", "flow"), **({"array": time[1:]} if own is None else {"color": own}))
     axes.add_collection(path)
     return path
 
@@ -69,7 +70,7 @@ def segments(feet: Float[np.ndarray, "L d"], tips: Float[np.ndarray, "L d"], **l
 def draw_ends(axes: Any, points: Float[np.ndarray, "K d"], orbit: AbstractOrbit) -> Any:
     """Mark the first point, empty, and the last one, in the colors of the first and the last state."""
     rim = theme.end_colors(orbit)
-    look: Any = {"facecolors": ["white", rim[1]], "edgecolors": rim, "linewidths": 1.6, "zorder": 7}
+    look: Any = {"facecolors": [theme.PAPER, rim[1]], "edgecolors": rim, "linewidths": 1.6, "zorder": 7}
     return axes.scatter(*points[[0, -1]].T, s=44, **look, **_flat(points))
 
 
@@ -80,7 +81,7 @@ def draw_equilibria(
     axes.plot(*np.stack([0 * reach, reach], axis=1), color=theme.STABLE, linewidth=0.9, zorder=2)
     axes.plot(*np.stack([0 * reach, -reach], axis=1), color=theme.UNSTABLE, linewidth=0.9, dashes=(5, 3), zorder=2)
     stable = axes.scatter(*points.T, s=size, color=theme.STABLE, zorder=5, label="stable")
-    empty: Any = {"facecolors": "white", "edgecolors": theme.UNSTABLE, "linewidths": 1.5}
+    empty: Any = {"facecolors": theme.PAPER, "edgecolors": theme.UNSTABLE, "linewidths": 1.5}
     return stable, axes.scatter(*-points.T, s=size, zorder=5, label="unstable", **empty)
 
 

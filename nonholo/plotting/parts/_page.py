@@ -2,21 +2,19 @@
 
 from pathlib import Path
 
+from matplotlib import rcParams
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from nonholo.base.checks import error
 from nonholo.base.checks import path as checked_path
 from nonholo.io import check_file
-
-_HEAD = 0.722  # inches
+from nonholo.plotting import theme
 
 
 def new_page(where: str, size: tuple[float, float], path: str | Path | None, *, overwrite: bool) -> Figure:
-    """Return a figure with room for a head; a path where it cannot be saved is refused in the name of `where`."""
-    below_head = 1 - _HEAD / size[1]
-    layout = ConstrainedLayoutEngine(rect=(0.004, 0.004, 0.992, below_head), hspace=0.05, wspace=0.03)
-    figure = Figure(figsize=size, layout=layout)
+    """Return a figure for a head and panels; a path where it cannot be saved is refused in the name of `where`."""
+    figure = theme.new_figure(size)
     if path is not None:
         _check_suffix(figure, path, f"{where}(path=...)")
         check_file(path, overwrite=overwrite, where=f"{where}(path=...)")
@@ -32,12 +30,17 @@ def _check_suffix(figure: Figure, path: str | Path, where: str) -> None:
 
 
 def finish_page(figure: Figure, title: str, facts: list[str], path: str | Path | None) -> Figure:
-    """Write the head above the panels and save the figure."""
-    width, height = figure.get_size_inches()
-    left = 0.156 / width
-    figure.text(left, 1 - 0.114 / height, title, va="top", fontsize=17, fontweight="bold")
-    said = "      ".join(facts).replace("-", "\u2212")
-    figure.text(left, 1 - 0.5016 / height, said, va="top", fontsize=10.5, color="#555a62")
+    """Write the head above the panels, with the title that is asked for, and save the figure."""
+    line = rcParams["font.size"] / 72 / figure.get_figheight()  # in parts of the figure
+    title = theme.asked("title", title)
+    figure.text(0.012, 0.985, title, va="top", fontsize="xx-large", fontweight="bold")
+    below = 0.985 - 2.8 * line * bool(title)
+    if theme.asked("annotate", True):
+        said = "      ".join(facts).replace("-", "\u2212")
+        figure.text(0.012, below, said, va="top", color=theme.QUIET)
+        below -= 1.6 * line
+    layout = ConstrainedLayoutEngine(rect=(0.004, 0.004, 0.992, below), hspace=0.05, wspace=0.03)
+    figure.set_layout_engine(layout)
     if path is not None:
         figure.savefig(path)
     return figure

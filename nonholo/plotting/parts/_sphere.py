@@ -72,13 +72,14 @@ def draw_globe(axes: Axes, view: View) -> None:
     """Draw the shaded sphere with its wireframe and set up the axes for it."""
     x, y = np.meshgrid(*2 * (np.linspace(-1, 1, _SHADES),))
     light = np.clip((-0.45 * x + 0.55 * y + 0.7 * np.sqrt(np.clip(1 - x * x - y * y, 0, 1))), 0, 1)
-    shade = axes.imshow(0.90 + 0.095 * light, cmap="gray", vmin=0, vmax=1, extent=(-1, 1, -1, 1), origin="lower")
+    ground, range_ = (0.12, 0.13) if theme.is_dark() else (0.90, 0.095)
+    shade = axes.imshow(ground + range_ * light, cmap="gray", vmin=0, vmax=1, extent=(-1, 1, -1, 1), origin="lower")
     shade.set(zorder=0, interpolation="bilinear")
     rim = Circle((0, 0), 1.0, facecolor="none", edgecolor=theme.MUTED, linewidth=0.9, zorder=3)
     axes.add_patch(rim)
     shade.set_clip_path(rim)
     for circle in _wires():
-        draw_curve(axes, view, circle, to_rgb("#aab0ba"), width=0.6, zorder=1)
+        draw_curve(axes, view, circle, to_rgb(theme.MUTED if theme.is_dark() else "#aab0ba"), width=0.6, zorder=1)
     axes.set(xlim=(-1.27, 1.27), ylim=(-1.15, 1.15), aspect="equal")
     axes.set_axis_off()
 

@@ -20,17 +20,18 @@ def draw_path(
     axes: Axes, eye: View, shown: Orbit, points: Float[np.ndarray, "L 3"], whole: Orbit
 ) -> tuple[LineCollection, PathCollection | None]:
     """Draw points of the sphere that belong to the states shown, with the colors of time of the whole orbit."""
-    scale = theme.time_scale(whole)
     step = np.linalg.norm(np.diff(points, axis=0), axis=1).max(initial=0.0)
     pieces = max(1, int(np.ceil(step / _PIECE)))
-    colors = np.repeat(theme.TIME(scale(shown.time[1:])), pieces, axis=0)
+    colors = np.repeat(theme.time_colors(whole, shown.time[1:]), pieces, axis=0)
     sparse = step > _SPARSE
     width = 0.6 if sparse else 1.5
+    name, color = theme.asked("label", None), theme.asked("color", colors[len(colors) // 2] if len(colors) else None)
+    axes.plot([], [], color=color, label=name)  # the curve's own first piece may be faint
     path = draw_curve(axes, eye, arcs(points, pieces), colors.reshape(-1, 4), width=width, zorder=4)
     if not whole.is_discrete:
         return path, None
     flat, depth = eye(points)
-    faces = theme.TIME(scale(shown.time))
+    faces = theme.time_colors(whole, shown.time)
     faces[:, 3] = opacity(depth)
     order = np.argsort(depth)
     return path, axes.scatter(*flat[order].T, s=18 if sparse else 7, color=faces[order], linewidths=0, zorder=5)
@@ -72,7 +73,7 @@ def mark_ends(axes: Axes, eye: View, points: Float[np.ndarray, "L 3"], part: sli
     rim = theme.end_colors(orbit)
     has_end = part.stop == len(orbit) and not np.allclose(flat[0], flat[1])
     words = ("start" if part.start == 0 else "", "end" if has_end else "")
-    for place, alpha, edge, face, word in zip(flat, opacity(depth), rim, ("white", rim[1]), words, strict=True):
+    for place, alpha, edge, face, word in zip(flat, opacity(depth), rim, (theme.PAPER, rim[1]), words, strict=True):
         if word:
             axes.scatter(*place, s=40, facecolors=[face], edgecolors=[edge], linewidths=1.6, alpha=alpha, zorder=7)
             axes.annotate(word, place, xytext=(7, 7), textcoords="offset points", zorder=8, path_effects=theme.HALO)

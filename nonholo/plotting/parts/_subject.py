@@ -13,40 +13,50 @@ from nonholo.discrete import Discretization
 from nonholo.orbit import AbstractOrbit, Orbit, as_orbit
 from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System
 
+_SMOOTH = 1000  # states of a flow, in which a curve has no corners
 _ROUNDING = 1e-12  # relative
 NEAR_EQUILIBRIUM = 0.03  # sine, in the metric of the energy, of the angle to the line of equilibria
 
 
 def drawable(where: str, orbit: Any) -> Orbit:
-    """Return an orbit with at least one state."""
+    """Return the same of an orbit on a group."""
     as_orbit(where, orbit, "for one in coordinates use `overview` and `energy_error`.")
     return drawable_in_time(where, orbit)
 
 
 def drawable_in_time(where: str, orbit: Any) -> Any:
-    """Return an orbit of any kind, on a group or in coordinates, with at least one state."""
+    """Return an orbit of any kind with at least one state; a flow that knows those between with enough for a curve."""
     remedy = "Pass what `simulate` or `flow` returned."
     if len(instance(where, orbit, AbstractOrbit, "be an orbit", remedy)) == 0:
         raise error(where, "have a state to draw", "none", "See `orbit.outcome` for why the run did not start.")
-    return orbit
+    if orbit.span is None or not 1 < len(orbit) < _SMOOTH:
+        return orbit
+    more = np.linspace(orbit.time[0], orbit.time[-1], _SMOOTH)
+    times = np.union1d(orbit.time, more)
+    return orbit.at(times if more[-1] > more[0] else times[::-1])
 
 
 def posed(where: str, orbit: Any) -> Orbit:
-    """Return an orbit with at least one state and with poses."""
-    if drawable(where, orbit).canonical_pose is None:
+    """Return the same of an orbit with poses."""
+    orbit = drawable(where, orbit)
+    if orbit.canonical_pose is None:
         raise error(where, "have poses", "an orbit without them", "Run with reconstruct=True.")
     return orbit
 
 
-def same_group(where: str, orbit: Any, other: Orbit) -> None:
-    """Refuse an orbit, if there is one, that moves on another group than the orbit it is drawn beside."""
-    if orbit is not None and posed(where, orbit).system.group != other.system.group:
+def same_group(where: str, orbit: Any, other: Orbit) -> Orbit | None:
+    """Return the same of an orbit, if there is one, that moves on the same group as the orbit it is drawn beside."""
+    if orbit is None:
+        return None
+    orbit = posed(where, orbit)
+    if orbit.system.group != other.system.group:
         raise error(where, f"move on {other.system.group}", f"{orbit.system.group}", "Pass a motion of the same body.")
+    return orbit
 
 
 def is_free(system: System) -> bool:
-    """Tell whether nothing constrains the body, whose spatial momentum is then conserved."""
-    return system.rank == system.group.dim
+    """Tell whether nothing constrains the body or acts on it, whose spatial momentum is then conserved."""
+    return system.rank == system.group.dim and not system.is_forced
 
 
 def forbidden_axis(system: AbstractSystem) -> Float[np.ndarray, "3"] | None:
@@ -77,7 +87,7 @@ def own_orbit(where: str, orbit: Any, discrete: Discretization) -> None:
 
 def known_equilibria(system: System) -> Equilibria | None:
     """Return the equilibria of a system; None where they are no linear space, or where the library has none."""
-    if system.is_spatial:
+    if system.is_spatial or system.is_forced:
         return None
     try:
         equilibria = cast(AbstractLLSystem, system).equilibria()

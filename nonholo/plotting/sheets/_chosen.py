@@ -4,6 +4,8 @@ Coordinates of tops and sleighs are those of their normal form, of others those 
 on that plane is not decided here.
 """
 
+from typing import Any, cast
+
 import numpy as np
 from matplotlib.axes import Axes
 
@@ -26,8 +28,8 @@ def sheet_of(system: AbstractSystem) -> AbstractSheet | None:
 
 
 def blade_of_system(system: AbstractSystem) -> Blade | None:
-    """Return the blade of a sleigh in the plane; None for other systems."""
-    sheet = sheet_of(system)
+    """Return the blade of a sleigh in the plane, whatever acts on it; None for other systems."""
+    sheet = sheet_of(cast(Any, system).system if system.is_forced else system)
     return None if sheet is None else sheet.blade
 
 

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from nonholo.analysis import InvariantCurve, MomentumLocus
 from nonholo.analysis.planar import Disc
 from nonholo.base.types import Float
+from nonholo.plotting import theme
 from nonholo.plotting.elements import draw_rim
 from nonholo.plotting.parts import forbidden_axis
 from nonholo.plotting.sheets._base import LEVELS, AbstractSheet, runs, without_rounding
@@ -76,8 +77,7 @@ class DiscSheet(AbstractSheet):
         draw_rim(axes)
         axes.set(xlim=(-1.14, 1.14), ylim=(-1.14, 1.14), xticks=[], yticks=[], aspect="equal")
         axes.spines[:].set_visible(False)
-        if axes.get_legend_handles_labels()[0]:
-            axes.legend(loc="lower left", bbox_to_anchor=(0.9, 0.02))
+        theme.legend(axes, loc="lower left", bbox_to_anchor=(0.9, 0.02))
         axes.set_xlabel("radius: step angle; equal letters: the same half-turn")
 
     def locus_map(self) -> Float[np.ndarray, "3 3"]:

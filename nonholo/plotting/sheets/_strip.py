@@ -97,7 +97,7 @@ class StripSheet(AbstractSheet):
         axes.set_xticks(np.pi * np.linspace(-1, 1, 5), [r"$-\pi$", r"$-\pi/2$", "0", r"$\pi/2$", r"$\pi$"])
         for side in (-1, 1):
             _draw_edge(axes, side, reach)
-        reach = max(reach, 1.1 * np.abs(places[:, 1]).max(initial=0.0))
+        reach = max(reach, 0.0 if axes.get_autoscaley_on() else high, 1.1 * np.abs(places[:, 1]).max(initial=0.0))
         axes.spines["right"].set_visible(True)
         axes.set(xlabel=r"step angle $\Delta$", ylabel=r"translation along the chord  $\nu$", ylim=(-reach, reach))
         theme.legend_above(axes)

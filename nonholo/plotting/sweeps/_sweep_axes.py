@@ -23,9 +23,7 @@ _ENDED = {
     "branch_unverified": "#8a8f98",
     "not_converged": "#cc79a7",
     "off_momentum_locus": "#e69f00",
-    "nonfinite": "#1a1a1a",
     "raised": "#d55e00",
-    "absent": "#ffffff",
 }
 _OTHER = "#a0522d"
 _WIDE = 30.0  # quotient of the ends of the middle nine tenths from which a scale is logarithmic: 19 for even numbers
@@ -93,11 +91,12 @@ def ends(codes: xarray.DataArray, *, successful: bool = False) -> list[tuple[int
     """Return the outcomes that occur, but for success, with their names and colors."""
     flags = [int(flag) for flag in np.atleast_1d(codes.attrs.get("flag_values", []))]
     names = dict(zip(flags, str(codes.attrs.get("flag_meanings", "")).split(), strict=False))
+    own = _ENDED | {"nonfinite": theme.STABLE, "absent": theme.PAPER}
     found = []
     for code, count in zip(*np.unique(codes.values, return_counts=True), strict=True):
         if successful or code != 0:
             name = names.get(int(code), str(code))
-            found.append((int(code), f"{name.replace('_', ' ')} ({count:,})", _ENDED.get(name, _OTHER)))
+            found.append((int(code), f"{name.replace('_', ' ')} ({count:,})", own.get(name, _OTHER)))
     return found
 
 
@@ -137,6 +136,7 @@ def color_key(axes: Axes, drawn: ScalarMappable, subject: Subject) -> Colorbar:
     figure: Any = axes.get_figure(root=False)
     bar = figure.colorbar(drawn, ax=axes, label=label(subject.values), pad=0.02)
     bar.outline.set_visible(False)
+    bar.solids.set_alpha(1.0)
     if isinstance(drawn.norm, BoundaryNorm):
         labels = [f"{value:g}" for value in np.unique(subject.finite)]
         ends_of = np.asarray(drawn.norm.boundaries)

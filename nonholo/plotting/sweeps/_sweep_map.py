@@ -1,7 +1,7 @@
 """The result of a sweep in one picture: a map over a grid, a curve along one axis, draws as dots or a histogram."""
 
 import dataclasses
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import xarray
@@ -19,6 +19,7 @@ from nonholo.plotting.sweeps import _sweep_axes as common
 _MOST = 20_000  # dots
 _LARGE = 2000  # dots from which they are small
 _BARS = 60
+_OPAQUE = 600  # dots up to which they are opaque
 
 _Drawn = tuple[Any, tuple[Any, ...], Colorbar | None]
 
@@ -35,7 +36,7 @@ def _draw_draws(axes: Axes, result: xarray.Dataset, subject: common.Subject, x: 
         drawn = _dots_over(axes, subject, _number(result, "x", x))
     else:
         drawn = _histogram(axes, subject)
-    axes.set_title(subject.title)
+    theme.write_title(axes, subject.title)
     theme.legend_above(axes)
     return drawn
 
@@ -58,7 +59,7 @@ def _dots_over(axes: Axes, subject: common.Subject, x: xarray.DataArray) -> _Dra
     """Draw the quantity of members that succeeded as dots over x; the others are marked along the bottom."""
     across, values, codes = _thinned(x, subject.values, subject.codes)
     good, ended = codes == 0, common.ends(subject.codes)
-    drawn = axes.scatter(across[good], values[good], color=theme.DISCRETE, **_look(across))
+    drawn = axes.scatter(across[good], values[good], **theme.named(theme.DISCRETE), **_look(across, 0.2))
     axes.set(xlabel=common.label(x), xscale=common.scale_along(across))
     axes.set(ylabel=common.label(subject.values), yscale=common.scale_along(values))
     shown = common.mark_below(axes, across, codes, ended, marker="|")
@@ -69,7 +70,7 @@ def _dots_over(axes: Axes, subject: common.Subject, x: xarray.DataArray) -> _Dra
 def _colored_dots(axes: Axes, subject: common.Subject, x: xarray.DataArray, y: xarray.DataArray) -> _Drawn:
     """Draw members as dots over x and y, those that did not succeed below the others."""
     across, up, values, codes = _thinned(x, y, subject.values, subject.codes)
-    of_outcome, look = subject.values.name == common.OUTCOME, _look(across)
+    of_outcome, look = subject.values.name == common.OUTCOME, _look(across, 0.5)
     ended = common.ends(subject.codes, successful=of_outcome)
     groups = [(codes == code, color) for code, _, color in ended]
     shown = tuple(axes.scatter(across[of], up[of], color=color, **look) for of, color in groups)
@@ -85,13 +86,17 @@ def _colored_dots(axes: Axes, subject: common.Subject, x: xarray.DataArray, y: x
     return drawn, shown, bar
 
 
-def _look(across: np.ndarray) -> Any:
-    return {"s": 14.0 if len(across) <= _LARGE else 5.0, "linewidths": 0, "rasterized": True}
+def _look(across: np.ndarray, faintest: float) -> Any:
+    """Return the look of this many dots, which let others through where they are many: crowds are darker."""
+    opacity = max(faintest, min(1.0, _OPAQUE / max(1, len(across))))
+    return {"s": 14.0 if len(across) <= _LARGE else 5.0, "linewidths": 0, "rasterized": True, "alpha": opacity}
 
 
 def _histogram(axes: Axes, subject: common.Subject) -> _Drawn:
     """Count the members that succeeded; the legend counts the others."""
-    bars = axes.hist(subject.finite, bins=_bins(subject.finite, subject.whole), color=theme.DISCRETE, rwidth=0.94)[2]
+    bars = axes.hist(
+        subject.finite, bins=_bins(subject.finite, subject.whole), rwidth=0.94, **theme.named(theme.DISCRETE)
+    )[2]
     axes.set(xlabel=common.label(subject.values), ylabel="members")
     if subject.whole:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -142,7 +147,12 @@ class SweepMap:
 
 @theme.styled
 def sweep_map(
-    result: Any, quantity: str | None = None, x: str | None = None, y: str | None = None, axes: Axes | None = None
+    result: Any,
+    quantity: str | None = None,
+    x: str | None = None,
+    y: str | None = None,
+    axes: Axes | None = None,
+    **look: Unpack[theme.Look],
 ) -> SweepMap:
     """Draw one quantity of a sweep over what was varied; members that did not succeed are shown by how they ended.
 
@@ -155,6 +165,7 @@ def sweep_map(
         x: An axis of the grid, by default the first one; for draws any number of each member.
         y: The same, by default the next axis.
         axes: Where to draw; a new figure by default.
+        **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
         ValueError: No result of a sweep, no such quantity or axis, a quantity with several numbers for each member,
@@ -236,7 +247,7 @@ def _curve(axes: Axes, subject: common.Subject, x: str) -> SweepMap:
     values, codes = (_plane(array, x) for array in (subject.values, subject.codes))
     across = _places(values, x)
     marker = "o" if len(across) <= _MARKED else ""
-    (line,) = axes.plot(across, values.values, color=theme.DISCRETE, marker=marker, markersize=3.5)
+    (line,) = axes.plot(across, values.values, **theme.named(theme.DISCRETE), marker=marker, markersize=3.5)
     ended = common.ends(subject.codes)
     shown = common.mark_below(axes, across, codes.values, ended, marker="s")
     _dress_axis(axes, "x", values, x)
@@ -269,5 +280,5 @@ def _name(axes: Axes, subject: common.Subject) -> None:
         for name, values in subject.values.coords.items()
         if values.size == 1 and values.dtype.kind in "if"
     ]
-    axes.set_title(", ".join([subject.title, *fixed]))
+    theme.write_title(axes, ", ".join([subject.title, *fixed]))
     theme.legend_above(axes)

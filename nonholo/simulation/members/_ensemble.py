@@ -18,7 +18,7 @@ from nonholo.simulation.members._reduce import Reduced, joined
 from nonholo.simulation.members._result import Ensemble
 from nonholo.simulation.members._run import Plan, Report, counting, run_members, states_of
 from nonholo.simulation.members._start import are_others, checked_rows, first_momenta
-from nonholo.simulation.runs import refuse_too_large, refuse_too_long
+from nonholo.simulation.runs import check_forces, refuse_too_large, refuse_too_long
 from nonholo.systems import AbstractSystem, Start, System
 
 Watched: TypeAlias = dict[str, Event] | None
@@ -105,11 +105,12 @@ def ensemble(
         refuse_given("ensemble", "be left out for a flow", _KINDS, **of_steps, **how)
         return ensemble_of_flows(discrete, Start.of("ensemble", **starts), times, parameters, rtol, reduce, progress)
     refuse_given("ensemble", "be left out for a discretization", _KINDS, times=(times, None), rtol=(rtol, None))
-    discrete = as_discretization("ensemble(discrete=...)", discrete, composed=True)
+    discrete = as_discretization("ensemble(discrete=...)", discrete, composed=True, forced=True)
     steps = count("ensemble(steps=...)", steps, "Pass the number of steps.")
     if save_every is not None:
         save_every = count("ensemble(save_every=...)", save_every, "Pass the steps between saved states, or None.")
     _check_backend(discrete, backend)
+    check_forces("ensemble", discrete, steps, free="backend 'jax'" if backend == "jax" else None)
     plan = Plan(steps, save_every, bool(reconstruct), backend)
     motions = _motions(discrete, Start.of("ensemble", **starts), parameters, plan, whole=reduce is None)
     watched = None if events is None else watched_events("ensemble", discrete, events, PRINCIPAL.name, plan.posed)

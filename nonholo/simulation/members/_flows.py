@@ -11,7 +11,7 @@ from nonholo.base.limits import within_memory
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.continuous import ContinuousFlow, members_by_series
+from nonholo.continuous import ContinuousFlow, Solved, members_by_series, solver_of
 from nonholo.discrete import Discretization, discretize
 from nonholo.orbit import Orbit
 from nonholo.simulation.members._families import check_systems, inertias_and_frames
@@ -111,12 +111,13 @@ def _solved(members: Members, momenta: np.ndarray, time: np.ndarray, rtol: float
     def work(part: slice, stop: np.ndarray) -> None:
         own = members.part(part)
         inertias, frames = inertias_and_frames(own)
-        poses, each = (
-            np.broadcast_to(frames, (len(own), frames.shape[1])),
-            lambda member: own.of(member).system.canonical,
-        )
+        poses = np.broadcast_to(frames, (len(own), frames.shape[1]))
+
+        def each(member: int) -> Callable[..., Solved]:
+            return solver_of(own.of(member).system, None, float(time[0]), reconstruct=True)[0]
+
         given = momenta[part], poses, time - time[0], rtol, stop
-        pieces[part.start] = members_by_series(system.canonical, inertias, each, *given)
+        pieces[part.start] = members_by_series(system, inertias, each, *given)
 
     size = max(1, min(_PART, _NUMBERS // (numbers * len(time)), -(-count // 8)))
     parts = [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]

@@ -183,6 +183,8 @@ class Ensemble:
     def _is_shared(self, name: str) -> bool:
         """Tell whether a quantity is the same function of the state for all members."""
         discrete = self.members.discrete
+        if discrete.forces is not None:
+            return False
         composed = discrete.order > 2 and name == "displacement"
         same = set() if name == "momentum" or composed else {"time_step"}
         family = family_of(discrete.system)
@@ -202,4 +204,5 @@ def _first_energy(system: System, reduced: np.ndarray) -> float:
     """Return the energy of a canonical momentum at the identity; NaN of a member that has none."""
     if not np.isfinite(reduced).all():
         return np.nan
-    return float(system.canonical.constrained_energy(reduced, system.group.identity))
+    kinetic, g = system.canonical.constrained_energy(reduced, system.group.identity), system.group.identity
+    return float(kinetic if system.forces is None else kinetic + system.forces.potential_energy(g))

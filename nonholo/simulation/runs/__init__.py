@@ -3,7 +3,7 @@
 from nonholo.simulation.runs._compiled import CompiledRun, closed_step, compiled_run, opened
 from nonholo.simulation.runs._first_state import FirstState, first_state
 from nonholo.simulation.runs._limits import refuse_too_large, refuse_too_long
-from nonholo.simulation.runs._options import RunOptions
+from nonholo.simulation.runs._options import RunOptions, check_forces
 from nonholo.simulation.runs._state import Rows, RunState
 from nonholo.simulation.runs._uncompiled import Runner, uncompiled_run
 
@@ -14,6 +14,7 @@ __all__ = [
     "RunOptions",
     "RunState",
     "Runner",
+    "check_forces",
     "closed_step",
     "compiled_run",
     "first_state",

@@ -115,7 +115,7 @@ def compiled_run(
 ) -> CompiledRun:
     """Return the run in blocks of a compiled step; only compiled runs have a state that can be kept."""
     if closed is None:
-        got = f"another branch, backend='jax' or difference {shown(discrete.difference)}"
+        got = f"another branch, backend='jax', a force in Python or difference {shown(discrete.difference)}"
         remedy = "Use branch='principal', difference='matrix' and backend='auto', or simulate without it."
         raise error(where, "have a compiled run", got, remedy)
     return CompiledRun(discrete, closed, every, posed)

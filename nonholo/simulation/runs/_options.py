@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from nonholo.base.checks import choice, step_counts
+from nonholo.base.checks import choice, error, step_counts
 from nonholo.discrete import (
     AbstractBranchRule,
     BranchRule,
@@ -11,6 +11,17 @@ from nonholo.discrete import (
     checked_rule,
     refuse_composition,
 )
+
+
+def check_forces(owner: str, discrete: Discretization, steps: int, *, free: str | None = None) -> None:
+    """Refuse what runs with forces do not have, which `free` names, and more steps than their table has rows."""
+    if (forced := discrete.forces) is None:
+        return
+    if free is not None:
+        raise error(f"{owner}(discrete=...)", "have the principal branch under forces", free, "Leave both out.")
+    if forced.table is not None and steps > len(forced.table):
+        remedy = "Pass fewer steps, or a force for each step."
+        raise error(f"{owner}(steps=...)", "be at most one for each row of the forces", f"{steps}", remedy)
 
 
 class RunOptions(NamedTuple):
@@ -48,11 +59,14 @@ class RunOptions(NamedTuple):
         progress: bool,
     ) -> "RunOptions":
         """Return checked options that a discretization can be run with."""
-        as_discretization("simulate(discrete=...)", discrete, composed=True)
+        as_discretization("simulate(discrete=...)", discrete, composed=True, forced=True)
         steps, every = step_counts(steps, save_every)
         rule = checked_rule("simulate", discrete, branch)
         if not rule.is_principal:
             remedy = "Leave branch out: each substep takes the principal root."
             refuse_composition("simulate(branch=...)", discrete, remedy)
         choice("simulate(backend=...)", backend, ("auto", "numba", "jax"))
+        plain = rule.is_principal and backend != "jax"
+        free = None if plain else f"branch {rule.name!r} and backend {backend!r}"
+        check_forces("simulate", discrete, steps, free=free)
         return cls(steps, every, rule, backend, reconstruct, throw, progress)

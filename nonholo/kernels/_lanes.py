@@ -13,7 +13,7 @@ from numba import types
 from numba.core import cgutils, config
 from numba.extending import lower_builtin, models, register_model, type_callable
 
-ONE, EIGHT = (0,), (0,) * 8
+ONE, FOUR, EIGHT = (0,), (0,) * 4, (0,) * 8
 
 
 def load(array: np.ndarray, row: int, at: int, lanes: tuple[int, ...]) -> Any:

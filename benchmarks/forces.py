@@ -1,0 +1,106 @@
+"""Steps with forces beside free ones, in the kernel: process time of runs of a top and a sleigh, in turns.
+
+A table of zeros must give the bits of the free run first. Free runs of an unbalanced body end at an equilibrium, where
+one correction solves a step; what moves on under a weight may need two, so there is a balanced top as well.
+
+With --drift, not speed: how the error of T + U grows under weights in a million steps.
+
+    python benchmarks/forces.py [--steps 400000] [--rounds 15] [--drift]
+"""
+
+import argparse
+import statistics
+import time
+from typing import Any
+
+import numpy as np
+
+import nonholo as nh
+from nonholo import kernels
+
+BODIES = {
+    "top": nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]),
+    "balanced top": nh.SuslovTop(np.diag([1.0, 1.2, 0.7])),
+    "sleigh": nh.ChaplyginSleigh(1.0, 1.0, 0.5),
+}
+
+
+def forced(system: Any, steps: int) -> dict[str, nh.Forced]:
+    """Return the system under forces of each kind."""
+    n = 3 if system.group == nh.SO(3) else 2
+    heavy, rub = nh.Gravity([0.1, -0.2, -1.0][:n], [0.1, 0.2, 0.3][:n]), nh.Friction(1e-6 * np.ones(3))
+    table = 1e-3 * np.sin(1e-3 * np.arange(steps + 1))[:, None] * np.ones(3)
+    return {
+        "zeros": nh.Forced(system, force=np.zeros((1, 3))),
+        "table": nh.Forced(system, force=table),
+        "friction": nh.Forced(system, force=rub),
+        "weight": nh.Forced(system, heavy),
+        "weight and friction": nh.Forced(system, heavy, rub),
+    }
+
+
+TENSOR, DOWN = np.diag([1.0, 1.2, 0.7]), (0.0, 0.0, -1.0)
+ASIDE, ON_AXIS = nh.Gravity(DOWN, [0, 0.1, 0.4]), nh.Gravity(DOWN, [0, 0, 0.4])
+HEAVY: dict[str, tuple[nh.Forced, tuple[float, ...]]] = {
+    "free body": (nh.Forced(nh.RigidBody(TENSOR), ASIDE), (0.3, 0.2, 1.0)),
+    "top, weight on its axis": (nh.Forced(nh.SuslovTop(TENSOR), ON_AXIS), (0.3, 0.2, 0.0)),
+    "top, weight beside it": (nh.Forced(nh.SuslovTop(TENSOR), ASIDE), (0.3, 0.2, 0.0)),
+    "top, coupled": (nh.Forced(BODIES["top"], ASIDE), (0.3, 0.2, 0.0)),
+    "knife edge on a slope": (nh.Forced(nh.ChaplyginSleigh(1, 1, 0), nh.Gravity([0.4, 0], [0, 0])), (0.7, 0.2, 0.0)),
+    "sleigh on a slope": (nh.Forced(BODIES["sleigh"], nh.Gravity([0.4, 0], [0.5, 0])), (0.7, 0.2, 0.0)),
+}
+
+
+def drift(steps: int) -> None:
+    """Print the largest error of T + U in tenths of a run, at two step sizes."""
+    for name, (system, velocity) in HEAVY.items():
+        for h in (0.05, 0.025):
+            orbit = nh.simulate(
+                nh.discretize(system, h), body_velocity=velocity, steps=steps, save_every=50, throw=False
+            )
+            errors = [np.abs(part - orbit.energy[0]).max() for part in np.array_split(orbit.energy, 10)]
+            kinetic = orbit.energy - system.potential_energy(orbit.configuration)
+            shown = " ".join(f"{errors[j]:.2e}" for j in (0, 3, 6, 9))
+            print(f"{name}, h = {h}: {len(orbit) * 50 - 50} steps, tenths 1 4 7 10: {shown}; T to {kinetic.max():.3g}")
+
+
+def main() -> None:
+    """Print nanoseconds per step and the ratios to the free step, medians of pairs."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--steps", type=int, default=400_000)
+    parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--drift", action="store_true")
+    given = parser.parse_args()
+    if given.drift:
+        drift(1_000_000)
+        return
+    for name, system in BODIES.items():
+        for h in (0.1, 0.005):
+            routes = {kind: nh.discretize(each, h).route for kind, each in forced(system, given.steps).items()}
+            bodies = {"free": nh.discretize(system, h).route.body}
+            bodies |= {kind: route.body for kind, route in routes.items()}
+            free = nh.discretize(system, h).route
+            start = free.encode(np.array([0.4, 0.9])), free.encode_poses(np.asarray(system.frame_pose))
+            rows = tuple(np.empty((given.steps, width)) for width in free.sizes)
+            taken: dict[str, list[float]] = {kind: [] for kind in bodies}
+            ends = {}
+            for _ in range(given.rounds + 1):
+                for kind, body in bodies.items():
+                    _, state = kernels.start(body, *start)
+                    begun = time.process_time()
+                    done = kernels.advance(body, state, given.steps, 1, rows)
+                    taken[kind].append((time.process_time() - begun) / given.steps * 1e9)
+                    if done != (given.steps, 0):
+                        raise RuntimeError(f"{name}, {kind}: {done}")
+                    ends[kind] = [row[-1].copy() for row in rows]
+            if not all(map(np.array_equal, ends["free"], ends["zeros"])):
+                raise RuntimeError("A table of zeros changes the motion.")
+            texts = []
+            for kind, times in taken.items():
+                ratio = statistics.median(np.array(times[1:]) / np.array(taken["free"][1:]))
+                texts.append(f"{kind} {statistics.median(times[1:]):.1f} ({ratio:.2f})")
+            print(f"{name}, h = {h}: ns per step " + ", ".join(texts))
+
+
+if __name__ == "__main__":
+    main()

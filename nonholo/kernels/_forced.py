@@ -1,0 +1,234 @@
+r"""Runs with forces: half an impulse at each end of a step, and the step of the body between them.
+
+A node k has the momenta m. A step begins at $s = K_k(m)$ with the root over s, and ends, after the increment and the
+move, with $K_k$ once more at the pose of the next node (docs/theory/forces.md). The half impulse is
+
+$$ K_k(m) = A\,m + L\,R^TF + r_k, $$
+
+with a force F that is fixed in space and the rotation R of the pose. A run's state is one array: momenta of the next
+node, their compensations, its pose, the last three roots, for quaternions and headings $L R^TF$ there, the number of
+its step, and the chart at which the run began.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from nonholo.base.compiled import njit
+from nonholo.kernels._driver import SETTLED, _compensated, _solve, _unpack
+from nonholo.kernels._interface import Body, increment, move
+from nonholo.kernels._scalar import COMPILED, scalar
+from nonholo.kernels._small import assign
+from nonholo.kernels._substeps import at_rest, charted, prepared, pushed, solved
+from nonholo.kernels.general import GeneralBody
+from nonholo.kernels.secular import SecularBody
+
+Rows = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+class Kick(NamedTuple):
+    """Half an impulse, in the units and axes of a kernel.
+
+    Attributes:
+        keep: A, what is left of the momenta, (k, k); (0, 0) where all is.
+        weight: F, as long as a row of poses that are matrices, (2,) for cosine and sine, (3,) for a quaternion; (0,)
+            without a force that is fixed in space.
+        arms: L, (k, len(F)).
+        rows: r, (steps + 1, k), at both ends of each step; the last one is zero and acts after all steps.
+    """
+
+    keep: np.ndarray
+    weight: np.ndarray
+    arms: np.ndarray
+    rows: np.ndarray
+
+
+class ForcedBody(NamedTuple):
+    """A body of an order-2 step and its half impulse."""
+
+    body: Any
+    kick: Kick
+
+
+@njit(**COMPILED)
+def pulled(kick: Kick, pose: np.ndarray, force: np.ndarray) -> None:
+    """Write what the weight adds to momenta at a pose that is a matrix."""
+    n, k = len(kick.weight), len(force)
+    force[:] = 0.0
+    for j in range(n):
+        seen = 0.0
+        for i in range(n):
+            seen += kick.weight[i] * pose[n * i + j]
+        for i in range(k):
+            force[i] += kick.arms[i, j] * seen
+
+
+@njit(**COMPILED)
+def kicked(kick: Kick, row: int, m: np.ndarray, force: np.ndarray, out: np.ndarray) -> None:
+    """Write the momenta after half an impulse of a step, from what the weight adds."""
+    at = min(row, len(kick.rows) - 1)
+    for i in range(len(m)):
+        total = m[i]
+        if len(kick.keep) > 0:
+            total = 0.0
+            for j in range(len(m)):
+                total += kick.keep[i, j] * m[j]
+        out[i] = total + (force[i] + kick.rows[at, i])
+
+
+@scalar
+def seen(
+    n: int, F: tuple[float, float, float], q0: float, q1: float, q2: float, q3: float
+) -> tuple[float, float, float]:
+    """Return R^T F at a compact pose, of a quaternion (3) or in the plane (2)."""
+    x, y, z = F
+    if n == 3:
+        u1, u2, u3 = q2 * z - q3 * y, q3 * x - q1 * z, q1 * y - q2 * x
+        return (
+            x - 2 * (q0 * u1 - (q2 * u3 - q3 * u2)),
+            y - 2 * (q0 * u2 - (q3 * u1 - q1 * u3)),
+            z - 2 * (q0 * u3 - (q1 * u2 - q2 * u1)),
+        )
+    return q0 * x + q1 * y, q0 * y - q1 * x, 0.0
+
+
+@scalar
+def turned(n: int, y1: float, y2: float, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """Return W^T (x, y, z) for the rotation of a displacement: about (-y2, y1, 0), or in the plane by 2 atan y1.
+
+    So the force at the next node does not wait for its pose, whose square root would be the longest way of a step.
+    """
+    if n == 3:
+        square, lean = y1 * y1 + y2 * y2, y1 * x + y2 * y
+        scale = 2 / (1 + square)
+        across = scale * (z + lean)
+        return x - y1 * across, y - y2 * across, z + scale * (lean - square * z)
+    scale = 2 / (1 + y1 * y1) * y1
+    return x + scale * (y - y1 * x), y - scale * (x + y1 * y), z
+
+
+@scalar
+def leaned(L: Any, x: float, y: float, z: float) -> tuple[float, float]:
+    """Return L (x, y, z)."""
+    return L[0] * x + (L[1] * y + L[2] * z), L[3] * x + (L[4] * y + L[5] * z)
+
+
+@njit(**COMPILED)
+def _numbers(kick: Kick):  # noqa: ANN202
+    """Return F, L and A as numbers: arrays would be counted at every step of a loop."""
+    F, L, a, n = np.zeros(3), np.zeros(6), np.zeros(4), len(kick.weight)
+    for j in range(n):
+        F[j], L[j], L[3 + j] = kick.weight[j], kick.arms[0, j], kick.arms[1, j]
+    for j in range(2 * len(kick.keep)):
+        a[j] = kick.keep[j // 2, j % 2]
+    return n, (F[0], F[1], F[2]), (L[0], L[1], L[2], L[3], L[4], L[5]), (a[0], a[1], a[2], a[3])
+
+
+@njit(nogil=True, **COMPILED)
+def _advance_two(p: Body, kick: Kick, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
+    """Advance a top in space or a sleigh in the plane, with numbers in place of arrays."""
+    momenta, charts, poses = rows
+    m1, m2, l1, l2, q0, q1, q2, q3, y1, y2, u1, u2, v1, v2 = _unpack(state)
+    rubs, table, last = len(kick.keep) > 0, kick.rows, len(kick.rows) - 1
+    n, F, L, (a, b, c, d) = _numbers(kick)
+    f1, f2, row, code, done = state[14], state[15], int(state[16]), 0, 0
+    x, y, z = seen(n, F, q0, q1, q2, q3)
+    if row == 0:
+        f1, f2 = leaned(L, x, y, z)
+    while done < steps:
+        r1, r2 = table[min(row, last), 0], table[min(row, last), 1]
+        s1, s2 = (a * m1 + b * m2, c * m1 + d * m2) if rubs else (m1, m2)
+        s1, s2 = s1 + (f1 + r1), s2 + (f2 + r2)
+        code, w1, w2 = _solve(p, s1, s2, 3 * (y1 - u1) + v1, 3 * (y2 - u2) + v2)
+        if code != 0:
+            break
+        v1, v2, u1, u2, y1, y2 = u1, u2, y1, y2, w1, w2
+        done += 1
+        row += 1
+        if done % every == 0:
+            at = done // every - 1
+            momenta[at, 0], momenta[at, 1], charts[at, 0], charts[at, 1] = m1, m2, w1, w2
+            poses[at, 0], poses[at, 1], poses[at, 2], poses[at, 3] = q0, q1, q2, q3
+        d1, d2 = increment(p, s1, s2, w1, w2)
+        settled = SETTLED * max(abs(s1), abs(s2))
+        s1, l1 = _compensated(s1, l1, d1, settled)
+        s2, l2 = _compensated(s2, l2, d2, settled)
+        if n > 0:
+            x, y, z = turned(n, w1, w2, x, y, z)
+            f1, f2 = leaned(L, x, y, z)
+        m1, m2 = (a * s1 + b * s2, c * s1 + d * s2) if rubs else (s1, s2)
+        m1, m2 = m1 + (f1 + r1), m2 + (f2 + r2)
+        q0, q1, q2, q3 = move(p, w1, w2, q0, q1, q2, q3)
+        if n > 0:
+            x, y, z = seen(n, F, q0, q1, q2, q3)
+    assign(state, np.array((m1, m2, l1, l2, q0, q1, q2, q3, y1, y2, u1, u2, v1, v2, f1, f2, float(row))))
+    return done, code
+
+
+@njit(nogil=True, **COMPILED)
+def _advance_many(p: Any, kick: Kick, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
+    """Advance any other body."""
+    momenta, charts, poses = rows
+    k, size = momenta.shape[1], poses.shape[1]
+    m, lost, pose = state[:k].copy(), state[k : 2 * k].copy(), state[2 * k : 2 * k + size].copy()
+    roots = state[2 * k + size : len(state) - 1 - k].copy().reshape(3, -1)
+    s, change, force, root, guess = np.empty(k), np.empty(k), np.empty(k), roots[0].copy(), roots[0].copy()
+    row, code, done, one = int(state[len(state) - 1]), 0, 0, np.zeros(1)
+    one[0] = 1.0
+    pulled(kick, pose, force)
+    while done < steps:
+        kicked(kick, row, m, force, s)
+        w = prepared(p, s, one)  # a certificate may be for momenta of one energy
+        for j in range(len(guess)):
+            guess[j] = 3 * (roots[0, j] - roots[1, j]) + roots[2, j]
+        code = solved(p, w, 0, s, guess, pose, root)
+        if code != 0:
+            break
+        for j in range(len(root)):
+            roots[2, j], roots[1, j], roots[0, j] = roots[1, j], roots[0, j], root[j]
+        done += 1
+        if done % every == 0:
+            at = done // every - 1
+            assign(momenta[at], m)
+            assign(poses[at], pose)
+            charted(p, s, root, charts[at])
+        pushed(p, w, s, root, change, pose)
+        add_compensated(s, lost, change)
+        pulled(kick, pose, force)
+        kicked(kick, row, s, force, m)
+        row += 1
+    for begin, part in ((0, m), (k, lost), (2 * k, pose), (2 * k + size, roots.ravel())):
+        assign(state[begin:], part)
+    state[len(state) - 1] = row
+    return done, code
+
+
+@njit(**COMPILED)
+def add_compensated(s: np.ndarray, lost: np.ndarray, change: np.ndarray) -> None:
+    """Add a change to momenta in place, by Kahan's summation."""
+    settled = 0.0
+    for x in s:
+        settled = max(settled, SETTLED * abs(x))
+    for i in range(len(s)):
+        s[i], lost[i] = _compensated(s[i], lost[i], change[i], settled)
+
+
+def start(forced: ForcedBody, momentum: np.ndarray, pose: np.ndarray, sizes: Any) -> tuple[int, np.ndarray]:
+    """Return the outcome of the first root and the state of a run; `sizes` are those of a row of the body."""
+    rest = np.tile(at_rest(forced.body), 3)
+    state = np.concatenate((momentum, np.zeros_like(momentum), pose, rest, np.zeros(len(momentum) + 1 + sizes[1])))
+    momenta, chart, poses = np.empty((1, len(momentum))), np.empty((1, sizes[1])), np.empty((1, len(pose)))
+    _, code = advance(forced, state, 1, 1, momenta, chart, poses)
+    state[len(state) - sizes[1] :] = chart[0] if code == 0 else np.nan
+    begin, width = 2 * len(momentum) + len(pose), len(rest) // 3
+    state[begin + width : begin + 3 * width] = np.tile(state[begin : begin + width], 2)
+    return code, state
+
+
+def advance(forced: ForcedBody, state: np.ndarray, steps: int, every: int, *rows: np.ndarray) -> tuple[int, int]:
+    """Take up to `steps` steps, saving each `every`-th one; return how many were good and the outcome.
+
+    After a failure the state is that of the last good step.
+    """
+    run = _advance_many if isinstance(forced.body, SecularBody | GeneralBody) else _advance_two
+    return run(*forced, state[: len(state) - rows[1].shape[1]], steps, every, rows)

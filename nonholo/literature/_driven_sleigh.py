@@ -1,0 +1,94 @@
+"""The Chaplygin sleigh that a moving mass drives."""
+
+import functools
+
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo.base.checks import number
+from nonholo.base.types import Array
+from nonholo.lagrange_dalembert import LagrangeDAlembert
+from nonholo.literature._example import Example, numbers, positives
+
+
+def driven_sleigh(
+    *,
+    mass: float = 1.0,
+    inertia: float = 0.5,
+    a: float = 0.3,
+    moving_mass: float = 0.3,
+    ahead: float = -0.3,
+    amplitude: float = 0.5,
+    frequency: float = 1.0,
+    configuration: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    speed: float = 0.5,
+    turning: float = 0.3,
+) -> Example:
+    r"""A sleigh with a point mass that is moved to and fro across the blade: contact (x, y), heading theta, offset s.
+
+    $$ L = \tfrac m2|\dot c|^2 + \tfrac J2\dot\theta^2 + \tfrac\mu2|\dot r|^2, \qquad
+       -\dot x\sin\theta + \dot y\cos\theta = 0, \qquad s = A\sin\Omega t, $$
+
+    with the center of mass c at the body point (a, 0) and the moving mass at r = (d, s). With speed u along the blade
+    and turning rate $\omega$ its momenta $p_u = (m + \mu)u - \mu s\omega$, $p_\omega = (J + ma^2)\omega - \mu su +
+    \mu s^2\omega + \mu d(d\omega + \dot s)$ obey
+
+    $$ \dot p_u = \omega p_w, \qquad \dot p_\omega = -u p_w, \qquad p_w = ma\,\omega + \mu(d\,\omega + \dot s). $$
+
+    Where the moving mass is level with the blade's contact (d = 0) the speed settles; elsewhere it may grow without
+    bound; with the defaults it was seen to grow up to t = 10^4.
+
+    Reference: [bizyaev-borisov-mamaev-2017], where the system and its acceleration are studied.
+
+    Args:
+        mass: m, of the platform.
+        inertia: J, of the platform about its center of mass.
+        a: Of the center of mass of the platform in front of the contact.
+        moving_mass: mu.
+        ahead: d, of the line on which the mass moves in front of the contact.
+        amplitude: A.
+        frequency: Omega.
+        configuration: (x, y, theta) at the start.
+        speed: u at the start.
+        turning: omega at the start.
+
+    Raises:
+        ValueError: A mass, inertia or frequency that is not positive, a wrong shape.
+
+    Example:
+        >>> ready = nh.examples.driven_sleigh()
+        >>> discrete = nh.discretize(ready.system, 0.05)
+        >>> orbit = nh.simulate(
+        ...     discrete, configuration=ready.configuration, body_velocity=ready.body_velocity, steps=2000)
+        >>> speed = np.linalg.norm(orbit.body_velocity[:, :2], axis=1)
+        >>> bool(speed[-200:].mean() > 1.5 * speed[:200].mean())
+        True
+    """
+    name = "driven_sleigh"
+    body = positives(name, mass=mass, inertia=inertia, moving_mass=moving_mass, frequency=frequency)
+    given = {"a": a, "ahead": ahead, "amplitude": amplitude, "speed": speed, "turning": turning}
+    a, d, A, u, omega = (float(number(f"examples.{name}({what}=...)", value)) for what, value in given.items())
+    q = numbers(name, "configuration", configuration, 3, "x, y and theta")
+    v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, A * body[3]])
+    facts = (
+        "The speed grows without bound if the moving mass is on the right side of the contact.",
+        "With the line of the moving mass through the contact the speed settles.",
+    )
+    return Example(name, _system(*body, a, d, A), np.append(q, 0.0), v, facts, {})
+
+
+@functools.cache
+def _system(m: float, J: float, mu: float, Omega: float, a: float, d: float, A: float) -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array) -> Array:
+        cos, sin, omega, s = jnp.cos(q[2]), jnp.sin(q[2]), v[2], q[3]
+        u, w = cos * v[0] + sin * v[1], cos * v[1] - sin * v[0]
+        platform = m * (u**2 + (w + a * omega) ** 2) + J * omega**2
+        return (platform + mu * ((u - s * omega) ** 2 + (w + d * omega + v[3]) ** 2)) / 2
+
+    def blade(q: Array) -> Array:
+        return jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]), 0.0, 0.0]])
+
+    names, prescribed = ("x", "y", "theta", "s"), {3: lambda time: A * jnp.sin(Omega * time)}
+    return LagrangeDAlembert(
+        lagrangian, blade, dimension=4, prescribed=prescribed, coordinates=names, name="Driven sleigh"
+    )

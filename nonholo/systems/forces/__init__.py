@@ -1,0 +1,5 @@
+"""Forces and potentials: what acts on a system beside its constraint, and the system with it."""
+
+from nonholo.systems.forces._forced import Forced
+from nonholo.systems.forces._friction import Friction
+from nonholo.systems.forces._gravity import Gravity

@@ -1,0 +1,259 @@
+r"""A system with a potential and a force: again a system, with kinetic energy and constraint of the one inside.
+
+Questions about free motions (equilibria, conserved momenta, closed forms) are refused; what serves forces says so.
+"""
+
+import dataclasses
+import operator
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import numpy as np
+import scipy.linalg
+
+from nonholo.base.checks import array, as_floats, error, shape_of, shown, trailing
+from nonholo.base.types import Array, Float
+from nonholo.systems._base import AbstractSystem
+from nonholo.systems._coordinate_system import AbstractCoordinateSystem
+from nonholo.systems.forces._friction import Friction
+from nonholo.systems.forces._gravity import Gravity
+from nonholo.systems.forces._midpoint import midpoint_impulse
+
+_OFFSET = 8e-3  # of a body direction, for central differences: its sixth power is at rounding
+_DIFFERENCES = np.array([45.0, -9.0, 1.0]) / 60  # of order 6, at one, two and three offsets
+
+_SAME = """
+    group is_spatial has_blade homogeneous_mass_tensor inertia_operator inertia_along constraint_subspace annihilator
+    rank canonical frame frame_map frame_pose to_canonical from_canonical carried moved restrict_at restricted_velocity
+    restricted_momentum constrained_energy
+"""
+"""What is that of the system inside."""
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Forced(AbstractSystem):
+    r"""A system under a potential U and a force f, a body covector; both act along the constraint alone.
+
+    $$ \dot p = \mathrm{ad}^*_\omega p - dU + f(t, g, \omega) + \sum_j\lambda_ja^j, \qquad \omega\in\mathfrak{d}. $$
+
+    `discretize` gives the forced discrete map: half the impulse of a step at each of its ends, and the free map
+    between them (docs/theory/forces.md). It is of order 2, symmetric in time, explicit where f does not depend on the
+    velocity, and keeps group and constraint as the free map does. Momenta and energies of its orbits are those at the
+    nodes. Nothing is conserved exactly. Under a potential alone the error of T + U is of order 2; it stays bounded for
+    a body without constraint, whose map is symplectic, and on orbits that are their own time reversal; on others it may
+    grow in proportion to time, at a rate of order 2. Under friction alone T never grows. In general $E_k - E_0$ is the
+    work of f (`Orbit.work`) up to an error of order 2.
+
+    Args:
+        system: A system on a group, `LLSystem` or `LRSystem` or one of their kinds; or a `LagrangeDAlembert`, which is
+            returned with U(q) and f(time, q, v), of q.size components.
+        potential: U, a function from a configuration (N, N) to a number, or `Gravity`. The derivative of a function is
+            taken by central differences of order 6 along the body directions; their error is about 1e-13 of what U
+            changes by over one radian or one unit of length.
+        force: f, a function (time, configuration, body_velocity) -> (dim,); or `Friction`; or an array (steps, dim),
+            whose row k acts constantly over step k: for maps only. Time is that of the orbit, from zero.
+
+    Raises:
+        ValueError: A system that is forced already or that has no matrices; a potential or force
+            of another kind or shape.
+
+    Example:
+        A heavy top that is not let spin about its own axis:
+
+        >>> top = nh.SuslovTop(np.diag([1.0, 1.2, 0.6]))
+        >>> heavy = nh.Forced(top, nh.Gravity(force=[0.0, 0.0, -9.81], point=[0.0, 0.0, 0.3]))
+        >>> orbit = nh.simulate(nh.discretize(heavy, 0.01), body_velocity=(0.2, 0.1, 0.0), steps=1000)
+        >>> float(np.ptp(orbit.energy) / abs(orbit.energy[0])) < 1e-3
+        True
+    """
+
+    system: AbstractSystem
+    potential: Any = None
+    force: Any = None
+    leaves: ClassVar[tuple[str, ...]] = ()
+    structure: ClassVar[tuple[str, ...]] = ("system", "potential", "force")
+    normal_form: ClassVar[None] = None
+    is_forced: ClassVar[bool] = True
+    locals().update((name, property(operator.attrgetter(f"system.{name}"))) for name in _SAME.split())
+
+    def __new__(cls, system: Any = None, potential: Any = None, force: Any = None) -> Any:
+        """Return the system with forces; one in coordinates has its own way to take them."""
+        return system.forced(potential, force) if isinstance(system, AbstractCoordinateSystem) else super().__new__(cls)
+
+    def __post_init__(self) -> None:
+        inside = self.system
+        if not isinstance(inside, AbstractSystem) or isinstance(inside, Forced) or inside.is_wide:
+            remedy = "Pass a SuslovTop, a sleigh or an LLSystem, with all forces at once."
+            raise error("Forced(system=...)", "be a system on a group, with matrices", shown(inside), remedy)
+        if self.gravity is not None:
+            self.gravity.check(inside.group)
+        elif self.potential is not None and not callable(self.potential):
+            remedy = "Pass a function of a configuration, or Gravity."
+            raise error("Forced(potential=...)", "be a potential", shown(self.potential), remedy)
+        if self.friction is not None:
+            self.friction.check(inside.group.dim)
+        elif self.table is not None:
+            remedy = "Pass a function of time, configuration and body velocity, Friction, or one body covector a step."
+            shape = (None, inside.group.dim)
+            object.__setattr__(self, "force", array("Forced(force=...)", self.force, shape, remedy))
+
+    @property
+    def gravity(self) -> Gravity | None:
+        """The potential, where it is that of a constant force."""
+        return self.potential if isinstance(self.potential, Gravity) else None
+
+    @property
+    def friction(self) -> Friction | None:
+        """The force, where it is viscous friction."""
+        return self.force if isinstance(self.force, Friction) else None
+
+    @property
+    def table(self) -> Array | None:
+        """The forces of the steps, (steps, dim), where they are given one by one."""
+        return None if callable(self.force) or self.friction is not None else self.force
+
+    @property
+    def forces(self) -> "Forced | None":
+        """The system itself; None with neither a potential nor a force."""
+        return None if self.potential is None and self.force is None else self
+
+    @property
+    def needs_function(self) -> bool:
+        """Whether a Python function has to be called, which no kernel does and no store holds."""
+        return callable(self.potential) or callable(self.force)
+
+    def potential_energy(self, configuration: Float[Array, "... N N"]) -> Float[Array, "..."]:
+        """Return U at configurations; zero without a potential.
+
+        Example:
+            >>> heavy = nh.Gravity(force=[0.0, -2.0], point=[0.5, 0.0])
+            >>> forced = nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.5), heavy)
+            >>> float(forced.potential_energy(nh.SE(2).exp([0.0, 0.0, 3.0])))
+            6.0
+        """
+        g = self._at(configuration)
+        if self.gravity is not None:
+            return self.gravity.energy(self.group, g)
+        if self.potential is None:
+            return np.zeros(g.shape[:-2])
+        return _each(self._value, g)
+
+    def potential_force(self, configuration: Float[Array, "... N N"]) -> Float[np.ndarray, "... dim"]:
+        """Return -dU, body covectors at configurations: exact of `Gravity`, by differences of a function."""
+        g = self._at(configuration)
+        if self.gravity is not None:
+            return self.gravity.covector(self.group, g)
+        if self.potential is None:
+            return np.zeros((*g.shape[:-2], self.group.dim))
+        return _each(self._slope, g)
+
+    def applied_force(self, time: float, configuration: np.ndarray, body_velocity: np.ndarray) -> np.ndarray:
+        """Return f, one body covector, of `Friction` or of a function; zero of a table, which belongs to steps."""
+        if self.friction is not None:
+            return self.friction.covector(body_velocity)
+        if not callable(self.force):
+            return np.zeros(self.group.dim)
+        found = as_floats(self.force(float(time), configuration, body_velocity))
+        if found.shape != (self.group.dim,) or found.dtype.kind != "f":
+            got = f"{found.dtype} numbers of shape {found.shape}"
+            raise error("Forced(force=...)", f"return {self.group.dim} real numbers", got, "Return a body covector.")
+        return found
+
+    def rows(self, steps: np.ndarray) -> Float[np.ndarray, "K dim"]:
+        """Return the rows of the table for numbers of steps from -1; zero before it, after its end, and without one."""
+        table = np.zeros((0, self.group.dim)) if self.table is None else self.table
+        return np.vstack([table, np.zeros(self.group.dim)])[np.minimum(steps, len(table))]
+
+    def directions(self, g: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "... dim k"]:
+        r"""Return E, whose columns are admissible body velocities: $S^T$, on LR systems $\mathrm{Ad}_{g^{-1}}S^T$."""
+        S = np.asarray(self.constraint_subspace)
+        return self.group.adjoint(self.group.inverse(g)) @ S.T if self.is_spatial else S.T
+
+    def propagator(self, E: Float[np.ndarray, "... dim k"], tau: float) -> Float[np.ndarray, "3 ... k k"]:
+        r"""Return A, V and W of $\dot r = a - Dr$, friction over a time: $r' = Ar + Va$ and $\int r\,dt = Vr + Wa$."""
+        k, along = E.shape[-1], np.swapaxes(E, -1, -2)
+        C = np.zeros((self.group.dim,) * 2) if self.friction is None else self.friction.matrix
+        D = along @ C @ E @ np.linalg.inv(along @ np.asarray(self.inertia_operator) @ E)
+        block = np.zeros((*D.shape[:-2], 3 * k, 3 * k))
+        block[..., :k, :k] = -tau * D
+        block[..., :k, k : 2 * k] = block[..., k : 2 * k, 2 * k :] = tau * np.eye(k)
+        found = scipy.linalg.expm(block)
+        return np.stack([found[..., :k, j * k : (j + 1) * k] for j in range(3)])
+
+    def impulses(
+        self,
+        r: Float[np.ndarray, "K k"],
+        g: Float[np.ndarray, "K N N"],
+        time: Float[np.ndarray, "K"],
+        steps: np.ndarray,
+        tau: float,
+    ) -> Float[np.ndarray, "K dim"]:
+        r"""Return the impulses j of kicks over a time $\tau$, body covectors; a kick takes r to $r + E^Tj$.
+
+        $$ j = \tau\,(-dU + f_k) - C\,E B^{-1}\!\int_0^\tau\! r\,dt \qquad\text{or}\qquad
+           j = \tau\,\bigl(-dU + f(t, g, E B^{-1}(r + r')/2)\bigr), \quad B = E^T\mathbb{I}E: $$
+
+        exact for friction, by the midpoint rule for a function. A kick over $-\tau$ takes back the kick over $\tau$.
+
+        Args:
+            r: Momenta before the kicks, along the rows of the constraint subspace; after them for a negative time.
+            g: Poses.
+            time: Times of the nodes.
+            steps: Numbers of the steps, whose row of a table acts.
+            tau: Half a time step, or its negative.
+        """
+        constant = self.potential_force(g) + self.rows(steps)
+        if not callable(self.force) and self.friction is None:
+            return tau * constant
+        E = self.directions(g)
+        along = np.swapaxes(E, -1, -2)
+        to_velocity = E @ np.linalg.inv(along @ np.asarray(self.inertia_operator) @ E)
+        if self.friction is not None:
+            _, push, gather = self.propagator(E, tau)
+            integral = push @ r[..., None] + gather @ (along @ constant[..., None])
+            return tau * constant + self.friction.covector((to_velocity @ integral)[..., 0])
+        found = np.empty((len(r), self.group.dim))
+        E, to_velocity = (np.broadcast_to(x, (len(r), *x.shape[-2:])) for x in (E, to_velocity))
+        for k in range(len(r)):
+
+            def force(velocity: np.ndarray, k: int = k) -> np.ndarray:
+                return tau * (constant[k] + self.applied_force(time[k], g[k], velocity))
+
+            found[k] = midpoint_impulse(force, r[k], E[k], to_velocity[k])
+        return found
+
+    def work(self, time: np.ndarray, g: np.ndarray, velocity: np.ndarray, every: int) -> Float[np.ndarray, "K"]:
+        """Return the work of the force along states since the first, by the trapezoidal rule."""
+        if self.table is not None:
+            if every > 1:
+                got = f"save_every {every} with a force for each step"
+                raise error("Orbit.work", "know every step", got, "Run with save_every=1.")
+            acting = self.rows(np.rint(time[:-1] / np.diff(time)).astype(int))
+            power = ((velocity[:-1] + velocity[1:]) * acting).sum(axis=1) / 2
+        else:
+            now = np.array([self.applied_force(*row) @ row[2] for row in zip(time, g, velocity, strict=True)])
+            power = (now[:-1] + now[1:]) / 2
+        return np.concatenate([np.zeros(min(1, len(time))), np.cumsum(np.diff(time) * power)])
+
+    def _at(self, configuration: Float[Array, "... N N"]) -> Float[np.ndarray, "... N N"]:
+        where, shape = "Forced (configuration=...)", (self.group.size, self.group.size)
+        return trailing(where, configuration, shape, "Pass the matrix of a pose.", real=True)
+
+    def _value(self, g: np.ndarray) -> np.float64:
+        found = self.potential(g)  # type: ignore[misc]
+        if shape_of(found) != () or as_floats(found).dtype.kind != "f":
+            raise error("Forced(potential=...)", "return one real number", shown(found), "Return U of a configuration.")
+        return np.float64(found)
+
+    def _slope(self, g: np.ndarray) -> np.ndarray:
+        moves, total = _OFFSET * np.eye(self.group.dim), np.zeros(self.group.dim)
+        for count, weight in enumerate(_DIFFERENCES, start=1):
+            there, back = self.group.exp(count * moves), self.group.exp(-count * moves)
+            total -= weight * (_each(self._value, g @ there) - _each(self._value, g @ back))
+        return total / _OFFSET
+
+
+def _each(function: Callable[[np.ndarray], Any], g: np.ndarray) -> np.ndarray:
+    """Return the values of a function of one matrix at all of them."""
+    found = np.array([function(each) for each in g.reshape(-1, *g.shape[-2:])])
+    return found.reshape(*g.shape[:-2], *found.shape[1:])

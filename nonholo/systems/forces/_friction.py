@@ -1,0 +1,59 @@
+"""Viscous friction: a force against the body velocity, linear in it."""
+
+import dataclasses
+
+import numpy as np
+
+from nonholo.base.checks import array, error, shape_of
+from nonholo.base.types import Array, Float
+
+_ROUNDING = 1e-13  # relative, of an eigenvalue
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Friction:
+    r"""The force $-C\omega$ against a body velocity, with $\omega\cdot C\omega \ge 0$: it never adds energy.
+
+    Its half kicks are the exact exponentials of the linear equation $\dot r = -D r$ along the constraint, so that the
+    kinetic energy falls at any step size. The antisymmetric part of C, if there is one, does no work.
+
+    Args:
+        coefficients: C, a matrix (dim, dim), or its diagonal (dim,).
+
+    Raises:
+        ValueError: A wrong shape, a value that is not finite, a symmetric part with a negative eigenvalue.
+
+    Example:
+        >>> nh.Friction([0.1, 0.3, 0.2]).covector(np.array([1.0, 2.0, 3.0]))
+        array([-0.1, -0.6, -0.6])
+    """
+
+    coefficients: Array
+
+    def __post_init__(self) -> None:
+        where, shape = "Friction(coefficients=...)", shape_of(self.coefficients)
+        wanted = (None,) if len(shape) != 2 else (shape[0], shape[0])
+        value = array(where, self.coefficients, wanted, "Pass (dim,) coefficients, or a (dim, dim) matrix.")
+        if not value.size:
+            raise error(where, "have a coefficient for each direction", "none", "Pass (dim,) coefficients.")
+        object.__setattr__(self, "coefficients", value)
+        least = np.linalg.eigvalsh((self.matrix + self.matrix.T) / 2).min()
+        if least < -_ROUNDING * np.abs(value).max():
+            got = f"a symmetric part with eigenvalue {least:.6g}"
+            raise error(where, "never add energy", got, "Pass a function for a force that drives.")
+
+    @property
+    def matrix(self) -> Float[np.ndarray, "dim dim"]:
+        """C as a matrix."""
+        return np.diag(self.coefficients) if self.coefficients.ndim == 1 else np.asarray(self.coefficients)
+
+    def check(self, dim: int) -> None:
+        """Refuse a group of another dimension."""
+        if len(self.coefficients) != dim:
+            got = f"shape {self.coefficients.shape}"
+            remedy = f"Pass ({dim},) coefficients, or a matrix of this size."
+            raise error("Forced(force=Friction(...))", f"have a coefficient for each of {dim} directions", got, remedy)
+
+    def covector(self, body_velocity: Float[np.ndarray, "... dim"]) -> Float[np.ndarray, "... dim"]:
+        """Return the force at body velocities."""
+        return -body_velocity @ self.matrix.T

@@ -1,0 +1,74 @@
+r"""A constant force in space that acts at a point of the body, such as the weight at the center of mass."""
+
+import dataclasses
+
+import numpy as np
+
+from nonholo.base.checks import array, error
+from nonholo.base.types import Array, Float
+from nonholo.groups import AbstractMatrixGroup
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Gravity:
+    r"""The potential of a constant spatial force F at the body point x, $U(g) = -F\cdot(g\,x)$.
+
+    Its body covector is exact, $\langle -dU, \xi\rangle = (R^TF)\cdot(\hat\xi\,x)$, R the rotation of g: zero along
+    translations across F, the moment $x \times R^TF$ on SO(3). On SO(n) the body turns about the origin of body
+    coordinates, on SE(n) that is the reference point; on any other group matrices act on vectors of their size.
+
+    Args:
+        force: F, n numbers: m times the acceleration of gravity for a weight.
+        point: x, n body coordinates.
+
+    Raises:
+        ValueError: Two shapes that differ, a value that is not finite.
+
+    Example:
+        >>> heavy = nh.Gravity(force=[0.0, 0.0, -2.0], point=[0.0, 0.0, 0.5])
+        >>> float(heavy.energy(nh.SO(3), np.eye(3))), heavy.covector(nh.SO(3), nh.SO(3).exp([0.1, 0.2, 0.0])).round(3)
+        (1.0, array([0.099, 0.198, 0.   ]))
+    """
+
+    force: Array
+    point: Array
+
+    def __post_init__(self) -> None:
+        point = array("Gravity(point=...)", self.point, (None,), "Pass the n body coordinates of a point.")
+        force = array("Gravity(force=...)", self.force, point.shape, "Pass as many numbers as the point has.")
+        object.__setattr__(self, "force", force)
+        object.__setattr__(self, "point", point)
+
+    def check(self, group: AbstractMatrixGroup) -> None:
+        """Refuse a group whose matrices move points of another dimension."""
+        n = group.size - is_affine(group)
+        if self.point.shape != (n,):
+            remedy = f"Pass force and point with {n} numbers each, or a function of the configuration."
+            raise error(
+                "Forced(potential=Gravity(...))", f"have points of {group}", f"{len(self.point)} numbers", remedy
+            )
+
+    def energy(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "..."]:
+        """Return U at configurations."""
+        weight, place = self._homogeneous(group)
+        return -(configuration @ place) @ weight
+
+    def covector(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+        """Return -dU along the body directions at configurations."""
+        force, levers = self.levers(group)
+        return (force @ configuration) @ levers.T
+
+    def levers(self, group: AbstractMatrixGroup) -> tuple[Float[np.ndarray, "N"], Float[np.ndarray, "dim N"]]:
+        """Return F and L for matrices of the group, homogeneous on SE(n): -dU is L g^T F."""
+        weight, place = self._homogeneous(group)
+        return weight, group.basis @ place
+
+    def _homogeneous(self, group: AbstractMatrixGroup) -> tuple[np.ndarray, np.ndarray]:
+        if not is_affine(group):
+            return np.asarray(self.force), np.asarray(self.point)
+        return np.append(self.force, 0.0), np.append(self.point, 1.0)
+
+
+def is_affine(group: AbstractMatrixGroup) -> bool:
+    """Tell whether matrices move points of one dimension less, with homogeneous coordinates: SE(n)."""
+    return group.is_rigid and not np.any(group.basis[:, -1])

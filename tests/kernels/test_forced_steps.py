@@ -1,0 +1,111 @@
+"""Compiled runs under forces: the bits of the same steps in plain Python, whole and in pieces."""
+
+import numpy as np
+import pytest
+from bodies import GENERAL
+
+import nonholo as nh
+from nonholo import kernels
+from nonholo.kernels._driver import _solve
+from nonholo.kernels._forced import _numbers, add_compensated, kicked, leaned, pulled, seen, turned
+from nonholo.kernels._substeps import at_rest, charted, prepared, pushed, solved
+from nonholo.systems import AbstractSystem
+
+BODIES: dict[str, tuple[AbstractSystem, list[float]]] = {
+    "top": (nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), [0.5, -0.3]),
+    "sleigh": (nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3), [0.5, -0.3]),
+    "suslov 4": (GENERAL["suslov 4"][0], [0.3, -0.2, 0.4]),
+}
+STEPS = 24
+
+
+def _forced(system: AbstractSystem, kind: str) -> nh.Forced:
+    rng = np.random.default_rng(4)
+    n = system.group.size - bool(np.all(system.group.basis[:, -1] == 0))
+    heavy, rub = nh.Gravity(rng.normal(size=n), rng.normal(size=n)), nh.Friction(rng.uniform(0, 1, system.group.dim))
+    table = rng.normal(size=(STEPS - 3, system.group.dim))
+    return nh.Forced(system, heavy, {"weight": None, "friction": rub, "table": table}[kind])
+
+
+def _kicked(kick: kernels.Kick, row: int, m: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """Return momenta after half an impulse, from the numbers of the kick, in plain Python."""
+    if len(m) > 2:
+        out = np.empty_like(m)
+        kicked.py_func(kick, row, m, force, out)
+        return out
+    kept = [row[0] * m[0] + row[1] * m[1] for row in kick.keep] if len(kick.keep) else m
+    rows = kick.rows[min(row, len(kick.rows) - 1)]
+    return np.array([total + (f + r) for total, f, r in zip(kept, force, rows, strict=True)])
+
+
+def _run(forced: kernels.ForcedBody, m: np.ndarray, pose: np.ndarray, steps: int) -> list[tuple[np.ndarray, ...]]:
+    """Run the steps one by one with the pieces of a body; return momenta, chart and pose of each node."""
+    body, kick = forced
+    lost, pose, found, force = np.zeros_like(m), pose.copy(), [], np.empty_like(m)
+    y = u = v = at_rest(body)
+    n, F, L, _ = _numbers.py_func(kick) if len(m) == 2 else (0, 0, 0, 0)
+    for k in range(steps + 1):
+        if len(m) > 2:
+            pulled.py_func(kick, pose, force)
+        elif k == 0:
+            force[:] = leaned(L, *seen(n, F, *pose))
+        s, w = _kicked(kick, k, m, force), None
+        root, chart, change = y.copy(), np.empty_like(m), np.empty_like(m)
+        if len(m) == 2:
+            code, *root[:] = _solve(body, *s, *(3 * (y - u) + v))  # type: ignore[misc]
+            chart[:] = root
+        else:
+            w = prepared(body, s, np.ones(1))
+            code, chart = solved(body, w, 0, s, 3 * (y - u) + v, pose, root), np.empty(kernels.sizes(body)[1])
+            charted(body, s, root, chart)
+        assert code == 0
+        v, u, y = (u, y, root) if k else (root, root, root)
+        found.append((m, chart, pose.copy()))
+        if len(m) == 2:
+            force[:] = leaned(L, *turned(n, *root, *seen(n, F, *pose)))
+            change[:], pose[:] = kernels.increment(body, *s, *root), kernels.move(body, *root, *pose)
+        else:
+            pushed(body, w, s, root, change, pose)
+            pulled.py_func(kick, pose, force)
+        add_compensated(s, lost, change)
+        m = _kicked(kick, k, s, force)
+    return found
+
+
+def test_weights_seen_from_the_body_are_those_of_matrices() -> None:
+    """Of quaternions and headings of every size of turn the weight is R^T F, and after a displacement W^T R^T F."""
+    rng, F = np.random.default_rng(9), (0.3, -0.7, 1.1)
+    for y in [*rng.normal(size=(20, 2)), *(10.0 ** rng.uniform(-200, 4, (9, 2))), np.zeros(2), np.array([1.0, 0.0])]:
+        for group, n in ((nh.SO(3), 3), (nh.SE(2), 2)):
+            pose = np.pad(group.pose_from_matrix(group.random(rng)), (0, 4 - group.pose_size))
+            body = nh.discretize(BODIES["top" if n == 3 else "sleigh"][0], 0.1).route.compiled.body  # type: ignore[union-attr]
+            here = seen(n, F, *pose)
+            R, after = (
+                group.matrix_from_pose(q[: group.pose_size])[:n, :n]
+                for q in (pose, np.array(kernels.move(body, *y, *pose)))
+            )
+            assert np.abs(here[:n] - R.T @ F[:n]).max() < 1e-15
+            assert np.abs(turned(n, *y, *here)[:n] - after.T @ F[:n]).max() < 2e-15
+
+
+@pytest.mark.parametrize("kind", ["weight", "friction", "table"])
+@pytest.mark.parametrize("name", BODIES)
+def test_the_loop_has_the_bits_of_plain_python(name: str, kind: str) -> None:
+    """The compiled loop, at once and in pieces, gives the bits of a Python loop over the same half impulses."""
+    system, velocity = BODIES[name]
+    route = nh.discretize(_forced(system, kind), 0.05).route.compiled
+    assert route is not None
+    m = route.encode(np.asarray(system.to_canonical(system.restricted_momentum(velocity))))
+    pose = route.encode_poses(np.asarray(system.frame_pose))
+    wanted = [np.array(column) for column in zip(*_run(route.body, m, pose, STEPS), strict=True)]
+    for pieces in ((STEPS,), (1, 7, STEPS - 8)):
+        code, state = kernels.start(route.body, m, pose)
+        assert code == 0
+        assert np.array_equal(kernels.chart_of(route.body, state), wanted[1][0])
+        found, done = tuple(np.empty((STEPS, width)) for width in route.sizes), 0
+        for piece in pieces:
+            room = (found[0][done:], found[1][done:], found[2][done:])
+            assert kernels.advance(route.body, state, piece, 1, room) == (piece, 0)
+            done += piece
+        for mine, theirs in zip(found, wanted, strict=True):
+            assert np.array_equal(mine, theirs[1:])

@@ -1,0 +1,195 @@
+"""Driven systems: equations written by hand, order, prescribed motions, forces and tables, and what is refused."""
+
+from collections.abc import Callable
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import nonholo as nh
+from nonholo.lagrange_dalembert import LagrangeDAlembert
+from nonholo.literature import Example
+
+TIMES = np.linspace(0.0, 6.0, 13)
+
+
+def _start(ready: Example) -> dict:
+    return {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
+
+
+def _solved(rate: Callable, first: list[float]) -> np.ndarray:
+    return solve_ivp(rate, (0.0, TIMES[-1]), first, t_eval=TIMES, method="DOP853", rtol=1e-13, atol=1e-14).y
+
+
+def _sleigh_by_hand(time: float, z: np.ndarray) -> list[float]:
+    """The momentum equations of the driven sleigh with its default parameters, and (x, y, theta)."""
+    m, J, a, mu, d, A, Om = 1.0, 0.5, 0.3, 0.3, -0.3, 0.5, 1.0
+    u, w, theta = z[0], z[1], z[4]
+    s, ds, dds = A * np.sin(Om * time), A * Om * np.cos(Om * time), -A * Om**2 * np.sin(Om * time)
+    sideways = m * a * w + mu * (d * w + ds)
+    matrix = np.array([[m + mu, -mu * s], [-mu * s, J + m * a**2 + mu * s**2 + mu * d**2]])
+    changes = np.array([[0.0, -mu * ds], [-mu * ds, 2 * mu * s * ds]]) @ [u, w] + [0.0, mu * d * dds]
+    return [*np.linalg.solve(matrix, np.array([w, -u]) * sideways - changes), u * np.cos(theta), u * np.sin(theta), w]
+
+
+def _racer_by_hand(time: float, z: np.ndarray) -> list[float]:
+    """The momentum along the constraint of the roller racer with its default parameters, and (x, y, theta)."""
+    m, seat, J, c, ell, k, A, Om = 1.0, 0.2, 0.02, 0.2, 1.0, 0.3, 0.5, 2.0
+    u, theta = z[0], z[3]
+    phi, dphi, ddphi = A * np.sin(Om * time), A * Om * np.cos(Om * time), -A * Om**2 * np.sin(Om * time)
+    below = ell * np.cos(phi) + k
+    sigma, dsigma = np.sin(phi) / below, dphi * (np.cos(phi) * below + ell * np.sin(phi) ** 2) / below**2
+    turn, dturn = k * dphi / below, k * ddphi / below + k * dphi**2 * ell * np.sin(phi) / below**2
+    w = sigma * u - turn  # dw = sigma du + dsigma u - dturn
+    about = seat + m * c**2 + J
+    rest = sigma * (about * (dsigma * u - dturn) + J * ddphi)
+    du = ((w - sigma * u) * m * c * w - rest) / (m + about * sigma**2)
+    return [du, u * np.cos(theta), u * np.sin(theta), w]
+
+
+def _ball_by_hand(_time: float, z: np.ndarray) -> np.ndarray:
+    """Momentum about the contact and the vertical, seen from the ball; and the path of the middle with its rotation."""
+    M, R = z[:3], z[3:12].reshape(3, 3)
+    gamma, inertia = R[2], np.diag([0.3, 0.4, 0.5])
+    omega = np.linalg.solve(inertia + np.eye(3) - np.outer(gamma, gamma), M)
+    return np.concatenate([np.cross(M, omega), (R @ nh.SO(3).hat(omega)).ravel(), R @ np.cross(omega, gamma)])
+
+
+@pytest.mark.profile("routes", instead="the roller racer")
+def test_the_driven_sleigh_moves_as_derived_by_hand() -> None:
+    """Path and heading of the flow, to 1e-10."""
+    ready = nh.examples.driven_sleigh()
+    by_hand = _solved(_sleigh_by_hand, [0.5, 0.3, 0.0, 0.0, 0.0])
+    found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
+    assert np.abs(found.configuration[:, :3] - by_hand[2:].T).max() <= 1e-10
+
+
+def test_the_roller_racer_moves_as_derived_by_hand() -> None:
+    """Path and heading of the flow, to 1e-10; it moves on."""
+    ready = nh.examples.roller_racer()
+    by_hand = _solved(_racer_by_hand, [0.0, 0.0, 0.0, 0.0])
+    found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
+    assert np.abs(found.configuration[:, :3] - by_hand[1:].T).max() <= 1e-10
+
+
+@pytest.mark.profile("routes", instead="the roller racer")
+def test_the_ball_moves_as_derived_by_hand() -> None:
+    """Path and rotation of the flow, to 1e-10, momentum in space and energy constant."""
+    ready = nh.examples.chaplygin_ball()
+    first = ready.conserved
+    start = [first[f"momentum along {axis}"](ready.configuration, ready.body_velocity) for axis in "xyz"]
+    by_hand = _solved(_ball_by_hand, [*start, *np.eye(3).ravel(), 0.0, 0.0, 0.0])
+    found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
+    assert np.abs(found.configuration[:, :3, :3].reshape(-1, 9) - by_hand[3:12].T).max() <= 1e-10
+    assert np.abs(found.configuration[:, :3, 3] - by_hand[12:].T).max() <= 1e-10
+    assert np.ptp(found.energy) <= 1e-11
+    kept = [values(found.configuration, found.body_velocity) for values in first.values()]
+    assert np.ptp(kept, axis=1).max() <= 1e-11
+
+
+@pytest.mark.profile("routes", keep=["roller_racer"])
+@pytest.mark.parametrize("name", ["driven_sleigh", "roller_racer", "chaplygin_ball"])
+def test_the_maps_have_order_two(name: str) -> None:
+    """Configurations at the end; the constraint, and what is prescribed, to rounding."""
+    ready = getattr(nh.examples, name)()
+    exact = nh.flow(ready.system, **_start(ready), times=(0.0, 2.0), rtol=1e-13, atol=1e-14).configuration[-1]
+    errors = []
+    for steps in (100, 200):
+        orbit = nh.simulate(nh.discretize(ready.system, 2.0 / steps), **_start(ready), steps=steps)
+        errors.append(np.abs(orbit.configuration[-1] - exact).max())
+        assert orbit.constraint_residual.max() <= 1e-13
+    assert abs(np.log2(errors[0] / errors[1]) - 2.0) <= 0.1
+    if name == "driven_sleigh":
+        assert np.abs(orbit.configuration[:, 3] - 0.5 * np.sin(orbit.time)).max() <= 1e-14
+
+
+def _blade(q):  # noqa: ANN001, ANN202
+    return jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]), 0.0]])
+
+
+def _skate(**more) -> LagrangeDAlembert:  # noqa: ANN003
+    return LagrangeDAlembert(lambda _q, v: (v[0] ** 2 + v[1] ** 2 + 0.3 * v[2] ** 2) / 2, _blade, dimension=3, **more)
+
+
+DRIVEN = {
+    "force": _skate(force=lambda t, q, v: jnp.array([jnp.cos(t), 0.3 * q[0], 0.5]) - 0.2 * v * jnp.sqrt(v @ v + 1)),
+    "moving belt": LagrangeDAlembert(
+        lambda _q, v: v @ v / 2,
+        lambda q, t: jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]) * (1 + 0.2 * jnp.sin(t)), 0.0]]),
+        dimension=3,
+        constraint_velocities=lambda q, t: jnp.array([0.3 * q[1] * jnp.cos(t)]),
+    ),
+    "growing mass, prescribed heading": LagrangeDAlembert(
+        lambda q, v, t: (1 + 0.5 * jnp.sin(t)) * (v @ v) / 2 - q[0] ** 2 / 2 + 0.2 * v[0] * v[2],
+        _blade,
+        dimension=3,
+        prescribed={2: lambda t: 0.4 * jnp.sin(2 * t)},
+        rule="trapezoidal",
+    ),
+}
+TURNING = {"growing mass, prescribed heading": 0.8}
+
+
+@pytest.mark.profile("routes", keep=["growing mass, prescribed heading"])
+@pytest.mark.parametrize("name", DRIVEN)
+def test_order_two_of_configuration_and_energy(name: str) -> None:
+    """Against the flow, whose energies are those of its velocities."""
+    system = DRIVEN[name]
+    start = {"configuration": (0.0, 0.0, 0.0), "body_velocity": (1.0, 0.0, TURNING.get(name, 0.5))}
+    exact = nh.flow(system, **start, times=(0.0, 1.0), rtol=1e-13, atol=1e-14)
+    errors = []
+    for steps in (50, 100):
+        orbit = nh.simulate(nh.discretize(system, 1.0 / steps), **start, steps=steps)
+        errors.append(
+            [np.abs(orbit.configuration[-1] - exact.configuration[-1]).max(), orbit.energy[-1] - exact.energy[-1]]
+        )
+        assert orbit.constraint_residual.max() <= 1e-14
+    assert np.abs(np.log2(np.abs(np.divide(*errors))) - 2.0).max() <= 0.1
+
+
+@pytest.mark.profile("routes", instead="forces that are functions")
+def test_a_table_acts_row_by_row() -> None:
+    """A constant table is a constant force; after its last row nothing acts."""
+    push = np.array([0.2, -0.1, 0.3])
+    start = {"configuration": (0.0, 0.0, 0.0), "body_velocity": (1.0, 0.0, 0.0), "steps": 60}
+    constant = nh.simulate(nh.discretize(_skate(force=lambda _t, _q, _v: jnp.asarray(push)), 0.1), **start)
+    table = nh.simulate(nh.discretize(_skate(force=np.tile(push, (40, 1))), 0.1), **start)
+    assert np.abs(table.configuration[:41] - constant.configuration[:41]).max() <= 1e-13
+    assert np.ptp(table.energy[40:]) <= 1e-13 < np.ptp(table.energy[:40])
+
+
+def test_forced_in_coordinates() -> None:
+    """A potential and friction as in the Lagrangian and by hand; neither gives the system itself; not twice."""
+    start = {"configuration": (0.5, 0.0, 0.0), "body_velocity": (1.0, 0.0, 0.3), "steps": 20}
+    forced = nh.Forced(_skate(), lambda q: 2.0 * q[0] ** 2, nh.Friction([0.2, 0.2, 0.1]))
+    by_hand = LagrangeDAlembert(
+        lambda q, v: (v[0] ** 2 + v[1] ** 2 + 0.3 * v[2] ** 2) / 2 - 2.0 * q[0] ** 2,
+        _blade,
+        dimension=3,
+        force=lambda _t, _q, v: -jnp.array([0.2, 0.2, 0.1]) * v,
+    )
+    orbits = [nh.simulate(nh.discretize(system, 0.1), **start) for system in (forced, by_hand)]
+    assert np.abs(orbits[0].configuration - orbits[1].configuration).max() <= 1e-14
+    free = _skate()
+    assert nh.Forced(free) is free
+    with pytest.raises(ValueError, match="have no force yet"):
+        nh.Forced(forced, None, nh.Friction([0.1, 0.1, 0.1]))
+    with pytest.raises(ValueError, match="be a system that forces act on"):
+        nh.Forced(nh.examples.chaplygin_ball().system, None, nh.Friction([0.1, 0.1, 0.1]))
+
+
+def test_what_a_driven_system_refuses() -> None:
+    """Each with what is wanted: starts off the motion, functions of its own, indices, tables."""
+    racer = nh.examples.roller_racer()
+    discrete = nh.discretize(racer.system, 0.1)
+    with pytest.raises(ValueError, match="agree with prescribed motions"):
+        nh.simulate(discrete, configuration=(0.0, 0.0, 0.0, 0.1), body_velocity=racer.body_velocity, steps=1)
+    with pytest.raises(ValueError, match="nearest admissible"):
+        nh.simulate(discrete, configuration=racer.configuration, body_velocity=(0.0, 0.0, 0.0, 0.0), steps=1)
+    with pytest.raises(ValueError, match="be left out of a driven system"):
+        _skate(force=np.zeros((2, 3)), discrete_lagrangian=lambda q, p, h: (p - q) @ (p - q) / h)
+    with pytest.raises(ValueError, match="indices from 0 to 2"):
+        _skate(prescribed={3: jnp.sin})
+    with pytest.raises(ValueError, match="force"):
+        _skate(force=np.zeros((4, 2)))

@@ -1,0 +1,371 @@
+"""Maps and flows under forces: order, balance, what is conserved, against equations written by hand."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from bodies import GENERAL
+from scipy.integrate import solve_ivp
+
+import nonholo as nh
+from nonholo.discrete.routes import FunctionRoute
+from nonholo.orbit import Orbit
+from nonholo.systems import AbstractSystem
+
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
+VESELOVA = nh.VeselovaTop(np.diag([1.0, 2.0, 3.0]))
+HEAVY = nh.Gravity(force=[0.2, -0.3, -1.0], point=[0.1, 0.2, 0.3])
+SLOPE = nh.Gravity(force=[0.4, -1.0], point=[0.5, 0.3])
+RUB = nh.Friction(0.1 * np.eye(3) + 0.05 * np.ones((3, 3)) + np.array([[0, 0.1, 0], [-0.1, 0, 0], [0, 0, 0]]))
+SYSTEMS: dict[str, AbstractSystem] = {
+    "top": TOP,
+    "tilted top": nh.SuslovTop.from_inertia(np.diag([2.0, 3.0, 4.0]), (0.6, 0.8, 0)),
+    "sleigh": SLEIGH,
+    "sleigh on SE(3)": GENERAL["sleigh 3"][0],
+    "any d on SE(3)": GENERAL["any d on SE(3)"][0],
+    "veselova": VESELOVA,
+}
+SPAN = 0.8
+
+
+def _drive(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """A force of time, pose and velocity."""
+    return np.cos(3 * time + np.arange(len(w))) - 0.4 * w * np.roll(w, 1) + 0.3 * g[0, 1] - 0.2 * w
+
+
+def _push(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """A force of time alone."""
+    del g
+    return np.cos(3 * time + np.arange(len(w)))
+
+
+def _spring(g: np.ndarray) -> float:
+    """A potential that is no weight."""
+    return float(0.5 * np.sum((g[:2] - 0.3) ** 2) + np.sin(g[0, 1]))
+
+
+def _table(time_step: float, dim: int) -> np.ndarray:
+    return np.array([_push((k + 0.5) * time_step, np.eye(3), np.zeros(dim)) for k in range(round(SPAN / time_step))])
+
+
+def _weight(system: AbstractSystem) -> nh.Gravity:
+    if system.group == nh.SE(3):
+        return nh.Gravity([0.2, -0.3, -1.0], [0.1, 0.2, 0.3])
+    return HEAVY if system.group == nh.SO(3) else SLOPE
+
+
+def _friction(system: AbstractSystem) -> nh.Friction:
+    dim = system.group.dim
+    return nh.Friction(0.1 * np.eye(dim) + 0.05 + 0.1 * (np.eye(dim, k=1) - np.eye(dim, k=-1)))
+
+
+KINDS: dict[str, Callable[[AbstractSystem], nh.Forced]] = {
+    "gravity": lambda system: nh.Forced(system, _weight(system)),
+    "potential": lambda system: nh.Forced(system, _spring),
+    "friction": lambda system: nh.Forced(system, force=_friction(system)),
+    "coefficients": lambda system: nh.Forced(system, force=nh.Friction(np.linspace(0.1, 0.4, system.group.dim))),
+    "gravity with friction": lambda system: nh.Forced(system, _weight(system), _friction(system)),
+    "function": lambda system: nh.Forced(system, force=_drive),
+    "both functions": lambda system: nh.Forced(system, _spring, _drive),
+    "table": lambda system: nh.Forced(system, force=_push),
+}
+"""Of a table the function that it samples, which the flow knows."""
+
+
+def _start(system: AbstractSystem) -> dict[str, Any]:
+    g = system.group.random(np.random.default_rng(5))
+    return {"restricted_velocity": [0.5, -0.3, 0.4, 0.2][: system.rank], "configuration": g}
+
+
+def _slope(errors: list[float]) -> float:
+    return float(np.polyfit(range(len(errors)), -np.log2(errors), 1)[0])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("system", SYSTEMS.values(), ids=SYSTEMS)
+def test_the_map_is_of_order_two(system: AbstractSystem, kind: str) -> None:
+    """Momentum, pose and the balance of energy are of order 2 in the time step, for every force."""
+    of_flow, missed = KINDS[kind](system), []
+    flow = nh.flow(of_flow, **_start(system), times=(0.0, SPAN))
+    for h in (0.08, 0.04, 0.02):
+        of_map = nh.Forced(system, force=_table(h, system.group.dim)) if kind == "table" else of_flow
+        orbit = nh.simulate(nh.discretize(of_map, h), **_start(system), steps=round(SPAN / h))
+        balance = orbit.energy - orbit.energy[0] - orbit.work
+        momentum = orbit.restricted_momentum[-1] - flow.restricted_momentum[-1]
+        pose = orbit.configuration[-1] - flow.configuration[-1]
+        missed.append([float(np.abs(x).max()) for x in (momentum, pose, balance)])
+    for errors in np.transpose(missed)[: 3 if kind != "friction" else 2]:
+        assert errors[-1] < 1e-13 or abs(_slope(list(errors)) - 2) < 0.1, errors
+
+
+def test_no_force_gives_the_bits_of_the_free_map_and_flow() -> None:
+    """Forced with neither argument is the free system, and so is one with a table of zeros, to the last bit."""
+    for system in (TOP, SLEIGH, VESELOVA):
+        free = nh.simulate(nh.discretize(system, 0.1), **_start(system), steps=50)
+        same = nh.simulate(nh.discretize(nh.Forced(system), 0.1), **_start(system), steps=50)
+        assert np.array_equal(free.momentum, same.momentum)
+        assert np.array_equal(free.configuration, same.configuration)
+        assert np.array_equal(free.multipliers, same.multipliers)
+        flows = [nh.flow(s, **_start(system), times=(0.0, 1.0)) for s in (system, nh.Forced(system))]
+        assert np.array_equal(flows[0].momentum, flows[1].momentum)
+    for system in (TOP, SLEIGH):
+        free = nh.simulate(nh.discretize(system, 0.1), **_start(system), steps=50)
+        same = nh.simulate(nh.discretize(nh.Forced(system, force=np.zeros((50, 3))), 0.1), **_start(system), steps=50)
+        assert np.array_equal(free.restricted_momentum, same.restricted_momentum)
+        assert np.array_equal(free.pose, same.pose)
+        assert np.array_equal(free.chart, same.chart)
+
+
+@pytest.mark.parametrize("name", ["suslov 4", "sleigh 3", "any d on SE(3)", "right-invariant on SE(3)"])
+def test_constraint_and_group_are_kept_on_every_group(name: str) -> None:
+    """Under weight and friction constraint and group hold to rounding, and the balance closes to order 2."""
+    system, velocity = GENERAL[name]
+    n, rng, balance = system.group.size - (system.group.size == 4 and name != "suslov 4"), np.random.default_rng(3), []
+    heavy = nh.Gravity(0.3 * rng.normal(size=n), rng.normal(size=n))
+    forced = nh.Forced(system, heavy, nh.Friction(rng.uniform(0, 0.2, system.group.dim)))
+    for h in (0.02, 0.01):
+        orbit = nh.simulate(nh.discretize(forced, h), restricted_velocity=velocity, steps=round(0.4 / h))
+        found = nh.invariants(orbit)
+        balance.append(found.energy_drift)
+        assert found.constraint_residual < 1e-13
+        assert found.group_residual is not None
+        assert found.work is not None
+        assert found.group_residual < 1e-13
+        assert found.work < 0
+    assert balance[0] / balance[1] == pytest.approx(4, rel=0.1)
+
+
+def test_functions_give_the_impulses_of_what_is_compiled() -> None:
+    """Weight, friction and table as Python functions, by the definition of the impulses, agree with the kernel."""
+    tilted = nh.SuslovTop.from_inertia(np.diag([2.0, 3.0, 4.0]), (0.6, 0.8, 0))
+    spatial = nh.Gravity([0.1, -0.2, -0.5], [0.3, 0.1, 0.2])
+    rng = np.random.default_rng(6)
+    for system, heavy in ((TOP, HEAVY), (SLEIGH, SLOPE), (tilted, HEAVY), (GENERAL["any d on SE(3)"][0], spatial)):
+        rub, dim = nh.Friction(rng.uniform(0, 0.3, system.group.dim)), system.group.dim
+        for force in (rub, rng.normal(size=(16, dim))):
+            forced = nh.Forced(system, heavy, force)
+            discrete, g = nh.discretize(forced, 0.05), system.group.random(rng)
+            orbit = nh.simulate(discrete, restricted_velocity=rng.normal(size=system.rank), configuration=g, steps=16)
+            route = FunctionRoute(discrete.route.compiled.single, forced)  # type: ignore[union-attr]
+            rows, _, _ = route.run(orbit.reduced_momentum[0], orbit.canonical_pose[0], 16, 1, False)
+            for mine, theirs in zip(rows, (orbit.reduced_momentum, orbit.cayley, orbit.canonical_pose), strict=True):
+                assert np.abs(mine - theirs).max() < 1e-13
+
+
+def test_a_differentiated_potential_is_the_weight() -> None:
+    """Differences of U agree with the exact covector of a weight to 1e-12."""
+    for system, heavy in ((TOP, HEAVY), (SLEIGH, SLOPE)):
+        g = system.group.random(np.random.default_rng(1))
+        by_function = nh.Forced(system, lambda g, heavy=heavy, group=system.group: heavy.energy(group, g))
+        assert np.abs(by_function.potential_force(g) - nh.Forced(system, heavy).potential_force(g)).max() < 1e-12
+
+
+def test_a_heavy_suslov_top_against_equations_by_hand() -> None:
+    """Flow and map agree with Euler's equations with moment of the weight, reaction along e_3, and Poisson's."""
+    inertia, x, F = TOP.inertia_operator, np.asarray(HEAVY.point), np.asarray(HEAVY.force)
+
+    def field(time: float, state: np.ndarray) -> np.ndarray:
+        del time
+        w, c = np.array([state[0], state[1], 0.0]), state[2:]  # c: the weight seen from the body
+        moment = np.cross(inertia @ w, w) + np.cross(x, c)
+        change = np.append(np.linalg.solve(inertia[:2, :2], moment[:2]), 0.0)
+        return np.concatenate([change[:2], np.cross(c, w)])
+
+    g = TOP.group.random(np.random.default_rng(5))
+    start = {"body_velocity": (0.5, -0.3, 0.0), "configuration": g}
+    wanted = solve_ivp(field, (0, 2.0), np.concatenate([[0.5, -0.3], g.T @ F]), "DOP853", rtol=1e-12, atol=1e-13).y[
+        :, -1
+    ]
+    flow = nh.flow(nh.Forced(TOP, HEAVY), **start, times=(0.0, 2.0))
+    assert np.abs(flow.body_velocity[-1, :2] - wanted[:2]).max() < 1e-10
+    assert np.abs(flow.configuration[-1].T @ F - wanted[2:]).max() < 1e-10
+    orbit = nh.simulate(nh.discretize(nh.Forced(TOP, HEAVY), 1e-3), **start, steps=2000)
+    assert np.abs(orbit.body_velocity[-1, :2] - wanted[:2]).max() < 1e-6
+
+
+def test_a_driven_sleigh_with_friction_against_equations_by_hand() -> None:
+    """Flow and map agree with m(u' - a w^2) = F - c u and (J + m a^2) w' + m a u w = M(t) - k w, written by hand."""
+    m, J, a, c, k = 1.3, 0.7, 0.4, 0.3, 0.2
+
+    def field(time: float, state: np.ndarray) -> np.ndarray:
+        w, u, angle = state[:3]
+        turn = (np.cos(2 * time) - k * w - m * a * u * w) / (J + m * a * a)
+        return np.array([turn, (0.5 - c * u) / m + a * w * w, w, u * np.cos(angle), u * np.sin(angle)])
+
+    def force(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
+        del g
+        return np.array([np.cos(2 * time) - k * w[0], 0.5 - c * w[1], 0.7])  # a force across the blade does nothing
+
+    wanted = solve_ivp(field, (0, 3.0), [0.2, 1.0, 0.0, 0.0, 0.0], "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+    forced, start = nh.Forced(nh.ChaplyginSleigh(m, J, a), force=force), {"body_velocity": (0.2, 1.0, 0.0)}
+    flow = nh.flow(forced, **start, times=(0.0, 3.0))
+    found = np.concatenate([flow.body_velocity[-1, :2], flow.heading[-1:], flow.position[-1]])
+    assert np.abs(found - wanted).max() < 1e-10
+    orbit = nh.simulate(nh.discretize(forced, 0.01), **start, steps=300)
+    found = np.concatenate([orbit.body_velocity[-1, :2], orbit.heading[-1:], orbit.position[-1]])
+    assert np.abs(found - wanted).max() < 1e-4
+
+
+def test_a_knife_edge_on_an_incline_is_a_cycloid() -> None:
+    """A balanced sleigh on an incline: turning at w it stays between x = 0 and g/(2 w^2), its known cycloid."""
+    turn, pull = 0.7, 0.4
+    edge = nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.0), nh.Gravity([pull, 0.0], [0.0, 0.0]))
+    orbit = nh.simulate(nh.discretize(edge, 1e-3), body_velocity=(turn, 0.0, 0.0), steps=5000)
+    time = orbit.time
+    x = pull / (2 * turn**2) * np.sin(turn * time) ** 2
+    y = pull / (2 * turn**2) * (turn * time - np.sin(2 * turn * time) / 2)
+    assert np.abs(orbit.position - np.stack([x, y], axis=1)).max() < 1e-6
+
+
+@pytest.mark.profile("problems", keep=["1000 cases"])
+@pytest.mark.parametrize("bodies", [10, 100], ids=["1000 cases", "10,000"])
+def test_friction_never_adds_energy(bodies: int) -> None:
+    """The kinetic energy falls in every step, for random bodies, friction, step sizes and a hundred starts of each."""
+    rng, seen = np.random.default_rng(8), 0
+    for case in range(bodies):
+        root = rng.normal(size=(3, 3))
+        top, sleigh = nh.SuslovTop(root @ root.T + 0.1 * np.eye(3)), (*rng.uniform(0.2, 3, 2), *rng.normal(size=2))
+        system = nh.ChaplyginSleigh(*sleigh) if case % 2 else top
+        root, turning = rng.normal(size=(2, 3, 3)) * 10 ** rng.uniform(-3, 3)
+        forced = nh.Forced(system, force=nh.Friction(root @ root.T + turning - turning.T))
+        discrete = nh.discretize(forced, 10 ** rng.uniform(-3, 3))
+        slow = 10 ** rng.uniform(-3, -0.5, (100, 1)) / discrete.time_step * rng.normal(size=(100, 2))
+        energy = nh.ensemble(discrete, restricted_velocity=slow, steps=4, save_every=1).energy
+        seen += np.isfinite(energy[:, 1]).sum()
+        assert np.all(np.diff(np.nan_to_num(energy), axis=1) <= 1e-14 * energy[:, :1])
+    assert seen > 90 * bodies
+
+
+def test_friction_of_a_balanced_body_is_exact() -> None:
+    """Where the free motion has constant velocity, speeds fall by the exact exponentials at any step size."""
+    forced = nh.Forced(nh.ChaplyginSleigh(2.0, 0.5, 0.0), force=nh.Friction([0.3, 0.8, 5.0]))
+    orbit = nh.simulate(nh.discretize(forced, 2.0), body_velocity=(0.2, 0.3, 0.0), steps=20)
+    exact = np.array([0.2, 0.3]) * np.exp(-np.outer(orbit.time, [0.3 / 0.5, 0.8 / 2.0]))
+    assert np.abs(orbit.body_velocity[:, :2] - exact).max() < 1e-15
+
+
+def test_rows_of_a_table_act_over_their_steps() -> None:
+    """On a straight motion the momentum gains h times each row; the beginning of a run does not know its end."""
+    rows = np.random.default_rng(2).normal(size=(6, 3)) * [0.0, 1.0, 3.0]
+    forced = nh.Forced(nh.ChaplyginSleigh(2.0, 0.5, 0.0), force=rows)
+    orbit = nh.simulate(nh.discretize(forced, 0.1), body_velocity=(0.0, 0.3, 0.0), steps=6)
+    assert np.abs(orbit.restricted_momentum[1:, 1] - 0.6 - 0.1 * np.cumsum(rows[:, 1])).max() < 1e-15
+    shorter = nh.simulate(nh.discretize(forced, 0.1), body_velocity=(0.0, 0.3, 0.0), steps=3)
+    assert np.array_equal(shorter.momentum, orbit.momentum[:4])
+    with pytest.raises(ValueError, match=r"simulate\(steps=...\)"):
+        nh.simulate(nh.discretize(forced, 0.1), body_velocity=(0.0, 0.3, 0.0), steps=7)
+
+
+@pytest.mark.parametrize("system", [TOP, SLEIGH, VESELOVA], ids=["top", "sleigh", "veselova"])
+def test_multipliers_hold_no_force(system: AbstractSystem) -> None:
+    """Impulses of the constraint are the time step times the reactions of the flow, and hold no part of the force."""
+    forced = nh.Forced(system, HEAVY if system.group == nh.SO(3) else SLOPE, _drive)
+    h, missed = 0.01, []
+    for each in (h, h / 2):
+        orbit = nh.simulate(nh.discretize(forced, each), **_start(system), steps=round(0.1 / each))
+        flow = nh.flow(forced, **_start(system), times=orbit.time)
+        missed.append(np.abs(orbit.multipliers / each - flow.multipliers[1:]).max())
+    assert missed[0] < 1e-3
+    assert missed[0] / missed[1] > 3.8
+
+
+def _energy_errors(system: AbstractSystem, point: list[float], h: float, velocity: tuple[float, ...]) -> np.ndarray:
+    """Return the largest errors of T + U in the first and in the last tenth of a long run."""
+    heavy = nh.Forced(system, nh.Gravity([0.0, 0.0, -1.0], point))
+    orbit = nh.simulate(nh.discretize(heavy, h), body_velocity=velocity, steps=round(2500 / h), save_every=10)
+    error, tenth = np.abs(orbit.energy - orbit.energy[0]), len(orbit) // 10
+    return np.array([error[:tenth].max(), error[-tenth:].max()])
+
+
+@pytest.mark.parametrize("system", [TOP, SLEIGH, VESELOVA], ids=["top", "sleigh", "veselova"])
+def test_momenta_are_those_of_the_nodes(system: AbstractSystem) -> None:
+    """Along the constraint the full momenta are the momenta of the state, and each is a start that gives the rest."""
+    for forced in (nh.Forced(system, _weight(system), RUB), nh.Forced(system, _spring, lambda *state: -state[2])):
+        discrete = nh.discretize(forced, 0.05)
+        orbit = nh.simulate(discrete, **_start(system), steps=12)
+        along = system.restrict_at(orbit.momentum, orbit.configuration)
+        assert np.abs(along - orbit.restricted_momentum).max() < 1e-14
+        rest = nh.simulate(discrete, momentum=orbit.momentum[4], configuration=orbit.configuration[4], steps=8)
+        assert np.abs(rest.momentum - orbit.momentum[4:]).max() < 1e-13
+
+
+def test_a_flow_knows_its_time() -> None:
+    """A flow that begins later, and one backward, continue a flow under a force that depends on time."""
+    forced = nh.Forced(TOP, force=_drive)
+    flow = nh.flow(forced, **_start(TOP), times=(0.0, 0.7, 1.1))
+    start = {"momentum": flow.restricted_momentum[1], "configuration": flow.configuration[1]}
+    for time, state in ((1.1, 2), (0.0, 0)):
+        found = nh.flow(forced, **start, times=(0.7, time))
+        assert np.abs(found.momentum[1] - flow.momentum[state]).max() < 1e-11
+        assert np.abs(found.at(0.7).configuration[0] - flow.configuration[1]).max() < 1e-11
+
+
+def test_the_energy_error_stays_bounded_or_grows_at_a_rate_of_order_two() -> None:
+    """Bounded for a free heavy top and for one symmetric in time; on another orbit a slow drift, of order 2."""
+    tensor = np.diag([1.0, 1.2, 0.7])
+    for system, point, velocity in (
+        (nh.RigidBody(tensor), [0.0, 0.1, 0.4], (0.3, 0.2, 1.0)),
+        (nh.SuslovTop(tensor), [0.0, 0.0, 0.4], (0.3, 0.2, 0.0)),
+    ):
+        first, last = _energy_errors(system, point, 0.05, velocity)
+        assert last < 1.2 * first < 4e-3
+    drifting = [_energy_errors(nh.SuslovTop(tensor), [0.0, 0.1, 0.4], h, (0.3, 0.2, 0.0))[1] for h in (0.05, 0.025)]
+    assert drifting[0] / drifting[1] == pytest.approx(4, rel=0.2)
+
+
+def test_a_run_under_a_potential_is_reversible() -> None:
+    """From the opposite momentum the map under a weight goes back the way it came, to rounding."""
+    for system, heavy in ((TOP, HEAVY), (SLEIGH, SLOPE)):
+        discrete = nh.discretize(nh.Forced(system, heavy), 0.05)
+        there = nh.simulate(discrete, **_start(system), steps=50)
+        back = nh.simulate(
+            discrete, momentum=-there.restricted_momentum[-1], configuration=there.configuration[-1], steps=50
+        )
+        assert np.abs(back.configuration[-1] - there.configuration[0]).max() < 1e-12
+        assert np.abs(back.restricted_momentum[-1] + there.restricted_momentum[0]).max() < 1e-12
+
+
+def _states(orbit: Orbit) -> tuple[np.ndarray, ...]:
+    return orbit.time, orbit.reduced_momentum, orbit.cayley, orbit.canonical_pose  # type: ignore[return-value]
+
+
+def test_thinned_and_iterated_runs_are_the_same() -> None:
+    """Blocks and every third state are those of the whole run, bit for bit; runs of functions can be thinned too."""
+    discrete = nh.discretize(nh.Forced(TOP, HEAVY, RUB), 0.05)
+    whole = nh.simulate(discrete, **_start(TOP), steps=30)
+    thin = nh.simulate(discrete, **_start(TOP), steps=30, save_every=3)
+    blocks = list(nh.iterate(discrete, **_start(TOP), steps=30, block_steps=7))
+    for mine, all_of_them in zip(_states(thin), _states(whole), strict=True):
+        assert np.array_equal(mine, all_of_them[::3])
+    for j, all_of_them in enumerate(_states(whole)):
+        assert np.array_equal(np.concatenate([_states(block)[j] for block in blocks]), all_of_them)
+    driven = nh.discretize(nh.Forced(TOP, force=_drive), 0.05)
+    whole, thin = (nh.simulate(driven, **_start(TOP), steps=9, save_every=every) for every in (1, 3))
+    assert np.array_equal(thin.momentum, whole.momentum[::3])
+
+
+def test_outcomes_stay_apart() -> None:
+    """A branch that ends, an overflow and a half impulse that cannot be solved end a run with names of their own."""
+    rows = np.zeros((9, 3))
+    rows[4, 0] = 1e3
+    ended = nh.simulate(nh.discretize(nh.Forced(TOP, force=rows), 0.1), **_start(TOP), steps=9, throw=False)
+    assert (str(ended.outcome), len(ended)) == ("no_real_branch", 4)
+    drives = {
+        "nonfinite": lambda time, _, w: 0.0 * w + (np.nan if time > 0.25 else 0.0),
+        "not_converged": lambda time, _, w: 1e4 * np.sign(w - 0.01) * -1.0 if time > 0.25 else 0.0 * w,
+    }
+    for name, drive in drives.items():
+        discrete = nh.discretize(nh.Forced(SLEIGH, force=drive), 0.1)
+        run = nh.simulate(discrete, **_start(SLEIGH), steps=9, throw=False)
+        assert (str(run.outcome), len(run)) == (name, 3)
+        with pytest.raises(nh.OutcomeError, match=name):
+            nh.simulate(discrete, **_start(SLEIGH), steps=9)
+
+
+def test_stiff_friction_of_a_function_is_solved() -> None:
+    """A friction so stiff that substitution fails is solved by Newton's method."""
+    forced = nh.Forced(nh.ChaplyginSleigh(2.0, 0.5, 0.0), force=lambda *state: -1e3 * state[2])
+    orbit = nh.simulate(nh.discretize(forced, 0.1), body_velocity=(0.2, 0.3, 0.0), steps=10)
+    assert np.all(np.diff(np.abs(orbit.restricted_momentum), axis=0) < 0)

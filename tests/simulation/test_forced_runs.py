@@ -1,0 +1,152 @@
+"""Stores, ensembles, events and pictures of motions under forces."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import zarr
+
+import nonholo as nh
+from nonholo.orbit import Orbit
+from nonholo.systems import AbstractSystem
+
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
+TABLE = np.random.default_rng(1).normal(size=(30, 3))
+HEAVY = nh.Gravity(force=[0.2, -0.3, -1.0], point=[0.1, 0.2, 0.3])
+RUB = nh.Friction([0.1, 0.2, 0.3])
+FORCED: dict[str, nh.Forced] = {
+    "weight and friction": nh.Forced(TOP, HEAVY, RUB),
+    "a matrix of friction": nh.Forced(SLEIGH, force=nh.Friction(np.diag([0.1, 0.2, 0.3]) + 0.05)),
+    "table": nh.Forced(SLEIGH, nh.Gravity([0.1, -0.4], [0.2, 0.1]), TABLE),
+}
+START: dict[str, Any] = {"restricted_velocity": [0.5, -0.3]}
+
+
+def _brake(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
+    del g
+    return -time * w
+
+
+def _same(mine: Orbit, theirs: Orbit) -> bool:
+    return all(
+        np.array_equal(a, b)
+        for a, b in ((mine.momentum, theirs.momentum), (mine.pose, theirs.pose), (mine.energy, theirs.energy))
+    )
+
+
+@pytest.mark.parametrize("name", FORCED)
+def test_stores_give_the_forces_back(name: str, tmp_path: Path) -> None:
+    """A saved orbit, map or flow, has its forces from data; a run into a store is extended with the same bits."""
+    discrete = nh.discretize(FORCED[name], 0.05)
+    orbit = nh.simulate(discrete, **START, steps=30)
+    nh.save_orbit(orbit, tmp_path / "orbit.zarr")
+    loaded = nh.load_orbit(tmp_path / "orbit.zarr")
+    assert _same(loaded, orbit)
+    assert np.array_equal(loaded.work, orbit.work)
+    nh.simulate(discrete, **START, steps=20, store=tmp_path / "run.zarr")
+    assert _same(nh.extend(tmp_path / "run.zarr", 10), orbit)
+    assert orbit.to_dataset()["energy"].values.tolist() == orbit.energy.tolist()
+    if name != "table":
+        flow = nh.flow(FORCED[name], **START, times=(0.0, 1.0))
+        nh.save_orbit(flow, tmp_path / "flow.zarr")
+        assert _same(nh.load_orbit(tmp_path / "flow.zarr"), flow)
+        return
+    with pytest.raises(ValueError, match=r"extend\(steps=...\)"):
+        nh.extend(tmp_path / "run.zarr", 1)
+
+
+def test_a_stored_function_is_not_run(tmp_path: Path) -> None:
+    """A store names neither functions nor anything else than our systems and forces; a function has to be passed."""
+    discrete = nh.discretize(nh.Forced(TOP, force=_brake), 0.05)
+    orbit, path = nh.simulate(discrete, **START, steps=3), tmp_path / "orbit.zarr"
+    nh.save_orbit(orbit, path)
+    with pytest.raises(ValueError, match="force is a callable"):
+        nh.load_orbit(path)
+    assert _same(nh.load_orbit(path, discrete=discrete), orbit)
+    with pytest.raises(ValueError, match="have a compiled run"):
+        nh.simulate(discrete, **START, steps=3, store=tmp_path / "run.zarr")
+    nh.save_orbit(nh.simulate(nh.discretize(FORCED["table"], 0.05), **START, steps=3), tmp_path / "table.zarr")
+    described = json.loads(zarr.open_group(tmp_path / "table.zarr", mode="r").attrs["parameters"])  # type: ignore[arg-type]
+    assert described["system"] == {
+        "kind": "ChaplyginSleigh",
+        "parameters": {"mass": 1, "inertia": 1, "a": 0.5, "b": 0.3},
+    }
+
+
+@pytest.mark.parametrize("forced", [*FORCED.values(), nh.Forced(TOP, force=_brake)])
+def test_members_are_single_runs(forced: nh.Forced) -> None:
+    """Each member of an ensemble is the run of `simulate`, to the last bit, and its energies are those of the nodes."""
+    discrete, starts = nh.discretize(forced, 0.05), np.random.default_rng(2).normal(size=(3, 2))
+    batch = nh.ensemble(discrete, restricted_velocity=starts, steps=30, save_every=10)
+    for member, start in enumerate(starts):
+        orbit = nh.simulate(discrete, restricted_velocity=start, steps=30, save_every=10)
+        assert np.array_equal(batch.momentum[member], orbit.momentum)
+        assert np.array_equal(batch.configuration[member], orbit.configuration)
+        assert np.array_equal(batch.energy[member], orbit.energy)
+        assert batch.first_energy[member] == pytest.approx(orbit.energy[0], rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    "forced", [FORCED["weight and friction"], FORCED["a matrix of friction"], nh.Forced(TOP, force=_brake)]
+)
+def test_members_of_flows_are_single_flows(forced: nh.Forced) -> None:
+    """Each member of an ensemble of flows, also one that begins later, is the flow of `flow`, to the last bit."""
+    starts, times = np.random.default_rng(2).normal(size=(3, 2)), (0.5, 1.0, 1.5)
+    batch = nh.ensemble(forced, restricted_velocity=starts, times=times)
+    for member, start in enumerate(starts):
+        flow = nh.flow(forced, restricted_velocity=start, times=times)
+        assert np.array_equal(batch.momentum[member], flow.momentum)
+        assert np.array_equal(batch.configuration[member], flow.configuration)
+        assert np.array_equal(batch.energy[member], flow.energy)
+
+
+def test_sweeps_end_where_single_runs_do(tmp_path: Path) -> None:
+    """A sweep of starts and time steps keeps the last states of single runs; its store knows forces that are data."""
+    steps = np.array([0.05, 0.025])
+    for name, forced in (FORCED | {"function": nh.Forced(TOP, force=_brake)}).items():
+        task = nh.EnsembleTask(nh.discretize(forced, 0.05), steps=30, **START)
+        found = nh.sweep(task, nh.Grid({"time_step": steps}), tmp_path / f"{name}.zarr")
+        for row, h in enumerate(steps):
+            orbit = nh.simulate(nh.discretize(forced, h), **START, steps=30)
+            assert np.array_equal(found["final_momentum"][row], orbit.restricted_momentum[-1])
+            assert float(found["final_energy"][row]) == orbit.energy[-1]
+        if name == "function":
+            with pytest.raises(ValueError, match="force is a callable"):
+                nh.resume(tmp_path / f"{name}.zarr")
+        else:
+            assert nh.resume(tmp_path / f"{name}.zarr").equals(found)
+
+
+@pytest.mark.parametrize(
+    ("system", "heavy"), [(TOP, HEAVY), (SLEIGH, nh.Gravity([0.2, -1.0], [0.1, 0.2]))], ids=["top", "sleigh"]
+)
+def test_events_are_located_to_rounding(system: AbstractSystem, heavy: nh.Gravity) -> None:
+    """Crossings lie on the level to rounding, and approach those of the flow by order 2; a whole part is a step."""
+    forced = nh.Forced(system, heavy, RUB)
+    event = nh.Event(lambda states: states.configuration[:, 0, 0] - 0.95)
+    flow = nh.flow(forced, **START, times=np.linspace(0.0, 3.0, 31), events=[event]).events[0]
+    missed = []
+    for h in (0.05, 0.025):
+        orbit = nh.simulate(nh.discretize(forced, h), **START, steps=round(3 / h), events=[event])
+        found = orbit.events[0]
+        assert len(found) == len(flow) > 0
+        assert np.abs(found.states.configuration[:, 0, 0] - 0.95).max() < 1e-14
+        missed.append(np.abs(found.time - flow.time).max())
+    assert missed[0] / missed[1] == pytest.approx(4, rel=0.2)
+    route = orbit.motion.route.compiled
+    momenta, poses = route.encode(orbit.reduced_momentum[:3]), route.encode_poses(orbit.canonical_pose[:3])
+    assert np.abs(route.decode(route.parts_of_steps(momenta, poses)[0]) - orbit.reduced_momentum[1:4]).max() < 1e-14
+
+
+def test_pictures_show_no_free_motion() -> None:
+    """The overview of a forced orbit is drawn, with the blade of a sleigh, and marks no equilibria of free motions."""
+    for forced in FORCED.values():
+        orbit = nh.simulate(nh.discretize(forced, 0.05), **START, steps=30)
+        figure = orbit.plot()
+        assert len(figure.axes) > 2
+    assert nh.plot.blade_track(orbit).track is not None
+    assert nh.plot.energy_error(orbit).unit < 1e-2  # of what is left of the balance; the energy changes by more
+    assert np.ptp(orbit.energy) > 0.05 * np.abs(orbit.energy).max()
