@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from nonholo import plotting as plot  # noqa: F401
     from nonholo import testing as testing
     from nonholo.analysis import asymptotics as asymptotics
+    from nonholo.analysis import compare as compare
     from nonholo.analysis import conserved_momenta as conserved_momenta
     from nonholo.analysis import critical_energies as critical_energies
     from nonholo.analysis import equilibria as equilibria
@@ -132,6 +133,7 @@ _HOMES = {
     "asymptotics": "analysis",
     "branch_tree": "discrete",
     "branches": "discrete",
+    "compare": "analysis",
     "conserved_momenta": "analysis",
     "consistency_defect": "discrete",
     "critical_energies": "analysis",

@@ -1,5 +1,6 @@
 """Questions asked of systems and orbits."""
 
+from nonholo.analysis._comparison import Comparison, Convergence, Errors, compare
 from nonholo.analysis._deltoid import Deltoid, deltoid
 from nonholo.analysis._equilibria import EquilibriumSpectrum, equilibria
 from nonholo.analysis._invariant_curve import InvariantCurve, invariant_curve
@@ -35,11 +36,14 @@ from nonholo.analysis.limits import (
 
 __all__ = [
     "Asymptotics",
+    "Comparison",
     "ConservedMomenta",
+    "Convergence",
     "CriticalEnergies",
     "CriticalPoint",
     "Deltoid",
     "EquilibriumSpectrum",
+    "Errors",
     "FlowObstruction",
     "HalfPlanes",
     "HeteroclinicOrbit",
@@ -50,6 +54,7 @@ __all__ = [
     "MomentumLocus",
     "SingleValuedRegion",
     "asymptotics",
+    "compare",
     "conserved_momenta",
     "critical_energies",
     "deltoid",

@@ -5,8 +5,8 @@ from nonholo.discrete._consistency import consistency_defect
 from nonholo.discrete._discrete_legendre import discrete_legendre
 from nonholo.discrete._discretization import Discretization, as_discretization, discretize
 from nonholo.discrete._legendre import legendre
+from nonholo.discrete._measured import MeasuredMotion, orbit_of_poses
 from nonholo.discrete._moser_veselov import moser_veselov_displacement
-from nonholo.discrete._reversal import reversal_defects
 from nonholo.discrete._start import check_first_state, initial_state
 from nonholo.discrete.branching import (
     PRINCIPAL,
@@ -29,7 +29,7 @@ from nonholo.discrete.branching import (
     landscape,
     next_places,
 )
-from nonholo.discrete.routes import AbstractCompiledRoute, FunctionRoute, ScalarRoute
+from nonholo.discrete.routes import AbstractCompiledRoute, FunctionRoute, ScalarRoute, reversal_defects
 
 __all__ = [
     "PRINCIPAL",
@@ -42,6 +42,7 @@ __all__ = [
     "Frame",
     "FunctionRoute",
     "Landscape",
+    "MeasuredMotion",
     "Place",
     "ScalarRoute",
     "as_discretization",
@@ -63,6 +64,7 @@ __all__ = [
     "legendre",
     "moser_veselov_displacement",
     "next_places",
+    "orbit_of_poses",
     "refuse_composition",
     "reversal_defects",
     "weights",

@@ -10,7 +10,7 @@ from typing import Any
 
 from nonholo.base.checks import error, instance, text
 from nonholo.continuous import ContinuousFlow
-from nonholo.discrete import discretize
+from nonholo.discrete import MeasuredMotion, discretize
 from nonholo.io._descriptions import fields_of, restore_system, unstored
 from nonholo.orbit import AbstractMotion, Orbit
 
@@ -22,7 +22,11 @@ groups among parameters."""
 READABLE = (1, 2, 3, 4)
 _EARLIER_ROUTES = {"LLSystem": "matrix"}
 """The routes of systems before they had names, where they were others than now."""
-_MOTIONS: dict[str, Callable[..., AbstractMotion]] = {"Discretization": discretize, "ContinuousFlow": ContinuousFlow}
+_MOTIONS: dict[str, Callable[..., AbstractMotion]] = {
+    "Discretization": discretize,
+    "ContinuousFlow": ContinuousFlow,
+    "MeasuredMotion": MeasuredMotion,
+}
 _CONVENTIONS = (
     "W_k = g_k^-1 g_(k+1), P_k is the momentum at W_k, momenta are physical (L_d includes time_step). Arrays are in "
     "the user's body frame; quaternions are unit, scalar first, Hamilton's product, and take body coordinates to "

@@ -7,20 +7,20 @@ from typing import TextIO
 
 import numpy as np
 
-from nonholo.base.checks import count, error, flags
+from nonholo.base.checks import count, error, flags, instance
 from nonholo.base.checks import path as checked_path
 from nonholo.base.progress import progress_bar
 from nonholo.base.types import Float
 from nonholo.io._beside import new_beside
-from nonholo.io.datasets import Stretch, column_names, rows_of
-from nonholo.orbit import Orbit, as_orbit
+from nonholo.io.datasets import Stretch, column_names, joined_rows, rows_of
+from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.systems import System
 
 _NUMBERS = 1 << 16  # formatted at once
 
 
-def orbit_to_csv(orbit: Orbit, path: str | Path, *, overwrite: bool = False) -> None:
-    r"""Write the times and poses of an orbit to a CSV file, in the user's body frame.
+def orbit_to_csv(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = False) -> None:
+    r"""Write the times and poses, or coordinates, of an orbit to a CSV file, in the user's body frame.
 
     A header names the columns. The pose $g$ takes body coordinates to space.
 
@@ -33,6 +33,7 @@ def orbit_to_csv(orbit: Orbit, path: str | Path, *, overwrite: bool = False) -> 
     | SE(n) | `t,x1,...,xn,r11,r12,...` |
     | translations | `t,x1,...,xn` |
     | other groups | `t,r11,r12,...`, the entries of the matrix |
+    | coordinates of a `LagrangeDAlembert` | `t` and their names |
 
     Numbers have as many digits as they need to be read back exactly. The file appears only when it is complete.
 
@@ -49,14 +50,24 @@ def orbit_to_csv(orbit: Orbit, path: str | Path, *, overwrite: bool = False) -> 
     Example:
         >>> orbit_to_csv(orbit, "poses.csv")  # doctest: +SKIP
     """
-    as_orbit("orbit_to_csv(orbit=...)", orbit, "one in coordinates is in orbit.to_dataset().to_dataframe().")
-    if orbit.canonical_pose is None:
+    flags("Orbit.to_csv", overwrite=overwrite)
+    lines = _lines_of(orbit)
+    with new_file(checked_path("Orbit.to_csv(path=...)", path), overwrite=overwrite) as file:
+        file.writelines(lines)
+
+
+def _lines_of(orbit: AbstractOrbit) -> Iterator[str]:
+    instance("orbit_to_csv(orbit=...)", orbit, AbstractOrbit, "be an orbit", "Pass what `simulate` or `flow` returned.")
+    if not orbit.has_poses:
         remedy = "Run with reconstruct=True."
         raise error("Orbit.to_csv(...)", "be asked of an orbit with poses", "reconstruct=False", remedy)
-    whole = Stretch(orbit.time, orbit.canonical_pose, orbit.turned)
-    flags("Orbit.to_csv", overwrite=overwrite)
-    with new_file(checked_path("Orbit.to_csv(path=...)", path), overwrite=overwrite) as file:
-        file.writelines(_lines(orbit.system, [whole], 1))
+    if isinstance(orbit, Orbit):
+        return _lines(orbit.system, [Stretch(orbit.time, np.asarray(orbit.canonical_pose), orbit.turned)], 1)
+    named, q = orbit.coordinates, orbit.configuration
+    names = ["t", *named] if named else column_names(orbit.space)
+    rows = np.concatenate([orbit.time[:, None], q if named else joined_rows(orbit.space, q)], axis=1)
+    most = max(1, _NUMBERS // len(names))
+    return table_lines(names, (rows[first : first + most] for first in range(0, len(rows), most)))
 
 
 def store_to_csv(

@@ -1,6 +1,7 @@
 """The discrete map in coordinates: a system with a time step, and its run."""
 
 import dataclasses
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from nonholo.lagrange_dalembert import _start
 from nonholo.lagrange_dalembert._equations import momenta, momentum
 from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
 from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._simulate import Start, checked_counts, set_out, simulated
+from nonholo.lagrange_dalembert._simulate import Start, checked_block, checked_counts, iterated, set_out, simulated
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 from nonholo.systems import AbstractCoordinateDiscretization, one_start
 
@@ -83,9 +84,57 @@ class CoordinateDiscretization(AbstractCoordinateDiscretization[CoordinateOrbit]
         starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
         system, h = self.system, np.float64(self.time_step)
         steps, every = checked_counts(steps, save_every, 4 * system.dimension)
-        q = _start.point("simulate", system, configuration)
-        _start.consistent(system, q, h)
-        return simulated(CoordinateOrbit, system, h, _first(system, h, q, starts), steps, every, throw, progress)
+        first = _first(system, h, configuration, starts)
+        return simulated(CoordinateOrbit, system, h, first, steps, every, throw, progress)
+
+    def iterate(
+        self,
+        *,
+        configuration: Any,
+        steps: int,
+        block_steps: int | None = None,
+        body_velocity: Any = None,
+        displacement: Any = None,
+        momentum: Any = None,
+        save_every: int = 1,
+        throw: bool = True,
+        progress: bool = False,
+    ) -> Iterator[CoordinateOrbit]:
+        """Run the map of `simulate`, and give its orbit block by block, in bounded memory.
+
+        The blocks together are the orbit of `simulate`, bit for bit: no state is given twice.
+
+        Args:
+            configuration: As in `simulate`, and so are the others.
+            steps: See `simulate`.
+            block_steps: Steps of a block, a multiple of `save_every`; by default a thousand saved states.
+            body_velocity: See `simulate`.
+            displacement: See `simulate`.
+            momentum: See `simulate`.
+            save_every: See `simulate`.
+            throw: Raise if the run cannot continue, after its last good block; otherwise that block's outcome says so.
+            progress: See `simulate`.
+
+        Returns:
+            An iterator over orbits of `block_steps // save_every` states, the last one of those that are left.
+
+        Raises:
+            ValueError: A bad argument, before any work.
+            OutcomeError: As in `simulate`; with `throw` its `orbit` is the last block.
+
+        Example:
+            >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
+            >>> free = LagrangeDAlembert(lambda q, v: v @ v / 2, None, dimension=2).discretize(0.5)
+            >>> blocks = free.iterate(configuration=(0, 0), body_velocity=(1, 2), steps=10, block_steps=4)
+            >>> [len(block) for block in blocks]
+            [4, 4, 3]
+        """
+        starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
+        system, h, numbers = self.system, np.float64(self.time_step), 4 * self.system.dimension
+        steps, every = checked_counts(steps, save_every, 0)
+        rows = checked_block(block_steps, every, numbers)
+        first = _first(system, h, configuration, starts)
+        return iterated(CoordinateOrbit, system, h, first, steps, every, rows, throw, progress)
 
     def regularity(self, q: Any, q_next: Any) -> float:
         """Return the smallest singular value of the scaled regularity matrix of a step; zero at a fold.
@@ -106,7 +155,9 @@ class CoordinateDiscretization(AbstractCoordinateDiscretization[CoordinateOrbit]
         return self.system.regularity(q, q_next, time_step=self.time_step)
 
 
-def _first(system: LagrangeDAlembert, h: Any, q: np.ndarray, starts: dict[str, Any]) -> Start:
+def _first(system: LagrangeDAlembert, h: Any, configuration: Any, starts: dict[str, Any]) -> Start:
+    q = _start.point("simulate", system, configuration)
+    _start.consistent(system, q, h)
     given = one_start("simulate", **starts)
     if given == "displacement":
         v = _start.velocity_of_displacement(system, q, starts["displacement"], h)

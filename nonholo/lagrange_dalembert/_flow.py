@@ -40,7 +40,8 @@ def flow(
     count = len(rows[0])
     columns = (x[:count] for x in in_double(_decode, system, *map(padded, rows)))
     outcome = Outcome.successful if count == len(time) else Outcome.not_converged
-    orbit = kind(time[:count], configurations(system, rows[0]), None, rows[1], *columns, outcome)
+    q = configurations(system, rows[0])
+    orbit = kind(time[:count], q, None, rows[1], *columns, outcome, system)
     if outcome != Outcome.successful:
         rtol, atol = errors
         where = f"Flow from time {time[count - 1]:g} to {time[count]:g} (rtol {rtol:g}, atol {atol:g})"

@@ -4,10 +4,16 @@ import abc
 import dataclasses
 from typing import Any, ClassVar
 
+import jax
 import numpy as np
 
+from nonholo.base.checks import error, shown
 from nonholo.base.results import Outcome
-from nonholo.base.types import Float
+from nonholo.base.types import Array, Float
+from nonholo.groups import AbstractMatrixGroup
+from nonholo.lagrange_dalembert._precision import in_double
+from nonholo.lagrange_dalembert._room import equations_of, places
+from nonholo.orbit import AbstractOrbit
 
 Labels = dict[str, tuple[tuple[str, ...], str]]
 """Name: dimensions after `step`, and what the numbers are."""
@@ -20,7 +26,7 @@ _SHARED: Labels = {
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
-class AbstractCoordinateOrbit(abc.ABC):
+class AbstractCoordinateOrbit(AbstractOrbit):
     """A motion of a system in coordinates or on a group at K saved states."""
 
     time: Float[np.ndarray, "K"]
@@ -32,6 +38,12 @@ class AbstractCoordinateOrbit(abc.ABC):
     energy: Float[np.ndarray, "K"]
     constraint_residual: Float[np.ndarray, "K"]
     outcome: Outcome = Outcome.successful
+    system: Any = None
+    time_step: float | None = None
+    span: ClassVar[None] = None
+    has_poses: ClassVar[bool] = True
+    is_measured: ClassVar[bool] = False
+    work: ClassVar[None] = None
     _labels: ClassVar[Labels]
 
     @abc.abstractmethod
@@ -42,11 +54,33 @@ class AbstractCoordinateOrbit(abc.ABC):
         span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
         return f"<{type(self).__name__}: {len(self)} states of {self._configurations()}{span}, {self.outcome}>"
 
-    def __len__(self) -> int:
-        return len(self.time)
+    @property
+    def is_discrete(self) -> bool:
+        """Whether it has displacements: a flow has none."""
+        return self.displacement is not None
+
+    @property
+    def conserves_energy(self) -> bool | None:
+        """False for a discrete orbit, None for a flow."""
+        return False if self.is_discrete else None
+
+    @property
+    def restricted_momentum(self) -> Float[np.ndarray, "K n"]:
+        r"""Momenta less their parts $A^T\mu$ across the constraint: those along admissible directions."""
+        A = in_double(_forms_at, self.system, places(self.system, self.configuration, self.time))
+        p = self.momentum[..., None]
+        return (p - np.linalg.pinv(A) @ (A @ p))[..., 0]
+
+    def at(self, times: Any) -> "AbstractCoordinateOrbit":
+        """Refuse: only saved states are known."""
+        got = f"an orbit in coordinates with {len(self)} states; not {shown(times)}"
+        raise error("Orbit.at(...)", "be asked of a flow of a body on a group", got, "Ask `flow` for these times.")
 
     def to_dataset(self) -> Any:
-        """Return the orbit as a labeled `xarray.Dataset`; rows that do not exist, of multipliers, are NaN."""
+        """Return the orbit as a labeled `xarray.Dataset`; rows that do not exist, of multipliers, are NaN.
+
+        Along `coordinate` numbers have the names of the coordinates: `dataset.configuration.sel(coordinate="x")`.
+        """
         import xarray
 
         variables = {}
@@ -55,8 +89,13 @@ class AbstractCoordinateOrbit(abc.ABC):
             if rows is not None:
                 missing = np.full((len(self) - len(rows), *rows.shape[1:]), np.nan)
                 variables[name] = (("step", *dimensions), np.concatenate([rows, missing]), {"long_name": meaning})
-        time = ("step", self.time, {"long_name": "time"})
-        return xarray.Dataset(variables, coords={"time": time}, attrs={"outcome": self.outcome.name})
+        coords: dict[str, Any] = {"time": ("step", self.time, {"long_name": "time"}), **self._names()}
+        step = {} if self.time_step is None else {"time_step": self.time_step}
+        return xarray.Dataset(variables, coords=coords, attrs={"outcome": self.outcome.name, **step})
+
+    @abc.abstractmethod
+    def _names(self) -> dict[str, Any]:
+        """Return the names of numbers along dimensions."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -74,6 +113,8 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
         energy: $-\partial L_d/\partial h$, for a flow $v\cdot\partial L/\partial v - L$, shape (K,).
         constraint_residual: Largest $|F_j(q_k, q_{k+1})|$, for a flow $|A^j(q) v|$, shape (K,).
         outcome: How the run ended.
+        system: What moves.
+        time_step: h; None for a flow.
 
     Example:
         >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -88,6 +129,19 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
         "body_velocity": (("coordinate",), "velocity; of a discrete orbit displacement / time_step"),
         "momentum": (("coordinate",), "momentum at the start of the step; of a flow the Legendre transform"),
     }
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """The names of the coordinates."""
+        return self.system.coordinates
+
+    @property
+    def space(self) -> tuple[str, ...]:
+        """The names of the coordinates."""
+        return self.system.coordinates
+
+    def _names(self) -> dict[str, Any]:
+        return {"coordinate": np.array(self.coordinates, dtype=object)}
 
     def _configurations(self) -> str:
         return f"{self.configuration.shape[1]} coordinates"
@@ -108,6 +162,8 @@ class GroupOrbit(AbstractCoordinateOrbit):
         energy: $-\partial l_d/\partial h$ at $W_k$, for a flow $\omega\cdot\partial l/\partial\omega - l$, shape (K,).
         constraint_residual: Largest $|F_j(g_k, W_k)|$, for a flow $|a^j(g)\omega|$, shape (K,).
         outcome: How the run ended.
+        system: What moves.
+        time_step: h; None for a flow.
 
     Example:
         >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
@@ -123,6 +179,18 @@ class GroupOrbit(AbstractCoordinateOrbit):
         "momentum": (("component",), "body momentum at the start of the step; of a flow the Legendre transform"),
     }
 
+    @property
+    def space(self) -> AbstractMatrixGroup:
+        """The group."""
+        return self.system.group
+
+    def _names(self) -> dict[str, Any]:
+        return {}
+
     def _configurations(self) -> str:
         n = self.configuration.shape[-1]
         return f"{n} x {n} matrices"
+
+
+def _forms_at(system: Any, q: Array) -> Array:
+    return jax.vmap(lambda x: equations_of(system).forms(system, x))(q)

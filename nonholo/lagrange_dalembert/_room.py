@@ -3,6 +3,8 @@
 import importlib
 from typing import Any
 
+import numpy as np
+
 
 def room(name: str) -> Any:
     """Return a module that imports the caller's, or that loads slowly because of diffrax."""
@@ -16,4 +18,9 @@ def equations_of(system: Any) -> Any:
 
 def configurations(system: Any, places: Any) -> Any:
     """Return the configurations of places: those of driven systems have the time in a last column."""
-    return places[:, :-1] if getattr(system, "is_driven", False) else places
+    return places[:, :-1] if system.is_driven else places
+
+
+def places(system: Any, configurations: Any, time: Any) -> Any:
+    """Return the places of configurations at these times."""
+    return np.column_stack([configurations, time]) if system.is_driven else configurations

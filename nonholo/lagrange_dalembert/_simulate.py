@@ -1,13 +1,13 @@
 """The run: one step, compiled blocks of steps, the decoding, and what is said when a step fails."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import step_counts
+from nonholo.base.checks import count, error, step_counts
 from nonholo.base.limits import within_a_year, within_memory
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome, finished
@@ -46,13 +46,50 @@ def simulated(
     progress: bool,
 ) -> OrbitT:
     """Run the map from a checked start and return its orbit of a kind."""
-    (q, v, impulses), code, done = _run(system, h, start, steps, every, progress)
+    ((columns, code, done),) = _blocks(system, h, start, steps, every, steps + 2, progress)
+    return finished(_orbit(kind, system, h, columns, 0, every, code), h, done, steps, throw)
+
+
+def iterated(
+    kind: Callable[..., OrbitT],
+    system: Any,
+    h: Any,
+    start: Start,
+    steps: int,
+    every: int,
+    rows: int,
+    throw: bool,
+    progress: bool,
+) -> Iterator[OrbitT]:
+    """Run the map from a checked start and give its orbit in blocks of this many states."""
+    first = 0
+    for columns, code, done in _blocks(system, h, start, steps, every, rows, progress):
+        orbit = _orbit(kind, system, h, columns, first, every, code)
+        first += len(columns[0])
+        if len(columns[0]) or not throw:
+            yield orbit
+        finished(orbit, h, done, steps, throw)
+
+
+def checked_block(block_steps: Any, every: int, numbers: int) -> int:
+    """Return the states of a block, refused where memory cannot hold this many numbers of each."""
+    where = "iterate(block_steps=...)"
+    steps = _ROWS * every if block_steps is None else count(where, block_steps, "Pass the number of steps of a block.")
+    if steps % every:
+        raise error(where, f"be a multiple of save_every = {every}", str(steps), "Choose one.")
+    within_memory(where, 8.0 * numbers * (steps // every), "Pass fewer.")
+    return steps // every
+
+
+def _orbit(
+    kind: Callable[..., OrbitT], system: Any, h: Any, columns: list[np.ndarray], first: int, every: int, code: Any
+) -> OrbitT:
+    """Return states that were reached, of which the first has a number, as an orbit."""
+    q, v, impulses = columns
     *displaced, momentum, energy, residual = _decoded(system, h, q, v)
-    displacement, time = displaced[0] if displaced else h * v, h * (every * np.arange(len(q)))
-    orbit = kind(
-        time, configurations(system, q), displacement, v, momentum, impulses, energy, residual, Outcome(int(code))
-    )
-    return finished(orbit, h, done, steps, throw)
+    displacement, time = displaced[0] if displaced else h * v, h * (every * np.arange(first, first + len(q)))
+    arrays = time, configurations(system, q), displacement, v, momentum, impulses, energy, residual
+    return kind(*arrays, Outcome(int(code)), system, float(h))
 
 
 def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> Start:
@@ -98,26 +135,36 @@ def _advance(system: Any, h: Array, state: State, sign: Array, rows: Array, ever
     return jax.lax.while_loop(lambda c: (c[0] < rows) & (c[3] == 0), row, start)[1:]
 
 
-def _run(
-    system: Any, h: Any, start: Start, steps: int, every: int, progress: bool
-) -> tuple[list[np.ndarray], Array, int]:
-    """Return configurations, velocities and impulses of the saved states, the outcome and the number of good steps."""
+def _blocks(
+    system: Any, h: Any, start: Start, steps: int, every: int, most: int, progress: bool
+) -> Iterator[tuple[list[np.ndarray], Array, int]]:
+    """Give configurations, velocities and impulses of `most` saved states at a time, the outcome and the good steps.
+
+    The last block ends with the last state, whose impulse is not known.
+    """
     state, sign, code = start
-    done, blocks = 0, []
+    started, done, given, tables = int(code == 0), 0, 0, []
     with progress_bar("steps", progress) as report:
         while code == 0 and done < steps:
-            left = steps - done
-            rows, stride = (min(_ROWS, left // every), every) if left >= every else (1, left)
+            left, open_rows = steps - done, most - sum(len(table[0]) for table in tables)
+            rows, stride = (min(_ROWS, open_rows, left // every), every) if left >= every else (1, left)
             counts = (np.int64(rows), np.int64(stride))
             taken, state, code, table = in_double(_advance, system, h, state, sign, *counts)
             begun = min(rows, int(taken) // stride + 1)
-            blocks.append([column[:begun] for column in table])
+            tables.append([column[:begun] for column in table])
             done += int(taken)
             report(done, steps)
-    kept = 1 + done // every if blocks else 0
+            if code == 0 and begun == open_rows and done < steps:
+                yield _joined(tables), code, done
+                given, tables = given + most, []
+    kept = started * (1 + done // every - given)
     last = [np.asarray(state[0])[None], np.asarray(state[1])[None], np.empty((0, system.constraints))]
-    columns = [np.concatenate(column)[:kept] for column in zip(*blocks, last, strict=True)]
-    return [*columns[:2], columns[2][: max(kept - 1, 0)]], code, done
+    q, v, impulses = _joined([*tables, last])
+    yield [q[:kept], v[:kept], impulses[: max(kept - 1, 0)]], code, done
+
+
+def _joined(tables: list[list[np.ndarray]]) -> list[np.ndarray]:
+    return [np.concatenate(column) for column in zip(*tables, strict=True)]
 
 
 def _decoded(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> list[np.ndarray]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import jax
 
-from nonholo.base.checks import array, choice, count, error, shown
+from nonholo.base.checks import array, choice, count, error, shown, text
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._room import room
@@ -20,6 +20,8 @@ from nonholo.lagrange_dalembert._tracing import (
     with_time_step,
 )
 from nonholo.systems import AbstractCoordinateSystem
+
+_TAKEN = {"constraint_residual", "energy", "t", "time"}  # columns of their own
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
@@ -60,10 +62,13 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             exactly; their multipliers, the last ones, are what drives them.
         force: `force(time, q, v)` -> (n,); or `nonholo.Friction`; or an array (steps, n), whose row k acts over step k.
             `nonholo.Forced(system, potential, force)` adds one.
+        coordinates: Names of the coordinates, for tables and pictures, such as ("x", "y", "theta"); by default "q1",
+            "q2" and so on.
+        name: What pictures call the system.
 
     Raises:
         ValueError: A function that JAX cannot trace, or whose result is not real or has the wrong shape; an unknown
-            rule; a driven system with discrete functions of its own.
+            rule; a driven system with discrete functions of its own; names that are not n different words.
 
     Example:
         A particle in space with the constraint z' = y x':
@@ -88,11 +93,15 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     constraint_velocities: Callable[[Array, Array], Array] | None = dataclasses.field(default=None, kw_only=True)
     prescribed: Any = dataclasses.field(default=(), kw_only=True)
     force: Any = dataclasses.field(default=None, kw_only=True)
+    coordinates: tuple[str, ...] = dataclasses.field(default=(), kw_only=True)
+    name: str = dataclasses.field(default="System in coordinates", kw_only=True)
     _equations: ClassVar[str] = "_equations"
 
     def __post_init__(self) -> None:
         dimension = count(_named("dimension"), self.dimension, "Pass the number of coordinates.")
         object.__setattr__(self, "dimension", dimension)
+        object.__setattr__(self, "coordinates", _names(self.coordinates, dimension))
+        text(_named("name"), self.name)
         choice(_named("rule"), self.rule, ("midpoint", "trapezoidal"))
         object.__setattr__(self, "discrete_lagrangian", with_time_step(self.discrete_lagrangian))
         object.__setattr__(self, "discrete_constraints", with_time_step(self.discrete_constraints))
@@ -271,3 +280,18 @@ def _force(given: Any, dimension: int) -> Any:
 
 def _named(argument: str) -> str:
     return f"LagrangeDAlembert({argument}=...)"
+
+
+def _names(names: Any, n: int) -> tuple[str, ...]:
+    """Return the names of the coordinates: by default q1 and so on."""
+    if isinstance(names, tuple) and not names:
+        return tuple(f"q{i}" for i in range(1, n + 1))
+    words = set(filter(_is_word, names)) if isinstance(names, tuple | list) else set()
+    if len(words) != n or len(names) != n:
+        remedy = 'Pass words such as ("x", "y", "theta"), none of them ' + ", ".join(sorted(_TAKEN)) + "."
+        raise error(_named("coordinates"), f"be {n} different words", shown(names), remedy)
+    return tuple(names)
+
+
+def _is_word(name: Any) -> bool:
+    return isinstance(name, str) and name.isascii() and name.isidentifier() and name not in _TAKEN

@@ -68,7 +68,7 @@ def chaplygin_ball(
         "The angular momentum about the contact is constant in space, and so is the energy.",
         "The middle moves at constant height.",
     )
-    return Example(name, _system(m, r, moments), ("pose",), np.eye(4), v, facts, conserved)
+    return Example(name, _system(m, r, moments), np.eye(4), v, facts, conserved)
 
 
 def _component(function: Array, index: int, g: Array, v: Array) -> Array:

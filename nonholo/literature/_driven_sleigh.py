@@ -10,8 +10,6 @@ from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.literature._example import Example, numbers, positives
 
-_NAMES = ("x", "y", "theta", "s")
-
 
 def driven_sleigh(
     *,
@@ -76,7 +74,7 @@ def driven_sleigh(
         "The speed grows without bound if the moving mass is on the right side of the contact.",
         "With the line of the moving mass through the contact the speed settles.",
     )
-    return Example(name, _system(*body, a, d, A), _NAMES, np.append(q, 0.0), v, facts, {})
+    return Example(name, _system(*body, a, d, A), np.append(q, 0.0), v, facts, {})
 
 
 @functools.cache
@@ -90,4 +88,7 @@ def _system(m: float, J: float, mu: float, Omega: float, a: float, d: float, A: 
     def blade(q: Array) -> Array:
         return jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]), 0.0, 0.0]])
 
-    return LagrangeDAlembert(lagrangian, blade, dimension=4, prescribed={3: lambda time: A * jnp.sin(Omega * time)})
+    names, prescribed = ("x", "y", "theta", "s"), {3: lambda time: A * jnp.sin(Omega * time)}
+    return LagrangeDAlembert(
+        lagrangian, blade, dimension=4, prescribed=prescribed, coordinates=names, name="Driven sleigh"
+    )

@@ -18,7 +18,6 @@ class Example:
     Attributes:
         name: The name of the function that makes it.
         system: The system.
-        coordinates: Names of the coordinates.
         configuration: Where it starts.
         body_velocity: How it starts; it satisfies the constraint.
         facts: What is known, a sentence each.
@@ -33,12 +32,16 @@ class Example:
 
     name: str
     system: LagrangeDAlembert | GroupLagrangeDAlembert
-    coordinates: tuple[str, ...]
     configuration: Float[np.ndarray, "n"]
     body_velocity: Float[np.ndarray, "n"]
     facts: tuple[str, ...]
     conserved: Mapping[str, Callable[[Array, Array], Array]]
     exact: Callable[[Array], Array] | None = None
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the coordinates; on a group ("pose",)."""
+        return self.system.coordinates or ("pose",)
 
     def __repr__(self) -> str:
         return f"<Example {self.name}: {', '.join(self.coordinates)}>"

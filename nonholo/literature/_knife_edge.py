@@ -87,7 +87,7 @@ def knife_edge_on_incline(
         "From rest the blade draws a cycloid.",
     )
     v = np.array([u0 * np.cos(q[2]), u0 * np.sin(q[2]), omega])
-    return Example("knife_edge_on_incline", _system(m, J, G), ("x", "y", "phi"), q, v, facts, conserved, exact)
+    return Example("knife_edge_on_incline", _system(m, J, G), q, v, facts, conserved, exact)
 
 
 @functools.cache
@@ -98,4 +98,5 @@ def _system(m: float, J: float, G: float) -> LagrangeDAlembert:
     def forms(q: Array) -> Array:
         return jnp.array([[jnp.sin(q[2]), -jnp.cos(q[2]), 0.0]])
 
-    return LagrangeDAlembert(lagrangian, forms, dimension=3)
+    names = ("x", "y", "phi")
+    return LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=names, name="Knife edge on an incline")

@@ -45,13 +45,12 @@ def chaotic_quartic_oscillator(*, pairs: int = 3) -> Example:
         coupling = np.sum(y**2 * z**2, axis=-1) + (z[..., 0] ** 2 * z[..., 1] ** 2 if n > 1 else 0)
         return (np.sum(v**2, axis=-1) + np.sum(q**2, axis=-1) + coupling) / 2
 
-    names = ("x", *(f"y{i}" for i in index), *(f"z{i}" for i in index))
     facts = (
         "The energy is the only known conserved quantity.",
         "The motion is chaotic.",
         "The discrete energy error spreads like a random walk of size h^2.",
     )
-    return Example("chaotic_quartic_oscillator", _quartic(n), names, q, v, facts, {"energy": energy})
+    return Example("chaotic_quartic_oscillator", _quartic(n), q, v, facts, {"energy": energy})
 
 
 @functools.cache
@@ -64,7 +63,8 @@ def _quartic(n: int) -> LagrangeDAlembert:
     def forms(q: Array) -> Array:
         return jnp.concatenate([jnp.ones(1), jnp.zeros(n), q[1 : n + 1]])[None]
 
-    return LagrangeDAlembert(lagrangian, forms, dimension=2 * n + 1)
+    names = ("x", *(f"{letter}{i}" for letter in "yz" for i in range(1, n + 1)))
+    return LagrangeDAlembert(lagrangian, forms, dimension=2 * n + 1, coordinates=names, name="Chaotic oscillator")
 
 
 def non_reversible(*, asymmetry: float = 0.5, turning: float = 2.6) -> Example:
@@ -112,7 +112,7 @@ def non_reversible(*, asymmetry: float = 0.5, turning: float = 2.6) -> Example:
         else "The reflection (x, -y, -xi) reverses the motion: the discrete energy does not drift.",
     )
     conserved = {"energy": energy, "energy of the pendulum": pendulum}
-    return Example("non_reversible", _gearbox(epsilon), ("x", "y", "xi"), q, v, facts, conserved)
+    return Example("non_reversible", _gearbox(epsilon), q, v, facts, conserved)
 
 
 @functools.cache
@@ -123,4 +123,5 @@ def _gearbox(epsilon: float) -> LagrangeDAlembert:
     def forms(q: Array) -> Array:
         return jnp.stack([jnp.ones(()), jnp.sin(q[2]), jnp.zeros(())])[None]
 
-    return LagrangeDAlembert(lagrangian, forms, dimension=3)
+    name = "Oscillators, not reversible" if epsilon else "Oscillators, reversible"
+    return LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=("x", "y", "xi"), name=name)

@@ -61,7 +61,7 @@ def particle(
     conserved = {"y'": rate(1), "x' sqrt(1 + y^2)": lambda q, v: v[..., 0] * np.sqrt(1 + q[..., 1] ** 2)}
     facts = ("y' and x' sqrt(1 + y^2) are constant.", "The discrete energy settles to a constant; it does not drift.")
     v = np.array([a, b, y0 * a])
-    return Example("particle", _system(m), ("x", "y", "z"), q, v, facts, conserved, exact)
+    return Example("particle", _system(m), q, v, facts, conserved, exact)
 
 
 @functools.cache
@@ -73,4 +73,5 @@ def _system(m: float) -> LagrangeDAlembert:
     def forms(q: Array) -> Array:
         return jnp.array([[-q[1], 0.0, 1.0]])
 
-    return LagrangeDAlembert(lagrangian, forms, dimension=3)
+    names = ("x", "y", "z")
+    return LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=names, name="Nonholonomic particle")

@@ -10,8 +10,6 @@ from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.literature._example import Example, numbers, positives
 
-_NAMES = ("x", "y", "theta", "right", "left")
-
 
 def two_wheeled_robot(
     *,
@@ -91,7 +89,7 @@ def two_wheeled_robot(
         "The discrete energy settles to a constant; it does not drift.",
     )
     system = _system(m, J + m * ell**2, ell, c, R, Jw)
-    return Example(name, system, _NAMES, q, v, facts, conserved)
+    return Example(name, system, q, v, facts, conserved)
 
 
 @functools.cache
@@ -105,4 +103,5 @@ def _system(m: float, about_axle: float, ell: float, c: float, R: float, Jw: flo
         turn = R / (2 * c)
         return jnp.array([[-sin, cos, 0.0, 0.0, 0.0], [cos, sin, 0.0, -R / 2, -R / 2], [0.0, 0.0, 1.0, -turn, turn]])
 
-    return LagrangeDAlembert(lagrangian, forms, dimension=5)
+    names = ("x", "y", "theta", "right", "left")
+    return LagrangeDAlembert(lagrangian, forms, dimension=5, coordinates=names, name="Two-wheeled robot")

@@ -10,8 +10,6 @@ from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.literature._example import Example, numbers, positives
 
-_NAMES = ("x", "y", "theta", "phi")
-
 
 def roller_racer(
     *,
@@ -82,7 +80,7 @@ def roller_racer(
         "There is a momentum along the constraint, and it is not conserved.",
     )
     conserved = {} if system.is_driven else {"energy": lambda q, v: _energy(body, c, q, v)}
-    return Example(name, system, _NAMES, np.append(q, 0.0), v, facts, conserved)
+    return Example(name, system, np.append(q, 0.0), v, facts, conserved)
 
 
 def _energy(body: list[float], c: float, q: Array, v: Array) -> Array:
@@ -107,4 +105,7 @@ def _system(
         return jnp.stack([jnp.array([-sin, cos, 0.0, 0.0]), front])
 
     prescribed = {} if A is None else {3: lambda time: A * jnp.sin(Omega * time)}
-    return LagrangeDAlembert(lagrangian, axles, dimension=4, prescribed=prescribed)
+    names = ("x", "y", "theta", "phi")
+    return LagrangeDAlembert(
+        lagrangian, axles, dimension=4, prescribed=prescribed, coordinates=names, name="Roller racer"
+    )

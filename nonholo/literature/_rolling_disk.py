@@ -64,7 +64,7 @@ def rolling_disk(
     conserved = {"theta'": rate(2), "phi'": rate(3)}
     facts = ("theta' and phi' are constant, also in the midpoint rule.", "The contact point moves on a circle.")
     v = np.array([R * np.cos(q[3]) * roll, R * np.sin(q[3]) * roll, roll, turn])
-    return Example("rolling_disk", _system(*body), ("x", "y", "theta", "phi"), q, v, facts, conserved, exact)
+    return Example("rolling_disk", _system(*body), q, v, facts, conserved, exact)
 
 
 @functools.cache
@@ -76,4 +76,5 @@ def _system(m: float, R: float, rolling: float, turning: float) -> LagrangeDAlem
     def forms(q: Array) -> Array:
         return jnp.array([[1.0, 0.0, -R * jnp.cos(q[3]), 0.0], [0.0, 1.0, -R * jnp.sin(q[3]), 0.0]])
 
-    return LagrangeDAlembert(lagrangian, forms, dimension=4)
+    names = ("x", "y", "theta", "phi")
+    return LagrangeDAlembert(lagrangian, forms, dimension=4, coordinates=names, name="Rolling disk")

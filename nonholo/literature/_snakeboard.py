@@ -10,8 +10,6 @@ from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.literature._example import Example, numbers, positives, rate
 
-_NAMES = ("x", "y", "theta", "psi", "phi")
-
 
 def snakeboard(
     *,
@@ -82,7 +80,7 @@ def snakeboard(
         "The momentum along the constraint is constant.",
         "The motion ends where the wheels are crossed, at |phi| = pi/2.",
     )
-    return Example("snakeboard", _system(m, r, J0, J1), _NAMES, q, v, facts, conserved)
+    return Example("snakeboard", _system(m, r, J0, J1), q, v, facts, conserved)
 
 
 @functools.cache
@@ -100,4 +98,5 @@ def _system(m: float, r: float, J0: float, J1: float) -> LagrangeDAlembert:
 
         return jnp.stack([row(1.0), row(-1.0)])
 
-    return LagrangeDAlembert(lagrangian, forms, dimension=5)
+    names = ("x", "y", "theta", "psi", "phi")
+    return LagrangeDAlembert(lagrangian, forms, dimension=5, coordinates=names, name="Snakeboard")

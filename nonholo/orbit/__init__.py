@@ -1,5 +1,6 @@
 """The orbit: compact states of a motion and their decoding by the group. Nothing is simulated here."""
 
+from nonholo.orbit._base import AbstractOrbit
 from nonholo.orbit._crossings import AbstractEventLog, Crossings, EventLog, joined_crossings, joined_states
 from nonholo.orbit._orbit import STATES, AbstractMotion, Orbit, as_orbit
 from nonholo.orbit._poses import configurations, poses, unwrapped
@@ -8,6 +9,7 @@ __all__ = [
     "STATES",
     "AbstractEventLog",
     "AbstractMotion",
+    "AbstractOrbit",
     "Crossings",
     "EventLog",
     "Orbit",

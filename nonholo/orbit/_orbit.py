@@ -15,7 +15,8 @@ import numpy as np
 from nonholo.base.checks import error, instance, selection, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.groups import SE
+from nonholo.groups import SE, AbstractMatrixGroup
+from nonholo.orbit._base import AbstractOrbit
 from nonholo.orbit._poses import configurations, poses, unwrapped
 from nonholo.systems import System
 
@@ -35,6 +36,8 @@ class AbstractMotion(abc.ABC):
     system: System
     span: tuple[float, float] | None = None
     """The first and the last time between which `at` knows all states; None if saved states are all there is."""
+    is_measured: bool = False
+    """Whether poses were given, and everything else follows from them."""
 
     @property
     @abc.abstractmethod
@@ -73,7 +76,7 @@ class AbstractMotion(abc.ABC):
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
-class Orbit:
+class Orbit(AbstractOrbit):
     r"""A motion at K saved states, from `simulate` or `flow`.
 
     What an orbit tells is in the user's body frame, momenta in physical units; the compact states that it is made of
@@ -115,12 +118,39 @@ class Orbit:
     branch: str = "principal"
     events: Any = None
 
+    @staticmethod
+    def from_poses(system: System, time: Any, configuration: Any) -> "Orbit":
+        r"""Return the orbit of given poses, of a camera or another integrator: it has pictures, invariants and tables.
+
+        With $W_k = g_k^{-1}g_{k+1}$ and $h_k = t_{k+1} - t_k$ the momentum of a state is the discrete momentum at
+        $W_k$ over $h_k$; the displacement of the last state leads back. Momenta along the constraint, and with them
+        `body_velocity` and `energy`, are means of the discrete momenta before and after each pose: of second order
+        whatever forces act (at both ends of first order, unless there are none). Of an orbit of `simulate` all these
+        are its own. Noise of size e in the poses is noise of size e/h in velocities: nothing is smoothed. How far the
+        poses are from admissible is the `constraint_residual` of `nh.invariants`, a velocity.
+
+        Args:
+            system: What moves.
+            time: Times of the poses, strictly increasing, in steps of any length.
+            configuration: The poses, matrices (K, N, N) of the group. Small errors, up to the digits of single
+                precision, are removed: the nearest element of the group is taken.
+
+        Raises:
+            ValueError: No system on a group, fewer than two rows, times that do not increase, a matrix that is far
+                from the group (the message names its row).
+
+        Example:
+            >>> t = np.linspace(0.0, 6.0, 61)
+            >>> g = nh.SE(2).exp(np.stack([0.5 * t, t, 0 * t], axis=1))  # a circle, its tangent along the blade
+            >>> orbit = nh.Orbit.from_poses(nh.ChaplyginSleigh(1.0, 1.0, 0.5), t, g)
+            >>> orbit.body_velocity[30].round(3), bool(nh.invariants(orbit).constraint_residual < 1e-13)
+            (array([0.5, 1. , 0. ]), True)
+        """
+        return importlib.import_module("nonholo.discrete").orbit_of_poses(system, time, configuration)
+
     def __repr__(self) -> str:
         span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
         return f"<Orbit of {type(self.system).__name__}: {len(self)} states{span}, {self.outcome}>"
-
-    def __len__(self) -> int:
-        return len(self.time)
 
     def __getitem__(self, states: slice) -> "Orbit":
         """Return the orbit at a forward slice of its states."""
@@ -161,6 +191,42 @@ class Orbit:
     def system(self) -> System:
         """The system that moves."""
         return self.motion.system
+
+    @property
+    def space(self) -> AbstractMatrixGroup:
+        """The group on which it moves."""
+        return self.system.group
+
+    @property
+    def time_step(self) -> float | None:
+        """The time step of a discrete orbit; None for a flow."""
+        step = getattr(self.motion, "time_step", None)
+        return None if step is None else float(step)
+
+    @property
+    def span(self) -> tuple[float, float] | None:
+        """The first and the last time between which `at` knows all states; None if saved states are all there is."""
+        return self.motion.span
+
+    @property
+    def is_discrete(self) -> bool:
+        """Whether it has displacements: a flow has none."""
+        return self.cayley is not None
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether poses were given, and everything else follows from them."""
+        return self.motion.is_measured
+
+    @property
+    def conserves_energy(self) -> bool | None:
+        """Whether the map conserves the energy exactly; None for a flow and for given poses."""
+        return self.motion.conserves_energy
+
+    @property
+    def has_poses(self) -> bool:
+        """Whether poses were reconstructed."""
+        return self.canonical_pose is not None
 
     @property
     def restricted_momentum(self) -> Float[np.ndarray, "K k"]:
@@ -297,21 +363,9 @@ class Orbit:
         """
         return importlib.import_module("nonholo.io").orbit_to_dataset(self, decoded=decoded)
 
-    def to_pandas(self) -> Any:
-        """Return the orbit as a `pandas.DataFrame` with one column for each number of `to_dataset`, indexed by time."""
-        return importlib.import_module("nonholo.io").orbit_to_pandas(self)
-
-    def to_csv(self, path: Any, *, overwrite: bool = False) -> None:
-        """Write the times and poses to a new CSV file; `nonholo.io.orbit_to_csv` names its columns."""
-        importlib.import_module("nonholo.io").orbit_to_csv(self, path, overwrite=overwrite)
-
     def to_html(self, path: Any, *, overwrite: bool = False) -> None:
         """Write the live page of the orbit to a new HTML file, which runs in any browser; see `nh.explore`."""
         importlib.import_module("nonholo.explorer").orbit_to_html(self, path, overwrite=overwrite)
-
-    def plot(self, path: str | None = None, *, overwrite: bool = False) -> Any:
-        """Draw the overview picture of the orbit; return the matplotlib figure, saved to a new `path` if given."""
-        return importlib.import_module("nonholo.plotting").overview(self, path, overwrite=overwrite)
 
     def _posed(self) -> np.ndarray:
         if self.canonical_pose is None:

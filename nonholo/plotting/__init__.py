@@ -4,6 +4,7 @@
 """
 
 from nonholo.plotting.animation import animate
+from nonholo.plotting.comparisons import comparison, convergence
 from nonholo.plotting.geometry import (
     BranchCounts,
     BranchesPicture,
@@ -60,6 +61,8 @@ __all__ = [
     "branch_counts",
     "branch_tree",
     "branches",
+    "comparison",
+    "convergence",
     "energy_error",
     "invariant_curves",
     "locus_section",

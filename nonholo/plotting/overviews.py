@@ -10,20 +10,16 @@ from pathlib import Path
 from typing import Any, NamedTuple, Unpack, cast
 
 import numpy as np
-from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from nonholo.base.checks import error
-from nonholo.base.checks import path as checked_path
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.groups import SE, SO
-from nonholo.io import check_file
-from nonholo.orbit import Orbit
+from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plotting import motion, theme
-from nonholo.plotting.parts import drawable, is_free, time_step
+from nonholo.plotting.parts import drawable_in_time, finish_page, is_free, new_page
 from nonholo.plotting.sheets import blade_of_system, sheet_of
 from nonholo.systems import AbstractLLSystem, LLSystem, System
 
@@ -36,8 +32,30 @@ class Panel(NamedTuple):
     projection: str | None = None
 
 
-def panels_of(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
+def panels_of(orbit: AbstractOrbit, flow: AbstractOrbit | None) -> list[Panel]:
     """Return the panels of an orbit, the large one first; there is always one."""
+    if not isinstance(orbit, Orbit):
+        return _in_coordinates(orbit, flow)
+    return _of_body(orbit, cast(Orbit | None, flow))
+
+
+def _in_coordinates(orbit: AbstractOrbit, flow: AbstractOrbit | None) -> list[Panel]:
+    """Return the panels of an orbit of a Lagrange-d'Alembert system."""
+    track = motion.track_of(orbit)
+    path = []
+    if track is not None:
+        projection = "3d" if len(track.names) == 3 else None
+        path = [Panel(functools.partial(motion.draw_path, track, orbit, flow), projection=projection)]
+    shape = [Panel(functools.partial(motion.draw_shape, orbit, flow), is_timed=True)] if orbit.coordinates else []
+    velocity = Panel(functools.partial(motion.draw_velocity, orbit, flow), is_timed=True)
+    energy = Panel(functools.partial(motion.energy_error, orbit), is_timed=True)
+    residual = (
+        [Panel(functools.partial(motion.draw_residual, orbit), is_timed=True)] if orbit.system.constraints else []
+    )
+    return [*path, *shape, velocity, energy, *residual]
+
+
+def _of_body(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
     energy = Panel(functools.partial(motion.energy_error, orbit), is_timed=True)
     if orbit.system.is_wide and sheet_of(orbit.system) is None:
         return [_components(orbit, flow), energy]
@@ -107,32 +125,32 @@ def _write_mass_tensor(axes: Axes, mass_tensor: Float[np.ndarray, "3 3"]) -> Non
 _FIXED = {False: "System with a left-invariant constraint", True: "System with a right-invariant constraint"}
 
 
-def _write_head(figure: Figure, orbit: Orbit) -> None:
-    """Write what moves, and how, above the panels."""
-    line = rcParams["font.size"] / 72 / figure.get_figheight()  # in parts of the figure
-    name = theme.asked("title", _name(orbit.system))
-    figure.text(0.012, 0.985, name, va="top", fontsize="xx-large", fontweight="bold")
-    below = 0.985 - 2.8 * line * bool(name)
-    if theme.asked("annotate", True):
-        facts = "      ".join(_facts(orbit)).replace("-", "\u2212")
-        figure.text(0.012, below, facts, va="top", color=theme.QUIET)
-        below -= 1.6 * line
-    layout = ConstrainedLayoutEngine(rect=(0.004, 0.004, 0.992, below), hspace=0.05, wspace=0.03)
-    figure.set_layout_engine(layout)
-
-
-def _facts(orbit: Orbit) -> list[str]:
-    step = time_step(orbit)
-    if step is None:
-        run = f"continuous flow from time {orbit.time[0]:g} to {orbit.time[-1]:g}"
+def _facts(orbit: AbstractOrbit) -> list[str]:
+    run, step = f"from time {orbit.time[0]:g} to {orbit.time[-1]:g}", orbit.time_step
+    if orbit.is_measured:
+        run = f"{len(orbit):,} given poses {run}".replace(",", "\u2009")
+    elif step is None:
+        run = f"continuous flow {run}"
     else:
-        steps = (len(orbit) - 1) * orbit.save_every
+        steps = round(abs(orbit.time[-1] - orbit.time[0]) / step)
         run = f"{steps:,} step{'s' * (steps != 1)} of $h$ = {step:g}".replace(",", "\u2009")
     stopped = [] if orbit.outcome == Outcome.successful else [f"stopped: {orbit.outcome}"]
-    return [_parameters(orbit.system), run, *stopped]
+    return [_parameters(orbit.system) if isinstance(orbit, Orbit) else _form(orbit), run, *stopped]
 
 
-def _name(system: System) -> str:
+def _form(orbit: AbstractOrbit) -> str:
+    """Say where an orbit moves that no system of bodies describes, and how many constraints it has."""
+    names = [motion.symbol(name) for name in orbit.coordinates]
+    where = ", ".join(names if len(names) <= 7 else [*names[:3], "...", names[-1]]) or str(orbit.space)
+    s = orbit.system.constraints
+    return f"{where},  {s or 'no'} constraint{'s' * (s != 1)}"
+
+
+def _name(orbit: AbstractOrbit) -> str:
+    return _name_of_body(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name
+
+
+def _name_of_body(system: System) -> str:
     form = system.normal_form
     if form is not None:
         sleigh = "Chaplygin sleigh" if form.is_planar else "Multidimensional sleigh"
@@ -168,9 +186,9 @@ _LARGER = 2.2  # times as high as a panel against time
 
 @theme.styled
 def overview(
-    orbit: Orbit,
+    orbit: AbstractOrbit,
     path: str | Path | None = None,
-    flow: Orbit | None = None,
+    flow: AbstractOrbit | None = None,
     *,
     overwrite: bool = False,
     **look: Unpack[theme.Look],
@@ -182,6 +200,9 @@ def overview(
     on their energy sphere where they are three, against time otherwise. With a right-invariant constraint velocity and
     energy need poses, and are left out without them. Color is time in all panels; the strip under a panel against time
     is the key.
+
+    Of a Lagrange-d'Alembert system there are its path, where coordinates named x and y, or a group, say where it is,
+    the other coordinates, velocities, the error of the energy and the residual of the constraint.
 
     Args:
         orbit: An orbit of any system, discrete or continuous.
@@ -200,12 +221,12 @@ def overview(
         >>> [axes.get_title(loc="left") for axes in nh.plot.overview(orbit).axes[:2]]
         ['Track of the blade', 'Phase portrait']
     """
-    smooth = drawable("overview(orbit=...)", orbit)
-    flow = None if flow is None else drawable("overview(flow=...)", flow)
-    figure = theme.new_figure(_SIZE)
-    if path is not None:
-        check_suffix(figure, path)
-        check_file(path, overwrite=overwrite, where="overview(path=...)")
+    smooth = drawable_in_time("overview(orbit=...)", orbit)
+    flow = None if flow is None else drawable_in_time("overview(flow=...)", flow)
+    if flow is not None and flow.space != orbit.space:
+        remedy = "Pass a motion of the same system."
+        raise error("overview(flow=...)", f"move in {orbit.space}", f"{flow.space}", remedy)
+    figure = new_page("overview", _SIZE, path, overwrite=overwrite)
     panels = panels_of(smooth, flow)
     axes = _axes(figure, panels)
     for panel, own in zip(panels, axes, strict=True):
@@ -214,18 +235,7 @@ def overview(
     if panels[0].is_timed:
         axes[0].set_xlabel("time")
     _share_time([own for panel, own in zip(panels[1:], axes[1:], strict=True) if panel.is_timed])
-    _write_head(figure, orbit)
-    if path is not None:
-        figure.savefig(path)
-    return figure
-
-
-def check_suffix(figure: Figure, path: str | Path) -> None:
-    """Refuse a path whose suffix is no picture format."""
-    known = figure.canvas.get_supported_filetypes()
-    if checked_path("overview(path=...)", path).suffix[1:].lower() not in known:
-        remedy = "Use a path that ends in .png, .svg or .pdf."
-        raise error("overview(path=...)", "end in a picture format", f"{str(path)!r}", remedy)
+    return finish_page(figure, _name(orbit), _facts(orbit), path)
 
 
 def _axes(figure: Figure, panels: list[Panel]) -> list[Axes]:
@@ -246,4 +256,5 @@ def _share_time(panels: list[Axes]) -> None:
     lowest.set_xlabel("time")
     for axes in upper:
         axes.sharex(lowest)
+        axes.set_xlabel("")
         axes.tick_params(labelbottom=False)

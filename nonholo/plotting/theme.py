@@ -9,6 +9,7 @@ import contextvars
 import dataclasses
 import functools
 import inspect
+import re
 import weakref
 from collections.abc import Callable
 from pathlib import Path
@@ -26,7 +27,7 @@ from matplotlib.text import Text
 
 from nonholo.base.checks import error, flag, instance, pair, positive, shown, text
 from nonholo.base.types import Float
-from nonholo.orbit import Orbit
+from nonholo.orbit import AbstractOrbit, Orbit
 
 STABLE: str
 UNSTABLE: str
@@ -63,6 +64,7 @@ _COLORS: dict[str, tuple[Any, Any]] = {  # on a light and on a dark background
     "INSIDE": ("#dbe9f3", "#1d3447"),
     "TIME": (_shades(0.0, 0.93), _shades(0.5, 1.0)),
 }
+_COMMANDS, _SIGNS = re.compile(r"\\[A-Za-z]+"), re.compile(r"[${}_^]")  # of formulas
 _PAPERS = "white", "#101216"  # of new figures
 _DARK = 0.18  # luminance from which black is easier to read than white
 _SETTLED = 0.01  # part of the largest momentum
@@ -300,14 +302,14 @@ def _withdraw(axes: Axes | None) -> None:
             legend_above(axes)
 
 
-def time_scale(orbit: Orbit) -> Normalize:
+def time_scale(orbit: AbstractOrbit) -> Normalize:
     """Return the map from times of an orbit to the colors of `TIME`.
 
     The colors are spent on the transition and as long again, so that they do not fade in the uniform motion of a long
     run; earlier and later times have the colors of the ends.
     """
     first, last = float(orbit.time.min()), float(orbit.time.max())
-    momentum = orbit.reduced_momentum
+    momentum = orbit.reduced_momentum if isinstance(orbit, Orbit) else orbit.body_velocity
     near = _SETTLED * np.abs(momentum).max(initial=0.0)
     left = np.flatnonzero(np.abs(momentum - momentum[0]).max(axis=1, initial=0.0) > near)
     settled = np.flatnonzero(np.abs(momentum - momentum[-1]).max(axis=1, initial=0.0) > near)
@@ -318,7 +320,7 @@ def time_scale(orbit: Orbit) -> Normalize:
     return Normalize(first, last if last > first else first + 1.0, clip=True)
 
 
-def time_colors(orbit: Orbit, time: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K 4"]:
+def time_colors(orbit: AbstractOrbit, time: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K 4"]:
     """Return the colors of an orbit at these times: of time, or the one that is asked for."""
     shades = __getattr__("TIME")(time_scale(orbit)(time))
     return np.broadcast_to(to_rgba(asked("color", None)), shades.shape).copy() if asked("color", None) else shades
@@ -333,7 +335,7 @@ def component_colors(count: int) -> list[Any]:
     return [tuple(shade) for shade in matplotlib.colormaps["plasma"](np.linspace(*ends, count))]
 
 
-def end_colors(orbit: Orbit) -> list[tuple[float, float, float, float]]:
+def end_colors(orbit: AbstractOrbit) -> list[tuple[float, float, float, float]]:
     """Return the colors of the first and the last state."""
     first, last = (tuple(color) for color in time_colors(orbit, orbit.time[[0, -1]]))
     return [first, last]
@@ -342,7 +344,7 @@ def end_colors(orbit: Orbit) -> list[tuple[float, float, float, float]]:
 component_colours, end_colours = component_colors, end_colors  # names they had, which still work
 
 
-def mark_time(axes: Axes, orbit: Orbit) -> LineCollection | None:
+def mark_time(axes: Axes, orbit: AbstractOrbit) -> LineCollection | None:
     """Lay the colors of time along the bottom of axes whose abscissa is time: the key to the other panels."""
     if len(orbit) < 2 or asked("color", None):
         return None
@@ -399,7 +401,8 @@ def _fits(axes: Axes, labels: list[str]) -> bool:
     """Tell whether a title, at the left or in the middle, and a legend in one line do not meet."""
     left, middle = axes.get_title(loc="left"), axes.get_title()
     width = axes.get_window_extent().width / axes.figure.dpi / _scale()
-    beside = (2 if middle else 1) * sum(0.067 * len(label) + 0.3 for label in labels)
+    seen = (_SIGNS.sub("", _COMMANDS.sub("x", label)) for label in labels)
+    beside = (2 if middle else 1) * sum(0.067 * len(label) + 0.3 for label in seen)
     return not left + middle or 0.085 * len(left + middle) <= width - beside
 
 

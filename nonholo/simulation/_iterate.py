@@ -9,6 +9,7 @@ from nonholo.base.results import Outcome, OutcomeError
 from nonholo.discrete import BranchRule, Discretization
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
+from nonholo.simulation._simulate import refuse_what_bodies_have
 from nonholo.simulation.events import Watch, computed_block, searched_first, watched
 from nonholo.simulation.runs import (
     CompiledRun,
@@ -22,11 +23,11 @@ from nonholo.simulation.runs import (
     refuse_too_long,
 )
 from nonholo.simulation.stores import rows_of_block
-from nonholo.systems import Start
+from nonholo.systems import AbstractCoordinateDiscretization, Start
 
 
 def iterate(
-    discrete: Discretization,
+    discrete: Discretization | AbstractCoordinateDiscretization,
     *,
     steps: int,
     block_steps: int | None = None,
@@ -42,7 +43,7 @@ def iterate(
     events: Any = None,
     throw: bool = True,
     progress: bool = False,
-) -> Iterator[Orbit]:
+) -> Iterator[Any]:
     """Run the discrete map as `simulate` does, and give its orbit block by block, in bounded memory.
 
     The blocks together are the orbit of `simulate`, bit for bit: no state is given twice, the first state of a block
@@ -50,7 +51,8 @@ def iterate(
     n > 3, the last bits of these products can depend on how many rows are decoded at once; the motion does not.)
 
     Args:
-        discrete: The discretized system, with a compiled step.
+        discrete: The discretized system, with a compiled step; or a discretized `LagrangeDAlembert`, which takes what
+            its `simulate` takes.
         steps: Number of steps N.
         block_steps: Steps of a block, a multiple of `save_every`; by default blocks of a few megabytes.
         body_velocity: As in `simulate`, and so are the others.
@@ -80,9 +82,13 @@ def iterate(
         [400, 400, 201]
     """
     flags("iterate", reconstruct=reconstruct, throw=throw, progress=progress)
-    how = {"branch": branch, "reconstruct": reconstruct, "backend": backend, "throw": throw, "progress": progress}
+    how = {"branch": branch, "reconstruct": reconstruct, "backend": backend}
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
-    options = RunOptions.of(discrete, steps=steps, save_every=save_every, **how)
+    if isinstance(discrete, AbstractCoordinateDiscretization):
+        refuse_what_bodies_have("iterate", restricted_velocity=restricted_velocity, events=events, **how)
+        rest = {"save_every": save_every, "throw": throw, "progress": progress}
+        return discrete.iterate(configuration=configuration, steps=steps, block_steps=block_steps, **starts, **rest)
+    options = RunOptions.of(discrete, steps=steps, save_every=save_every, throw=throw, progress=progress, **how)
     start = Start.of("simulate", configuration, **starts, restricted_velocity=restricted_velocity)
     return _blocks(discrete, start, options, block_steps, events)
 

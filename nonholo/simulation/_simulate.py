@@ -24,6 +24,11 @@ from nonholo.systems import AbstractCoordinateDiscretization, OrbitT, Start, ref
 _DEFAULTS = {"branch": "principal", "reconstruct": True, "backend": "auto"}  # of what a system in coordinates lacks
 
 
+def refuse_what_bodies_have(owner: str, **given: Any) -> None:
+    """Refuse what runs of systems in coordinates do not have, unless it is the default."""
+    refuse_in_coordinates(owner, **{name: (value, _DEFAULTS.get(name)) for name, value in given.items()})
+
+
 @overload
 def simulate(
     discrete: Discretization,
@@ -145,8 +150,7 @@ def simulate(
     how = {"branch": branch, "reconstruct": reconstruct, "backend": backend}
     kept = {"store": store, "checkpoint_every": checkpoint_every, "scenario": scenario}
     if isinstance(discrete, AbstractCoordinateDiscretization):
-        refused = {"restricted_velocity": restricted_velocity, **how, "events": events, **kept}
-        refuse_in_coordinates("simulate", **{name: (value, _DEFAULTS.get(name)) for name, value in refused.items()})
+        refuse_what_bodies_have("simulate", restricted_velocity=restricted_velocity, **how, events=events, **kept)
         return discrete.simulate(configuration=configuration, **starts, **common)
     options = RunOptions.of(discrete, **common, **how)
     start = Start.of("simulate", configuration, **starts, restricted_velocity=restricted_velocity)

@@ -1,6 +1,7 @@
 """The interface of systems in coordinates, which discretize, run and flow by themselves."""
 
 import abc
+from collections.abc import Iterator
 from typing import Any, Generic, TypeVar
 
 from nonholo.base.checks import error, refuse_given
@@ -26,6 +27,22 @@ class AbstractCoordinateDiscretization(abc.ABC, Generic[OrbitT]):
         progress: bool = False,
     ) -> OrbitT:
         """Run the discrete map."""
+
+    @abc.abstractmethod
+    def iterate(
+        self,
+        *,
+        configuration: Any,
+        steps: int,
+        block_steps: int | None = None,
+        body_velocity: Any = None,
+        displacement: Any = None,
+        momentum: Any = None,
+        save_every: int = 1,
+        throw: bool = True,
+        progress: bool = False,
+    ) -> Iterator[OrbitT]:
+        """Run the discrete map block by block."""
 
 
 class AbstractCoordinateSystem(abc.ABC, Generic[DiscretizationT, OrbitT]):

@@ -16,9 +16,12 @@ def calls() -> list[Call]:
 
 def _of_systems() -> list[Call]:
     system, orbit = SLEIGH.system, nh.simulate(SLEIGH, body_velocity=(1.0, 0.3, 0.0), steps=20)
+    halved = nh.simulate(nh.discretize(system, float(SLEIGH.time_step) / 2), body_velocity=(1.0, 0.3, 0.0), steps=40)
     return [
         call("asymptotics", nh.asymptotics, subject=thing(system)),
         call("asymptotics [orbit]", nh.asymptotics, subject=thing(orbit)),
+        call("compare", nh.compare, orbit=thing(orbit), flow=thing(orbit)),
+        call("compare [several]", nh.compare, orbit=thing([orbit, halved]), flow=thing(orbit)),
         call("conserved_momenta", nh.conserved_momenta, system=thing(system)),
         call("equilibria", nh.equilibria, system=thing(system), energy=positive(1.0)),
         call(

@@ -83,12 +83,17 @@ def _of_maps() -> list[Call]:
 
 def _of_others() -> list[Call]:
     orbit = nh.simulate(SLEIGH, body_velocity=(6.0, 0.3, 0.0), steps=300)
+    slow = nh.simulate(nh.discretize(SLEIGH.system, 0.05), body_velocity=(6.0, 0.3, 0.0), steps=600)
+    errors, orders = thing(nh.compare(orbit, slow)), thing(nh.compare([orbit, slow], slow))
+    saved = {"path": path("new.png", none=True)}
     section, across = nh.crossings(orbit, nh.Event(turned)), function(moving)
     with tempfile.TemporaryDirectory() as folder:
         result = nh.sweep(shelf.task, shelf.DESIGN, f"{folder}/new.zarr", "synchronous").load()
     name = text(None, none=True)
     labels = anything(("one", "other"))
     return [
+        _drawn("comparison", comparison=errors, **saved),
+        _drawn("convergence", convergence=orders, **saved),
         _drawn("section", crossings=thing(section), across=across, up=across, axes=anything(None), labels=labels),
         _drawn("sweep_map", result=thing(result), quantity=text("total"), x=name, y=name),
     ]

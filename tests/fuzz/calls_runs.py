@@ -129,10 +129,13 @@ def _results() -> list[Call]:
     orbit = nh.simulate(TOP, restricted_velocity=(0.3, 0.2), steps=4)
     flow = nh.flow(TOP.system, restricted_velocity=(0.3, 0.2), times=(0.0, 1.0))
     batch = nh.ensemble(TOP, restricted_velocity=np.array([[0.3, 0.2], [0.1, 0.1]]), steps=4, save_every=1)
+    elements = array(orbit.configuration, "batch")
+    poses = {"system": thing(orbit.system), "time": array(orbit.time, "any"), "configuration": elements}
     return [
         call("Ensemble.orbit", batch.orbit, member=integer(1)),
         call("Orbit.at", flow.at, times=array([0.0, 0.7], "any")),
         call("Orbit.chosen", orbit.chosen, states=anything(slice(2))),
+        call("Orbit.from_poses", nh.Orbit.from_poses, **poses),
         call("Orbit.to_csv", orbit.to_csv, path=path("new.csv"), overwrite=flag(False)),
         call("Orbit.to_html", orbit.to_html, path=path("new.html"), overwrite=flag(False)),
         call("explore", by_position(nh.explore), value=thing(orbit)),

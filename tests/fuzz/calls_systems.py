@@ -113,18 +113,20 @@ def _methods_in_space() -> list[Call]:
 
 def _in_coordinates() -> list[Call]:
     make, action = nh.GroupLagrangeDAlembert, nh.mass_tensor_lagrangian(nh.SE(2), np.eye(3))
+    named = {"coordinates": anything(("x", "y")), "name": text("particle"), "slow": True}
     free, spring = nh.LagrangeDAlembert(_kinetic, None, dimension=2), {"configuration": array([0.1, 0.2])}
     moving: dict[str, Argument] = {"body_velocity": array([0.5, 1.0])}
     given: dict[str, Argument] = {"lagrangian": function(_kinetic), "constraint_forms": function(None, none=True)}
     times = array([0.0, 0.1, 0.2], "any")
     tolerances = {"rtol": positive(1e-8), "atol": positive(1e-10)}
     pair = {"q": array([0.0, 0.0]), "q_next": array([1.0, 2.0]), "time_step": positive(0.5)}
-    discrete = free.discretize(0.1)
+    discrete, blocks = free.discretize(0.1), {"steps": count(3), "block_steps": count(2, none=True)}
     return [
-        call("LagrangeDAlembert", nh.LagrangeDAlembert, **given, dimension=count(2), rule=text("midpoint"), slow=True),
+        call("LagrangeDAlembert", nh.LagrangeDAlembert, **given, dimension=count(2), rule=text("midpoint"), **named),
         call("LagrangeDAlembert.regularity", free.regularity, **pair, slow=True),
         call("LagrangeDAlembert.discretize", free.discretize, time_step=positive(0.1), slow=True),
         call("LagrangeDAlembert.flow", free.flow, **spring, **moving, times=times, **tolerances, slow=True),
+        call("LagrangeDAlembert.iterate", discrete.iterate, **spring, **moving, **blocks, slow=True),
         call("LagrangeDAlembert.simulate", discrete.simulate, **spring, **moving, steps=count(3), slow=True),
         call(
             "GroupLagrangeDAlembert",

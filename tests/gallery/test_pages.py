@@ -14,12 +14,13 @@ PAGES = (
     "theory/right-invariant.md",
     "how-to/choose-a-branch-rule.md",
     "how-to/choose-a-discretisation.md",
+    "how-to/compare-motions.md",
     "how-to/run-an-ensemble.md",
     "how-to/style-a-picture.md",
 )
 
 
-@pytest.mark.profile("paper", keep=["theory/*", "how-to/run-an-ensemble.md", "how-to/choose-a-branch-rule.md"])
+@pytest.mark.profile("paper", cases=["how-to/choose-a-discretisation.md"])
 @pytest.mark.parametrize("page", PAGES)
 def test_the_blocks_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The blocks of a page, one after another in one namespace, raise nothing."""

@@ -33,6 +33,11 @@ def flow(**changes) -> nh.lagrange_dalembert.CoordinateOrbit:  # noqa: ANN003
     return nh.flow(SYSTEM, **({"configuration": Q, "body_velocity": V, "times": (0.0, 1.0)} | changes))
 
 
+def blocks(**changes) -> object:  # noqa: ANN003
+    """Return the iterator over a short run; it checks its arguments before any block is asked for."""
+    return nh.iterate(nh.discretize(SYSTEM, 0.1), **({"configuration": Q, "body_velocity": V, "steps": 4} | changes))
+
+
 def test_public_doors_are_the_methods() -> None:
     """`discretize`, `simulate` and `flow` give what the system's own methods give."""
     start = {"configuration": Q, "body_velocity": V}
@@ -54,6 +59,21 @@ def test_integer_forms_are_forms() -> None:
     assert np.abs(orbit.configuration[-1] - [1.0, 2.0, 1.0]).max() <= 1e-14
 
 
+def test_coordinates_have_names() -> None:
+    """Numbered ones by default, or words of the user's own."""
+    assert SYSTEM.coordinates == ("q1", "q2", "q3")
+    assert nh.LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=["x", "y", "z"]).coordinates == tuple("xyz")
+
+
+@pytest.mark.parametrize(
+    "names", [("x", "y"), ("x", "y", "x"), ("x", "y", "energy"), ("x", "y", "a b"), "xyz", (1, 2, 3), 5]
+)
+def test_what_cannot_name_columns_is_refused(names: object) -> None:
+    """Too few, twice the same, a name of another column, no word, one text, numbers."""
+    with pytest.raises(ValueError, match=r"LagrangeDAlembert\(coordinates=...\)` must be 3 different words"):
+        nh.LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=names)
+
+
 FOREIGN = {
     "difference": (lambda: nh.discretize(SYSTEM, 0.1, difference="matrix"), r"discretize\(difference"),
     "constraint": (lambda: nh.discretize(SYSTEM, 0.1, constraint=np.linalg.norm), r"discretize\(constraint"),
@@ -62,6 +82,8 @@ FOREIGN = {
     "branch": (lambda: run(branch="largest"), r"simulate\(branch"),
     "reconstruct": (lambda: run(reconstruct=False), r"simulate\(reconstruct"),
     "backend": (lambda: run(backend="numba"), r"simulate\(backend"),
+    "events of blocks": (lambda: blocks(events=[abs]), r"iterate\(events"),
+    "branch of blocks": (lambda: blocks(branch="largest"), r"iterate\(branch"),
     "method": (lambda: flow(method="closed_form"), r"flow\(method"),
 }
 
@@ -86,6 +108,8 @@ BAD = {
     "displacement": (lambda: run(body_velocity=None, displacement=(1.0, 1.0, 0.0)), "nearest admissible displacement"),
     "steps": (lambda: run(steps=0), "must be a positive integer"),
     "save_every": (lambda: run(save_every=1.5), "must be a positive integer"),
+    "block of no steps": (lambda: blocks(block_steps=0), r"iterate\(block_steps=...\)` must be a positive integer"),
+    "block": (lambda: blocks(block_steps=5, save_every=2), r"a multiple of save_every = 2. Got 5"),
     "times": (lambda: flow(times=(0.0, 1.0, 1.0)), "strictly"),
     "time step": (lambda: nh.discretize(SYSTEM, -0.1), r"discretize\(time_step=...\)` must be positive"),
     "traced": (lambda: jax.jit(lambda h: nh.discretize(SYSTEM, h).time_step)(0.1), "outside jax.jit"),

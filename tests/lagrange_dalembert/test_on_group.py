@@ -338,3 +338,28 @@ def test_a_mass_tensor_needs_a_rigid_body() -> None:
     """On other groups a mass tensor is refused with the remedy."""
     with pytest.raises(ValueError, match="SO"):
         mass_tensor_lagrangian(nh.Translations(2), np.eye(3))
+
+
+def test_orbits_on_groups_have_tables_files_and_pictures(tmp_path) -> None:  # noqa: ANN001
+    """Poses are columns x, y, heading; the CSV and the path in the picture hold them, too."""
+    orbit = run(0.1, 10)
+    table = orbit.to_pandas()
+    assert np.array_equal(table[["x", "y"]].to_numpy(), orbit.configuration[:, :2, 2])
+    assert np.array_equal(table[[f"momentum_{i}" for i in range(3)]].to_numpy(), orbit.momentum)
+    orbit.to_csv(tmp_path / "poses.csv")
+    rows = np.loadtxt(tmp_path / "poses.csv", delimiter=",", skiprows=1)
+    assert np.array_equal(rows, np.column_stack([orbit.time, table[["x", "y", "heading"]].to_numpy()]))
+    assert nh.invariants(orbit).group_residual <= 1e-15
+    panels = orbit.plot().axes
+    assert np.array_equal(np.ma.getdata(panels[0].collections[0].get_offsets()), orbit.configuration[:, :2, 2])
+    titles = ["Reference point", "Body velocity", "Energy error", "Residual of the constraint"]
+    assert [axes.get_title(loc="left") for axes in panels] == titles
+
+
+def test_blocks_on_groups_are_the_run() -> None:
+    """Bit for bit, as in coordinates."""
+    start = {**START, "body_velocity": admissible(0.9, 1.0)}
+    blocks = list(nh.iterate(MIXED.discretize(0.1), **start, steps=10, block_steps=4))
+    assert [len(block) for block in blocks] == [4, 4, 3]
+    for rows in ("time", "configuration", "displacement", "momentum", "multipliers"):
+        assert np.array_equal(np.concatenate([getattr(each, rows) for each in blocks]), getattr(run(0.1, 10), rows))

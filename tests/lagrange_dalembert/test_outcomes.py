@@ -41,6 +41,19 @@ def test_the_error_names_the_step_and_carries_the_orbit() -> None:
     assert len(caught.value.orbit) == 6
 
 
+def test_blocks_end_where_the_branch_folds() -> None:
+    """The good steps come first; then the run raises, or the last block says why it ends."""
+    how = {"configuration": [0.0], "body_velocity": [0.1], "steps": 20, "block_steps": 4}
+    blocks = FOLDING.discretize(1.0).iterate(**how)
+    assert [len(next(blocks)), len(next(blocks))] == [4, 2]
+    with pytest.raises(nh.OutcomeError, match=r"Step 6 of 20 \(time_step 1\): no_real_branch"):
+        next(blocks)
+    *good, last = FOLDING.discretize(1.0).iterate(**how, throw=False)
+    assert [each.outcome for each in (*good, last)] == [nh.Outcome.successful, nh.Outcome.no_real_branch]
+    with pytest.raises(nh.OutcomeError, match=r"Start of the run.*no_real_branch"):
+        next(FOLDING.discretize(1.0).iterate(**how | {"body_velocity": [1.5]}))
+
+
 @pytest.mark.parametrize("start", [{"body_velocity": [1.5]}, {"displacement": [np.pi / 2]}], ids=["beyond", "at"])
 def test_a_start_at_or_beyond_the_fold_has_no_branch(start: dict) -> None:
     """A momentum above the largest one, and the fold itself, where the matrix is singular to rounding."""

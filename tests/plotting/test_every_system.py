@@ -7,7 +7,7 @@ import pytest
 from plotting.runs import body_tensor, made_up, run_of
 
 import nonholo as nh
-from nonholo.plotting.motion._time_series import _velocity_names
+from nonholo.plotting.motion._time_series import velocity_names
 from nonholo.plotting.overviews import panels_of
 from nonholo.systems import SYSTEMS
 
@@ -237,4 +237,4 @@ def test_animations_of_other_systems_are_refused(name: str, tmp_path: object) ->
 @pytest.mark.parametrize("group", [nh.SO(2), nh.SO(3), nh.SO(12), nh.SE(2), nh.SE(3), nh.SE(4), _PRODUCT], ids=repr)
 def test_one_name_for_each_component(group: object) -> None:
     """Every component of a velocity has its own name."""
-    assert len(set(_velocity_names(group))) == group.dim
+    assert len(set(velocity_names(group))) == group.dim

@@ -17,10 +17,12 @@ from plotting.runs import MASS_TENSOR, run_of, sleigh_run, top_run
 
 import nonholo as nh
 import nonholo.plotting.geometry._locus_section
+from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.plotting import theme
 
 _SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3), 0.5)
 _TOP = nh.discretize(nh.SuslovTop(MASS_TENSOR), 0.5)
+_NOTHING: dict[str, Any] = {"title": "", "legend": False, "annotate": False}
 _START = nh.SE(2).exp(np.array([0.3, -0.6, 0.0]))
 
 
@@ -86,7 +88,7 @@ def _contrast(color: Any, paper: Any) -> float:
 def test_every_picture_takes_the_same_keywords() -> None:
     """All functions that draw take `Look`, and refuse what it does not have as functions do."""
     functions = {name for name in nh.plot.__all__ if inspect.isfunction(getattr(nh.plot, name))}
-    assert functions - {"overview", "animate", "sweep_map"} == set(PICTURES)
+    assert functions - {"overview", "animate", "sweep_map", "comparison", "convergence"} == set(PICTURES)
     for name in functions:
         assert "look" in inspect.signature(getattr(nh.plot, name)).parameters, name
     assert _titles(PICTURES["energy_error"](**dict.fromkeys(theme.Look.__annotations__)).axes) == {"Energy error"}
@@ -257,6 +259,40 @@ def test_the_overview_obeys(sleigh_orbit: nh.Orbit) -> None:
     assert not any(_words(axes) or axes.get_legend() for axes in figure.axes)
     assert np.allclose(figure.axes[0].collections[0].get_facecolor(), to_rgba("C3"))
     assert theme.luminance(figure.get_facecolor()) < 0.01
+
+
+def test_pages_of_comparisons_obey() -> None:
+    """The title is that of the page, panels keep theirs; words and legends go, colors and background are asked for."""
+    sleigh, start = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3), {"body_velocity": (0.5, -2.0, 0.0)}
+    orbits = [nh.simulate(nh.discretize(sleigh, 4 / steps), **start, steps=steps) for steps in (100, 200)]
+    flow = nh.flow(sleigh, **start, times=(0.0, 4.0))
+    one, order = nh.compare(orbits[0], flow), nh.compare(orbits, flow)
+    figure = nh.plot.comparison(one, title="Mine", label="this one", color="C3", dark=True, size=(5, 6))
+    assert figure.texts[0].get_text() == "Mine"
+    assert [_titles(axes).pop() for axes in figure.axes] == ["Pose", "Momentum along admissible directions", "Energy"]
+    assert all(to_rgba(axes.lines[0].get_color()) == to_rgba("C3") for axes in figure.axes)
+    assert all(axes.get_legend().get_texts()[0].get_text() == "this one" for axes in figure.axes)
+    assert theme.luminance(figure.get_facecolor()) < 0.01
+    assert figure.get_size_inches().tolist() == [5.0, 6.0]
+    named = nh.plot.convergence(order, label="this one").axes[0].get_legend().get_texts()
+    assert named[0].get_text() == "this one pose: order 2.00"
+    for figure in (nh.plot.comparison(one, **_NOTHING), nh.plot.convergence(order, **_NOTHING)):
+        assert not any(_words(axes) or axes.get_legend() for axes in figure.axes)
+        assert [text.get_text() for text in figure.texts] == [""]
+
+
+def test_the_overview_in_coordinates_obeys() -> None:
+    """As that of bodies."""
+    spring = LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=2, coordinates=("x", "y"))
+    orbit = nh.simulate(nh.discretize(spring, 0.1), configuration=(1, 0), body_velocity=(0, 1), steps=40)
+    figure = nh.plot.overview(orbit, title="Mine", legend=False, annotate=False, color="C3", dark=True)
+    assert [text.get_text() for text in figure.texts] == ["Mine"]
+    assert [_titles(axes).pop() for axes in figure.axes] == ["Path", "Coordinates", "Velocity", "Energy error"]
+    assert not any(_words(axes) or axes.get_legend() for axes in figure.axes)
+    assert np.allclose(figure.axes[0].collections[0].get_facecolor(), to_rgba("C3"))
+    assert theme.luminance(figure.get_facecolor()) < 0.01
+    named = nh.plot.overview(orbit, label="this one").axes[0].get_legend().get_texts()
+    assert [text.get_text() for text in named] == ["this one"]
 
 
 def test_text_stays_text_in_svg(sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:

@@ -1,14 +1,15 @@
 """Quantities that an orbit should keep, measured: energy, constraint, group, reversibility."""
 
 import dataclasses
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
-from nonholo.base.checks import error
+from nonholo.base.checks import error, instance
 from nonholo.base.results import Outcome
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization, reversal_defects
-from nonholo.orbit import Orbit, as_orbit
+from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.systems import NormalForm
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
@@ -21,14 +22,15 @@ class Invariants:
 
     Attributes:
         states: Saved states.
-        steps: Steps they span (0 for a flow).
+        steps: Steps they span (0 for a flow); of given poses the times between them.
         energy_drift: Largest change of the reduced constrained energy, relative to it (absolute at rest). Under forces
             what is left of the balance: the largest change of the energy less the work of the force, relative to the
-            largest energy.
+            largest energy. Of a driven system in coordinates, whose balance is not known, the change of its energy.
         constraint_residual: Largest forbidden part of (W - W^-1)/2 of a displacement, of log W where the variety is
-            exp d alone, or of a velocity; where the variety is given by equations, their largest residual.
+            exp d alone, or of a velocity, of a flow and of given poses; where the variety is given by equations, and in
+            coordinates, their largest residual.
         group_residual: Largest distance of a pose from the group.
-        reversal_defect: Largest relative miss of one step forward and back.
+        reversal_defect: Largest relative miss of one step forward and back; not measured in coordinates.
         largest_step_angle: In degrees.
         outcome: How the run ended.
         work: What the force did on the whole, minus what friction dissipated; None of a free system.
@@ -45,7 +47,7 @@ class Invariants:
     work: float | None = None
 
 
-def invariants(orbit: Orbit) -> Invariants:
+def invariants(orbit: AbstractOrbit) -> Invariants:
     """Measure what an orbit should keep.
 
     Raises:
@@ -57,9 +59,28 @@ def invariants(orbit: Orbit) -> Invariants:
         >>> invariants(orbit).energy_drift < 1e-14
         True
     """
-    as_orbit("invariants(orbit=...)", orbit, "one in coordinates has energy and constraint_residual itself.")
-    if len(orbit) == 0:
-        raise error("invariants(orbit=...)", "have at least one state", str(orbit), "Its outcome says why it has none.")
+    where, remedy = "invariants(orbit=...)", "Pass what `simulate` or `flow` returned."
+    if len(instance(where, orbit, AbstractOrbit, "be an orbit", remedy)) == 0:
+        raise error(where, "have at least one state", str(orbit), "Its outcome says why it has none.")
+    return _of_body(orbit) if isinstance(orbit, Orbit) else _in_coordinates(orbit)
+
+
+def _in_coordinates(orbit: Any) -> Invariants:
+    h, duration = orbit.time_step, abs(orbit.time[-1] - orbit.time[0])
+    on_group = None if orbit.coordinates else float(np.max(orbit.space.residual(orbit.configuration)))
+    return Invariants(
+        states=len(orbit),
+        steps=0 if h is None else round(duration / h),
+        energy_drift=_energy_drift(orbit.energy, 0.0, forced=False),
+        constraint_residual=float(orbit.constraint_residual.max()),
+        group_residual=on_group,
+        reversal_defect=None,
+        largest_step_angle=None,
+        outcome=orbit.outcome,
+    )
+
+
+def _of_body(orbit: Orbit) -> Invariants:
     group = orbit.system.group
     stride = max(1, len(orbit) // (_SAMPLED if group.dim == 3 else _SAMPLED_LARGE))
     sample = orbit[::stride] if stride > 1 else orbit
@@ -67,29 +88,31 @@ def invariants(orbit: Orbit) -> Invariants:
     work, forced = orbit.work, orbit.system.forces is not None
     return Invariants(
         states=len(orbit),
-        steps=0 if discrete is None else (len(orbit) - 1) * orbit.save_every,
+        steps=0 if orbit.cayley is None else (len(orbit) - 1) * orbit.save_every,
         energy_drift=_energy_drift(orbit.energy, work, forced=forced),
         constraint_residual=float(np.abs(orbit.motion.constraint_residual(sample)).max(initial=0.0)),
         group_residual=None if orbit.canonical_pose is None else _group_residual(sample),
         reversal_defect=None if discrete is None else _reversal_defect(discrete, sample),
-        largest_step_angle=None if discrete is None else _largest_angle(discrete, sample),
+        largest_step_angle=None if orbit.cayley is None else _largest_angle(sample),
         outcome=orbit.outcome,
         work=float(work[-1]) if forced else None,
     )
 
 
-def _energy_drift(energy: np.ndarray, work: np.ndarray, *, forced: bool) -> float:
+def _energy_drift(energy: Float[np.ndarray, "K"], work: Any, *, forced: bool) -> float:
     size = np.abs(energy if forced else energy[0]).max()
     return float(np.abs(energy - energy[0] - work).max() / (size or 1.0))
 
 
-def _largest_angle(discrete: Discretization, orbit: Orbit) -> float:
-    group, y = discrete.system.group, orbit.canonical_chart
-    if discrete.system.is_wide:
-        turning = len(cast(NormalForm, discrete.system.normal_form).coupling)
+def _largest_angle(orbit: Orbit) -> float:
+    system, y, motion = orbit.system, orbit.canonical_chart, orbit.motion
+    if system.is_wide:
+        turning = len(cast(NormalForm, system.normal_form).coupling)
         angles = 2 * np.arctan(np.linalg.norm(y[:, :turning], axis=1))  # of planes through one axis
+    elif isinstance(motion, Discretization) and motion.order == 2:
+        angles = motion.variety.angle(y)
     else:
-        angles = discrete.variety.angle(y) if discrete.order == 2 else group.angle(group.log(orbit.displacement))
+        angles = system.group.angle(system.group.log(orbit.displacement))
     return float(np.degrees(angles.max()))
 
 

@@ -10,12 +10,13 @@
 | `ForcedRoute` | one of the first three, with half an impulse at each end of its steps; `FunctionRoute` in Python |
 """
 
-from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, matrices_of
+from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute
 from nonholo.discrete.routes._choice import make_route
 from nonholo.discrete.routes._composed import ComposedRoute
 from nonholo.discrete.routes._definition import DefinitionRoute
 from nonholo.discrete.routes._forced import ForcedRoute, FunctionRoute
 from nonholo.discrete.routes._matrix import MatrixRoute
+from nonholo.discrete.routes._reversal import reversal_defects
 from nonholo.discrete.routes._scalar import ScalarRoute, ScalarStep
 from nonholo.discrete.routes._secular import SecularRoute
 
@@ -31,5 +32,5 @@ __all__ = [
     "ScalarStep",
     "SecularRoute",
     "make_route",
-    "matrices_of",
+    "reversal_defects",
 ]

@@ -2,3 +2,4 @@
 
 from nonholo.io.datasets._dataset import CANONICAL, HEADED, stored_variables
 from nonholo.io.datasets._pose_columns import Stretch, column_names, rows_of
+from nonholo.io.datasets._pose_variables import joined_rows

@@ -137,7 +137,7 @@ def _has_multipliers(orbit: Orbit) -> bool:
     """Tell whether an orbit has multipliers that need no other steps than those of its states."""
     motion = orbit.motion
     single = not isinstance(motion, Discretization) or (motion.order == 2 and orbit.save_every == 1)
-    return single and len(orbit) > 0 and _is_known(orbit, "momentum")
+    return single and not motion.is_measured and len(orbit) > 0 and _is_known(orbit, "momentum")
 
 
 def _variable(orbit: Orbit, name: str, values: np.ndarray | None = None) -> xarray.Variable:

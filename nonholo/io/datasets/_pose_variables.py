@@ -47,8 +47,7 @@ def separate_variables(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N
         ['x', 'y', 'heading', 'shape']
     """
     if not isinstance(group, ProductGroup):
-        rows = separate_rows(group, g.reshape(-1, *g.shape[-2:])).reshape(*g.shape[:-2], -1)
-        return _named(group, _joined_turns(layout(group)[1], rows))
+        return _named(group, joined_rows(group, g))
     found: Variables = {}
     begin = 0
     for number, factor in enumerate(group.factors, start=1):
@@ -57,6 +56,12 @@ def separate_variables(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N
             name = "shape" if isinstance(factor, Translations) else name
             found[f"{name}_{number}" if name in found else name] = entry
     return found
+
+
+def joined_rows(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N N"]) -> Float[np.ndarray, "... K c"]:
+    """Return poses as rows of the columns but for the time; headings and signs of quaternions continue along K."""
+    rows = separate_rows(group, g.reshape(-1, *g.shape[-2:])).reshape(*g.shape[:-2], -1)
+    return _joined_turns(layout(group)[1], rows)
 
 
 def _joined_turns(turn: list[str], rows: np.ndarray) -> np.ndarray:

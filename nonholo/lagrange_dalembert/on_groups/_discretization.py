@@ -1,13 +1,14 @@
 """The discrete map on a group: a system with a time step, and its run."""
 
 import dataclasses
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from nonholo.lagrange_dalembert._orbit import GroupOrbit
 from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._simulate import Start, checked_counts, set_out, simulated
+from nonholo.lagrange_dalembert._simulate import Start, checked_block, checked_counts, iterated, set_out, simulated
 from nonholo.lagrange_dalembert._start import fixed_time_step
 from nonholo.lagrange_dalembert.on_groups import _start as start
 from nonholo.lagrange_dalembert.on_groups._system import GroupLagrangeDAlembert
@@ -83,14 +84,38 @@ class GroupDiscretization(AbstractCoordinateDiscretization):
         system, h = self.system, np.float64(self.time_step)
         steps, every = checked_counts(steps, save_every, 2 * (system.group.identity.size + system.group.dim))
         starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
-        given = one_start("simulate", **starts)
-        g = start.pose("simulate", system, configuration)
-        start.consistent(system, g, h)
-        first = _first(system, h, g, given, starts[given])
+        first = _first(system, h, configuration, starts)
         return simulated(GroupOrbit, system, h, first, steps, every, throw, progress)
 
+    def iterate(
+        self,
+        *,
+        configuration: Any = None,
+        steps: int,
+        block_steps: int | None = None,
+        body_velocity: Any = None,
+        displacement: Any = None,
+        momentum: Any = None,
+        save_every: int = 1,
+        throw: bool = True,
+        progress: bool = False,
+    ) -> Iterator[GroupOrbit]:
+        """Run the map of `simulate`, and give its orbit block by block, in bounded memory.
 
-def _first(system: GroupLagrangeDAlembert, h: Any, g: np.ndarray, given: str, value: Any) -> Start:
+        The blocks together are the orbit of `simulate`, bit for bit; see `CoordinateDiscretization.iterate`.
+        """
+        starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
+        system, h = self.system, np.float64(self.time_step)
+        steps, every = checked_counts(steps, save_every, 0)
+        rows = checked_block(block_steps, every, 2 * (system.group.identity.size + system.group.dim))
+        first = _first(system, h, configuration, starts)
+        return iterated(GroupOrbit, system, h, first, steps, every, rows, throw, progress)
+
+
+def _first(system: GroupLagrangeDAlembert, h: Any, configuration: Any, starts: dict[str, Any]) -> Start:
+    given = one_start("simulate", **starts)
+    value, g = starts[given], start.pose("simulate", system, configuration)
+    start.consistent(system, g, h)
     if given == "displacement":
         v, p = start.of_displacement(system, g, value, h)
     elif given == "momentum":

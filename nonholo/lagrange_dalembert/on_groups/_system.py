@@ -71,6 +71,9 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     constraint_forms: Callable[[Array], Array] | None
     discrete_constraints: Callable[[Array, Array, Array], Array] | None = None
     lagrangian: Callable[[Array], Array] | None = dataclasses.field(default=None, kw_only=True)
+    is_driven: ClassVar[bool] = False
+    coordinates: ClassVar[tuple[str, ...]] = ()
+    name: ClassVar[str] = "System with constraints that depend on the pose"
     _equations: ClassVar[str] = "on_groups._equations"
 
     def __post_init__(self) -> None:

@@ -12,9 +12,9 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
 from nonholo.base.types import Float
-from nonholo.orbit import Orbit
+from nonholo.orbit import AbstractOrbit
 from nonholo.plotting import theme
-from nonholo.plotting.parts import drawable, evenly_in_box, is_discrete, posed
+from nonholo.plotting.parts import drawable_in_time, evenly_in_box, posed
 
 _MOST_DOTS = 2000
 _COLUMNS = 600
@@ -48,7 +48,7 @@ class EnergyError:
 
 
 @theme.styled
-def energy_error(orbit: Orbit, axes: Axes | None = None, **look: Unpack[theme.Look]) -> EnergyError:
+def energy_error(orbit: AbstractOrbit, axes: Axes | None = None, **look: Unpack[theme.Look]) -> EnergyError:
     r"""Draw the relative error of the reduced constrained energy, under forces that of their balance, against time.
 
     $$ (E_k - E_0)/E_0 , $$
@@ -71,22 +71,52 @@ def energy_error(orbit: Orbit, axes: Axes | None = None, **look: Unpack[theme.Lo
         >>> nh.plot.energy_error(orbit).unit
         1e-16
     """
-    orbit = drawable("energy_error(orbit=...)", orbit)
-    if orbit.system.is_spatial:
+    orbit = drawable_in_time("energy_error(orbit=...)", orbit)
+    if not orbit.has_poses and orbit.system.is_spatial:
         posed("energy_error(orbit=...)", orbit)
     axes = theme.axes_or_new(axes, (6.0, 2.6))
-    energy = orbit.energy - orbit.work
+    energy = orbit.energy if orbit.work is None else orbit.energy - orbit.work
     error = (energy - energy[0]) / (energy[0] or 1.0)
     unit = _unit(float(np.abs(error).max()))
+    rounding, drawn = _over_rounding(orbit, axes, error / unit, unit)
+    theme.write_title(axes, "Change of energy" if _is_driven(orbit) else "Energy error")
+    _dress(axes, orbit.time, error / unit, unit, rf"\Delta E{'/E' if energy[0] else ''}")
+    small: Any = {"color": theme.QUIET, "fontsize": "medium", "va": "top", "path_effects": theme.HALO, "zorder": 6}
+    expected = axes.text(0.012, 0.97, _expected(orbit), transform=axes.transAxes, **small)
+    return EnergyError(axes, drawn, rounding, unit, expected)
+
+
+@theme.styled
+def draw_residual(orbit: Any, axes: Axes) -> None:
+    """Draw the residual of the constraint of an orbit that knows it, in the same way."""
+    residual = orbit.constraint_residual
+    unit = _unit(float(np.abs(residual).max()))
+    _over_rounding(orbit, axes, residual / unit, unit)
+    theme.write_title(axes, "Residual of the constraint")
+    _dress(axes, orbit.time, residual / unit, unit, "|F|" if orbit.is_discrete else r"|A\,v|")
+    axes.set_ylim(bottom=0.0)
+
+
+def _over_rounding(
+    orbit: AbstractOrbit, axes: Axes, error: Float[np.ndarray, "K"], unit: float
+) -> tuple[Rectangle, PathCollection | PolyCollection | Line2D]:
+    """Draw errors in a unit over the band of rounding."""
     shown = "machine epsilon" if _EPS / unit > _VISIBLE else "_machine epsilon"  # a legend of what can be seen
     band: Any = {"color": theme.LEVEL, "alpha": 0.45, "linewidth": 0, "zorder": 0, "label": shown}
     rounding = axes.axhspan(-_EPS / unit, _EPS / unit, **band)
     axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
-    drawn = (_error if is_discrete(orbit) else _curve)(axes, orbit.time, error / unit)
-    _dress(axes, orbit.time, error / unit, unit, relative=bool(energy[0]))
-    small: Any = {"color": theme.QUIET, "fontsize": "medium", "va": "top", "path_effects": theme.HALO, "zorder": 6}
-    expected = axes.text(0.012, 0.97, _EXPECTED[orbit.motion.conserves_energy], transform=axes.transAxes, **small)
-    return EnergyError(axes, drawn, rounding, unit, expected)
+    return rounding, (_error if orbit.is_discrete else _curve)(axes, orbit.time, error)
+
+
+def _is_driven(orbit: AbstractOrbit) -> bool:
+    """Tell whether an orbit in coordinates is one of a driven system, whose balance of work is not known."""
+    return orbit.work is None and orbit.system.is_driven
+
+
+def _expected(orbit: AbstractOrbit) -> str:
+    if orbit.is_measured:
+        return "of given poses"
+    return "changed by what drives the system" if _is_driven(orbit) else _EXPECTED[orbit.conserves_energy]
 
 
 def _unit(largest: float) -> float:
@@ -106,13 +136,11 @@ def _curve(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K
     return axes.plot(time[chosen], error[chosen], linewidth=1.0, zorder=3, **theme.named(theme.CONTINUOUS))[0]
 
 
-def _dress(axes: Axes, time: Any, error: Float[np.ndarray, "K"], unit: float, relative: bool) -> None:
+def _dress(axes: Axes, time: Any, error: Float[np.ndarray, "K"], unit: float, name: str) -> None:
     exponent = math.floor(math.log10(unit) + 0.5)
     reach = 1.4 * max(float(np.abs(error).max()), 1.6 * _EPS / unit)
-    ylabel = rf"$\Delta E{'/E' if relative else ''}$   [$10^{{{exponent}}}$]"
-    axes.set(xlabel="time", ylabel=ylabel)
+    axes.set(xlabel="time", ylabel=rf"${name}$   [$10^{{{exponent}}}$]")
     axes.margins(y=0.0)
     axes.update_datalim([(time[0], -reach), (time[-1], reach)])
     axes.autoscale_view()
-    theme.write_title(axes, "Energy error")
     theme.legend_above(axes)

@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from nonholo.base.checks import error, shown
 from nonholo.base.types import Float
 from nonholo.groups import SE
-from nonholo.orbit import Orbit
+from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plotting import parts, theme
 
 _BODIES = 14  # places at which the axes of the body are drawn
@@ -75,11 +75,13 @@ def point_track(orbit: Orbit, axes: Any = None, flow: Orbit | None = None, **loo
     chosen = parts.evenly_spread(orbit.position)
     position = orbit.position[:, shown]
     points = position[chosen]
-    view = _dress(axes, points, shown)
+    names = [f"${letter}$" for letter in "xyz"] if shown.max() < 3 else [f"$x_{i + 1}$" for i in shown]
+    theme.write_title(axes, "Reference point")
+    view = dress_path(axes, points, names[: len(shown)])
     track = parts.draw_in_time(axes, orbit, position, chosen, zorder=3)
     curve = None if flow is None else parts.draw_flow(axes, flow.position[:, shown])
     frames = _frames(axes, orbit, shown, _ARM * np.ptp(view, axis=1).max())
-    _mark_ends(axes, points, orbit)
+    mark_path_ends(axes, points, orbit)
     theme.legend_above(axes)
     return PointTrack(axes, tuple(shown.tolist()), points, track, frames, curve)
 
@@ -97,17 +99,17 @@ def _largest(position: Float[np.ndarray, "K n"]) -> np.ndarray:
     return np.sort(np.argsort(-extent, kind="stable")[:3])
 
 
-def _dress(axes: Any, points: Float[np.ndarray, "L d"], shown: np.ndarray) -> Float[np.ndarray, "d 2"]:
-    """Set up the axes about the points; return what they show."""
-    theme.write_title(axes, "Reference point")
-    if len(shown) == 2:
-        return parts.fit_view(axes, points)
+def dress_path(axes: Any, points: Float[np.ndarray, "L d"], names: list[str]) -> Float[np.ndarray, "d 2"]:
+    """Set up axes of the plane or of space, with one unit, about the points of a path; return what they show."""
+    if len(names) == 2:
+        view = parts.fit_view(axes, points)
+        axes.set(xlabel=names[0], ylabel=names[1])
+        return view
     limits = _box_about(points)
     if axes.has_data():
         before = np.array([axes.get_xlim(), axes.get_ylim(), axes.get_zlim()])
         limits = np.column_stack([np.minimum(before, limits)[:, 0], np.maximum(before, limits)[:, 1]])
     axes.set(xlim=limits[0], ylim=limits[1], zlim=limits[2])
-    names = [f"${letter}$" for letter in "xyz"] if shown.max() < 3 else [f"$x_{i + 1}$" for i in shown]
     axes.set(xlabel=names[0], ylabel=names[1], zlabel=names[2])
     axes.view_init(elev=24, azim=-58)
     sides = np.ptp(limits, axis=1)
@@ -139,7 +141,8 @@ def _frames(axes: Any, orbit: Orbit, shown: np.ndarray, length: float) -> tuple[
     return tuple(drawn)
 
 
-def _mark_ends(axes: Any, points: Float[np.ndarray, "L d"], orbit: Orbit) -> None:
+def mark_path_ends(axes: Any, points: Float[np.ndarray, "L d"], orbit: AbstractOrbit) -> None:
+    """Mark and name the first and the last point of a path."""
     parts.draw_ends(axes, points, orbit)
     axes.text(*points[0], "  start", zorder=9, path_effects=theme.HALO)
     if not np.allclose(points[0], points[-1]):

@@ -2,18 +2,19 @@
 
 import itertools
 from collections.abc import Callable
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from nonholo.base.types import Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
-from nonholo.orbit import Orbit
+from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.parts import evenly_in_box
 from nonholo.plotting.sheets import Blade, blade_of_system
 
+AnyOrbit = TypeVar("AnyOrbit", bound=AbstractOrbit)
 _MOST_POINTS = 2000
 _MOST_LINES = 60  # momenta in one panel
 
@@ -24,9 +25,9 @@ def velocity_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> 
     system = orbit.system
     allowed = np.eye(system.group.dim) if system.is_spatial else system.constraint_subspace
     free = np.flatnonzero(np.abs(allowed).max(axis=0, initial=0.0) > 0)
-    names = _velocity_names(system.group)
+    names = velocity_names(system.group)
     theme.write_title(axes, "Body velocity")
-    _draw(axes, orbit, flow, lambda states: states.body_velocity[:, free], [names[i] for i in free])
+    draw_components(axes, orbit, flow, lambda states: states.body_velocity[:, free], [names[i] for i in free])
     axes.set_ylabel("velocity")
 
 
@@ -42,7 +43,8 @@ def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> 
     kind = "Spatial momentum" if orbit.system.is_spatial else "Momentum"
     of_many = "" if k <= _MOST_LINES else f", the {_MOST_LINES} largest of {k}"
     theme.write_title(axes, f"{kind} along the constraint{of_many}")
-    _draw(axes, orbit, flow, lambda states: states.restricted_momentum[:, shown], [f"$r_{{{i + 1}}}$" for i in shown])
+    names = [f"$r_{{{i + 1}}}$" for i in shown]
+    draw_components(axes, orbit, flow, lambda states: states.restricted_momentum[:, shown], names)
     axes.set_ylabel("momentum")
 
 
@@ -83,8 +85,8 @@ def _flow(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K
     _line(axes, time, values, label="continuous" if named else None, **look)
 
 
-def _draw(
-    axes: Axes, orbit: Orbit, flow: Orbit | None, quantity: Callable[[Orbit], np.ndarray], names: list[str]
+def draw_components(
+    axes: Axes, orbit: AnyOrbit, flow: AnyOrbit | None, quantity: Callable[[AnyOrbit], np.ndarray], names: list[str]
 ) -> None:
     """Draw one line for each component of a quantity, thin and without names where there are too many to tell apart."""
     few = len(names) <= len(theme.COMPONENTS)
@@ -104,7 +106,8 @@ def _draw(
     theme.legend_above(axes)
 
 
-def _velocity_names(group: AbstractMatrixGroup) -> list[str]:
+def velocity_names(group: AbstractMatrixGroup) -> list[str]:
+    """Return the names of the components of a body velocity."""
     if group == SE(2):
         return [r"$\omega$", "$v_1$", "$v_2$"]
     if not group.is_rigid:

@@ -2,12 +2,13 @@
 
 from nonholo.plotting.parts._enlargement import Square, corner_axes, detail, fit_view, remove_detail, square_about
 from nonholo.plotting.parts._marks import draw_ends, draw_equilibria, draw_flow, draw_in_time, draw_orbit, segments
+from nonholo.plotting.parts._page import finish_page, new_page
 from nonholo.plotting.parts._sphere import View, arcs, best_view, draw_curve, draw_globe, opacity, set_curve, view_of
 from nonholo.plotting.parts._sphere_path import draw_named_axes, draw_path, mark_ends, name_beside
 from nonholo.plotting.parts._subject import (
     drawable,
+    drawable_in_time,
     forbidden_axis,
-    is_discrete,
     is_free,
     is_same_body,
     known_equilibria,
@@ -15,7 +16,6 @@ from nonholo.plotting.parts._subject import (
     permanent_velocity,
     posed,
     same_group,
-    time_step,
 )
 from nonholo.plotting.parts._thinning import (
     evenly_in_box,

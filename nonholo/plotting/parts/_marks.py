@@ -8,22 +8,21 @@ from matplotlib.collections import LineCollection, PathCollection
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
 from nonholo.base.types import Float, Int
-from nonholo.orbit import Orbit
+from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plotting import theme
-from nonholo.plotting.parts._subject import is_discrete
 from nonholo.plotting.parts._thinning import MOST_DOTS, evenly_in_box, evenly_spread
 
 
 def draw_in_time(
     axes: Any,
-    orbit: Orbit,
+    orbit: AbstractOrbit,
     points: Float[np.ndarray, "K d"],
     states: Int[np.ndarray, "L"],
     *,
     zorder: float,
     size: float | None = None,
     label: str | None = None,
-    whole: Orbit | None = None,
+    whole: AbstractOrbit | None = None,
 ) -> Any:
     """Draw some states at their points in the colors of time: dots of a discrete orbit, a line of a flow.
 
@@ -39,9 +38,10 @@ def draw_in_time(
     """
     points, time, own = points[states], orbit.time[states], theme.asked("color", None)
     colors = {"cmap": theme.TIME, "norm": theme.time_scale(orbit if whole is None else whole)} if own is None else {}
-    if label is not None or is_discrete(orbit):
+    if label is not None or orbit.is_discrete:
         size = theme.dot_size(len(orbit)) if size is None else size
-        colors |= {"c": time if own is None else [own], "label": theme.asked("label", label or "discrete orbit")}
+        name = theme.asked("label", label or ("given poses" if orbit.is_measured else "discrete orbit"))
+        colors |= {"c": time if own is None else [own], "label": name}
         return axes.scatter(*points.T, s=size, linewidths=0, zorder=zorder, **_flat(points), **colors)
     path = segments(points[:-1], points[1:], linewidth=2, zorder=zorder, **colors)
     path.set(label=theme.asked("label", "flow"), **({"array": time[1:]} if own is None else {"color": own}))
@@ -67,7 +67,7 @@ def segments(feet: Float[np.ndarray, "L d"], tips: Float[np.ndarray, "L d"], **l
     return kind(list(np.stack([feet, tips], axis=1)), **look)
 
 
-def draw_ends(axes: Any, points: Float[np.ndarray, "K d"], orbit: Orbit) -> Any:
+def draw_ends(axes: Any, points: Float[np.ndarray, "K d"], orbit: AbstractOrbit) -> Any:
     """Mark the first point, empty, and the last one, in the colors of the first and the last state."""
     rim = theme.end_colors(orbit)
     look: Any = {"facecolors": [theme.PAPER, rim[1]], "edgecolors": rim, "linewidths": 1.6, "zorder": 7}

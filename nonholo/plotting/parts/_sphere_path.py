@@ -11,7 +11,6 @@ from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 from nonholo.plotting import theme
 from nonholo.plotting.parts._sphere import View, arcs, draw_curve, great_circle, opacity
-from nonholo.plotting.parts._subject import is_discrete
 
 _PIECE = np.radians(3.0)  # longer steps are joined by arcs of pieces like this
 _SPARSE = np.radians(40.0)  # the eye cannot join states that are farther apart: dots come first
@@ -29,7 +28,7 @@ def draw_path(
     name, color = theme.asked("label", None), theme.asked("color", colors[len(colors) // 2] if len(colors) else None)
     axes.plot([], [], color=color, label=name)  # the curve's own first piece may be faint
     path = draw_curve(axes, eye, arcs(points, pieces), colors.reshape(-1, 4), width=width, zorder=4)
-    if not is_discrete(whole):
+    if not whole.is_discrete:
         return path, None
     flat, depth = eye(points)
     faces = theme.time_colors(whole, shown.time)

@@ -7,10 +7,10 @@ from typing import Any, cast
 
 import numpy as np
 
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import error, instance, shown
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
-from nonholo.orbit import Orbit, as_orbit
+from nonholo.orbit import AbstractOrbit, Orbit, as_orbit
 from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System
 
 _SMOOTH = 1000  # states of a flow, in which a curve has no corners
@@ -19,10 +19,17 @@ NEAR_EQUILIBRIUM = 0.03  # sine, in the metric of the energy, of the angle to th
 
 
 def drawable(where: str, orbit: Any) -> Orbit:
-    """Return an orbit with at least one state; a flow that knows those between with enough of them for a curve."""
-    if len(as_orbit(where, orbit, "for one in coordinates plot its arrays, as docs/gallery does.")) == 0:
+    """Return the same of an orbit on a group."""
+    as_orbit(where, orbit, "for one in coordinates use `overview` and `energy_error`.")
+    return drawable_in_time(where, orbit)
+
+
+def drawable_in_time(where: str, orbit: Any) -> Any:
+    """Return an orbit of any kind with at least one state; a flow that knows those between with enough for a curve."""
+    remedy = "Pass what `simulate` or `flow` returned."
+    if len(instance(where, orbit, AbstractOrbit, "be an orbit", remedy)) == 0:
         raise error(where, "have a state to draw", "none", "See `orbit.outcome` for why the run did not start.")
-    if orbit.motion.span is None or not 1 < len(orbit) < _SMOOTH:
+    if orbit.span is None or not 1 < len(orbit) < _SMOOTH:
         return orbit
     more = np.linspace(orbit.time[0], orbit.time[-1], _SMOOTH)
     times = np.union1d(orbit.time, more)
@@ -45,16 +52,6 @@ def same_group(where: str, orbit: Any, other: Orbit) -> Orbit | None:
     if orbit.system.group != other.system.group:
         raise error(where, f"move on {other.system.group}", f"{orbit.system.group}", "Pass a motion of the same body.")
     return orbit
-
-
-def is_discrete(orbit: Orbit) -> bool:
-    """Tell a discrete orbit from a continuous flow."""
-    return orbit.cayley is not None
-
-
-def time_step(orbit: Orbit) -> float | None:
-    """Return the time step of a discrete orbit."""
-    return float(orbit.motion.time_step) if isinstance(orbit.motion, Discretization) else None
 
 
 def is_free(system: System) -> bool:
@@ -83,7 +80,7 @@ def own_orbit(where: str, orbit: Any, discrete: Discretization) -> None:
     """Refuse an orbit that belongs to another discretized system."""
     if orbit is None:
         return
-    same = time_step(drawable(where, orbit)) == float(discrete.time_step)
+    same = drawable(where, orbit).time_step == float(discrete.time_step)
     if not (same and is_same_body(orbit.system, discrete.system)):
         raise error(where, "be an orbit of the same discretized system", shown(orbit), "Run `nh.simulate` with it.")
 

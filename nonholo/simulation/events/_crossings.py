@@ -38,7 +38,7 @@ def crossings(orbit: Orbit, event: Any) -> Crossings:
     """
     orbit = as_orbit("crossings(orbit=...)", orbit, "pass states and your own functions otherwise.")
     if not isinstance(orbit.motion, Discretization) or orbit.save_every != 1:
-        got = f"save_every {orbit.save_every}" if isinstance(orbit.motion, Discretization) else "a flow"
+        got = f"save_every {orbit.save_every}" if isinstance(orbit.motion, Discretization) else "a flow or given poses"
         raise error("crossings(orbit=...)", "have every single step of a discrete run", got, "Pass events= to the run.")
     watch = watched("crossings", orbit.motion, [event], orbit.branch, orbit.canonical_pose is not None)
     return searched(watch, dataclasses.replace(orbit, events=None))[0].log()[0]

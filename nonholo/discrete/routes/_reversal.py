@@ -6,7 +6,7 @@ import numpy as np
 
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.discrete.routes import AbstractCompiledRoute, matrices_of
+from nonholo.discrete.routes._base import AbstractCompiledRoute, matrices_of
 from nonholo.orbit import Orbit
 
 

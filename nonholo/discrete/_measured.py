@@ -1,0 +1,138 @@
+r"""Orbits of given poses: of a camera, of another integrator, of a file. Nothing is simulated or smoothed here.
+
+Between poses there are displacements $W_k = g_k^{-1}g_{k+1}$ over $h_k = t_{k+1} - t_k$. The last one leads back to the
+pose before, over a negative time: its momentum is that at which the last step arrives.
+"""
+
+import dataclasses
+from typing import Any, ClassVar
+
+import numpy as np
+
+from nonholo.base.checks import array, error, instance
+from nonholo.base.types import Float
+from nonholo.discrete._discretization import discretize
+from nonholo.discrete._legendre import legendre
+from nonholo.groups import AbstractMatrixGroup
+from nonholo.orbit import AbstractMotion, Orbit, configurations
+from nonholo.systems import AbstractSystem, System
+
+_NEAR = 1e-5  # relative distance from the group of poses in single precision, or written with six digits
+_SAME_STEP = 1e-9  # relative difference of time steps that are equal
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class MeasuredMotion(AbstractMotion):
+    r"""The motion of given poses, made by `Orbit.from_poses`.
+
+    A state's chart coordinates are those of $\log W_k$ (spatial: $\log U_k$) and $h_k$. Nothing is said between states.
+
+    Attributes:
+        system: What moves.
+        time_step: The time between poses; None where it varies.
+    """
+
+    system: System
+    time_step: float | None = None
+    conserves_energy: ClassVar[None] = None
+    route_name: ClassVar[None] = None
+    is_measured: ClassVar[bool] = True
+
+    def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
+        """Return the displacements, in the user's frame, of chart coordinates."""
+        return self._increments(cayley) + self.system.group.identity
+
+    def displacements(self, states: Orbit) -> Float[np.ndarray, "K N N"]:
+        """Return the displacements to the next poses, from the last one back; spatial ones of LR systems."""
+        return self.displaced(states.canonical_chart)
+
+    def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
+        """Return the discrete momenta at the displacements, of whatever difference the system has by default."""
+        return self.momenta(states.canonical_chart, states.configuration if self.system.is_spatial else None)
+
+    def momenta(self, chart: Float[np.ndarray, "K m"], g: Float[np.ndarray, "K N N"] | None) -> np.ndarray:
+        """Return the momenta at which displacements from poses set out; the poses count where U is given, not W."""
+        group, X = self.system.group, self._increments(chart)
+        if g is not None and self.system.is_spatial:
+            X = group.inverse(g) @ X @ g
+        return legendre(discretize(self.system, 1.0), X, "left") / chart[:, -1:]
+
+    def multipliers(self, states: Orbit) -> Float[np.ndarray, "L s"]:
+        """Refuse: poses do not tell forces of constraint from others."""
+        remedy = "Compare momenta, `orbit.momentum`, with those of a run."
+        raise error("Orbit.multipliers", "be asked of a run", f"{len(states)} given poses", remedy)
+
+    def constraint_residual(self, states: Orbit) -> Float[np.ndarray, "K j"]:
+        """Return the forbidden velocities: parts of (W - W^-1)/2h, or of log W/h where the group has no skew part."""
+        system, chart = self.system, states.canonical_chart
+        group, D = system.group, self.displaced(chart)
+        moved = group.vee(D - group.inverse(D)) / 2 if group.has_skew_part else group.log(D)
+        return moved @ system.annihilator.T / chart[:, -1:]
+
+    def _increments(self, chart: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
+        """Return displacements less the identity, without cancellation."""
+        frame, group = self.system.frame, self.system.group
+        return frame @ group.exp_increment(chart[..., :-1]) @ group.inverse(frame)
+
+
+def orbit_of_poses(system: Any, time: Any, configuration: Any) -> Orbit:
+    """Return the orbit of given poses; see `Orbit.from_poses`."""
+    where, remedy = "Orbit.from_poses(system=...)", "Pass a SuslovTop, a sleigh or an LLSystem."
+    instance(where, system, AbstractSystem, "be a system on a group", remedy)
+    if system.is_wide:
+        raise error(where, "have matrices of moderate size", f"{system}", "Pass its `dense` twin.")
+    times, g = _times(time), _elements(system.group, configuration)
+    if len(times) != len(g):
+        got = f"{len(times)} times for {len(g)} poses"
+        raise error("Orbit.from_poses(time=...)", "have one time for each pose", got, "Pass as many.")
+    group, frame = system.group, system.frame
+    pose = group.normalize_pose(group.pose_from_matrix(g @ frame))
+    gaps = np.diff(times)
+    step = float(gaps.mean()) if np.ptp(gaps) <= _SAME_STEP * gaps.mean() else None
+    chart = _chart(system, group.matrix_from_pose(pose), np.append(gaps, -gaps[-1]))
+    reduced = system.to_canonical(_along(MeasuredMotion(system), chart, configurations(system, pose)))
+    return Orbit(MeasuredMotion(system, step), times, reduced, chart, pose)
+
+
+def _along(motion: MeasuredMotion, chart: np.ndarray, g: np.ndarray) -> Float[np.ndarray, "K k"]:
+    """Return momenta along the constraint: means, linear in time, of those that set out and those that arrive.
+
+    They differ by what forces other than the constraint's do in between.
+    """
+    out = motion.system.restrict_at(motion.momenta(chart, g), g)
+    arriving = motion.system.restrict_at(motion.momenta(-chart[:-1], g[1:]), g[1:])[:-1]
+    before, after = chart[:-2, -1:], chart[1:-1, -1:]
+    out[1:-1] = (before * out[1:-1] + after * arriving) / (before + after)
+    return out
+
+
+def _chart(system: System, g: Float[np.ndarray, "K N N"], h: Float[np.ndarray, "K"]) -> np.ndarray:
+    """Return log W_k, spatial log U_k, in the canonical frame, and h_k; from the last pose back."""
+    group = system.group
+    ahead = np.concatenate([g[1:], g[-2:-1]])
+    D = ahead @ group.inverse(g) if system.is_spatial else group.inverse(g) @ ahead
+    return np.concatenate([group.log(D), h[:, None]], axis=1)
+
+
+def _times(time: Any) -> Float[np.ndarray, "K"]:
+    where = "Orbit.from_poses(time=...)"
+    times = array(where, time, (None,), "Pass a sequence of times.")
+    if len(times) < 2:
+        raise error(where, "hold two times or more", str(len(times)), "A velocity needs two poses.")
+    gaps = np.diff(times)
+    if not gaps.min() > 0:
+        at = int(gaps.argmin())
+        raise error(where, "be strictly increasing", f"{times[at + 1]} after {times[at]}", "Sort the rows by time.")
+    return times
+
+
+def _elements(group: AbstractMatrixGroup, configuration: Any) -> Float[np.ndarray, "K N N"]:
+    """Return the poses, refused with the first that is too far from the group."""
+    where, n = "Orbit.from_poses(configuration=...)", group.size
+    g = array(where, configuration, (None, n, n), f"Pass an element of {group} as a matrix for each time.")
+    distance = np.asarray(group.residual(g)) / np.linalg.norm(g, axis=(1, 2))
+    if not np.all(distance <= _NEAR):
+        at = int(np.argmax(~(distance <= _NEAR)))
+        got = f"a matrix at relative distance {distance[at]:.3g} in row {at}"
+        raise error(where, f"lie in {group}", got, "Give more digits, or check the order of rows and columns.")
+    return g

@@ -1,0 +1,80 @@
+"""The interface of all orbits: what a motion tells, on a group or in coordinates. Nothing is decoded here."""
+
+import abc
+import importlib
+from typing import Any
+
+import numpy as np
+
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
+
+
+class AbstractOrbit(abc.ABC):
+    """A motion at K saved states, of whatever system: times, configurations, momenta, energies, and how it ended.
+
+    Attributes:
+        system: What moves.
+        time: Times of the saved states, shape (K,).
+        configuration: Matrices (K, N, N) on a group, (K, n) in coordinates.
+        body_velocity: Velocities.
+        momentum: Momenta.
+        restricted_momentum: Momenta along admissible directions, which follow the flow to second order.
+        energy: Energies, shape (K,).
+        work: Work of forces on the motion since the first state, shape (K,); None in coordinates.
+        multipliers: Impulses or forces of constraint.
+        outcome: How the run ended.
+        time_step: h; None where there is none.
+        span: The first and the last time between which `at` knows all states; None if saved states are all there is.
+        coordinates: The names of the coordinates; none on a group.
+        has_poses: Whether it has configurations.
+        is_discrete: Whether it has displacements: a flow has none.
+        is_measured: Whether configurations were given, and everything else follows from them.
+        conserves_energy: Whether its map conserves the energy exactly; None for a flow, and where there is no map.
+    """
+
+    system: Any
+    time: Float[np.ndarray, "K"]
+    configuration: Float[np.ndarray, "K ..."]
+    body_velocity: Float[np.ndarray, "K n"]
+    momentum: Float[np.ndarray, "K n"]
+    restricted_momentum: Float[np.ndarray, "K k"]
+    energy: Float[np.ndarray, "K"]
+    work: Float[np.ndarray, "K"] | None
+    multipliers: Float[np.ndarray, "L s"]
+    outcome: Outcome
+    time_step: float | None
+    span: tuple[float, float] | None
+    coordinates: tuple[str, ...] = ()
+    has_poses: bool
+    is_discrete: bool
+    is_measured: bool
+    conserves_energy: bool | None
+
+    @property
+    @abc.abstractmethod
+    def space(self) -> Any:
+        """Where it moves: a group, or the names of coordinates."""
+
+    @abc.abstractmethod
+    def at(self, times: Any) -> "AbstractOrbit":
+        """Return the states at any times of the span."""
+
+    @abc.abstractmethod
+    def to_dataset(self) -> Any:
+        """Return the orbit as a labeled `xarray.Dataset`."""
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def to_pandas(self) -> Any:
+        """Return the orbit as a `pandas.DataFrame` with one column for each number of `to_dataset`, indexed by time."""
+        return importlib.import_module("nonholo.io").orbit_to_pandas(self)
+
+    def to_csv(self, path: Any, *, overwrite: bool = False) -> None:
+        """Write the times and configurations to a new CSV file; `nonholo.io.orbit_to_csv` names its columns."""
+        importlib.import_module("nonholo.io").orbit_to_csv(self, path, overwrite=overwrite)
+
+    def plot(self, path: str | None = None, *, overwrite: bool = False) -> Any:
+        """Draw the overview picture of the orbit; return the matplotlib figure, saved to a new `path` if given."""
+        return importlib.import_module("nonholo.plotting").overview(self, path, overwrite=overwrite)

@@ -1,0 +1,146 @@
+"""Comparing two motions: errors are zero where they must be, as large as constructed elsewhere, and of order h^2."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+
+SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=0.75, a=0.5, b=0.2)
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+FREE = nh.RigidBody(np.diag([1.0, 2.0, 3.0]))
+VESELOVA = nh.VeselovaTop(np.diag([1.0, 2.0, 3.0]))
+STARTS = {
+    "sleigh": (SLEIGH, (1.0, 0.5, 0.0)),
+    "top": (TOP, (0.4, 0.9, 0.0)),
+    "free": (FREE, (0.4, 0.9, 0.3)),
+    "veselova": (VESELOVA, (0.4, 0.9, 0.0)),
+}
+
+
+def run(name: str, h: float, duration: float = 4.0, **changes) -> nh.Orbit:  # noqa: ANN003
+    """Return a discrete orbit of a body."""
+    system, velocity = STARTS[name]
+    return nh.simulate(nh.discretize(system, h), body_velocity=velocity, steps=round(duration / h), **changes)
+
+
+def flow(name: str, *times: float, **changes) -> nh.Orbit:  # noqa: ANN003
+    """Return a flow of a body."""
+    system, velocity = STARTS[name]
+    return nh.flow(system, body_velocity=velocity, times=times or (0.0, 4.0), **changes)
+
+
+def test_an_orbit_has_no_error_against_itself() -> None:
+    """All three errors are zero at all of its times."""
+    orbit = run("sleigh", 0.1)
+    against = nh.compare(orbit, orbit)
+    assert np.array_equal(against.time, orbit.time)
+    assert against.largest == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("name", STARTS)
+def test_errors_are_those_of_the_definition(name: str) -> None:
+    """Computed state by state: norms of r - r', of g^-1 g' - I, and E - E'; the flow is asked at the orbit's times."""
+    orbit = run(name, 0.1)
+    other = flow(name, *orbit.time)
+    against = nh.compare(orbit, flow(name))
+    for k in (0, 7, 40):
+        D = np.linalg.inv(orbit.configuration[k]) @ other.configuration[k]
+        assert abs(against.pose[k] - np.linalg.norm(D - np.eye(3))) <= 1e-12
+        assert (
+            abs(against.momentum[k] - np.linalg.norm((orbit.restricted_momentum - other.restricted_momentum)[k]))
+            <= 1e-12
+        )
+        assert abs(against.energy[k] - (orbit.energy - other.energy)[k]) <= 1e-12
+
+
+@pytest.mark.parametrize(("turn", "move"), [(0.3, 0.0), (np.pi, 0.0), (0.0, 2.5)])
+def test_the_pose_error_of_a_known_displacement(turn: float, move: float) -> None:
+    """A turn by alpha counts 2 sqrt 2 |sin(alpha/2)|, a translation its length, wherever the body is."""
+    orbit = run("sleigh", 0.1)
+    x, y = move * np.cos(1.1), move * np.sin(1.1)
+    moved = orbit.canonical_pose.copy()
+    angle = orbit.heading + turn
+    moved[:, 0], moved[:, 1] = np.cos(angle), np.sin(angle)
+    moved[:, 2:] += np.array([x, y]) + (rotations(angle) - rotations(orbit.heading)) @ SLEIGH.frame[:2, 2]
+    error = nh.compare(dataclasses.replace(orbit, canonical_pose=moved, turned=None), orbit).pose
+    assert np.abs(error - np.hypot(2 * np.sqrt(2) * np.sin(turn / 2), move)).max() <= 1e-13
+
+
+def rotations(angle: np.ndarray) -> np.ndarray:
+    """Return the rotations of the plane by angles."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.moveaxis(np.array([[cos, -sin], [sin, cos]]), -1, 0)
+
+
+@pytest.mark.parametrize("name", STARTS)
+def test_the_order_is_two(name: str) -> None:
+    """Halving the time step divides the errors by four; where energy is exact its order is not a number."""
+    study = nh.compare([run(name, h) for h in (0.05, 0.1, 0.2)], flow(name))
+    assert study.time_step.tolist() == [0.2, 0.1, 0.05]
+    assert abs(study.order.pose - 2.0) <= 0.05
+    assert abs(study.order.momentum - 2.0) <= 0.05 or np.isnan(study.order.momentum)
+    assert np.isnan(study.order.momentum) == (name == "veselova")  # whose spatial momenta are constant
+    assert np.isnan(study.order.energy) == (name != "veselova")
+
+
+def test_saved_states_are_matched_by_time() -> None:
+    """Of two discrete orbits those at equal times up to rounding are compared, in whatever order they are."""
+    fine, coarse = run("top", 0.05), run("top", 0.2)
+    against = nh.compare(coarse, fine)
+    assert np.array_equal(against.time, coarse.time)
+    backward = fine.chosen(np.arange(len(fine))[::-1])
+    assert np.array_equal(nh.compare(coarse, backward).pose, against.pose)
+    assert len(nh.compare(run("top", 0.1), run("top", 0.15, 3.0))) == 11
+
+
+def test_only_times_of_the_flow_count() -> None:
+    """A flow that ends earlier is compared as far as it goes, up to the rounding of its last time."""
+    orbit = run("sleigh", 0.1)
+    assert nh.compare(orbit, flow("sleigh", 0.0, 2.0)).time[-1] == 2.0
+    assert len(nh.compare(orbit, flow("sleigh", 0.0, np.nextafter(2.0, 0.0)))) == 21
+    assert len(nh.compare(flow("sleigh", 0.0, 2.0), orbit)) == 21
+
+
+def test_without_poses_momenta_and_energies_remain() -> None:
+    """What needs poses is None: the pose itself, and the energy of a right-invariant constraint."""
+    against = nh.compare(run("sleigh", 0.1, reconstruct=False), flow("sleigh"))
+    assert against.pose is None
+    assert against.largest.energy < 1e-14
+    assert nh.compare(run("veselova", 0.1, reconstruct=False), flow("veselova")).errors[1:] == (None, None)
+
+
+REFUSED = {
+    "no orbit": (lambda: nh.compare(5, flow("top")), r"compare\(orbit=...\)` must be an orbit"),
+    "no flow": (lambda: nh.compare(run("top", 0.1), None), r"compare\(flow=...\)` must be an orbit"),
+    "group": (lambda: nh.compare(run("top", 0.1), flow("sleigh")), r"must move in SO\(3\). Got SE\(2\)"),
+    "constraint": (lambda: nh.compare(run("top", 0.1), flow("free")), "the constraint of the orbit"),
+    "times": (lambda: nh.compare(run("top", 0.1), flow("top", 5.0, 6.0)), "a time in common"),
+    "no states": (lambda: nh.compare(run("top", 0.1)[:0], run("top", 0.1)), "a time in common"),
+    "one": (lambda: nh.compare([run("top", 0.1)], flow("top")), "different time steps"),
+    "equal": (lambda: nh.compare([run("top", 0.1)] * 2, flow("top")), "different time steps"),
+    "flows": (lambda: nh.compare([flow("top")] * 2, flow("top")), "different time steps"),
+    "a number in a list": (lambda: nh.compare([1.0], flow("top")), r"compare\(orbit=...\)\[0\]"),
+    "picture": (lambda: nh.plot.comparison(5), "be a comparison"),
+    "picture of orders": (lambda: nh.plot.convergence(5), "be a convergence"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_cannot_be_compared_is_refused(case: str) -> None:
+    """Each message names the argument and what it must be."""
+    attempt, words = REFUSED[case]
+    with pytest.raises(ValueError, match=words):
+        attempt()
+
+
+def test_pictures_draw_the_errors() -> None:
+    """The panels hold the errors in units of a power of ten, the rings the largest ones; slopes are written."""
+    against = nh.compare(run("sleigh", 0.1), flow("sleigh"))
+    pose, momentum, energy = against.plot().axes
+    assert np.allclose(pose.lines[0].get_ydata() * 1e-3, against.pose, rtol=1e-12, atol=0.0)
+    assert momentum.collections[0].get_offsets()[0, 0] == against.time[against.momentum.argmax()]
+    assert energy.get_title(loc="left") == "Energy"
+    labels = nh.compare([run("sleigh", h) for h in (0.2, 0.1)], flow("sleigh")).plot().axes[0].get_legend().get_texts()
+    assert [text.get_text()[:12] for text in labels] == ["pose: order ", "momentum: or", "energy: roun"]
