@@ -16,23 +16,30 @@ from nonholo.base.numerics import double_precision
 _PATIENCE = 1.0  # seconds of silence
 _compiled = functools.cache(functools.partial(jax.jit, static_argnums=0))
 _called: set[tuple[Any, Any]] = set()
+_told: set[Any] = set()
 
 
 def in_double(function: Callable[..., Any], system: Any, *arguments: Any) -> Any:
     """Call a JAX function of a system, for which it is compiled, with 64-bit numbers; return NumPy arrays."""
-    with double_precision(), contextlib.nullcontext() if (function, system) in _called else _said():
+    with double_precision(), contextlib.nullcontext() if (function, system) in _called else _said(system):
         found = jax.tree.map(np.asarray, _compiled(function)(system, *arguments))
     _called.add((function, system))
     return found
 
 
 @contextlib.contextmanager
-def _said() -> Iterator[None]:
-    """Say on standard error what is waited for: JAX compiles at the first call."""
+def _said(system: Any) -> Iterator[None]:
+    """Say on standard error what is waited for, once for a system: JAX compiles at the first call of each function."""
     kept = os.environ.get("JAX_COMPILATION_CACHE_DIR")
     remedy = "" if kept else "; set JAX_COMPILATION_CACHE_DIR to a folder to keep what is compiled"
     text = f"compiling a system in coordinates, once{remedy} ..."
-    timer = threading.Timer(_PATIENCE, print, (text,), {"file": sys.stderr, "flush": True})
+
+    def say() -> None:
+        if system not in _told:
+            _told.add(system)
+            sys.stderr.write(f"{text}\n")
+
+    timer = threading.Timer(_PATIENCE, say)
     timer.daemon = True
     timer.start()
     try:
