@@ -56,7 +56,7 @@ def _ball_by_hand(_time: float, z: np.ndarray) -> np.ndarray:
     return np.concatenate([np.cross(M, omega), (R @ nh.SO(3).hat(omega)).ravel(), R @ np.cross(omega, gamma)])
 
 
-@pytest.mark.profile("routes", instead="the roller racer")
+@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
 def test_the_driven_sleigh_moves_as_derived_by_hand() -> None:
     """Path and heading of the flow, to 1e-10."""
     ready = nh.examples.driven_sleigh()
@@ -73,7 +73,7 @@ def test_the_roller_racer_moves_as_derived_by_hand() -> None:
     assert np.abs(found.configuration[:, :3] - by_hand[1:].T).max() <= 1e-10
 
 
-@pytest.mark.profile("routes", instead="the roller racer")
+@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
 def test_the_ball_moves_as_derived_by_hand() -> None:
     """Path and rotation of the flow, to 1e-10, momentum in space and energy constant."""
     ready = nh.examples.chaplygin_ball()
@@ -148,7 +148,7 @@ def test_order_two_of_configuration_and_energy(name: str) -> None:
     assert np.abs(np.log2(np.abs(np.divide(*errors))) - 2.0).max() <= 0.1
 
 
-@pytest.mark.profile("routes", instead="forces that are functions")
+@pytest.mark.profile("routes", instead="test_order_two_of_configuration_and_energy")
 def test_a_table_acts_row_by_row() -> None:
     """A constant table is a constant force; after its last row nothing acts."""
     push = np.array([0.2, -0.1, 0.3])
