@@ -72,6 +72,7 @@ if TYPE_CHECKING:
     from nonholo.simulation import flow as flow
     from nonholo.simulation import iterate as iterate
     from nonholo.simulation import simulate as simulate
+    from nonholo.simulation.traced import rollout as rollout
     from nonholo.systems import ChaplyginSleigh as ChaplyginSleigh
     from nonholo.systems import ImpossibleBodyWarning as ImpossibleBodyWarning
     from nonholo.systems import LLSystem as LLSystem
@@ -157,6 +158,7 @@ _HOMES = {
     "moser_veselov_displacement": "discrete",
     "reference_point_subspace": "systems",
     "resume": "ensembles",
+    "rollout": "simulation.traced",
     "save_orbit": "io",
     "simulate": "simulation",
     "single_valued_region": "analysis",
@@ -167,7 +169,9 @@ _HOMES = {
 }
 _ROOMS = {"examples": "literature", "plot": "plotting", "testing": "testing"}
 
-_EXTRAS = {"discrete.definition": "jax", "discrete._step": "jax", "literature": "jax", "lagrange_dalembert": "jax"}
+_EXTRAS = dict.fromkeys(
+    ("discrete.definition", "discrete._step", "simulation.traced", "literature", "lagrange_dalembert"), "jax"
+)
 """Extras that rooms need beyond the core."""
 
 __version__ = version("nonholo")
