@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from nonholo.analysis import lyapunov_function as lyapunov_function
     from nonholo.analysis import momentum_locus as momentum_locus
     from nonholo.analysis import single_valued_region as single_valued_region
+    from nonholo.analysis.inverse import fit as fit
     from nonholo.base.results import Outcome as Outcome
     from nonholo.base.results import OutcomeError as OutcomeError
     from nonholo.continuous import vector_field as vector_field
@@ -138,6 +139,7 @@ _HOMES = {
     "equilibria": "analysis",
     "euler_angle_discrete_lagrangian": "systems",
     "extend": "simulation",
+    "fit": "analysis.inverse",
     "flow": "simulation",
     "flow_obstruction": "analysis",
     "fold_distance": "discrete",
