@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from nonholo.analysis import invariant_curve as invariant_curve
     from nonholo.analysis import invariant_measure as invariant_measure
     from nonholo.analysis import invariants as invariants
+    from nonholo.analysis import lyapunov_exponents as lyapunov_exponents
     from nonholo.analysis import lyapunov_function as lyapunov_function
     from nonholo.analysis import momentum_locus as momentum_locus
     from nonholo.analysis import single_valued_region as single_valued_region
@@ -154,6 +155,7 @@ _HOMES = {
     "iterate": "simulation",
     "load_orbit": "io",
     "load_sweep": "ensembles",
+    "lyapunov_exponents": "analysis",
     "lyapunov_function": "analysis",
     "mass_tensor_lagrangian": "lagrange_dalembert",
     "momentum_locus": "analysis",

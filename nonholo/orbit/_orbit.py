@@ -274,6 +274,14 @@ class Orbit:
             return self.system.constrained_energy(self.reduced_momentum, self.configuration)
         return self.system.canonical.constrained_energy(self.reduced_momentum)
 
+    @property
+    def tangent(self) -> Float[np.ndarray, "L k k"]:
+        """Derivatives of restricted momenta after each step of a discrete orbit by those before it, (K - 1, k, k).
+
+        `nonholo.analysis.tangent` says of which maps; `lyapunov_exponents` multiplies them.
+        """
+        return importlib.import_module("nonholo.analysis").tangent(self)
+
     def to_dataset(self, *, decoded: bool = False) -> Any:
         """Return the orbit as a labeled `xarray.Dataset`, in the user's body frame.
 

@@ -34,6 +34,7 @@ def _of_systems() -> list[Call]:
         call("equilibria [discrete]", nh.equilibria, system=thing(TOP), energy=positive(1.0)),
         call("invariant_measure", nh.invariant_measure, motion=thing(TOP), energy=positive(1.0)),
         call("invariants", nh.invariants, orbit=thing(orbit)),
+        call("lyapunov_exponents", nh.lyapunov_exponents, orbit=thing(orbit)),
         call("lyapunov_function", nh.lyapunov_function, system=thing(system)),
     ]
 
