@@ -91,7 +91,7 @@ def main() -> None:
         command = [sys.executable, __file__, "--only", str(steps)]
         seconds, peak, size = map(float, subprocess.check_output(command, text=True).split())  # noqa: S603
         peaks.append(peak)
-        print(f"gradient of {steps} steps of a top: {seconds:.1f} s, {peak:.0f} MB in all, size {size:.3g}")
+        print(f"gradient of {steps} steps of a top: {seconds:.1f} s, {peak:.0f} MB in total, size {size:.3g}")
     print(f"{peaks[1] - peaks[0]:.0f} MB more")
 
 

@@ -11,6 +11,7 @@ PAGES = (
     "theory/right-invariant.md",
     "how-to/choose-a-branch-rule.md",
     "how-to/choose-a-discretisation.md",
+    "how-to/differentiate-and-fit.md",
     "how-to/run-an-ensemble.md",
 )
 
