@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from nonholo.analysis import momentum_locus as momentum_locus
     from nonholo.analysis import single_valued_region as single_valued_region
     from nonholo.analysis.inverse import fit as fit
+    from nonholo.analysis.inverse import steer as steer
     from nonholo.base.results import Outcome as Outcome
     from nonholo.base.results import OutcomeError as OutcomeError
     from nonholo.continuous import vector_field as vector_field
@@ -166,6 +167,7 @@ _HOMES = {
     "save_orbit": "io",
     "simulate": "simulation",
     "single_valued_region": "analysis",
+    "steer": "analysis.inverse",
     "step": "discrete._step",
     "sweep": "ensembles",
     "trace_constraints": "systems",

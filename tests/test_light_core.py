@@ -42,6 +42,7 @@ def test_names_that_need_an_extra() -> None:
                 "consistency_defect": "jax",
                 "fit": "jax",
                 "rollout": "jax",
+                "steer": "jax",
                 "step": "jax",
                 "step [flat]": "jax",
             },

@@ -3,7 +3,7 @@
 import numpy as np
 from fuzz.calls import Call, by_position, call
 from fuzz.calls_maps import BENT, SLEIGH, TOP
-from fuzz.kinds import anything, array, count, flag, function, integer, number, positive, thing
+from fuzz.kinds import anything, array, count, flag, function, integer, number, positive, text, thing
 
 import nonholo as nh
 from nonholo.analysis import deltoid
@@ -58,6 +58,17 @@ def _of_maps() -> list[Call]:
             measurements=anything(_RECORD),
             guess=anything({"a": 0.4}),
             time_step=positive(0.1),
+            slow=True,
+        ),
+        call(
+            "steer",
+            nh.steer,
+            discrete=thing(SLEIGH),
+            start=anything({}),
+            goal=anything({"restricted_velocity": (0.1, 0.2)}),
+            steps=count(3),
+            bounds=anything(None),
+            cost=text("effort"),
             slow=True,
         ),
         call("momentum_locus", nh.momentum_locus, **top, resolution=count(12)),

@@ -17,7 +17,7 @@ from nonholo.discrete import discretize
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
-from nonholo.systems import AbstractLLSystem
+from nonholo.systems import AbstractSystem, System
 
 _ROUNDS = 6  # of noise levels that follow from residuals, and residuals from noise levels
 _SETTLED = 1e-3  # relative change of noise levels
@@ -42,7 +42,7 @@ class Fit:
 
     parameters: dict[str, Any]
     covariance: Float[np.ndarray, "P P"]
-    system: AbstractLLSystem
+    system: System
     orbit: Orbit | tuple[Orbit, ...]
     residuals: tuple[dict[str, np.ndarray], ...]
     noise: dict[str, float]
@@ -63,7 +63,7 @@ class Fit:
 
 
 def fit(
-    system_of: Callable[[dict[str, Array]], AbstractLLSystem],
+    system_of: Callable[[dict[str, Array]], System],
     measurements: Any,
     guess: Mapping[str, Any],
     *,
@@ -235,7 +235,7 @@ def _covariance(problem: _Problem, point: np.ndarray, noise: np.ndarray, shapes:
     return (root.T @ root)[: problem.count, : problem.count]
 
 
-def _orbit(system: AbstractLLSystem, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Orbit:
+def _orbit(system: System, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Orbit:
     """Return the motion of a trial."""
     k = system.rank
     g = pose @ system.group.exp(start[k:]) if len(start) > k else pose
@@ -259,15 +259,15 @@ def _parameters(shapes: Any, numbers: np.ndarray) -> dict[str, Any]:
     return found
 
 
-def _system(system_of: Callable[..., Any], numbers: np.ndarray, shapes: Any) -> AbstractLLSystem:
+def _system(system_of: Callable[..., Any], numbers: np.ndarray, shapes: Any) -> System:
     system = system_of(_parameters(shapes, numbers))
-    if not isinstance(system, AbstractLLSystem):
+    if not isinstance(system, AbstractSystem) or system.is_spatial:
         remedy = "Return a SuslovTop, a sleigh or an LLSystem."
         raise error("fit(system_of=...)", "return a system with a left-invariant constraint", shown(system), remedy)
-    return system
+    return cast(System, system)
 
 
-def _first(system: AbstractLLSystem, trial: Trial, h: float) -> tuple[np.ndarray, np.ndarray]:
+def _first(system: System, trial: Trial, h: float) -> tuple[np.ndarray, np.ndarray]:
     """Return a first pose and a first start: velocity along the constraint and, with poses, a change of the pose."""
     group, S = system.group, system.constraint_subspace
     turn, rate = trial.kinds.get("turn"), trial.kinds.get("rate")
