@@ -19,9 +19,12 @@ if TYPE_CHECKING:
     from nonholo.analysis import invariant_curve as invariant_curve
     from nonholo.analysis import invariant_measure as invariant_measure
     from nonholo.analysis import invariants as invariants
+    from nonholo.analysis import lyapunov_exponents as lyapunov_exponents
     from nonholo.analysis import lyapunov_function as lyapunov_function
     from nonholo.analysis import momentum_locus as momentum_locus
     from nonholo.analysis import single_valued_region as single_valued_region
+    from nonholo.analysis.inverse import fit as fit
+    from nonholo.analysis.inverse import steer as steer
     from nonholo.base.results import Outcome as Outcome
     from nonholo.base.results import OutcomeError as OutcomeError
     from nonholo.continuous import vector_field as vector_field
@@ -74,6 +77,7 @@ if TYPE_CHECKING:
     from nonholo.simulation import flow as flow
     from nonholo.simulation import iterate as iterate
     from nonholo.simulation import simulate as simulate
+    from nonholo.simulation.traced import rollout as rollout
     from nonholo.systems import ChaplyginSleigh as ChaplyginSleigh
     from nonholo.systems import Forced as Forced
     from nonholo.systems import Friction as Friction
@@ -147,6 +151,7 @@ _HOMES = {
     "euler_angle_discrete_lagrangian": "systems",
     "explore": "explorer",
     "extend": "simulation",
+    "fit": "analysis.inverse",
     "flow": "simulation",
     "flow_obstruction": "analysis",
     "fold_distance": "discrete",
@@ -161,15 +166,18 @@ _HOMES = {
     "iterate": "simulation",
     "load_orbit": "io",
     "load_sweep": "ensembles",
+    "lyapunov_exponents": "analysis",
     "lyapunov_function": "analysis",
     "mass_tensor_lagrangian": "lagrange_dalembert",
     "momentum_locus": "analysis",
     "moser_veselov_displacement": "discrete",
     "reference_point_subspace": "systems",
     "resume": "ensembles",
+    "rollout": "simulation.traced",
     "save_orbit": "io",
     "simulate": "simulation",
     "single_valued_region": "analysis",
+    "steer": "analysis.inverse",
     "step": "discrete._step",
     "sweep": "ensembles",
     "trace_constraints": "systems",
@@ -177,7 +185,9 @@ _HOMES = {
 }
 _ROOMS = {"examples": "literature", "plot": "plotting", "testing": "testing"}
 
-_EXTRAS = {"discrete.definition": "jax", "discrete._step": "jax", "literature": "jax", "lagrange_dalembert": "jax"}
+_EXTRAS = dict.fromkeys(
+    ("discrete.definition", "discrete._step", "simulation.traced", "literature", "lagrange_dalembert"), "jax"
+)
 """Extras that rooms need beyond the core."""
 
 __version__ = version("nonholo")

@@ -23,6 +23,7 @@ BAD: dict[str, tuple[Callable[[Any], Any], str]] = {
     "grid": (lambda x: nh.Grid({"a": x}), "Grid({'a': ...})"),
     "ensemble": (lambda x: nh.ensemble(TOP, steps=2, restricted_velocity=x), "ensemble(restricted_velocity=...)"),
     "start": (lambda x: nh.simulate(TOP, steps=2, momentum=x), "simulate(momentum=...)"),
+    "rollout": (lambda x: nh.rollout(TOP, steps=2, momentum=x), "rollout(momentum=...)"),
     "step": (lambda x: nh.step(TOP, momentum=x), "step(momentum=...)"),
     "legendre": (lambda x: nh.discrete_legendre(TOP, x), "discrete_legendre(displacement=...)"),
     "subspace": (lambda x: nh.reference_point_subspace(x, np.eye(3)), "reference_point_subspace(n=...)"),

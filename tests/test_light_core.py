@@ -27,7 +27,7 @@ def _printed(*arguments: str) -> dict[str, str]:
 
 def test_names_that_need_an_extra() -> None:
     """Names that only JAX gives a meaning ask for it, by name and with how to install it; all others are there."""
-    assert _printed("names") == dict.fromkeys(WITHOUT_HOME | {"step"}, "jax")
+    assert _printed("names") == dict.fromkeys(WITHOUT_HOME | {"rollout", "step"}, "jax")
 
 
 @pytest.mark.profile("faults", keep=["quick"])
@@ -35,7 +35,18 @@ def test_names_that_need_an_extra() -> None:
     ("which", "asked"),
     [
         ("quick", {"branches [certified]": "certify"}),
-        ("all", {"branches [certified]": "certify", "consistency_defect": "jax", "step": "jax", "step [flat]": "jax"}),
+        (
+            "all",
+            {
+                "branches [certified]": "certify",
+                "consistency_defect": "jax",
+                "fit": "jax",
+                "rollout": "jax",
+                "steer": "jax",
+                "step": "jax",
+                "step [flat]": "jax",
+            },
+        ),
     ],
     ids=["quick", "all"],
 )

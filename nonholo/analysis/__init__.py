@@ -13,8 +13,10 @@ from nonholo.analysis.conserved import (
     conserved_momenta,
     invariant_measure,
     invariants,
+    lyapunov_exponents,
     lyapunov_function,
     step_jacobians,
+    tangent,
 )
 from nonholo.analysis.energies import (
     CriticalEnergies,
@@ -65,8 +67,10 @@ __all__ = [
     "invariant_curve",
     "invariant_measure",
     "invariants",
+    "lyapunov_exponents",
     "lyapunov_function",
     "momentum_locus",
     "single_valued_region",
     "step_jacobians",
+    "tangent",
 ]

@@ -7,7 +7,6 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo import kernels
 from nonholo.base.checks import array, error, is_traced, shape_of, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
@@ -24,16 +23,15 @@ from nonholo.discrete.branching import (
     next_place,
 )
 from nonholo.discrete.definition import (
+    ON_LOCUS,
     displaced,
     in_double,
     momentum_of,
     nearest_displacement,
-    principal_displacement,
-    principal_root,
+    principal_of,
+    traceable,
 )
 from nonholo.discrete.routes import ScalarRoute, ScalarStep
-
-_ON_LOCUS = 1e-6  # relative distance from the momentum locus that a computed momentum may have
 
 
 class StepResult(NamedTuple):
@@ -100,14 +98,9 @@ def step(discrete: Discretization, momentum: Any, branch: BranchRule = "principa
     rule.check("step(branch=...)", discrete)
     if rule.is_principal or traced or not has_frame(discrete):
         route = discrete.route
-        closed = jax.tree.map(_traceable, route.step) if isinstance(route, ScalarRoute) else None
+        closed = jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None
         return in_double(_step, discrete, closed, not rule.is_principal, value)
     return _step_by_rule(discrete, rule, value)
-
-
-def _traceable(number: Array) -> Array:
-    """Return a number as a scalar array: JAX would compile the step anew for each value of a Python float."""
-    return np.float64(number) if isinstance(number, float) else number
 
 
 def _step_by_rule(discrete: Discretization, rule: AbstractBranchRule, momentum: np.ndarray) -> StepResult:
@@ -133,16 +126,15 @@ def _step_by_rule(discrete: Discretization, rule: AbstractBranchRule, momentum: 
 def _step(discrete: Discretization, closed: ScalarStep | None, nearest: bool, momentum: Array) -> StepResult:
     system = discrete.system
     subspace = jnp.asarray(system.constraint_subspace)
-    full = momentum.shape[0] != subspace.shape[0]
-    y, code = _principal(discrete, closed, subspace @ momentum if full else momentum)
+    full, nowhere = momentum.shape[0] != subspace.shape[0], system.group.identity
+    y, code = principal_of(discrete, closed, subspace @ momentum if full else momentum, nowhere)
     if full:
         code = jnp.where((code == 0) & _off_locus(discrete, y, momentum), int(Outcome.off_momentum_locus), code)
-    nowhere = system.group.identity
     arriving = momentum_of(discrete, y, nowhere, "right")
     if nearest:
         following, later = nearest_displacement(discrete, y, subspace @ arriving)
     else:
-        following, later = _principal(discrete, closed, subspace @ arriving)
+        following, later = principal_of(discrete, closed, subspace @ arriving, nowhere)
     code = jnp.where(code == 0, later, code)
     after = momentum_of(discrete, following, nowhere, "left")
     multipliers = (after - arriving) @ jnp.linalg.pinv(jnp.asarray(system.annihilator))
@@ -153,21 +145,4 @@ def _step(discrete: Discretization, closed: ScalarStep | None, nearest: bool, mo
 
 def _off_locus(discrete: Discretization, y: Array, momentum: Array) -> Array:
     missed = momentum_of(discrete, y, discrete.system.group.identity, "left") - momentum
-    return jnp.sum(missed**2) > _ON_LOCUS**2 * jnp.sum(momentum**2)
-
-
-def _principal(discrete: Discretization, closed: ScalarStep | None, restricted: Array) -> tuple[Array, Array]:
-    """Return chart coordinates of the principal displacement and the outcome."""
-    if closed is None:
-        return principal_displacement(discrete, restricted, discrete.system.group.identity)
-    body, C = closed.body, jnp.asarray(discrete.system.frame_map)
-    C = C if closed.rows is None else jnp.asarray(closed.rows) @ C
-
-    def residual(y: Array, m: Array) -> Array:
-        return jnp.stack(kernels.residual(body, *m, *y))
-
-    def certified(y: Array, m: Array) -> Array:
-        return kernels.certified(body, *m, *y)
-
-    y, code = principal_root(residual, closed.scale * (C @ restricted), 2, certified)
-    return y if closed.rows is None else y @ jnp.asarray(closed.rows), code
+    return jnp.sum(missed**2) > ON_LOCUS**2 * jnp.sum(momentum**2)

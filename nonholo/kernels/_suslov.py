@@ -28,12 +28,17 @@ class SuslovBody(NamedTuple):
 
 
 def suslov_body(constrained_inertia: Any, coupling: Any) -> SuslovBody:
-    """Pack the parameters of a top; concrete ones get the radius of the certificate, traced ones a radius of zero."""
+    """Pack the parameters of a top; concrete ones get the radius of the certificate, traced ones a smaller one."""
     if isinstance(constrained_inertia, np.ndarray) and isinstance(coupling, np.ndarray):
         return SuslovBody(*(float(x) for x in suslov_table(constrained_inertia, coupling)))
     (b11, b12), (_, b22) = constrained_inertia
     c1, c2 = coupling
-    return SuslovBody(b11, b12, b22, c1, c2, 0.0)
+    xp = constrained_inertia.__array_namespace__()
+    middle, half = (b11 + b22) / 2, xp.sqrt((b11 - b22) * (b11 - b22) / 4 + b12 * b12)
+    length, pull = xp.sqrt(c1 * c1 + c2 * c2), xp.sqrt((b11 * c1 + b12 * c2) ** 2 + (b12 * c1 + b22 * c2) ** 2)
+    low, high = middle - half, middle + half
+    below = low * high / (2 * (pull + length * high) + low * high)  # the root of a convex cubic, by its chord
+    return SuslovBody(b11, b12, b22, c1, c2, (0.999 * xp.minimum(below, 0.7 * low / length)) ** 2)
 
 
 def suslov_table(B: np.ndarray, c: np.ndarray) -> np.ndarray:

@@ -356,6 +356,14 @@ class Orbit(AbstractOrbit):
             return np.zeros(len(self))
         return forced.work(self.time, self.configuration, self.body_velocity, self.save_every)
 
+    @property
+    def tangent(self) -> Float[np.ndarray, "L k k"]:
+        """Derivatives of restricted momenta after each step of a discrete orbit by those before it, (K - 1, k, k).
+
+        `nonholo.analysis.tangent` says of which maps; `lyapunov_exponents` multiplies them.
+        """
+        return importlib.import_module("nonholo.analysis").tangent(self)
+
     def to_dataset(self, *, decoded: bool = False) -> Any:
         """Return the orbit as a labeled `xarray.Dataset`, in the user's body frame.
 

@@ -134,7 +134,7 @@ def top_form(mass_tensor: Float[Array, "n n"]) -> NormalForm:
 
 def sleigh_form(mass: Array, center_of_mass: Float[Array, "n"], mass_tensor: Float[Array, "n n"]) -> NormalForm:
     """Return the form of a sleigh that slides along the first axis, from its mass tensor about the center of mass."""
-    J, a = np.asarray(mass_tensor), np.asarray(center_of_mass)
+    J, a = (x if is_traced(x) else np.asarray(x) for x in (mass_tensor, center_of_mass))
     return NormalForm(J[1:, 1:], J[0, 0], -J[0, 1:], mass, a[0], a[1:])
 
 

@@ -3,10 +3,17 @@
 import numpy as np
 from fuzz.calls import Call, by_position, call
 from fuzz.calls_maps import BENT, SLEIGH, TOP
-from fuzz.kinds import anything, array, count, flag, integer, number, positive, thing
+from fuzz.kinds import anything, array, count, flag, function, integer, number, positive, text, thing
 
 import nonholo as nh
 from nonholo.analysis import deltoid
+
+_RUN = nh.simulate(SLEIGH, body_velocity=(1.0, 0.3, 0.0), steps=8)
+_RECORD = {"t": _RUN.time, "x": _RUN.position[:, 0], "y": _RUN.position[:, 1], "theta": _RUN.heading}
+
+
+def _slide(numbers: dict) -> nh.ChaplyginSleigh:
+    return nh.ChaplyginSleigh(1.0, 1.0, numbers["a"])
 
 
 def calls() -> list[Call]:
@@ -30,6 +37,7 @@ def _of_systems() -> list[Call]:
         call("equilibria [discrete]", nh.equilibria, system=thing(TOP), energy=positive(1.0)),
         call("invariant_measure", nh.invariant_measure, motion=thing(TOP), energy=positive(1.0)),
         call("invariants", nh.invariants, orbit=thing(orbit)),
+        call("lyapunov_exponents", nh.lyapunov_exponents, orbit=thing(orbit)),
         call("lyapunov_function", nh.lyapunov_function, system=thing(system)),
     ]
 
@@ -46,6 +54,26 @@ def _of_maps() -> list[Call]:
         call("heteroclinic [displacement]", nh.heteroclinic, **top, displacement=array(W)),
         call("invariant_curve", nh.invariant_curve, **top, energy=positive(0.5), resolution=count(40)),
         call("invariant_curve [sleigh]", nh.invariant_curve, **sleigh, energy=positive(0.5), resolution=count(40)),
+        call(
+            "fit",
+            nh.fit,
+            system_of=function(_slide),
+            measurements=anything(_RECORD),
+            guess=anything({"a": 0.4}),
+            time_step=positive(0.1),
+            slow=True,
+        ),
+        call(
+            "steer",
+            nh.steer,
+            discrete=thing(SLEIGH),
+            start=anything({}),
+            goal=anything({"restricted_velocity": (0.1, 0.2)}),
+            steps=count(3),
+            bounds=anything(None),
+            cost=text("effort"),
+            slow=True,
+        ),
         call("momentum_locus", nh.momentum_locus, **top, resolution=count(12)),
         call("single_valued_region", nh.single_valued_region, sleigh=thing(SLEIGH)),
     ]

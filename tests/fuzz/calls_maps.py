@@ -27,6 +27,17 @@ def calls() -> list[Call]:
         *_branches(),
         call("discrete_legendre", nh.discrete_legendre, discrete=thing(TOP), displacement=array(W), side=text("left")),
         call("step", nh.step, discrete=thing(TOP), momentum=array([0.1, 0.2]), branch=rule("principal"), slow=True),
+        call(
+            "rollout",
+            nh.rollout,
+            discrete=thing(TOP),
+            restricted_velocity=array([0.3, -0.2]),
+            configuration=array(W),
+            controls=array(np.zeros((2, 3))),
+            steps=count(2),
+            save_every=count(1),
+            slow=True,
+        ),
         call("step [flat]", nh.step, discrete=thing(FLAT), momentum=array([0.1, 0.2, 0.1]), slow=True),
         call(
             "moser_veselov_displacement",

@@ -15,6 +15,7 @@ PAGES = (
     "how-to/choose-a-branch-rule.md",
     "how-to/choose-a-discretisation.md",
     "how-to/compare-motions.md",
+    "how-to/differentiate-and-fit.md",
     "how-to/run-an-ensemble.md",
     "how-to/style-a-picture.md",
 )

@@ -5,6 +5,7 @@ from nonholo.analysis.conserved._lyapunov import LyapunovFunction, lyapunov_func
 from nonholo.analysis.conserved._measure import InvariantMeasure, invariant_measure
 from nonholo.analysis.conserved._momenta import ConservedMomenta, conserved_momenta
 from nonholo.analysis.conserved._step_jacobian import step_jacobians
+from nonholo.analysis.conserved._tangent import lyapunov_exponents, tangent
 
 __all__ = [
     "ConservedMomenta",
@@ -14,6 +15,8 @@ __all__ = [
     "conserved_momenta",
     "invariant_measure",
     "invariants",
+    "lyapunov_exponents",
     "lyapunov_function",
     "step_jacobians",
+    "tangent",
 ]

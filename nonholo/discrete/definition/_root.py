@@ -1,10 +1,13 @@
 """The principal root of a system of equations, for JAX: continuation from zero, then Newton's method."""
 
+import functools
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
+from jax.ad_checkpoint import checkpoint_name
 
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
@@ -15,16 +18,20 @@ _CORRECTIONS = 8  # of Newton's method at each continuation step
 _LAST = 20  # of Newton's method at the end, to rounding
 _JUMP = 0.2  # a continuation step that moves y further than this, relative to 1 + |y|^2, is not trusted
 _NEAR_FOLD = 1e-2  # of the Jacobian determinant at zero, where a continuation that stops has met a fold
+_NOWHERE = 0.3  # y of a root that was not found
 _FAR = 1e3  # size of y where a chart of the displacements ends: an angle of 179.9 degrees
 
 Residual = Callable[[Array, Array], Array]
+Certificate = Callable[[Array, Array], Array]
+ROOT = "root of a step"  # what a checkpoint keeps, so that no root is searched for twice
 
 
 def principal_root(
     residual: Residual,
     target: Float[Array, "k"],
     unknowns: int,
-    certified: Callable[[Array, Array], Array] | None = None,
+    certified: Certificate | None = None,
+    guess: Float[Array, "m"] | None = None,
 ) -> tuple[Float[Array, "m"], Array]:
     r"""Solve residual(y, target) = 0 for the root that (0, 0) reaches along s target, 0 <= s <= 1.
 
@@ -36,39 +43,86 @@ def principal_root(
         target: The momenta.
         unknowns: Number m of components of y.
         certified: Tells of a root whether it is certainly the principal one, whatever the continuation saw.
+        guess: Where Newton's method may look first; what it finds there needs the certificate.
 
     Returns:
-        The root and the outcome as an integer array.
+        The root and the outcome as an integer array. Where that is not successful the root is any finite number, with
+        some finite derivative along all that the residual depends on.
     """
     nothing = jnp.zeros(unknowns, target.dtype), jnp.zeros_like(target)
-    return followed_root(residual, nothing, target, certified)
+    return followed_root(residual, nothing, target, certified, guess)
 
 
 def followed_root(
     residual: Residual,
     start: tuple[Float[Array, "m"], Float[Array, "k"]],
     target: Float[Array, "k"],
-    certified: Callable[[Array, Array], Array] | None = None,
+    certified: Certificate | None = None,
+    guess: Float[Array, "m"] | None = None,
 ) -> tuple[Float[Array, "m"], Array]:
     """Solve residual(y, target) = 0 for the root that a given one reaches while the momenta move straight to target.
 
     As `principal_root`, from a start of the caller's: a root and its momenta.
     """
-    path = jax.lax.stop_gradient((start, target))
-    end, folded, jumped = jax.lax.stop_gradient(_continue(residual, *path))
-    y = jax.lax.custom_root(lambda y: residual(y, target), end.iterate, lambda _, found: found, _solve_linear)
+    if certified is None:
+        certified = _uncertain
+    residual, numbers = jax.closure_convert(residual, *start)
+    certified, facts = jax.closure_convert(certified, *start)
+    return _found(residual, certified, numbers, facts, start, target, guess)
+
+
+def _uncertain(y: Array, m: Array) -> Array:
+    del y, m
+    return jnp.asarray(False)
+
+
+@functools.partial(jax.custom_jvp, nondiff_argnums=(0, 1))
+def _found(
+    residual: Callable[..., Array],
+    certified: Callable[..., Array],
+    numbers: list[Array],
+    facts: list[Array],
+    start: tuple[Array, Array],
+    target: Array,
+    guess: Array | None,
+) -> tuple[Array, Array]:
+    """Return where the search ends, and its outcome; what the functions are made of stands in `numbers` and `facts`."""
+
+    def is_certain(y: Array, m: Array) -> Array:
+        return certified(y, m, *facts)
+
+    end, folded, jumped = _continue(lambda y, m: residual(y, m, *numbers), start, target, guess, is_certain)
+    y = end.iterate
     converged = end.converged & jnp.all(jnp.isfinite(y)) & jnp.all(jnp.isfinite(target))
-    certain = converged & (jnp.asarray(False) if certified is None else certified(y, target))
     code = jnp.where(jumped, int(Outcome.branch_unverified), int(Outcome.successful))
     beyond = jumped & (jnp.sum(end.root**2) > _FAR**2)
     code = jnp.where(converged | beyond, code, int(Outcome.not_converged))
     code = jnp.where(folded, int(Outcome.no_real_branch), code)
     code = jnp.where(jnp.all(jnp.isfinite(target)), code, int(Outcome.nonfinite))
-    return y, jnp.where(certain, int(Outcome.successful), code)
+    code = jnp.where(converged & is_certain(y, target), int(Outcome.successful), code)
+    return jnp.where(code == 0, y, _NOWHERE), code
 
 
-def _solve_linear(function: Callable[[Array], Array], value: Array) -> Array:
-    return jnp.linalg.solve(jax.jacfwd(function)(value), value)
+@_found.defjvp
+def _implicit(residual: Any, certified: Any, primals: Any, tangents: Any) -> tuple[Any, Any]:
+    """Return the derivative of the implicit function at the root, which says nothing of the search."""
+    y, code = _found(residual, certified, *primals)
+    y = checkpoint_name(y, ROOT)
+    numbers, _, start, target, _ = primals
+    finite = jnp.all(jnp.isfinite(target))
+    at, moved = jnp.where(finite, target, start[1]), jnp.where(finite, tangents[3], 0.0)
+    _, change = jax.jvp(lambda m, n: residual(y, m, *n), (at, numbers), (moved, tangents[0]))
+    slope = jax.jacfwd(residual)(y, at, *numbers)
+    return (y, code), (-_solved(slope, change[:, None])[1][:, 0], np.zeros(code.shape, jax.dtypes.float0))
+
+
+def _solved(matrix: Float[Array, "m m"], values: Float[Array, "m j"]) -> tuple[Array, Float[Array, "m j"]]:
+    """Return the determinant and the solutions; two unknowns need no library, which would be called at each step."""
+    if len(matrix) != 2:
+        return jnp.linalg.det(matrix), jnp.linalg.solve(matrix, values)
+    (a, b), (c, d) = matrix
+    det, (first, second) = a * d - b * c, values
+    return det, jnp.stack([d * first - b * second, a * second - c * first]) / det
 
 
 class _Path(NamedTuple):
@@ -85,6 +139,7 @@ class _Path(NamedTuple):
         iterate: Where it is.
         count: How many corrections it has made; -1 where the path begins, at a root.
         converged: Whether the last ones, at s = 1 from wherever the path ended, have come to rest.
+        trial: Whether it has not begun: Newton's method looks at a guess first.
     """
 
     s: Array
@@ -97,22 +152,22 @@ class _Path(NamedTuple):
     iterate: Array
     count: Array
     converged: Array
+    trial: Array
 
 
-def _continue(residual: Residual, begun: tuple[Array, Array], target: Array) -> tuple[_Path, Array, Array]:
+def _continue(
+    residual: Residual, begun: tuple[Array, Array], target: Array, guess: Array | None, is_certain: Certificate
+) -> tuple[_Path, Array, Array]:
     """Return the end of the path, where its last root is corrected at s = 1, and whether it met a fold or was lost.
 
     Beginning, path and end are one loop, so that the residual and its derivatives are compiled once.
     """
     one, (root, before) = jnp.ones((), target.dtype), begun
     evaluate = _evaluation(residual, before, target)
-    eps, least = float(jnp.finfo(target.dtype).eps), jnp.finfo(target.dtype).tiny * 1e3
-
-    def is_unfinished(path: _Path) -> Array:
-        return (path.s < 1) & (path.size > jnp.maximum(_SMALLEST * path.s, least))
+    eps = float(jnp.finfo(target.dtype).eps)
 
     def advance(path: _Path) -> _Path:
-        first, last = path.count < 0, ~is_unfinished(path)
+        first, last = path.count < 0, ~_is_unfinished(path)
         ahead = jnp.where(first, 0.0, jnp.where(last, 1.0, jnp.minimum(path.s + path.size, 1.0)))
         det, missed, correction, tangent = evaluate(path.iterate, ahead)
         found = path.iterate - correction
@@ -122,30 +177,51 @@ def _continue(residual: Residual, begun: tuple[Array, Array], target: Array) -> 
         arrived = ~last & ~first & done & near & (det * path.now > 0)
         ended = ~last & (first | done | (path.count == _CORRECTIONS) | ~jnp.all(jnp.isfinite(found)))
         root, reached = jnp.where(arrived, found, path.root), arrived | first
-        tangent = jnp.where(reached, tangent, path.tangent)
-        s, now = jnp.where(reached, ahead, path.s), jnp.where(reached, det, path.now)
+        here, before = (ahead, det, tangent), (path.s, path.now, path.tangent)
+        s, now, tangent = (jnp.where(reached, x, old) for x, old in zip(here, before, strict=True))
         size = jnp.where(reached, 2 * path.size, jnp.where(ended, path.size / 4, path.size))
         following = path._replace(s=s, size=size, root=root, tangent=tangent, now=now)
-        guess = jnp.where(is_unfinished(following), root + jnp.minimum(size, 1 - s) * tangent, root)
+        ahead = jnp.where(_is_unfinished(following), root + jnp.minimum(size, 1 - s) * tangent, root)
         at_rest = jnp.all(jnp.abs(missed) < eps**0.65) & jnp.all(jnp.abs(correction) < eps**0.65 * (1 + jnp.abs(found)))
-        return following._replace(
+        following = following._replace(
             start=jnp.where(first, det, path.start),
-            guess=jnp.where(ended, guess, path.guess),
-            iterate=jnp.where(ended, guess, found),
+            guess=jnp.where(ended, ahead, path.guess),
+            iterate=jnp.where(ended, ahead, found),
             count=jnp.where(ended, 0, path.count + 1),
             converged=last & at_rest,
         )
+        return following if guess is None else _unless_it_failed(following, begin, is_certain(found, target))
 
     zero, finite = 0 * one, jnp.all(jnp.isfinite(target))
     nothing, no = jnp.zeros_like(root), jnp.asarray(False)
-    begin = _Path(zero, _FIRST / 2 * one, root, nothing, zero, zero, root, root, jnp.asarray(-1), no)
-    end = jax.lax.while_loop(
-        lambda path: (is_unfinished(path) | (~path.converged & (path.count < _LAST))) & finite, advance, begin
-    )
+    begin = _Path(zero, _FIRST / 2 * one, root, nothing, zero, zero, root, root, jnp.asarray(-1), no, no)
+    first = begin if guess is None else begin._replace(s=one, iterate=guess, count=jnp.asarray(0), trial=~no)
+    end = jax.lax.while_loop(lambda path: _goes_on(path) & finite, advance, first)
+    return end, *_verdict(end)
+
+
+def _is_unfinished(path: _Path) -> Array:
+    least = jnp.finfo(path.s.dtype).tiny * 1e3
+    return (path.s < 1) & (path.size > jnp.maximum(_SMALLEST * path.s, least))
+
+
+def _goes_on(path: _Path) -> Array:
+    return _is_unfinished(path) | (~path.converged & (path.count < _LAST))
+
+
+def _unless_it_failed(path: _Path, begin: _Path, certain: Array) -> _Path:
+    """Return the path, or its beginning where Newton's method has looked at a guess in vain."""
+    over = (path.count > _CORRECTIONS) | path.converged | ~jnp.all(jnp.isfinite(path.iterate))
+    failed = path.trial & over & ~(path.converged & certain)
+    return jax.tree.map(lambda new, old: jnp.where(failed, new, old), begin, path)
+
+
+def _verdict(end: _Path) -> tuple[Array, Array]:
+    """Tell whether a path has met a fold, or was lost."""
     lost = end.s < 1
     far = jnp.sum(end.root**2) > _FAR**2  # where the determinant vanishes without a fold
     folded = lost & ~far & (jnp.abs(end.now) < _NEAR_FOLD * jnp.abs(end.start))
-    return end, folded, lost & ~folded
+    return folded, lost & ~folded
 
 
 def _evaluation(residual: Residual, before: Array, target: Array) -> Callable[[Array, Array], tuple[Array, ...]]:
@@ -157,7 +233,7 @@ def _evaluation(residual: Residual, before: Array, target: Array) -> Callable[[A
 
     def evaluate(y: Array, s: Array) -> tuple[Array, Array, Array, Array]:
         (slope, rate), missed = jax.jacfwd(values, argnums=(0, 1), has_aux=True)(y, s)
-        solved = jnp.linalg.solve(slope, jnp.stack([missed, -rate], axis=1))
-        return jnp.linalg.det(slope), missed, solved[:, 0], solved[:, 1]
+        det, solved = _solved(slope, jnp.stack([missed, -rate], axis=1))
+        return det, missed, solved[:, 0], solved[:, 1]
 
     return evaluate

@@ -1,0 +1,99 @@
+"""Derivatives of orbits: a gradient beside the compiled orbit in JAX, a first gradient, memory of long ones.
+
+    python benchmarks/derivatives.py [--rounds 15] [--long 1000000]
+
+Orbit and gradient are timed in turns, medians are printed. Memory is what a process adds, at its highest, to that of
+the same gradient over a thousand steps.
+"""
+
+import argparse
+import resource
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+import nonholo as nh
+
+TENSOR = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+FOUR = np.diag([1.0, 2.0, 1.5, 1.0]) + 0.1
+MIXED = [[1.0, 0, 1, 0.75, -0.5, 0.75], [0, 1.0, 0, 0.5, 0.25, -1], [1, 1, 0, 1, 0.5, -0.75]]
+BODIES: dict[str, tuple[Callable, np.ndarray]] = {
+    "top": (nh.SuslovTop, TENSOR),
+    "sleigh": (lambda x: nh.ChaplyginSleigh(*x), np.array([1.5, 0.7, 0.4, 0.2])),
+    "top, n = 4": (nh.SuslovTop, FOUR),
+    "three directions of SE(3)": (lambda x: nh.LLSystem(nh.SE(3), x, constraint_subspace=MIXED), FOUR),
+}
+
+
+def end_of(name: str, steps: int, save_every: int) -> tuple[Callable, tuple]:
+    """Return a number that the end of an orbit has, as a function of body and start, and where to take it."""
+    build, numbers = BODIES[name]
+    velocity = np.linspace(0.3, 0.5, build(numbers).rank)
+
+    def end(numbers: jax.Array, velocity: jax.Array) -> jax.Array:
+        discrete = nh.discretize(build(numbers), 0.05)
+        orbit = nh.rollout(discrete, restricted_velocity=velocity, steps=steps, save_every=save_every)
+        return jnp.sum(orbit.restricted_momentum[-1]) + jnp.sum(jnp.sin(orbit.configuration[-1]))
+
+    return end, (numbers, velocity)
+
+
+def compare(name: str, rounds: int) -> None:
+    """Print a first gradient, and an orbit of 1000 steps beside its gradient."""
+    end, at = end_of(name, 1000, 1)
+    gradient, orbit = jax.jit(jax.grad(end, argnums=(0, 1))), jax.jit(end)
+    used, began = time.process_time(), time.perf_counter()
+    jax.block_until_ready(gradient(*at))
+    used, began = time.process_time() - used, time.perf_counter() - began
+    jax.block_until_ready(orbit(*at))
+    times: list[list[float]] = [[], []]
+    for _ in range(rounds):
+        for function, row in zip((orbit, gradient), times, strict=True):
+            start = time.perf_counter()
+            jax.block_until_ready(function(*at))
+            row.append(time.perf_counter() - start)
+    one, other = (1e3 * statistics.median(row) for row in times)
+    ratio = statistics.median(b / a for a, b in zip(*times, strict=True))
+    first = f"first gradient {began:.1f} s ({used:.1f} s of the processor)"
+    print(f"{name}: orbit {one:.2f} ms, gradient {other:.2f} ms, {ratio:.1f} times; {first}", flush=True)
+
+
+def long_gradient(steps: int) -> None:
+    """Print the time of a gradient of a top and what memory its process has used at most, in MB."""
+    end, at = end_of("top", steps, steps)
+    began = time.perf_counter()
+    found = jax.block_until_ready(jax.jit(jax.grad(end, argnums=(0, 1)))(*at))
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(time.perf_counter() - began, peak, float(jnp.abs(found[1]).max()))
+
+
+def main() -> None:
+    """Print all figures."""
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--rounds", type=int, default=15)
+    options.add_argument("--long", type=int, default=1_000_000)
+    options.add_argument("--only", type=int)
+    chosen = options.parse_args()
+    with jax.enable_x64(True):
+        if chosen.only:
+            long_gradient(chosen.only)
+            return
+        for name in BODIES:
+            compare(name, chosen.rounds)
+    peaks = []
+    for steps in (1000, chosen.long):
+        command = [sys.executable, __file__, "--only", str(steps)]
+        seconds, peak, size = map(float, subprocess.check_output(command, text=True).split())  # noqa: S603
+        peaks.append(peak)
+        print(f"gradient of {steps} steps of a top: {seconds:.1f} s, {peak:.0f} MB in total, size {size:.3g}")
+    print(f"{peaks[1] - peaks[0]:.0f} MB more")
+
+
+if __name__ == "__main__":
+    main()

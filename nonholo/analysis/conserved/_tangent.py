@@ -1,0 +1,75 @@
+"""The tangent map along an orbit of the discrete map, and the exponents at which neighbors part."""
+
+import numpy as np
+
+from nonholo.analysis.conserved._step_jacobian import step_jacobians
+from nonholo.base.checks import error, shown
+from nonholo.base.types import Float
+from nonholo.discrete import Discretization
+from nonholo.orbit import Orbit, as_orbit
+
+_WHERE = "Orbit.tangent"
+
+
+def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
+    r"""Return $\partial r_{k+1}/\partial r_k$ for every step of an orbit, from closed derivatives; no JAX is needed.
+
+    $$ \frac{\partial r_{k+1}}{\partial r_k} = F'(W_k^{-1})\,F'(W_k)^{-1}, \qquad
+       F(W) = P(W)|_{\mathfrak d},\quad r_{k+1} = -F(W_k^{-1}), $$
+
+    with derivatives along the displacement variety. The orbit is one of a left-invariant system with difference
+    "matrix", constraint "skew" and order 2 that keeps every step; `nh.rollout` has the derivatives of all others.
+
+    Args:
+        orbit: Made by `simulate`.
+
+    Raises:
+        ValueError: Another kind of orbit.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), 0.1)
+        >>> orbit = nh.simulate(sleigh, restricted_velocity=(0.0, 1.0), steps=1)
+        >>> orbit.tangent[0].round(3)
+        array([[0.961, 0.   ],
+               [0.   , 1.   ]])
+    """
+    as_orbit(_WHERE, orbit, "one in coordinates has none.")
+    discrete = orbit.motion
+    if not isinstance(discrete, Discretization) or not discrete.conserves_energy or discrete.order > 2:
+        remedy = "Differentiate `nh.rollout` by JAX, or run with the default difference and constraint."
+        raise error(_WHERE, "be asked of a map with closed derivatives", shown(discrete), remedy)
+    if orbit.save_every > 1:
+        raise error(_WHERE, "have every step", f"save_every {orbit.save_every}", "Run with save_every=1.")
+    return step_jacobians(discrete, orbit.displacement[:-1])
+
+
+def lyapunov_exponents(orbit: Orbit) -> Float[np.ndarray, "k"]:
+    r"""Return the finite-time Lyapunov exponents of the momenta along an orbit, largest first.
+
+    $$ \lambda_i = \frac{1}{t_K - t_0}\sum_k \log R^{(k)}_{ii}, \qquad
+       \frac{\partial r_{k+1}}{\partial r_k}\,Q^{(k)} = Q^{(k+1)}R^{(k+1)}, $$
+
+    Benettin's method: an orthonormal frame is carried by the tangent map (`Orbit.tangent`) and made orthonormal again
+    at each step. Their sum is the mean rate at which volumes of momenta grow.
+
+    Args:
+        orbit: Made by `simulate`, with every step.
+
+    Raises:
+        ValueError: An orbit without a tangent map, or of a single state.
+
+    Example:
+        A sleigh tends to its straight motion: one momentum keeps what it is, the other decays.
+
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), 0.1)
+        >>> nh.lyapunov_exponents(nh.simulate(sleigh, restricted_velocity=(0.0, 1.0), steps=200)).round(3) + 0.0
+        array([ 0. , -0.4])
+    """
+    steps = tangent(orbit)
+    if not len(steps):
+        raise error("lyapunov_exponents(orbit=...)", "have a step", "one state", "Run longer.")
+    frame, growth = np.eye(steps.shape[-1]), np.zeros(steps.shape[-1])
+    for step in steps:
+        frame, triangle = np.linalg.qr(step @ frame)
+        growth += np.log(np.abs(triangle.diagonal()))
+    return np.sort(growth / float(orbit.time[-1] - orbit.time[0]))[::-1]

@@ -1,0 +1,82 @@
+"""What measurements miss of a motion, with exact derivatives, compiled once: in JAX."""
+
+import functools
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo.base.types import Array
+from nonholo.discrete import discretize
+from nonholo.discrete.definition import in_double
+from nonholo.groups import SE
+from nonholo.simulation.traced import rollout
+
+Shapes = tuple[tuple[str, tuple[int, ...]], ...]
+
+
+def missed(
+    system_of: Callable[..., Any], shapes: Shapes, time_step: float, numbers: Array, starts: Array, *data: Any
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return residuals (T, K, c), measured minus computed, and their derivatives by numbers and by starts."""
+    return in_double(_compiled(system_of, shapes, time_step), numbers, starts, *data)
+
+
+@functools.lru_cache(maxsize=8)
+def _compiled(system_of: Callable[..., Any], shapes: Shapes, time_step: float) -> Callable[..., Any]:
+    def one(numbers: Array, start: Array, g: Array, kinds: dict[str, Array]) -> tuple[Array, Array]:
+        system = system_of(named(shapes, numbers))
+        group, k = system.group, system.rank
+        pose = g @ group.exp(start[k:]) if len(start) > k else g
+        steps = len(next(iter(kinds.values()))) - 1
+        orbit = rollout(discretize(system, time_step), restricted_velocity=start[:k], configuration=pose, steps=steps)
+        inertia = jnp.asarray(system.constrained_inertia)
+        velocity = jnp.linalg.solve(inertia, orbit.restricted_momentum.T).T @ system.constraint_subspace
+        rows = jnp.concatenate([_gap(group, kind, kinds[kind], orbit, velocity) for kind in kinds], axis=1)
+        return rows, rows
+
+    each = jax.vmap(jax.jacfwd(one, argnums=(0, 1), has_aux=True), in_axes=(None, 0, 0, 0))
+
+    def both(*arguments: Any) -> tuple[Array, Array, Array]:
+        (by_numbers, by_starts), rows = each(*arguments)
+        return rows, by_numbers, by_starts
+
+    return jax.jit(both)
+
+
+def named(shapes: Shapes, numbers: Array) -> dict[str, Array]:
+    """Return the parameters in a vector by name."""
+    sizes = [int(np.prod(shape)) for _, shape in shapes]
+    parts = jnp.split(numbers, np.cumsum(sizes)[:-1]) if sizes else []
+    return {name: part.reshape(shape) for (name, shape), part in zip(shapes, parts, strict=True)}
+
+
+def _gap(group: Any, kind: str, measured: Array, orbit: Any, velocity: Array) -> Array:
+    """Return measured minus computed numbers, zero where nothing was measured; of turns the vector of the rotation."""
+    there = jnp.isfinite(measured)
+    measured, g = jnp.where(there, measured, 1.0), orbit.configuration
+    if kind == "position":
+        gap = measured - g[:, :-1, -1]
+    elif kind == "rate":
+        gap = measured - velocity[:, : measured.shape[1]]
+    elif group == SE(2):
+        cos, sin = g[:, 0, 0], g[:, 1, 0]
+        c, s = jnp.cos(measured[:, 0]), jnp.sin(measured[:, 0])
+        gap = jnp.arctan2(s * cos - c * sin, c * cos + s * sin)[:, None]
+    else:
+        turn = jnp.swapaxes(g[:, :3, :3], 1, 2) @ _rotations(measured)
+        odd = (turn - jnp.swapaxes(turn, 1, 2)) / 2
+        gap, there = jnp.stack([odd[:, 2, 1], odd[:, 0, 2], odd[:, 1, 0]], axis=1), there[:, :3]
+    return jnp.where(there, gap, 0.0)
+
+
+def _rotations(q: Array) -> Array:
+    w, x, y, z = (q / jnp.linalg.norm(q, axis=1, keepdims=True)).T
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+    return jnp.moveaxis(jnp.array(rows), -1, 0)

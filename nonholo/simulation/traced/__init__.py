@@ -1,0 +1,3 @@
+"""Runs as JAX functions: the rollout. Imported on first use."""
+
+from nonholo.simulation.traced._rollout import rollout

@@ -1,0 +1,134 @@
+"""Bodies fitted to simulated records with noise: errors in units of the stated ones, gaps, trials, forms of tables."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.analysis.inverse import Fit
+
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=0.7, a=0.4), 0.05)
+TENSOR = np.array([[1.2, 0.1, 0.3], [0.1, 1.0, -0.2], [0.3, -0.2, 0.9]])
+GUESS = {"inertia": 1.0, "a": 0.3}
+TOP = nh.discretize(nh.SuslovTop(TENSOR), 0.05)
+
+
+def _sleigh(p: dict) -> nh.ChaplyginSleigh:
+    return nh.ChaplyginSleigh(mass=1.0, inertia=p["inertia"], a=p["a"])
+
+
+def _top(p: dict) -> nh.SuslovTop:
+    c1, c2, b = p["c"][0], p["c"][1], p["b"]
+    rows = [[1.2 + 0 * b, 0.1 + 0 * b, c1], [0.1 + 0 * b, b, c2], [c1, c2, 0.9 + 0 * b]]
+    namespace = b.__array_namespace__() if hasattr(b, "__array_namespace__") else np
+    return nh.SuslovTop(namespace.stack([namespace.stack([namespace.asarray(x) for x in row]) for row in rows]))
+
+
+def _sleigh_record(seed: int) -> dict[str, np.ndarray]:
+    orbit, rng = nh.simulate(SLEIGH, restricted_velocity=(1.0, 0.5), steps=60), np.random.default_rng(seed)
+    data = np.c_[orbit.position, orbit.heading] + rng.normal(size=(61, 3)) * [1e-2, 1e-2, 5e-3]
+    data[rng.random((61, 3)) < 0.1] = np.nan
+    return {"t": orbit.time + 3, "x": data[:, 0], "y": data[:, 1], "theta": data[:, 2]}
+
+
+def _top_record(seed: int) -> dict[str, np.ndarray]:
+    orbit = nh.simulate(TOP, restricted_velocity=(0.9, -0.7), steps=60)
+    rates = orbit.body_velocity + np.random.default_rng(seed).normal(scale=5e-3, size=(61, 3))
+    return {"t": orbit.time, **dict(zip(("omega_x", "omega_y", "omega_z"), rates.T, strict=True))}
+
+
+def _errors(found: Fit, truth: list[float]) -> np.ndarray:
+    values = np.concatenate([np.ravel(x) for x in found.parameters.values()])
+    return (values - truth) / np.sqrt(found.covariance.diagonal())
+
+
+def test_sleigh_is_found_within_its_errors() -> None:
+    """Of 100 noisy records with gaps at least 95 are fitted within 3 sigma, and 95 % intervals hold the truth."""
+    errors = np.array(
+        [_errors(nh.fit(_sleigh, _sleigh_record(s), {"inertia": 1.0, "a": 0.3}), [0.7, 0.4]) for s in range(100)]
+    )
+    assert (np.abs(errors) < 3).all(axis=1).sum() >= 95
+    assert 0.89 <= (np.abs(errors) < 1.98).mean() <= 0.99  # two-sided, binomial: 3.5 sigma for 200
+
+
+def test_top_is_found_from_its_gyroscope() -> None:
+    """Of 40 noisy records of angular velocities at least 38 are fitted within 3 sigma."""
+    guess = {"c": np.array([0.2, -0.1]), "b": 1.1}
+    errors = np.array([_errors(nh.fit(_top, _top_record(s), guess), [0.3, -0.2, 1.0]) for s in range(40)])
+    assert (np.abs(errors) < 3).all(axis=1).sum() >= 38
+
+
+def test_exact_record_is_fitted_exactly() -> None:
+    """Without noise the body, the start and the orbit are recovered to rounding, from other numbers far away."""
+    orbit = nh.simulate(SLEIGH, restricted_velocity=(1.0, 0.5), configuration=nh.SE(2).exp([0.7, 1.0, 2.0]), steps=60)
+    record = {"t": orbit.time, "x": orbit.position[:, 0], "y": orbit.position[:, 1], "theta": orbit.heading}
+    found = nh.fit(_sleigh, record, {"inertia": 2.0, "a": 0.9})
+    np.testing.assert_allclose([*found.parameters.values()], [0.7, 0.4], rtol=1e-10)
+    np.testing.assert_allclose(found.orbit.configuration, orbit.configuration, atol=1e-10)
+
+
+def test_trials_share_the_body_and_tables_may_have_any_form(tmp_path: Path) -> None:
+    """Two trials tell more than one; a CSV file, a table of pandas and a dictionary are read alike."""
+    pandas = pytest.importorskip("pandas")
+    one, two = _sleigh_record(1), _sleigh_record(2)
+    table = pandas.DataFrame(two)
+    one_path = tmp_path / "one.csv"
+    pandas.DataFrame(one).to_csv(one_path, index=False)
+    guess = {"inertia": 1.0, "a": 0.3}
+    both, alone = nh.fit(_sleigh, [one_path, table], guess), nh.fit(_sleigh, one, guess)
+    assert len(both.orbit) == len(both.residuals) == 2
+    assert (both.covariance.diagonal() < 0.7 * alone.covariance.diagonal()).all()
+    np.testing.assert_allclose([*nh.fit(_sleigh, one_path, guess).parameters.values()], [*alone.parameters.values()])
+
+
+def test_residuals_are_drawn() -> None:
+    """The picture has a panel for each kind of number, with the residuals as dots inside the band for the most part."""
+    found = nh.fit(_sleigh, _sleigh_record(0), GUESS)
+    figure = found.plot()
+    assert [len(axes.lines) for axes in figure.axes] == [3, 2]  # a line at zero each
+    dots = figure.axes[1].lines[1].get_ydata()
+    np.testing.assert_array_equal(dots, found.residuals[0]["turn"][:, 0])
+    assert (np.abs(dots[np.isfinite(dots)]) < 2 * found.noise["turn"]).mean() > 0.9
+
+
+def test_poses_of_a_top_are_read_as_quaternions() -> None:
+    """The CSV columns of an orbit in space, without noise, give the body back."""
+    orbit = nh.simulate(TOP, restricted_velocity=(0.9, -0.7), configuration=nh.SO(3).exp([0.3, 0.2, 0.1]), steps=60)
+    record = {"t": orbit.time, **dict(zip(("qw", "qx", "qy", "qz"), orbit.pose.T, strict=True))}
+    found = nh.fit(_top, record, {"c": np.array([0.2, -0.1]), "b": 1.1})
+    np.testing.assert_allclose(found.parameters["c"], [0.3, -0.2], rtol=1e-9)
+
+
+def test_unit_of_mass_is_refused() -> None:
+    """A free motion does not know its unit of mass: parameters that scale together are named."""
+
+    def heavy(p: dict) -> nh.ChaplyginSleigh:
+        return nh.ChaplyginSleigh(mass=p["mass"], inertia=p["inertia"], a=0.4)
+
+    with pytest.raises(ValueError, match="Got none of mass, inertia alone"):
+        nh.fit(heavy, _sleigh_record(0), {"mass": 1.1, "inertia": 0.8})
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"guess": {}}, "name the parameters"),
+        ({"system_of": lambda _: 3}, "left-invariant"),
+        ({"system_of": 3}, "be a function"),
+        ({"measurements": {"x": np.zeros(3)}}, "have a column `t`"),
+        ({"measurements": {"t": np.zeros(3)}}, "after the one before"),
+        ({"measurements": {"t": np.arange(3.0), "z": np.zeros(3)}}, "columns of a motion in"),
+        ({"measurements": {"t": np.array([0.0, 0.05, 0.13]), "omega": np.ones(3)}}, "whole number of time steps"),
+        ({"measurements": {"t": np.array([0.0, 0.05, 0.1]), "omega": np.ones(3)}}, "more than the unknowns"),
+        ({"measurements": []}, "at least one trial"),
+        ({"measurements": 5}, "be tables of numbers"),
+        ({"time_step": -1.0}, "be positive"),
+    ],
+)
+def test_bad_arguments_are_refused(change: dict, words: str) -> None:
+    """What cannot be fitted is named before any work."""
+    with pytest.raises(ValueError, match=words):
+        nh.fit(
+            **{"system_of": _sleigh, "measurements": _sleigh_record(0), "guess": {"inertia": 1.0, "a": 0.3}} | change
+        )

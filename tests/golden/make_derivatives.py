@@ -1,0 +1,162 @@
+"""Make derivatives.json: how the end of an orbit depends on the numbers of its body, its start and its controls.
+
+Central differences, in 60 digits, of orbits that the matrix equations determine (`make_general_orbits`): 40 digits are
+right. Nothing of the library is imported here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from make_general_orbits import (
+    DIGITS,
+    MIXED_ANNIHILATOR,
+    MIXED_SUBSPACE,
+    Array,
+    Equations,
+    adjoint,
+    derivative,
+    displacement,
+    exact,
+    momentum,
+    principal,
+    remaining,
+    residual,
+    solve,
+    suslov_rows,
+)
+from matrix_algebra import SE2, decimals, inertia_operator, special_euclidean, special_orthogonal, write_cases
+from mpmath import mp, mpf
+
+STEPS = 4
+OFFSET = "1e-20"
+Roots = list[tuple[Array, Array]]  # charts of the steps, with the inverse Jacobian matrices there in float64
+
+
+@dataclass(frozen=True)
+class Case:
+    """An orbit as a function of numbers: those of the body, time step, velocity and controls, in this order."""
+
+    name: str
+    basis: Any
+    rows: Any
+    annihilator: Any
+    body: list[float]
+    velocity: list[float]
+    controls: list[list[float]]
+    skew: bool
+    time_step: float = 0.3
+
+    def numbers(self) -> list[Any]:
+        """Return all numbers, exactly."""
+        flat = [x for row in self.controls for x in row]
+        return [mpf(x) for x in (*self.body, self.time_step, *self.velocity, *flat)]
+
+    def tensor(self, body: list[Any]) -> Array:
+        """Return the mass tensor: of a sleigh from four numbers, else from an upper triangle row by row."""
+        if "sleigh" in self.name:
+            m, inertia, x, y = body
+            half = inertia / 2
+            return np.array(
+                [[half + m * x * x, m * x * y, m * x], [m * x * y, half + m * y * y, m * y], [m * x, m * y, m]]
+            )
+        size = len(self.basis[0])
+        tensor = np.zeros((size, size), dtype=object)
+        tensor[np.triu_indices(size)] = body
+        return tensor + np.triu(tensor, 1).T
+
+
+def refined(equations: Equations, target: Array, root: tuple[Array, Array]) -> Array:
+    """Return the root that is that close to a known one."""
+    x, inverse = root
+    for _ in range(30):
+        change = inverse @ residual(equations, x, target)
+        x = x - change
+        if np.abs(change).max() < mpf(10) ** (5 - mp.dps):
+            return x
+    raise ArithmeticError("Newton's method did not converge")
+
+
+def end(case: Case, numbers: list[Any], roots: Roots) -> Array:
+    """Return momenta along the constraint and the entries of the pose after the last step.
+
+    Roots that are not known yet are found by continuation, and added.
+    """
+    count, k = len(case.body), len(case.rows)
+    tensor, h = case.tensor(numbers[:count]), numbers[count]
+    velocity = np.array(numbers[count + 1 : count + 1 + k])
+    impulses = np.array(numbers[count + 1 + k :], dtype=object).reshape(-1, len(case.basis)) * h / 2
+    basis, rows = exact(case.basis), exact(case.rows)
+    skew = exact(int(case.skew))
+    equations = Equations(basis, tensor, exact(h), rows, exact(case.annihilator).reshape(-1, len(basis)), skew)
+    inertia = exact(inertia_operator(case.basis, tensor.tolist()))
+    r, g = rows @ inertia @ rows.T @ velocity, exact(np.eye(len(tensor), dtype=int).tolist())
+    for step in range(STEPS):
+        kick = rows @ impulses[step] if len(impulses) else 0 * r
+        if step == len(roots):
+            x = solve(equations, r + kick, principal(equations, r + kick))
+            roots.append((x, np.linalg.inv(derivative(equations.rounded(), x.astype(float)))))
+        x = refined(equations, r + kick, roots[step])
+        w = displacement(basis, x)
+        r = rows @ adjoint(basis, w, displacement(basis, -x)).T @ momentum(equations, w) + kick
+        g = g @ w
+    return np.concatenate([r, g.ravel()])
+
+
+def make_case(case: Case) -> dict[str, Any]:
+    """Return the entry of a case: its numbers and the derivative of the end by each of them, a row for each."""
+    numbers, offset, rows = case.numbers(), mpf(OFFSET), []
+    roots: Roots = []
+    here = end(case, numbers, roots)
+    for i in range(len(numbers)):
+        there, back = list(numbers), list(numbers)
+        there[i], back[i] = numbers[i] + offset, numbers[i] - offset
+        rows.append((end(case, there, roots) - end(case, back, roots)) / (2 * offset))
+    print(case.name, len(rows), flush=True)
+    given = {"body": case.body, "time_step": case.time_step, "velocity": case.velocity, "controls": case.controls}
+    found = {"end": decimals(here.tolist()), "derivative": decimals(np.array(rows).tolist())}
+    return {"name": case.name, "steps": STEPS, **given, **found}
+
+
+TOP = [1.4, 0.2, 0.5, 1.0, -0.3, 0.9]
+TILTED = [1.3, 0.1, -0.2, 0.9, 0.3, 1.1]
+FOUR = [1.2, 0.1, -0.2, 0.3, 0.9, 0.2, -0.1, 1.1, 0.4, 1.3]
+MIXED = [1.1, 0.2, -0.1, 0.3, 0.8, 0.1, -0.2, 0.9, 0.4, 1.5]
+SLEIGH = [1.5, 0.7, 0.4, 0.2]
+TILTED_ROWS, TILTED_AXIS = [[0.0, 1.0, 0.0], [-0.8, 0.0, 0.6]], [[0.6, 0.0, 0.8]]
+
+
+def cases() -> list[Case]:
+    """Return six bodies, each in motion and at rest, where the displacement is the identity."""
+    so3, so4, se3 = special_orthogonal(3), special_orthogonal(4), special_euclidean(3)
+    pushes = [[0.3, -0.5, 0.2], [-0.4, 0.6, 0.1], [0.2, 0.3, -0.3], [0.5, -0.1, 0.4]]
+    moving = [
+        Case("top", so3, suslov_rows(3), remaining(suslov_rows(3)), TOP, [0.9, -0.4], [], False),
+        Case("tilted top", so3, TILTED_ROWS, TILTED_AXIS, TILTED, [0.5, 0.6], [], False),
+        Case("sleigh", SE2, sleigh_rows_of_plane(), [[0, 0, 1]], SLEIGH, [0.8, -0.5], [], False),
+        Case("four", so4, suslov_rows(4), remaining(suslov_rows(4)), FOUR, [0.5, -0.4, 0.3], [], False),
+        Case("mixed", se3, MIXED_SUBSPACE, MIXED_ANNIHILATOR, MIXED, [0.3, -0.2, 0.25], [], True),
+        Case("driven sleigh", SE2, sleigh_rows_of_plane(), [[0, 0, 1]], SLEIGH, [0.8, -0.5], pushes, False),
+    ]
+    return [
+        *moving,
+        *(replace(case, name=f"{case.name} at rest", velocity=[0.0] * len(case.velocity)) for case in moving),
+    ]
+
+
+def sleigh_rows_of_plane() -> list[list[int]]:
+    """Return the directions of turning and of sliding along the blade."""
+    return [[1, 0, 0], [0, 1, 0]]
+
+
+def main() -> None:
+    """Write derivatives.json beside this script."""
+    mp.dps = DIGITS
+    write_cases(Path(__file__).with_name("derivatives.json"), [make_case(case) for case in cases()])
+
+
+if __name__ == "__main__":
+    main()

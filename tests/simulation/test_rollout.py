@@ -1,0 +1,284 @@
+"""Orbits as JAX functions: values of `simulate`, derivatives against 40 digits and differences, folds, checkpoints."""
+
+import functools
+from collections.abc import Callable
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from references import golden, numbers
+
+import nonholo as nh
+from nonholo.discrete.definition import Rollout
+from nonholo.systems import AbstractSystem
+
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+FIELDS = ("time", "restricted_momentum", "momentum", "displacement", "configuration", "energy")
+CASES = {case["name"]: case for case in golden("derivatives.json")}
+MIXED = [
+    [1.0, 0.0, 1.0, 0.75, -0.5, 0.75],
+    [0.0, 1.0, 0.0, 0.5, 0.25, -1.0],
+    [1.0, 1.0, 0.0, 1.0, 0.5, -0.75],
+]
+
+
+def _symmetric(triangle: jax.Array, size: int) -> jax.Array:
+    tensor = jnp.zeros((size, size)).at[np.triu_indices(size)].set(triangle)
+    return tensor + jnp.triu(tensor, 1).T
+
+
+BODIES: dict[str, Callable[[jax.Array], AbstractSystem]] = {
+    "top": lambda x: nh.SuslovTop(_symmetric(x, 3)),
+    "tilted top": lambda x: nh.SuslovTop(_symmetric(x, 3), axis=(0.6, 0.0, 0.8)),
+    "sleigh": lambda x: nh.ChaplyginSleigh(*x),
+    "four": lambda x: nh.SuslovTop(_symmetric(x, 4)),
+    "mixed": lambda x: nh.LLSystem(nh.SE(3), _symmetric(x, 4), constraint_subspace=MIXED),
+    "driven sleigh": lambda x: nh.ChaplyginSleigh(*x),
+}
+
+
+def _end(name: str, x: jax.Array) -> jax.Array:
+    """Return the end of an orbit of a golden case, from all of its numbers."""
+    case = CASES[name]
+    k, cut = len(case["velocity"]), len(case["body"])
+    discrete = nh.discretize(BODIES[name](x[:cut]), x[cut])
+    controls = x[cut + 1 + k :].reshape(case["steps"], -1) if case["controls"] else None
+    orbit = nh.rollout(discrete, restricted_velocity=x[cut + 1 : cut + 1 + k], controls=controls, steps=case["steps"])
+    return jnp.concatenate([orbit.restricted_momentum[-1], orbit.configuration[-1].ravel()])
+
+
+@functools.cache
+def _derivatives(name: str) -> Callable[[np.ndarray], tuple[jax.Array, jax.Array]]:
+    """Return a compiled function of the numbers: the end and its derivative, a row for each number."""
+
+    def both(x: jax.Array) -> tuple[jax.Array, jax.Array]:
+        end, push = jax.linearize(functools.partial(_end, name), x)
+        return end, jax.vmap(push)(jnp.eye(len(x)))
+
+    return jax.jit(both)
+
+
+def _point(name: str) -> np.ndarray:
+    case = CASES[name]
+    return np.concatenate([case["body"], [case["time_step"]], case["velocity"], *case["controls"]])
+
+
+@pytest.mark.profile("routes", keep=["driven*", "mixed-*"])
+@pytest.mark.parametrize("state", ["moving", "at rest"])
+@pytest.mark.parametrize("name", BODIES)
+def test_derivatives_agree_with_40_digits(name: str, state: str) -> None:
+    """Every number of body, time step, start and controls moves the end as differences in 60 digits say."""
+    case = CASES[name if state == "moving" else f"{name} at rest"]
+    with jax.enable_x64(True):
+        end, derivative = _derivatives(name)(_point(case["name"]))
+    np.testing.assert_allclose(end, numbers(case["end"]), rtol=0, atol=1e-13)
+    np.testing.assert_allclose(derivative, numbers(case["derivative"]), rtol=1e-9, atol=1e-11)
+
+
+def test_reverse_mode_agrees_with_forward_mode() -> None:
+    """The transposed derivative of the driven sleigh is that of forward mode, at rest too."""
+    with jax.enable_x64(True):
+        _, derivative = _derivatives("driven sleigh")(_point("driven sleigh at rest"))
+        weights = jnp.linspace(1.0, 2.0, derivative.shape[1])
+        pull = jax.jit(jax.grad(lambda x: _end("driven sleigh", x) @ weights))
+        np.testing.assert_allclose(pull(_point("driven sleigh at rest")), derivative @ weights, rtol=1e-12, atol=1e-12)
+
+
+def _assert_same(found: Rollout, orbit: nh.Orbit, tolerance: float) -> None:
+    for field in FIELDS:
+        np.testing.assert_allclose(getattr(found, field), getattr(orbit, field), rtol=0, atol=tolerance)
+
+
+@pytest.mark.profile("routes", keep=["top"])
+@pytest.mark.parametrize(
+    ("system", "options"),
+    [
+        pytest.param(TOP, {}, id="top"),
+        pytest.param(nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]), (0.6, 0.0, 0.8)), {}, id="tilted top"),
+        pytest.param(nh.ChaplyginSleigh(2.0, 1.0, 0.5, 0.3), {}, id="offset sleigh"),
+        pytest.param(nh.SuslovTop(np.diag([1.0, 2.0, 1.5, 1.0]) + 0.1), {}, id="four"),
+        pytest.param(nh.MultidimensionalSleigh(1.0, [0.5, 0.1, 0.2], np.diag([1.0, 2.0, 1.5])), {}, id="in space"),
+        pytest.param(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0]) + 0.1), {}, id="fixed in space"),
+        pytest.param(nh.LLSystem(nh.SE(3), np.eye(4) + 0.1, constraint_subspace=MIXED), {}, id="mixed"),
+        pytest.param(TOP, {"order": 4}, id="order 4"),
+        pytest.param(TOP, {"difference": "logarithmic"}, id="logarithmic"),
+    ],
+)
+def test_values_are_those_of_simulate(system: AbstractSystem, options: dict) -> None:
+    """Eager rollouts are NumPy arrays that agree with the compiled orbit to rounding, state by state."""
+    discrete = nh.discretize(system, 0.1, **options)
+    velocity = np.linspace(0.4, 0.6, system.rank)
+    start = {
+        "restricted_velocity": velocity,
+        "configuration": system.group.exp(np.linspace(0.1, 0.5, system.group.dim)),
+    }
+    found = nh.rollout(discrete, **start, steps=50)
+    assert all(type(x) is np.ndarray and x.dtype == np.float64 for x in found[:-1])
+    assert found.outcome == 0
+    _assert_same(found, nh.simulate(discrete, **start, steps=50), 1e-13)
+
+
+def test_start_may_be_a_momentum_or_a_full_velocity() -> None:
+    """A full momentum, one along the constraint and a body velocity start the same orbit, which `simulate` runs too."""
+    discrete = nh.discretize(TOP, 0.1)
+    orbit = nh.simulate(discrete, body_velocity=(0.4, 0.9, 0.0), steps=5)
+    for start in (
+        {"body_velocity": (0.4, 0.9, 0.0)},
+        {"momentum": orbit.momentum[0]},
+        {"momentum": orbit.restricted_momentum[0]},
+    ):
+        _assert_same(nh.rollout(discrete, **start, steps=5), orbit, 1e-14)
+
+
+def test_momentum_off_the_locus_is_an_outcome() -> None:
+    """A full momentum that no displacement has gives NaN and says why."""
+    found = nh.rollout(nh.discretize(TOP, 0.1), momentum=(0.4, 0.9, 2.0), steps=5)
+    assert found.outcome == nh.Outcome.off_momentum_locus
+    assert np.isnan(found.momentum).all()
+
+
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.5, 0.7, 0.4, 0.2), 0.3)
+
+
+def _kicked(controls: np.ndarray, velocity: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+    """Return momenta and poses by single steps of `simulate`, with half of each impulse before and after."""
+    S = SLEIGH.system.constraint_subspace
+    r, g = [SLEIGH.system.restricted_momentum(np.array(velocity))], [np.eye(3)]
+    for row in controls:
+        kick = S @ row * SLEIGH.time_step / 2
+        step = nh.simulate(SLEIGH, momentum=r[-1] + kick, configuration=g[-1], steps=1)
+        r.append(step.restricted_momentum[1] + kick)
+        g.append(step.configuration[1])
+    return np.array(r), np.array(g)
+
+
+def test_controls_act_half_at_each_end_of_a_step() -> None:
+    """Momenta of nodes and poses are those of single steps between half impulses; none acts after the last row."""
+    controls = np.random.default_rng(0).normal(size=(6, 3))
+    found = nh.rollout(SLEIGH, restricted_velocity=(0.8, -0.5), controls=controls, steps=6)
+    r, g = _kicked(controls, (0.8, -0.5))
+    np.testing.assert_allclose(found.restricted_momentum, r, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(found.configuration, g, rtol=0, atol=1e-14)
+    last = nh.simulate(SLEIGH, momentum=r[-1], steps=1)
+    np.testing.assert_allclose(found.displacement[-1], last.displacement[0], rtol=0, atol=1e-14)
+    np.testing.assert_allclose(found.momentum @ SLEIGH.system.constraint_subspace.T, r, rtol=0, atol=1e-13)
+
+
+def test_map_over_members_is_a_loop_and_compiled_is_not_compiled() -> None:
+    """`vmap` of 3 members in `jit` equals 3 eager calls and `simulate`, where stretches have a remainder too."""
+    members = np.array([[0.5, 1.0, 0.0], [0.0, 0.0, 0.0], [-0.7, 0.3, 0.0]])
+    sizes = {"steps": 150, "save_every": 70}
+
+    def poses(velocity: jax.Array) -> jax.Array:
+        return nh.rollout(SLEIGH, body_velocity=velocity, **sizes).configuration
+
+    with jax.enable_x64(True):
+        mapped = jax.jit(jax.vmap(poses))(members)
+    for found, member in zip(mapped, members, strict=True):
+        np.testing.assert_allclose(found, poses(member), rtol=0, atol=1e-12)
+        orbit = nh.simulate(SLEIGH, body_velocity=member, **sizes)
+        np.testing.assert_allclose(found, orbit.configuration, rtol=0, atol=1e-12)
+
+
+def test_gradient_through_checkpoints_is_a_difference() -> None:
+    """Where stretches of steps are computed once more, the gradient is that of the compiled orbit by differences."""
+    sizes = {"steps": 130, "save_every": 130}
+
+    def place(velocity: np.ndarray) -> float:
+        return nh.simulate(SLEIGH, restricted_velocity=velocity, **sizes).position[-1].sum()
+
+    def traced(velocity: jax.Array) -> jax.Array:
+        return nh.rollout(SLEIGH, restricted_velocity=velocity, **sizes).configuration[-1, :2, 2].sum()
+
+    point = np.array([0.5, 1.0])
+    with jax.enable_x64(True):
+        found = jax.jit(jax.grad(traced))(point)
+    differences = [
+        (8 * (place(point + e) - place(point - e)) - place(point + 2 * e) + place(point - 2 * e)) / 12e-3
+        for e in 1e-3 * np.eye(2)
+    ]
+    np.testing.assert_allclose(found, differences, rtol=1e-7)
+
+
+def test_second_derivatives() -> None:
+    """The Hessian matrix of a short orbit is the difference of gradients, at rest too."""
+
+    def place(velocity: jax.Array) -> jax.Array:
+        return jnp.sum(nh.rollout(SLEIGH, restricted_velocity=velocity, steps=3).configuration[-1, :2, 2] ** 2)
+
+    with jax.enable_x64(True):
+        gradient, hessian = jax.jit(jax.grad(place)), jax.jit(jax.hessian(place))
+        for point in (np.array([0.8, -0.5]), np.zeros(2)):
+            there, back = (np.array([gradient(point + s * 1e-4 * unit) for unit in np.eye(2)]) for s in (1.0, -1.0))
+            np.testing.assert_allclose(hessian(point), (there - back) / 2e-4, rtol=1e-6, atol=1e-7)
+
+
+PUSHED = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.2), 1.0)
+
+
+def test_fold_is_an_outcome_with_derivative_nan_and_states_before_keep_theirs() -> None:
+    """A push beyond the fold ends the orbit at node 2; what comes from there on is NaN, with its derivatives alone."""
+
+    def states(push: jax.Array) -> Rollout:
+        controls = jnp.zeros((4, 3)).at[2, 0].set(push).at[0, 1].set(-0.02 * push)
+        return nh.rollout(PUSHED, restricted_velocity=(0.2, -0.1), controls=controls, steps=4)
+
+    def sums(push: jax.Array) -> jax.Array:
+        return states(push).restricted_momentum.sum(axis=1)
+
+    with jax.enable_x64(True):
+        run, slopes = jax.jit(states)(10.0), jax.jit(jax.jacrev(sums))(10.0)
+        forward = jax.jit(jax.jacfwd(sums))(10.0)
+    assert int(run.outcome) == nh.Outcome.no_real_branch
+    assert np.isfinite(run.momentum[:2]).all()
+    assert np.isnan(run.momentum[2:]).all()
+    for found in map(np.asarray, (slopes, forward)):
+        assert found[0] == 0.0
+        assert found[1] != 0.0
+        assert np.isfinite(found[1])
+        assert np.isnan(found[2:]).all()
+
+
+def test_near_half_a_turn_the_derivative_is_finite() -> None:
+    """A step of 174 degrees turns with its momentum as the cubic of the sleigh says, differentiated by hand."""
+    fast = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 3.0), 1.0)
+    hat, t = 20.0, 20.0  # a (p_1 + 2 m a) and tan of half the angle
+    spin = (hat * t**3 + (2 + hat) * t) / (1 + t * t)
+    slope = (1 + t * t) / (3 * hat * t * t - 2 * spin * t + 2 + hat)
+
+    def cosine(spin: jax.Array) -> jax.Array:
+        return nh.rollout(fast, momentum=jnp.stack([spin, hat / 3 - 6 + 0 * spin]), steps=1).displacement[0, 0, 0]
+
+    with jax.enable_x64(True):
+        value, found = jax.jit(jax.value_and_grad(cosine))(spin)
+    np.testing.assert_allclose(value, (1 - t * t) / (1 + t * t), rtol=1e-12)
+    np.testing.assert_allclose(found, -4 * t * slope / (1 + t * t) ** 2, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"steps": 0}, "rollout.steps=....` must be a positive integer"),
+        ({"body_velocity": (1.0, 0.0, 0.0)}, "exactly one of"),
+        ({"controls": np.zeros((2, 3))}, "must have shape .3, 3."),
+        ({"restricted_velocity": (np.nan, 0.0)}, "be finite"),
+        ({"configuration": 2 * np.eye(3)}, "lie in SE"),
+        ({"discrete": nh.discretize(nh.SuslovTop.arrowhead(np.ones(4), np.zeros(3)), 0.1)}, "system.dense"),
+        ({"discrete": TOP}, "discretized system"),
+        (
+            {"discrete": nh.discretize(TOP, 0.1, order=4), "controls": np.zeros((3, 3))},
+            "have a step of order 2",
+        ),
+    ],
+)
+def test_bad_arguments_are_refused(change: dict, words: str) -> None:
+    """An argument that does not fit is named before any work."""
+    with pytest.raises(ValueError, match=words):
+        nh.rollout(**{"discrete": SLEIGH, "restricted_velocity": (0.1, 0.2), "steps": 3} | change)
+
+
+def test_traced_single_precision_is_refused() -> None:
+    """Tracing in 32 bits says how to trace in 64."""
+    with pytest.raises(TypeError, match="enable_x64"):
+        jax.jit(lambda v: nh.rollout(SLEIGH, body_velocity=v, steps=2).momentum)(np.zeros(3, np.float32))
