@@ -43,9 +43,8 @@ def by_runge_kutta(
         return Solved(states, Outcome.successful, lambda times: states.chosen(np.zeros(len(times), dtype=int)))
     found = solve_ivp(field, (0.0, elapsed[-1]), start, "DOP853", elapsed, True, rtol=rtol, atol=_SHARE * rtol)
     outcome = Outcome.successful if found.status == 0 else Outcome.not_converged
-    return Solved(
-        _states(forced, found.y.T), outcome, lambda t: _states(forced, found.sol(t).T), lambda: found.sol.ts[:-1]
-    )
+    steps, states = found.sol.ts[:-1], _states(forced, found.y.T)
+    return Solved(states, outcome, lambda t: _states(forced, found.sol(t).T), lambda: steps)
 
 
 def _field(forced: Forced, begins: float, k: int) -> Callable[[float, np.ndarray], np.ndarray]:

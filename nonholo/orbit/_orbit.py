@@ -125,7 +125,7 @@ class Orbit(AbstractOrbit):
         With $W_k = g_k^{-1}g_{k+1}$ and $h_k = t_{k+1} - t_k$ the momentum of a state is the discrete momentum at
         $W_k$ over $h_k$; the displacement of the last state leads back. Momenta along the constraint, and with them
         `body_velocity` and `energy`, are means of the discrete momenta before and after each pose: of second order
-        whatever forces act (at both ends of first order, unless there are none). Of an orbit of `simulate` all these
+        whatever forces act (at both ends of first order, unless there are none). Of a free orbit of `simulate` they
         are its own. Noise of size e in the poses is noise of size e/h in velocities: nothing is smoothed. How far the
         poses are from admissible is the `constraint_residual` of `nh.invariants`, a velocity.
 
