@@ -9,6 +9,7 @@ import numpy as np
 from nonholo.base.checks import array, scale
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert
+from nonholo.systems import AbstractSystem
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -31,7 +32,7 @@ class Example:
     """
 
     name: str
-    system: LagrangeDAlembert | GroupLagrangeDAlembert
+    system: LagrangeDAlembert | GroupLagrangeDAlembert | AbstractSystem
     configuration: Float[np.ndarray, "n"]
     body_velocity: Float[np.ndarray, "n"]
     facts: tuple[str, ...]
@@ -41,7 +42,7 @@ class Example:
     @property
     def coordinates(self) -> tuple[str, ...]:
         """Names of the coordinates; on a group ("pose",)."""
-        return self.system.coordinates or ("pose",)
+        return getattr(self.system, "coordinates", ()) or ("pose",)
 
     def __repr__(self) -> str:
         return f"<Example {self.name}: {', '.join(self.coordinates)}>"

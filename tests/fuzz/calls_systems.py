@@ -159,6 +159,8 @@ def _examples() -> list[Call]:
     driven = {**common, "moving_mass": positive(0.3), "ahead": number(-0.3), "frequency": positive(1.0)}
     return [
         call("examples.chaplygin_ball", made.chaplygin_ball, mass=positive(1.0), radius=positive(1.0), slow=True),
+        call("examples.heavy_suslov_top", made.heavy_suslov_top, velocity=array([0.6, 0.4]), slow=True),
+        call("examples.sleigh_in_a_well", made.sleigh_in_a_well, **common, stiffness=number(0.3), slow=True),
         call("examples.driven_sleigh", made.driven_sleigh, **driven, slow=True),
         call("examples.roller_racer", made.roller_racer, **racer, slow=True),
         call("examples.chaotic_quartic_oscillator", made.chaotic_quartic_oscillator, pairs=count(3), slow=True),

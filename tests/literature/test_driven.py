@@ -5,6 +5,7 @@ from collections.abc import Callable
 import jax.numpy as jnp
 import numpy as np
 import pytest
+import scipy.linalg
 from scipy.integrate import solve_ivp
 
 import nonholo as nh
@@ -86,6 +87,31 @@ def test_the_ball_moves_as_derived_by_hand() -> None:
     assert np.ptp(found.energy) <= 1e-11
     kept = [values(found.configuration, found.body_velocity) for values in first.values()]
     assert np.ptp(kept, axis=1).max() <= 1e-11
+
+
+@pytest.mark.parametrize("name", ["heavy_suslov_top", "sleigh_in_a_well"])
+def test_integrals_under_a_potential(name: str) -> None:
+    """Constant along the flow; of the map off by an error of order two."""
+    ready = getattr(nh.examples, name)()
+    orbit = nh.flow(ready.system, body_velocity=ready.body_velocity, times=TIMES)
+    for kept in ready.conserved.values():
+        assert np.ptp(kept(orbit.configuration, orbit.body_velocity)) <= 1e-11
+    errors = []
+    for steps in (60, 120):
+        found = nh.simulate(nh.discretize(ready.system, 6.0 / steps), body_velocity=ready.body_velocity, steps=steps)
+        errors.append(np.abs(found.configuration[-1] - orbit.configuration[-1]).max())
+    assert abs(np.log2(errors[0] / errors[1]) - 2.0) <= 0.1
+
+
+def test_the_sleigh_in_a_well_obeys_a_linear_system() -> None:
+    """With its center of mass at the contact: speed and place seen from the sleigh, by the exponential of a matrix."""
+    ready, k, omega = nh.examples.sleigh_in_a_well(), 0.3, 0.4
+    matrix = np.array([[0.0, -k, 0.0], [1.0, 0.0, omega], [0.0, -omega, 0.0]])
+    found = nh.flow(ready.system, body_velocity=ready.body_velocity, times=TIMES)
+    for time, g, velocity in zip(TIMES, found.configuration, found.body_velocity, strict=True):
+        u, s, w = scipy.linalg.expm(time * matrix) @ [0.7, 0.0, 0.0]
+        assert np.abs(g[:2, :2].T @ g[:2, 2] - [s, w]).max() <= 1e-10
+        assert np.abs(velocity - [omega, u, 0.0]).max() <= 1e-10
 
 
 @pytest.mark.profile("routes", keep=["roller_racer"])

@@ -6,7 +6,7 @@ Questions about free motions (equilibria, conserved momenta, closed forms) are r
 import dataclasses
 import operator
 from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 import numpy as np
 import scipy.linalg
@@ -74,6 +74,8 @@ class Forced(AbstractSystem):
     structure: ClassVar[tuple[str, ...]] = ("system", "potential", "force")
     normal_form: ClassVar[None] = None
     is_forced: ClassVar[bool] = True
+    homogeneous_mass_tensor = constraint_subspace = carried = moved = cast(Any, None)  # seen by type checkers
+    restrict_at = restricted_velocity = restricted_momentum = cast(Any, None)
     locals().update((name, property(operator.attrgetter(f"system.{name}"))) for name in _SAME.split())
 
     def __new__(cls, system: Any = None, potential: Any = None, force: Any = None) -> Any:
