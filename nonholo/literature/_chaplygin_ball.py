@@ -44,11 +44,8 @@ def chaplygin_ball(
 
     Example:
         >>> ready = nh.examples.chaplygin_ball()
-        >>> orbit = nh.flow(
-        ...     ready.system, configuration=ready.configuration, body_velocity=ready.body_velocity, times=(0.0, 5.0))
-        >>> moved = ready.conserved["momentum along x"](orbit.configuration, orbit.body_velocity)
-        >>> bool(abs(moved[1] - moved[0]) < 1e-9)
-        True
+        >>> ready.conserved["momentum along z"](ready.configuration, ready.body_velocity).round(3)
+        np.float64(0.5)
     """
     name = "chaplygin_ball"
     m, r = positives(name, mass=mass, radius=radius)

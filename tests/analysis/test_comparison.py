@@ -39,6 +39,7 @@ def test_an_orbit_has_no_error_against_itself() -> None:
     assert against.largest == (0.0, 0.0, 0.0)
 
 
+@pytest.mark.profile("routes", cases=["free", "veselova"])
 @pytest.mark.parametrize("name", STARTS)
 def test_errors_are_those_of_the_definition(name: str) -> None:
     """Computed state by state: norms of r - r', of g^-1 g' - I, and E - E'; the flow is asked at the orbit's times."""
@@ -74,6 +75,7 @@ def rotations(angle: np.ndarray) -> np.ndarray:
     return np.moveaxis(np.array([[cos, -sin], [sin, cos]]), -1, 0)
 
 
+@pytest.mark.profile("routes", cases=["free", "veselova"])
 @pytest.mark.parametrize("name", STARTS)
 def test_the_order_is_two(name: str) -> None:
     """Halving the time step divides the errors by four; where energy is exact its order is not a number."""

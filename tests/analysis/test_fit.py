@@ -92,6 +92,7 @@ def test_residuals_are_drawn() -> None:
     assert (np.abs(dots[np.isfinite(dots)]) < 2 * found.noise["turn"]).mean() > 0.9
 
 
+@pytest.mark.profile("routes", instead="test_top_is_found_from_its_gyroscope")
 def test_poses_of_a_top_are_read_as_quaternions() -> None:
     """The CSV columns of an orbit in space, without noise, give the body back."""
     orbit = nh.simulate(TOP, restricted_velocity=(0.9, -0.7), configuration=nh.SO(3).exp([0.3, 0.2, 0.1]), steps=60)

@@ -38,6 +38,7 @@ def test_bounds_hold() -> None:
     assert bounded.cost > free.cost
 
 
+@pytest.mark.profile("routes", instead="test_bounds_hold")
 def test_torque_alone_does_not_stop_a_sleigh() -> None:
     """With its mass ahead, v' = a omega^2: no torque brings it to rest, and the result says so."""
     start = {"restricted_velocity": (0.0, 0.3)}

@@ -21,7 +21,7 @@ PAGES = (
 )
 
 
-@pytest.mark.profile("paper", cases=["how-to/choose-a-discretisation.md"])
+@pytest.mark.profile("paper", cases=["how-to/choose-a-discretisation.md", "how-to/differentiate-and-fit.md"])
 @pytest.mark.parametrize("page", PAGES)
 def test_the_blocks_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The blocks of a page, one after another in one namespace, raise nothing."""

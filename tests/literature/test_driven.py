@@ -89,6 +89,17 @@ def test_the_ball_moves_as_derived_by_hand() -> None:
     assert np.ptp(kept, axis=1).max() <= 1e-11
 
 
+@pytest.mark.profile("routes", instead="test_the_maps_have_order_two")
+def test_what_drives_them() -> None:
+    """The handle alone moves the racer from rest; the mass on the right side of the contact makes the sleigh faster."""
+    racer, sleigh = nh.examples.roller_racer(), nh.examples.driven_sleigh()
+    path = nh.simulate(nh.discretize(racer.system, 0.02), **_start(racer), steps=1000)
+    assert np.linalg.norm(path.configuration[-1, :2]) > 1.0
+    run = nh.simulate(nh.discretize(sleigh.system, 0.05), **_start(sleigh), steps=2000)
+    speed = np.linalg.norm(run.body_velocity[:, :2], axis=1)
+    assert speed[-200:].mean() > 1.5 * speed[:200].mean()
+
+
 @pytest.mark.parametrize("name", ["heavy_suslov_top", "sleigh_in_a_well"])
 def test_integrals_under_a_potential(name: str) -> None:
     """Constant along the flow; of the map off by an error of order two."""
@@ -157,7 +168,7 @@ DRIVEN = {
 TURNING = {"growing mass, prescribed heading": 0.8}
 
 
-@pytest.mark.profile("routes", keep=["growing mass, prescribed heading"])
+@pytest.mark.profile("routes", instead="test_the_maps_have_order_two")
 @pytest.mark.parametrize("name", DRIVEN)
 def test_order_two_of_configuration_and_energy(name: str) -> None:
     """Against the flow, whose energies are those of its velocities."""
@@ -174,7 +185,7 @@ def test_order_two_of_configuration_and_energy(name: str) -> None:
     assert np.abs(np.log2(np.abs(np.divide(*errors))) - 2.0).max() <= 0.1
 
 
-@pytest.mark.profile("routes", instead="test_order_two_of_configuration_and_energy")
+@pytest.mark.profile("routes", instead="test_the_maps_have_order_two")
 def test_a_table_acts_row_by_row() -> None:
     """A constant table is a constant force; after its last row nothing acts."""
     push = np.array([0.2, -0.1, 0.3])
@@ -185,6 +196,7 @@ def test_a_table_acts_row_by_row() -> None:
     assert np.ptp(table.energy[40:]) <= 1e-13 < np.ptp(table.energy[:40])
 
 
+@pytest.mark.profile("routes", instead="test_the_maps_have_order_two")
 def test_forced_in_coordinates() -> None:
     """A potential and friction as in the Lagrangian and by hand; neither gives the system itself; not twice."""
     start = {"configuration": (0.5, 0.0, 0.0), "body_velocity": (1.0, 0.0, 0.3), "steps": 20}

@@ -64,7 +64,7 @@ def _point(name: str) -> np.ndarray:
     return np.concatenate([case["body"], [case["time_step"]], case["velocity"], *case["controls"]])
 
 
-@pytest.mark.profile("routes", keep=["driven*", "mixed-*"])
+@pytest.mark.profile("routes", keep=["driven*"])
 @pytest.mark.parametrize("state", ["moving", "at rest"])
 @pytest.mark.parametrize("name", BODIES)
 def test_derivatives_agree_with_40_digits(name: str, state: str) -> None:
@@ -119,6 +119,7 @@ def test_values_are_those_of_simulate(system: AbstractSystem, options: dict) -> 
     _assert_same(found, nh.simulate(discrete, **start, steps=50), 1e-13)
 
 
+@pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")
 def test_start_may_be_a_momentum_or_a_full_velocity() -> None:
     """A full momentum, one along the constraint and a body velocity start the same orbit, which `simulate` runs too."""
     discrete = nh.discretize(TOP, 0.1)
@@ -181,6 +182,7 @@ def test_map_over_members_is_a_loop_and_compiled_is_not_compiled() -> None:
         np.testing.assert_allclose(found, orbit.configuration, rtol=0, atol=1e-12)
 
 
+@pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")
 def test_gradient_through_checkpoints_is_a_difference() -> None:
     """Where stretches of steps are computed once more, the gradient is that of the compiled orbit by differences."""
     sizes = {"steps": 130, "save_every": 130}
@@ -240,6 +242,7 @@ def test_fold_is_an_outcome_with_derivative_nan_and_states_before_keep_theirs() 
         assert np.isnan(found[2:]).all()
 
 
+@pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")
 def test_near_half_a_turn_the_derivative_is_finite() -> None:
     """A step of 174 degrees turns with its momentum as the cubic of the sleigh says, differentiated by hand."""
     fast = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 3.0), 1.0)
