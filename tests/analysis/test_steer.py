@@ -10,6 +10,7 @@ ASIDE = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]])
 REST = {"restricted_velocity": (0.0, 0.0)}
 
 
+@pytest.mark.profile("routes", instead="test_bounds_hold")
 def test_sleigh_is_parked_beside_itself_and_elsewhere() -> None:
     """From rest to rest at 20 poses, one of them sideways, each met to 1e-8 by the rollout of the controls."""
     rng = np.random.default_rng(1)

@@ -203,6 +203,7 @@ def test_gradient_through_checkpoints_is_a_difference() -> None:
     np.testing.assert_allclose(found, differences, rtol=1e-7)
 
 
+@pytest.mark.profile("routes", instead="test_reverse_mode_agrees_with_forward_mode")
 def test_second_derivatives() -> None:
     """The Hessian matrix of a short orbit is the difference of gradients, at rest too."""
 
