@@ -140,6 +140,7 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     "any d on SO(4) of order 4": lambda: orbits(GENERAL["any d on SO(4)"][0], 4),
     "right-invariant on SE(3)": lambda: orbits(GENERAL["right-invariant on SE(3)"][0]),
     "any d on SO(8)": lambda: orbits(body(nh.SO(8), 4, 8)),
+    "any d on SO(5)": lambda: orbits(body(nh.SO(5), 3, 5)),
     "nearest values of a top": lambda: nearest(TOP),
     "nearest values of a sleigh": lambda: nearest(SLEIGH),
     "a top past angle pi": lambda: past_pi(),
