@@ -45,11 +45,11 @@ class AbstractSystem(abc.ABC):
 
     @property
     @abc.abstractmethod
-    def homogeneous_mass_tensor(self) -> Float[Array, "N N"] | None:
+    def homogeneous_mass_tensor(self) -> Float[Array, "... N N"] | None:
         """The mass tensor on which the group's matrices act; None if the inertia operator was given directly."""
 
     @kept
-    def inertia_operator(self) -> Float[Array, "dim dim"]:
+    def inertia_operator(self) -> Float[Array, "... dim dim"]:
         """The symmetric matrix that takes body velocity to body momentum, by default that of the mass tensor."""
         return inertia_from_mass_tensor(self.group, self.homogeneous_mass_tensor)
 
@@ -72,7 +72,7 @@ class AbstractSystem(abc.ABC):
         return self
 
     @kept
-    def frame(self) -> Float[Array, "N N"]:
+    def frame(self) -> Float[Array, "... N N"]:
         """The canonical body frame as seen from the user's: a group element that maps the constraint to itself.
 
         The identity where no frame is better than the user's.
@@ -136,7 +136,7 @@ class AbstractSystem(abc.ABC):
         return self.frame_map if form is None or form.frame_map is None else form.frame_map @ self.frame_map
 
     @kept
-    def frame_pose(self) -> Float[np.ndarray, "size"]:
+    def frame_pose(self) -> Float[np.ndarray, "... size"]:
         """The frame as a compact pose: the canonical pose of a body at the identity."""
         return self.group.pose_from_matrix(self.frame)
 

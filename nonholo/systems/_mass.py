@@ -54,7 +54,9 @@ def inertia_form(
     return flat @ xp.reshape(duals, (-1, size * size)).T
 
 
-def inertia_from_mass_tensor(group: AbstractMatrixGroup, mass_tensor: Float[Array, "N N"]) -> Float[Array, "dim dim"]:
+def inertia_from_mass_tensor(
+    group: AbstractMatrixGroup, mass_tensor: Float[Array, "... N N"]
+) -> Float[Array, "... dim dim"]:
     r"""Return the inertia operator $\mathbb{I}_{ij} = \mathrm{tr}(E_i\mathbb{J}E_j^*)$ in the basis $E_i$.
 
     Example:

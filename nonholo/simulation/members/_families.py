@@ -132,7 +132,7 @@ def tangents(
     return np.linalg.inv(C) @ canonical @ C
 
 
-def inertias_and_frames(members: Members) -> tuple[Float[np.ndarray, "m dim dim"], Float[np.ndarray, "m size"]]:
+def inertias_and_frames(members: Members) -> tuple[Float[np.ndarray, "m dim dim"], Float[np.ndarray, "f size"]]:
     """Return canonical inertia operators and frames as poses; an axis of length 1 where all members agree."""
     if members.parameters and type(members.discrete.system) in _STACKED:
         stack = members.stacked

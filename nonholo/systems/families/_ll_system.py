@@ -158,12 +158,12 @@ class LLSystem(AbstractLLSystem):
         return f"LLSystem({self.group!r},\n  {lines_of(shown | subspace)})"
 
     @kept
-    def homogeneous_mass_tensor(self) -> Float[Array, "N N"] | None:
+    def homogeneous_mass_tensor(self) -> Float[Array, "... N N"] | None:
         """The mass tensor; None if the inertia operator was given."""
         return self.mass_tensor
 
     @kept
-    def inertia_operator(self) -> Float[Array, "dim dim"]:
+    def inertia_operator(self) -> Float[Array, "... dim dim"]:
         """The inertia operator, that of the mass tensor if there is one."""
         if self.mass_tensor is None:
             return self.given_inertia

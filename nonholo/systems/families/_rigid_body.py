@@ -90,7 +90,7 @@ class RigidBody(AbstractLLSystem):
         return f"RigidBody({self.group!r},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
 
     @kept
-    def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
+    def homogeneous_mass_tensor(self) -> Float[Array, "... N N"]:
         """The mass tensor itself."""
         return self.mass_tensor
 

@@ -60,7 +60,7 @@ class ChaplyginSleigh(AbstractLLSystem):
         return f"ChaplyginSleigh({', '.join(shown)})"
 
     @kept
-    def homogeneous_mass_tensor(self) -> Float[Array, "3 3"]:
+    def homogeneous_mass_tensor(self) -> Float[Array, "... 3 3"]:
         """The mass tensor about the contact point in homogeneous coordinates; the moment J is shared by both axes."""
         m, a, b = self.mass, self.a, self.b
         xp = (m * a * b * self.inertia).__array_namespace__()
@@ -79,7 +79,7 @@ class ChaplyginSleigh(AbstractLLSystem):
         return np.array([[0.0, 0.0, 1.0]])
 
     @kept
-    def frame(self) -> Float[Array, "3 3"]:
+    def frame(self) -> Float[Array, "... 3 3"]:
         """The translation to the foot of the center of mass on the line through the contact point across the blade."""
         xp = (self.b * self.mass).__array_namespace__()
         zero, one = xp.zeros_like(self.b), xp.ones_like(self.b)

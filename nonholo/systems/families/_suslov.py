@@ -112,12 +112,12 @@ class SuslovTop(AbstractLLSystem):
         return SO(self.mass_tensor.shape[-1])
 
     @kept
-    def homogeneous_mass_tensor(self) -> Float[Array, "n n"]:
+    def homogeneous_mass_tensor(self) -> Float[Array, "... n n"]:
         """The mass tensor itself."""
         return self.mass_tensor
 
     @kept
-    def inertia_operator(self) -> Float[Array, "dim dim"]:
+    def inertia_operator(self) -> Float[Array, "... dim dim"]:
         r"""The operator $\omega \mapsto J\omega + \omega J$; for n = 3 it is $\mathrm{tr}(J)\,\mathrm{Id} - J$."""
         return super().inertia_operator if self.axis is None else inertia_tensor(self.mass_tensor)
 
@@ -138,7 +138,7 @@ class SuslovTop(AbstractLLSystem):
         return super().annihilator if self.axis is None else np.array(self.axis)[None, :]
 
     @kept
-    def frame(self) -> Float[np.ndarray, "n n"]:
+    def frame(self) -> Float[np.ndarray, "... n n"]:
         """The shortest rotation taking e3 to the forbidden axis; the identity for n > 3."""
         return self.group.identity if self.axis is None else rotation_to(self.axis)
 
