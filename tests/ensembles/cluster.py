@@ -29,7 +29,7 @@ class Cluster:
         file = folder / "scheduler.json"
         options = ["--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--dashboard-address", "127.0.0.1:0"]
         self.scheduler = self._started("scheduler", *options, "--idle-timeout", "120", "--scheduler-file", str(file))
-        wait_for(file.exists)
+        wait_for(lambda: _is_written(file))
         self.address: str = json.loads(file.read_text())["address"]
 
     def add_worker(self, *, nanny: bool = False, path: pathlib.Path = HERE) -> None:
@@ -57,6 +57,14 @@ class Cluster:
                 stderr=log,
                 start_new_session=True,
             )
+
+
+def _is_written(file: pathlib.Path) -> bool:
+    """Tell whether a JSON file is there and whole: the scheduler opens it before it writes."""
+    try:
+        return "address" in json.loads(file.read_text())
+    except (FileNotFoundError, json.JSONDecodeError):
+        return False
 
 
 @contextlib.contextmanager
