@@ -68,6 +68,7 @@ def test_exact_record_is_fitted_exactly() -> None:
     np.testing.assert_allclose(found.orbit.configuration, orbit.configuration, atol=1e-10)
 
 
+@pytest.mark.profile("routes", instead="test_top_is_found_from_its_gyroscope")
 def test_trials_share_the_body_and_tables_may_have_any_form(tmp_path: Path) -> None:
     """Two trials tell more than one; a CSV file, a table of pandas and a dictionary are read alike."""
     pandas = pytest.importorskip("pandas")
