@@ -20,6 +20,7 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parent))
 
 ABSENT = {
+    "anywidget",
     "diffrax",
     "distributed",
     "equinox",

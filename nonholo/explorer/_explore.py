@@ -1,6 +1,7 @@
 """The doors of the live page: of a system, a discretization or an orbit."""
 
 import dataclasses
+import functools
 import html
 import tempfile
 import webbrowser
@@ -8,24 +9,27 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from nonholo.base.checks import flags
+from nonholo.base.checks import MissingExtraError, flags
 from nonholo.base.checks import path as checked_path
-from nonholo.explorer._motion import shown_motion
+from nonholo.explorer._motion import shown_motion, simulated
 from nonholo.explorer._page import page_text
 from nonholo.io import check_file, new_file
+from nonholo.orbit import Orbit
 
 _HEIGHT = 760  # pixels in a notebook
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
 class Page:
-    """A live page; in a notebook it shows itself.
+    """A live page; in a notebook it shows itself, and with anywidget its sliders are heard in Python.
 
     Attributes:
         text: The whole of it, HTML in ASCII.
+        first_state: Body, start and time step with which it opens; None for a replay.
     """
 
     text: str
+    first_state: dict[str, Any] | None = None
 
     def __repr__(self) -> str:
         return f"<Page of {len(self.text) / 1e3:.0f} kB>"
@@ -35,6 +39,38 @@ class Page:
         inner = html.escape(self.text, quote=True)
         look = f"width:100%;height:{_HEIGHT}px;border:0"
         return f'<iframe sandbox="{allowed}" style="{look}" title="The live page of nonholo" srcdoc="{inner}"></iframe>'
+
+    def _repr_mimebundle_(self, **_: Any) -> Any:
+        if self._widget is None:
+            return {}
+        data, about = self._widget._repr_mimebundle_()
+        return {**data, "text/plain": repr(self)}, about
+
+    @functools.cached_property
+    def _widget(self) -> Any:
+        """The frame that tells of its state; None where anywidget is not installed."""
+        try:
+            from nonholo.explorer._widget import PageWidget
+        except MissingExtraError:
+            return None
+        return PageWidget(text=self.text, height=_HEIGHT, state=self.first_state or {})
+
+    @property
+    def state(self) -> dict[str, Any] | None:
+        """Body, start and time step that the page shows now: the last that its sliders in a notebook said."""
+        return self.first_state and (self.first_state if self._widget is None else dict(self._widget.state))
+
+    def orbit(self) -> Orbit:
+        """Return the motion that the page shows now, computed here: in a notebook that of its sliders.
+
+        Raises:
+            ValueError: A replay, whose orbit was passed to `explore`; a state that is no body's.
+
+        Example:
+            >>> nh.explore(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5)).orbit()
+            <Orbit of ChaplyginSleigh: 401 states, time 0 to 40, successful>
+        """
+        return simulated("Page.orbit()", self.state)
 
     def save(self, path: str | Path, *, overwrite: bool = False) -> None:
         """Write the page to a new file.
@@ -77,7 +113,7 @@ def explore(value: Any) -> Page:
         2
     """
     data, title, note = shown_motion("explore(value=...)", value)
-    return Page(page_text(data, title, note, version("nonholo")))
+    return Page(page_text(data, title, note, version("nonholo")), data.get("state"))
 
 
 def orbit_to_html(orbit: Any, path: str | Path, *, overwrite: bool = False) -> None:

@@ -5,12 +5,14 @@ import re
 from typing import Any, NamedTuple, cast
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from nonholo.base.checks import error, shown
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization, discretize
 from nonholo.orbit import Orbit, as_orbit
-from nonholo.systems import AbstractSystem, NormalForm
+from nonholo.simulation import simulate
+from nonholo.systems import AbstractSystem, ChaplyginSleigh, NormalForm, SuslovTop
 
 MOST_STEPS = 20_000
 """Steps that the kernel of a page takes."""
@@ -102,6 +104,21 @@ def _state(discrete: Discretization, kind: str, momentum: np.ndarray, pose: np.n
         "time_step": float(discrete.time_step),
         "steps": steps,
     }
+
+
+def simulated(where: str, state: Any) -> Orbit:
+    """Return the motion of a state, which may come from a page and be anything."""
+    if not isinstance(state, dict) or state.keys() < {"kind", "parameters", "momentum", "pose", "time_step", "steps"}:
+        raise error(where, "be asked of a page whose body runs in it", "a replay", "Use the orbit you passed.")
+    p, (w, *xyz) = state["parameters"], state["pose"]
+    if state["kind"] == "top":
+        rows = [[p[f"J{min(i, j)}{max(i, j)}"] for j in (1, 2, 3)] for i in (1, 2, 3)]
+        body, pose = SuslovTop(rows), Rotation.from_quat([*xyz, w]).as_matrix()
+    else:
+        sine, *place = xyz
+        body, pose = ChaplyginSleigh(**p), [[w, -sine, place[0]], [sine, w, place[1]], [0.0, 0.0, 1.0]]
+    start = {"momentum": state["momentum"], "configuration": pose}
+    return simulate(discretize(body, state["time_step"]), **start, steps=state["steps"], throw=False)
 
 
 def _name(system: AbstractSystem) -> str:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from nonholo.base.html import table
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 
@@ -66,6 +67,16 @@ class AbstractOrbit(abc.ABC):
 
     def __len__(self) -> int:
         return len(self.time)
+
+    def _repr_html_(self) -> str:
+        rows = [("system", repr(self.system)), ("states", f"{len(self):,}"), ("outcome", self.outcome.name)]
+        if len(self):
+            change = np.ptp(self.energy)
+            rows[2:2] = [
+                ("time", f"{self.time[0]:g} to {self.time[-1]:g}"),
+                ("energy", f"{self.energy[0]:.6g} at first, between extremes {change:.2g}"),
+            ]
+        return table(type(self).__name__, rows)
 
     def to_pandas(self) -> Any:
         """Return the orbit as a `pandas.DataFrame` with one column for each number of `to_dataset`, indexed by time."""

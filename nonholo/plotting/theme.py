@@ -9,6 +9,7 @@ import contextvars
 import dataclasses
 import functools
 import inspect
+import io
 import re
 import weakref
 from collections.abc import Callable
@@ -224,6 +225,11 @@ def _scale() -> float:
 
 class _Picture(Figure):
     """A figure whose text stays text in files; in SVG, where a halo would make it curves, without one."""
+
+    def _repr_png_(self) -> bytes:
+        """Return the picture that a notebook shows."""
+        self.savefig(file := io.BytesIO(), format="png")
+        return file.getvalue()
 
     def savefig(self, fname: Any, **named: Any) -> None:
         is_svg = "svg" in (named.get("format"), Path(str(fname)).suffix[1:].lower())

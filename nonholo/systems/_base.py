@@ -12,6 +12,7 @@ from typing import Any, ClassVar, TypeVar
 import numpy as np
 
 from nonholo.base.checks import error, is_traced, shape_of, trailing
+from nonholo.base.html import table
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
@@ -42,6 +43,11 @@ class AbstractSystem(abc.ABC):
     """Whether it is a `Forced`; questions about free motions are then refused."""
     has_blade: ClassVar[bool] = False
     """Whether the last row of the constraint subspace is the velocity along a blade, at its point of contact."""
+
+    def _repr_html_(self) -> str:
+        constraint = "fixed in space" if self.is_spatial else "fixed in the body"
+        rows = [("body", repr(self)), ("moves on", self.group), ("constraint", constraint)]
+        return table(type(self).__name__, rows)
 
     @property
     @abc.abstractmethod

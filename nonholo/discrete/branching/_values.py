@@ -9,6 +9,7 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from nonholo.base.checks import error
+from nonholo.base.html import table
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Bool, Float, Inexact, Int
 from nonholo.discrete._discretization import Discretization
@@ -64,6 +65,17 @@ class Branches:
         principal = "none is principal" if self.principal is None else f"number {self.principal} is principal"
         certified = ", certified" if self.certified else ""
         return f"<Branches: {len(self)} values, {real} real, {principal}{certified}, energy {self.energy:.6g}>"
+
+    def _repr_html_(self) -> str:
+        head = ("", "real", "multiplicity", "to the fold", "momentum")
+        rows = []
+        for k, momentum in enumerate(self.momentum):
+            components = momentum.real if self.is_real[k] else momentum
+            shown = np.array2string(components, precision=6, threshold=12, suppress_small=True)
+            number = f"{k}, principal" if k == self.principal else k
+            is_real = "yes" if self.is_real[k] else "no"
+            rows.append((number, is_real, self.multiplicity[k], f"{self.fold_distance[k]:.3g}", shown))
+        return table(repr(self), rows, head)
 
 
 def values_over(discrete: Discretization, frame: Frame, r: Inexact[np.ndarray, "k"]) -> Branches:

@@ -174,6 +174,7 @@ export class App {
     clearTimeout(this.later);
     this.later = setTimeout(() => {
       this.fragment = fragmentOf(this.state);
+      this.tell?.(this.state);
       if (this.changed && location.protocol !== "about:") history.replaceState(null, "", this.fragment); // a frame has no address
       this.changed = true;
     }, 250);

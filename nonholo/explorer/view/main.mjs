@@ -6,6 +6,7 @@ const original = document.documentElement.outerHTML;
 const data = JSON.parse(document.getElementById("data").textContent);
 const app = new App(data);
 app.original = original;
+if (parent !== window) app.tell = (state) => parent.postMessage({ nonholo: state }, "*"); // whoever shows the page in a frame
 app.begin().catch((failure) => {
   const status = document.getElementById("status");
   status.textContent = `The page could not begin: ${failure.message}`;

@@ -1,0 +1,27 @@
+"""Values as notebooks show them: a title and rows of words, all of them escaped."""
+
+import html
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+
+def table(title: str, rows: Iterable[Sequence[Any]], head: Sequence[Any] = ()) -> str:
+    """Return a table; words of several lines keep them.
+
+    Example:
+        >>> table("<Top>", [("time", 0.5)])
+        '<table><caption><b>&lt;Top&gt;</b></caption><tr><td>time</td><td>0.5</td></tr></table>'
+    """
+    lines = [_row("th", head)] if head else []
+    return (
+        f"<table><caption><b>{_shown(title)}</b></caption>{''.join(lines + [_row('td', row) for row in rows])}</table>"
+    )
+
+
+def _row(cell: str, words: Sequence[Any]) -> str:
+    return f"<tr>{''.join(f'<{cell}>{_shown(word)}</{cell}>' for word in words)}</tr>"
+
+
+def _shown(word: Any) -> str:
+    text = html.escape(str(word))
+    return f'<pre style="text-align:left;margin:0">{text}</pre>' if "\n" in text else text

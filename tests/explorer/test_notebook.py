@@ -1,0 +1,146 @@
+"""The live page and pictures in notebooks: what sliders say in Python, notebooks that run, a real JupyterLab."""
+
+import os
+import re
+import subprocess
+import sys
+import time
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+
+NOTEBOOKS = sorted((Path(__file__).parents[2] / "docs/notebooks").glob("*.ipynb"))
+SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5)
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+
+
+@pytest.mark.parametrize("body", [TOP, SLEIGH])
+def test_orbit_of_a_page(body: Any) -> None:
+    """A page computes in Python the orbit it shows, from its pose too."""
+    orbit = nh.simulate(nh.discretize(body, 0.2), restricted_velocity=(0.3, -1.0), steps=30)
+    again = nh.explore(orbit).orbit()
+    np.testing.assert_array_equal(again.restricted_momentum, orbit.restricted_momentum)
+    np.testing.assert_allclose(again.configuration, orbit.configuration, rtol=0, atol=1e-15)
+
+
+def test_replay_has_no_state() -> None:
+    """A body without a kernel has an orbit of its own, and the page says where it is."""
+    space = nh.RigidBody(np.diag([1.0, 2.0, 3.0]))
+    page = nh.explore(nh.simulate(nh.discretize(space, 0.1), body_velocity=(1, 0.2, 0), steps=3))
+    assert page.state is None
+    with pytest.raises(ValueError, match=r"Page\.orbit.* Use the orbit you passed"):
+        page.orbit()
+
+
+def test_state_follows_the_widget() -> None:
+    """What the frame says of its sliders is the state of the page, and its orbit is of that."""
+    pytest.importorskip("anywidget")
+    page = nh.explore(SLEIGH)
+    data, _ = page._repr_mimebundle_()
+    assert "application/vnd.jupyter.widget-view+json" in data
+    page._widget.state = {**page.first_state, "time_step": 0.5, "steps": 7}  # type: ignore[dict-item]
+    assert page.state["time_step"] == 0.5  # type: ignore[index]
+    assert page.orbit().time[-1] == 3.5
+
+
+def test_hostile_states_are_refused() -> None:
+    """A frame may say anything: it is data, and checked."""
+    for state in ({}, {"kind": "top"}, [], None, "top"):
+        with pytest.raises(ValueError, match="Page"):
+            nh.explorer._motion.simulated("Page.orbit()", state)  # type: ignore[attr-defined]
+    page = nh.explore(SLEIGH)
+    for change in ({"steps": 10**12}, {"parameters": {"mass": -1, "inertia": 1, "a": 0}}, {"momentum": ["x", 1]}):
+        with pytest.raises((ValueError, TypeError)):
+            nh.explorer._motion.simulated("Page.orbit()", {**page.first_state, **change})  # type: ignore[attr-defined,dict-item]
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        (TOP, ["SuslovTop", "1.4", "SO(3)"]),
+        (nh.SuslovTop.arrowhead([1.0] * 100_000, [0.1] * 99_999), ["n=100000"]),
+        (nh.simulate(nh.discretize(SLEIGH, 0.2), body_velocity=(0.3, -1, 0), steps=5), ["0 to 1", "6", "successful"]),
+        (nh.displacements_over(nh.discretize(TOP, 0.2), [0.3, 0.4]), ["0, principal", "4 values, 2 real"]),
+    ],
+    ids=["top", "wide", "orbit", "branches"],
+)
+def test_values_show_themselves(value: Any, words: list[str]) -> None:
+    """Systems, orbits and values of the map are tables in a notebook."""
+    text = value._repr_html_()
+    assert text.startswith("<table>")
+    for word in words:
+        assert word in text
+
+
+def test_pictures_show_themselves() -> None:
+    """A figure has the bytes of a PNG for a notebook."""
+    figure: Any = nh.simulate(nh.discretize(SLEIGH, 0.2), restricted_velocity=(0.3, -1.0), steps=5).plot()
+    assert figure._repr_png_().startswith(b"\x89PNG")
+
+
+@pytest.mark.profile("browser", instead="test_state_follows_the_widget")
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
+def test_notebooks_run(notebook: Path) -> None:
+    """Every cell of the notebooks runs, and every picture in them shows itself."""
+    nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
+    cells = nbclient.NotebookClient(nbformat.read(notebook, 4), timeout=300).execute().cells
+    data = [output["data"] for cell in cells for output in cell.get("outputs", ()) if "data" in output]
+    assert sum("image/png" in each for each in data) == sum(".plot()" in cell["source"] for cell in cells) > 0
+
+
+@pytest.fixture
+def laboratory(tmp_path: Path) -> Iterator[tuple[str, Path]]:
+    """A JupyterLab of its own: its address and its folder."""
+    pytest.importorskip("jupyterlab")
+    words = ["--no-browser", "--allow-root", "--ServerApp.port=0", "--ServerApp.token=", "--ServerApp.password="]
+    home = {"JUPYTER_CONFIG_DIR": str(tmp_path / "config"), "JUPYTER_DATA_DIR": str(tmp_path / "data")}
+    (tmp_path / "work").mkdir()
+    command = [sys.executable, "-m", "jupyterlab", *words, f"--ServerApp.root_dir={tmp_path / 'work'}"]
+    log = tmp_path / "log"
+    environment = {**os.environ, **home}
+    with log.open("w") as out, subprocess.Popen(command, stderr=out, stdout=out, env=environment) as server:  # noqa: S603
+        try:
+            address = _address(log, server)
+            yield address, tmp_path / "work"
+        finally:
+            server.terminate()
+
+
+def _address(log: Path, server: subprocess.Popen) -> str:
+    for _ in range(600):
+        found = re.search(r"http://(?:localhost|127\.0\.0\.1):(\d+)/lab", log.read_text())
+        if found:
+            address = f"http://127.0.0.1:{found[1]}"
+            urllib.request.urlopen(f"{address}/api").read()  # noqa: S310
+            return address
+        assert server.poll() is None, log.read_text()
+        time.sleep(0.1)
+    raise TimeoutError(log.read_text())
+
+
+@pytest.mark.profile("browser", instead="test_state_follows_the_widget")
+def test_widget_in_jupyterlab(browser: Any, laboratory: tuple[str, Path]) -> None:
+    """In a real JupyterLab the page is live, and Python hears of a slider that was moved there."""
+    address, folder = laboratory
+    source = next(path for path in NOTEBOOKS if path.stem == "the-live-page")
+    (folder / "page.ipynb").write_text(source.read_text())
+    page = browser.new_context(viewport={"width": 1280, "height": 1000}).new_page()
+    page.goto(f"{address}/lab/tree/page.ipynb?reset")
+    page.locator(".jp-Notebook .jp-CodeCell").first.wait_for(timeout=60_000)
+    page.get_by_text("(ipykernel) | Idle").wait_for(timeout=60_000)
+    page.locator(".jp-Notebook .jp-CodeCell").first.click()
+    page.keyboard.press("Shift+Enter")
+    frame = page.frame_locator(".jp-OutputArea iframe").first
+    frame.locator("#status:not(:text('Starting'))").wait_for(timeout=60_000)
+    frame.locator("#number-time_step").fill("0.25")
+    frame.locator("#number-time_step").press("Enter")
+    page.wait_for_timeout(1000)  # the frame tells of a state that stays
+    page.locator(".jp-CodeCell:has-text('page.state')").first.click()
+    page.keyboard.press("Shift+Enter")
+    page.locator(".jp-OutputArea-output:has-text(\"'time_step': 0.25\")").first.wait_for(timeout=30_000)
