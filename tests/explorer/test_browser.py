@@ -207,6 +207,41 @@ def test_ten_thousand(visit: Callable, files: dict, name: str) -> None:
     assert page.errors == []
 
 
+@pytest.mark.parametrize("name", list(BODIES))
+def test_all_values(visit: Callable, files: dict, name: str) -> None:
+    """All values over a momentum, real and complex, are those of Python, and the count of real ones in the page too."""
+    page = visit(files[name])
+    page.page.click("#play")
+    page.page.fill("#scrub", "0")
+    page.page.click("#values")
+    rng = np.random.default_rng(3)
+    for momentum in rng.uniform(-3, 3, (12, 2)).round(2):
+        page.set("time_step", 1.0)
+        page.set("r1", float(momentum[0]))
+        page.set("r2", float(momentum[1]))
+        state, body = page.page.evaluate("nonholo.state"), BODIES[name]
+        known = nh.displacements_over(nh.discretize(body, 1.0), state["momentum"])
+        y = np.array(page.page.evaluate("nonholo.values")) @ [1, 1j]
+        expected = _chart_of(body, known.displacement)
+        assert len(y) == len(expected)
+        for value in y:
+            assert np.abs(expected - value).sum(axis=1).min() <= 1e-8 * (1 + np.abs(value).sum())
+        real = np.count_nonzero(known.is_real)
+        assert page.page.evaluate("nonholo.count(nonholo.state.momentum)") == real
+        assert f"{real} of {len(y)}" in page.page.inner_text("#now")
+    assert page.errors == []
+
+
+def _chart_of(body: Any, W: np.ndarray) -> np.ndarray:
+    """Return the two Cayley coordinates of displacements, real or complex."""
+    if body.group.is_rigid:
+        t = (W[:, 1, 0] / (1 + W[:, 0, 0]))[:, None]
+        x = W[:, 0, 2] + t[:, 0] * W[:, 1, 2]  # half the slide, over the cosine of half the angle
+        return np.concatenate([t, x[:, None] / 2], axis=1)
+    trace = 1 + np.trace(W, axis1=1, axis2=2)
+    return np.stack([W[:, 0, 2] - W[:, 2, 0], W[:, 1, 2] - W[:, 2, 1]], axis=1) / trace[:, None]
+
+
 def test_save_and_open(visit: Callable, files: dict, tmp_path: Path) -> None:
     """The saved page is a page: it opens with the motion that was saved, and as quietly."""
     page = visit(files["top"])

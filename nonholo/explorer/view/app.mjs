@@ -12,6 +12,7 @@ import { isSoftware, Stage } from "./stage.mjs";
 import { checked, fragmentOf, stateOf } from "./state.mjs";
 import { SurfaceView } from "./surface_view.mjs";
 import { TopView } from "./top_view.mjs";
+import { isReal, valuesOver } from "./values.mjs";
 import { WORDS } from "./words.mjs";
 
 const SECONDS = 16;
@@ -88,9 +89,10 @@ export class App {
     const kind = replay ? "replay" : this.state.kind;
     if (this.shown !== kind) this.enter(kind);
     this.view.set(this.state, this.orbit, look, this.flow);
-    if (!replay) this.surface.set(this.body, this.state, this.orbit, look, this.whole);
+    if (!replay) this.surface.set(this.body, this.state, this.orbit, look, this.whole, this.values ? (k) => this.allValues(k).filter(isReal) : null);
     if (this.crowd) this.crowd.set(this.body, this.state, this.flow, run);
-    const picture = { crowd: this.crowd, orbit: this.orbit, flow: this.flow, body: this.body };
+    const counts = this.values && !replay ? this.counts() : null;
+    const picture = { crowd: this.crowd, orbit: this.orbit, flow: this.flow, body: this.body, counts };
     this.phase.set(picture, look);
     this.energy.set(picture, look);
     this.clock = Math.min(this.clock, Math.max(0, this.orbit.count - 1));
@@ -105,6 +107,19 @@ export class App {
   withAxis(flow) {
     const { J13: c1, J23: c2 } = this.state.parameters;
     return { ...flow, velocityAxis: c1 || c2 ? [-c2, c1, 0] : null };
+  }
+
+  /** How many values are real over a momentum along the constraint, as a function. */
+  counts() {
+    const { body, state } = this, table = body.table(state.parameters), scale = state.time_step * body.share;
+    return (r) => body.count(table, [scale * r[0], scale * r[1]]);
+  }
+
+  /** All values over the momentum of a state, or of the start where the motion cannot begin. */
+  allValues(k) {
+    const { r, y, count } = this.orbit;
+    if (!count) return valuesOver(this.body, this.state, this.state.momentum, [0, 0]);
+    return valuesOver(this.body, this.state, [r[2 * k], r[2 * k + 1]], [y[2 * k], y[2 * k + 1]]);
   }
 
   enter(kind) {

@@ -1,6 +1,8 @@
 // The two bodies whose steps are known in closed form: the numbers that their kernels take, and what is drawn of them.
 // Formulas and rows are those of nonholo.discrete.routes and nonholo.analysis.planar.
 
+import { sleighCount, sleighValues, topCount, topValues } from "./values.mjs";
+
 const cholesky = (b11, b12, b22) => {
   const l11 = Math.sqrt(b11), l21 = b12 / l11;
   return [l11, l21, Math.sqrt(b22 - l21 * l21)];
@@ -80,6 +82,11 @@ export const top = {
     const z0 = 1 / Math.sqrt(1 + y1 * y1 + y2 * y2);
     return this.locusPoint(p, z0, y1 * z0, y2 * z0);
   },
+  values: topValues,
+  count: topCount,
+  /** The line of all momenta along the constraint that are r, a point of it for each number. */
+  fibre: (p, h, [r1, r2]) => (s) => [-h * r2, h * r1, s],
+  fibreAxis: 2,
   /** Step angle of a displacement. */
   angle: (y1, y2) => 2 * Math.atan(Math.hypot(y1, y2)),
   mesh(p, orbit, reach, rowsOf = 26, columns = 64) {
@@ -126,6 +133,10 @@ export const sleigh = {
     const X = p.a === 0 ? h * r2 : p.a * h * r2 + 2 * p.mass * p.a * p.a;
     return [X, X * y1, (2 * p.inertia * y1) / (1 + y1 * y1)];
   },
+  values: sleighValues,
+  count: sleighCount,
+  fibre: (p, h, [r1, r2]) => (s) => (p.a === 0 ? [h * r2, s, h * r1] : [p.a * h * r2 + 2 * p.mass * p.a * p.a, s, h * r1 - s]),
+  fibreAxis: 1,
   angle: (y1) => 2 * Math.atan(Math.abs(y1)),
   mesh(p, orbit, reach, rowsOf = 64, columns = 24) {
     let low = 0, high = 0;

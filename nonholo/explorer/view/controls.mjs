@@ -7,6 +7,7 @@ import { film } from "./film.mjs";
 import { colors, short } from "./look.mjs";
 import { download, pageWith, pictureOf, pythonOf, tomlOf } from "./share.mjs";
 import { fragmentOf } from "./state.mjs";
+import { isReal } from "./values.mjs";
 import { PRESETS } from "./words.mjs";
 
 const byId = (id) => document.getElementById(id);
@@ -37,6 +38,8 @@ export class Controls {
       this.chosen = null;
       const chosen = select.value === "own" ? data.state : { pose: [1, 0, 0, 0], ...PRESETS[select.value] };
       this.app.clock = 0;
+      this.app.values = Boolean(chosen.values);
+      byId("values").setAttribute("aria-pressed", String(this.app.values));
       this.app.change({ ...chosen, pose: chosen.pose ?? [1, 0, 0, 0] });
     });
   }
@@ -109,12 +112,26 @@ export class Controls {
       ["energy", short(orbit.energy[k], 6)],
       ...(body.angle ? [["step angle", `${short((body.angle(orbit.y[2 * k], orbit.y[2 * k + 1]) * 180) / Math.PI, 4)}°`]] : []),
     ] : [];
+    if (app.values && app.kind !== "replay") known.push(["real values", this.counted(app.allValues(k))]);
     if (list.children.length !== 2 * known.length) {
       list.replaceChildren(...known.flatMap(() => [element("dt"), element("dd")]));
     }
     known.flat().forEach((text, place) => {
       if (list.children[place].textContent !== text) list.children[place].textContent = text;
     });
+  }
+
+  counted(values) {
+    return `${values.filter(isReal).length} of ${values.length}`;
+  }
+
+  /** Turn something on or off that is not of the motion, and draw anew. */
+  toggle(name, on) {
+    this.app[name] = on;
+    byId(name).setAttribute("aria-pressed", String(on));
+    this.app.refresh();
+    this.app.drawn = null;
+    this.app.show();
   }
 
   clockButtons() {
@@ -204,13 +221,7 @@ export class Controls {
       app.drawn = null;
       app.show();
     });
-    byId("whole").addEventListener("click", () => {
-      app.whole = !app.whole;
-      byId("whole").setAttribute("aria-pressed", String(app.whole));
-      app.refresh();
-      app.drawn = null;
-      app.show();
-    });
+    for (const name of ["whole", "values"]) byId(name).addEventListener("click", () => this.toggle(name, !app[name]));
   }
 
   dragging() {

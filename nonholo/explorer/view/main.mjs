@@ -21,6 +21,14 @@ globalThis.nonholo = {
   get orbit() {
     return app.orbit;
   },
+  /** All values of the map over the present momentum along the constraint: two complex coordinates each. */
+  get values() {
+    return app.allValues(app.k);
+  },
+  /** How many values are real over a momentum. */
+  count(r) {
+    return app.counts()(r);
+  },
   get crowd() {
     return app.crowd;
   },

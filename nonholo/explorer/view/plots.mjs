@@ -101,6 +101,7 @@ export class PhasePortrait extends Picture {
   background(pen) {
     const { look, w, h, data: { orbit, flow, body } } = this;
     pen.clearRect(0, 0, w, h);
+    if (this.data.counts) this.shade(pen, this.data.counts);
     pen.strokeStyle = look.line;
     pen.lineWidth = 1;
     for (const size of [0.4, 0.7, 1.3, 1.6, 2, 2.5]) {
@@ -120,6 +121,23 @@ export class PhasePortrait extends Picture {
     pen.fillText(body.momenta[0], w - 8, h / 2 - 6);
     pen.textAlign = "left";
     pen.fillText(body.momenta[1], w / 2 + 6, 14);
+  }
+
+  /** Shade momenta by how many real values the map has there: the more, the darker; borders are folds. */
+  shade(pen, counts) {
+    const at = (x, y) => counts(this.momentumAt(x, y));
+    const fill = (x, y, size) => {
+      const count = at(x, y), isEven = [at(x + size, y), at(x, y + size), at(x + size, y + size)].every((other) => other === count);
+      if (!isEven && size > 1) {
+        for (const [i, j] of [[0, 0], [0, 1], [1, 0], [1, 1]]) fill(x + (i * size) / 2, y + (j * size) / 2, size / 2);
+        return;
+      }
+      pen.globalAlpha = 0.06 * count;
+      pen.fillRect(x, y, size, size);
+    };
+    pen.fillStyle = this.look.body;
+    for (let x = 0; x < this.w; x += 8) for (let y = 0; y < this.h; y += 8) fill(x, y, 8);
+    pen.globalAlpha = 1;
   }
 
   equilibria(pen, [d1, d2]) {

@@ -33,7 +33,7 @@ export class SleighView {
     if (!orbit.count) box = [-1, -1, 1, 1];
     const extent = Math.hypot(box[2] - box[0], box[3] - box[1]);
     this.enlarged = Math.max(1, extent / (7 * (long + Math.abs(a))));
-    const reach = extent / 2 + this.enlarged * (long + Math.abs(a)) * 0.9;
+    const reach = extent / 2 + this.enlarged * (long + Math.abs(a));
     const center = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2, 0];
     this.ground(center, reach, look);
     this.track = count > 1 ? ribbon(track, () => {}, 0.02 * reach, look.dark) : null;
@@ -42,7 +42,7 @@ export class SleighView {
     if (this.track) this.fixed.add(this.track);
     this.body(long, a, look);
     this.moving.scale.setScalar(this.enlarged);
-    this.stage.look(center, 0.8 * reach);
+    this.stage.look(center, 0.97 * reach);
   }
 
   /** The track that is still to come, as a thin line. */

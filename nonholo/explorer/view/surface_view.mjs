@@ -1,6 +1,6 @@
 // The surface of discrete momenta, and the orbit that runs on it: the part near the orbit, or as much as asked for.
 
-import { BufferAttribute, BufferGeometry, DoubleSide, Group, LineSegments, Mesh, SphereGeometry } from "three";
+import { BufferAttribute, BufferGeometry, DoubleSide, Group, Line, LineSegments, Mesh, SphereGeometry } from "three";
 import { clear, isSoftware, plain, ribbon, solid, thin } from "./stage.mjs";
 
 export class SurfaceView {
@@ -8,22 +8,27 @@ export class SurfaceView {
     this.stage = stage;
     this.group = new Group();
     this.marker = new Group();
-    stage.scene.add(this.group, this.marker);
+    this.others = new Group();
+    stage.scene.add(this.group, this.marker, this.others);
   }
 
-  set(body, state, orbit, look, whole) {
-    clear(this.group);
-    clear(this.marker);
-    const { parameters: p, time_step: h } = state, { count, r, y } = orbit, path = [];
+  /** Draw a motion; with `values`, a function of the state, all real values over its momentum. */
+  set(body, state, orbit, look, whole, values) {
+    for (const group of [this.group, this.marker, this.others]) clear(group);
+    const { parameters: p, time_step: h } = state, { count, y } = orbit, path = [];
     let most = 0;
     for (let k = 0; k < count; k++) {
-      path.push(body.onLocus(p, h, r[2 * k], r[2 * k + 1], y[2 * k], y[2 * k + 1]));
+      path.push(body.onLocus(p, h, orbit.r[2 * k], orbit.r[2 * k + 1], y[2 * k], y[2 * k + 1]));
       most = Math.max(most, body.angle(y[2 * k], y[2 * k + 1]));
     }
-    const reach = whole ? Math.PI : Math.min(Math.PI, Math.max(1.6 * most, 1e-3));
-    const mesh = body.mesh(p, path, reach, ...(isSoftware ? (body.kind === "top" ? [18, 48] : [40, 16]) : []));
+    const reach = whole || values ? Math.PI : Math.min(Math.PI, Math.max(1.6 * most, 1e-3));
+    const r = (k) => (count ? [orbit.r[2 * k], orbit.r[2 * k + 1]] : state.momentum);
+    const pointsOver = (k) => values(k).map(([y1, y2]) => body.onLocus(p, h, ...r(k), y1[0], y2[0]));
+    const mesh = body.mesh(p, values ? path.concat(pointsOver(0)) : path, reach, ...(isSoftware ? (body.kind === "top" ? [18, 48] : [40, 16]) : []));
     const fit = this.fitted(mesh.points.concat(path));
     this.surface(mesh, fit, look);
+    if (values) this.over(body, mesh.points, (k) => [pointsOver(k).map(fit), (s) => fit(body.fibre(p, h, r(k))(s))], look);
+    else this.move = null;
     this.path = path.map(fit);
     if (count > 1) {
       const eye = this.stage.camera.position.toArray();
@@ -79,7 +84,26 @@ export class SurfaceView {
     this.group.add(new LineSegments(net, thin(look.ink, { transparent: true, opacity: 0.22 })));
   }
 
+  /** Make what stands over a momentum: the line of all momenta over it, and where it meets the surface. */
+  over(body, points, at, look) {
+    const along = points.map((point) => point[body.fibreAxis]), ends = [Math.min(...along), Math.max(...along)];
+    const line = new Line(new BufferGeometry(), thin(look.muted, { depthTest: false }));
+    const dots = Array.from({ length: 4 }, () => new Mesh(new SphereGeometry(0.045, 20, 14), plain(look.ink, { depthTest: false })));
+    [line, ...dots].forEach((part) => (part.renderOrder = 3));
+    this.others.add(line, ...dots);
+    this.move = (k) => {
+      const [places, on] = at(k);
+      line.geometry.setAttribute("position", new BufferAttribute(Float32Array.from([...on(ends[0]), ...on(ends[1])]), 3));
+      dots.forEach((dot, j) => {
+        dot.visible = j > 0 && j < places.length; // the first one is the state's own
+        if (dot.visible) dot.position.set(...places[j]);
+      });
+    };
+    this.move(0);
+  }
+
   show(k) {
+    this.move?.(k);
     if (!this.path?.length) return;
     this.marker.position.set(...this.path[k]);
     this.stage.dirty = true;

@@ -28,7 +28,9 @@ export const WORDS = {
       ${math(i("r"), o("′"), o("="), i("r"), o("−"), frac(n(4) + o("(") + i("c") + o("·") + perp + o(")"), i("h") + o("(") + n(1) + o("+") + square + o(")")), perp)}`,
     surface: `<p>The momenta of all displacements form a Steiner surface of degree four, the image of a projective plane. The orbit jumps on it from
       point to point. Several sheets over one point are the several values of the discrete map; where the surface folds, a value ends. Only the part near
-      the orbit is shown, each axis in its own scale; “whole” unfolds all of it.</p>
+      the orbit is shown, each axis in its own scale; “whole” unfolds all of it. “values” draws the line of all momenta over the present
+      one along the constraint: where it meets the surface are the real values, of four in all; the map takes the one with the orange ball.
+      The phase portrait then is the darker, the more values are real.</p>
       ${math(i("h"), i("M"), o("="), i("W"), i("J"), o("−"), i("J"), transposed(i("W")))}`,
     energy: ENERGY(math(i("E"), o("="), frac(n(1), n(2)), transposed(i("r")), sup(i("B"), o("−") + n(1)), i("r"))),
   },
@@ -43,7 +45,8 @@ export const WORDS = {
       ${math(sup(i("π"), o("·")), o("="), o("−"), i("a"), i("ω"), sub("p", n(1)), o(","), sub(`ṗ`, n(1)), o("="), i("m"), i("a"), sup(i("ω"), n(2)))}`,
     surface: `<p>The momenta of all displacements form Plücker's conoid, a cubic surface ruled by lines that meet one axis. The orbit jumps on it
       from point to point. Several sheets over one point are the several values of the discrete map. Only the part near the orbit is shown, each axis in its own
-      scale; “whole” shows all step angles.</p>
+      scale; “whole” shows all step angles. “values” draws the line of all momenta over the present one along the constraint: where it
+      meets the surface are the real values, three inside the deltoid of the phase portrait, one outside; the map takes the one with the orange ball.</p>
       ${math(i("X"), o(":"), i("Y"), o("="), i("cos"), frac(i("Δ"), n(2)), o(":"), i("sin"), frac(i("Δ"), n(2)), o(","), i("Z"), o("="), i("J"), i("sin"), i("Δ"))}`,
     energy: ENERGY(math(i("E"), o("="), frac(sup(i("π"), n(2)), n(2) + o("(") + i("J") + o("+") + i("m") + sup(i("a"), n(2)) + o(")")), o("+"), frac(`<msubsup>${i("p")}${n(1)}${n(2)}</msubsup>`, n(2) + i("m")))),
   },
@@ -58,10 +61,12 @@ export const WORDS = {
 export const PRESETS = [
   { name: "Top: from one permanent rotation to the other", kind: "top", parameters: { J11: 1.4, J12: 0.2, J13: 0.5, J22: 1, J23: -0.3, J33: 0.9 }, momentum: [1.632, -0.7335], time_step: 0.1, steps: 800 },
   { name: "Top: large steps, the surface unfolds", kind: "top", parameters: { J11: 1.4, J12: 0.2, J13: 0.5, J22: 1, J23: -0.3, J33: 0.9 }, momentum: [1.2, -0.5], time_step: 0.9, steps: 120 },
+  { name: "Top: all values over a momentum", kind: "top", parameters: { J11: 1.4, J12: 0.2, J13: 0.5, J22: 1, J23: -0.3, J33: 0.9 }, momentum: [0.7, -0.45], time_step: 1.2, steps: 40, values: true },
   { name: "Top: balanced, steady rotation", kind: "top", parameters: { J11: 1.4, J12: 0, J13: 0, J22: 1, J23: 0, J33: 0.6 }, momentum: [1, 0.6], time_step: 0.1, steps: 300 },
   { name: "Top: no real branch", kind: "top", parameters: { J11: 1.4, J12: 0.2, J13: 0.5, J22: 1, J23: -0.3, J33: 0.9 }, momentum: [2.4, -1.1], time_step: 1.6, steps: 100 },
   { name: "Sleigh: turns round through a cusp", kind: "sleigh", parameters: { mass: 1, inertia: 1, a: 0.5 }, momentum: [0.0625, -1], time_step: 0.1, steps: 300 },
   { name: "Sleigh: a loop and away", kind: "sleigh", parameters: { mass: 1, inertia: 1, a: 0.2 }, momentum: [1.2, -0.7], time_step: 0.1, steps: 500 },
+  { name: "Sleigh: three values inside a deltoid", kind: "sleigh", parameters: { mass: 1, inertia: 1, a: 0.4 }, momentum: [0.2, -1.2], time_step: 1, steps: 30, values: true },
   { name: "Sleigh: balanced, circles", kind: "sleigh", parameters: { mass: 1, inertia: 1, a: 0 }, momentum: [0.5, 1], time_step: 0.2, steps: 100 },
   { name: "Sleigh: no real branch", kind: "sleigh", parameters: { mass: 1, inertia: 1, a: 0.5 }, momentum: [1.9, -1.5], time_step: 1.2, steps: 60 },
 ];
