@@ -234,12 +234,12 @@ def test_all_values(visit: Callable, files: dict, name: str) -> None:
 
 def _chart_of(body: Any, W: np.ndarray) -> np.ndarray:
     """Return the two Cayley coordinates of displacements, real or complex."""
-    if body.group.is_rigid:
+    if body is BODIES["sleigh"]:
         t = (W[:, 1, 0] / (1 + W[:, 0, 0]))[:, None]
         x = W[:, 0, 2] + t[:, 0] * W[:, 1, 2]  # half the slide, over the cosine of half the angle
         return np.concatenate([t, x[:, None] / 2], axis=1)
-    trace = 1 + np.trace(W, axis1=1, axis2=2)
-    return np.stack([W[:, 0, 2] - W[:, 2, 0], W[:, 1, 2] - W[:, 2, 1]], axis=1) / trace[:, None]
+    scale = 1 + np.trace(W, axis1=1, axis2=2)[:, None]
+    return np.stack([W[:, 0, 2] - W[:, 2, 0], W[:, 1, 2] - W[:, 2, 1]], axis=1) / scale
 
 
 def test_save_and_open(visit: Callable, files: dict, tmp_path: Path) -> None:
