@@ -150,12 +150,12 @@ def _frames(orbit: Orbit) -> Float[np.ndarray, "K 12"]:
     What a matrix does not have is zero.
     """
     g, group = orbit.configuration, orbit.system.group
-    turns = g[:, :-1, :-1] if group.is_rigid else g
+    turns = g[:, :-1, :-1] if group.is_affine else g
     n = turns.shape[1]
     axes = turns.transpose(0, 2, 1)[:, [0, 1, n - 1] if n > 2 else list(range(n)), :3]
     frames = np.zeros((len(g), 4, 3))
     frames[:, 1 : 1 + axes.shape[1], : axes.shape[2]] = axes
-    if group.is_rigid:
+    if group.is_affine:
         places = g[:, :-1, -1][:, :3]
         frames[:, 0, : places.shape[1]] = places
     if n == 2:

@@ -98,6 +98,11 @@ class AbstractMatrixGroup(abc.ABC):
         return self.is_rigid or self.form is not None
 
     @property
+    def is_affine(self) -> bool:
+        """Whether matrices move points of one dimension less, with homogeneous coordinates: SE(n)."""
+        return self.is_rigid and not np.any(self.basis[:, -1])
+
+    @property
     def identity(self) -> Float[np.ndarray, "N N"]:
         """The identity matrix."""
         if self.size > _WIDE:

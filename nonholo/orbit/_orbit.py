@@ -319,7 +319,7 @@ class Orbit(AbstractOrbit):
     def position(self) -> Float[np.ndarray, "K n"]:
         """Translation parts of the poses; for groups of motions."""
         group = self.system.group
-        if not group.is_rigid or np.any(group.basis[:, -1]):
+        if not group.is_affine:
             raise ValueError(f"`Orbit.position` needs a group of motions. Got {group}. Use configuration.")
         return self.configuration[:, :-1, -1]
 

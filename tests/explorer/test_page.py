@@ -123,6 +123,26 @@ def test_refusals(value: Any, message: str) -> None:
         explore(value)
 
 
+@pytest.mark.parametrize(
+    ("body", "velocity"),
+    [
+        (nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), (0.5, 0.2, 0.0)),
+        (nh.RigidBody(np.diag([1.0, 2.0, 3.0, 4.0])), (1.0, 0.2, 0.0, 0.5, 0.1, 0.3)),
+        (nh.MultidimensionalSleigh(1.0, (0.3, 0.1, 0.0), np.diag([1.0, 2.0, 3.0])), None),
+    ],
+    ids=["SO(3)", "SO(4)", "SE(3)"],
+)
+def test_frames_of_a_replay(body: Any, velocity: Any) -> None:
+    """A replay shows the place of the body and its axes, the columns of the turn: the first two and the last."""
+    start = {"restricted_velocity": (0.5, 0.2, 1.0)} if velocity is None else {"body_velocity": velocity}
+    orbit = nh.simulate(nh.discretize(body, 0.1), **start, steps=5)
+    frames = np.frombuffer(base64.b64decode(_data(explore(orbit).text)["replay"]["frames"])).reshape(-1, 4, 3)
+    moves = body.group == nh.SE(3)
+    turns = orbit.configuration[:, :3, :3] if moves else orbit.configuration
+    np.testing.assert_array_equal(frames[:, 1:], turns[:, :3, [0, 1, -1]].transpose(0, 2, 1))
+    np.testing.assert_array_equal(frames[:, 0], orbit.position if moves else np.zeros((6, 3)))
+
+
 def test_writing(tmp_path: Path) -> None:
     """A page is a new file, unless it may replace one."""
     orbit, path = nh.simulate(nh.discretize(TOP, 0.1), restricted_velocity=(1.0, 0.5), steps=2), tmp_path / "page.html"

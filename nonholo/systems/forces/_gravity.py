@@ -41,7 +41,7 @@ class Gravity:
 
     def check(self, group: AbstractMatrixGroup) -> None:
         """Refuse a group whose matrices move points of another dimension."""
-        n = group.size - is_affine(group)
+        n = group.size - group.is_affine
         if self.point.shape != (n,):
             remedy = f"Pass force and point with {n} numbers each, or a function of the configuration."
             raise error(
@@ -64,11 +64,6 @@ class Gravity:
         return weight, group.basis @ place
 
     def _homogeneous(self, group: AbstractMatrixGroup) -> tuple[np.ndarray, np.ndarray]:
-        if not is_affine(group):
+        if not group.is_affine:
             return np.asarray(self.force), np.asarray(self.point)
         return np.append(self.force, 0.0), np.append(self.point, 1.0)
-
-
-def is_affine(group: AbstractMatrixGroup) -> bool:
-    """Tell whether matrices move points of one dimension less, with homogeneous coordinates: SE(n)."""
-    return group.is_rigid and not np.any(group.basis[:, -1])
