@@ -31,7 +31,7 @@ GUARD = 1 / 64
 """The error of a step as a share of what was asked for, so that rounding is all that is left at the default."""
 
 
-class _Rates(NamedTuple):
+class Rates(NamedTuple):
     r"""Rates $x_m' = \sum_a w_a(c_{am} + \sum_b C_{abm}x_b)$: where C is not zero its (a, b, m) and values, and c."""
 
     places: np.ndarray
@@ -194,7 +194,7 @@ def body_equations(group: AbstractMatrixGroup, S: np.ndarray, velocities: np.nda
     rates = _compact_rates(group, S) if is_compact(group) else _matrix_rates(group.hat(S), False)
     if group == PLANE:
         rates = rates._replace(lone=np.concatenate([rates.lone, S[:, :1]], axis=1))
-    return _assembled(velocities, rates, torques)
+    return assembled(velocities, rates, torques)
 
 
 def _space_equations(group: AbstractMatrixGroup, S: np.ndarray, tensor: np.ndarray) -> Quadratic:
@@ -207,13 +207,13 @@ def _space_equations(group: AbstractMatrixGroup, S: np.ndarray, tensor: np.ndarr
     targets = np.concatenate([m, m + J, m % N * N + m // N + J])
     lone = np.zeros((len(S), J + N * N))
     lone[:, N * N : J] = S[:, :1]
-    rates = _Rates(np.stack([np.tile(a, 3), sources, targets]), np.tile(values, 3), lone)
+    rates = Rates(np.stack([np.tile(a, 3), sources, targets]), np.tile(values, 3), lone)
     forms = np.einsum("apq,brp->abqr", hats, group.form_adjoint(hats)).reshape(len(S), len(S), N * N)
-    made = _assembled(np.eye(len(S)), rates, np.zeros((0, 0, 0)))
+    made = assembled(np.eye(len(S)), rates, np.zeros((0, 0, 0)))
     return made._replace(forms=forms, tensor=np.ascontiguousarray(tensor))
 
 
-def _assembled(velocities: np.ndarray, rates: _Rates, torques: np.ndarray) -> Quadratic:
+def assembled(velocities: np.ndarray, rates: Rates, torques: np.ndarray) -> Quadratic:
     """Return equations of what moves by `rates` and of momenta behind it, with rates torques[a, b] w_a w_b."""
     k, before, head, ((a, b, m), values, lone) = len(velocities), rates.lone.shape[1], len(torques), rates
     (c, i), (d, o, n) = np.nonzero(lone), np.nonzero(torques)
@@ -240,7 +240,7 @@ def _side_by_side(k: int, size: int, velocities: np.ndarray, places: np.ndarray)
     return np.lexsort(~multiplied[::-1])
 
 
-def _compact_rates(group: AbstractMatrixGroup, S: np.ndarray) -> _Rates:
+def _compact_rates(group: AbstractMatrixGroup, S: np.ndarray) -> Rates:
     """Return the rates of a compact pose, which is bilinear in velocity and (1, pose)."""
     units = np.eye(group.pose_size)
     lone, rates = np.zeros((len(S), len(units))), np.zeros((len(S), len(units), len(units)))
@@ -248,15 +248,15 @@ def _compact_rates(group: AbstractMatrixGroup, S: np.ndarray) -> _Rates:
         lone[a] = group.pose_rate(np.zeros(len(units)), row)
         rates[a] = group.pose_rate(units, np.broadcast_to(row, (len(units), group.dim))) - lone[a]
     places = np.nonzero(rates)
-    return _Rates(np.stack(places), rates[places], lone)
+    return Rates(np.stack(places), rates[places], lone)
 
 
-def _matrix_rates(hats: Float[np.ndarray, "k N N"], spatial: bool) -> _Rates:
+def _matrix_rates(hats: Float[np.ndarray, "k N N"], spatial: bool) -> Rates:
     """Return the rates of a matrix: of g' = g X, or in space of g' = X g."""
     (k, N, _), (a, i, j) = hats.shape, np.nonzero(hats)
     other, where = np.arange(N)[:, None], np.broadcast_to(a, (N, len(a)))
     places = (where, N * j + other, N * i + other) if spatial else (where, N * other + i, N * other + j)
-    return _Rates(np.stack(places).reshape(3, -1), np.tile(hats[a, i, j], N), np.zeros((k, N * N)))
+    return Rates(np.stack(places).reshape(3, -1), np.tile(hats[a, i, j], N), np.zeros((k, N * N)))
 
 
 def _blocks(size: int, edges: np.ndarray, lone: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -1,27 +1,31 @@
-"""The tangent map along an orbit of the discrete map, and the exponents at which neighbors part."""
+"""The tangent map along an orbit, and the exponents at which neighbors part."""
 
 import numpy as np
 
 from nonholo.analysis.conserved._step_jacobian import step_jacobians
 from nonholo.base.checks import error, shown
 from nonholo.base.types import Float
+from nonholo.continuous import ContinuousFlow, flow_tangents
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit, as_orbit
+from nonholo.systems import AbstractLLSystem
 
 _WHERE = "Orbit.tangent"
 
 
 def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
-    r"""Return $\partial r_{k+1}/\partial r_k$ for every step of an orbit, from closed derivatives; no JAX is needed.
+    r"""Return $\partial r_{k+1}/\partial r_k$ for every state of an orbit but the last; no JAX is needed.
+
+    Of the discrete map, from closed derivatives along the displacement variety,
 
     $$ \frac{\partial r_{k+1}}{\partial r_k} = F'(W_k^{-1})\,F'(W_k)^{-1}, \qquad
        F(W) = P(W)|_{\mathfrak d},\quad r_{k+1} = -F(W_k^{-1}), $$
 
-    with derivatives along the displacement variety. The orbit is one of a left-invariant system with difference
-    "matrix", constraint "skew" and order 2 that keeps every step; `nh.rollout` has the derivatives of all others.
+    for a left-invariant system, difference "matrix", constraint "skew", order 2, and every step saved; `nh.rollout` has
+    the derivatives of all others. Of a flow, from the Taylor series of its equation of variation, between its times.
 
     Args:
-        orbit: Made by `simulate`.
+        orbit: Made by `simulate`, or by `flow` for a system with a constraint fixed in the body.
 
     Raises:
         ValueError: Another kind of orbit.
@@ -34,7 +38,9 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
                [0.   , 1.   ]])
     """
     as_orbit(_WHERE, orbit, "one in coordinates has none.")
-    discrete = orbit.motion
+    discrete, system = orbit.motion, orbit.system
+    if isinstance(discrete, ContinuousFlow) and isinstance(system, AbstractLLSystem) and not system.is_forced:
+        return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
     if not isinstance(discrete, Discretization) or not discrete.conserves_energy or discrete.order > 2:
         remedy = "Differentiate `nh.rollout` by JAX, or run with the default difference and constraint."
         raise error(_WHERE, "be asked of a map with closed derivatives", shown(discrete), remedy)
@@ -53,7 +59,7 @@ def lyapunov_exponents(orbit: Orbit) -> Float[np.ndarray, "k"]:
     at each step. Their sum is the mean rate at which volumes of momenta grow.
 
     Args:
-        orbit: Made by `simulate`, with every step.
+        orbit: As `Orbit.tangent` takes it.
 
     Raises:
         ValueError: An orbit without a tangent map, or of a single state.
