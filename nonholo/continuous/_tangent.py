@@ -11,13 +11,13 @@ from nonholo.base.checks import error
 from nonholo.base.types import Float
 from nonholo.continuous._series import GUARD, Rates, assembled, body_numbers, power_of_two
 from nonholo.kernels import solve_series
-from nonholo.systems import AbstractLLSystem
+from nonholo.systems import AbstractSystem
 
 _TOLERANCE = 1e-12
 
 
 def flow_tangents(
-    where: str, system: AbstractLLSystem, momenta: Float[np.ndarray, "K k"], time: Float[np.ndarray, "K"]
+    where: str, system: AbstractSystem, momenta: Float[np.ndarray, "K k"], time: Float[np.ndarray, "K"]
 ) -> Float[np.ndarray, "L k k"]:
     """Return the derivative of each momentum by the one before, for canonical momenta of a flow."""
     k = system.rank

@@ -8,7 +8,6 @@ from nonholo.base.types import Float
 from nonholo.continuous import ContinuousFlow, flow_tangents
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit, as_orbit
-from nonholo.systems import AbstractLLSystem
 
 _WHERE = "Orbit.tangent"
 
@@ -39,7 +38,7 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
     """
     as_orbit(_WHERE, orbit, "one in coordinates has none.")
     discrete, system = orbit.motion, orbit.system
-    if isinstance(discrete, ContinuousFlow) and isinstance(system, AbstractLLSystem) and not system.is_forced:
+    if isinstance(discrete, ContinuousFlow) and not system.is_spatial and not system.is_forced:
         return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
     if not isinstance(discrete, Discretization) or not discrete.conserves_energy or discrete.order > 2:
         remedy = "Differentiate `nh.rollout` by JAX, or run with the default difference and constraint."
