@@ -17,6 +17,7 @@ from ._csv import new_file as new_file
 from ._csv import orbit_to_csv as orbit_to_csv
 from ._csv import store_to_csv as store_to_csv
 from ._csv import table_lines as table_lines
+from ._descriptions import described_system as described_system
 from ._descriptions import fields_of as fields_of
 from ._descriptions import unstored as unstored
 from ._load import format_of as format_of

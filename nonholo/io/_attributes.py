@@ -13,8 +13,8 @@ from typing import Any
 from nonholo.base.checks import error, instance, text
 from nonholo.continuous import ContinuousFlow
 from nonholo.discrete import MeasuredMotion, discretize
-from nonholo.io._descriptions import described, fields_of, restore_group, restore_system, unstored
-from nonholo.io._in_coordinates import READY, recorded_system
+from nonholo.io._descriptions import described_system, fields_of, restore_group, restore_system, unstored
+from nonholo.io._in_coordinates import recorded_system
 from nonholo.orbit import AbstractMotion, AbstractOrbit
 from nonholo.systems import AbstractCoordinateDiscretization
 
@@ -49,9 +49,9 @@ _CONVENTIONS = (
 
 
 _IN_COORDINATES = (
-    "Arrays are what the orbit tells, whose docstring says it (nonholo.lagrange_dalembert.CoordinateOrbit, GroupOrbit): "
+    "Arrays are what the orbit tells (docstrings of nonholo.lagrange_dalembert.CoordinateOrbit, GroupOrbit): "
     "displacement, momentum, energy and constraint_residual are those of the single step from each state, multipliers "
-    "the impulses of that step, NaN where it was not taken; body_velocity is displacement / time_step, or its "
+    "the impulses of that step, NaN where it was not taken; body_velocity is displacement / time_step, on a group its "
     "logarithm. Of a flow they are those at its times."
 )
 
@@ -88,9 +88,10 @@ def restore_motion(stored: dict[str, Any], motion: Any) -> Any:
         kinds: Any = (AbstractMotion, AbstractCoordinateDiscretization)
         remedy = "Pass that of the store, or None."
         return _same(stored, instance("load_orbit(discrete=...)", motion, kinds, "be a discretization", remedy))
-    options, parameters = json.loads(stored["motion"]), json.loads(stored["parameters"])
+    options = json.loads(stored["motion"])
     kind, route = options.pop("kind"), options.pop("route", None)
-    system = _system(stored["system"], parameters, kind, unstored(options))
+    remedy = f"Pass load_orbit(path, discrete=...) with the {kind} that made this store."
+    system = system_of(stored, where, remedy, unstored(options))
     if kind not in _MOTIONS:
         raise error(where, "hold a motion of this version", repr(kind), "Upgrade nonholo.")
     restored = on_route_of(stored, _MOTIONS[kind](system, **options))
@@ -99,16 +100,15 @@ def restore_motion(stored: dict[str, Any], motion: Any) -> Any:
     return restored
 
 
-def _system(name: str, parameters: dict[str, Any], kind: str, missing: str | None) -> Any:
+def system_of(stored: dict[str, Any], where: str, remedy: str, missing: str | None = None) -> Any:
     """Return the system of a store; in coordinates, what is known of one whose functions it does not hold."""
-    missing = missing or unstored(parameters)
-    if not missing:
+    name, parameters = stored["system"], json.loads(stored["parameters"])
+    group, absent = parameters.get("group"), missing or unstored(parameters)
+    if not absent:
         return restore_system(name, parameters)
-    group = parameters.get("group")
-    if "orbits" in parameters and not unstored({"group": group}):
-        return recorded_system(name, parameters, None if group is None else restore_group(group))
-    remedy = f"Pass load_orbit(path, discrete=...) with the {kind} that made this store."
-    raise error("load_orbit(path=...)", "be rebuilt from data", f"a store whose {missing}", remedy)
+    if missing or "orbits" not in parameters or unstored({"group": group}):
+        raise error(where, "be rebuilt from data", f"a store whose {absent}", remedy)
+    return recorded_system(name, parameters, None if group is None else restore_group(group))
 
 
 def _same(stored: dict[str, Any], motion: Any) -> Any:
@@ -143,7 +143,7 @@ def identity_of(motion: Any) -> dict[str, str]:
     options = {"kind": type(motion).__name__, **fields_of(motion)}
     if motion.route_name is not None:
         options["route"] = motion.route_name
-    system, parameters = described(motion.system)
+    system, parameters = described_system(motion.system)
     return {
         "system": system,
         "parameters": json.dumps(parameters),

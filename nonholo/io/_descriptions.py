@@ -7,8 +7,8 @@ import numpy as np
 
 from nonholo import systems
 from nonholo.base.checks import error
-from nonholo.io._in_coordinates import READY, restore_ready
 from nonholo.groups import SE, SO, AbstractMatrixGroup, MatrixGroup, ProductGroup, Translations
+from nonholo.io._in_coordinates import READY, restore_ready
 from nonholo.systems import AbstractSystem, Friction, Gravity
 
 _CALLABLE = "callable"  # schema 1 wrote the same word
@@ -18,7 +18,7 @@ _FORCES = {"Gravity": Gravity, "Friction": Friction}
 _FAMILIES = {"SO": SO, "SE": SE, "Translations": Translations}
 
 
-def described(system: Any) -> tuple[str, dict[str, Any]]:
+def described_system(system: Any) -> tuple[str, dict[str, Any]]:
     """Return the name of a system, that of its class or of what makes it, and its parameters as plain data."""
     return getattr(system, "described", None) or (type(system).__name__, fields_of(system))
 

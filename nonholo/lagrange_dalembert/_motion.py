@@ -77,14 +77,15 @@ class RecordedSystem(AbstractCoordinateSystem):
         if name.startswith("__") or name == "known":  # asked by copies before there are fields
             raise AttributeError(name)
         if name not in self.known:
-            remedy = "Pass the discretization that made the store: load_orbit(path, discrete=...), resume(..., discrete=...)."
-            raise error("load_orbit(discrete=...)", "have the functions of its system", "a store, which has none", remedy)
+            remedy = "Pass the one that made the store to load_orbit, resume or extend: discrete=..."
+            raise error("load_orbit(discrete=...)", "be the discretization", "None: stores hold no functions", remedy)
         return self.known[name]
 
     def discretize(self, time_step: Any) -> Any:
         """Return the map of the store, which cannot run."""
-        kind = room("on_groups").GroupDiscretization if "group" in self.known else room("_discretization").CoordinateDiscretization
-        return kind(self, time_step)
+        if "group" in self.known:
+            return room("on_groups").GroupDiscretization(self, time_step)
+        return room("_discretization").CoordinateDiscretization(self, time_step)
 
     def flow(self, **given: Any) -> Any:
         """Refuse: there are no functions."""

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 from nonholo import io
 from nonholo.base.checks import count, error, flags, path, shown
 from nonholo.base.results import Outcome
-from nonholo.simulation.events import Watch
 from nonholo.simulation._simulate import refuse_what_bodies_have
+from nonholo.simulation.events import Watch
 from nonholo.simulation.runs import check_forces, closed_step, compiled_run
 from nonholo.simulation.stores import continue_run, refuse_other_functions, watch_of_store
 
@@ -15,9 +15,7 @@ if TYPE_CHECKING:
     from nonholo.io import Stream
 
 
-def resume_run(
-    store: str | Path, *, discrete: Any, events: Any, throw: bool, progress: bool
-) -> Any:
+def resume_run(store: str | Path, *, discrete: Any, events: Any, throw: bool, progress: bool) -> Any:
     """Resume the run of a store: what `resume` does once it has asked the store, and found no sweep."""
     stream, run, watch = _opened("resume", store, discrete, events)
     with io.locked(stream.path):
@@ -86,9 +84,7 @@ def _refuse_ended(stored: dict[str, Any]) -> None:
         raise error("extend(store=...)", "be a run that can continue", f"outcome {outcome}", remedy)
 
 
-def _opened(
-    owner: str, store: str | Path, discrete: Any, events: Any
-) -> tuple["Stream", Any, Watch | None]:
+def _opened(owner: str, store: str | Path, discrete: Any, events: Any) -> tuple["Stream", Any, Watch | None]:
     stream = io.open_stream(store)
     motion, every = io.restore_motion(io.read_attributes(store), discrete), stream.plan.every
     if not motion.runs_itself:
