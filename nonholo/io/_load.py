@@ -29,7 +29,7 @@ def load_orbit(path: str | Path, *, discrete: Any = None) -> Any:
     """Load an orbit saved by `save_orbit`, bit for bit.
 
     Nothing in a store is ever run. In coordinates it names a system of `nonholo.examples` with its parameters, which is
-    made again; of a Lagrangian of your own it holds everything that the orbit tells, for pictures and tables, and what
+    made again; of a custom Lagrangian it holds everything that the orbit tells, for pictures and tables, and what
     asks for the functions (`restricted_momentum`, another run) says to pass `discrete`.
 
     Args:

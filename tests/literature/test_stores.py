@@ -60,21 +60,24 @@ def test_a_run_that_is_stopped_resumed_and_extended_is_the_run(name: str, tmp_pa
     with stopped_at(3, match=r"Stopped at step 36 of 50\. Resume with nonholo\.resume"):
         nh.simulate(discrete(name), **run, steps=50, store=path, checkpoint_every=12, scenario="mine")
     found = standing(path)
-    assert found is not None and (found.done, found.steps) == (36, 50)
+    assert found is not None
+    assert (found.done, found.steps) == (36, 50)
     assert same(nh.resume(path), nh.simulate(discrete(name), **run, steps=50))
     whole = nh.simulate(discrete(name), **run, steps=74)
     assert same(nh.extend(path, 24), whole)
     opened = nh.load_orbit(path)
     assert same(opened, whole)
-    assert opened.system == whole.system and np.array_equal(opened.restricted_momentum, whole.restricted_momentum)
+    assert opened.system == whole.system
+    assert np.array_equal(opened.restricted_momentum, whole.restricted_momentum)
     stored = json.loads((path / "zarr.json").read_text())["attributes"]
-    assert stored["system"] == f"examples.{name}" and stored["scenario"] == "mine"
+    assert stored["system"] == f"examples.{name}"
+    assert stored["scenario"] == "mine"
 
 
 @pytest.mark.profile("routes", instead="test_blocks_of_any_size_hold_the_run")
 @pytest.mark.parametrize("name", NAMES)
 def test_saved_orbits_and_tables_are_read_back_exactly(name: str, tmp_path: Path) -> None:
-    """A saved run and a saved flow load with their bits; the CSV of a store is that of its orbit, and may be thinned."""
+    """Saved runs and flows load with their bits; the CSV of a store is that of its orbit, and may be thinned."""
     orbit = nh.simulate(discrete(name), **start(name), steps=40)
     flow = nh.flow(ready(name).system, **start(name), times=np.linspace(0.0, 1.0, 5))
     for each, path in ((orbit, tmp_path / "orbit.zarr"), (flow, tmp_path / "flow.zarr")):
@@ -110,17 +113,14 @@ def test_blocks_of_any_size_hold_the_run(rows: int, tmp_path: Path) -> None:
     assert (tmp_path / "run.csv").read_text() == (tmp_path / "orbit.csv").read_text()
 
 
-def test_the_store_of_a_lagrangian_of_ones_own_opens_as_data(tmp_path: Path) -> None:
+def test_the_store_of_a_custom_lagrangian_opens_as_data(tmp_path: Path) -> None:
     """Everything the orbit tells is there; what needs the functions asks for the discretization, which is compared."""
     path, whole = tmp_path / "run.zarr", nh.simulate(own(), **start(), steps=40)
     nh.simulate(own(), **start(), steps=30, store=path, checkpoint_every=8)
-    for asked in (
-        lambda: nh.resume(path),
-        lambda: nh.extend(path, 10),
-        lambda: nh.load_orbit(path).restricted_momentum,
-    ):
+    questions = (nh.resume, lambda store: nh.extend(store, 10), lambda store: nh.load_orbit(store).restricted_momentum)
+    for asked in questions:
         with pytest.raises(ValueError, match=r"`load_orbit\(discrete=\.\.\.\)` must be .* Pass the one that made"):
-            asked()
+            asked(path)
     for other in (discrete(), nh.discretize(own().system, 0.2), nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)):
         with pytest.raises(ValueError, match="must be the discretization of the store"):
             nh.extend(path, 10, discrete=other)
@@ -134,14 +134,14 @@ def test_the_store_of_a_lagrangian_of_ones_own_opens_as_data(tmp_path: Path) -> 
     assert same(nh.load_orbit(tmp_path / "again.zarr", discrete=own()), whole)
 
 
-@pytest.mark.profile("routes", instead="test_the_store_of_a_lagrangian_of_ones_own_opens_as_data")
+@pytest.mark.profile("routes", instead="test_the_store_of_a_custom_lagrangian_opens_as_data")
 @pytest.mark.parametrize(("every", "block"), [(1, 1), (1, 8), (5, 5), (5, 40)])
 def test_other_functions_are_refused(every: int, block: int, tmp_path: Path) -> None:
     """The last saved step must come out with its bits: a mass that is larger by 1e-13, or another form, does not."""
 
     def mine(mass: float = 1.0, slope: float = 1.0) -> Any:
         system = LagrangeDAlembert(
-            lambda q, v: mass * (v @ v) / 2, lambda q: jnp.array([[-slope * q[1], 0.0, 1.0]]), dimension=3
+            lambda _, v: mass * (v @ v) / 2, lambda q: jnp.array([[-slope * q[1], 0.0, 1.0]]), dimension=3
         )
         return nh.discretize(system, 0.1)
 
@@ -194,7 +194,8 @@ def test_orbits_of_ready_bodies_under_forces_load_by_themselves(name: str, tmp_p
     orbit = nh.simulate(discrete(name), **start(name), steps=5)
     nh.save_orbit(orbit, tmp_path / "orbit.zarr")
     loaded = nh.load_orbit(tmp_path / "orbit.zarr")
-    assert np.array_equal(loaded.configuration, orbit.configuration) and np.array_equal(loaded.energy, orbit.energy)
+    assert np.array_equal(loaded.configuration, orbit.configuration)
+    assert np.array_equal(loaded.energy, orbit.energy)
 
 
 def test_damage_is_refused_and_computed_again(tmp_path: Path) -> None:
@@ -239,16 +240,19 @@ def test_a_run_that_ends_early_is_kept(block: int, tmp_path: Path) -> None:
     run = {"configuration": [0.0], "body_velocity": [0.1], "steps": 20, "throw": False}
     path, folding = tmp_path / "run.zarr", nh.discretize(folded, 1.0)
     whole = nh.simulate(folding, **run)
-    assert same(nh.simulate(folding, **run, store=path, checkpoint_every=block), whole) and len(whole) == 6
-    assert same(nh.load_orbit(path), whole) and whole.multipliers.shape == (5, 0)
+    assert same(nh.simulate(folding, **run, store=path, checkpoint_every=block), whole)
+    assert len(whole) == 6
+    assert same(nh.load_orbit(path), whole)
+    assert whole.multipliers.shape == (5, 0)
     with pytest.raises(ValueError, match="must be a run that can continue"):
         nh.extend(path, 3, discrete=folding)
     beyond = run | {"body_velocity": [1.5], "store": tmp_path / "none.zarr"}
-    assert len(nh.simulate(folding, **beyond)) == 0 and not (tmp_path / "none.zarr").exists()
+    assert len(nh.simulate(folding, **beyond)) == 0
+    assert not (tmp_path / "none.zarr").exists()
 
 
 def test_commands_show_extend_and_write_stores(tmp_path: Path) -> None:
-    """`info`, `plot`, `export`, `resume`, `extend`; of functions of one's own the last two say what to do."""
+    """`info`, `plot`, `export`, `resume`, `extend`; of custom functions the last two say what to do."""
     for name, motion in (("ready", discrete()), ("own", own())):
         nh.simulate(motion, **start(), steps=9, store=tmp_path / f"{name}.zarr", checkpoint_every=4)
 
@@ -258,7 +262,8 @@ def test_commands_show_extend_and_write_stores(tmp_path: Path) -> None:
     assert json.loads(answer("info", "ready.zarr", "--json"))["body"]["mass"] == 1.0
     assert "x, y, z" in answer("info", "own.zarr")
     assert answer("export", "own.zarr", "--every", "9").splitlines()[:2] == ["t,x,y,z", "0.0,0.0,0.0,0.0"]
-    assert (tmp_path / "own.png").name in answer("plot", "own.zarr", "--dpi", "20") and (tmp_path / "own.png").exists()
+    assert (tmp_path / "own.png").name in answer("plot", "own.zarr", "--dpi", "20")
+    assert (tmp_path / "own.png").exists()
     assert "successful" in answer("resume", "ready.zarr")
     assert json.loads(answer("extend", "ready.zarr", "--steps", "3", "--json"))["states"] == 13
     assert "stores hold no functions" in answer("extend", "own.zarr", "--steps", "3")
