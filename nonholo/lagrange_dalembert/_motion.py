@@ -53,6 +53,11 @@ class CoordinateFlow(CoordinateMotion):
 
     Attributes:
         system: What moves.
+
+    Example:
+        >>> from nonholo.lagrange_dalembert import CoordinateFlow
+        >>> CoordinateFlow(nh.examples.particle().system).columns[:2]
+        ('time', 'configuration')
     """
 
     system: Any
@@ -67,6 +72,15 @@ class RecordedSystem(AbstractCoordinateSystem):
     Attributes:
         known: Fields that could be restored, with what else was recorded.
         described: The class of the system and all of its fields, as in the store.
+
+    Example:
+        >>> from nonholo.lagrange_dalembert import RecordedSystem
+        >>> system = RecordedSystem({"name": "Mine"}, ("LagrangeDAlembert", {"name": "Mine", "lagrangian": "callable"}))
+        >>> system.name
+        'Mine'
+        >>> system.lagrangian
+        Traceback (most recent call last):
+        ValueError: `load_orbit(discrete=...)` must be the discretization. Got None: stores hold no functions. ...
     """
 
     known: Mapping[str, Any]
