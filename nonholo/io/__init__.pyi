@@ -20,6 +20,7 @@ from ._csv import table_lines as table_lines
 from ._descriptions import described_system as described_system
 from ._descriptions import fields_of as fields_of
 from ._descriptions import unstored as unstored
+from ._in_coordinates import recorded_system as recorded_system
 from ._load import format_of as format_of
 from ._load import load_last_block as load_last_block
 from ._load import load_orbit as load_orbit

@@ -25,8 +25,9 @@ def described_system(system: Any) -> tuple[str, dict[str, Any]]:
 
 def fields_of(owner: Any) -> dict[str, Any]:
     """Return the fields of a dataclass as plain data, floating-point numbers such that they are read back exactly."""
-    stored = [field.name for field in dataclasses.fields(owner) if field.metadata.get("stored", True)]
-    plain = {name: _plain(getattr(owner, name)) for name in (*stored, *getattr(owner, "recorded", ()))}
+    stored = (field.name for field in dataclasses.fields(owner) if field.metadata.get("stored", True))
+    plain = {name: _plain(getattr(owner, name)) for name in stored}
+    plain |= {name: getattr(owner, name) for name in getattr(owner, "recorded", ())}
     if getattr(owner, "is_forced", False):
         plain["system"] = {"kind": type(owner.system).__name__, "parameters": fields_of(owner.system)}
     return plain

@@ -15,8 +15,13 @@ from typer.testing import CliRunner
 
 import nonholo as nh
 from nonholo.cli._app import app
-from nonholo.io import edit_attributes, standing, store_to_csv
-from nonholo.lagrange_dalembert import AbstractCoordinateOrbit, LagrangeDAlembert
+from nonholo.io import described_system, edit_attributes, recorded_system, standing, store_to_csv
+from nonholo.lagrange_dalembert import (
+    AbstractCoordinateOrbit,
+    GroupLagrangeDAlembert,
+    LagrangeDAlembert,
+    mass_tensor_lagrangian,
+)
 from nonholo.literature import Example
 
 FORCED = {"heavy_suslov_top", "sleigh_in_a_well"}  # functions in Python, which no store runs
@@ -132,6 +137,40 @@ def test_the_store_of_a_custom_lagrangian_opens_as_data(tmp_path: Path) -> None:
     assert np.array_equal(opened.to_pandas(), whole.to_pandas(), equal_nan=True)
     nh.save_orbit(opened, tmp_path / "again.zarr")
     assert same(nh.load_orbit(tmp_path / "again.zarr", discrete=own()), whole)
+
+
+@functools.cache
+def turning() -> GroupLagrangeDAlembert:
+    """Return a custom system on SE(2): a sleigh whose blade turns in the body as it moves along x."""
+    action = mass_tensor_lagrangian(nh.SE(2), nh.ChaplyginSleigh(1.0, 0.5, a=0.3).homogeneous_mass_tensor)
+    return GroupLagrangeDAlembert(nh.SE(2), action, lambda g: jnp.array([[0.0, -jnp.sin(g[0, 2]), jnp.cos(g[0, 2])]]))
+
+
+def test_custom_systems_are_described_by_data() -> None:
+    """What a store says of them, as JSON, and what is known of them again."""
+    for system, group in ((own().system, None), (turning(), nh.SE(2))):
+        kind, parameters = described_system(system)
+        again = recorded_system(kind, json.loads(json.dumps(parameters)), group)
+        assert again.discretize(0.1).columns == system.discretize(0.1).columns
+        for name in ("name", "coordinates", "shapes", "constraints", "is_driven", "orbits"):
+            assert getattr(again, name) == getattr(system, name)
+
+
+@pytest.mark.profile("routes", instead="test_custom_systems_are_described_by_data")
+def test_a_custom_system_on_a_group_opens_as_data(tmp_path: Path) -> None:
+    """Its headings count full turns across blocks, as those of the orbit do."""
+    run, path = {"body_velocity": (2.5, 1.0, 0.0), "steps": 40}, tmp_path / "run.zarr"
+    whole, moved = nh.simulate(turning().discretize(0.3), **run), turning().discretize(0.3)
+    with stopped_at(4):
+        nh.simulate(moved, **run, store=path, checkpoint_every=3)
+    assert same(nh.resume(path, discrete=moved), whole)
+    opened = nh.load_orbit(path)
+    assert same(opened, whole)
+    assert opened.space == nh.SE(2)
+    whole.to_csv(tmp_path / "orbit.csv")
+    store_to_csv(path, tmp_path / "run.csv")
+    assert (tmp_path / "run.csv").read_text() == (tmp_path / "orbit.csv").read_text()
+    assert np.genfromtxt(tmp_path / "run.csv", delimiter=",", names=True)["theta"][-1] > 2 * np.pi
 
 
 @pytest.mark.profile("routes", instead="test_the_store_of_a_custom_lagrangian_opens_as_data")
