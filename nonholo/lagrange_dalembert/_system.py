@@ -95,6 +95,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     force: Any = dataclasses.field(default=None, kw_only=True)
     coordinates: tuple[str, ...] = dataclasses.field(default=(), kw_only=True)
     name: str = dataclasses.field(default="System in coordinates", kw_only=True)
+    orbits: ClassVar[str] = "CoordinateOrbit"
+    recorded: ClassVar[tuple[str, ...]] = ("constraints", "is_driven", "orbits", "shapes")
     _equations: ClassVar[str] = "_equations"
 
     def __post_init__(self) -> None:
@@ -146,6 +148,11 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         """The number s of constraints, those of prescribed coordinates with them."""
         arguments = ((self.dimension,), *(() for _ in self._time("constraint_forms", 1)))
         return count_of(self.constraint_forms, *arguments) + len(self.prescribed)
+
+    @property
+    def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Shapes of a configuration and of a velocity."""
+        return (self.dimension,), (self.dimension,)
 
     def forced(self, potential: Any, force: Any) -> "LagrangeDAlembert":
         """Return the system with a potential U(q) and a force; itself with neither. `nonholo.Forced` calls it."""

@@ -8,7 +8,7 @@ discretization or a flow must know to decode them.
 import abc
 import dataclasses
 import importlib
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -38,6 +38,10 @@ class AbstractMotion(abc.ABC):
     """The first and the last time between which `at` knows all states; None if saved states are all there is."""
     is_measured: bool = False
     """Whether poses were given, and everything else follows from them."""
+    columns: ClassVar[tuple[str, ...]] = STATES
+    """The arrays of its orbits, as stores keep them."""
+    runs_itself: ClassVar[bool] = False
+    """Whether it has a run of its own, or one by a route."""
 
     @property
     @abc.abstractmethod
@@ -48,6 +52,10 @@ class AbstractMotion(abc.ABC):
     @abc.abstractmethod
     def route_name(self) -> str | None:
         """How stores call the way in which steps are computed; None for a flow."""
+
+    def orbit(self, **rows: Any) -> "Orbit":
+        """Return the orbit of rows of its columns, and what else an orbit has."""
+        return Orbit(self, **rows)
 
     def at(self, states: "Orbit", times: Any) -> "Orbit":
         """Return the states at any times in between, where they are known."""
@@ -117,6 +125,7 @@ class Orbit(AbstractOrbit):
     turned: Float[np.ndarray, "K"] | None = None
     branch: str = "principal"
     events: Any = None
+    is_compact: ClassVar[bool] = True
 
     @staticmethod
     def from_poses(system: System, time: Any, configuration: Any) -> "Orbit":

@@ -2,7 +2,7 @@
 
 import abc
 from collections.abc import Iterator
-from typing import Any, Generic, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 from nonholo.base.checks import error, refuse_given
 
@@ -12,6 +12,20 @@ DiscretizationT = TypeVar("DiscretizationT")
 
 class AbstractCoordinateDiscretization(abc.ABC, Generic[OrbitT]):
     """A discretized system in coordinates: `nonholo.simulate` hands its arguments on to it."""
+
+    system: Any
+    time_step: float
+    route_name: ClassVar[None] = None
+    forces: ClassVar[None] = None
+    runs_itself: ClassVar[bool] = True
+
+    @abc.abstractmethod
+    def start(self, configuration: Any, **starts: Any) -> Any:
+        """Return the checked state at the start of a run, the orientation to keep and the outcome so far."""
+
+    @abc.abstractmethod
+    def run(self, every: int) -> Any:
+        """Return what computes blocks of a run that keeps one in `every` states."""
 
     @abc.abstractmethod
     def simulate(
@@ -46,7 +60,13 @@ class AbstractCoordinateDiscretization(abc.ABC, Generic[OrbitT]):
 
 
 class AbstractCoordinateSystem(abc.ABC, Generic[DiscretizationT, OrbitT]):
-    """A system in coordinates: `nonholo.discretize`, `flow` and `Forced` hand their arguments on to it."""
+    """A system in coordinates: `nonholo.discretize`, `flow` and `Forced` hand their arguments on to it.
+
+    Attributes:
+        described: What stores say of it in place of its fields: a name and parameters.
+    """
+
+    described: tuple[str, dict[str, Any]] | None = None
 
     def forced(self, potential: Any, force: Any) -> Any:
         """Return the system with a potential and a force; refused where there is no way to have them."""

@@ -74,6 +74,8 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     is_driven: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()
     name: ClassVar[str] = "System with constraints that depend on the pose"
+    orbits: ClassVar[str] = "GroupOrbit"
+    recorded: ClassVar[tuple[str, ...]] = ("constraints", "coordinates", "is_driven", "name", "orbits", "shapes")
     _equations: ClassVar[str] = "on_groups._equations"
 
     def __post_init__(self) -> None:
@@ -100,6 +102,11 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     def constraints(self) -> int:
         """The number s of constraints."""
         return count_of(self.constraint_forms, (self.group.size, self.group.size))
+
+    @property
+    def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Shapes of a configuration and of a velocity."""
+        return self.group.identity.shape, (self.group.dim,)
 
     def discretize(self, time_step: Any) -> "GroupDiscretization":
         """Return the discrete map with this time step.
