@@ -17,7 +17,7 @@ def sleigh_in_a_well(
     speed: float = 0.7,
     turning: float = 0.4,
 ) -> Example:
-    r"""A sleigh whose contact is drawn to the origin, $U = \tfrac k2(x^2 + y^2)$.
+    r"""A sleigh whose contact is drawn to the origin by a spring.
 
     $$ m\dot u = ma\,\omega^2 - k\,(x\cos\theta + y\sin\theta), \qquad (J + ma^2)\,\dot\omega = -ma\,u\,\omega, \qquad
        \dot x = u\cos\theta, \quad \dot y = u\sin\theta, \quad \dot\theta = \omega. $$
