@@ -115,7 +115,7 @@ Derivatives, measured motion, control:
     fit: Fit the numbers of a body to recorded motion, and the start of each trial with them.
     steer: Find forces along the constraint that take a body from a start to a goal with little effort.
 
-Checks of your own systems:
+Checks of custom systems:
     testing: The properties that groups, systems and discretizations must have, checked for ours and for users' own.
     consistency_defect: Return how far a displacement variety is from consistency with a discretization map; zero if ...
 
