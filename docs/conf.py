@@ -35,7 +35,7 @@ html_copy_source = False
 html_extra_path = ["../LICENSE"]  # Apache-2.0: ours, and that of MathJax, of which the site has a copy
 html_static_path = ["static"]
 html_css_files = ["wide.css"]
-html_sidebars = {page: [] for page in ("index", "paper", "errata", "api/index")}
+html_sidebars = {page: [] for page in ("index", "paper", "errata", "api/index", "gallery/README")}
 html_theme_options = {"header_links_before_dropdown": 8}
 
 myst_enable_extensions = ["amsmath", "colon_fence", "dollarmath"]

@@ -57,7 +57,7 @@ STUDIES = {  # each script and the page that tells about it
     "sleigh_turning": "../how-to/run-a-sweep.md",
     "lagrange_dalembert_examples": "../theory/lagrange-dalembert.md",
 }
-_COLUMNS = 3
+_COLUMNS = 2
 
 
 @functools.cache

@@ -10,19 +10,19 @@ from typing import Annotated
 import typer
 
 from nonholo import __version__
-from nonholo.cli.commands.cite import cite
-from nonholo.cli.commands.examples import examples
+from nonholo.cli.commands.about.cite import cite
+from nonholo.cli.commands.about.examples import examples
+from nonholo.cli.commands.about.new import new
+from nonholo.cli.commands.about.systems import systems
 from nonholo.cli.commands.explore import explore
 from nonholo.cli.commands.export import export
 from nonholo.cli.commands.extend import extend
 from nonholo.cli.commands.info import info
-from nonholo.cli.commands.new import new
 from nonholo.cli.commands.paper import paper
 from nonholo.cli.commands.plot import plot
 from nonholo.cli.commands.resume import resume
 from nonholo.cli.commands.simulate import simulate
 from nonholo.cli.commands.sweep import sweep
-from nonholo.cli.commands.systems import systems
 
 
 def with_cache_folder(command: Callable[..., None]) -> Callable[..., None]:

@@ -30,7 +30,7 @@ def cite(
 
 def _citation() -> Path:
     """Return the file: in an installed package beside the room, in a checkout at its root."""
-    room = Path(__file__).parents[1]
+    room = Path(__file__).parents[2]
     return next(path for path in (room / "CITATION.cff", room.parents[1] / "CITATION.cff") if path.exists())
 
 
