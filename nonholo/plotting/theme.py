@@ -243,11 +243,6 @@ class _Picture(Figure):
             for word, halo in words:
                 word.set_path_effects(halo)
 
-    def _repr_png_(self) -> bytes:  # notebooks show it, whether or not pyplot is loaded
-        page = io.BytesIO()
-        self.savefig(page, format="png")
-        return page.getvalue()
-
 
 def new_figure(size: tuple[float, float], layout: Any = "constrained") -> Figure:
     """Return a figure that no window manager knows, of the size that is asked for; fonts grow with it."""

@@ -305,11 +305,6 @@ def test_text_stays_text_in_svg(sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
     assert all(text.get_path_effects() for text in axes.texts)
 
 
-def test_notebooks_show_it(sleigh_orbit: nh.Orbit) -> None:
-    """A picture is a PNG of its own accord, which needs no pyplot."""
-    assert nh.plot.blade_track(sleigh_orbit).axes.figure._repr_png_()[:8] == b"\x89PNG\r\n\x1a\n"
-
-
 def test_axes_have_names() -> None:
     """Sections have the names of their functions; panels of components say what they are."""
     axes = PICTURES["section"]().axes
