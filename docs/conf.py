@@ -18,6 +18,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx-mathjax-offline",
     "docstrings",
+    "live",
     "offline",
 ]
 exclude_patterns = ["templates"]
@@ -34,12 +35,16 @@ html_copy_source = False
 html_extra_path = ["../LICENSE"]  # Apache-2.0: ours, and that of MathJax, of which the site has a copy
 html_static_path = ["static"]
 html_css_files = ["wide.css"]
-html_sidebars = {page: [] for page in ("index", "paper", "errata")}
+html_sidebars = {page: [] for page in ("index", "paper", "errata", "api/index", "gallery/README")}
 html_theme_options = {"header_links_before_dropdown": 8}
 
-myst_enable_extensions = ["amsmath", "dollarmath"]
+myst_enable_extensions = ["amsmath", "colon_fence", "dollarmath"]
 myst_heading_anchors = 4
-nb_execution_mode = "off"
+nb_execution_mode = "auto"  # notebooks and tutorials; blocks of other pages are run by the tests
+nb_execution_excludepatterns = ["*the-live-page*"]  # a widget, for which a page would load scripts from elsewhere
+nb_execution_in_temp = True
+nb_execution_raise_on_error = True
+nb_execution_timeout = 120
 
 default_role = "py:obj"
 autodoc_default_options = {"members": True, "member-order": "bysource"}

@@ -1,13 +1,20 @@
-"""Write docs/api/*.md, the public names by what they are for: `python docs/make_api_pages.py`."""
+"""Write docs/api/*.md, the public names by what they are for, and the list in `help(nonholo)`: run this file.
+
+Which name belongs to which task says the docstring of `nonholo/__init__.py`, one line a name.
+"""
 
 import inspect
+import re
+import textwrap
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import nonholo as nh
 
-PAGES = Path(__file__).parent / "api"
+ROOT = Path(__file__).parents[1]
+PAGES = ROOT / "docs" / "api"
+INIT = ROOT / "nonholo" / "__init__.py"
 OPEN = ("examples", "plot", "testing")  # rooms that users name
 PAGE_ROOMS = {  # each page and its rooms, whose classes are described too: what is returned, and what to build on
     "systems": ("Systems", ["systems"]),
@@ -25,6 +32,8 @@ PAGE_ROOMS = {  # each page and its rooms, whose classes are described too: what
 }
 INSIDE = ("io",)  # its classes serve other rooms
 INNER = {"Frame", "FunctionRoute", "Landscape", "Members", "Place", "ScalarRoute", "Start"}  # as do these
+_LINE = re.compile(r"^    (\w+)(?:: .*)?$", re.MULTILINE)
+_WIDTH = 120
 
 
 def public() -> dict[str, Any]:
@@ -33,11 +42,61 @@ def public() -> dict[str, Any]:
     return names | {f"{room}.{name}": getattr(getattr(nh, room), name) for room in OPEN for name in _named_by(room)}
 
 
+def tasks() -> dict[str, list[str]]:
+    """Return the public names by task, as the docstring of the package has them; the open rooms among them."""
+    groups = re.findall(r"^(\S[^\n]*):\n((?:    [^\n]*\n?)+)", inspect.cleandoc(nh.__doc__ or ""), re.MULTILINE)
+    return {title: _LINE.findall(lines) for title, lines in groups}
+
+
 def pages() -> dict[str, str]:
     """Return the text of each page, by the name of its file."""
-    toctree = "\n".join(["```{toctree}", *PAGE_ROOMS, "```"])
     texts = {f"{name}.md": _page(*about) for name, about in PAGE_ROOMS.items()}
-    return {"index.md": _TEXT.format(title="API", body=toctree)} | texts
+    return {"index.md": _index()} | texts
+
+
+def package_text() -> str:
+    """Return the text of `nonholo/__init__.py` with what every name of its docstring is for."""
+    text = INIT.read_text("utf-8")
+    end = text.index('"""\n', 4)
+    return _LINE.sub(_with_summary, text[:end]) + text[end:]
+
+
+def _with_summary(line: re.Match[str]) -> str:
+    return "    " + textwrap.shorten(f"{line[1]}: {_summary(line[1])}", _WIDTH - 4, placeholder=" ...")
+
+
+def _summary(name: str) -> str:
+    """Return the first line of the docstring of a public name."""
+    *room, own = name.split(".")
+    value = getattr(getattr(nh, room[0]) if room else nh, own)
+    described = inspect.isclass(value) or inspect.isroutine(value) or inspect.ismodule(value)
+    text = value.__doc__ if described else _beside(own)
+    return inspect.cleandoc(text or "").split("\n")[0]
+
+
+def _beside(name: str) -> str:
+    """Return the string that stands below the assignment of a name somewhere in the library."""
+    described = re.compile(rf'^{name} = .*\nr?"""(.*?)"""', re.MULTILINE)
+    return next(found[1] for path in INIT.parent.rglob("*.py") if (found := described.search(path.read_text("utf-8"))))
+
+
+def _index() -> str:
+    """Return the page of all names by task."""
+    groups = tasks() | {f"In `nonholo.{room}`": [f"{room}.{name}" for name in _named_by(room)] for room in OPEN}
+    tables = "\n\n".join(f"## {title}\n\n{_rows(names)}" for title, names in groups.items())
+    return _INDEX.format(tables=tables, pages="\n".join(PAGE_ROOMS))
+
+
+def _rows(names: list[str]) -> str:
+    lines = ["| name | what it is for |", "|---|---|"]
+    return "\n".join([*lines, *(f"| {_link(name)} | {_summary(name).replace('|', chr(92) + '|')} |" for name in names)])
+
+
+def _link(name: str) -> str:
+    if name in OPEN:
+        return f"[{name}]({name}.md)"
+    role = {"autoclass": "class", "autoexception": "exc", "autofunction": "func", "autodata": "data"}
+    return f"{{py:{role['auto' + _directive(public()[name], name).partition('::')[0]]}}}`{name} <nonholo.{name}>`"
 
 
 def _page(title: str, rooms: list[str]) -> str:
@@ -89,8 +148,35 @@ _TEXT = """\
 {body}
 """
 
+_INDEX = """\
+<!-- written by docs/make_api_pages.py -->
+# Every name, by task
+
+`import nonholo as nh`; `help(nh)` shows the same list. A name leads to its formula, its arguments and an example. The
+letters of the paper have [their own table](../reference/symbols.md); so have
+[commands](../reference/command-line.md) and [keys of scenarios](../reference/scenarios.md).
+
+{tables}
+
+```{{toctree}}
+:hidden:
+
+../reference/symbols
+../reference/command-line
+../reference/scenarios
+```
+
+```{{toctree}}
+:caption: Descriptions
+:hidden:
+
+{pages}
+```
+"""
+
 
 if __name__ == "__main__":
     PAGES.mkdir(exist_ok=True)
     for name, text in pages().items():
         (PAGES / name).write_text(text, "utf-8")
+    INIT.write_text(package_text(), "utf-8")

@@ -70,7 +70,7 @@ PROFILES = {
         "tests/simulation/test_ensemble.py tests/simulation/test_flow_ensemble.py",
     ),
     "browser": Profile(
-        "the live page in Chromium, and its bundle, made anew by npm and compared",
+        "the live page in Chromium, and its bundle, made anew by npm; the site: its links, and what it asks for",
         ("explorer", "kernels"),
     ),
     "site": Profile(

@@ -69,12 +69,13 @@ COMMANDS = [
     "sweep SWEEP --members 20",
     "new sleigh",
     "systems",
+    "cite",
 ]
 
 
 @pytest.mark.profile("faults", instead="test_commands_that_need_an_extra")
 def test_commands_work(tmp_path: Path) -> None:
-    """Every command but `paper` does its work without extras."""
+    """Every command but `paper` and `examples` does its work without extras."""
     sweep = str(PROGRAM.parents[1] / "scenarios" / "sleigh_turning_sweep.toml")
     sleigh, store = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), tmp_path / "sleigh.zarr"
     nh.simulate(sleigh, body_velocity=(0.1, -1.0, 0.0), steps=50, store=store, checkpoint_every=20)
@@ -85,8 +86,12 @@ def test_commands_work(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("command", "extra"),
-    [(["paper"], "paper"), (["simulate", "sleigh", "--set", 'run.difference="logarithmic"'], "jax")],
-    ids=["paper", "logarithmic difference"],
+    [
+        (["paper"], "paper"),
+        (["examples"], "jax"),
+        (["simulate", "sleigh", "--set", 'run.difference="logarithmic"'], "jax"),
+    ],
+    ids=["paper", "examples", "logarithmic difference"],
 )
 def test_commands_that_need_an_extra(command: list[str], extra: str, tmp_path: Path) -> None:
     """A command that needs an extra says so in a sentence and does nothing."""

@@ -10,17 +10,19 @@ from typing import Annotated
 import typer
 
 from nonholo import __version__
+from nonholo.cli.commands.about.cite import cite
+from nonholo.cli.commands.about.examples import examples
+from nonholo.cli.commands.about.new import new
+from nonholo.cli.commands.about.systems import systems
 from nonholo.cli.commands.explore import explore
 from nonholo.cli.commands.export import export
 from nonholo.cli.commands.extend import extend
 from nonholo.cli.commands.info import info
-from nonholo.cli.commands.new import new
 from nonholo.cli.commands.paper import paper
 from nonholo.cli.commands.plot import plot
 from nonholo.cli.commands.resume import resume
 from nonholo.cli.commands.simulate import simulate
 from nonholo.cli.commands.sweep import sweep
-from nonholo.cli.commands.systems import systems
 
 
 def with_cache_folder(command: Callable[..., None]) -> Callable[..., None]:
@@ -61,8 +63,10 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for _command in (simulate, sweep, new, systems, info, plot, explore, export, resume, extend, paper):
-    app.command()(_command if _command in (new, systems) else with_cache_folder(_command))  # these two compile nothing
+for _command in (simulate, sweep, new, systems, examples, info, plot, explore, export, resume, extend, paper, cite):
+    app.command()(
+        _command if _command in (new, systems, cite) else with_cache_folder(_command)
+    )  # these compile nothing
 
 
 def main() -> None:
@@ -102,5 +106,6 @@ def describe(
     nonholo explore suslov              the live page, in the browser
     nonholo export run.zarr -o run.csv  its poses, for other programs
     nonholo resume run.zarr             resume what stopped, run or sweep
+    nonholo examples                    systems of the literature, with facts
     nonholo paper                       the paper behind it, recomputed
     """

@@ -18,14 +18,14 @@ def sleigh_in_a_well(
     speed: float = 0.7,
     turning: float = 0.4,
 ) -> Example:
-    r"""A sleigh whose contact is drawn to the origin, $U = \tfrac k2(x^2 + y^2)$.
+    r"""A sleigh whose contact is drawn to the origin by a spring.
 
     $$ m\dot u = ma\,\omega^2 - k\,(x\cos\theta + y\sin\theta), \qquad (J + ma^2)\,\dot\omega = -ma\,u\,\omega, \qquad
        \dot x = u\cos\theta, \quad \dot y = u\sin\theta, \quad \dot\theta = \omega. $$
 
-    The energy $\tfrac12mu^2 + \tfrac12(J + ma^2)\omega^2 + U$ is constant. With a = 0 the turning rate is too, and
-    the speed is that of an oscillator that the heading turns: $\ddot u + \tfrac kmu = -\tfrac km\,\omega\,w$,
-    $\dot w = -\omega s$, $\dot s = u + \omega w$ for $s + iw = e^{-i\theta}(x + iy)$, a linear system.
+    The energy $\tfrac12mu^2 + \tfrac12(J + ma^2)\omega^2 + \tfrac k2(x^2 + y^2)$ is constant. With a = 0 the turning
+    rate is too, and the speed is that of an oscillator that the heading turns: $\ddot u + \tfrac kmu = -\tfrac
+    km\,\omega\,w$, $\dot w = -\omega s$, $\dot s = u + \omega w$ for $s + iw = e^{-i\theta}(x + iy)$, a linear system.
 
     Reference: equations of the sleigh of [neimark-fufaev-1972] with a force; no source for the well.
 

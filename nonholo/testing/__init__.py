@@ -2,7 +2,8 @@
 
 from nonholo.testing._discretizations import check_discretization
 from nonholo.testing._groups import check_group
+from nonholo.testing._order import check_order
 from nonholo.testing._report import Report, Result
 from nonholo.testing._systems import check_system
 
-__all__ = ["Report", "Result", "check_discretization", "check_group", "check_system"]
+__all__ = ["Report", "Result", "check_discretization", "check_group", "check_order", "check_system"]

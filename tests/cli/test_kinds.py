@@ -11,7 +11,7 @@ import pytest
 from typer.testing import Result
 
 import nonholo as nh
-from nonholo.cli.commands.new import KINDS
+from nonholo.cli.commands.about.new import KINDS
 from nonholo.cli.scenario.bodies import BODIES, AnyBody
 from nonholo.cli.scenario.files import built_in, effective_text, load_scenario, parse_setting
 from nonholo.cli.scenario.problems import ScenarioError

@@ -103,7 +103,10 @@ def _of_results() -> list[Call]:
 def _checks() -> list[Call]:
     rng, check = anything(None), nh.testing
     short = {"steps": count(2), "definition": flag(False), "tolerance_factor": positive(10.0), "throw": flag(True)}
+    few = {"steps": count(4), "halvings": count(1), "tolerance": positive(0.5), "throw": flag(True)}
+    velocity = array([0.4, 0.9, 0.0], "start")
     return [
+        call("testing.check_order", check.check_order, discrete=thing(TOP), body_velocity=velocity, **few, slow=True),
         call("testing.check_group", check.check_group, group=thing(nh.SO(3)), rng=rng, compiled=flag(False), slow=True),
         call("testing.check_system", check.check_system, system=thing(TOP.system), rng=rng, slow=True),
         call("testing.check_discretization", check.check_discretization, discrete=thing(TOP), **short, slow=True),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from nonholo_paper import Result
+    from nonholo_paper import Entry, Result
 
 
 def paper(
@@ -17,12 +17,16 @@ def paper(
         list[str] | None,
         typer.Option("--only", metavar="LABEL", help="A label, a row of the errata or a figure; repeatable."),
     ] = None,
+    listed: Annotated[
+        bool, typer.Option("--list", help="List labels and verdicts; measure and write nothing.")
+    ] = False,
 ) -> None:
     """Recompute every statement and figure of the paper; write a page with claims and measured values.
 
     DIR gets index.html, findings.json and figures/. Exits with code 1 if a finding fails.
 
     nonholo paper
+    nonholo paper --list
     nonholo paper -o part --only sus_int --only st
     """
     import sys
@@ -34,8 +38,11 @@ def paper(
     with store_errors(USAGE), needs("paper", "nonholo paper"):
         from nonholo_paper import check_folder, entries, evaluate_all, select, write_folder
 
-        check_folder(output)
         chosen = select(only) if only else entries()
+        if listed:
+            _list(chosen)
+            return
+        check_folder(output)
     with progress_bar("findings", sys.stderr.isatty()) as report:
         results = evaluate_all(chosen, report)
     with store_errors(FAILED):
@@ -46,6 +53,17 @@ def paper(
     failed = [result.entry.finding.label for result in results if not result.holds]
     if failed:
         leave(f"{len(failed)} of {len(results)} findings fail: {', '.join(failed)}.", FAILED)
+
+
+def _list(chosen: "tuple[Entry, ...]") -> None:
+    """Print a line for each finding: by what it is chosen, what it is, the verdict, where the paper has it."""
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table("--only", "kind", "verdict", "where")
+    for each in chosen:
+        table.add_row(", ".join(each.names), each.finding.kind, each.finding.verdict, each.finding.source)
+    Console().print(table)
 
 
 def _show(results: "list[Result]", *, each: bool) -> None:

@@ -38,8 +38,11 @@ class SuslovBody(AbstractBody):
 
     kind: Literal["suslov"]
     mass_tensor: Matrix | None = None
+    """J, symmetric; not the inertia tensor."""
     inertia: Matrix | None = None
+    """Inertia tensor, instead of the mass tensor; n = 3."""
     axis: Vector | None = None
+    """The body axis without spin; by default e_n."""
     one_of: ClassVar[Keys] = (("mass_tensor", "inertia"),)
 
     def system(self) -> "System":
@@ -56,9 +59,13 @@ class SleighBody(AbstractBody):
 
     kind: Literal["sleigh"]
     mass: Positive
+    """Of the whole body."""
     inertia: Positive
+    """About the center of mass, not about the blade."""
     a: Number
+    """Center of mass along the blade, from the contact point."""
     b: Number = 0.0
+    """Center of mass across the blade."""
 
     def system(self) -> "System":
         """Return the sleigh."""
@@ -70,8 +77,11 @@ class MultidimensionalSleighBody(AbstractBody):
 
     kind: Literal["multidimensional_sleigh"]
     mass: Positive
+    """Of the whole body."""
     center_of_mass: Vector
+    """From the reference point, in body axes."""
     mass_tensor: Matrix
+    """J about the center of mass, symmetric."""
 
     def system(self) -> "System":
         """Return the sleigh."""
@@ -83,7 +93,9 @@ class RigidBodyBody(AbstractBody):
 
     kind: Literal["rigid_body"]
     mass_tensor: Matrix
+    """J, symmetric; not the inertia tensor."""
     group: Group | None = None
+    """SO(n) by default, or SE(n)."""
 
     def system(self) -> "System":
         """Return the body."""
@@ -95,6 +107,7 @@ class VeselovaBody(AbstractBody):
 
     kind: Literal["veselova"]
     mass_tensor: Matrix
+    """J, symmetric; not the inertia tensor."""
 
     def system(self) -> "System":
         """Return the top."""
@@ -106,10 +119,15 @@ class LeftInvariantBody(AbstractBody):
 
     kind: Literal["left_invariant"]
     group: Group
+    """SO(n), SE(n), Translations(m), products with x between them, or {basis = [matrices]}."""
     mass_tensor: Matrix | None = None
+    """J, symmetric; not the inertia tensor."""
     inertia_operator: Matrix | None = None
+    """Instead of a mass tensor: the kinetic energy in coordinates of the algebra."""
     constraint_subspace: Matrix | None = None
+    """Rows span the velocities that are allowed."""
     annihilator: Matrix | None = None
+    """Instead: rows vanish on those velocities."""
     one_of: ClassVar[Keys] = (
         ("mass_tensor", "inertia_operator"),
         ("constraint_subspace", "annihilator"),
@@ -131,9 +149,13 @@ class RightInvariantBody(AbstractBody):
 
     kind: Literal["right_invariant"]
     group: Group
+    """SO(n), SE(n), Translations(m), products with x between them, or {basis = [matrices]}."""
     mass_tensor: Matrix
+    """J, symmetric; not the inertia tensor."""
     constraint_subspace: Matrix | None = None
+    """Rows span the velocities that are allowed."""
     annihilator: Matrix | None = None
+    """Instead: rows vanish on those velocities."""
     one_of: ClassVar[Keys] = (("constraint_subspace", "annihilator"),)
 
     def system(self) -> "System":

@@ -16,10 +16,15 @@ class Start(Section):
     """The start of the motion: one of four ways to say how fast, and a first pose."""
 
     body_velocity: Vector | None = None
+    """Velocity in body axes, which must satisfy the constraint."""
     restricted_velocity: Vector | None = None
+    """Its components along the constraint subspace."""
     momentum: Vector | None = None
+    """Discrete body momentum, or its components along the constraint subspace."""
     displacement: Matrix | None = None
+    """The first displacement, a matrix of the group."""
     configuration: Matrix | None = None
+    """First pose, a matrix of the group; by default the identity."""
 
     @model_validator(mode="after")
     def _is_one_start(self) -> Self:
@@ -31,19 +36,28 @@ class Run(Section):
     """The discretization and the length of the run."""
 
     time_step: Positive
+    """Time from one state to the next, in your units."""
     steps: Count
+    """How many."""
     save_every: Count = 1
+    """Steps between saved states."""
     difference: Literal["matrix", "logarithmic"] | None = None
+    """The discrete Lagrangian; by default the one with exact energy, where there is one."""
     constraint: Literal["skew", "exponential", "naive"] | None = None
+    """The displacements that are allowed; by default those that belong to the difference."""
     order: Literal[2, 4, 6, 8] = 2
+    """Above 2 a symmetric composition of steps."""
     branch: Literal["principal", "nearest", "smallest", "largest", "inner", "outer"] = "principal"
+    """Which value of the multivalued map."""
 
 
 class Output(Section):
     """The picture beside the store."""
 
     plot: bool = True
+    """Draw a picture beside the store."""
     gif: bool = False
+    """Draw an animation beside it: of tops in space and of plane sleighs."""
 
 
 class AbstractScenario(Section):

@@ -23,9 +23,9 @@ def checked_by(make: Callable[[Any], object]) -> AfterValidator:
 
 
 class Section(BaseModel):
-    """A table of a scenario: no unknown keys, no silent conversions."""
+    """A table of a scenario: no unknown keys, no silent conversions. The string below a key says what it means."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, use_attribute_docstrings=True)
 
 
 def exactly_one(section: Section, names: tuple[str, ...]) -> None:

@@ -31,8 +31,11 @@ class GridDesign(Section):
 
     kind: Literal["grid"]
     members: Count | None = None
+    """About this many: counts of ranges are scaled alike."""
     seed: Seed = 0
+    """Of random numbers."""
     values: Values[Along]
+    """What is varied, by key path, and its values: a list, or a range with a count."""
 
     def scaled(self) -> Self:
         """Return the design with the counts of its ranges multiplied by one factor, for the members asked for."""
@@ -58,8 +61,11 @@ class RandomMembers(Section):
 
     kind: Literal["random"]
     members: Count
+    """How many."""
     seed: Seed = 0
+    """Of random numbers."""
     values: Values[Drawn]
+    """What is varied, by key path, and its distribution."""
 
     def scaled(self) -> Self:
         """Return the design itself: it has the members asked for."""
@@ -88,16 +94,22 @@ class Keep(Section):
     """The quantities kept of each member."""
 
     reductions: list[Reduction] = Field(default_factory=lambda: ["final_state"])
+    """Names of the quantities."""
     poses: bool = True
+    """Compute them: for final_state, and for limit_angle of a top."""
 
 
 class SweepOutput(Section):
     """The picture beside the store: a quantity by color, over one or two values of the design."""
 
     plot: bool = True
+    """Draw a picture beside the store."""
     color: str | None = None
+    """The quantity that it shows."""
     x: str | None = None
+    """What is varied along the horizontal axis, by key path."""
     y: str | None = None
+    """What is varied along the vertical axis."""
 
 
 class SweepScenario(AbstractScenario):

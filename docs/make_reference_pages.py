@@ -1,0 +1,156 @@
+"""Write docs/reference/command-line.md and scenarios.md, from the commands and models themselves: run this file."""
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from nonholo.cli._app import app
+from nonholo.cli.scenario.bodies import BODIES
+from nonholo.cli.scenario.files import built_in
+from nonholo.cli.scenario.motion import Scenario
+from nonholo.cli.scenario.sweeps import SweepScenario
+
+PAGES = Path(__file__).parent / "reference"
+_WORDS = {"number": "number", "integer": "whole number", "boolean": "true or false", "string": "text", "null": ""}
+
+
+def pages() -> dict[str, str]:
+    """Return the text of each page, by the name of its file."""
+    return {"command-line.md": _command_line(), "scenarios.md": _scenarios()}
+
+
+def _command_line() -> str:
+    whole: Any = typer.main.get_command(app)
+    sections = [f"## `nonholo {name}`\n\n{_command(command)}" for name, command in whole.commands.items()]
+    return _COMMANDS.format(help=_block(whole.help), sections="\n\n".join(sections))
+
+
+def _command(command: Any) -> str:
+    """Return what a command does, and a table of what it takes."""
+    first, _, more = command.help.partition("\n")
+    rows = [f"| {_spelling(given)} | {_cell(given.help or '')} |" for given in command.params if given.name != "help"]
+    table = "\n".join(["| takes | |", "|---|---|", *rows]) if rows else ""
+    return "\n\n".join(filter(None, [first, _block(more), table]))
+
+
+def _spelling(given: Any) -> str:
+    if given.param_type_name == "argument":
+        return f"`{(given.metavar or given.name.upper()).strip('[]')}`" + ("" if given.required else ", optional")
+    names = [*given.opts, *given.secondary_opts]
+    return f"`{', '.join(names)}" + (f" {given.metavar}`" if given.metavar else "`")
+
+
+def _block(text: str) -> str:
+    plain = text.strip().replace("\\[", "[")  # escaped for rich
+    return f"```text\n{plain}\n```" if plain else ""
+
+
+def _scenarios() -> str:
+    """Return the tables of the keys of both kinds of scenario, and the commented scenarios themselves."""
+    bodies = "\n\n".join(
+        f'### `kind = "{kind}"`\n\n{(body.__doc__ or "").strip()}\n\n{_table(body.model_json_schema())}'
+        for kind, body in BODIES.items()
+    )
+    own = {**built_in(), **built_in("sweeps")}
+    texts = "\n\n".join(f"### `nonholo new {name}`\n\n```toml\n{text.strip()}\n```" for name, text in own.items())
+    motion, sweep = _nested(Scenario, ("start", "run", "output")), _nested(SweepScenario, ("design", "keep", "output"))
+    return _SCENARIOS.format(bodies=bodies, texts=texts, motion=motion, sweep=sweep)
+
+
+def _nested(model: Any, tables: tuple[str, ...]) -> str:
+    """Return a table for each table of a scenario."""
+    schema = model.model_json_schema()
+    parts = []
+    for name in tables:
+        for kind in _referred(schema["properties"][name]):
+            inner = schema["$defs"][kind]
+            own = inner["properties"].get("kind", {}).get("const")
+            head = (f'`kind = "{own}"` ' if own else "") + inner.get("description", "")
+            parts.append(f"**`[{name}]`** {head}\n\n{_table({**inner, '$defs': schema['$defs']})}")
+    return "\n\n".join(parts)
+
+
+def _referred(about: dict[str, Any]) -> list[str]:
+    """Return the names of the models that a schema refers to."""
+    return re.findall(r"'\$ref': '#/\$defs/(\w+)'", str(about))
+
+
+def _table(schema: dict[str, Any]) -> str:
+    lines = ["| key | takes | by default | meaning |", "|---|---|---|---|"]
+    needed = schema.get("required", ())
+    for key, about in schema["properties"].items():
+        if key == "kind" and "const" in about:
+            continue
+        chosen = "" if about.get("default") is None else f"`{json.dumps(about['default'])}`"
+        default = "needed" if key in needed else chosen
+        lines.append(f"| `{key}` | {_cell(_kind(about))} | {default} | {_cell(about.get('description', ''))} |")
+    return "\n".join(lines)
+
+
+def _kind(about: dict[str, Any]) -> str:
+    """Return in words what a key takes."""
+    if choices := about.get("anyOf"):
+        return " or ".join(filter(None, map(_kind, choices)))
+    if "enum" in about or "const" in about:
+        return ", ".join(f"`{value}`" for value in about.get("enum", [about.get("const")]))
+    if about.get("type") == "array":
+        inner = _kind(about["items"])
+        return {"number": "list of numbers", "list of numbers": "list of rows"}.get(inner, f"list of {inner}")
+    bounds = {"exclusiveMinimum": "&gt;", "minimum": "&ge;"}
+    signs = [f" {sign} {about[word]:g}" for word, sign in bounds.items() if word in about]
+    return _WORDS.get(about.get("type", ""), "a table") + "".join(signs)
+
+
+def _cell(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|")
+
+
+_COMMANDS = """\
+<!-- written by docs/make_reference_pages.py -->
+# The command line
+
+`nonholo COMMAND --help` says the same. Exit codes: 0; 1, a run that ended early or a finding that fails; 2, what was
+asked cannot be done.
+
+{help}
+
+{sections}
+"""
+
+_SCENARIOS = """\
+<!-- written by docs/make_reference_pages.py -->
+# The keys of scenarios
+
+A scenario is a TOML file with the tables `[body]`, `[start]`, `[run]` and `[output]`; sweeps have `[design]` and
+`[keep]` too. `nonholo new KIND` prints one with comments, as below. Everything is checked before anything runs, and all
+problems are reported at once, with file and key. `--set run.time_step=0.05` changes a value on the command line.
+
+## One motion
+
+`title`: a text for people.
+
+{motion}
+
+## Bodies
+
+`[body]` is one of these.
+
+{bodies}
+
+## Sweeps
+
+{sweep}
+
+## Commented scenarios
+
+{texts}
+"""
+
+
+if __name__ == "__main__":
+    PAGES.mkdir(exist_ok=True)
+    for name, text in pages().items():
+        (PAGES / name).write_text(text, "utf-8")

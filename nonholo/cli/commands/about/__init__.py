@@ -1,0 +1,1 @@
+"""The subcommands that say what there is, and run nothing."""

@@ -1,0 +1,95 @@
+"""The whole site, built, served and visited: its links lead somewhere, and it asks for nothing from elsewhere."""
+
+import functools
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote, urlsplit
+
+import pytest
+
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The site, built strictly."""
+    pytest.importorskip("myst_nb")
+    built = tmp_path_factory.mktemp("site")
+    subprocess.run([sys.executable, "-m", "sphinx", "-q", "-W", "-n", DOCS, built], check=True, timeout=900)  # noqa: S603
+    return built
+
+
+@pytest.fixture
+def address(site: Path) -> Iterator[str]:
+    """Where the site is served."""
+
+    class Quiet(SimpleHTTPRequestHandler):
+        def log_message(self, *_: object) -> None:
+            """Print nothing."""
+
+    with ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Quiet, directory=str(site))) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}/"
+        server.shutdown()
+
+
+def _pages(site: Path) -> list[Path]:
+    """Return all pages; templates of the theme are none."""
+    return [path for path in sorted(site.rglob("*.html")) if path.parent.name != "_static"]
+
+
+class Links(HTMLParser):
+    """What a page refers to, and the places in it that others may refer to."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.places: set[str] = {"", "top"}
+        self.referred: list[str] = []
+        self.feed(path.read_text("utf-8"))
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Keep names, links, scripts, pictures and frames."""
+        for name, value in attrs:
+            if name in {"id", "name"}:
+                self.places.add(value or "")
+            if name == ("href" if tag in {"a", "link"} else "src"):
+                self.referred.append(value or "")
+
+
+@pytest.mark.profile("browser", instead="test_links")
+def test_every_link_leads_somewhere(site: Path) -> None:
+    """Of links, pictures, scripts and frames within the site each file is there, and so is the place in it."""
+    pages = {path: Links(path) for path in _pages(site)}
+    lost = []
+    for page, links in pages.items():
+        for link in links.referred:
+            parts = urlsplit(link)
+            if parts.scheme or parts.netloc:
+                continue
+            target = (page.parent / unquote(parts.path)).resolve() if parts.path else page
+            known = pages[target].places if target in pages else {"", unquote(parts.fragment)}
+            if not target.exists() or unquote(parts.fragment) not in known:
+                lost.append((str(page.relative_to(site)), link))
+    assert len(pages) > 60
+    assert lost == []
+
+
+@pytest.mark.profile("browser", instead="test_what_a_page_loads")
+def test_nothing_is_asked_of_elsewhere(site: Path, address: str, browser: Any) -> None:
+    """Every page of the site, open in Chromium, asks its own server alone; so does the live page of the first one."""
+    page, asked = browser.new_page(), set()
+    page.on("request", lambda request: asked.add(request.url))
+    for path in _pages(site):
+        page.goto(address + path.relative_to(site).as_posix(), wait_until="load")
+    page.goto(address)
+    page.locator("iframe.live").scroll_into_view_if_needed()
+    page.frame_locator("iframe.live").get_by_text("energy kept to").wait_for()
+    page.close()
+    assert address + "live/sleigh.html" in asked
+    assert {url for url in asked if not url.startswith((address, "data:", "blob:", "about:"))} == set()
