@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from nonholo.ensembles import Choice as Choice
     from nonholo.ensembles import Direction as Direction
     from nonholo.ensembles import EnsembleTask as EnsembleTask
+    from nonholo.ensembles import FamilyTask as FamilyTask
     from nonholo.ensembles import Grid as Grid
     from nonholo.ensembles import LogUniform as LogUniform
     from nonholo.ensembles import MassTensor as MassTensor
@@ -65,6 +66,7 @@ if TYPE_CHECKING:
     from nonholo.lagrange_dalembert import LagrangeDAlembert as LagrangeDAlembert
     from nonholo.lagrange_dalembert import mass_tensor_lagrangian as mass_tensor_lagrangian
     from nonholo.orbit import Orbit as Orbit
+    from nonholo.simulation import CoordinateEnsemble as CoordinateEnsemble
     from nonholo.simulation import Crossings as Crossings
     from nonholo.simulation import Ensemble as Ensemble
     from nonholo.simulation import Event as Event
@@ -98,11 +100,13 @@ if TYPE_CHECKING:
 _HOMES = {
     "ChaplyginSleigh": "systems",
     "Choice": "ensembles",
+    "CoordinateEnsemble": "simulation",
     "Crossings": "simulation",
     "Direction": "ensembles",
     "Discretization": "discrete",
     "Ensemble": "simulation",
     "EnsembleTask": "ensembles",
+    "FamilyTask": "ensembles",
     "FlowEnsemble": "simulation",
     "Event": "simulation",
     "EventLog": "simulation",

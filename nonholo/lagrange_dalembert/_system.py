@@ -147,6 +147,17 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         arguments = ((self.dimension,), *(() for _ in self._time("constraint_forms", 1)))
         return count_of(self.constraint_forms, *arguments) + len(self.prescribed)
 
+    @property
+    def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Shapes of a configuration and of a velocity."""
+        return (self.dimension,), (self.dimension,)
+
+    @property
+    def has_parts(self) -> bool:
+        """Whether parts of a step are defined: functions and tables that were made for one time step have none."""
+        given = (self.discrete_lagrangian, self.discrete_constraints, self.force)
+        return not any(getattr(each, "is_of_one_step", False) for each in given)
+
     def forced(self, potential: Any, force: Any) -> "LagrangeDAlembert":
         """Return the system with a potential U(q) and a force; itself with neither. `nonholo.Forced` calls it."""
         if potential is None and force is None:

@@ -7,7 +7,7 @@ from nonholo.base.checks import flags, path
 from nonholo.base.results import finished
 from nonholo.discrete import BranchRule, Discretization
 from nonholo.orbit import Orbit
-from nonholo.simulation.events import Watch, run_compiled, run_with_events, watched
+from nonholo.simulation.events import Watch, run_compiled, run_with_events, simulated, watched
 from nonholo.simulation.runs import (
     CompiledRun,
     RunOptions,
@@ -19,7 +19,7 @@ from nonholo.simulation.runs import (
     uncompiled_run,
 )
 from nonholo.simulation.stores import refuse_without_store, run_into_store
-from nonholo.systems import AbstractCoordinateDiscretization, OrbitT, Start, refuse_in_coordinates
+from nonholo.systems import AbstractCoordinateDiscretization, OrbitT, Start, in_coordinates, refuse_in_coordinates
 
 _DEFAULTS = {"branch": "principal", "reconstruct": True, "backend": "auto"}  # of what a system in coordinates lacks
 
@@ -60,6 +60,7 @@ def simulate(
     displacement: Any = None,
     momentum: Any = None,
     save_every: int = 1,
+    events: Any = None,
     throw: bool = True,
     progress: bool = False,
 ) -> OrbitT: ...
@@ -149,9 +150,9 @@ def simulate(
     common = {"steps": steps, "save_every": save_every, "throw": throw, "progress": progress}
     how = {"branch": branch, "reconstruct": reconstruct, "backend": backend}
     kept = {"store": store, "checkpoint_every": checkpoint_every, "scenario": scenario}
-    if isinstance(discrete, AbstractCoordinateDiscretization):
-        refuse_what_bodies_have("simulate", restricted_velocity=restricted_velocity, **how, events=events, **kept)
-        return discrete.simulate(configuration=configuration, **starts, **common)
+    if in_coordinates(discrete):
+        refuse_what_bodies_have("simulate", restricted_velocity=restricted_velocity, **how, **kept)
+        return simulated(discrete, events, configuration=configuration, **starts, **common)
     options = RunOptions.of(discrete, **common, **how)
     start = Start.of("simulate", configuration, **starts, restricted_velocity=restricted_velocity)
     closed = closed_step(discrete, options.rule, options.backend)

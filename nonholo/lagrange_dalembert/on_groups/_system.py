@@ -101,6 +101,11 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
         """The number s of constraints."""
         return count_of(self.constraint_forms, (self.group.size, self.group.size))
 
+    @property
+    def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Shapes of a configuration and of a velocity."""
+        return self.group.identity.shape, (self.group.dim,)
+
     def discretize(self, time_step: Any) -> "GroupDiscretization":
         """Return the discrete map with this time step.
 

@@ -1,0 +1,96 @@
+"""Runs in coordinates that look for events: at every single step, whatever states they keep."""
+
+import dataclasses
+from collections.abc import Iterator
+from typing import Any
+
+from nonholo.base.checks import error, step_counts
+from nonholo.base.results import Outcome, finished
+from nonholo.simulation.events._event import checked_events
+from nonholo.simulation.events._search import Watch, search
+from nonholo.systems import AbstractCoordinateDiscretization
+
+_FEW, _MOST = 64, 4096  # single steps that are searched at once
+
+
+def simulated(discrete: AbstractCoordinateDiscretization, events: Any, **run: Any) -> Any:
+    """Run a map in coordinates from a start; return its orbit with what was found, if there are events."""
+    if events is None:
+        return discrete.simulate(**run)
+    (orbit,) = blocks_with_events(discrete, watched_in_coordinates("simulate", discrete, events), None, **run)
+    return orbit
+
+
+def iterated(discrete: AbstractCoordinateDiscretization, events: Any, block_steps: Any, **run: Any) -> Iterator[Any]:
+    """Check and open a run in coordinates; return an iterator over its blocks, as `simulated` whole."""
+    if events is None:
+        return discrete.iterate(block_steps=block_steps, **run)
+    watch = watched_in_coordinates("iterate", discrete, events)
+    _, every = step_counts(run["steps"], run["save_every"])
+    rows = discrete.rows_of_block(block_steps, every)
+    return blocks_with_events(discrete, watch, rows * every, **run)
+
+
+def watched_in_coordinates(owner: str, discrete: AbstractCoordinateDiscretization, events: Any) -> Watch:
+    """Return what a run looks for, refused where parts of a step are not defined."""
+    named = checked_events(owner, events)
+    if not discrete.system.has_parts:
+        got = "a table of forces, or discrete functions without a time step"
+        remedy = "Pass functions that take the time or the time step, or look for changes of sign yourself."
+        raise error(f"{owner}(events=...)", "have parts of a step", got, remedy)
+    return Watch(named, discrete.after_parts)
+
+
+def blocks_with_events(
+    discrete: AbstractCoordinateDiscretization,
+    watch: Watch,
+    block_steps: int | None,
+    *,
+    steps: Any,
+    save_every: Any,
+    throw: bool,
+    **run: Any,
+) -> Iterator[Any]:
+    """Check and open a run, and return an iterator over its blocks with what was found in each; None is one block."""
+    steps, every = step_counts(steps, save_every)
+    size = _MOST if block_steps is None else _divisor(block_steps)
+    single = discrete.iterate(steps=steps, block_steps=size, save_every=1, throw=False, **run)
+    pieces = steps if block_steps is None else block_steps // size  # of a block
+    return _blocks(discrete, watch, single, steps, every, pieces, throw)
+
+
+def _divisor(steps: int) -> int:
+    """Return the length of pieces into which a block can be cut; of no good length is its own."""
+    most = max(size for size in range(1, min(steps, _MOST) + 1) if steps % size == 0)
+    return most if most >= _FEW else steps
+
+
+def _blocks(
+    discrete: AbstractCoordinateDiscretization,
+    watch: Watch,
+    single: Iterator[Any],
+    steps: int,
+    every: int,
+    pieces: int,
+    throw: bool,
+) -> Iterator[Any]:
+    last, done, kept = None, 0, []
+    for number, piece in enumerate(single, 1):
+        seen = piece if last is None else last.joined([piece])
+        watch, count = search(watch, seen, done)
+        new = 0 if last is None else 1  # where states begin that were not seen before
+        kept.append(seen.chosen(slice(new + -(done + new) % every, count, every)))
+        last, done = seen.chosen(slice(max(count, 1) - 1, count)), done + max(count, 1) - 1
+        outcome = Outcome.successful if watch.stopped_by else piece.outcome
+        ended = watch.stopped_by is not None or outcome != Outcome.successful or done == steps
+        if number % pieces and not ended:
+            continue
+        orbit = dataclasses.replace(kept[0].joined(kept[1:]), outcome=outcome, events=watch.log())
+        if ended:
+            orbit = dataclasses.replace(orbit, multipliers=orbit.multipliers[: max(len(orbit) - 1, 0)])
+        if len(orbit) or (ended and not throw):
+            yield orbit
+        finished(orbit, discrete.time_step, done, steps, throw)
+        if ended:
+            return
+        watch, kept = dataclasses.replace(watch, parts=()), []
