@@ -80,8 +80,9 @@ class FamilyTask:
         }
         for name, value in kept.items():
             object.__setattr__(self, name, value)
-        for name in self.parameters.keys() - self._arguments.keys():
-            remedy = f"It has {', '.join(self._arguments)}."
+        known = inspect.signature(self.family).parameters
+        for name in self.parameters.keys() - known.keys():
+            remedy = f"It has {', '.join(known)}."
             raise error(_named("parameters"), "name arguments of the family", shown(name), remedy)
 
     @property
