@@ -40,7 +40,7 @@ class FamilyTask:
 
     Attributes:
         family: `family(**parameters)` -> an `nh.examples.Example`, or anything else with a `system`, a `configuration`
-            and a `body_velocity` at which members start. A store names it: `resume` imports a function of yours only
+            and a `body_velocity` at which members start. A store names it: `resume` imports a custom one only
             if it is passed or trusted.
         time_step: h.
         steps: Number of steps.

@@ -26,6 +26,7 @@ from nonholo.systems import AbstractCoordinateDiscretization, AbstractSystem, St
 Watched: TypeAlias = dict[str, Event] | None
 Motions: TypeAlias = tuple[Members, np.ndarray, np.ndarray | None]
 
+_DEFAULTS = {"backend": "auto", "reconstruct": True}
 _KINDS = "A discretization has steps, a system times and rtol."
 _BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
 
@@ -111,28 +112,49 @@ def ensemble(
     if reduce is not None and not callable(reduce):
         raise error("ensemble(reduce=...)", "be a function", f"a {type(reduce).__name__}", "Pass a function, or None.")
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
-    common = {"parameters": parameters, "reduce": reduce, "progress": progress}
+    run = {"parameters": parameters, "reduce": reduce, "progress": progress}
+    of_steps = {"steps": steps, "save_every": save_every, "events": events}
+    how, of_flow = {"backend": backend, "reconstruct": reconstruct}, {"times": times, "rtol": rtol}
+    own = {"configuration": configuration, "displacement": displacement}
     if in_coordinates(discrete):
-        own = {"steps": steps, "save_every": save_every, "events": events, "displacement": displacement}
-        others = {"times": times, "rtol": rtol, "backend": backend, "reconstruct": reconstruct}
-        refuse_what_bodies_have("ensemble", **others, restricted_velocity=starts.pop("restricted_velocity"))
-        return ensemble_in_coordinates(discrete, configuration=configuration, **starts, **own, **common)
-    in_space = {"configuration": (configuration, None), "displacement": (displacement, None)}
-    refuse_given("ensemble", "be left out for bodies", "Members start at the identity.", **in_space)
+        starts.pop("restricted_velocity")
+        refuse_what_bodies_have("ensemble", **how, **of_flow, restricted_velocity=restricted_velocity)
+        return ensemble_in_coordinates(discrete, **starts, **own, **of_steps, **run)
+    _refuse("for bodies", "Members start at the identity.", **own)
     if isinstance(discrete, AbstractSystem):
-        of_steps = {"steps": (steps, None), "save_every": (save_every, None), "events": (events, None)}
-        how = {"backend": (backend, "auto"), "reconstruct": (reconstruct, True)}
-        refuse_given("ensemble", "be left out for a flow", _KINDS, **of_steps, **how)
-        return ensemble_of_flows(discrete, Start.of("ensemble", **starts), times, rtol, **common)
-    refuse_given("ensemble", "be left out for a discretization", _KINDS, times=(times, None), rtol=(rtol, None))
+        _refuse("for a flow", _KINDS, **of_steps, **how)
+        return ensemble_of_flows(discrete, Start.of("ensemble", **starts), times, rtol, **run)
+    _refuse("for a discretization", _KINDS, **of_flow)
     discrete = as_discretization("ensemble(discrete=...)", discrete, composed=True, forced=True)
+    return _of_steps(discrete, Start.of("ensemble", **starts), **of_steps, **how, **run)
+
+
+def _refuse(what: str, remedy: str, **given: Any) -> None:
+    """Refuse arguments of another kind of ensemble, unless they are what they are by default."""
+    refuse_given("ensemble", f"be left out {what}", remedy, **{n: (x, _DEFAULTS.get(n)) for n, x in given.items()})
+
+
+def _of_steps(
+    discrete: Discretization,
+    start: Start,
+    *,
+    steps: Any,
+    save_every: Any,
+    events: Any,
+    backend: str,
+    reconstruct: bool,
+    parameters: Any,
+    reduce: Callable[[Ensemble], Any] | None,
+    progress: bool,
+) -> Any:
+    """Run many members of a discretized body."""
     steps = count("ensemble(steps=...)", steps, "Pass the number of steps.")
     if save_every is not None:
         save_every = count("ensemble(save_every=...)", save_every, "Pass the steps between saved states, or None.")
     _check_backend(discrete, backend)
     check_forces("ensemble", discrete, steps, free="backend 'jax'" if backend == "jax" else None)
     plan = Plan(steps, save_every, bool(reconstruct), backend)
-    motions = _motions(discrete, Start.of("ensemble", **starts), parameters, plan, whole=reduce is None)
+    motions = _motions(discrete, start, parameters, plan, whole=reduce is None)
     watched = None if events is None else watched_events("ensemble", discrete, events, PRINCIPAL.name, plan.posed)
     with progress_bar("members", progress) as show:
         return _joined(motions, plan, watched, reduce, counting(show, len(motions[0])))
