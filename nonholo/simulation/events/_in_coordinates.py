@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 from nonholo.base.checks import error, step_counts
 from nonholo.base.results import Outcome, finished
@@ -56,7 +56,7 @@ def blocks_with_events(
     size = _MOST if block_steps is None else _divisor(block_steps)
     single = discrete.iterate(steps=steps, block_steps=size, save_every=1, throw=False, **run)
     pieces = steps if block_steps is None else block_steps // size  # of a block
-    return _blocks(discrete, watch, single, steps, every, pieces, throw)
+    return _blocks(discrete, _searched(watch, single, steps, every, pieces), steps, throw)
 
 
 def _divisor(steps: int) -> int:
@@ -65,32 +65,49 @@ def _divisor(steps: int) -> int:
     return most if most >= _FEW else steps
 
 
-def _blocks(
-    discrete: AbstractCoordinateDiscretization,
-    watch: Watch,
-    single: Iterator[Any],
-    steps: int,
-    every: int,
-    pieces: int,
-    throw: bool,
-) -> Iterator[Any]:
-    last, done, kept = None, 0, []
+class _Piece(NamedTuple):
+    """What is kept of a piece of a run: states, the last good step, what was found in this block, what ends here."""
+
+    states: Any
+    done: int
+    watch: Watch
+    ends_block: bool
+    ends_run: bool
+
+
+def _searched(watch: Watch, single: Iterator[Any], steps: int, every: int, pieces: int) -> Iterator[_Piece]:
+    """Search pieces of single steps, and keep every n-th state."""
+    last, done = None, 0
     for number, piece in enumerate(single, 1):
         seen = piece if last is None else last.joined([piece])
         watch, count = search(watch, seen, done)
         new = 0 if last is None else 1  # where states begin that were not seen before
-        kept.append(seen.chosen(slice(new + -(done + new) % every, count, every)))
-        last, done = seen.chosen(slice(max(count, 1) - 1, count)), done + max(count, 1) - 1
         outcome = Outcome.successful if watch.stopped_by else piece.outcome
-        ended = watch.stopped_by is not None or outcome != Outcome.successful or done == steps
-        if number % pieces and not ended:
-            continue
-        orbit = dataclasses.replace(kept[0].joined(kept[1:]), outcome=outcome, events=watch.log())
-        if ended:
-            orbit = dataclasses.replace(orbit, multipliers=orbit.multipliers[: max(len(orbit) - 1, 0)])
-        if len(orbit) or (ended and not throw):
-            yield orbit
-        finished(orbit, discrete.time_step, done, steps, throw)
-        if ended:
+        kept = seen.chosen(slice(new + -(done + new) % every, count, every))
+        last, done = seen.chosen(slice(max(count, 1) - 1, count)), done + max(count, 1) - 1
+        ends = watch.stopped_by is not None or outcome != Outcome.successful or done == steps
+        block = number % pieces == 0
+        yield _Piece(dataclasses.replace(kept, outcome=outcome), done, watch, block or ends, ends)
+        if ends:
             return
-        watch, kept = dataclasses.replace(watch, parts=()), []
+        watch = dataclasses.replace(watch, parts=()) if block else watch
+
+
+def _blocks(
+    discrete: AbstractCoordinateDiscretization, pieces: Iterator[_Piece], steps: int, throw: bool
+) -> Iterator[Any]:
+    """Join pieces to blocks; the impulse after the last state of the run belongs to none of its steps."""
+    kept = []
+    for piece in pieces:
+        kept.append(piece.states)
+        if not piece.ends_block:
+            continue
+        orbit = kept[0].joined(kept[1:])
+        known = max(len(orbit) - 1, 0) if piece.ends_run else None
+        orbit = dataclasses.replace(
+            orbit, multipliers=orbit.multipliers[:known], outcome=piece.states.outcome, events=piece.watch.log()
+        )
+        if len(orbit) or (piece.ends_run and not throw):
+            yield orbit
+        finished(orbit, discrete.time_step, piece.done, steps, throw)
+        kept = []

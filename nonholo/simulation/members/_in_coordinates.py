@@ -12,6 +12,7 @@ from nonholo.base.limits import within_a_year, within_memory
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
+from nonholo.orbit import Crossings
 from nonholo.simulation.events import blocks_with_events, watched_in_coordinates
 from nonholo.simulation.members._event_log import MemberCrossings, MemberEvents
 from nonholo.simulation.members._members import STEP, refused
@@ -172,7 +173,7 @@ def ensemble_in_coordinates(
     if save_every is not None:
         save_every = count("ensemble(save_every=...)", save_every, "Pass the steps between saved states, or None.")
     rows = _rows(discrete, configuration, one_start("ensemble", **starts), starts, parameters)
-    members = max(len(values) for values in rows.values())
+    members = len(rows[next(iter(rows))])
     if events is not None:
         watched_in_coordinates("ensemble", discrete, events)
     plan = Plan(discrete, steps, save_every, events)
@@ -195,20 +196,22 @@ def _rows(
     pose, velocity = discrete.system.shapes
     shapes = {"configuration": pose, name: pose if name == "displacement" else velocity, STEP: ()}
     given = {"configuration": configuration, name: starts[name], **_parameters(parameters)}
-    rows = {}
-    for key, value in given.items():
-        if value is not None:
-            several = np.ndim(value) != len(shapes[key])
-            where = f"ensemble({key}=...)"
-            rows[key] = array(where, value, (None, *shapes[key]) if several else shapes[key], _ONE)
-            rows[key] = rows[key] if several else rows[key][None]
-    lengths = {key: len(values) for key, values in rows.items() if np.ndim(given[key]) != len(shapes[key])}
+    given = {key: value for key, value in given.items() if value is not None}
+    several = [key for key, value in given.items() if np.ndim(value) != len(shapes[key])]
+    shapes |= {key: (None, *shapes[key]) for key in several}
+    rows = {key: array(f"ensemble({key}=...)", value, shapes[key], _ONE) for key, value in given.items()}
+    members = _common({key: len(rows[key]) for key in several})
+    return {key: x if key in several else np.broadcast_to(x, (members, *x.shape)) for key, x in rows.items()}
+
+
+def _common(lengths: dict[str, int]) -> int:
+    """Return the number of members, refused if there is none or several."""
     if not lengths or not all(lengths.values()):
-        raise error("ensemble(...)", "have a row for each member", "one start" if not lengths else "no rows", _ONE)
+        raise error("ensemble(...)", "have a row for each member", "no rows" if lengths else "one start", _ONE)
     if len(set(lengths.values())) > 1:
         got = ", ".join(f"{length} of {key}" for key, length in lengths.items())
         raise error("ensemble(...)", "have one number of rows", got, "Pass one row for each member, or one for all.")
-    return rows
+    return next(iter(lengths.values()))
 
 
 def _parameters(parameters: Any) -> dict[str, Any]:
@@ -235,16 +238,16 @@ def _run(plan: Plan, rows: dict[str, np.ndarray], part: range, report: Callable[
 
 def _opened(plan: Plan, rows: dict[str, np.ndarray], member: int, *, every: int | None = None) -> Iterator[Any]:
     """Return an iterator over the blocks of a member, whose start is checked; with events over a single one."""
-    start = {key: values[member if len(values) > 1 else 0] for key, values in rows.items()}
+    start = {key: values[member] for key, values in rows.items()}
     discrete: Any = plan.discrete
     step = start.pop(STEP, discrete.time_step)
-    run = {"steps": plan.steps, "save_every": every or plan.every or plan.steps, "throw": False, **start}
+    run: dict[str, Any] = start | {"steps": plan.steps, "throw": False}
     try:
         discrete = dataclasses.replace(discrete, time_step=step)
         if plan.events is None:
-            return discrete.iterate(**run)
+            return discrete.iterate(**run, save_every=every or plan.every or plan.steps)
         watch = watched_in_coordinates("ensemble", discrete, plan.events)
-        return blocks_with_events(discrete, watch, None, **(run | {"save_every": 1}))
+        return blocks_with_events(discrete, watch, None, **run, save_every=1)
     except ValueError as failure:
         raise refused(member, failure) from None
 
@@ -271,21 +274,17 @@ def _whole(blocks: Iterator[Any]) -> Any:
 
 
 def _log(ensemble: CoordinateEnsemble) -> MemberEvents:
-    """Return what the runs of members found, as the ensemble of first and last crossings."""
+    """Return what the runs of members found, as the ensembles of first and last crossings."""
     logs = [orbit.events for orbit in ensemble.orbits]
-    names = logs[0].names
-    found = []
-    for event in names:
-        each = [log[event] for log in logs]
-        ends = [
-            dataclasses.replace(
-                ensemble,
-                orbits=tuple(part.states.chosen(one) for part in each),
-                save_every=None,
-                steps_done=np.array([(part.step + part.fraction)[one].sum() if len(part) else np.nan for part in each]),
-            )
-            for one in (slice(0, 1), slice(-1, None))
-        ]
-        found.append(MemberCrossings(np.array([len(part) for part in each]), *ends))
+    names, each = logs[0].names, zip(*(log.found for log in logs), strict=True)
+    found = (MemberCrossings(np.array([len(x) for x in own]), *_ends(ensemble, own)) for own in each)
     stopped = [names.index(log.stopped_by) if log.stopped_by else -1 for log in logs]
     return MemberEvents(names, tuple(found), np.array(stopped))
+
+
+def _ends(ensemble: CoordinateEnsemble, own: tuple[Crossings, ...]) -> Iterator[CoordinateEnsemble]:
+    """Give the first crossings of members, and the last ones."""
+    for one in (slice(0, 1), slice(-1, None)):
+        done = np.array([(x.step + x.fraction)[one].sum() if len(x) else np.nan for x in own])
+        orbits = tuple(x.states.chosen(one) for x in own)
+        yield dataclasses.replace(ensemble, orbits=orbits, save_every=None, steps_done=done)
