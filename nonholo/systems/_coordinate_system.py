@@ -98,6 +98,10 @@ class AbstractCoordinateSystem(abc.ABC, Generic[DiscretizationT, OrbitT]):
     ) -> OrbitT:
         """Solve the continuous equations."""
 
+    @abc.abstractmethod
+    def flowed(self, states: OrbitT, times: Float[np.ndarray, "K"], *, rtol: float, atol: float) -> OrbitT:
+        """Return states of a flow carried on, each to a later time of its own."""
+
 
 def in_coordinates(discrete: Any) -> "TypeIs[AbstractCoordinateDiscretization]":
     """Tell whether something is a discretized system in coordinates.

@@ -61,6 +61,21 @@ def test_thrown_stones_cross_where_parabolas_do(system: LagrangeDAlembert) -> No
 
 
 @PROFILE
+@pytest.mark.parametrize("system", [FALL, MOVED], ids=["potential", "force"])
+def test_flows_cross_where_parabolas_do(system: LagrangeDAlembert) -> None:
+    """Forwards and backwards, from few requested times; a stopping event ends them with the last one before it."""
+    root = np.sqrt(1 - 0.6 * G)
+    found = nh.flow(system, **THROWN, times=np.linspace(0.0, 3.0, 5), rtol=1e-12, atol=1e-13, events=[height, rise])
+    assert np.abs(found.events["height"].time - [(1 - root) / G, (1 + root) / G]).max() <= 1e-12
+    assert np.abs(found.events["rise"].states.configuration - [[1 / (2 * G), 0.5 / G]]).max() <= 1e-12
+    assert (len(found), found.events["rise"].step.tolist()) == (5, [1])
+    stopped = nh.flow(system, **THROWN, times=np.linspace(0.0, 3.0, 5), events=[nh.Event(rise, stop=True)])
+    assert (stopped.time[-1], stopped.outcome) == (0.75, nh.Outcome.successful)
+    back = nh.flow(system, **THROWN, times=[0.0, -0.7, -1.5], events=[lambda states: states.configuration[:, 0] + 1.0])
+    assert np.abs(back.events[0].time - (1 - np.sqrt(1 + 2 * G)) / G).max() <= 1e-9
+
+
+@PROFILE
 def test_the_states_are_those_of_a_run_without_events() -> None:
     """Bit for bit, thinned too; blocks together have the states and the crossings of the run."""
     discrete = nh.discretize(FALL, 0.02)
