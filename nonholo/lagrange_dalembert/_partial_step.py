@@ -15,7 +15,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._room import equations_of, places
-from nonholo.lagrange_dalembert._simulate import decoded_orbit, set_out
+from nonholo.lagrange_dalembert._simulate import orbit_of, set_out
 
 _ROWS = 32  # states of one call, one after another: the bits of each do not depend on the others
 
@@ -33,7 +33,7 @@ def after_parts(kind: type[OrbitT], discrete: Any, states: Any, fractions: Float
     ]
     ends, ahead = (np.concatenate(column)[:count] for column in zip(*parts, strict=True)) if parts else (x, v)
     impulses = np.empty((0, system.constraints))
-    found = decoded_orbit(kind, system, h, [ends, ahead, impulses], 0, 1, Outcome.successful)
+    found = orbit_of(kind, system, h, [ends, ahead, impulses], 0, 1, Outcome.successful)
     return dataclasses.replace(found, time=states.time + fractions * h)  # type: ignore[type-var]
 
 

@@ -47,7 +47,7 @@ def simulated(
 ) -> OrbitT:
     """Run the map from a checked start and return its orbit of a kind."""
     ((columns, code, done),) = _blocks(system, h, start, steps, every, steps + 2, progress)
-    return finished(decoded_orbit(kind, system, h, columns, 0, every, code), h, done, steps, throw)
+    return finished(orbit_of(kind, system, h, columns, 0, every, code), h, done, steps, throw)
 
 
 def iterated(
@@ -64,7 +64,7 @@ def iterated(
     """Run the map from a checked start and give its orbit in blocks of this many states."""
     first = 0
     for columns, code, done in _blocks(system, h, start, steps, every, rows, progress):
-        orbit = decoded_orbit(kind, system, h, columns, first, every, code)
+        orbit = orbit_of(kind, system, h, columns, first, every, code)
         first += len(columns[0])
         if len(columns[0]) or not throw:
             yield orbit
@@ -81,7 +81,7 @@ def checked_block(block_steps: Any, every: int, numbers: int) -> int:
     return steps // every
 
 
-def decoded_orbit(
+def orbit_of(
     kind: Callable[..., OrbitT], system: Any, h: Any, columns: list[np.ndarray], first: int, every: int, code: Any
 ) -> OrbitT:
     """Return states that were reached, of which the first has a number, as an orbit."""

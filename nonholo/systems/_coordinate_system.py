@@ -66,11 +66,6 @@ class AbstractCoordinateSystem(abc.ABC, Generic[DiscretizationT, OrbitT]):
     """A system in coordinates: `nonholo.discretize`, `flow` and `Forced` hand their arguments on to it."""
 
     @property
-    @abc.abstractmethod
-    def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """Shapes of a configuration and of a velocity."""
-
-    @property
     def has_parts(self) -> bool:
         """Whether parts of a step are defined."""
         return True
@@ -97,10 +92,6 @@ class AbstractCoordinateSystem(abc.ABC, Generic[DiscretizationT, OrbitT]):
         atol: float = 1e-12,
     ) -> OrbitT:
         """Solve the continuous equations."""
-
-    @abc.abstractmethod
-    def flowed(self, states: OrbitT, times: Float[np.ndarray, "K"], *, rtol: float, atol: float) -> OrbitT:
-        """Return states of a flow carried on, each to a later time of its own."""
 
 
 def in_coordinates(discrete: Any) -> "TypeIs[AbstractCoordinateDiscretization]":

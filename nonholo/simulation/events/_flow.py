@@ -11,10 +11,9 @@ from nonholo.orbit import AbstractOrbit, Crossings, EventLog, Orbit
 from nonholo.simulation.events._between import Between
 from nonholo.simulation.events._event import Event, checked_events, values_at
 from nonholo.simulation.events._search import Watch, search
-from nonholo.systems import AbstractCoordinateSystem
 
 
-def flow_in_coordinates(system: AbstractCoordinateSystem, events: Any, **flow: Any) -> Any:
+def flow_in_coordinates(system: Any, events: Any, **flow: Any) -> Any:
     """Solve the equations of a system in coordinates; return the orbit with what was found, if there are events."""
     if events is None:
         return system.flow(**flow)
