@@ -12,7 +12,6 @@ import xarray
 from nonholo import io, simulation
 from nonholo.base.checks import error, flags, path, shown
 from nonholo.base.progress import progress_bar
-from nonholo.discrete import Discretization
 from nonholo.ensembles._begin import begun, check_same, check_task, restored_task
 from nonholo.ensembles._blocks import Done, Work
 from nonholo.ensembles._scheduling import checked_scheduler, do_all
@@ -111,7 +110,7 @@ def load_sweep(store: str | Path) -> xarray.Dataset:
 def resume(
     store: str | Path,
     *,
-    discrete: Discretization | None = None,
+    discrete: Any = None,
     events: Any = None,
     task: Any = None,
     trust: bool = False,
@@ -127,8 +126,9 @@ def resume(
 
     Args:
         store: A store that `simulate(..., store=...)` or `sweep` began.
-        discrete: The discretization of an orbit; needed only if its system or group is custom, which a
-            store cannot hold. Another one than that of the store is refused.
+        discrete: The discretization of an orbit; needed only if its system, group or Lagrangian is custom, which a
+            store cannot hold. Another one than that of the store is refused; in coordinates its last saved states,
+            computed again, must have the bits of the store.
         events: The events of an orbit that looks for some: a store holds their names, directions and stops, but no
             functions. Others than those of the store are refused. To read a finished orbit `load_orbit` needs none.
         task: The task of a sweep; needed if it is, or holds, a custom function, which a store only names.

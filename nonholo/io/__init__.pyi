@@ -17,6 +17,7 @@ from ._csv import new_file as new_file
 from ._csv import orbit_to_csv as orbit_to_csv
 from ._csv import store_to_csv as store_to_csv
 from ._csv import table_lines as table_lines
+from ._descriptions import described_system as described_system
 from ._descriptions import fields_of as fields_of
 from ._descriptions import unstored as unstored
 from ._load import format_of as format_of
@@ -55,6 +56,7 @@ from ._stream import writable_array as writable_array
 from .datasets._dataset import is_known as is_known
 from .datasets._dataset import labels_of as labels_of
 from .datasets._dataset import orbit_to_dataset as orbit_to_dataset
+from .datasets._dataset import stored_variables as stored_variables
 from .datasets._pandas import orbit_to_pandas as orbit_to_pandas
 from .datasets._pose_columns import column_names as column_names
 from .datasets._pose_columns import separate_rows as separate_rows

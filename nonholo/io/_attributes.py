@@ -1,18 +1,22 @@
 """The attributes of a store: system, motion, conventions, versions; and the way back to objects."""
 
+import contextlib
 import dataclasses
 import hashlib
+import importlib
 import json
 import platform
 from collections.abc import Callable
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from nonholo.base.checks import error, instance, text
 from nonholo.continuous import ContinuousFlow
 from nonholo.discrete import MeasuredMotion, discretize
-from nonholo.io._descriptions import fields_of, restore_system, unstored
-from nonholo.orbit import AbstractMotion, Orbit
+from nonholo.io._descriptions import described_system, fields_of, restore_group, restore_system, unstored
+from nonholo.io._in_coordinates import recorded_system
+from nonholo.orbit import AbstractMotion, AbstractOrbit
+from nonholo.systems import AbstractCoordinateDiscretization
 
 FORMAT = "nonholo.orbit"
 SWEEP_FORMAT = "nonholo.sweep"
@@ -22,8 +26,9 @@ groups among parameters."""
 READABLE = (1, 2, 3, 4)
 _EARLIER_ROUTES = {"LLSystem": "matrix"}
 """The routes of systems before they had names, where they were others than now."""
-_MOTIONS: dict[str, Callable[..., AbstractMotion]] = {
-    "Discretization": discretize,
+_MOTIONS: dict[str, Callable[..., Any]] = {
+    **dict.fromkeys(("Discretization", "CoordinateDiscretization", "GroupDiscretization"), discretize),
+    "CoordinateFlow": lambda system: importlib.import_module("nonholo.lagrange_dalembert").CoordinateFlow(system),
     "ContinuousFlow": ContinuousFlow,
     "MeasuredMotion": MeasuredMotion,
 }
@@ -43,7 +48,15 @@ _CONVENTIONS = (
 )
 
 
-def attributes(orbit: Orbit) -> dict[str, Any]:
+_IN_COORDINATES = (
+    "Arrays are what the orbit tells (docstrings of nonholo.lagrange_dalembert.CoordinateOrbit, GroupOrbit): "
+    "displacement, momentum, energy and constraint_residual are those of the single step from each state, multipliers "
+    "the impulses of that step, NaN where it was not taken; body_velocity is displacement / time_step, on a group its "
+    "logarithm. Of a flow they are those at its times."
+)
+
+
+def attributes(orbit: AbstractOrbit) -> dict[str, Any]:
     """Return everything but arrays that is needed to rebuild an orbit and to say how it was made."""
     return {
         "format": FORMAT,
@@ -53,8 +66,8 @@ def attributes(orbit: Orbit) -> dict[str, Any]:
         "save_every": orbit.save_every,
         "branch": orbit.branch,
         "precision": "float64",
-        "conventions": _CONVENTIONS,
-        "versions": versions_text(),
+        "conventions": _CONVENTIONS if orbit.is_compact else _IN_COORDINATES,
+        "versions": versions_text() if orbit.is_compact else versions_text("jax", "jaxlib"),
     }
 
 
@@ -64,31 +77,41 @@ def attributes_of_text(scenario: str) -> dict[str, str]:
     return {"scenario": scenario, "scenario_sha256": hashlib.sha256(scenario.encode()).hexdigest()}
 
 
-def restore_motion(stored: dict[str, Any], motion: AbstractMotion | None) -> AbstractMotion:
+def restore_motion(stored: dict[str, Any], motion: Any) -> Any:
     """Rebuild the motion of a store, or check that the one given is the stored one.
 
-    Callables and groups of the user's own cannot be stored: such a motion has to be given.
+    Callables and groups of the user's own cannot be stored: such a motion has to be given. In coordinates, where stores
+    hold all that an orbit tells, it is one that cannot run.
     """
+    where = "load_orbit(path=...)"
     if motion is not None:
-        where, remedy = "load_orbit(discrete=...)", "Pass that of the store, or None."
-        return _same(stored, instance(where, motion, AbstractMotion, "be a discretization", remedy))
-    described, parameters = json.loads(stored["motion"]), json.loads(stored["parameters"])
-    missing = unstored(described) or unstored(parameters)
-    if missing:
-        remedy = f"Pass load_orbit(path, discrete=...) with the {described['kind']} that made this store."
-        raise error("load_orbit(path=...)", "be rebuilt from data", f"a store whose {missing}", remedy)
-    kind = described.pop("kind")
-    system = restore_system(stored["system"], parameters)
+        kinds: Any = (AbstractMotion, AbstractCoordinateDiscretization)
+        remedy = "Pass that of the store, or None."
+        return _same(stored, instance("load_orbit(discrete=...)", motion, kinds, "be a discretization", remedy))
+    options = json.loads(stored["motion"])
+    kind, route = options.pop("kind"), options.pop("route", None)
+    remedy = f"Pass load_orbit(path, discrete=...) with the {kind} that made this store."
+    system = system_of(stored, where, remedy, unstored(options))
     if kind not in _MOTIONS:
-        raise error("load_orbit(path=...)", "hold a motion of this version", repr(kind), "Upgrade nonholo.")
-    route = described.pop("route", None)
-    restored = on_route_of(stored, _MOTIONS[kind](system, **described))
-    if route not in (None, restored.route_name):
-        raise error("load_orbit(path=...)", "hold a run by a route of this version", repr(route), "Upgrade nonholo.")
+        raise error(where, "hold a motion of this version", repr(kind), "Upgrade nonholo.")
+    restored = on_route_of(stored, _MOTIONS[kind](system, **options))
+    if type(restored).__name__ != kind or route not in (None, restored.route_name):
+        raise error(where, "hold a run by a route of this version", repr(route or kind), "Upgrade nonholo.")
     return restored
 
 
-def _same(stored: dict[str, Any], motion: AbstractMotion) -> AbstractMotion:
+def system_of(stored: dict[str, Any], where: str, remedy: str, missing: str | None = None) -> Any:
+    """Return the system of a store; in coordinates, what is known of one whose functions it does not hold."""
+    name, parameters = stored["system"], json.loads(stored["parameters"])
+    group, absent = parameters.get("group"), missing or unstored(parameters)
+    if not absent:
+        return restore_system(name, parameters)
+    if missing or "orbits" not in parameters or unstored({"group": group}):
+        raise error(where, "be rebuilt from data", f"a store whose {absent}", remedy)
+    return recorded_system(name, parameters, None if group is None else restore_group(group))
+
+
+def _same(stored: dict[str, Any], motion: Any) -> Any:
     motion = on_route_of(stored, motion)
     for key, value in identity_of(motion).items():
         theirs = stored[key] if key != "motion" else motion_text(stored, motion)
@@ -107,7 +130,7 @@ def on_route_of(stored: dict[str, Any], motion: Any) -> Any:
     return motion if other.route_name == motion.route_name else other
 
 
-def motion_text(stored: dict[str, Any], motion: AbstractMotion) -> str:
+def motion_text(stored: dict[str, Any], motion: Any) -> str:
     """Return what a store says of its motion; of before routes had names, with that of a motion by the same route."""
     if motion.route_name is None:
         return stored["motion"]
@@ -115,30 +138,34 @@ def motion_text(stored: dict[str, Any], motion: AbstractMotion) -> str:
     return json.dumps({**described, "route": described.get("route", motion.route_name)})
 
 
-def identity_of(motion: AbstractMotion) -> dict[str, str]:
+def identity_of(motion: Any) -> dict[str, str]:
     """Return what a motion is."""
-    described = {"kind": type(motion).__name__, **fields_of(motion)}
+    options = {"kind": type(motion).__name__, **fields_of(motion)}
     if motion.route_name is not None:
-        described["route"] = motion.route_name
+        options["route"] = motion.route_name
+    system, parameters = described_system(motion.system)
     return {
-        "system": type(motion.system).__name__,
-        "parameters": json.dumps(fields_of(motion.system)),
-        "motion": json.dumps({key: value for key, value in described.items() if key != "system"}),
+        "system": system,
+        "parameters": json.dumps(parameters),
+        "motion": json.dumps({key: value for key, value in options.items() if key != "system"}),
     }
 
 
 def other_versions(stored: dict[str, Any]) -> str:
     """Name the packages of which a store was made with another version; empty if there is none."""
-    now = _versions()
-    made = json.loads(stored["versions"]).items()
-    return ", ".join(f"{name} {old} (now {now.get(name)})" for name, old in made if old != now.get(name))
+    made = json.loads(stored["versions"])
+    now = _versions(*made)
+    return ", ".join(f"{name} {old} (now {now.get(name)})" for name, old in made.items() if old != now.get(name))
 
 
-def versions_text() -> str:
-    """Return the versions of what computes, as JSON."""
-    return json.dumps(_versions())
+def versions_text(*others: str) -> str:
+    """Return the versions of what computes, as JSON: of the core, and of other packages."""
+    return json.dumps(_versions("nonholo", "numpy", "numba", "zarr", *others))
 
 
-def _versions() -> dict[str, str]:
-    packages = ("nonholo", "numpy", "numba", "zarr")
-    return {"python": platform.python_version()} | {name: version(name) for name in packages}
+def _versions(*packages: str) -> dict[str, str]:
+    found = {"python": platform.python_version()}
+    for name in packages:
+        with contextlib.suppress(PackageNotFoundError):
+            found |= {name: version(name)} if name not in found else {}
+    return found

@@ -3,7 +3,7 @@
 import contextlib
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 import numpy as np
 
@@ -12,9 +12,8 @@ from nonholo.base.checks import path as checked_path
 from nonholo.base.progress import progress_bar
 from nonholo.base.types import Float
 from nonholo.io._beside import new_beside
-from nonholo.io.datasets import Stretch, column_names, joined_rows, rows_of
-from nonholo.orbit import AbstractOrbit, Orbit
-from nonholo.systems import System
+from nonholo.io.datasets import Stretch, column_names, coordinate_rows, rows_of
+from nonholo.orbit import AbstractOrbit
 
 _NUMBERS = 1 << 16  # formatted at once
 
@@ -56,18 +55,13 @@ def orbit_to_csv(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fa
         file.writelines(lines)
 
 
-def _lines_of(orbit: AbstractOrbit) -> Iterator[str]:
+def _lines_of(orbit: Any) -> Iterator[str]:
     instance("orbit_to_csv(orbit=...)", orbit, AbstractOrbit, "be an orbit", "Pass what `simulate` or `flow` returned.")
     if not orbit.has_poses:
         remedy = "Run with reconstruct=True."
         raise error("Orbit.to_csv(...)", "be asked of an orbit with poses", "reconstruct=False", remedy)
-    if isinstance(orbit, Orbit):
-        return _lines(orbit.system, [Stretch(orbit.time, np.asarray(orbit.canonical_pose), orbit.turned)], 1)
-    named, q = orbit.coordinates, orbit.configuration
-    names = ["t", *named] if named else column_names(orbit.space)
-    rows = np.concatenate([orbit.time[:, None], q if named else joined_rows(orbit.space, q)], axis=1)
-    most = max(1, _NUMBERS // len(names))
-    return table_lines(names, (rows[first : first + most] for first in range(0, len(rows), most)))
+    pose, turned = (orbit.canonical_pose, orbit.turned) if orbit.is_compact else (orbit.configuration, None)
+    return _lines(orbit.system, [Stretch(orbit.time, np.asarray(pose), turned)], 1)
 
 
 def store_to_csv(
@@ -110,10 +104,12 @@ def store_to_csv(
         file.writelines(_lines(poses.system, stretches, every))
 
 
-def _lines(system: System, stretches: Iterable[Stretch], every: int) -> Iterator[str]:
+def _lines(system: Any, stretches: Iterable[Stretch], every: int) -> Iterator[str]:
     """Return the header, then many lines at a time."""
-    names = column_names(system.group)
-    return table_lines(names, rows_of(system, _cut(stretches, max(1, _NUMBERS // len(names))), every))
+    named = getattr(system, "coordinates", ())
+    names = ["t", *named] if named else column_names(system.group)
+    parts = _cut(stretches, max(1, _NUMBERS // len(names)))
+    return table_lines(names, coordinate_rows(parts, every) if named else rows_of(system, parts, every))
 
 
 def table_lines(names: list[str], pieces: Iterable[Float[np.ndarray, "R c"]]) -> Iterator[str]:

@@ -8,6 +8,7 @@ import numpy as np
 from nonholo import systems
 from nonholo.base.checks import error
 from nonholo.groups import SE, SO, AbstractMatrixGroup, MatrixGroup, ProductGroup, Translations
+from nonholo.io._in_coordinates import READY, restore_ready
 from nonholo.systems import AbstractSystem, Friction, Gravity
 
 _CALLABLE = "callable"  # schema 1 wrote the same word
@@ -17,10 +18,15 @@ _FORCES = {"Gravity": Gravity, "Friction": Friction}
 _FAMILIES = {"SO": SO, "SE": SE, "Translations": Translations}
 
 
+def described_system(system: Any) -> tuple[str, dict[str, Any]]:
+    """Return the name of a system, that of its class or of what makes it, and its parameters as plain data."""
+    return getattr(system, "described", None) or (type(system).__name__, fields_of(system))
+
+
 def fields_of(owner: Any) -> dict[str, Any]:
     """Return the fields of a dataclass as plain data, floating-point numbers such that they are read back exactly."""
-    stored = (field.name for field in dataclasses.fields(owner) if field.metadata.get("stored", True))
-    plain = {name: _plain(getattr(owner, name)) for name in stored}
+    stored = [field.name for field in dataclasses.fields(owner) if field.metadata.get("stored", True)]
+    plain = {name: _plain(getattr(owner, name)) for name in (*stored, *getattr(owner, "recorded", ()))}
     if getattr(owner, "is_forced", False):
         plain["system"] = {"kind": type(owner.system).__name__, "parameters": fields_of(owner.system)}
     return plain
@@ -38,8 +44,10 @@ def unstored(described: dict[str, Any]) -> str | None:
     return None
 
 
-def restore_system(kind: str, parameters: dict[str, Any]) -> AbstractSystem:
-    """Build the system of a class of this version from its parameters."""
+def restore_system(kind: str, parameters: dict[str, Any]) -> Any:
+    """Build the system of a class of this version from its parameters, or a ready one of `nonholo.examples`."""
+    if kind.startswith(READY):
+        return restore_ready(kind.removeprefix(READY), parameters)
     found = getattr(systems, kind, None)
     if not (isinstance(found, type) and issubclass(found, AbstractSystem)):
         remedy = "Upgrade nonholo or, for a custom system, pass load_orbit(path, discrete=...)."

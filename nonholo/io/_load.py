@@ -2,7 +2,7 @@
 
 import dataclasses
 import json
-from collections.abc import Container
+from collections.abc import Container, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,6 @@ from nonholo.base.checks import error
 from nonholo.base.checks import path as checked_path
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.discrete import Discretization
 from nonholo.io._attributes import FORMAT, READABLE, SWEEP_FORMAT, restore_motion
 from nonholo.io._chunks import AGAIN, WHERE, DamagedError, checked_array, checked_block, opened_array
 from nonholo.io._metadata import OrbitMetadata, SweepMetadata, check_metadata
@@ -26,13 +25,20 @@ from nonholo.orbit import STATES, EventLog, Orbit
 _KINDS = {FORMAT: "an orbit", SWEEP_FORMAT: "a sweep", "nonholo.ensemble": "an ensemble"}
 
 
-def load_orbit(path: str | Path, *, discrete: Discretization | None = None) -> Orbit:
+def load_orbit(path: str | Path, *, discrete: Any = None) -> Any:
     """Load an orbit saved by `save_orbit`, bit for bit.
+
+    Nothing in a store is ever run. In coordinates it names a system of `nonholo.examples` with its parameters, which is
+    made again; of a custom Lagrangian it holds everything that the orbit tells, for pictures and tables, and what
+    asks for the functions (`restricted_momentum`, another run) says to pass `discrete`.
 
     Args:
         path: The store.
         discrete: The discretization that made the store; needed only if its difference or its constraint is callable,
             or its system or group is custom, which a store cannot hold.
+
+    Returns:
+        An `Orbit`, or a `CoordinateOrbit` or `GroupOrbit` of `nonholo.lagrange_dalembert`.
 
     Raises:
         FileNotFoundError: There is nothing at the path.
@@ -45,12 +51,12 @@ def load_orbit(path: str | Path, *, discrete: Discretization | None = None) -> O
     return _loaded(checked_path(WHERE, path), discrete, last=False)
 
 
-def load_last_block(path: Path, discrete: Discretization) -> Orbit:
+def load_last_block(path: Path, discrete: Any) -> Any:
     """Load the states in the last chunk of a store."""
     return _loaded(path, discrete, last=True)
 
 
-def _loaded(root: Path, discrete: Discretization | None, *, last: bool) -> Orbit:
+def _loaded(root: Path, discrete: Any, *, last: bool) -> Any:
     stored = read_attributes(root)
     if "run" in stored and "outcome" not in stored:
         remedy = f"Resume with nonholo.resume('{root}') (nonholo resume); `nonholo info` says how far it came."
@@ -63,9 +69,9 @@ def _loaded(root: Path, discrete: Discretization | None, *, last: bool) -> Orbit
     arrays = {name: _read(root, name, tuple(shape), last) for name, shape in shapes.items()}
     if not last:  # whoever asks for the last block has looked at the others
         check_seals(root, stored)
-    compact = {name: arrays.get(array) for name, array in stored_names(shapes).items()}
+    rows = {name: arrays.get(array) for name, array in stored_names(shapes, motion.columns).items()}
     branch = stored.get("branch", "principal")  # stores of before branch rules have none
-    orbit = Orbit(motion, outcome=outcome, save_every=every, branch=branch, **compact)  # type: ignore[arg-type]
+    orbit = motion.orbit(outcome=outcome, save_every=every, branch=branch, **rows)
     if "events" not in stored:
         return orbit
     begin = _begin_of_last(stored, shapes["time"][0]) if last else 0
@@ -83,7 +89,7 @@ def check_seals(root: Path, stored: dict[str, Any]) -> None:
             events = len(json.loads(stored["events"])) if "events" in stored else None
             others = (CHECKPOINTS,) if events is None else (CHECKPOINTS, EVENTS)
             arrays |= {name: opened_array(root, name, None) for name in others}
-            Blocks(root, Plan(run["steps"], stored["save_every"], run["rows"]), arrays, events, True).check()
+            Blocks(root, Plan.of(stored), arrays, events, True).check()
     except DamagedError as flaw:
         raise error(WHERE, "hold each chunk in its place", f"{flaw}, in '{root}'", AGAIN) from None
 
@@ -93,9 +99,9 @@ def _check_whole(root: Path, stored: dict[str, Any], arrays: dict[str, zarr.Arra
         raise DamagedError("another one")
 
 
-def stored_names(arrays: Container[str]) -> dict[str, str]:
-    """Return the names of the arrays of a store that hold the states of an orbit; older stores have them on top."""
-    names = {name: name.removeprefix("canonical_") for name in STATES}
+def stored_names(arrays: Container[str], columns: Iterable[str] = STATES) -> dict[str, str]:
+    """Return the names of the arrays of a store that hold the columns of an orbit; older stores have them on top."""
+    names = {name: name.removeprefix("canonical_") for name in columns}
     return {name: CANONICAL + array if CANONICAL + array in arrays else array for name, array in names.items()}
 
 
@@ -115,8 +121,8 @@ def _events(root: Path, stored: dict[str, Any], orbit: Orbit, begin: int) -> Eve
 
 def _begin_of_last(stored: dict[str, Any], states: int) -> int:
     """Return the step at which the last block of states begins."""
-    run = json.loads(stored["run"])
-    return Plan(run["steps"], stored["save_every"], run["rows"]).begin((states - 1) // run["rows"])
+    plan = Plan.of(stored)
+    return plan.begin((states - 1) // plan.rows)
 
 
 def read_attributes(path: str | Path, expected: str = FORMAT, readable: tuple[int, ...] = READABLE) -> dict[str, Any]:

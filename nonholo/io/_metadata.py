@@ -66,6 +66,7 @@ class _Run(_Data):
     steps: Positive
     rows: Positive
     reconstruct: bool
+    lead: Literal[0, 1] = 1
 
 
 class OrbitMetadata(_About):

@@ -1,6 +1,7 @@
 """The blocks of a stored run, and what is kept of the state between two of them."""
 
-from typing import NamedTuple
+import json
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,6 +13,12 @@ from nonholo.io._stored_events import Seen, packed, packed_size, unpacked
 class Plan(NamedTuple):
     """The blocks of a run: block b holds the saved states b * rows to (b + 1) * rows - 1.
 
+    Attributes:
+        steps: Steps in total.
+        every: Steps between saved states.
+        rows: Saved states in a block.
+        lead: Saved states before a block at which its computation begins: one, or none where rows need the step after.
+
     Example:
         >>> plan = Plan(steps=100, every=10, rows=4)
         >>> plan.blocks, [(plan.begin(b), plan.stop(b)) for b in range(3)]
@@ -21,6 +28,13 @@ class Plan(NamedTuple):
     steps: int
     every: int
     rows: int
+    lead: int = 1
+
+    @classmethod
+    def of(cls, stored: dict[str, Any]) -> "Plan":
+        """Return the plan of a store with these attributes."""
+        run = json.loads(stored["run"])
+        return cls(run["steps"], stored["save_every"], run["rows"], run.get("lead", 1))
 
     @property
     def blocks(self) -> int:
@@ -29,7 +43,7 @@ class Plan(NamedTuple):
 
     def begin(self, block: int) -> int:
         """Return the step at which the computation of a block begins."""
-        return max(0, (block * self.rows - 1) * self.every)
+        return max(0, (block * self.rows - self.lead) * self.every)
 
     def stop(self, block: int) -> int:
         """Return the step at which it ends; the last block also takes the steps after the last saved state."""

@@ -8,7 +8,7 @@ import re
 import shutil
 import threading
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,7 @@ import zarr
 from pydantic import BaseModel
 from zarr.codecs import BloscCodec, Crc32cCodec
 
-from nonholo.base.checks import error, flags
+from nonholo.base.checks import error, flags, instance
 from nonholo.base.checks import path as checked_path
 from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
 from nonholo.io._beside import new_beside, sibling
@@ -27,7 +27,7 @@ from nonholo.io._lock import owner_of
 from nonholo.io._metadata import OrbitMetadata, check_metadata, checksum
 from nonholo.io._seals import seal_of_whole
 from nonholo.io.datasets import CANONICAL, stored_variables
-from nonholo.orbit import Orbit, as_orbit
+from nonholo.orbit import AbstractOrbit
 
 _ROWS = 100_000  # states in one chunk
 _FILTERS = threading.Lock()  # warning filters belong to the whole process
@@ -44,7 +44,7 @@ _OWN = re.compile(r"(?:[^/]+/)*(?:zarr\.json|c(?:/\d+)*|\.[^/]+\.partial)|run/(?
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
-def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scenario: str | None = None) -> None:
+def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = False, scenario: str | None = None) -> None:
     """Save an orbit as a Zarr store that `load_orbit` reads back bit for bit and `xarray.open_zarr` opens.
 
     The store appears at `path` only when it is complete; if writing fails, nothing is left behind and an old store
@@ -64,7 +64,8 @@ def save_orbit(orbit: Orbit, path: str | Path, *, overwrite: bool = False, scena
     Example:
         >>> save_orbit(orbit, "orbit.zarr")  # doctest: +SKIP
     """
-    as_orbit("save_orbit(orbit=...)", orbit, "for one in coordinates use orbit.to_dataset().to_zarr(path).")
+    remedy = "Pass what `simulate` or `flow` returned."
+    instance("save_orbit(orbit=...)", orbit, AbstractOrbit, "be an orbit", remedy)
     flags("save_orbit", overwrite=overwrite)
     path = checked_path("save_orbit(path=...)", path)
     target = path.resolve()
@@ -136,10 +137,16 @@ def _exists(path: str | Path, remedy: str, where: str = "save_orbit(path=...)") 
 def _write(variables: dict[str, xarray.Variable], metadata: dict[str, Any], path: Path) -> None:
     shapes = {name: variable.shape for name, variable in variables.items()}
     group = new_group(path, metadata | {"arrays": json.dumps(shapes)}, OrbitMetadata)
-    group.create_group(CANONICAL.rstrip("/"))
+    create_groups(group, variables)
     arrays = {name: _write_array(group, name, variable) for name, variable in variables.items()}
     edit_attributes(path, {"seal": seal_of_whole(path, arrays)})
     consolidate(path)
+
+
+def create_groups(group: zarr.Group, names: Iterable[str]) -> None:
+    """Make the group of compact states, where arrays lie in it."""
+    if any(name.startswith(CANONICAL) for name in names):
+        group.create_group(CANONICAL.rstrip("/"))
 
 
 def new_group(path: Path, metadata: dict[str, Any], kind: type[BaseModel]) -> zarr.Group:
@@ -180,16 +187,17 @@ def create_array(group: zarr.Group, name: str, variable: xarray.Variable, rows: 
 
     Chunks are compressed, then get a checksum of what is on disk.
     """
-    return group.create_array(
-        name,
-        shape=(rows, *variable.shape[1:]),
-        dtype="float64",
-        chunks=(chunk, *variable.shape[1:]),
-        compressors=(BloscCodec(cname="zstd", clevel=3, shuffle="shuffle"), Crc32cCodec()),
-        fill_value=float("nan"),
-        dimension_names=[str(dimension) for dimension in variable.dims],
-        attributes=variable.attrs,
-    )
+    with zarr.config.set({"array.write_empty_chunks": True}):
+        return group.create_array(
+            name,
+            shape=(rows, *variable.shape[1:]),
+            dtype="float64",
+            chunks=(chunk, *variable.shape[1:]),
+            compressors=(BloscCodec(cname="zstd", clevel=3, shuffle="shuffle"), Crc32cCodec()),
+            fill_value=float("nan"),
+            dimension_names=[str(dimension) for dimension in variable.dims],
+            attributes=variable.attrs,
+        )
 
 
 def settle(path: Path) -> None:

@@ -10,23 +10,22 @@ import numpy as np
 import zarr
 
 from nonholo.base.checks import error
+from nonholo.io._attributes import system_of
 from nonholo.io._chunks import DamagedError, checked_block, opened_array
-from nonholo.io._descriptions import restore_system, unstored
 from nonholo.io._load import check_seals, read_attributes, stored_names
 from nonholo.io._lock import owner_of
 from nonholo.io._stream import Stream, open_stream
 from nonholo.io.datasets import Stretch
-from nonholo.systems import System
 
 _WHERE = "store_to_csv(store=...)"
-_WANTED = ("time", "canonical_pose", "turned")
+_COMPACT, _RECORDED = ("time", "canonical_pose", "turned"), ("time", "configuration")
 
 
 class StoredPoses(NamedTuple):
     """The part of a store that holds the poses: its system, the number of saved states, their arrays and the names."""
 
     path: Path
-    system: System
+    system: Any
     rows: int
     places: dict[str, str]
     arrays: dict[str, zarr.Array]
@@ -38,14 +37,15 @@ class StoredPoses(NamedTuple):
 
     def stretches(self) -> Iterator[Stretch]:
         """Return the states chunk after chunk; only one chunk is in memory."""
-        chunk = self.arrays["canonical_pose"].chunks[0]
+        chunk = self.arrays["time"].chunks[0]
         for number in range(-(-self.rows // chunk)):
             kept = slice(self.rows - number * chunk)
             found: dict[str, np.ndarray] = {}
             for name, array in self.arrays.items():
                 index = (number,) + (0,) * (array.ndim - 1)
                 found[name] = checked_block(self.path, self.places[name], array, index)[kept]
-            yield Stretch(found["time"], found["canonical_pose"], found.get("turned"))
+            time, places = found.pop("time"), found.get("canonical_pose", found.get("configuration"))
+            yield Stretch(time, np.asarray(places), found.get("turned"))
 
 
 def open_poses(path: Path) -> StoredPoses:
@@ -53,11 +53,12 @@ def open_poses(path: Path) -> StoredPoses:
     stored = read_attributes(path)
     try:
         shapes = json.loads(stored["arrays"])
-        places = {name: array for name, array in stored_names(shapes).items() if name in _WANTED and array in shapes}
-        system = _system(path, stored)
+        system = system_of(stored, _WHERE, "Write the orbit of nonholo.load_orbit(path, discrete=...) with its to_csv.")
+        wanted = _RECORDED if "constraint_residual" in shapes else _COMPACT
+        places = {name: array for name, array in stored_names(shapes, wanted).items() if array in shapes}
     except KeyError as failure:
         raise error(_WHERE, "hold complete attributes", f"'{path}' without {failure}", "Run it again.") from failure
-    if "canonical_pose" not in places:
+    if wanted[1] not in places:
         remedy = "Run it again with reconstruct=True: poses cannot be added later."
         raise error(_WHERE, "hold poses", f"'{path}', which was run with reconstruct=False", remedy)
     if "outcome" in stored:
@@ -81,16 +82,6 @@ def _saved(stream: Stream) -> int:
         remedy = f"nonholo.resume({str(stream.path)!r}) computes its block again."
         raise error(_WHERE, "hold sound blocks", f"{flaw}, in '{stream.path}'", remedy) from None
     return stream.saved(full)
-
-
-def _system(path: Path, stored: dict[str, Any]) -> System:
-    """Return the system; the poses of a store need no more of its motion."""
-    parameters = json.loads(stored["parameters"])
-    missing = unstored(parameters)
-    if missing:
-        remedy = "Load it with nonholo.load_orbit(path, discrete=...), and write that orbit with its to_csv."
-        raise error(_WHERE, "hold its system as data", f"'{path}', whose {missing}", remedy)
-    return restore_system(stored["system"], parameters)  # type: ignore[return-value]
 
 
 def _warn(path: Path, done: int, steps: int) -> None:

@@ -32,6 +32,7 @@ from nonholo.io._save import (
     check_target,
     consolidate,
     create_array,
+    create_groups,
     edit_attributes,
     new_group,
     put_in_place,
@@ -40,7 +41,7 @@ from nonholo.io._save import (
 from nonholo.io._seals import BEFORE, CHECKPOINTS, Blocks, seal_of
 from nonholo.io._stored_events import EVENTS, Seen, known, rows_of, seen_nothing
 from nonholo.io.datasets import CANONICAL, HEADED, stored_variables
-from nonholo.orbit import EventLog, Orbit
+from nonholo.orbit import EventLog
 
 
 @dataclasses.dataclass(frozen=True)
@@ -66,7 +67,7 @@ class Stream:
         """Whether the run came to its end, or can go no further."""
         return "outcome" in read_attributes(self.path)
 
-    def write(self, block: int, orbit: Orbit, reached: Checkpoint) -> None:
+    def write(self, block: int, orbit: Any, reached: Checkpoint) -> None:
         """Write the chunks of a block, then the checkpoint at its end, which seals them."""
         require_identity(self.path, self.made)
         self._remove(block)
@@ -84,6 +85,10 @@ class Stream:
     def checkpoint(self, block: int) -> Checkpoint:
         """Return the state at the begin of a block, unless its chunk is damaged (`DamagedError`)."""
         return self._blocks.checkpoint(block)
+
+    def rows(self, name: str, first: int, count: int) -> np.ndarray:
+        """Return some rows of an array of sound blocks."""
+        return np.asarray(self._arrays[name][first : first + count])
 
     def marked(self) -> set[int]:
         """Return the blocks at whose end there is a checkpoint, sound or not; the folder is read once."""
@@ -213,7 +218,7 @@ class Stream:
 
 def create_stream(
     path: Path,
-    first: Orbit,
+    first: Any,
     plan: Plan,
     opening: Checkpoint,
     events: list[dict[str, Any]] | None = None,
@@ -228,7 +233,7 @@ def create_stream(
     with new_beside(path) as part:
         _create(part, first, plan, opening, extra)
         put_in_place(part, target, overwrite=False)
-    return Stream(target, plan, first.canonical_pose is not None, extra["made"], sealed=True)
+    return Stream(target, plan, first.has_poses, extra["made"], sealed=True)
 
 
 def open_stream(path: str | Path) -> Stream:
@@ -238,15 +243,17 @@ def open_stream(path: str | Path) -> Stream:
         remedy = "Run it again with simulate(..., store=...) to be able to resume."
         raise error("resume(store=...)", "have checkpoints", f"'{path}', which was saved whole", remedy)
     run = json.loads(stored["run"])
-    plan = Plan(run["steps"], stored["save_every"], run["rows"])
-    return Stream(Path(path).resolve(), plan, run["reconstruct"], stored.get("made"), run.get("sealed", False))
+    return Stream(
+        Path(path).resolve(), Plan.of(stored), run["reconstruct"], stored.get("made"), run.get("sealed", False)
+    )
 
 
 def writable_array(path: Path, name: str, shape: Sequence[int] | None = None) -> zarr.Array:
     """Open an array of a store to continue, of a known shape but for the number of rows."""
     where = "resume(store=...)"
     try:
-        array = zarr.open_array(path / name, mode="r+", zarr_format=3)
+        with zarr.config.set({"array.write_empty_chunks": True}):  # of NaN alone too: an impulse that is not known
+            array = zarr.open_array(path / name, mode="r+", zarr_format=3)
     except Exception as failure:
         got = f"'{path}', where its metadata cannot be read: {failure}"
         raise error(where, f"hold the array {name}", got, "Run it again.") from failure
@@ -273,14 +280,14 @@ def standing(path: str | Path) -> Standing | None:
     return Standing(stream.reached(), stream.plan.steps, owner_of(stream.path))
 
 
-def _create(part: Path, first: Orbit, plan: Plan, opening: Checkpoint, extra: dict[str, str]) -> None:
+def _create(part: Path, first: Any, plan: Plan, opening: Checkpoint, extra: dict[str, str]) -> None:
     variables, rows = stored_variables(first), 1 + plan.steps // plan.every
     metadata = {name: value for name, value in attributes(first).items() if name != "outcome"}
-    run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.canonical_pose is not None, "sealed": True}
+    run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.has_poses, "sealed": True, "lead": plan.lead}
     shapes = {name: (rows, *variable.shape[1:]) for name, variable in variables.items()}
     metadata |= {"run": json.dumps(run), "arrays": json.dumps(shapes), **extra}
     group = new_group(part, metadata, OrbitMetadata)
-    group.create_group(CANONICAL.rstrip("/"))
+    create_groups(group, variables)
     for name, variable in variables.items():
         create_array(group, name, variable, rows, plan.rows)
     row = np.append(packed_checkpoint(opening), seal_of(part, BEFORE, []))

@@ -4,6 +4,7 @@ from nonholo.base.checks import needs
 
 with needs("jax", "nonholo.lagrange_dalembert"):
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
+    from nonholo.lagrange_dalembert._motion import CoordinateFlow, RecordedSystem
     from nonholo.lagrange_dalembert._orbit import AbstractCoordinateOrbit, CoordinateOrbit
     from nonholo.lagrange_dalembert._system import LagrangeDAlembert
     from nonholo.lagrange_dalembert.on_groups import (
@@ -16,10 +17,12 @@ with needs("jax", "nonholo.lagrange_dalembert"):
 __all__ = [
     "AbstractCoordinateOrbit",
     "CoordinateDiscretization",
+    "CoordinateFlow",
     "CoordinateOrbit",
     "GroupDiscretization",
     "GroupLagrangeDAlembert",
     "GroupOrbit",
     "LagrangeDAlembert",
+    "RecordedSystem",
     "mass_tensor_lagrangian",
 ]

@@ -9,16 +9,18 @@ import numpy as np
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _start
 from nonholo.lagrange_dalembert._equations import momenta, momentum
+from nonholo.lagrange_dalembert._motion import CoordinateMotion
 from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
 from nonholo.lagrange_dalembert._partial_step import after_parts
 from nonholo.lagrange_dalembert._precision import in_double
+from nonholo.lagrange_dalembert._run import CoordinateRun
 from nonholo.lagrange_dalembert._simulate import Start, checked_block, checked_counts, iterated, set_out, simulated
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 from nonholo.systems import AbstractCoordinateDiscretization, one_start
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class CoordinateDiscretization(AbstractCoordinateDiscretization[CoordinateOrbit]):
+class CoordinateDiscretization(CoordinateMotion, AbstractCoordinateDiscretization[CoordinateOrbit]):
     """A discretized system in coordinates, made by `nonholo.discretize`.
 
     Attributes:
@@ -85,7 +87,7 @@ class CoordinateDiscretization(AbstractCoordinateDiscretization[CoordinateOrbit]
         starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
         system, h = self.system, np.float64(self.time_step)
         steps, every = checked_counts(steps, save_every, 4 * system.dimension)
-        first = _first(system, h, configuration, starts)
+        first = self.start(configuration, **starts)
         return simulated(CoordinateOrbit, system, h, first, steps, every, throw, progress)
 
     def iterate(
@@ -134,7 +136,7 @@ class CoordinateDiscretization(AbstractCoordinateDiscretization[CoordinateOrbit]
         system, h = self.system, np.float64(self.time_step)
         steps, every = checked_counts(steps, save_every, 0)
         rows = self.rows_of_block(block_steps, every)
-        first = _first(system, h, configuration, starts)
+        first = self.start(configuration, **starts)
         return iterated(CoordinateOrbit, system, h, first, steps, every, rows, throw, progress)
 
     def rows_of_block(self, block_steps: Any, save_every: int) -> int:
@@ -170,6 +172,14 @@ class CoordinateDiscretization(AbstractCoordinateDiscretization[CoordinateOrbit]
             1.0
         """
         return self.system.regularity(q, q_next, time_step=self.time_step)
+
+    def start(self, configuration: Any, **starts: Any) -> Start:
+        """Return the checked state at the start of a run, the orientation to keep and the outcome so far."""
+        return _first(self.system, np.float64(self.time_step), configuration, starts)
+
+    def run(self, every: int) -> CoordinateRun:
+        """Return what computes blocks of a run that keeps one in `every` states."""
+        return CoordinateRun(self, every)
 
 
 def _first(system: LagrangeDAlembert, h: Any, configuration: Any, starts: dict[str, Any]) -> Start:

@@ -13,7 +13,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._room import equations_of, places
+from nonholo.lagrange_dalembert._room import equations_of, places, room
 from nonholo.orbit import AbstractOrbit
 
 Labels = dict[str, tuple[tuple[str, ...], str]]
@@ -42,9 +42,12 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     outcome: Outcome = Outcome.successful
     system: Any = None
     time_step: float | None = None
+    save_every: int = 1
     events: Any = None
+    branch: ClassVar[str] = "nearest"
     span: ClassVar[None] = None
     has_poses: ClassVar[bool] = True
+    is_compact: ClassVar[bool] = False
     is_measured: ClassVar[bool] = False
     work: ClassVar[None] = None
     _labels: ClassVar[Labels]
@@ -56,6 +59,12 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     def __repr__(self) -> str:
         span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
         return f"<{type(self).__name__}: {len(self)} states of {self._configurations()}{span}, {self.outcome}>"
+
+    @property
+    def motion(self) -> Any:
+        """The discretization or the flow."""
+        flow = room("_motion").CoordinateFlow
+        return flow(self.system) if self.time_step is None else self.system.discretize(self.time_step)
 
     @property
     def is_discrete(self) -> bool:
@@ -140,6 +149,7 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
         outcome: How the run ended.
         system: What moves.
         time_step: h; None for a flow.
+        save_every: Steps between saved states.
         events: What `events=` of the run found, an `EventLog`; None without.
 
     Example:
@@ -190,6 +200,7 @@ class GroupOrbit(AbstractCoordinateOrbit):
         outcome: How the run ended.
         system: What moves.
         time_step: h; None for a flow.
+        save_every: Steps between saved states.
         events: What `events=` of the run found, an `EventLog`; None without.
 
     Example:

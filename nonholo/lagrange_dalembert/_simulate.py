@@ -17,7 +17,7 @@ from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._room import configurations, equations_of
 
 _ROWS = 1024  # saved states of one block: one size of table, one compilation
-_LEAST = 1e-6  # seconds of a step, at least
+LEAST = 1e-6  # seconds of a step, at least
 
 OrbitT = TypeVar("OrbitT")
 State = tuple[Array, Array, Array]
@@ -30,7 +30,7 @@ Start = tuple[State, Array, Array]
 def checked_counts(steps: Any, save_every: Any, numbers: int) -> tuple[int, int]:
     """Return numbers of steps, refused where memory cannot hold this many numbers of each saved state, or in a year."""
     steps, every = step_counts(steps, save_every)
-    within_a_year("simulate(steps=...)", _LEAST * steps, "Pass fewer steps, or a larger time_step.")
+    within_a_year("simulate(steps=...)", LEAST * steps, "Pass fewer steps, or a larger time_step.")
     within_memory("simulate(steps=...)", 8.0 * numbers * (1 + steps // every), "Raise save_every.")
     return steps, every
 
@@ -46,7 +46,8 @@ def simulated(
     progress: bool,
 ) -> OrbitT:
     """Run the map from a checked start and return its orbit of a kind."""
-    ((columns, code, done),) = _blocks(system, h, start, steps, every, steps + 2, progress)
+    with progress_bar("steps", progress) as report:
+        ((columns, _, code, done),) = blocks(system, h, start, steps, every, steps + 2, report)
     return finished(orbit_of(kind, system, h, columns, 0, every, code), h, done, steps, throw)
 
 
@@ -63,12 +64,13 @@ def iterated(
 ) -> Iterator[OrbitT]:
     """Run the map from a checked start and give its orbit in blocks of this many states."""
     first = 0
-    for columns, code, done in _blocks(system, h, start, steps, every, rows, progress):
-        orbit = orbit_of(kind, system, h, columns, first, every, code)
-        first += len(columns[0])
-        if len(columns[0]) or not throw:
-            yield orbit
-        finished(orbit, h, done, steps, throw)
+    with progress_bar("steps", progress) as report:
+        for columns, _, code, done in blocks(system, h, start, steps, every, rows, report):
+            orbit = orbit_of(kind, system, h, columns, first, every, code)
+            first += len(columns[0])
+            if len(columns[0]) or not throw:
+                yield orbit
+            finished(orbit, h, done, steps, throw)
 
 
 def checked_block(block_steps: Any, every: int, numbers: int) -> int:
@@ -89,7 +91,7 @@ def orbit_of(
     *displaced, momentum, energy, residual = _decoded(system, h, q, v)
     displacement, time = displaced[0] if displaced else h * v, h * (every * np.arange(first, first + len(q)))
     arrays = time, configurations(system, q), displacement, v, momentum, impulses, energy, residual
-    return kind(*arrays, Outcome(int(code)), system, float(h))
+    return kind(*arrays, Outcome(int(code)), system, float(h), every)
 
 
 def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> Start:
@@ -135,32 +137,32 @@ def _advance(system: Any, h: Array, state: State, sign: Array, rows: Array, ever
     return jax.lax.while_loop(lambda c: (c[0] < rows) & (c[3] == 0), row, start)[1:]
 
 
-def _blocks(
-    system: Any, h: Any, start: Start, steps: int, every: int, most: int, progress: bool
-) -> Iterator[tuple[list[np.ndarray], Array, int]]:
-    """Give configurations, velocities and impulses of `most` saved states at a time, the outcome and the good steps.
+def blocks(
+    system: Any, h: Any, start: Start, steps: int, every: int, most: int, report: Callable[[int, int], object]
+) -> Iterator[tuple[list[np.ndarray], State, Array, int]]:
+    """Give configurations, velocities and impulses of `most` saved states at a time, and how the run stands after them.
 
-    The last block ends with the last state, whose impulse is not known.
+    That is its state, the outcome and the good steps. The last block ends with the last state, whose impulse is not
+    known.
     """
     state, sign, code = start
     started, done, given, tables = int(code == 0), 0, 0, []
-    with progress_bar("steps", progress) as report:
-        while code == 0 and done < steps:
-            left, open_rows = steps - done, most - sum(len(table[0]) for table in tables)
-            rows, stride = (min(_ROWS, open_rows, left // every), every) if left >= every else (1, left)
-            counts = (np.int64(rows), np.int64(stride))
-            taken, state, code, table = in_double(_advance, system, h, state, sign, *counts)
-            begun = min(rows, int(taken) // stride + 1)
-            tables.append([column[:begun] for column in table])
-            done += int(taken)
-            report(done, steps)
-            if code == 0 and begun == open_rows and done < steps:
-                yield _joined(tables), code, done
-                given, tables = given + most, []
+    while code == 0 and done < steps:
+        left, open_rows = steps - done, most - sum(len(table[0]) for table in tables)
+        rows, stride = (min(_ROWS, open_rows, left // every), every) if left >= every else (1, left)
+        counts = (np.int64(rows), np.int64(stride))
+        taken, state, code, table = in_double(_advance, system, h, state, sign, *counts)
+        begun = min(rows, int(taken) // stride + 1)
+        tables.append([column[:begun] for column in table])
+        done += int(taken)
+        report(done, steps)
+        if code == 0 and begun == open_rows and done % every == 0:
+            yield _joined(tables), state, code, done
+            given, tables = given + most, []
     kept = started * (1 + done // every - given)
     last = [np.asarray(state[0])[None], np.asarray(state[1])[None], np.empty((0, system.constraints))]
     q, v, impulses = _joined([*tables, last])
-    yield [q[:kept], v[:kept], impulses[: max(kept - 1, 0)]], code, done
+    yield [q[:kept], v[:kept], impulses[: max(kept - 1, 0)]], state, code, done
 
 
 def _joined(tables: list[list[np.ndarray]]) -> list[np.ndarray]:

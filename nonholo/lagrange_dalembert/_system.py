@@ -96,6 +96,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     force: Any = dataclasses.field(default=None, kw_only=True)
     coordinates: tuple[str, ...] = dataclasses.field(default=(), kw_only=True)
     name: str = dataclasses.field(default="System in coordinates", kw_only=True)
+    orbits: ClassVar[str] = "CoordinateOrbit"
+    recorded: ClassVar[tuple[str, ...]] = ("constraints", "is_driven", "orbits", "shapes")
     _equations: ClassVar[str] = "_equations"
 
     def __post_init__(self) -> None:

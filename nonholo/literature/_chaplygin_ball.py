@@ -8,10 +8,11 @@ import numpy as np
 from nonholo.base.types import Array
 from nonholo.groups import SE, SO
 from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
-from nonholo.literature._example import Example, numbers, positives
+from nonholo.literature._example import Example, numbers, positives, ready
 from nonholo.systems import mass_tensor_from_inertia
 
 
+@ready("angular_velocity")
 def chaplygin_ball(
     *,
     mass: float = 1.0,

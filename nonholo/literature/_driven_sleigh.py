@@ -8,9 +8,10 @@ import numpy as np
 from nonholo.base.checks import number
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.literature._example import Example, numbers, positives
+from nonholo.literature._example import Example, numbers, positives, ready
 
 
+@ready("configuration", "speed", "turning")
 def driven_sleigh(
     *,
     mass: float = 1.0,

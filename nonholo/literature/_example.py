@@ -1,6 +1,10 @@
 """The form of an example: a system in coordinates, a start, and what is known."""
 
+import copy
 import dataclasses
+import functools
+import inspect
+import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -46,6 +50,37 @@ class Example:
 
     def __repr__(self) -> str:
         return f"<Example {self.name}: {', '.join(self.coordinates)}>"
+
+
+def ready(*start: str) -> Callable[[Callable[..., Example]], Callable[..., Example]]:
+    """Let the system of what a function makes tell stores the function and its arguments but for those of the start."""
+
+    def decorated(make: Callable[..., Example]) -> Callable[..., Example]:
+        defaults = {name: each.default for name, each in inspect.signature(make).parameters.items()}
+
+        @functools.wraps(make)
+        def made(**given: Any) -> Example:
+            example = make(**given)
+            body = {name: _plain(given.get(name, default), default) for name, default in defaults.items()}
+            kept = {name: value for name, value in body.items() if name not in start}
+            return dataclasses.replace(example, system=_named(example.system, make.__name__, json.dumps(kept)))
+
+        return made
+
+    return decorated
+
+
+def _plain(value: Any, default: Any) -> Any:
+    """Return an argument as plain data, numbers of the kind of its default: 1 and 1.0 are one mass."""
+    return value if value is None else np.asarray(value, dtype=np.asarray(default).dtype).tolist()
+
+
+@functools.lru_cache(maxsize=64)  # one with a new function each time is another one
+def _named(system: Any, name: str, parameters: str) -> Any:
+    """Return a system that can be described; changes of it, by `Forced` or `dataclasses.replace`, are not."""
+    named = copy.copy(system)
+    object.__setattr__(named, "described", (f"examples.{name}", json.loads(parameters)))
+    return named
 
 
 def rate(index: int) -> Callable[[Array, Array], Array]:

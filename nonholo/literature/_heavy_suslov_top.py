@@ -5,10 +5,11 @@ import functools
 import numpy as np
 
 from nonholo.base.types import Array, Float
-from nonholo.literature._example import Example, numbers, positives
+from nonholo.literature._example import Example, numbers, positives, ready
 from nonholo.systems import Forced, SuslovTop
 
 
+@ready("velocity")
 def heavy_suslov_top(
     *,
     inertia: tuple[float, float, float] = (1.0, 1.2, 0.8),

@@ -8,9 +8,10 @@ import numpy as np
 from nonholo.base.checks import error, number, scale
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.literature._example import Example, numbers, rate
+from nonholo.literature._example import Example, numbers, rate, ready
 
 
+@ready("configuration", "speed", "turning")
 def knife_edge_on_incline(
     *,
     mass: float = 1.0,

@@ -9,9 +9,10 @@ from nonholo.base.checks import number
 from nonholo.base.limits import bounded_count
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.literature._example import Example
+from nonholo.literature._example import Example, ready
 
 
+@ready()
 def chaotic_quartic_oscillator(*, pairs: int = 3) -> Example:
     r"""Oscillators with quartic couplings and one constraint, whose motion is chaotic: q = (x, y_1.., z_1..).
 
@@ -67,6 +68,7 @@ def _quartic(n: int) -> LagrangeDAlembert:
     return LagrangeDAlembert(lagrangian, forms, dimension=2 * n + 1, coordinates=names, name="Chaotic oscillator")
 
 
+@ready("turning")
 def non_reversible(*, asymmetry: float = 0.5, turning: float = 2.6) -> Example:
     r"""Two oscillators in a gearbox whose ratio is set by a rotating, asymmetric pendulum: q = (x, y, xi).
 

@@ -7,9 +7,10 @@ import numpy as np
 
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.literature._example import Example, numbers, positives, rate
+from nonholo.literature._example import Example, numbers, positives, rate, ready
 
 
+@ready("configuration", "rates")
 def rolling_disk(
     *,
     mass: float = 1.0,

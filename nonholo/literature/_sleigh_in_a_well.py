@@ -4,10 +4,11 @@ import numpy as np
 
 from nonholo.base.checks import number
 from nonholo.base.types import Array, Float
-from nonholo.literature._example import Example, positives
+from nonholo.literature._example import Example, positives, ready
 from nonholo.systems import ChaplyginSleigh, Forced
 
 
+@ready("speed", "turning")
 def sleigh_in_a_well(
     *,
     mass: float = 1.0,

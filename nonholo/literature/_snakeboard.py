@@ -8,9 +8,10 @@ import numpy as np
 from nonholo.base.checks import error
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.literature._example import Example, numbers, positives, rate
+from nonholo.literature._example import Example, numbers, positives, rate, ready
 
 
+@ready("configuration", "speed", "rotor_rate", "wheel_rate")
 def snakeboard(
     *,
     mass: float = 1.0,

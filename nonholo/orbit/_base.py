@@ -26,11 +26,15 @@ class AbstractOrbit(abc.ABC):
         work: Work of forces on the motion since the first state, shape (K,); None in coordinates.
         multipliers: Impulses or forces of constraint.
         outcome: How the run ended.
+        motion: The rule of motion: a discretization or a flow.
+        save_every: Steps between saved states.
+        branch: How the values of the map were chosen.
         time_step: h; None where there is none.
         span: The first and the last time between which `at` knows all states; None if saved states are all there is.
         coordinates: The names of the coordinates; none on a group.
         has_poses: Whether it has configurations.
         is_discrete: Whether it has displacements: a flow has none.
+        is_compact: Whether it is made of compact states that its motion decodes, or of the numbers that it tells.
         is_measured: Whether configurations were given, and everything else follows from them.
         conserves_energy: Whether its map conserves the energy exactly; None for a flow, and where there is no map.
         events: What `events=` of the run found, an `EventLog`; None without.
@@ -47,11 +51,15 @@ class AbstractOrbit(abc.ABC):
     work: Float[np.ndarray, "K"] | None
     multipliers: Float[np.ndarray, "L s"]
     outcome: Outcome
+    motion: Any
+    save_every: int
+    branch: str
     time_step: float | None
     span: tuple[float, float] | None
     coordinates: tuple[str, ...] = ()
     has_poses: bool
     is_discrete: bool
+    is_compact: bool
     is_measured: bool
     conserves_energy: bool | None
     events: Any

@@ -9,7 +9,7 @@ import abc
 import dataclasses
 import importlib
 from collections.abc import Sequence
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -39,6 +39,10 @@ class AbstractMotion(abc.ABC):
     """The first and the last time between which `at` knows all states; None if saved states are all there is."""
     is_measured: bool = False
     """Whether poses were given, and everything else follows from them."""
+    columns: ClassVar[tuple[str, ...]] = STATES
+    """The arrays of its orbits, as stores keep them."""
+    runs_itself: ClassVar[bool] = False
+    """Whether it has a run of its own, or one by a route."""
 
     @property
     @abc.abstractmethod
@@ -49,6 +53,10 @@ class AbstractMotion(abc.ABC):
     @abc.abstractmethod
     def route_name(self) -> str | None:
         """How stores call the way in which steps are computed; None for a flow."""
+
+    def orbit(self, **rows: Any) -> "Orbit":
+        """Return the orbit of rows of its columns, and what else an orbit has."""
+        return Orbit(self, **rows)
 
     def at(self, states: "Orbit", times: Any) -> "Orbit":
         """Return the states at any times in between, where they are known."""
@@ -118,6 +126,7 @@ class Orbit(AbstractOrbit):
     turned: Float[np.ndarray, "K"] | None = None
     branch: str = "principal"
     events: Any = None
+    is_compact: ClassVar[bool] = True
 
     @staticmethod
     def from_poses(system: System, time: Any, configuration: Any) -> "Orbit":

@@ -1,24 +1,21 @@
 """Resuming a run that was written to a store: the part of `resume` for orbits, and `extend`."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from nonholo import io
 from nonholo.base.checks import count, error, flags, path, shown
 from nonholo.base.results import Outcome
-from nonholo.discrete import Discretization
-from nonholo.orbit import Orbit
+from nonholo.simulation._simulate import refuse_what_bodies_have
 from nonholo.simulation.events import Watch
-from nonholo.simulation.runs import CompiledRun, check_forces, closed_step, compiled_run
-from nonholo.simulation.stores import continue_run, watch_of_store
+from nonholo.simulation.runs import check_forces, closed_step, compiled_run
+from nonholo.simulation.stores import continue_run, refuse_other_functions, watch_of_store
 
 if TYPE_CHECKING:
     from nonholo.io import Stream
 
 
-def resume_run(
-    store: str | Path, *, discrete: Discretization | None, events: Any, throw: bool, progress: bool
-) -> Orbit:
+def resume_run(store: str | Path, *, discrete: Any, events: Any, throw: bool, progress: bool) -> Any:
     """Resume the run of a store: what `resume` does once it has asked the store, and found no sweep."""
     stream, run, watch = _opened("resume", store, discrete, events)
     with io.locked(stream.path):
@@ -29,13 +26,13 @@ def extend(
     store: str | Path,
     steps: int,
     *,
-    discrete: Discretization | None = None,
+    discrete: Any = None,
     events: Any = None,
     task: Any = None,
     trust: bool = False,
     throw: bool = True,
     progress: bool = False,
-) -> Orbit:
+) -> Any:
     """Run past the end of the run of a store, with the bits of one that had been that long from the start.
 
     A last block that was not full is computed again with what follows it.
@@ -87,10 +84,14 @@ def _refuse_ended(stored: dict[str, Any]) -> None:
         raise error("extend(store=...)", "be a run that can continue", f"outcome {outcome}", remedy)
 
 
-def _opened(
-    owner: str, store: str | Path, discrete: Discretization | None, events: Any
-) -> tuple["Stream", CompiledRun, Watch | None]:
+def _opened(owner: str, store: str | Path, discrete: Any, events: Any) -> tuple["Stream", Any, Watch | None]:
     stream = io.open_stream(store)
-    motion = cast(Discretization, io.restore_motion(io.read_attributes(store), discrete))
-    run = compiled_run("resume(store=...)", motion, closed_step(motion), stream.plan.every, stream.reconstruct)
-    return stream, run, watch_of_store(owner, stream, run, events)
+    motion, every = io.restore_motion(io.read_attributes(store), discrete), stream.plan.every
+    if not motion.runs_itself:
+        run = compiled_run("resume(store=...)", motion, closed_step(motion), every, stream.reconstruct)
+        return stream, run, watch_of_store(owner, stream, run, events)
+    refuse_what_bodies_have(owner, events=events)
+    run = motion.run(every)
+    if discrete is not None:
+        refuse_other_functions(owner, stream, run)
+    return stream, run, None

@@ -1,9 +1,10 @@
 """`simulate`: an orbit of the discrete map, from a checked start to a decoded result."""
 
+import functools
 from pathlib import Path
 from typing import Any, overload
 
-from nonholo.base.checks import flags, path
+from nonholo.base.checks import flags, path, refuse_given, step_counts
 from nonholo.base.results import finished
 from nonholo.discrete import BranchRule, Discretization
 from nonholo.orbit import Orbit
@@ -14,6 +15,7 @@ from nonholo.simulation.runs import (
     closed_step,
     compiled_run,
     first_state,
+    opened,
     refuse_too_large,
     refuse_too_long,
     uncompiled_run,
@@ -63,6 +65,9 @@ def simulate(
     events: Any = None,
     throw: bool = True,
     progress: bool = False,
+    store: str | Path | None = None,
+    checkpoint_every: int | None = None,
+    scenario: str | None = None,
 ) -> OrbitT: ...
 def simulate(
     discrete: Discretization | AbstractCoordinateDiscretization,
@@ -122,9 +127,9 @@ def simulate(
             to rounding; see `Orbit.events`. A stopping event ends the run with the last saved state before it.
         throw: Raise if the run cannot continue; otherwise return the good steps and the outcome.
         progress: Show a progress bar on standard error.
-        store: A new path. The saved states of a compiled run, and the crossings of its events, go there block by block,
-            in bounded memory; `resume` and `extend` continue it. An orbit that would fill 1 GiB is not returned whole
-            but as its last block.
+        store: A new path. The saved states of a run that is compiled or in coordinates, and the crossings of its
+            events, go there block by block, in bounded memory; `resume` and `extend` continue it. An orbit that would
+            fill 1 GiB is not returned whole but as its last block.
         checkpoint_every: Steps between two checkpoints of the store, a multiple of `save_every`; by default blocks of a
             few megabytes. A run that is stopped loses at most this many steps.
         scenario: A text that says how the orbit is made, kept in the store.
@@ -151,14 +156,33 @@ def simulate(
     how = {"branch": branch, "reconstruct": reconstruct, "backend": backend}
     kept = {"store": store, "checkpoint_every": checkpoint_every, "scenario": scenario}
     if in_coordinates(discrete):
-        refuse_what_bodies_have("simulate", restricted_velocity=restricted_velocity, **how, **kept)
-        return simulated(discrete, events, configuration=configuration, **starts, **common)
+        refuse_what_bodies_have("simulate", restricted_velocity=restricted_velocity, **how)
+        return _run_in_coordinates(discrete, {"configuration": configuration, **starts}, common, events, kept)
     options = RunOptions.of(discrete, **common, **how)
     start = Start.of("simulate", configuration, **starts, restricted_velocity=restricted_velocity)
     closed = closed_step(discrete, options.rule, options.backend)
     refuse_too_long("simulate", discrete, options.steps, compiled=closed is not None)
     watch = None if events is None else watched("simulate", discrete, events, options.rule.name, options.reconstruct)
     return (_run_in_memory if store is None else _run_into_store)(discrete, start, options, watch, **kept)
+
+
+def _run_in_coordinates(
+    discrete: AbstractCoordinateDiscretization,
+    start: dict[str, Any],
+    common: dict[str, Any],
+    events: Any,
+    kept: dict[str, Any],
+) -> Any:
+    if kept["store"] is None:
+        refuse_without_store(**kept)
+        return simulated(discrete, events, **start, **common)
+    remedy = "Run in memory with events, or into a store without."
+    refuse_given("simulate", "be left out of a stored run in coordinates", remedy, events=(events, None))
+    steps, every = step_counts(common["steps"], common["save_every"])
+    store, throw = path("simulate(store=...)", kept.pop("store")), common["throw"]
+    run = discrete.run(every)
+    how = {"throw": throw, "progress": common["progress"], **kept}
+    return run_into_store(run, lambda: run.opened(discrete.start(**start), steps, throw), steps, store, None, **how)
 
 
 def _run_into_store(
@@ -169,7 +193,9 @@ def _run_into_store(
     run = compiled_run("simulate(store=...)", discrete, closed, options.every, posed)
     refuse_too_large("simulate", discrete, 1, posed)
     first = first_state(discrete, start, posed=posed, compiled=True)
-    return run_into_store(run, first, options, store, watch, **kept)
+    begin = functools.partial(opened, run, first, options.steps, options.throw)
+    how = {"throw": options.throw, "progress": options.progress, **kept}
+    return run_into_store(run, begin, options.steps, store, watch, **how)
 
 
 def _run_in_memory(

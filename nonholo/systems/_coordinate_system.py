@@ -2,7 +2,7 @@
 
 import abc
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
@@ -21,6 +21,17 @@ class AbstractCoordinateDiscretization(abc.ABC, Generic[OrbitT]):
 
     system: Any
     time_step: float
+    route_name: ClassVar[None] = None
+    forces: ClassVar[None] = None
+    runs_itself: ClassVar[bool] = True
+
+    @abc.abstractmethod
+    def start(self, configuration: Any, **starts: Any) -> Any:
+        """Return the checked state at the start of a run, the orientation to keep and the outcome so far."""
+
+    @abc.abstractmethod
+    def run(self, every: int) -> Any:
+        """Return what computes blocks of a run that keeps one in `every` states."""
 
     @abc.abstractmethod
     def simulate(
@@ -63,7 +74,13 @@ class AbstractCoordinateDiscretization(abc.ABC, Generic[OrbitT]):
 
 
 class AbstractCoordinateSystem(abc.ABC, Generic[DiscretizationT, OrbitT]):
-    """A system in coordinates: `nonholo.discretize`, `flow` and `Forced` hand their arguments on to it."""
+    """A system in coordinates: `nonholo.discretize`, `flow` and `Forced` hand their arguments on to it.
+
+    Attributes:
+        described: What stores say of it in place of its fields: a name and parameters.
+    """
+
+    described: tuple[str, dict[str, Any]] | None = None
 
     @property
     def has_parts(self) -> bool:

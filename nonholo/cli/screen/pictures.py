@@ -77,6 +77,8 @@ def _flow(orbit: "Orbit") -> "Orbit | None":
     """Return the continuous motion from the same start where a closed form makes it cheap."""
     import nonholo
 
+    if not orbit.is_compact:
+        return None
     form = orbit.system.normal_form
     is_exact = form is not None and form.is_sleigh and form.is_planar
     if orbit.cayley is None or orbit.canonical_pose is None or not is_exact:

@@ -14,13 +14,13 @@ from nonholo.cli.screen.sweep_report import show_sweep, sweep_figures
 from nonholo.ensembles import load_sweep
 from nonholo.ensembles.stores import open_store
 from nonholo.io import Standing
-from nonholo.orbit import Orbit
+from nonholo.orbit import AbstractOrbit
 
 _MOST_BLOCKS = 1000  # of a sweep that are read, some milliseconds each
 _NESTED = ("parameters", "motion", "versions", "arrays", "run", "sweep")
 
 
-def show_provenance(store: Path, stored: dict[str, Any], orbit: Orbit | None, *, json: bool) -> None:
+def show_provenance(store: Path, stored: dict[str, Any], orbit: AbstractOrbit | None, *, json: bool) -> None:
     """Print attributes and, where the orbit could be loaded, invariants, as tables or as one JSON object."""
     record = _record(stored)
     with waiting("measuring", sys.stderr.isatty()):

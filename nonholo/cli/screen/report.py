@@ -14,8 +14,8 @@ from rich.table import Table
 
 from nonholo.analysis import invariants
 from nonholo.groups import SO
-from nonholo.io import fields_of
-from nonholo.orbit import Orbit
+from nonholo.io import described_system, fields_of
+from nonholo.orbit import AbstractOrbit
 
 ROUNDING = "rounding"
 _WIDEST = 6  # columns of a matrix that is shown whole
@@ -23,13 +23,13 @@ _LARGE = 100  # dimension of a group from which inertia operators are too large 
 _LABELS = {"mass_tensor": "mass tensor J", "inertia_tensor": "inertia tensor tr(J)-J"}
 
 
-def figures(orbit: Orbit) -> dict[str, Any]:
+def figures(orbit: AbstractOrbit) -> dict[str, Any]:
     """Return the invariants of an orbit and its body as plain numbers; None where a figure is not defined."""
     measured = dataclasses.asdict(invariants(orbit))
     plain = {name: _plain(value) for name, value in measured.items()}
     return {
         **plain,
-        "energy_is_exact": orbit.motion.conserves_energy,
+        "energy_is_exact": orbit.conserves_energy,
         "outcome": orbit.outcome.name,
         "message": orbit.outcome.message,
         "body": _body(orbit),
@@ -101,9 +101,13 @@ def _label(name: str) -> str:
     return _LABELS.get(name, name.replace("_", " "))
 
 
-def _body(orbit: Orbit) -> dict[str, Any]:
+def _body(orbit: AbstractOrbit) -> dict[str, Any]:
     """Return the parameters of the system as plain data, with its inertia, unless that is large."""
     system = orbit.system
+    if not orbit.is_compact:
+        kind, parameters = described_system(system)
+        about = {"coordinates": ", ".join(orbit.coordinates)} if "orbits" in parameters else parameters
+        return {"system": kind, "name": system.name, **about}
     given = {name: value for name, value in fields_of(system).items() if name != "group" and value is not None}
     if system.group.dim > _LARGE:
         return {"system": type(system).__name__, "group": repr(system.group), **given}

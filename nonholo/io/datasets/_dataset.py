@@ -1,5 +1,7 @@
 """An orbit as labeled data in the user's body frame, and the variables of its store, compact states beside it."""
 
+from typing import Any
+
 import numpy as np
 import xarray
 
@@ -84,7 +86,7 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
 
 
 def stored_variables(
-    orbit: Orbit, before: Float[np.ndarray, "1 c"] | None = None, *, older: bool = False
+    orbit: Any, before: Float[np.ndarray, "1 c"] | None = None, *, older: bool = False
 ) -> dict[str, xarray.Variable]:
     """Return the arrays of a store by name: what a person knows, and compact states in a group of their own.
 
@@ -93,6 +95,8 @@ def stored_variables(
         before: The heading or the quaternion of the state before the first one, in a row.
         older: Whether the store is of a schema below 3, which had compact states and energies alone.
     """
+    if not orbit.is_compact:
+        return _told(orbit)
     compact = {
         ("" if older else CANONICAL) + name: _variable(orbit, name, getattr(orbit, state))
         for name, state in zip(_COMPACT, STATES[1:], strict=True)
@@ -103,6 +107,16 @@ def stored_variables(
     for variable in known.values():
         variable.attrs["coordinates"] = "time"  # those of the group canonical need none
     return {"time": _variable(orbit, "time")} | known | compact
+
+
+def _told(orbit: Any) -> dict[str, xarray.Variable]:
+    """Return what an orbit tells, but for empty rows; names along axes are texts, which are attributes of a store."""
+    dataset = orbit.to_dataset()
+    for variable in dataset.data_vars.values():
+        named = {"components": list(orbit.coordinates)} if "coordinate" in variable.dims else {}
+        variable.attrs |= {"coordinates": "time"} | named
+    variables = {str(name): each.variable for name, each in dataset.reset_coords("time").data_vars.items()}
+    return {name: each for name, each in variables.items() if 0 not in each.shape[1:]}
 
 
 def is_known(system: System, name: str, *, posed: bool, discrete: bool) -> bool:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -10,17 +10,19 @@ from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup, quaternion_from_matrix
 from nonholo.io._descriptions import describe_group
 from nonholo.orbit import configurations, unwrapped
-from nonholo.systems import System
 
 HEADING = ["theta"]
 QUATERNION = ["qw", "qx", "qy", "qz"]
 
 
 class Stretch(NamedTuple):
-    """Saved states that follow one another: times, compact poses, and headings where the run knows them."""
+    """Saved states that follow one another: times, places, and headings where the run knows them.
+
+    Places are compact poses, matrices, or the coordinates of a system that has them.
+    """
 
     time: Float[np.ndarray, "K"]
-    pose: Float[np.ndarray, "K size"]
+    pose: Float[np.ndarray, "K ..."]
     headings: Float[np.ndarray, "K"] | None
 
 
@@ -46,7 +48,7 @@ def separate_rows(group: AbstractMatrixGroup, g: Float[np.ndarray, "R N N"]) -> 
 
 
 def rows_of(
-    system: System, stretches: Iterable[Stretch], every: int, before: Float[np.ndarray, "1 c"] | None = None
+    system: Any, stretches: Iterable[Stretch], every: int, before: Float[np.ndarray, "1 c"] | None = None
 ) -> Iterator[Float[np.ndarray, "R c"]]:
     """Return one in `every` of the states as rows of the columns; rows do not depend on how the motion is cut.
 
@@ -56,13 +58,21 @@ def rows_of(
     n, first = len(position), 0
     for time, pose, headings in _headed(stretches, before) if turn == HEADING else stretches:
         kept = slice(-first % every, None, every)
-        g = configurations(system, pose[kept])
+        g = pose[kept] if pose.ndim == 3 else configurations(system, pose[kept])
         turned = headings[kept, None] if headings is not None else _turned(g, turn)
         if turn == QUATERNION:
             turned = continued(turned, None if before is None else before[:, -4:])
         rows = np.concatenate([time[kept, None], g[:, :n, n], turned], axis=1)
         first, before = first + len(time), rows[-1:] if len(rows) else before
         yield rows
+
+
+def coordinate_rows(stretches: Iterable[Stretch], every: int) -> Iterator[Float[np.ndarray, "R c"]]:
+    """Return times and coordinates of one in `every` of the states."""
+    first = 0
+    for time, q, _ in stretches:
+        yield np.concatenate([time[:, None], q], axis=1)[-first % every :: every]
+        first += len(time)
 
 
 def layout(group: AbstractMatrixGroup) -> tuple[list[str], list[str]]:
@@ -90,7 +100,8 @@ def _headed(stretches: Iterable[Stretch], row: Float[np.ndarray, "1 c"] | None) 
     """Give stretches on SE(2) headings, each continuing the one before, the first that at the end of a row."""
     before = None if row is None else float(row[0, -1])
     for stretch in stretches:
-        headings = unwrapped(stretch.pose, before) if stretch.headings is None else stretch.headings
+        turned = stretch.pose[:, :2, 0] if stretch.pose.ndim == 3 else stretch.pose  # cosine and sine first
+        headings = unwrapped(turned, before) if stretch.headings is None else stretch.headings
         before = headings[-1] if len(headings) else before
         yield stretch._replace(headings=headings)
 

@@ -7,9 +7,11 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.types import Float
+from nonholo.lagrange_dalembert._motion import CoordinateMotion
 from nonholo.lagrange_dalembert._orbit import GroupOrbit
 from nonholo.lagrange_dalembert._partial_step import after_parts
 from nonholo.lagrange_dalembert._precision import in_double
+from nonholo.lagrange_dalembert._run import CoordinateRun
 from nonholo.lagrange_dalembert._simulate import Start, checked_block, checked_counts, iterated, set_out, simulated
 from nonholo.lagrange_dalembert._start import fixed_time_step
 from nonholo.lagrange_dalembert.on_groups import _start as start
@@ -18,7 +20,7 @@ from nonholo.systems import AbstractCoordinateDiscretization, one_start
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class GroupDiscretization(AbstractCoordinateDiscretization):
+class GroupDiscretization(CoordinateMotion, AbstractCoordinateDiscretization):
     """A discretized `GroupLagrangeDAlembert`, made by its `discretize`.
 
     Attributes:
@@ -86,7 +88,7 @@ class GroupDiscretization(AbstractCoordinateDiscretization):
         system, h = self.system, np.float64(self.time_step)
         steps, every = checked_counts(steps, save_every, 2 * (system.group.identity.size + system.group.dim))
         starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
-        first = _first(system, h, configuration, starts)
+        first = self.start(configuration, **starts)
         return simulated(GroupOrbit, system, h, first, steps, every, throw, progress)
 
     def iterate(
@@ -110,8 +112,16 @@ class GroupDiscretization(AbstractCoordinateDiscretization):
         system, h = self.system, np.float64(self.time_step)
         steps, every = checked_counts(steps, save_every, 0)
         rows = self.rows_of_block(block_steps, every)
-        first = _first(system, h, configuration, starts)
+        first = self.start(configuration, **starts)
         return iterated(GroupOrbit, system, h, first, steps, every, rows, throw, progress)
+
+    def start(self, configuration: Any, **starts: Any) -> Start:
+        """Return the checked state at the start of a run, the orientation to keep and the outcome so far."""
+        return _first(self.system, np.float64(self.time_step), configuration, starts)
+
+    def run(self, every: int) -> CoordinateRun:
+        """Return what computes blocks of a run that keeps one in `every` states."""
+        return CoordinateRun(self, every)
 
     def rows_of_block(self, block_steps: Any, save_every: int) -> int:
         """Return the saved states of a block of `iterate`, refused where memory cannot hold them."""

@@ -75,6 +75,8 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     is_driven: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()
     name: ClassVar[str] = "System with constraints that depend on the pose"
+    orbits: ClassVar[str] = "GroupOrbit"
+    recorded: ClassVar[tuple[str, ...]] = ("constraints", "coordinates", "is_driven", "name", "orbits", "shapes")
     _equations: ClassVar[str] = "on_groups._equations"
 
     def __post_init__(self) -> None:

@@ -40,8 +40,7 @@ def computed_block(
     """Compute a block of a run, to its end or to what ends the run, looking for events if there is a watch."""
     if watch is not None:
         return _searched_block(run, state, watch, plan, block, report)
-    stretch = run.stretch(state, plan.begin(block), plan.stop(block), report, opening=block == 0)
-    return Block(*stretch, None)
+    return Block(*run.stretch(state, plan, block, report), None)
 
 
 def _searched_block(

@@ -87,7 +87,7 @@ def _searched(watch: Watch, single: Iterator[Any], steps: int, every: int, piece
         last, done = seen.chosen(slice(max(count, 1) - 1, count)), done + max(count, 1) - 1
         ends = watch.stopped_by is not None or outcome != Outcome.successful or done == steps
         block = number % pieces == 0
-        yield _Piece(dataclasses.replace(kept, outcome=outcome), done, watch, block or ends, ends)
+        yield _Piece(dataclasses.replace(kept, outcome=outcome, save_every=every), done, watch, block or ends, ends)
         if ends:
             return
         watch = dataclasses.replace(watch, parts=()) if block else watch

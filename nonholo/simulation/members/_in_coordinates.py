@@ -258,7 +258,7 @@ def _kept(plan: Plan, rows: dict[str, np.ndarray], member: int, blocks: Iterator
     if plan.events is not None:
         done = max(len(whole) - 1, 0)
         kept = slice(done, None) if plan.every is None else slice(None, None, plan.every)
-        return dataclasses.replace(whole.chosen(kept), events=whole.events), done
+        return dataclasses.replace(whole.chosen(kept), save_every=plan.every or 1), done
     if whole.outcome != Outcome.successful:
         done, last = -1, whole
         for block in _opened(plan, rows, member, every=1):

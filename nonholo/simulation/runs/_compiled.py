@@ -3,12 +3,15 @@
 import dataclasses
 import time
 from collections.abc import Callable
+from typing import ClassVar
 
 import numpy as np
 
 from nonholo.base.checks import error, shown
 from nonholo.base.results import Outcome, finished
+from nonholo.base.types import Float
 from nonholo.discrete import PRINCIPAL, AbstractBranchRule, AbstractCompiledRoute, Discretization, check_first_state
+from nonholo.io import Plan
 from nonholo.orbit import Orbit
 from nonholo.simulation.runs._first_state import FirstState
 from nonholo.simulation.runs._state import Rows, RunState
@@ -32,6 +35,8 @@ class CompiledRun:
     route: AbstractCompiledRoute
     every: int
     reconstruct: bool
+    most_steps: ClassVar[int] = 1 << 23  # in a block, about a second
+    lead: ClassVar[int] = 1  # a block continues from the last row of the one before
 
     @property
     def sizes(self) -> tuple[int, int, int]:
@@ -46,18 +51,20 @@ class CompiledRun:
         code, kernel = self.route.start(scaled, coded)
         return RunState((scaled, self.route.chart_of(kernel), coded), kernel), Outcome(code)
 
+    def state_of(self, vector: Float[np.ndarray, "L"]) -> RunState:
+        """Return the state in a vector of a store."""
+        return RunState.of(vector, self.sizes)
+
     def first(self, state: RunState) -> Orbit:
         """Return the first row of a state as an orbit at time zero."""
         momenta, charts, poses = (row[None] for row in state.row)
         return self.orbit((momenta, charts, poses), 0, True, Outcome.successful)
 
     def stretch(
-        self, state: RunState, begun: int, stop: int, report: Callable[[int], object], *, opening: bool
+        self, state: RunState, plan: Plan, block: int, report: Callable[[int], object]
     ) -> tuple[Orbit, RunState, int]:
-        """Continue from step `begun`, a multiple of `every`, to step `stop`; return rows, state and last good step.
-
-        The rows of an opening stretch begin with the first state.
-        """
+        """Compute a block of a plan from the state where it begins; return rows, state and last good step."""
+        begun, stop, opening = plan.begin(block), plan.stop(block), block == 0
         first, kernel = int(opening), state.kernel.copy()
         rows = tuple(np.empty((first + (stop - begun) // self.every, width)) for width in self.sizes)
         for row, start in zip(rows, state.row, strict=True):

@@ -12,33 +12,47 @@ from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome, finished
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization
 from nonholo.io import Checkpoint, Plan
-from nonholo.orbit import AbstractMotion, Orbit
+from nonholo.orbit import AbstractMotion
 from nonholo.simulation.events import Watch, computed_block, searched_first
-from nonholo.simulation.runs import CompiledRun, FirstState, RunOptions, RunState, opened
+from nonholo.simulation.runs import CompiledRun
 from nonholo.simulation.stores._stored_events import descriptions, seen_by, watch_at_checkpoint
 
 if TYPE_CHECKING:
     from nonholo.io import Stream
 
-_ROWS, _NUMBERS, _STEPS = 1 << 16, 1 << 22, 1 << 23  # at most in a block: states, numbers in an array, steps
+_ROWS, _NUMBERS = 1 << 16, 1 << 22  # at most in a block: states, numbers in an array
 _LOADED = 1 << 27  # numbers of an orbit that is returned whole, 1 GiB
 
 
 def run_into_store(
-    run: CompiledRun,
-    start: FirstState,
-    options: RunOptions,
+    run: Any,
+    opened: Callable[[], tuple[Any, Any]],
+    steps: int,
     store: Path,
     watch: Watch | None,
     *,
     checkpoint_every: int | None,
     scenario: str | None,
-) -> Orbit:
-    """Run from a start into a new store, looking for events if there is a watch; return the orbit."""
+    throw: bool,
+    progress: bool,
+) -> Any:
+    """Run into a new store, looking for events if there is a watch; return the orbit.
+
+    Args:
+        run: A `CompiledRun`, or the run of a system in coordinates.
+        opened: Returns the run at its start, and its empty orbit (or raises) if it cannot continue from there.
+        steps: Steps in total.
+        store: Where to.
+        watch: What is looked for.
+        checkpoint_every: Steps of a block.
+        scenario: A text for the store.
+        throw: Whether a run that cannot continue raises.
+        progress: Whether a progress bar is shown.
+    """
     io.check_target(store, new="simulate(store=...)")
-    steps = options.steps
-    plan = Plan(steps, run.every, rows_of_block("simulate(checkpoint_every=...)", run, steps, checkpoint_every))
-    state, ended = opened(run, start, steps, options.throw)
+    rows = rows_of_block("simulate(checkpoint_every=...)", run, steps, checkpoint_every)
+    plan = Plan(steps, run.every, rows, run.lead)
+    state, ended = opened()
     first, found = searched_first(watch, run.first(state) if ended is None else ended)
     if ended is not None:
         return first
@@ -49,14 +63,14 @@ def run_into_store(
     within_disk("simulate(store=...)", 8.0 * (1 + steps // run.every) * (1 + sum(run.sizes)), store, remedy)
     stream = io.create_stream(store, first, plan, opening, events, scenario)
     with io.locked(stream.path):
-        return continue_run(run, stream, watch, throw=options.throw, progress=options.progress)
+        return continue_run(run, stream, watch, throw=throw, progress=progress)
 
 
-def rows_of_block(where: str, run: CompiledRun, steps: int, block_steps: int | None) -> int:
+def rows_of_block(where: str, run: Any, steps: int, block_steps: int | None) -> int:
     """Return the number of saved states in a block of this many steps; by default blocks of a few megabytes."""
     if block_steps is None:
         widest = max(1, *run.sizes)
-        return max(1, min(1 + steps // run.every, _ROWS, _NUMBERS // widest, _STEPS // run.every))
+        return max(1, min(1 + steps // run.every, _ROWS, _NUMBERS // widest, run.most_steps // run.every))
     asked = count(where, block_steps, "Pass the number of steps.")
     if asked % run.every:
         remedy = f"Pass {-(-asked // run.every) * run.every}."
@@ -85,7 +99,7 @@ def refuse_without_store(**given: Any) -> None:
             raise error(f"simulate({name}=...)", "come with a store", got, remedy)
 
 
-def continue_run(run: CompiledRun, stream: "Stream", watch: Watch | None, *, throw: bool, progress: bool) -> Orbit:
+def continue_run(run: Any, stream: "Stream", watch: Watch | None, *, throw: bool, progress: bool) -> Any:
     """Compute what a locked store lacks, block after block, and return the orbit."""
     stream.prepare()
     _warn_of_other_versions(stream)
@@ -107,7 +121,7 @@ def _standing(stream: "Stream") -> str:
     return f"{stream.reached()} of {stream.plan.steps}"
 
 
-def _completed(run: CompiledRun, stream: "Stream", watch: Watch | None, progress: bool) -> Checkpoint:
+def _completed(run: Any, stream: "Stream", watch: Watch | None, progress: bool) -> Checkpoint:
     """Compute every block that is missing or damaged; return the end of the run."""
     plan, computed = stream.plan, not stream.is_finished
     marked = max(stream.marked(), default=-1)
@@ -143,7 +157,7 @@ def _is_final(stream: "Stream", block: int, reached: Checkpoint) -> bool:
 
 
 def _computed(
-    run: CompiledRun,
+    run: Any,
     stream: "Stream",
     watch: Watch | None,
     block: int,
@@ -152,7 +166,7 @@ def _computed(
 ) -> Checkpoint:
     """Compute a block and write it."""
     current, chunks = watch_at_checkpoint(watch, begin.seen)
-    made = computed_block(run, RunState.of(begin.vector, run.sizes), current, stream.plan, block, report)
+    made = computed_block(run, run.state_of(begin.vector), current, stream.plan, block, report)
     seen = None if made.watch is None else seen_by(made.watch, stream.chunks_after(chunks, made.orbit.events))
     reached = Checkpoint(made.done, made.orbit.outcome, made.state.vector, seen)
     stream.write(block, made.orbit, reached)
@@ -167,7 +181,7 @@ def _first(stream: "Stream") -> Checkpoint:
         raise error("resume(store=...)", "hold the start of the run", str(flaw), remedy) from None
 
 
-def _loaded(run: CompiledRun, stream: "Stream", reached: Checkpoint) -> Orbit:
+def _loaded(run: Any, stream: "Stream", reached: Checkpoint) -> Any:
     """Return the orbit, of one that would fill the memory the last block."""
     states = 1 + reached.done // run.every + (0 if reached.seen is None else int(reached.seen.counts.sum()))
     if states * (2 + sum(run.sizes)) <= _LOADED:
