@@ -111,8 +111,33 @@ def _page(title: str, rooms: list[str]) -> str:
         and name not in INNER
         and value not in public().values()
     }
-    body = _entries(own) + ("\n\n## Results and interfaces\n\n" + _entries(others) if others else "")
+    ready = _ready_systems() if "literature" in rooms else ""
+    body = ready + _entries(own) + ("\n\n## Results and interfaces\n\n" + _entries(others) if others else "")
     return _TEXT.format(title=title, body=body)
+
+
+def _ready_systems() -> str:
+    """Return the table of ready systems: what they are, their source, what is known, and whether they have events."""
+    head = "| system | what | coordinates | source | known | events |"
+    rows = [head, "|---" * 6 + "|"]
+    for name in sorted({*nh.examples.__all__} - {"Example"}):
+        ready, text = getattr(nh.examples, name)(), inspect.getdoc(getattr(nh.examples, name)) or ""
+        source = " ".join(text.partition("Reference: ")[2].partition("\n\n")[0].split())
+        source = re.sub(r"\[([a-z0-9-]+)\]", r"[\1](../references.md)", source)
+        cells = [
+            f"`{name}`",
+            text.partition("\n")[0],
+            ", ".join(ready.coordinates),
+            source,
+            " ".join(ready.facts).replace("|", "\\|"),
+        ]
+        rows.append("| " + " | ".join([*cells, "yes" if _has_events(ready.system) else "no"]) + " |")
+    return "\n".join([_READY, *rows, "", ""])
+
+
+def _has_events(system: Any) -> bool:
+    """Tell whether runs find events: parts of steps are defined in coordinates, and where the step is compiled."""
+    return getattr(system, "has_parts", None) or nh.discretize(system, 0.1).route.compiled is not None
 
 
 def _entries(names: dict[str, Any]) -> str:
@@ -140,6 +165,11 @@ def _named_by(room: str) -> list[str]:
     module = getattr(nh, room) if room in OPEN else import_module(f"nonholo.{room}")
     return getattr(module, "__all__", [])
 
+
+_READY = """\
+All have pictures, `to_csv`, `to_pandas`, `nh.compare`, `nh.ensemble`, and sweeps over their parameters and starts by
+`nh.FamilyTask`. Those without events have a potential written in Python, whose steps are not compiled.
+"""
 
 _TEXT = """\
 <!-- written by docs/make_api_pages.py -->

@@ -71,8 +71,10 @@ Many motions:
     ensemble: Run or solve many members of one system, that differ in where they start, in parameters, or in both.
     Ensemble: Motions of M members at K saved states, from `ensemble`: arrays as in an `Orbit`, with a leading ...
     FlowEnsemble: Continuous motions of M members at K times, from `ensemble` of a system: as `Ensemble`, with no ...
+    CoordinateEnsemble:
     sweep: Run a task for every member of a design and keep what it returns in one store.
     EnsembleTask: Run the members of a design and keep some numbers of each.
+    FamilyTask:
     MemberBlock: Some members of a sweep in order: a mapping of names to arrays whose first axis is that of the members.
     load_sweep: Open the result of a finished sweep, after checking every chunk of it.
     Grid: Every combination of values along axes.
@@ -170,6 +172,7 @@ if TYPE_CHECKING:
     from nonholo.ensembles import Choice as Choice
     from nonholo.ensembles import Direction as Direction
     from nonholo.ensembles import EnsembleTask as EnsembleTask
+    from nonholo.ensembles import FamilyTask as FamilyTask
     from nonholo.ensembles import Grid as Grid
     from nonholo.ensembles import LogUniform as LogUniform
     from nonholo.ensembles import MassTensor as MassTensor
@@ -192,6 +195,7 @@ if TYPE_CHECKING:
     from nonholo.lagrange_dalembert import LagrangeDAlembert as LagrangeDAlembert
     from nonholo.lagrange_dalembert import mass_tensor_lagrangian as mass_tensor_lagrangian
     from nonholo.orbit import Orbit as Orbit
+    from nonholo.simulation import CoordinateEnsemble as CoordinateEnsemble
     from nonholo.simulation import Crossings as Crossings
     from nonholo.simulation import Ensemble as Ensemble
     from nonholo.simulation import Event as Event
@@ -225,11 +229,13 @@ if TYPE_CHECKING:
 _HOMES = {
     "ChaplyginSleigh": "systems",
     "Choice": "ensembles",
+    "CoordinateEnsemble": "simulation",
     "Crossings": "simulation",
     "Direction": "ensembles",
     "Discretization": "discrete",
     "Ensemble": "simulation",
     "EnsembleTask": "ensembles",
+    "FamilyTask": "ensembles",
     "FlowEnsemble": "simulation",
     "Event": "simulation",
     "EventLog": "simulation",

@@ -3,6 +3,7 @@
 from nonholo.ensembles._begin import functions_of
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._ensemble_task import EnsembleTask
+from nonholo.ensembles._family_task import FamilyTask
 from nonholo.ensembles._names import component_name
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles._sweep import load_sweep, resume, sweep
@@ -27,6 +28,7 @@ __all__ = [
     "Choice",
     "Direction",
     "EnsembleTask",
+    "FamilyTask",
     "Grid",
     "LogUniform",
     "MassTensor",

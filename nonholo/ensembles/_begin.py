@@ -21,17 +21,20 @@ from nonholo.ensembles._describe import (
     with_component_names,
 )
 from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
+from nonholo.ensembles._family_task import FamilyTask, family_task_from, imported_functions
 from nonholo.ensembles._names import Axes, check_dimensions
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles.designs import Design, Grid, RandomDesign, axis_dimensions
 from nonholo.ensembles.stores import Layout, Output, SweepStore, Task, create_store, layout_of, open_store, probed
-from nonholo.simulation import closed_step, in_one_thread, refuse_too_long
+from nonholo.simulation import in_one_thread
 
 _BLOCK = 4096  # most members of a block of a task that does not say how many
 _PIECES = 32  # blocks of a small sweep, so that all cores have work to the end
 _LEAST = 1e-8  # seconds of a member of any task
 _FILE = 4096  # bytes that a file takes at least, on most file systems
 _LANES = 32  # members that a compiled loop takes at once
+DESCRIBED = (EnsembleTask, FamilyTask)
+_MAKERS = {"EnsembleTask": ensemble_task_from, "FamilyTask": family_task_from}
 
 
 def check_task(task: Any, design: Any) -> None:
@@ -42,7 +45,7 @@ def check_task(task: Any, design: Any) -> None:
     if not isinstance(design, Grid | RandomDesign):
         remedy = "Pass nh.Grid({...}) or nh.RandomDesign(members, {...})."
         raise error("sweep(design=...)", "be a design", shown(design), remedy)
-    if isinstance(task, EnsembleTask):
+    if isinstance(task, DESCRIBED):
         task.check_design([*design.axes, *design.drawn])
 
 
@@ -62,15 +65,14 @@ def begun(task: Task, design: Design, path: Path, block: Any, scenario: str | No
 
 
 def _block(task: Task, members: int) -> int:
-    most, least = (task.block, _LANES) if isinstance(task, EnsembleTask) else (_BLOCK, 1)
+    most, least = (task.block, _LANES) if isinstance(task, DESCRIBED) else (_BLOCK, 1)
     return min(most, max(least, -(-members // _PIECES)))
 
 
 def _refuse_too_long(task: Task, members: int) -> None:
     """Refuse more members than a year has time for, however fast the machine is."""
-    if isinstance(task, EnsembleTask):
-        compiled = closed_step(task.discrete) is not None
-        refuse_too_long("EnsembleTask", task.discrete, task.steps, compiled=compiled, members=members)
+    if isinstance(task, DESCRIBED):
+        task.refuse_too_long(members)
     within_a_year("sweep(design=...)", _LEAST * members, "Ask for fewer members.")
 
 
@@ -113,6 +115,8 @@ def check_same(store: SweepStore, task: Any, design: Design) -> None:
 def functions_of(store: str | Path) -> list[str]:
     """Return the names of the functions that the task of a store would import: all but reductions of the library."""
     entry = open_store(store).description["task"]
+    if entry["kind"] == "FamilyTask":
+        return imported_functions(entry)
     names = entry["reductions"] if entry["kind"] == "EnsembleTask" else [entry["name"]]
     return [name for name in names if name not in REDUCTIONS]
 
@@ -129,8 +133,8 @@ def restored_task(store: SweepStore, task: Any, *, trust: bool = False) -> Task:
     _refuse_untrusted(store, functions_of(store.path), trust=trust)
     entry = store.description["task"]
     try:
-        made = ensemble_task_from(entry) if entry["kind"] == "EnsembleTask" else function_from(entry["name"])
-        return _as_begun(store, made)
+        made = _MAKERS.get(entry["kind"], lambda entry: function_from(entry["name"]))
+        return _as_begun(store, made(entry))
     except (ImportError, ValueError) as failure:
         remedy = f"Pass it: nonholo.resume('{store.path}', task=...)."
         raise error("resume(store=...)", "be a sweep whose task can be made again", f"{failure}", remedy) from failure
@@ -155,7 +159,7 @@ def _refuse_untrusted(store: SweepStore, names: list[str], *, trust: bool) -> No
 
 
 def _described(task: Any, design: Design) -> dict[str, Any]:
-    entry = task.describe() if isinstance(task, EnsembleTask) else {"kind": "function", "name": function_name(task)}
+    entry = task.describe() if isinstance(task, DESCRIBED) else {"kind": "function", "name": function_name(task)}
     return {"task": entry, "design": design_text(design)}
 
 

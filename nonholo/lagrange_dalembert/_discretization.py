@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.types import Array
+from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _start
 from nonholo.lagrange_dalembert._equations import momenta, momentum
 from nonholo.lagrange_dalembert._motion import CoordinateMotion
 from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
+from nonholo.lagrange_dalembert._partial_step import after_parts
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._run import CoordinateRun
 from nonholo.lagrange_dalembert._simulate import Start, checked_block, checked_counts, iterated, set_out, simulated
@@ -132,11 +133,27 @@ class CoordinateDiscretization(CoordinateMotion, AbstractCoordinateDiscretizatio
             [4, 4, 3]
         """
         starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
-        system, h, numbers = self.system, np.float64(self.time_step), 4 * self.system.dimension
+        system, h = self.system, np.float64(self.time_step)
         steps, every = checked_counts(steps, save_every, 0)
-        rows = checked_block(block_steps, every, numbers)
+        rows = self.rows_of_block(block_steps, every)
         first = self.start(configuration, **starts)
         return iterated(CoordinateOrbit, system, h, first, steps, every, rows, throw, progress)
+
+    def rows_of_block(self, block_steps: Any, save_every: int) -> int:
+        """Return the saved states of a block of `iterate`, refused where memory cannot hold them."""
+        return checked_block(block_steps, save_every, 4 * self.system.dimension)
+
+    def after_parts(self, states: CoordinateOrbit, fractions: Float[np.ndarray, "K"]) -> CoordinateOrbit:
+        r"""Return what is reached from states after parts of the steps that begin there.
+
+        After a fraction s that is the step of length s h from the same configuration and momentum: the definition of
+        the map itself, with another time step.
+
+        Args:
+            states: States of an orbit of this map.
+            fractions: Numbers in (0, 1), one for each.
+        """
+        return after_parts(CoordinateOrbit, self, states, fractions)
 
     def regularity(self, q: Any, q_next: Any) -> float:
         """Return the smallest singular value of the scaled regularity matrix of a step; zero at a fold.

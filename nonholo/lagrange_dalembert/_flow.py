@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 from nonholo.base.checks import flow_times, flow_tolerances
 from nonholo.base.numerics.time_sweep import padded, reached, sweep
@@ -15,7 +16,7 @@ from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._equations import solve_bordered
 from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._room import configurations, equations_of
+from nonholo.lagrange_dalembert._room import configurations, equations_of, places
 
 OrbitT = TypeVar("OrbitT")
 State = tuple[Array, Array]
@@ -38,15 +39,33 @@ def flow(
     rest, good = in_double(_sweep, system, first, padded(time), errors)
     rows = reached(first, rest, good, len(time))
     count = len(rows[0])
-    columns = (x[:count] for x in in_double(_decode, system, *map(padded, rows)))
     outcome = Outcome.successful if count == len(time) else Outcome.not_converged
-    q = configurations(system, rows[0])
-    orbit = kind(time[:count], q, None, rows[1], *columns, outcome, system)
+    orbit = _orbit(kind, system, time[:count], rows, outcome)
     if outcome != Outcome.successful:
         rtol, atol = errors
         where = f"Flow from time {time[count - 1]:g} to {time[count]:g} (rtol {rtol:g}, atol {atol:g})"
         raise OutcomeError(outcome, where, orbit)
     return orbit
+
+
+def flowed(
+    kind: Callable[..., OrbitT], system: Any, states: Any, times: np.ndarray, rtol: float, atol: float
+) -> OrbitT:
+    """Return states of a flow carried on, each to a later time of its own."""
+    x, spans = places(system, states.configuration, states.time), np.stack([states.time, times], axis=1)
+    ends = [
+        in_double(_sweep, system, tuple(first), padded(span), flow_tolerances(rtol, atol))
+        for *first, span in zip(x, states.body_velocity, spans, strict=True)
+    ]
+    rows = [np.stack([np.where(good[0], rest[which][0], np.nan) for rest, good in ends]) for which in (0, 1)]
+    return _orbit(kind, system, times, rows, Outcome.successful)
+
+
+def _orbit(
+    kind: Callable[..., OrbitT], system: Any, time: np.ndarray, rows: list[np.ndarray], outcome: Outcome
+) -> OrbitT:
+    columns = (x[: len(time)] for x in in_double(_decode, system, *map(padded, rows)))
+    return kind(time, configurations(system, rows[0]), None, rows[1], *columns, outcome, system)
 
 
 def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array]) -> tuple[State, Array]:

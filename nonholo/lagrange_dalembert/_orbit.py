@@ -2,12 +2,13 @@
 
 import abc
 import dataclasses
-from typing import Any, ClassVar
+from collections.abc import Sequence
+from typing import Any, ClassVar, Self
 
 import jax
 import numpy as np
 
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import error, selection, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
@@ -23,6 +24,7 @@ _SHARED: Labels = {
     "energy": ((), "energy"),
     "constraint_residual": ((), "largest residual of the constraint"),
 }
+_ROWS = ("time", "configuration", "displacement", "body_velocity", "momentum", "energy", "constraint_residual")
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -41,8 +43,8 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     system: Any = None
     time_step: float | None = None
     save_every: int = 1
+    events: Any = None
     branch: ClassVar[str] = "nearest"
-    events: ClassVar[None] = None
     span: ClassVar[None] = None
     has_poses: ClassVar[bool] = True
     is_compact: ClassVar[bool] = False
@@ -74,6 +76,28 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         """False for a discrete orbit, None for a flow."""
         return False if self.is_discrete else None
 
+    def chosen(self, states: slice | np.ndarray) -> Self:
+        """Return some of the states, by a slice, a mask or their numbers; the last one's impulse may be unknown."""
+        at = selection("CoordinateOrbit.chosen(states=...)", states)
+        return self._of_rows({name: rows[at] for name, rows in self._rows().items()})
+
+    def joined(self, others: Sequence[Self]) -> Self:
+        """Return the states with those of other parts of the same motion after them."""
+        parts = [part._rows() for part in (self, *others)]
+        return self._of_rows({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+
+    def _rows(self) -> dict[str, np.ndarray]:
+        """Return the arrays with a row for each state; impulses that are not known are NaN."""
+        missing = np.full((len(self) - len(self.multipliers), self.multipliers.shape[1]), np.nan)
+        known = {name: rows for name in _ROWS if (rows := getattr(self, name)) is not None}
+        return known | {"multipliers": np.concatenate([self.multipliers, missing])}
+
+    def _of_rows(self, rows: dict[str, np.ndarray]) -> Self:
+        """Return the orbit of such arrays, without the impulse of the last state if it is not known."""
+        impulses = rows["multipliers"]
+        known = len(impulses) - int(len(impulses) > 0 and bool(np.isnan(impulses[-1]).any()))
+        return dataclasses.replace(self, **{**rows, "multipliers": impulses[:known]})
+
     @property
     def restricted_momentum(self) -> Float[np.ndarray, "K n"]:
         r"""Momenta less their parts $A^T\mu$ across the constraint: those along admissible directions."""
@@ -93,12 +117,12 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         """
         import xarray
 
-        variables = {}
-        for name, (dimensions, meaning) in (self._labels | _SHARED).items():
-            rows = getattr(self, name)
-            if rows is not None:
-                missing = np.full((len(self) - len(rows), *rows.shape[1:]), np.nan)
-                variables[name] = (("step", *dimensions), np.concatenate([rows, missing]), {"long_name": meaning})
+        rows, labels = self._rows(), self._labels | _SHARED
+        variables = {
+            name: (("step", *dimensions), rows[name], {"long_name": meaning})
+            for name, (dimensions, meaning) in labels.items()
+            if name in rows
+        }
         coords: dict[str, Any] = {"time": ("step", self.time, {"long_name": "time"}), **self._names()}
         step = {} if self.time_step is None else {"time_step": self.time_step}
         return xarray.Dataset(variables, coords=coords, attrs={"outcome": self.outcome.name, **step})
@@ -126,6 +150,7 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
         system: What moves.
         time_step: h; None for a flow.
         save_every: Steps between saved states.
+        events: What `events=` of the run found, an `EventLog`; None without.
 
     Example:
         >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -176,6 +201,7 @@ class GroupOrbit(AbstractCoordinateOrbit):
         system: What moves.
         time_step: h; None for a flow.
         save_every: Steps between saved states.
+        events: What `events=` of the run found, an `EventLog`; None without.
 
     Example:
         >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian

@@ -6,10 +6,11 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import jax
+import numpy as np
 
 from nonholo.base.checks import array, choice, count, error, shown, text
 from nonholo.base.numerics import double_precision
-from nonholo.base.types import Array
+from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._room import room
 from nonholo.lagrange_dalembert._tracing import (
     ForceTable,
@@ -154,6 +155,12 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         """Shapes of a configuration and of a velocity."""
         return (self.dimension,), (self.dimension,)
 
+    @property
+    def has_parts(self) -> bool:
+        """Whether parts of a step are defined: functions and tables that were made for one time step have none."""
+        given = (self.discrete_lagrangian, self.discrete_constraints, self.force)
+        return not any(getattr(each, "is_of_one_step", False) for each in given)
+
     def forced(self, potential: Any, force: Any) -> "LagrangeDAlembert":
         """Return the system with a potential U(q) and a force; itself with neither. `nonholo.Forced` calls it."""
         if potential is None and force is None:
@@ -251,6 +258,12 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         starts = {"body_velocity": body_velocity, "momentum": momentum}
         kind, start = room("_orbit").CoordinateOrbit, room("_start").of_flow
         return room("_flow").flow(kind, self, start, configuration, starts, times, rtol, atol)
+
+    def flowed(
+        self, states: "CoordinateOrbit", times: Float[np.ndarray, "K"], *, rtol: float, atol: float
+    ) -> "CoordinateOrbit":
+        """Return states of a flow carried on, each to a later time of its own; NaN where the solver fails."""
+        return room("_flow").flowed(room("_orbit").CoordinateOrbit, self, states, times, rtol, atol)
 
 
 def _with_potential(lagrangian: Callable[..., Array], potential: Any) -> Callable[..., Array]:

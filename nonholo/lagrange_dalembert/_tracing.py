@@ -3,7 +3,7 @@
 import dataclasses
 import inspect
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -81,6 +81,7 @@ class ForceTable:
     """Forces of the steps, one row a step; after the last one nothing acts."""
 
     rows: Float[np.ndarray, "steps n"]
+    is_of_one_step: ClassVar[bool] = True
 
     def row(self, step: Array) -> Array:
         """Return the force of a step, whose number may carry rounding errors."""
@@ -94,6 +95,7 @@ class TwoPoint:
     """A function of two configurations that was made for one time step."""
 
     function: Callable[[Array, Array], Array]
+    is_of_one_step: ClassVar[bool] = True
 
     def __call__(self, q: Array, q_next: Array, time_step: Array) -> Array:
         """Return the value, whatever the time step."""

@@ -1,7 +1,7 @@
 """The orbit: compact states of a motion and their decoding by the group. Nothing is simulated here."""
 
 from nonholo.orbit._base import AbstractOrbit
-from nonholo.orbit._crossings import AbstractEventLog, Crossings, EventLog, joined_crossings, joined_states
+from nonholo.orbit._crossings import AbstractEventLog, Crossings, EventLog, joined_crossings
 from nonholo.orbit._orbit import STATES, AbstractMotion, Orbit, as_orbit
 from nonholo.orbit._poses import configurations, poses, unwrapped
 
@@ -16,7 +16,6 @@ __all__ = [
     "as_orbit",
     "configurations",
     "joined_crossings",
-    "joined_states",
     "poses",
     "unwrapped",
 ]

@@ -2,7 +2,8 @@
 
 import abc
 import importlib
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, Self
 
 import numpy as np
 
@@ -36,6 +37,8 @@ class AbstractOrbit(abc.ABC):
         is_compact: Whether it is made of compact states that its motion decodes, or of the numbers that it tells.
         is_measured: Whether configurations were given, and everything else follows from them.
         conserves_energy: Whether its map conserves the energy exactly; None for a flow, and where there is no map.
+        events: What `events=` of the run found, an `EventLog`; None without.
+        turned: Heading without ambiguity of full turns, where the run knows it, shape (K,).
     """
 
     system: Any
@@ -59,6 +62,8 @@ class AbstractOrbit(abc.ABC):
     is_compact: bool
     is_measured: bool
     conserves_energy: bool | None
+    events: Any
+    turned: Float[np.ndarray, "K"] | None = None
 
     @property
     @abc.abstractmethod
@@ -68,6 +73,19 @@ class AbstractOrbit(abc.ABC):
     @abc.abstractmethod
     def at(self, times: Any) -> "AbstractOrbit":
         """Return the states at any times of the span."""
+
+    @abc.abstractmethod
+    def chosen(self, states: slice | np.ndarray) -> Self:
+        """Return some of the states, by a slice, a mask or their numbers."""
+
+    @abc.abstractmethod
+    def joined(self, others: Sequence[Self]) -> Self:
+        """Return the states with those of other parts of the same motion after them."""
+
+    def with_headings(self, before: float | None) -> Self:
+        """Return the states with headings that continue from the given one, where there are any."""
+        del before
+        return self
 
     @abc.abstractmethod
     def to_dataset(self) -> Any:

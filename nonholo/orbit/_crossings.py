@@ -3,13 +3,12 @@
 import abc
 import dataclasses
 from collections.abc import Iterator, Sequence
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from nonholo.base.checks import selection
 from nonholo.base.types import Float, Int
-from nonholo.orbit._orbit import STATES, Orbit
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -33,7 +32,7 @@ class Crossings:
     step: Int[np.ndarray, "C"]
     fraction: Float[np.ndarray, "C"]
     direction: Int[np.ndarray, "C"]
-    states: Orbit
+    states: Any
 
     def __len__(self) -> int:
         return len(self.step)
@@ -103,16 +102,10 @@ class EventLog(AbstractEventLog[Crossings]):
         return f"<EventLog of crossings: {counts}{ended}>"
 
 
-def joined_states(parts: Sequence[Orbit]) -> Orbit:
-    """Return states of one motion one after another."""
-    columns = {name: [getattr(part, name) for part in parts] for name in STATES}
-    kept = {name: None if rows[0] is None else np.concatenate(rows) for name, rows in columns.items()}
-    return dataclasses.replace(parts[0], **kept)
-
-
 def joined_crossings(parts: Sequence[Crossings]) -> Crossings:
     """Return the crossings of stretches of a run one after another."""
     step, fraction, direction = (
         np.concatenate([getattr(part, name) for part in parts]) for name in ("step", "fraction", "direction")
     )
-    return Crossings(step, fraction, direction, joined_states([part.states for part in parts]))
+    first, *others = (part.states for part in parts)
+    return Crossings(step, fraction, direction, first.joined(others))

@@ -8,7 +8,8 @@ discretization or a flow must know to decode them.
 import abc
 import dataclasses
 import importlib
-from typing import Any, ClassVar
+from collections.abc import Sequence
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -170,11 +171,24 @@ class Orbit(AbstractOrbit):
             raise ValueError(f"`Orbit[...]` must be sliced forwards. Got stride {stride}. Reverse the arrays instead.")
         return dataclasses.replace(self.chosen(states), save_every=self.save_every * stride)
 
-    def chosen(self, states: slice | np.ndarray) -> "Orbit":
+    def chosen(self, states: slice | np.ndarray) -> Self:
         """Return some of the states, by a slice or a mask, each with the same `save_every` as before."""
         states = selection("Orbit.chosen(states=...)", states)
         kept = {name: None if (rows := getattr(self, name)) is None else rows[states] for name in STATES}
         return dataclasses.replace(self, **kept)
+
+    def joined(self, others: Sequence[Self]) -> Self:
+        """Return the states with those of other parts of the same motion after them."""
+        columns = {name: [getattr(part, name) for part in (self, *others)] for name in STATES}
+        kept = {name: None if rows[0] is None else np.concatenate(rows) for name, rows in columns.items()}
+        return dataclasses.replace(self, **kept)
+
+    def with_headings(self, before: float | None) -> Self:
+        """Return states of the plane with headings that continue from the given one; others as they are."""
+        pose = self.canonical_pose
+        if self.space != SE(2) or pose is None or self.turned is not None or not len(self):
+            return self
+        return dataclasses.replace(self, turned=unwrapped(pose, before=before))
 
     def at(self, times: Any) -> "Orbit":
         """Return the states of a flow at any of its times, from its Taylor series or closed form, without a new run.

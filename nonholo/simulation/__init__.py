@@ -7,6 +7,7 @@ from nonholo.simulation._resume import extend, resume_run
 from nonholo.simulation._simulate import simulate
 from nonholo.simulation.events import Event, crossings, cusp
 from nonholo.simulation.members import (
+    CoordinateEnsemble,
     Ensemble,
     FlowEnsemble,
     Members,
@@ -22,6 +23,7 @@ from nonholo.simulation.runs import closed_step, refuse_too_long
 from nonholo.simulation.stores import size_in_blocks
 
 __all__ = [
+    "CoordinateEnsemble",
     "Crossings",
     "Ensemble",
     "Event",

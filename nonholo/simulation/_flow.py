@@ -11,7 +11,7 @@ from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, Solved, solver_of
 from nonholo.orbit import Orbit
-from nonholo.simulation.events import Event, check_functions, checked_events, flow_with_events
+from nonholo.simulation.events import Event, check_functions, checked_events, flow_in_coordinates, flow_with_events
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, OrbitT, Start, System, refuse_in_coordinates
 
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
@@ -91,7 +91,8 @@ def flow(
             coefficient, and nothing of size n x n is made.
         events: `Event`s, or functions of an orbit, whose changes of sign from one requested time or step of the series
             to the next are found, and located on the solution; see `Orbit.events`. Two of them between two such times
-            are not seen: ask for more times. A stopping event ends the orbit with the last requested time before it.
+            are not seen: ask for more times. A stopping event ends the orbit with the last requested time before it. In
+            coordinates only the requested times are compared, and each guess is another solve from the one before.
 
     Returns:
         The orbit. It has no displacements, and its multipliers are the forces at its times. Of a system in coordinates
@@ -111,11 +112,11 @@ def flow(
     """
     starts = {"body_velocity": body_velocity, "momentum": momentum}
     if isinstance(system, AbstractCoordinateSystem):
-        refused = {"restricted_velocity": restricted_velocity, "method": method, "events": events}
+        refused = {"restricted_velocity": restricted_velocity, "method": method}
         no_pose = {"reconstruct": (reconstruct, True)}
         refuse_in_coordinates("flow", **{name: (value, None) for name, value in refused.items()}, **no_pose)
         errors = {"rtol": 1e-10 if rtol is None else rtol, "atol": atol}
-        return system.flow(configuration=configuration, times=times, **starts, **errors)
+        return flow_in_coordinates(system, events, configuration=configuration, times=times, **starts, **errors)
     if not isinstance(system, AbstractSystem):
         raise error("flow(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
     flags("flow", reconstruct=reconstruct)

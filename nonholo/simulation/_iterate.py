@@ -10,7 +10,7 @@ from nonholo.discrete import BranchRule, Discretization
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
 from nonholo.simulation._simulate import refuse_what_bodies_have
-from nonholo.simulation.events import Watch, computed_block, searched_first, watched
+from nonholo.simulation.events import Watch, computed_block, iterated, searched_first, watched
 from nonholo.simulation.runs import (
     CompiledRun,
     RunOptions,
@@ -23,7 +23,7 @@ from nonholo.simulation.runs import (
     refuse_too_long,
 )
 from nonholo.simulation.stores import rows_of_block
-from nonholo.systems import AbstractCoordinateDiscretization, Start
+from nonholo.systems import AbstractCoordinateDiscretization, Start, in_coordinates
 
 
 def iterate(
@@ -84,10 +84,10 @@ def iterate(
     flags("iterate", reconstruct=reconstruct, throw=throw, progress=progress)
     how = {"branch": branch, "reconstruct": reconstruct, "backend": backend}
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
-    if isinstance(discrete, AbstractCoordinateDiscretization):
-        refuse_what_bodies_have("iterate", restricted_velocity=restricted_velocity, events=events, **how)
-        rest = {"save_every": save_every, "throw": throw, "progress": progress}
-        return discrete.iterate(configuration=configuration, steps=steps, block_steps=block_steps, **starts, **rest)
+    if in_coordinates(discrete):
+        refuse_what_bodies_have("iterate", restricted_velocity=restricted_velocity, **how)
+        rest = {"steps": steps, "save_every": save_every, "throw": throw, "progress": progress}
+        return iterated(discrete, events, block_steps, configuration=configuration, **starts, **rest)
     options = RunOptions.of(discrete, steps=steps, save_every=save_every, throw=throw, progress=progress, **how)
     start = Start.of("simulate", configuration, **starts, restricted_velocity=restricted_velocity)
     return _blocks(discrete, start, options, block_steps, events)

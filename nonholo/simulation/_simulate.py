@@ -4,11 +4,11 @@ import functools
 from pathlib import Path
 from typing import Any, overload
 
-from nonholo.base.checks import flags, path, step_counts
+from nonholo.base.checks import flags, path, refuse_given, step_counts
 from nonholo.base.results import finished
 from nonholo.discrete import BranchRule, Discretization
 from nonholo.orbit import Orbit
-from nonholo.simulation.events import Watch, run_compiled, run_with_events, watched
+from nonholo.simulation.events import Watch, run_compiled, run_with_events, simulated, watched
 from nonholo.simulation.runs import (
     CompiledRun,
     RunOptions,
@@ -21,7 +21,7 @@ from nonholo.simulation.runs import (
     uncompiled_run,
 )
 from nonholo.simulation.stores import refuse_without_store, run_into_store
-from nonholo.systems import AbstractCoordinateDiscretization, OrbitT, Start, refuse_in_coordinates
+from nonholo.systems import AbstractCoordinateDiscretization, OrbitT, Start, in_coordinates, refuse_in_coordinates
 
 _DEFAULTS = {"branch": "principal", "reconstruct": True, "backend": "auto"}  # of what a system in coordinates lacks
 
@@ -62,6 +62,7 @@ def simulate(
     displacement: Any = None,
     momentum: Any = None,
     save_every: int = 1,
+    events: Any = None,
     throw: bool = True,
     progress: bool = False,
     store: str | Path | None = None,
@@ -154,9 +155,9 @@ def simulate(
     common = {"steps": steps, "save_every": save_every, "throw": throw, "progress": progress}
     how = {"branch": branch, "reconstruct": reconstruct, "backend": backend}
     kept = {"store": store, "checkpoint_every": checkpoint_every, "scenario": scenario}
-    if isinstance(discrete, AbstractCoordinateDiscretization):
-        refuse_what_bodies_have("simulate", restricted_velocity=restricted_velocity, **how, events=events)
-        return _run_in_coordinates(discrete, {"configuration": configuration, **starts}, common, kept)
+    if in_coordinates(discrete):
+        refuse_what_bodies_have("simulate", restricted_velocity=restricted_velocity, **how)
+        return _run_in_coordinates(discrete, {"configuration": configuration, **starts}, common, events, kept)
     options = RunOptions.of(discrete, **common, **how)
     start = Start.of("simulate", configuration, **starts, restricted_velocity=restricted_velocity)
     closed = closed_step(discrete, options.rule, options.backend)
@@ -166,11 +167,17 @@ def simulate(
 
 
 def _run_in_coordinates(
-    discrete: AbstractCoordinateDiscretization, start: dict[str, Any], common: dict[str, Any], kept: dict[str, Any]
+    discrete: AbstractCoordinateDiscretization,
+    start: dict[str, Any],
+    common: dict[str, Any],
+    events: Any,
+    kept: dict[str, Any],
 ) -> Any:
     if kept["store"] is None:
         refuse_without_store(**kept)
-        return discrete.simulate(**start, **common)
+        return simulated(discrete, events, **start, **common)
+    remedy = "Run in memory with events, or into a store without."
+    refuse_given("simulate", "be left out of a stored run in coordinates", remedy, events=(events, None))
     steps, every = step_counts(common["steps"], common["save_every"])
     store, throw = path("simulate(store=...)", kept.pop("store")), common["throw"]
     run = discrete.run(every)

@@ -16,6 +16,7 @@ from nonholo.systems._coordinate_system import (
     AbstractCoordinateSystem,
     DiscretizationT,
     OrbitT,
+    in_coordinates,
     refuse_in_coordinates,
 )
 from nonholo.systems._displacements import in_exp_d, trace_constraints
@@ -79,6 +80,7 @@ __all__ = [
     "euler_angle_discrete_lagrangian",
     "group_mass_tensor",
     "gyroscopic_form",
+    "in_coordinates",
     "in_exp_d",
     "in_group",
     "inadmissible",

@@ -2,9 +2,15 @@
 
 import abc
 from collections.abc import Iterator
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+
+import numpy as np
 
 from nonholo.base.checks import error, refuse_given
+from nonholo.base.types import Float
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeIs
 
 OrbitT = TypeVar("OrbitT")
 DiscretizationT = TypeVar("DiscretizationT")
@@ -58,6 +64,14 @@ class AbstractCoordinateDiscretization(abc.ABC, Generic[OrbitT]):
     ) -> Iterator[OrbitT]:
         """Run the discrete map block by block."""
 
+    @abc.abstractmethod
+    def rows_of_block(self, block_steps: Any, save_every: int) -> int:
+        """Return the saved states of a block, refused where memory cannot hold them."""
+
+    @abc.abstractmethod
+    def after_parts(self, states: OrbitT, fractions: Float[np.ndarray, "K"]) -> OrbitT:
+        """Return what is reached from states after parts of the steps that begin there."""
+
 
 class AbstractCoordinateSystem(abc.ABC, Generic[DiscretizationT, OrbitT]):
     """A system in coordinates: `nonholo.discretize`, `flow` and `Forced` hand their arguments on to it.
@@ -67,6 +81,11 @@ class AbstractCoordinateSystem(abc.ABC, Generic[DiscretizationT, OrbitT]):
     """
 
     described: tuple[str, dict[str, Any]] | None = None
+
+    @property
+    def has_parts(self) -> bool:
+        """Whether parts of a step are defined."""
+        return True
 
     def forced(self, potential: Any, force: Any) -> Any:
         """Return the system with a potential and a force; refused where there is no way to have them."""
@@ -90,6 +109,16 @@ class AbstractCoordinateSystem(abc.ABC, Generic[DiscretizationT, OrbitT]):
         atol: float = 1e-12,
     ) -> OrbitT:
         """Solve the continuous equations."""
+
+
+def in_coordinates(discrete: Any) -> "TypeIs[AbstractCoordinateDiscretization]":
+    """Tell whether something is a discretized system in coordinates.
+
+    Example:
+        >>> in_coordinates(nh.discretize(nh.examples.particle().system, 0.1)), in_coordinates(None)
+        (True, False)
+    """
+    return isinstance(discrete, AbstractCoordinateDiscretization)
 
 
 def refuse_in_coordinates(owner: str, **given: tuple[Any, Any]) -> None:

@@ -63,6 +63,7 @@ NOT_CALLED = {
     "MemberBlock": "made by sweeps; its methods are called",
     "OutcomeError": "raised by runs",
     "ImpossibleBodyWarning": "a warning of `from_inertia`, which is called",
+    "CoordinateEnsemble": "made by `ensemble` in coordinates, which is called",
     "Crossings": "made by runs; its methods are called",
     "Ensemble": "made by `ensemble`; its methods are called",
     "EventLog": "made by runs",

@@ -1,5 +1,8 @@
 """Calls that write and read stores, and of sweeps; they work in a folder with the stores of `fuzz.shelf`."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 from fuzz import shelf
 from fuzz.calls import Call, by_position, call
@@ -12,6 +15,10 @@ import nonholo as nh
 def calls() -> list[Call]:
     """Return the calls of this file."""
     return [*_orbits(), *_sweeps(), *_designs(), *_blocks()]
+
+
+def _family(*, a: float = 0.5) -> Any:
+    return SimpleNamespace(system=nh.ChaplyginSleigh(1.0, 1.0, a), configuration=np.eye(3), body_velocity=np.eye(3)[1])
 
 
 def _orbits() -> list[Call]:
@@ -36,9 +43,13 @@ def _sweeps() -> list[Call]:
     how = {"workers": count(1, none=True), "block": count(2, none=True), "resume": flag(False), "progress": flag(False)}
     task = {"discrete": thing(TOP), "steps": count(3), "restricted_velocity": array([0.3, 0.2])}
     names = {"reductions": anything(["final_state"]), "save_every": count(1, none=True), "reconstruct": flag(True)}
+    family = {"family": function(_family), "time_step": positive(0.1), "steps": count(3)}
+    family_names = {name: argument for name, argument in names.items() if name != "reconstruct"}
+    family_names |= {"parameters": anything({"a": 2.0})}
     return [
         call("sweep", nh.sweep, task=function(shelf.task), design=thing(design), **where, **how),
         call("load_sweep", nh.load_sweep, store=path(shelf.SWEEP), stores=True),
+        call("FamilyTask", nh.FamilyTask, **family, **family_names),
         call("EnsembleTask", nh.EnsembleTask, **task, **names),
     ]
 

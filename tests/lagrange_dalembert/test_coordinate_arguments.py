@@ -82,7 +82,6 @@ FOREIGN = {
     "branch": (lambda: run(branch="largest"), r"simulate\(branch"),
     "reconstruct": (lambda: run(reconstruct=False), r"simulate\(reconstruct"),
     "backend": (lambda: run(backend="numba"), r"simulate\(backend"),
-    "events of blocks": (lambda: blocks(events=[abs]), r"iterate\(events"),
     "branch of blocks": (lambda: blocks(branch="largest"), r"iterate\(branch"),
     "method": (lambda: flow(method="closed_form"), r"flow\(method"),
 }

@@ -345,18 +345,6 @@ def test_right_invariant_constraints_without_poses_are_refused() -> None:
         nh.simulate(MOTIONS["right-invariant"], **run, events=[lambda orbit: orbit.time - 0.1])
 
 
-def test_systems_in_coordinates_are_refused() -> None:
-    """A Lagrange-d'Alembert system has no parts of steps."""
-    ready = nh.examples.particle()
-    with pytest.raises(ValueError, match="keep its default"):
-        nh.simulate(
-            nh.discretize(ready.system, 0.1),
-            configuration=ready.configuration,
-            steps=5,
-            events=[lambda orbit: orbit.time],
-        )
-
-
 def test_cusps_of_tops_are_refused() -> None:
     """A top has no blade."""
     with pytest.raises(ValueError, match="watch a sleigh"):

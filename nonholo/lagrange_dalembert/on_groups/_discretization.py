@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from nonholo.base.types import Float
 from nonholo.lagrange_dalembert._motion import CoordinateMotion
 from nonholo.lagrange_dalembert._orbit import GroupOrbit
+from nonholo.lagrange_dalembert._partial_step import after_parts
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._run import CoordinateRun
 from nonholo.lagrange_dalembert._simulate import Start, checked_block, checked_counts, iterated, set_out, simulated
@@ -109,7 +111,7 @@ class GroupDiscretization(CoordinateMotion, AbstractCoordinateDiscretization):
         starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
         system, h = self.system, np.float64(self.time_step)
         steps, every = checked_counts(steps, save_every, 0)
-        rows = checked_block(block_steps, every, 2 * (system.group.identity.size + system.group.dim))
+        rows = self.rows_of_block(block_steps, every)
         first = self.start(configuration, **starts)
         return iterated(GroupOrbit, system, h, first, steps, every, rows, throw, progress)
 
@@ -120,6 +122,22 @@ class GroupDiscretization(CoordinateMotion, AbstractCoordinateDiscretization):
     def run(self, every: int) -> CoordinateRun:
         """Return what computes blocks of a run that keeps one in `every` states."""
         return CoordinateRun(self, every)
+
+    def rows_of_block(self, block_steps: Any, save_every: int) -> int:
+        """Return the saved states of a block of `iterate`, refused where memory cannot hold them."""
+        return checked_block(block_steps, save_every, 2 * (self.system.group.identity.size + self.system.group.dim))
+
+    def after_parts(self, states: GroupOrbit, fractions: Float[np.ndarray, "K"]) -> GroupOrbit:
+        r"""Return what is reached from states after parts of the steps that begin there.
+
+        After a fraction s that is the step of length s h from the same configuration and momentum: the definition of
+        the map itself, with another time step.
+
+        Args:
+            states: States of an orbit of this map.
+            fractions: Numbers in (0, 1), one for each.
+        """
+        return after_parts(GroupOrbit, self, states, fractions)
 
 
 def _first(system: GroupLagrangeDAlembert, h: Any, configuration: Any, starts: dict[str, Any]) -> Start:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import jax
+import numpy as np
 
 from nonholo.base.checks import instance
 from nonholo.base.numerics import double_precision
@@ -167,6 +168,10 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
         starts = {"body_velocity": body_velocity, "momentum": momentum}
         kind, start = room("on_groups").GroupOrbit, room("on_groups._start").of_flow
         return room("_flow").flow(kind, self, start, configuration, starts, times, rtol, atol)
+
+    def flowed(self, states: "GroupOrbit", times: Float[np.ndarray, "K"], *, rtol: float, atol: float) -> "GroupOrbit":
+        """Return states of a flow carried on, each to a later time of its own; NaN where the solver fails."""
+        return room("_flow").flowed(room("on_groups").GroupOrbit, self, states, times, rtol, atol)
 
 
 def _named(argument: str) -> str:

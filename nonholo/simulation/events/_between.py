@@ -9,16 +9,16 @@ branch: W(0) is the identity, and W(1) the displacement of the whole step.
 import dataclasses
 import functools
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from nonholo.base.checks import needs
 from nonholo.base.types import Float
 from nonholo.discrete import AbstractCompiledRoute, Discretization
-from nonholo.groups import SE
-from nonholo.orbit import Orbit, unwrapped
+from nonholo.orbit import Orbit
 
-Between = Callable[[Orbit, Float[np.ndarray, "K"]], Orbit]
+Between = Callable[[Any, Float[np.ndarray, "K"]], Any]
 
 
 def between_states(discrete: Discretization) -> Between:
@@ -47,13 +47,6 @@ def _turned(states: Orbit, poses: np.ndarray | None) -> np.ndarray | None:
         return None
     angles = np.arctan2(poses[:, 1], poses[:, 0])
     return angles + 2 * np.pi * np.rint((states.turned - angles) / (2 * np.pi))
-
-
-def with_headings(states: Orbit, first: float | None) -> Orbit:
-    """Return states of the plane with headings that continue from the given one; others as they are."""
-    if states.system.group != SE(2) or states.canonical_pose is None or states.turned is not None or not len(states):
-        return states
-    return dataclasses.replace(states, turned=unwrapped(states.canonical_pose, before=first))
 
 
 def _by_kernel(route: AbstractCompiledRoute, states: Orbit, fractions: np.ndarray) -> tuple[np.ndarray, ...]:

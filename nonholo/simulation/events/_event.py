@@ -9,7 +9,7 @@ import numpy as np
 
 from nonholo.base.checks import choice, error, natural, shown
 from nonholo.base.types import Float
-from nonholo.orbit import Orbit
+from nonholo.orbit import AbstractOrbit
 
 
 @dataclasses.dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Event:
         (array([1.527552, 3.054768, 4.581318]), 'east', np.float64(4.5))
     """
 
-    function: Callable[[Orbit], Any]
+    function: Callable[..., Any]
     direction: int = 0
     stop: bool | int = False
     name: str | None = None
@@ -74,12 +74,12 @@ def checked_events(owner: str, events: Any) -> dict[str, Event]:
     return named
 
 
-def _name_of(function: Callable[[Orbit], Any], position: int) -> str:
+def _name_of(function: Callable[..., Any], position: int) -> str:
     name = getattr(function, "__name__", "<lambda>")
     return f"event {position}" if name == "<lambda>" else name
 
 
-def values_at(name: str, event: Event, states: Orbit) -> Float[np.ndarray, "K"]:
+def values_at(name: str, event: Event, states: AbstractOrbit) -> Float[np.ndarray, "K"]:
     """Return the values of an event at states, refused with the reason if they are not one real number for each."""
     where, count = f"Event(function=...) of {name!r}", len(states)
     remedy = "It gets an `Orbit`: return an array with one number for each of its states."

@@ -1,15 +1,39 @@
 """Events of a flow: sought between its steps and the requested times, located on the solution."""
 
 import dataclasses
+from typing import Any, cast
 
 import numpy as np
 
-from nonholo.base.results import Outcome
+from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
-from nonholo.orbit import Crossings, EventLog, Orbit
+from nonholo.orbit import AbstractOrbit, Crossings, EventLog, Orbit
 from nonholo.simulation.events._between import Between
-from nonholo.simulation.events._event import Event, values_at
+from nonholo.simulation.events._event import Event, checked_events, values_at
 from nonholo.simulation.events._search import Watch, search
+
+
+def flow_in_coordinates(system: Any, events: Any, **flow: Any) -> Any:
+    """Solve the equations of a system in coordinates; return the orbit with what was found, if there are events."""
+    if events is None:
+        return system.flow(**flow)
+    named, errors = checked_events("flow", events), {name: flow[name] for name in ("rtol", "atol")}
+    try:
+        orbit, failure = system.flow(**flow), None
+    except OutcomeError as early:
+        orbit, failure = cast(AbstractOrbit, early.orbit), early
+    forward = _direction(orbit)
+
+    def between(states: Any, fractions: Float[np.ndarray, "K"]) -> Any:
+        if not len(states):
+            return states
+        begin = np.searchsorted(forward * orbit.time, forward * states.time)
+        return system.flowed(states, states.time + fractions * np.diff(orbit.time)[begin], **errors)
+
+    found = _searched(orbit, orbit, Watch(named, between))
+    if failure is not None and found.events.stopped_by is None:
+        raise OutcomeError(failure.outcome, failure.where, found)
+    return found
 
 
 def flow_with_events(events: dict[str, Event], orbit: Orbit, steps: Float[np.ndarray, "steps"]) -> Orbit:
@@ -20,12 +44,23 @@ def flow_with_events(events: dict[str, Event], orbit: Orbit, steps: Float[np.nda
         orbit: The flow.
         steps: Times at which steps of its solver begin: there, too, its states are looked at.
     """
-    forward = 1.0 if orbit.time[-1] >= orbit.time[0] else -1.0
+    forward = _direction(orbit)
     requested = forward * orbit.time
     inside = steps[(forward * steps > requested[0]) & (forward * steps < requested[-1])]
     times = np.unique(np.concatenate([requested, forward * inside]))
     seen = orbit.at(forward * times) if len(inside) else orbit
-    watch, kept = search(Watch(events, _between_times(seen, forward)), seen, 0)
+    return _searched(orbit, seen, Watch(events, _between_times(seen, forward)))
+
+
+def _direction(orbit: AbstractOrbit) -> float:
+    return 1.0 if orbit.time[-1] >= orbit.time[0] else -1.0
+
+
+def _searched(orbit: Any, seen: Any, watch: Watch) -> Any:
+    """Return the orbit up to the event that ends it, with what is found between the states that are looked at."""
+    forward = _direction(orbit)
+    requested, times = forward * orbit.time, forward * seen.time
+    watch, kept = search(watch, seen, 0)
     outcome = Outcome.successful if watch.stopped_by else orbit.outcome
     count = int(np.searchsorted(requested, times[kept - 1], "right"))
     log = watch.log()

@@ -7,8 +7,8 @@ import operator
 import numpy as np
 
 from nonholo.base.types import Bool, Float, Int
-from nonholo.orbit import Crossings, EventLog, Orbit, joined_crossings, joined_states
-from nonholo.simulation.events._between import Between, with_headings
+from nonholo.orbit import AbstractOrbit, Crossings, EventLog, joined_crossings
+from nonholo.simulation.events._between import Between
 from nonholo.simulation.events._event import Event, values_at
 
 _ROUNDING = 2.0**-54  # of a step, beside its end
@@ -56,13 +56,13 @@ class Watch:
         return EventLog(tuple(self.events), found, self.stopped_by)
 
 
-def search(watch: Watch, stretch: Orbit, begun: int) -> tuple[Watch, int]:
+def search(watch: Watch, stretch: AbstractOrbit, begun: int) -> tuple[Watch, int]:
     """Search a stretch of consecutive states, which begins with the last one that was seen, at step `begun`.
 
     Returns:
         What is known now, and how many states of the stretch belong to the motion: all, unless an event ended it.
     """
-    stretch = with_headings(stretch, watch.heading)
+    stretch = stretch.with_headings(watch.heading)
     values = _values(watch, stretch)
     places = [np.flatnonzero(changes(event, row)) for event, row in zip(watch.events.values(), values, strict=True)]
     ends = [
@@ -81,7 +81,7 @@ def search(watch: Watch, stretch: Orbit, begun: int) -> tuple[Watch, int]:
     return watch.after_stretch(found, values[:, -1:] if len(stretch) else watch.values, heading, stopped), kept
 
 
-def _values(watch: Watch, stretch: Orbit) -> Float[np.ndarray, "E K"]:
+def _values(watch: Watch, stretch: AbstractOrbit) -> Float[np.ndarray, "E K"]:
     """Return the values of all events; those of a state that was seen before stay what they were."""
     if not len(stretch):
         return np.empty((len(watch.events), 0))
@@ -114,7 +114,12 @@ def changes(event: Event, values: Float[np.ndarray, "... K"]) -> Bool[np.ndarray
 
 
 def located(
-    name: str, event: Event, stretch: Orbit, values: Float[np.ndarray, "K"], at: Int[np.ndarray, "C"], between: Between
+    name: str,
+    event: Event,
+    stretch: AbstractOrbit,
+    values: Float[np.ndarray, "K"],
+    at: Int[np.ndarray, "C"],
+    between: Between,
 ) -> Crossings:
     """Return the crossings in the steps from given states of a stretch; a zero at a state is that state."""
     exact = values[at + 1] == 0
@@ -122,14 +127,14 @@ def located(
     fraction, step = np.zeros(len(at)), at + exact
     base = stretch.chosen(inside)
     fraction[~exact] = _roots(name, event, base, (values[inside], values[inside + 1]), between)
-    states = joined_states([stretch.chosen(at[exact] + 1), between(base, fraction[~exact])])
+    states = stretch.chosen(at[exact] + 1).joined([between(base, fraction[~exact])])
     order = np.argsort(np.concatenate([at[exact], inside]))
     direction = np.sign(values[at + 1] - values[at]).astype(np.int64)
     return Crossings(step, fraction, direction, states.chosen(order))
 
 
 def _roots(
-    name: str, event: Event, base: Orbit, ends: tuple[np.ndarray, np.ndarray], between: Between
+    name: str, event: Event, base: AbstractOrbit, ends: tuple[np.ndarray, np.ndarray], between: Between
 ) -> Float[np.ndarray, "C"]:
     """Return the fractions of steps at which an event is zero, between ends where its signs differ.
 

@@ -3,12 +3,14 @@
 from nonholo.simulation.members._ensemble import ensemble
 from nonholo.simulation.members._families import have_kernel, run_in_lanes, scalar_members, tangents
 from nonholo.simulation.members._flows import FlowEnsemble
+from nonholo.simulation.members._in_coordinates import CoordinateEnsemble
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._result import Ensemble
 from nonholo.simulation.members._run import in_one_thread
 from nonholo.simulation.members._start import applied
 
 __all__ = [
+    "CoordinateEnsemble",
     "Ensemble",
     "FlowEnsemble",
     "Members",

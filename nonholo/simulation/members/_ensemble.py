@@ -9,32 +9,37 @@ from nonholo.base.checks import choice, count, error, flags, refuse_given, shown
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome
 from nonholo.discrete import PRINCIPAL, Discretization, as_discretization
+from nonholo.simulation._simulate import refuse_what_bodies_have
 from nonholo.simulation.events import Event, watched_events
 from nonholo.simulation.members._events import joined_blocks, watched_block
 from nonholo.simulation.members._families import check_systems
 from nonholo.simulation.members._flows import ensemble_of_flows
+from nonholo.simulation.members._in_coordinates import ensemble_in_coordinates
 from nonholo.simulation.members._members import Members, checked_parameters
 from nonholo.simulation.members._reduce import Reduced, joined
 from nonholo.simulation.members._result import Ensemble
 from nonholo.simulation.members._run import Plan, Report, counting, run_members, states_of
 from nonholo.simulation.members._start import are_others, checked_rows, first_momenta
 from nonholo.simulation.runs import check_forces, refuse_too_large, refuse_too_long
-from nonholo.systems import AbstractSystem, Start, System
+from nonholo.systems import AbstractCoordinateDiscretization, AbstractSystem, Start, System, in_coordinates
 
 Watched: TypeAlias = dict[str, Event] | None
 Motions: TypeAlias = tuple[Members, np.ndarray, np.ndarray | None]
 
+_DEFAULTS = {"backend": "auto", "reconstruct": True}
 _KINDS = "A discretization has steps, a system times and rtol."
 _BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
 
 
 def ensemble(
-    discrete: Discretization | System,
+    discrete: Discretization | System | AbstractCoordinateDiscretization,
     *,
     steps: int | None = None,
     times: Any = None,
+    configuration: Any = None,
     body_velocity: Any = None,
     restricted_velocity: Any = None,
+    displacement: Any = None,
     momentum: Any = None,
     save_every: int | None = None,
     parameters: Mapping[str, Any] | None = None,
@@ -54,20 +59,27 @@ def ensemble(
     Of a system in place of a discretization the flows are solved, by the series of `flow`: from one canonical momentum
     each has the bits of a flow alone.
 
+    Systems in coordinates run one member after another, in one thread: each has the bits of its run by `simulate`. All
+    of `configuration` and of the start may come as one row for each member, or once for all.
+
     A member that cannot continue keeps its good states: see `Ensemble` for what is where, and `outcome` for why.
 
     Args:
         discrete: The discretized system, or a system whose flow is asked for.
         steps: Number of steps N.
         times: Of a system instead: the times of the states, as in `flow`.
+        configuration: In coordinates where members start, (M, n) or (n,); on a group of a `GroupLagrangeDAlembert`
+            matrices. Other members start at the identity.
         body_velocity: One row for each member, (M, dim); with `parameters` one row for all, (dim,), will do. Members
             start at the identity with the principal W_0 that has the same momentum along the constraint.
         restricted_velocity: The same, in rows of the constraint subspace, (M, k).
+        displacement: In coordinates start with these displacements.
         momentum: Start with these momenta, full ones (M, dim) on the momentum locus or those along the constraint
             subspace, (M, k). A member whose full momentum is not on it has outcome `off_momentum_locus`.
         save_every: Steps between saved states, the first one included; by default only the last state is kept.
         parameters: Arrays with a leading member axis by name: fields of the system that are numbers or tensors (mass,
-            inertia, a, b, mass_tensor, ...), and "time_step".
+            inertia, a, b, mass_tensor, ...), and "time_step". In coordinates "time_step" alone: compiled functions
+            have their constants within.
         reduce: A function of an `Ensemble`, a block of the members in order, that returns an array or a dictionary of
             arrays with a leading member axis. It is called block by block, so that states are never all in memory.
         reconstruct: Also compute poses.
@@ -80,7 +92,8 @@ def ensemble(
         progress: Show a progress bar on standard error.
 
     Returns:
-        The `Ensemble`, of flows a `FlowEnsemble`; with `reduce` what it returned, blocks joined along the member axis.
+        The `Ensemble`, of flows a `FlowEnsemble`, in coordinates a `CoordinateEnsemble`; with `reduce` what it gave,
+        blocks joined along the member axis.
 
     Raises:
         ValueError: A bad argument, before any work.
@@ -99,20 +112,49 @@ def ensemble(
     if reduce is not None and not callable(reduce):
         raise error("ensemble(reduce=...)", "be a function", f"a {type(reduce).__name__}", "Pass a function, or None.")
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
+    run = {"parameters": parameters, "reduce": reduce, "progress": progress}
+    of_steps = {"steps": steps, "save_every": save_every, "events": events}
+    how, of_flow = {"backend": backend, "reconstruct": reconstruct}, {"times": times, "rtol": rtol}
+    own = {"configuration": configuration, "displacement": displacement}
+    if in_coordinates(discrete):
+        starts.pop("restricted_velocity")
+        refuse_what_bodies_have("ensemble", **how, **of_flow, restricted_velocity=restricted_velocity)
+        return ensemble_in_coordinates(discrete, **starts, **own, **of_steps, **run)
+    _refuse("for bodies", "Members start at the identity.", **own)
     if isinstance(discrete, AbstractSystem):
-        of_steps = {"steps": (steps, None), "save_every": (save_every, None), "events": (events, None)}
-        how = {"backend": (backend, "auto"), "reconstruct": (reconstruct, True)}
-        refuse_given("ensemble", "be left out for a flow", _KINDS, **of_steps, **how)
-        return ensemble_of_flows(discrete, Start.of("ensemble", **starts), times, parameters, rtol, reduce, progress)
-    refuse_given("ensemble", "be left out for a discretization", _KINDS, times=(times, None), rtol=(rtol, None))
+        _refuse("for a flow", _KINDS, **of_steps, **how)
+        return ensemble_of_flows(discrete, Start.of("ensemble", **starts), times, rtol, **run)
+    _refuse("for a discretization", _KINDS, **of_flow)
     discrete = as_discretization("ensemble(discrete=...)", discrete, composed=True, forced=True)
+    return _of_steps(discrete, Start.of("ensemble", **starts), **of_steps, **how, **run)
+
+
+def _refuse(what: str, remedy: str, **given: Any) -> None:
+    """Refuse arguments of another kind of ensemble, unless they are what they are by default."""
+    refuse_given("ensemble", f"be left out {what}", remedy, **{n: (x, _DEFAULTS.get(n)) for n, x in given.items()})
+
+
+def _of_steps(
+    discrete: Discretization,
+    start: Start,
+    *,
+    steps: Any,
+    save_every: Any,
+    events: Any,
+    backend: str,
+    reconstruct: bool,
+    parameters: Any,
+    reduce: Callable[[Ensemble], Any] | None,
+    progress: bool,
+) -> Any:
+    """Run many members of a discretized body."""
     steps = count("ensemble(steps=...)", steps, "Pass the number of steps.")
     if save_every is not None:
         save_every = count("ensemble(save_every=...)", save_every, "Pass the steps between saved states, or None.")
     _check_backend(discrete, backend)
     check_forces("ensemble", discrete, steps, free="backend 'jax'" if backend == "jax" else None)
     plan = Plan(steps, save_every, bool(reconstruct), backend)
-    motions = _motions(discrete, Start.of("ensemble", **starts), parameters, plan, whole=reduce is None)
+    motions = _motions(discrete, start, parameters, plan, whole=reduce is None)
     watched = None if events is None else watched_events("ensemble", discrete, events, PRINCIPAL.name, plan.posed)
     with progress_bar("members", progress) as show:
         return _joined(motions, plan, watched, reduce, counting(show, len(motions[0])))

@@ -1,15 +1,12 @@
 """Results of events in the members of an ensemble: how often, and the first and the last time."""
 
 import dataclasses
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from nonholo.base.types import Int
 from nonholo.orbit import AbstractEventLog
-
-if TYPE_CHECKING:
-    from nonholo.simulation.members._result import Ensemble
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -18,14 +15,14 @@ class MemberCrossings:
 
     Attributes:
         count: How many each member has, (M,).
-        first: The states at the first one, an `Ensemble` of one state each; NaN, also its time, if there is none. Its
+        first: The states at the first one, an ensemble of one state each; NaN, also its time, if there is none. Its
             `steps_done` are the steps with their fractions.
         last: The states at the last one.
     """
 
     count: Int[np.ndarray, "M"]
-    first: "Ensemble"
-    last: "Ensemble"
+    first: Any
+    last: Any
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)

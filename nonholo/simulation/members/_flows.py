@@ -65,8 +65,9 @@ def ensemble_of_flows(
     system: System,
     start: Start,
     times: Any,
-    parameters: Any,
     rtol: Any,
+    *,
+    parameters: Any,
     reduce: Callable[[Ensemble], Reduced] | None,
     progress: bool,
 ) -> Any:

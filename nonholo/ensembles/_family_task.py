@@ -1,0 +1,248 @@
+"""The task of sweeps over systems that a function makes: the ready systems of `nonholo.examples`, or your own."""
+
+import dataclasses
+import importlib
+import inspect
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from nonholo.base.checks import count, error, function, instance, scale, shown
+from nonholo.base.limits import within_a_year
+from nonholo.discrete import discretize
+from nonholo.ensembles._block import MemberBlock
+from nonholo.ensembles._describe import function_from, function_name
+from nonholo.ensembles._names import OUTCOME, component_of
+from nonholo.simulation import ensemble
+from nonholo.systems import in_coordinates
+
+_LITERATURE, _READY, _FINAL = "nonholo.literature", "examples.", "final_state"
+_MEMBER = re.compile(r"This is member (\d+)\.")
+_STEP, _STARTS = "time_step", ("configuration", "body_velocity")
+_OWN = (*_STARTS, _STEP)
+_SECONDS, _STEPS, _MEMBERS = 1e-6, 1 << 20, 1 << 12  # of a step, at least; most of both in a block
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class FamilyTask:
+    r"""Run the members of a family: systems that a function of parameters makes, such as `nh.examples.particle`.
+
+    Names of a design are parameters of the function, "time_step", "configuration" and "body_velocity", or a component
+    of one that is an array, such as "body_velocity_0". What it does not name is as given here, or the default of the
+    function. Members with one system run as one `ensemble`; each other system in coordinates is compiled, which takes
+    seconds: vary a few values of its constants, and starts at will.
+
+    The reduction "final_state" keeps time, configuration, velocity and energy of the last good state, and the number
+    of good steps. A custom function gets the ensemble of members with one system, a `CoordinateEnsemble` or an
+    `Ensemble`, and returns arrays as for `EnsembleTask`.
+
+    Attributes:
+        family: `family(**parameters)` -> an `nh.examples.Example`, or anything else with a `system`, a `configuration`
+            and a `body_velocity` at which members start. A store names it: `resume` imports a custom one only
+            if it is passed or trusted.
+        time_step: h.
+        steps: Number of steps.
+        parameters: Arguments of the family that are the same for all members.
+        reductions: What to keep.
+        save_every: Steps between the states that reductions see; None for the last one alone.
+
+    Raises:
+        ValueError: A bad argument, before any work.
+
+    Example:
+        >>> task = nh.FamilyTask(nh.examples.particle, time_step=0.1, steps=20)
+        >>> from tempfile import TemporaryDirectory
+        >>> with TemporaryDirectory() as folder:
+        ...     found = nh.sweep(task, nh.Grid({"planar_velocity_0": [0.5, 1.0, 2.0]}), f"{folder}/particles.zarr")
+        ...     found["final_configuration"].sel(planar_velocity_0=2.0).values.round(2)
+        array([2.89, 2.  , 2.47])
+    """
+
+    family: Callable[..., Any]
+    time_step: float
+    steps: int
+    parameters: Mapping[str, Any] = dataclasses.field(default_factory=dict, kw_only=True)
+    reductions: Any = dataclasses.field(default=("final_state",), kw_only=True)
+    save_every: int | None = dataclasses.field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        function(_named("family"), self.family)
+        parameters = instance(_named("parameters"), self.parameters, Mapping, "be a mapping of names", "Pass a dict.")
+        every = self.save_every
+        kept = {
+            "time_step": float(scale(_named("time_step"), self.time_step, "Pass a positive time step.")),
+            "steps": count(_named("steps"), self.steps, "Pass the number of steps."),
+            "parameters": dict(parameters),
+            "reductions": _checked_reductions(self.reductions),
+            "save_every": every and count(_named("save_every"), every, "Pass the steps between states, or None."),
+        }
+        for name, value in kept.items():
+            object.__setattr__(self, name, value)
+        known = inspect.signature(self.family).parameters
+        for name in self.parameters.keys() - known.keys():
+            remedy = f"It has {', '.join(known)}."
+            raise error(_named("parameters"), "name arguments of the family", shown(name), remedy)
+
+    @property
+    def _arguments(self) -> dict[str, Any]:
+        """The arguments of the family, with their values where they are not varied."""
+        defaults = {name: each.default for name, each in inspect.signature(self.family).parameters.items()}
+        return defaults | dict(self.parameters)
+
+    def check_design(self, names: list[str]) -> None:
+        """Refuse a design that names what the family does not have."""
+        known = [*self._arguments, *(name for name in _OWN if name not in self._arguments)]
+        for name in names:
+            part = component_of(name)
+            if name not in known and not (part and part[0] in known):
+                raise error("sweep(design=...)", "name what the family has", shown(name), f"It has {', '.join(known)}.")
+
+    @property
+    def block(self) -> int:
+        """Members of a block that make a good piece of work."""
+        return max(1, min(_MEMBERS, _STEPS // self.steps))
+
+    def refuse_too_long(self, members: int) -> None:
+        """Refuse more steps than a year has time for."""
+        within_a_year("FamilyTask(steps=...)", _SECONDS * self.steps * members, "Pass fewer steps or members.")
+
+    def __call__(self, block: MemberBlock) -> dict[str, Any]:
+        """Run a block of members, those with one system together, and reduce it."""
+        made = [self._made({name: values[member] for name, values in block.items()}) for member in range(block.count)]
+        found: dict[str, tuple[Any, np.ndarray, Any]] = {}
+        for system in dict.fromkeys(system for system, _ in made):
+            members = [member for member, (other, _) in enumerate(made) if other == system]
+            starts = {name: np.stack([made[member][1][name] for member in members]) for name in made[0][1]}
+            batch = self._ensemble(system, starts, [block.first + member for member in members])
+            for name, (dimensions, rows, labels) in self._reduced(batch).items():
+                whole = np.empty((block.count, *rows.shape[1:]), rows.dtype)
+                found.setdefault(name, (dimensions, whole, labels))[1][members] = rows
+        return found
+
+    def _made(self, own: dict[str, Any]) -> tuple[Any, dict[str, np.ndarray]]:
+        """Return the system of a member, and what it starts with."""
+        arguments = self._arguments
+        values = {name: _valued(name, value, own) for name, value in arguments.items()}
+        example = self.family(**{name: value for name, value in values.items() if value is not inspect.Parameter.empty})
+        rest = {key: value for key, value in own.items() if key not in arguments and _base(key) not in arguments}
+        starts = {name: np.asarray(_valued(name, getattr(example, name), rest)) for name in _STARTS}
+        return example.system, starts | ({_STEP: np.asarray(own[_STEP])} if _STEP in own else {})
+
+    def _ensemble(self, system: Any, starts: dict[str, np.ndarray], numbers: list[int]) -> Any:
+        """Run members with one system."""
+        discrete = discretize(system, self.time_step)
+        step = starts.pop(_STEP, None)
+        if not in_coordinates(discrete) and np.all(starts["configuration"] == system.group.identity):
+            del starts["configuration"]  # where bodies start anyway
+        run = {"steps": self.steps, "save_every": self.save_every}
+        try:
+            return ensemble(discrete, parameters=None if step is None else {_STEP: step}, **starts, **run)
+        except ValueError as failure:
+            message = _MEMBER.sub(lambda found: f"This is member {numbers[int(found[1])]}.", str(failure))
+            raise ValueError(message) from failure
+
+    def _reduced(self, batch: Any) -> dict[str, tuple[Any, np.ndarray, Any]]:
+        """Return dimensions, rows and labels of what is kept of members, by name."""
+        found: dict[str, Any] = {OUTCOME: batch.outcome}
+        for reduction in self.reductions:
+            found |= _final_state(batch) if reduction == _FINAL else reduction(batch)
+        return {name: _labeled(name, entry) for name, entry in found.items()}
+
+    def describe(self) -> dict[str, Any]:
+        """Return the task as plain data."""
+        kept = {name: np.asarray(value).tolist() for name, value in self.parameters.items()}
+        named = [_FINAL if reduction == _FINAL else function_name(reduction) for reduction in self.reductions]
+        return {
+            "kind": "FamilyTask",
+            "family": _family_name(self.family),
+            "parameters": kept,
+            "time_step": self.time_step,
+            "steps": self.steps,
+            "reductions": named,
+            "save_every": self.save_every,
+        }
+
+
+def family_task_from(entry: dict[str, Any]) -> FamilyTask:
+    """Return the task of a description, whose functions are imported; those of the library are its ready systems."""
+    name = entry["family"]
+    own = name.removeprefix(_READY)
+    if own != name and own not in _ready_names():
+        raise ValueError(f"one of {name!r}, which is no ready system of this version")
+    family = function_from(name) if own == name else getattr(importlib.import_module(_LITERATURE), own)
+    reductions = [each if each == _FINAL else function_from(each) for each in entry["reductions"]]
+    run = {name: entry[name] for name in ("time_step", "steps", "parameters", "save_every")}
+    return FamilyTask(family, reductions=reductions, **run)
+
+
+def imported_functions(entry: dict[str, Any]) -> list[str]:
+    """Return the names of the functions that the task of a description would import: none of the library."""
+    return [name for name in (entry["family"], *entry["reductions"]) if name != _FINAL and not name.startswith(_READY)]
+
+
+def _ready_names() -> set[str]:
+    return {*importlib.import_module(_LITERATURE).__all__} - {"Example"}
+
+
+def _family_name(family: Callable[..., Any]) -> str:
+    name = function_name(family)
+    own = name.partition(":")[2]
+    return f"{_READY}{own}" if name.startswith(f"{_LITERATURE}.") and own in _ready_names() else name
+
+
+def _named(argument: str) -> str:
+    return f"FamilyTask({argument}=...)"
+
+
+def _base(name: str) -> str:
+    part = component_of(name)
+    return part[0] if part else name
+
+
+def _valued(name: str, value: Any, own: dict[str, Any]) -> Any:
+    """Return the value of a member: its own, or the common one with its own components."""
+    value, parts = own.get(name, value), [key for key in own if key != name and _base(key) == name]
+    if not parts:
+        return value
+    value = np.array(value, dtype=np.float64)
+    for key in parts:
+        _, component = component_of(key) or (name, 0)
+        if value.ndim != 1 or component >= len(value):
+            got = f"{key!r} of {name} with shape {value.shape}"
+            raise error("sweep(design=...)", "vary components that there are", got, "They are counted from 0.")
+        value[component] = own[key]
+    return value
+
+
+def _checked_reductions(reductions: Any) -> tuple[Any, ...]:
+    several = tuple(reductions) if isinstance(reductions, list | tuple) else (reductions,)
+    for reduction in several:
+        if not callable(reduction) and reduction != _FINAL:
+            remedy = f"Pass {_FINAL!r} or functions of an ensemble."
+            raise error(_named("reductions"), "be names or functions", shown(reduction), remedy)
+    return several
+
+
+def _labeled(name: str, entry: Any) -> tuple[Any, np.ndarray, Any]:
+    dimensions, rows, *labels = entry if isinstance(entry, tuple) else (None, entry)
+    rows = np.asarray(rows)
+    if dimensions is None:
+        dimensions = tuple(f"{name}_{axis}" for axis in range(1, rows.ndim))
+    return dimensions, rows, labels[0] if labels else {}
+
+
+def _final_state(batch: Any) -> dict[str, Any]:
+    """Return what is known of the last good state of each member that is kept."""
+    every, members = batch.save_every, np.arange(len(batch))
+    last = np.zeros_like(members) if every is None else batch.steps_done // every
+    configuration = batch.configuration[members, last]
+    axes = ("coordinate",) if configuration.ndim == 2 else ("row", "column")
+    return {
+        "final_time": ((), batch.time[members, last], {"long_name": "time of the last good state"}),
+        "final_configuration": (axes, configuration, {"long_name": "configuration of the last good state"}),
+        "final_velocity": (("component",), batch.body_velocity[members, last], {"long_name": "velocity there"}),
+        "final_energy": ((), batch.energy[members, last], {"long_name": "energy there"}),
+        "steps_done": ((), batch.steps_done, {"long_name": "good steps"}),
+    }

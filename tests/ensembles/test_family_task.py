@@ -1,0 +1,104 @@
+"""Sweeps over systems that a function makes: what members are, what stores name, and what is refused."""
+
+import json
+import types
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.ensembles import functions_of
+
+GRID = nh.Grid({"a": [0.2, 0.6], "speed": [0.5, 1.0, 2.0]})
+
+
+def sleigh(*, a: float = 0.5, speed: float = 1.0, velocity: tuple[float, float] = (0.3, 0.0)) -> types.SimpleNamespace:
+    """Return a sleigh that sets out with a speed, beside its turning rate."""
+    start = np.array([velocity[0], velocity[1] + speed, 0.0])
+    return types.SimpleNamespace(system=nh.ChaplyginSleigh(1.0, 1.0, a), configuration=np.eye(3), body_velocity=start)
+
+
+def ends(batch: nh.Ensemble) -> dict:
+    """Return the last headings."""
+    return {"turned": batch.heading[:, -1]}
+
+
+def test_members_are_runs_of_the_systems_that_the_family_makes(tmp_path: Path) -> None:
+    """Parameters, starts, components of them and time steps; what is not named is as given, or the default."""
+    task = nh.FamilyTask(sleigh, 0.1, 20, parameters={"velocity": (0.4, 0.0)})
+    found = nh.sweep(task, GRID, tmp_path / "speeds.zarr")
+    for a in (0.2, 0.6):
+        for speed in (0.5, 1.0, 2.0):
+            run = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, a), 0.1)
+            alone = nh.simulate(run, body_velocity=(0.4, speed, 0.0), steps=20)
+            member = found.sel(a=a, speed=speed)
+            assert np.abs(member.final_configuration.values - alone.configuration[-1]).max() <= 1e-14
+            assert member.final_time.item() == alone.time[-1]
+            assert abs(member.final_energy.item() - alone.energy[-1]) <= 1e-14
+    parts = nh.sweep(
+        task, nh.Grid({"velocity_1": [0.5], "body_velocity_0": [0.7], "time_step": [0.05]}), tmp_path / "p.zarr"
+    )
+    alone = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.05), body_velocity=(0.7, 1.5, 0.0), steps=20)
+    assert np.abs(parts.final_configuration.values[0, 0, 0] - alone.configuration[-1]).max() <= 1e-14
+    assert parts.final_time.item() == 20 * 0.05
+
+
+def test_a_store_names_the_family_and_runs_nothing_of_the_users(tmp_path: Path) -> None:
+    """A function of the user's is imported only if it is trusted; a ready system of the library is data."""
+    task = nh.FamilyTask(sleigh, 0.1, 5, reductions=["final_state", ends])
+    found = nh.sweep(task, GRID, tmp_path / "own.zarr")
+    assert sorted(functions_of(tmp_path / "own.zarr")) == sorted(f"{__name__}:{name}" for name in ("sleigh", "ends"))
+    with pytest.raises(ValueError, match="name no function but the library's"):
+        nh.resume(tmp_path / "own.zarr")
+    assert nh.resume(tmp_path / "own.zarr", task=task).equals(found)
+    other = nh.FamilyTask(sleigh, 0.2, 5, reductions=["final_state", ends])
+    with pytest.raises(ValueError, match="time_step"):
+        nh.resume(tmp_path / "own.zarr", task=other)
+    ready = nh.FamilyTask(nh.examples.sleigh_in_a_well, 0.1, 3)
+    assert (ready.describe()["family"], json.loads(json.dumps(ready.describe()))) == (
+        "examples.sleigh_in_a_well",
+        ready.describe(),
+    )
+    kept = nh.sweep(ready, nh.Grid({"stiffness": [0.1, 0.3]}), tmp_path / "ready.zarr")
+    assert functions_of(tmp_path / "ready.zarr") == []
+    assert nh.resume(tmp_path / "ready.zarr").equals(kept)
+
+
+@pytest.mark.parametrize("name", ["examples.Example", "examples.needs", "examples.no_such"])
+def test_what_is_no_ready_system_is_not_made(name: str) -> None:
+    """Names of a store are looked up among the ready systems alone."""
+    from nonholo.ensembles._family_task import family_task_from
+
+    entry = nh.FamilyTask(nh.examples.particle, 0.1, 3).describe()
+    with pytest.raises(ValueError, match="no ready system"):
+        family_task_from(entry | {"family": name})
+
+
+REFUSED = {
+    "family": (lambda: nh.FamilyTask(5, 0.1, 3), r"FamilyTask\(family=...\)` must be a function"),
+    "time step": (lambda: nh.FamilyTask(sleigh, 0.0, 3), r"FamilyTask\(time_step=...\)` must be positive"),
+    "steps": (lambda: nh.FamilyTask(sleigh, 0.1, 0), r"FamilyTask\(steps=...\)` must be a positive integer"),
+    "parameters": (lambda: nh.FamilyTask(sleigh, 0.1, 3, parameters={"mass": 1.0}), "It has a, speed, velocity"),
+    "mapping": (lambda: nh.FamilyTask(sleigh, 0.1, 3, parameters=[1.0]), "be a mapping of names"),
+    "reductions": (lambda: nh.FamilyTask(sleigh, 0.1, 3, reductions="lyapunov"), "functions of an ensemble"),
+    "save_every": (lambda: nh.FamilyTask(sleigh, 0.1, 3, save_every=1.5), r"FamilyTask\(save_every=...\)"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_bad_tasks_are_refused(name: str) -> None:
+    """Before any work, with what to pass."""
+    call, words = REFUSED[name]
+    with pytest.raises((ValueError, TypeError), match=words):
+        call()
+
+
+@pytest.mark.parametrize(
+    ("axis", "words"),
+    [("mass", "name what the family has. Got 'mass'"), ("velocity_2", "vary components that there are")],
+)
+def test_bad_designs_are_refused(axis: str, words: str, tmp_path: Path) -> None:
+    """Names that the family does not have, components beyond the last."""
+    with pytest.raises(ValueError, match=words):
+        nh.sweep(nh.FamilyTask(sleigh, 0.1, 3), nh.Grid({axis: [1.0]}), tmp_path / "bad.zarr")

@@ -1,0 +1,222 @@
+"""Events and ensembles of systems in coordinates: known crossings, blocks, ends of runs, members, refusals."""
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.lagrange_dalembert import LagrangeDAlembert
+
+G = 0.8
+ROWS = ("time", "configuration", "displacement", "body_velocity", "momentum", "multipliers", "energy")
+PROFILE = pytest.mark.profile("routes", instead="test_a_ready_system_is_first_class")
+
+
+def kinetic(q, v):  # noqa: ANN001, ANN201, ARG001
+    """Return the Lagrangian of a free particle."""
+    return v @ v / 2
+
+
+def weight(time, q, v):  # noqa: ANN001, ANN201, ARG001
+    """Return the force on a stone."""
+    return jnp.array([-G, 0.0])
+
+
+FALL = LagrangeDAlembert(lambda q, v: v @ v / 2 - G * q[0], None, dimension=2)
+MOVED = LagrangeDAlembert(kinetic, None, dimension=2, force=weight)
+THROWN = {"configuration": (0.0, 0.0), "body_velocity": (1.0, 0.5)}
+
+
+def folded(q, q_next, h):  # noqa: ANN001, ANN201
+    """Return a discrete Lagrangian whose momentum is sin(q' - q) at most: a fold at a right angle."""
+    return jnp.sum(1 - jnp.cos(q_next - q)) / h + h * 0.15 * jnp.sum(q + q_next) / 2
+
+
+FOLDING = LagrangeDAlembert(lambda q, v: v @ v / 2 + 0.15 * q[0], None, dimension=1, discrete_lagrangian=folded)
+
+
+def height(states: nh.lagrange_dalembert.CoordinateOrbit) -> np.ndarray:
+    """Return how far above 0.3 a stone is."""
+    return states.configuration[:, 0] - 0.3
+
+
+def rise(states: nh.lagrange_dalembert.CoordinateOrbit) -> np.ndarray:
+    """Return the momentum upwards."""
+    return states.momentum[:, 0]
+
+
+@PROFILE
+@pytest.mark.parametrize("system", [FALL, MOVED], ids=["potential", "force"])
+def test_thrown_stones_cross_where_parabolas_do(system: LagrangeDAlembert) -> None:
+    """The midpoint rule of any length moves along the parabola, and so do parts of its steps."""
+    discrete = nh.discretize(system, 0.13)
+    orbit = nh.simulate(discrete, **THROWN, steps=20, events=[height, rise])
+    root = np.sqrt(1 - 0.6 * G)
+    assert np.abs(orbit.events["height"].time - [(1 - root) / G, (1 + root) / G]).max() <= 1e-14
+    assert orbit.events["height"].direction.tolist() == [1, -1]
+    top = orbit.events["rise"]
+    assert np.abs(top.time - 1 / G).max() <= 1e-14
+    assert np.abs(top.states.configuration - [[1 / (2 * G), 0.5 / G]]).max() <= 1e-14
+    assert (top.step, top.fraction) == (9, pytest.approx((1 / G - 9 * 0.13) / 0.13, abs=1e-12))
+
+
+@PROFILE
+@pytest.mark.parametrize("system", [FALL, MOVED], ids=["potential", "force"])
+def test_flows_cross_where_parabolas_do(system: LagrangeDAlembert) -> None:
+    """Forwards and backwards, from few requested times; a stopping event ends them with the last one before it."""
+    root = np.sqrt(1 - 0.6 * G)
+    found = nh.flow(system, **THROWN, times=np.linspace(0.0, 3.0, 5), rtol=1e-12, atol=1e-13, events=[height, rise])
+    assert np.abs(found.events["height"].time - [(1 - root) / G, (1 + root) / G]).max() <= 1e-12
+    assert np.abs(found.events["rise"].states.configuration - [[1 / (2 * G), 0.5 / G]]).max() <= 1e-12
+    assert (len(found), found.events["rise"].step.tolist()) == (5, [1])
+    stopped = nh.flow(system, **THROWN, times=np.linspace(0.0, 3.0, 5), events=[nh.Event(rise, stop=True)])
+    assert (stopped.time[-1], stopped.outcome) == (0.75, nh.Outcome.successful)
+    back = nh.flow(system, **THROWN, times=[0.0, -0.7, -1.5], events=[lambda states: states.configuration[:, 0] + 1.0])
+    assert np.abs(back.events[0].time - (1 - np.sqrt(1 + 2 * G)) / G).max() <= 1e-9
+
+
+@PROFILE
+def test_the_states_are_those_of_a_run_without_events() -> None:
+    """Bit for bit, thinned too; blocks together have the states and the crossings of the run."""
+    discrete = nh.discretize(FALL, 0.02)
+    whole = nh.simulate(discrete, **THROWN, steps=300, events=[height, rise])
+    for every in (1, 7):
+        alone = nh.simulate(discrete, **THROWN, steps=300, save_every=every)
+        thinned = nh.simulate(discrete, **THROWN, steps=300, save_every=every, events=[height])
+        blocks = list(nh.iterate(discrete, **THROWN, steps=300, save_every=every, block_steps=14, events=[height]))
+        assert [len(block) for block in blocks[:-1]] == [14 // every] * (len(blocks) - 1)
+        for row in ROWS:
+            assert np.array_equal(getattr(thinned, row), getattr(alone, row)), row
+            assert np.array_equal(np.concatenate([getattr(block, row) for block in blocks]), getattr(alone, row)), row
+        assert np.array_equal(thinned.events["height"].time, whole.events["height"].time)
+        assert np.array_equal(
+            np.concatenate([block.events["height"].time for block in blocks]), whole.events["height"].time
+        )
+        steps = np.concatenate([block.events["height"].step for block in blocks])
+        assert np.array_equal(steps, whole.events["height"].step)
+
+
+@PROFILE
+def test_an_event_stops_a_run() -> None:
+    """At its second crossing, with the last saved state before it; an earlier end of the run is its own."""
+    discrete = nh.discretize(FALL, 0.1)
+    down = nh.Event(height, stop=2)
+    orbit = nh.simulate(discrete, **THROWN, steps=10**6, events=[down, rise])
+    assert (orbit.events.stopped_by, len(orbit)) == ("height", 1 + int((1 + np.sqrt(1 - 0.6 * G)) / G / 0.1))
+    assert len(orbit.events["rise"]) == 1
+    alone = nh.simulate(discrete, **THROWN, steps=len(orbit) - 1)
+    for row in ROWS:
+        assert np.array_equal(getattr(orbit, row), getattr(alone, row)), row
+    blocks = list(nh.iterate(discrete, **THROWN, steps=10**6, block_steps=8, events=[down]))
+    assert (sum(map(len, blocks)), blocks[-1].events.stopped_by) == (len(orbit), "height")
+
+
+@PROFILE
+def test_runs_that_cannot_continue_say_so_with_events() -> None:
+    """The good steps and the outcome are those without events; a stop before the fold is a success."""
+    start = {"configuration": [0.0], "body_velocity": [0.1], "steps": 20}
+    discrete = nh.discretize(FOLDING, 1.0)
+
+    def reached(states) -> np.ndarray:  # noqa: ANN001
+        return states.configuration[:, 0] - 0.5
+
+    plain = nh.simulate(discrete, **start, throw=False)
+    found = nh.simulate(discrete, **start, throw=False, events=[reached])
+    assert (found.outcome, len(found), len(found.events[0])) == (plain.outcome, len(plain), 1)
+    with pytest.raises(nh.OutcomeError, match=r"Step 6 of 20 \(time_step 1\): no_real_branch") as caught:
+        nh.simulate(discrete, **start, events=[reached])
+    assert len(caught.value.orbit.events[0]) == 1
+    stopped = nh.simulate(discrete, **start, events=[nh.Event(reached, stop=True)])
+    assert (stopped.outcome, len(stopped)) == (nh.Outcome.successful, 1 + stopped.events[0].step[0])
+    with pytest.raises(nh.OutcomeError, match="Start of the run"):
+        nh.simulate(discrete, **start | {"body_velocity": [1.5]}, events=[reached])
+
+
+@PROFILE
+def test_members_are_runs_alone_however_they_end() -> None:
+    """Those that fold keep their good states and are NaN after them; with the last state alone it is the last good."""
+    discrete, v = nh.discretize(FOLDING, 1.0), np.array([[0.1], [0.3], [-1.5], [0.8]])
+    runs = [nh.simulate(discrete, configuration=[0.0], body_velocity=row, steps=9, throw=False) for row in v]
+    batch = nh.ensemble(discrete, configuration=[0.0], body_velocity=v, steps=9, save_every=2)
+    last = nh.ensemble(discrete, configuration=np.zeros((4, 1)), body_velocity=v, steps=9)
+    assert batch.outcome.tolist() == last.outcome.tolist() == [int(run.outcome) for run in runs]
+    assert batch.steps_done.tolist() == last.steps_done.tolist() == [max(len(run) - 1, 0) for run in runs]
+    assert len({*batch.steps_done}) >= 3
+    for member, run in enumerate(runs):
+        kept = run.configuration[::2]
+        assert np.array_equal(batch.configuration[member, : len(kept)], kept)
+        assert np.isnan(batch.configuration[member, len(kept) :]).all()
+        assert np.array_equal(last.configuration[member][: len(run)], run.configuration[-1:])
+        assert len(batch.orbit(member)) == len(kept)
+    table = last.to_dataset()
+    assert (dict(table.sizes)["member"], table.outcome.values.tolist()) == (4, batch.outcome.tolist())
+    with pytest.raises(ValueError, match="Members count from 0"):
+        batch.orbit(4)
+
+
+@PROFILE
+def test_members_have_the_crossings_of_their_runs() -> None:
+    """How many, the first and the last, and who is stopped; with time steps of their own."""
+    discrete, v = nh.discretize(FALL, 0.1), np.array([[1.0, 0.5], [0.42, 0.0], [2.0, 0.0]])
+    start = {"configuration": (0.0, 0.0), "body_velocity": v, "steps": 60}
+    batch = nh.ensemble(
+        discrete, **start, events=[height, nh.Event(rise, stop=True)], parameters={"time_step": [0.1, 0.05, 0.02]}
+    )
+    assert batch.events["height"].count.tolist() == [1, 0, 1]
+    assert batch.events.stopped_by.tolist() == [1, 1, -1]
+    assert np.abs(batch.events["rise"].first.time[:2, 0] - [1 / G, 0.42 / G]).max() <= 1e-14
+    assert np.isnan(batch.events["rise"].last.time[2, 0])
+    assert batch.steps_done.tolist() == [12, 10, 60]
+    assert np.array_equal(batch.time[:, 0], [12 * 0.1, 10 * 0.05, 60 * 0.02])
+    blocks = nh.ensemble(discrete, **start, save_every=30, reduce=lambda block: block.momentum[:, :, 0])
+    assert np.abs(blocks - (v[:, :1] - G * np.array([[0.0, 3.0, 6.0]]))).max() <= 1e-13
+
+
+REFUSED = {
+    "one start": ({"body_velocity": (1.0, 0.5)}, "have a row for each member. Got one start"),
+    "no rows": ({"body_velocity": np.empty((0, 2))}, "have a row for each member. Got no rows"),
+    "lengths": ({"configuration": np.zeros((2, 2)), "body_velocity": np.zeros((3, 2))}, "Got 2 of configuration, 3 of"),
+    "shape": ({"body_velocity": np.zeros((3, 4))}, r"must have shape \(any, 2\)"),
+    "two starts": ({"body_velocity": np.zeros((3, 2)), "momentum": np.zeros((3, 2))}, "exactly one of"),
+    "parameters": ({"parameters": {"mass": [1.0, 2.0]}, "body_velocity": (1, 0)}, "whose constants cannot be varied"),
+    "member": ({"body_velocity": [(1.0, 0.0), (np.inf, 0.0)]}, "must be finite"),
+    "times": ({"body_velocity": [(1.0, 0.0)], "times": (0.0, 1.0)}, r"ensemble\(times=...\)` must keep its default"),
+    "rows of bodies": ({"restricted_velocity": [(1.0, 0.0)]}, r"ensemble\(restricted_velocity=...\)` must keep"),
+    "no steps": ({"body_velocity": [(1.0, 0.0)], "steps": None}, r"ensemble\(steps=...\)` must be"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_members_that_cannot_be_run_are_refused(name: str) -> None:
+    """Each refusal says what is wrong and what to pass."""
+    given, words = REFUSED[name]
+    with pytest.raises(ValueError, match=words):
+        nh.ensemble(nh.discretize(FALL, 0.1), **{"configuration": (0.0, 0.0), "steps": 3} | given)
+
+
+def test_members_of_bodies_start_at_the_identity() -> None:
+    """What systems in coordinates take is refused."""
+    sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+    with pytest.raises(ValueError, match="Members start at the identity"):
+        nh.ensemble(sleigh, restricted_velocity=[[1.0, 0.0]], steps=3, configuration=np.eye(3))
+
+
+@PROFILE
+def test_a_start_off_the_constraint_is_refused_with_its_member() -> None:
+    """Before any member runs."""
+    skate = LagrangeDAlembert(kinetic, lambda q: jnp.array([[q[1], 1.0]]), dimension=2)
+    rows = [(1.0, 0.0), (0.5, 0.0), (1.0, 1.0)]
+    with pytest.raises(ValueError, match=r"nearest admissible velocity .* This is member 2\."):
+        nh.ensemble(nh.discretize(skate, 0.1), configuration=(0.0, 0.0), body_velocity=rows, steps=10**9 // 2)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"discrete_lagrangian": lambda q, p: (p - q) @ (p - q) / 0.2}, {"force": np.zeros((9, 2))}],
+    ids=["made for one step", "table"],
+)
+def test_systems_without_parts_of_steps_have_no_events(given: dict) -> None:
+    """What was made for one time step knows no others."""
+    system = LagrangeDAlembert(kinetic, None, dimension=2, **given)
+    with pytest.raises(ValueError, match="must have parts of a step"):
+        nh.simulate(nh.discretize(system, 0.1), **THROWN, steps=5, events=[height])
