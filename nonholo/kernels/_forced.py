@@ -6,8 +6,8 @@ move, with $K_k$ once more at the pose of the next node (docs/theory/forces.md).
 $$ K_k(m) = A\,m + L\,R^TF + r_k, $$
 
 with a force F that is fixed in space and the rotation R of the pose. A run's state is one array: momenta of the next
-node, their compensations, its pose, the last three roots, for quaternions and headings $L R^TF$ there, the number of
-its step, and the chart at which the run began.
+node, their compensations, its pose, the last four roots, for quaternions and headings $L R^TF$ and $R^TF$ there, the
+number of its step, and the chart at which the run began.
 """
 
 from typing import Any, NamedTuple
@@ -15,13 +15,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from nonholo.base.compiled import njit
-from nonholo.kernels._driver import SETTLED, _compensated, _solve, _unpack
-from nonholo.kernels._interface import Body, increment, move
+from nonholo.kernels._driver import SETTLED, _compensated, _solve, _unpack, converged
+from nonholo.kernels._interface import Body, certified, corrections, increment, move
 from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import assign
 from nonholo.kernels._substeps import at_rest, charted, prepared, pushed, solved
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.secular import SecularBody
+
+RENEWED = 64
+"""Steps after which the weight as the body sees it is taken from the pose again, lest it drift away from it."""
 
 Rows = tuple[np.ndarray, np.ndarray, np.ndarray]
 
@@ -93,24 +96,39 @@ def seen(
 
 
 @scalar
-def turned(n: int, y1: float, y2: float, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """Return W^T (x, y, z) for the rotation of a displacement: about (-y2, y1, 0), or in the plane by 2 atan y1.
+def swept(n: int, y1: float, y2: float, x: float, y: float, z: float) -> tuple[float, float, float, float]:
+    """Return a and v of W^T u = u - a v for u = (x, y, z) and the rotation of a displacement.
 
-    So the force at the next node does not wait for its pose, whose square root would be the longest way of a step.
+    It turns about (-y2, y1, 0), or in the plane by 2 atan y1. So the force at the next node does not wait for its pose,
+    whose square root would be the longest way of a step.
     """
     if n == 3:
         square, lean = y1 * y1 + y2 * y2, y1 * x + y2 * y
-        scale = 2 / (1 + square)
-        across = scale * (z + lean)
-        return x - y1 * across, y - y2 * across, z + scale * (lean - square * z)
-    scale = 2 / (1 + y1 * y1) * y1
-    return x + scale * (y - y1 * x), y - scale * (x + y1 * y), z
+        return 2 / (1 + square), y1 * (z + lean), y2 * (z + lean), square * z - lean
+    return 2 / (1 + y1 * y1), y1 * (y1 * x - y), y1 * (x + y1 * y), 0.0
 
 
 @scalar
 def leaned(L: Any, x: float, y: float, z: float) -> tuple[float, float]:
     """Return L (x, y, z)."""
     return L[0] * x + (L[1] * y + L[2] * z), L[3] * x + (L[4] * y + L[5] * z)
+
+
+@scalar
+def turned(n: int, L: Any, y1: float, y2: float, u: Any) -> tuple[float, float, Any]:
+    """Return the two of L W^T u, and W^T u; only the last product of each waits for a quotient."""
+    a, v1, v2, v3 = swept(n, y1, y2, *u)
+    f1, f2 = leaned(L, *u)
+    h1, h2 = leaned(L, v1, v2, v3)
+    return f1 - a * h1, f2 - a * h2, (u[0] - a * v1, u[1] - a * v2, u[2] - a * v3)
+
+
+@scalar
+def kicked_two(kick: Kick, A: Any, m1: float, m2: float, k1: float, k2: float) -> tuple[float, float]:
+    """Return A m + k."""
+    if len(kick.keep) > 0:
+        return A[0] * m1 + A[1] * m2 + k1, A[2] * m1 + A[3] * m2 + k2
+    return m1 + k1, m2 + k2
 
 
 @njit(**COMPILED)
@@ -124,44 +142,72 @@ def _numbers(kick: Kick):  # noqa: ANN202
     return n, (F[0], F[1], F[2]), (L[0], L[1], L[2], L[3], L[4], L[5]), (a[0], a[1], a[2], a[3])
 
 
+@njit(forceinline=True, **COMPILED)
+def _root(p: Body, heavy: bool, m1: float, m2: float, y1: float, y2: float) -> tuple[int, float, float]:
+    """Correct a guess and verify that it is the principal root; under a weight by two corrections of one slope.
+
+    Without one the root has the bits of a free step. An error of the second correction is a product of both.
+    """
+    d1, d2, e1, e2 = corrections(p, m1, m2, y1, y2)
+    y1, y2 = y1 + d1, y2 + d2
+    good = converged(d1, d2, y1, y2)
+    if heavy and not good:
+        y1, y2 = y1 + e1, y2 + e2
+        weight = 1 + y1 * y1 + y2 * y2
+        good = 4 * (d1 * d1 + d2 * d2) * (e1 * e1 + e2 * e2) <= 1e-36 * weight * weight
+    if good and certified(p, m1, m2, y1, y2):
+        return 0, y1, y2
+    return _solve(p, m1, m2, y1, y2)
+
+
+@njit(forceinline=True, **COMPILED)
+def _posed(p: Body, n: int, F: Any, row: int, y1: float, y2: float, q: Any, weight: Any) -> Any:
+    """Return the pose of the next node, and the weight there: as it is, or now and then from the pose."""
+    q = move(p, y1, y2, *q)
+    return q, (seen(n, F, *q) if n > 0 and row % RENEWED == 0 else weight)
+
+
 @njit(nogil=True, **COMPILED)
 def _advance_two(p: Body, kick: Kick, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
     """Advance a top in space or a sleigh in the plane, with numbers in place of arrays."""
     momenta, charts, poses = rows
     m1, m2, l1, l2, q0, q1, q2, q3, y1, y2, u1, u2, v1, v2 = _unpack(state)
-    rubs, table, last = len(kick.keep) > 0, kick.rows, len(kick.rows) - 1
-    n, F, L, (a, b, c, d) = _numbers(kick)
-    f1, f2, row, code, done = state[14], state[15], int(state[16]), 0, 0
-    x, y, z = seen(n, F, q0, q1, q2, q3)
+    t1, t2, f1, f2 = state[14], state[15], state[16], state[17]
+    q, weight = (q0, q1, q2, q3), (state[18], state[19], state[20])
+    table, last, row, code, done = kick.rows, len(kick.rows) - 1, int(state[21]), 0, 0
+    n, F, L, A = _numbers(kick)
     if row == 0:
-        f1, f2 = leaned(L, x, y, z)
+        weight = seen(n, F, *q)
+        f1, f2 = leaned(L, *weight)
     while done < steps:
         r1, r2 = table[min(row, last), 0], table[min(row, last), 1]
-        s1, s2 = (a * m1 + b * m2, c * m1 + d * m2) if rubs else (m1, m2)
-        s1, s2 = s1 + (f1 + r1), s2 + (f2 + r2)
-        code, w1, w2 = _solve(p, s1, s2, 3 * (y1 - u1) + v1, 3 * (y2 - u2) + v2)
+        s1, s2 = kicked_two(kick, A, m1, m2, f1 + r1, f2 + r2)
+        g1, g2 = 3 * (y1 - u1) + v1, 3 * (y2 - u2) + v2
+        if n > 0:
+            g1, g2 = 4 * (y1 + v1) - (6 * u1 + t1), 4 * (y2 + v2) - (6 * u2 + t2)
+        code, w1, w2 = _root(p, n > 0, s1, s2, g1, g2)
         if code != 0:
             break
-        v1, v2, u1, u2, y1, y2 = u1, u2, y1, y2, w1, w2
+        if done > 0:  # not before: processors begin with what stands first, and no root waits for a pose
+            q, weight = _posed(p, n, F, row, y1, y2, q, weight)
+        t1, t2, v1, v2, u1, u2, y1, y2 = v1, v2, u1, u2, y1, y2, w1, w2
         done += 1
         row += 1
         if done % every == 0:
             at = done // every - 1
             momenta[at, 0], momenta[at, 1], charts[at, 0], charts[at, 1] = m1, m2, w1, w2
-            poses[at, 0], poses[at, 1], poses[at, 2], poses[at, 3] = q0, q1, q2, q3
+            poses[at, 0], poses[at, 1], poses[at, 2], poses[at, 3] = q
         d1, d2 = increment(p, s1, s2, w1, w2)
         settled = SETTLED * max(abs(s1), abs(s2))
         s1, l1 = _compensated(s1, l1, d1, settled)
         s2, l2 = _compensated(s2, l2, d2, settled)
         if n > 0:
-            x, y, z = turned(n, w1, w2, x, y, z)
-            f1, f2 = leaned(L, x, y, z)
-        m1, m2 = (a * s1 + b * s2, c * s1 + d * s2) if rubs else (s1, s2)
-        m1, m2 = m1 + (f1 + r1), m2 + (f2 + r2)
-        q0, q1, q2, q3 = move(p, w1, w2, q0, q1, q2, q3)
-        if n > 0:
-            x, y, z = seen(n, F, q0, q1, q2, q3)
-    assign(state, np.array((m1, m2, l1, l2, q0, q1, q2, q3, y1, y2, u1, u2, v1, v2, f1, f2, float(row))))
+            f1, f2, weight = turned(n, L, w1, w2, weight)
+        m1, m2 = kicked_two(kick, A, s1, s2, f1 + r1, f2 + r2)
+    if done > 0:
+        q, weight = _posed(p, n, F, row, y1, y2, q, weight)
+    roots = y1, y2, u1, u2, v1, v2, t1, t2
+    assign(state, np.array((m1, m2, l1, l2, *q, *roots, f1, f2, *weight, float(row))))
     return done, code
 
 
@@ -171,7 +217,7 @@ def _advance_many(p: Any, kick: Kick, state: np.ndarray, steps: int, every: int,
     momenta, charts, poses = rows
     k, size = momenta.shape[1], poses.shape[1]
     m, lost, pose = state[:k].copy(), state[k : 2 * k].copy(), state[2 * k : 2 * k + size].copy()
-    roots = state[2 * k + size : len(state) - 1 - k].copy().reshape(3, -1)
+    roots = state[2 * k + size : len(state) - 6].copy().reshape(4, -1)
     s, change, force, root, guess = np.empty(k), np.empty(k), np.empty(k), roots[0].copy(), roots[0].copy()
     row, code, done, one = int(state[len(state) - 1]), 0, 0, np.zeros(1)
     one[0] = 1.0
@@ -215,13 +261,13 @@ def add_compensated(s: np.ndarray, lost: np.ndarray, change: np.ndarray) -> None
 
 def start(forced: ForcedBody, momentum: np.ndarray, pose: np.ndarray, sizes: Any) -> tuple[int, np.ndarray]:
     """Return the outcome of the first root and the state of a run; `sizes` are those of a row of the body."""
-    rest = np.tile(at_rest(forced.body), 3)
-    state = np.concatenate((momentum, np.zeros_like(momentum), pose, rest, np.zeros(len(momentum) + 1 + sizes[1])))
+    rest = np.tile(at_rest(forced.body), 4)
+    state = np.concatenate((momentum, np.zeros_like(momentum), pose, rest, np.zeros(6 + sizes[1])))
     momenta, chart, poses = np.empty((1, len(momentum))), np.empty((1, sizes[1])), np.empty((1, len(pose)))
     _, code = advance(forced, state, 1, 1, momenta, chart, poses)
     state[len(state) - sizes[1] :] = chart[0] if code == 0 else np.nan
-    begin, width = 2 * len(momentum) + len(pose), len(rest) // 3
-    state[begin + width : begin + 3 * width] = np.tile(state[begin : begin + width], 2)
+    begin, width = 2 * len(momentum) + len(pose), len(rest) // 4
+    state[begin + width : begin + 4 * width] = np.tile(state[begin : begin + width], 3)
     return code, state
 
 
