@@ -24,7 +24,7 @@ PAGE_ROOMS = {  # each page and its rooms, whose classes are described too: what
     "testing": ("Checks", ["testing"]),
 }
 INSIDE = ("io",)  # its classes serve other rooms
-INNER = {"Frame", "FunctionRoute", "Landscape", "Members", "Place", "ScalarRoute", "Start"}  # as do these
+INNER = {"Frame", "Landscape", "Members", "Place", "ScalarRoute", "Start"}  # as do these
 
 
 def public() -> dict[str, Any]:

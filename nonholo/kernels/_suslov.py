@@ -102,7 +102,7 @@ def correction(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> tup
 def corrections(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> tuple[float, float, float, float]:
     """Return the Newton correction d of y, and the one after it with the same slopes.
 
-    Of the two quadratics d leaves their terms of second order, exactly: the equations at d without those of first order.
+    Of the two quadratics d leaves exactly their terms of second order: the equations at d without the others.
     """
     g1, g2 = residual(p, m1, m2, y1, y2)
     j11, j12, j21, j22 = slopes(p, m1, m2, y1, y2)

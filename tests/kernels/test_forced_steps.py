@@ -6,20 +6,11 @@ from bodies import GENERAL
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.kernels._forced import (
-    RENEWED,
-    _numbers,
-    _root,
-    add_compensated,
-    kicked,
-    kicked_two,
-    leaned,
-    pulled,
-    seen,
-    turned,
-)
 from nonholo.kernels._interface import corrections, residual
 from nonholo.kernels._substeps import at_rest, charted, prepared, pushed, solved
+from nonholo.kernels.forced._kick import linear, pulled_by_weight, seen
+from nonholo.kernels.forced._two import RENEWED, _numbers, _root, kicked_two, leaned, turned
+from nonholo.kernels.forced.run import add_compensated
 from nonholo.systems import AbstractSystem
 
 BODIES: dict[str, tuple[AbstractSystem, list[float]]] = {
@@ -44,7 +35,7 @@ def _kicked(kick: kernels.Kick, row: int, m: np.ndarray, force: np.ndarray) -> n
         last = kick.rows[min(row, len(kick.rows) - 1)]
         return np.array(kicked_two(kick, _numbers.py_func(kick)[3], *m, *(force + last)))
     out = np.empty_like(m)
-    kicked.py_func(kick, row, m, force, out)
+    linear(kick, force, row, row, m, out)
     return out
 
 
@@ -58,7 +49,7 @@ def _run(forced: kernels.ForcedBody, m: np.ndarray, pose: np.ndarray, steps: int
     force[:] = leaned(L, *weight) if len(m) == 2 else 0.0
     for k in range(steps + 1):
         if len(m) > 2:
-            pulled.py_func(kick, pose, force)
+            pulled_by_weight(kick, force, pose)
         s, w = _kicked(kick, k, m, force), None
         guess = 4 * (y + v) - (6 * u + t) if n else 3 * (y - u) + v
         root, chart, change = y.copy(), np.empty_like(m), np.empty_like(m)
@@ -79,7 +70,7 @@ def _run(forced: kernels.ForcedBody, m: np.ndarray, pose: np.ndarray, steps: int
                 weight = seen(n, F, *pose)
         else:
             pushed(body, w, s, root, change, pose)
-            pulled.py_func(kick, pose, force)
+            pulled_by_weight(kick, force, pose)
         add_compensated(s, lost, change)
         m = _kicked(kick, k, s, force)
     return found

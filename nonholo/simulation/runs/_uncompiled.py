@@ -6,7 +6,7 @@ from typing import TypeAlias
 import numpy as np
 
 from nonholo.base.checks import error, needs, shown
-from nonholo.discrete import Discretization, FunctionRoute, check_first_state, has_frame
+from nonholo.discrete import Discretization, check_first_state, has_frame
 from nonholo.orbit import Orbit
 from nonholo.simulation.runs._by_rule import Run, run_by_rule
 from nonholo.simulation.runs._first_state import FirstState
@@ -32,7 +32,7 @@ def uncompiled_run(discrete: Discretization, start: FirstState, options: RunOpti
 
 
 def _principal_run(discrete: Discretization, options: RunOptions) -> Run:
-    if isinstance(discrete.route, FunctionRoute):
+    if discrete.forces is not None:
         return discrete.route.run
     if options.backend == "numba":
         remedy = "Pass backend='jax', or difference='matrix'."
