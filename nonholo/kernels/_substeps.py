@@ -41,9 +41,7 @@ def _two_solved(
 
 
 @njit(**COMPILED)
-def _two_pushed(
-    p: Body, w: np.ndarray, m: np.ndarray, root: np.ndarray, change: np.ndarray, pose: np.ndarray
-) -> None:
+def _two_pushed(p: Body, w: np.ndarray, m: np.ndarray, root: np.ndarray, change: np.ndarray, pose: np.ndarray) -> None:
     change[0], change[1] = increment(p, m[0], m[1], root[0], root[1])
     pose[0], pose[1], pose[2], pose[3] = move(p, root[0], root[1], pose[0], pose[1], pose[2], pose[3])
 

@@ -216,7 +216,11 @@ def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
 def half_drive(free: AbstractCompiledRoute, forced: Forced) -> kernels.Drive:
     """Return half the impulse of functions; those that numba compiled are asked once before a run."""
     kick, along = _linear_part(free, forced)
-    group, S, has = forced.group, np.asarray(forced.constraint_subspace), (callable(forced.force), callable(forced.potential))
+    group, S, has = (
+        forced.group,
+        np.asarray(forced.constraint_subspace),
+        (callable(forced.force), callable(forced.potential)),
+    )
     momenta = forced.from_canonical(free.decode(np.eye(forced.rank)))
     velocity = S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
     moves, weights = forced.differences

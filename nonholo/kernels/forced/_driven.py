@@ -10,6 +10,7 @@ loop is the same.
 """
 
 import functools
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -17,20 +18,17 @@ import numba
 import numpy as np
 from llvmlite import ir
 from numba import types
-from numba.extending import intrinsic, overload, register_jitable
+from numba.extending import intrinsic, overload
 
-from nonholo.kernels.forced._kick import Kick, linear, pulled_by_weight, seen
-from nonholo.kernels._scalar import BORROWING, COMPILED, INLINED, scalar
+from nonholo.kernels._scalar import INLINED, inlined, scalar
 from nonholo.kernels._small import assign, eliminate, multiply
+from nonholo.kernels.forced._kick import Kick, linear, pulled_by_weight, seen
 
 _ITERATIONS = 30  # of Newton's method with one slope
 _ROUNDING = 1e-12  # relative, before the last correction
 _DIFFERENCE = 1e-7  # relative, of a momentum
 _ROW = types.CPointer(types.float64)
 _SIGNATURE = types.void(types.float64, _ROW, _ROW, _ROW)
-
-
-borrowing = register_jitable(**INLINED)
 
 
 class Drive(NamedTuple):
@@ -118,7 +116,7 @@ def _call(typing: Any, address: Any, time: Any, g: Any, w: Any, out: Any) -> Any
     return types.void(address, time, g, w, out), code
 
 
-@overload(function_at, jit_options=BORROWING, strict=False)
+@overload(function_at, jit_options=INLINED, strict=False)
 def _compiled_function_at(address: Any, time: Any, g: Any, w: Any, out: Any) -> Any:
     return lambda address, time, g, w, out: _call(address, time, g, w, out)
 
@@ -150,14 +148,15 @@ def function_of(function: Any, shape: tuple[int, int], arguments: int) -> int:
                 for i in range(dim):
                     found[i] = value[i]
 
-    _ADDRESSED.append(call)
+    _KEPT.append(call)
     return call.address
 
 
-_ADDRESSED: list[Any] = []
+_KEPT: list[Any] = []
+"""Functions whose addresses are known."""
 
 
-@borrowing
+@inlined
 def place(drive: Drive, room: Room, pose: np.ndarray) -> None:
     """Write the user's pose from that of the kernel."""
     P, n = room.poses[1], drive.planar
@@ -173,7 +172,7 @@ def place(drive: Drive, room: Room, pose: np.ndarray) -> None:
     multiply(P, drive.turn, room.poses[0])
 
 
-@borrowing
+@inlined
 def pulled_by_functions(drive: Drive, room: Room, pose: np.ndarray) -> None:
     """Write what the weight and the potential add to momenta at a pose."""
     place(drive, room, pose)
@@ -194,8 +193,10 @@ def pulled_by_functions(drive: Drive, room: Room, pose: np.ndarray) -> None:
             force[i] += drive.along[i, j] * slope[j]
 
 
-@borrowing
-def pushed_by_function(drive: Drive, room: Room, time: float, m: np.ndarray, after: np.ndarray, out: np.ndarray) -> None:
+@inlined
+def pushed_by_function(
+    drive: Drive, room: Room, time: float, m: np.ndarray, after: np.ndarray, out: np.ndarray
+) -> None:
     """Write what the force at the velocity of the mean of two momenta, and all else, add to momenta."""
     velocity, value = room.covectors[0], room.covectors[1]
     for i in range(len(velocity)):
@@ -209,7 +210,7 @@ def pushed_by_function(drive: Drive, room: Room, time: float, m: np.ndarray, aft
             out[i] += drive.along[i, j] * value[j]
 
 
-@borrowing
+@inlined
 def largest(a: np.ndarray, b: np.ndarray) -> float:
     """Return the largest size of the numbers of two rows; NaN or infinity if there is one among them."""
     total = 0.0
@@ -219,7 +220,7 @@ def largest(a: np.ndarray, b: np.ndarray) -> float:
     return total
 
 
-@borrowing
+@inlined
 def driven(drive: Drive, room: Room, node: int, row: int, m: np.ndarray, out: np.ndarray) -> int:
     """Write the momenta after half an impulse; return the outcome: 3 if it is not found, 5 if it is not finite.
 
@@ -231,7 +232,7 @@ def driven(drive: Drive, room: Room, node: int, row: int, m: np.ndarray, out: np
     pushed_by_function(drive, room, time, m, m, first)
     for i in range(len(m)):
         out[i] = m[i] + first[i]
-    if not largest(out, out) < np.inf:
+    if not largest(out, out) < math.inf:
         return 5
     pushed_by_function(drive, room, time, m, out, second)
     same = True
@@ -240,7 +241,7 @@ def driven(drive: Drive, room: Room, node: int, row: int, m: np.ndarray, out: np
     return 0 if same else midpoint(drive, room, time, m, out)
 
 
-@borrowing
+@inlined
 def midpoint(drive: Drive, room: Room, time: float, m: np.ndarray, out: np.ndarray) -> int:
     """Solve m' = m + j((m + m') / 2) by Newton's method, from the explicit momenta and their impulse."""
     first, second, third, missed = room.momenta[0], room.momenta[1], room.momenta[2], room.missed
@@ -260,7 +261,7 @@ def midpoint(drive: Drive, room: Room, time: float, m: np.ndarray, out: np.ndarr
             for j in range(len(m)):
                 used[i, j] = slopes[i, j]
         left = largest(missed[:, 0], missed[:, 0])
-        if not left < np.inf:
+        if not left < math.inf:
             return 5
         small = left <= _ROUNDING * largest(m, out)
         if eliminate(used, missed) == 0:

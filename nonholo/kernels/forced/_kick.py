@@ -3,12 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import register_jitable
 
-from nonholo.kernels._scalar import INLINED, scalar
-
-
-borrowing = register_jitable(**INLINED)
+from nonholo.kernels._scalar import inlined, scalar
 
 
 class Kick(NamedTuple):
@@ -35,7 +31,7 @@ def room_for_kick(kick: Kick) -> np.ndarray:
     return np.empty(kick.rows.shape[1])
 
 
-@borrowing
+@inlined
 def pulled_by_weight(kick: Kick, force: np.ndarray, pose: np.ndarray) -> None:
     """Write what the weight adds to momenta at a pose that is a matrix."""
     n, k = len(kick.weight), len(force)
@@ -48,7 +44,7 @@ def pulled_by_weight(kick: Kick, force: np.ndarray, pose: np.ndarray) -> None:
             force[i] += kick.arms[i, j] * seen
 
 
-@borrowing
+@inlined
 def linear(kick: Kick, force: np.ndarray, node: int, row: int, m: np.ndarray, out: np.ndarray) -> int:
     """Write the momenta after half an impulse of a step, from what the weight adds; return the outcome, zero."""
     at = min(row, len(kick.rows) - 1)

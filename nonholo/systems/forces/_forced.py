@@ -132,7 +132,7 @@ class Forced(AbstractSystem):
 
     @functools.cached_property
     def differences(self) -> tuple[Float[np.ndarray, "dim orders 2 N N"], Float[np.ndarray, "orders"]]:
-        """Displacements to and fro along each body direction, and weights: -dU sums what U loses from one to the other."""
+        """Displacements to and fro along each body direction, and weights: -dU sums what U loses between them."""
         offsets = _OFFSET * np.arange(1, 1 + len(_DIFFERENCES))[:, None] * np.eye(self.group.dim)[:, None]
         return np.stack([self.group.exp(offsets), self.group.exp(-offsets)], axis=2), _DIFFERENCES
 
