@@ -94,7 +94,8 @@ def test_compiled_functions_have_the_bits_of_python(name: str, kind: str) -> Non
 
 def test_compiled_functions_run_in_blocks_stores_and_ensembles(tmp_path: Path) -> None:
     """Blocks, a run into a store that is extended, and members have the bits of one run."""
-    discrete, start = nh.discretize(nh.Forced(TOP, WELL, DRIVE), 0.05), {"restricted_velocity": START[:2]}
+    start: dict[str, Any] = {"restricted_velocity": START[:2]}
+    discrete = nh.discretize(nh.Forced(TOP, WELL, DRIVE), 0.05)
     orbit = nh.simulate(discrete, **start, steps=30)
     blocks = map(_rows, nh.iterate(discrete, **start, steps=30, block_steps=7))
     joint = [np.concatenate(rows) for rows in zip(*blocks, strict=True)]

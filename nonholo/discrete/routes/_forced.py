@@ -231,9 +231,19 @@ def half_drive(free: AbstractCompiledRoute, forced: Forced) -> kernels.Drive:
             write(0.0, group.identity, np.zeros(group.dim), asked)
         force = kernels.function_of(forced.force, shape, 3) if has[0] else 0
         potential = kernels.function_of(forced.potential, shape, 1) if has[1] else 0
-    arrays = _kernel_frame(free, forced), velocity, along.T, moves, weights
-    planar = (2 if group == SE(2) else 3) if free.is_scalar else 0
-    return kernels.Drive(kick, planar, *map(_plain, arrays), float(free.time_step), has, force, potential)
+    return kernels.Drive(
+        kick=kick,
+        planar=(2 if group == SE(2) else 3) if free.is_scalar else 0,
+        turn=_plain(_kernel_frame(free, forced)),
+        velocity=_plain(velocity),
+        along=_plain(along.T),
+        moves=_plain(moves),
+        weights=_plain(weights),
+        time_step=float(free.time_step),
+        has=has,
+        force=force,
+        potential=potential,
+    )
 
 
 def _in_python(forced: Forced) -> tuple[Callable[..., None], Callable[..., None]]:
@@ -243,6 +253,7 @@ def _in_python(forced: Forced) -> tuple[Callable[..., None], Callable[..., None]
         out[:] = forced.applied_force(time, g.copy(), velocity.copy())
 
     def potential(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
+        del time, velocity
         out[0] = forced.potential_energy(g.copy())
 
     return force, potential

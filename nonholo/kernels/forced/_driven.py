@@ -5,8 +5,8 @@ At a node with pose g the momenta m of a kernel go to $m' = A\,m + r_k + N\,(-dU
 $$ m' = m + N\,(-dU(g) + f(t, g, V(m + m')/2)), $$
 
 with the body velocity V m and the momenta N j of impulses j. Poses and covectors are those of the user's frame.
-Functions are addresses in compiled code, so that one loop serves all of them, and Python functions in plain Python, whose
-loop is the same.
+Functions are addresses in compiled code, so that one loop serves all of them, and Python functions in plain Python,
+whose loop is the same.
 """
 
 import functools
@@ -19,6 +19,7 @@ import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic, overload
+from numba.np.numpy_support import carray
 
 from nonholo.kernels._scalar import INLINED, inlined, scalar
 from nonholo.kernels._small import assign, eliminate, multiply
@@ -118,7 +119,7 @@ def _call(typing: Any, address: Any, time: Any, g: Any, w: Any, out: Any) -> Any
 
 @overload(function_at, jit_options=INLINED, strict=False)
 def _compiled_function_at(address: Any, time: Any, g: Any, w: Any, out: Any) -> Any:
-    return lambda address, time, g, w, out: _call(address, time, g, w, out)
+    return lambda address, time, g, w, out: _call(address, time, g, w, out)  # pyright: ignore
 
 
 @functools.cache
@@ -133,23 +134,23 @@ def function_of(function: Any, shape: tuple[int, int], arguments: int) -> int:
 
         @numba.cfunc(_SIGNATURE)
         def call(time: Any, g: Any, w: Any, out: Any) -> None:  # pyright: ignore
-            found = numba.carray(out, dim)
+            found = carray(out, dim)
             found[0] = np.nan
-            found[0] = function(numba.carray(g, (size, size)))
+            found[0] = function(carray(g, (size, size)))
 
     else:
 
         @numba.cfunc(_SIGNATURE)
         def call(time: Any, g: Any, w: Any, out: Any) -> None:
-            found = numba.carray(out, dim)
+            found = carray(out, dim)
             found[:] = np.nan
-            value = function(time, numba.carray(g, (size, size)), numba.carray(w, dim))
+            value = function(time, carray(g, (size, size)), carray(w, dim))
             if len(value) == dim:
                 for i in range(dim):
                     found[i] = value[i]
 
     _KEPT.append(call)
-    return call.address
+    return int(call.address or 0)
 
 
 _KEPT: list[Any] = []

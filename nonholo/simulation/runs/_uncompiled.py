@@ -1,7 +1,7 @@
 """Runs of maps that are not compiled: which of them there are, and how each is run."""
 
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -32,8 +32,9 @@ def uncompiled_run(discrete: Discretization, start: FirstState, options: RunOpti
 
 
 def _principal_run(discrete: Discretization, options: RunOptions) -> Run:
+    route: Any = discrete.route
     if discrete.forces is not None:
-        return discrete.route.run
+        return route.run
     if options.backend == "numba":
         remedy = "Pass backend='jax', or difference='matrix'."
         raise error("simulate(backend=...)", "have a closed form of the step", shown(discrete.difference), remedy)

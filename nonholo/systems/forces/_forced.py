@@ -54,6 +54,11 @@ class Forced(AbstractSystem):
         force: f, a function (time, configuration, body_velocity) -> (dim,); or `Friction`; or an array (steps, dim),
             whose row k acts constantly over step k: for maps only. Time is that of the orbit, from zero.
 
+    Functions marked `numba.njit` run in the compiled step of a constraint that is fixed in the body, in a fraction of a
+    microsecond beside their own time; they may return a tuple, and must not write to their arguments. What they raise
+    is printed, and ends the run as "nonfinite". Functions of Python cost some hundred microseconds a step; where both are
+    possible the bits are the same.
+
     Raises:
         ValueError: A system that is forced already or that has no matrices; a potential or force
             of another kind or shape.
@@ -66,6 +71,17 @@ class Forced(AbstractSystem):
         >>> orbit = nh.simulate(nh.discretize(heavy, 0.01), body_velocity=(0.2, 0.1, 0.0), steps=1000)
         >>> float(np.ptp(orbit.energy) / abs(orbit.energy[0])) < 1e-3
         True
+
+        Your own torque about the first axis, compiled:
+
+        >>> import numba
+        >>> @numba.njit
+        ... def motor(time, configuration, body_velocity):
+        ...     return 0.5 - 0.1 * body_velocity[0], 0.0, 0.0
+        >>> driven = nh.discretize(nh.Forced(top, force=motor), 0.01)
+        >>> orbit = nh.simulate(driven, body_velocity=(0.0, 0.0, 0.0), steps=1000)
+        >>> round(float(orbit.body_velocity[-1, 0]), 3)
+        3.161
     """
 
     system: AbstractSystem
