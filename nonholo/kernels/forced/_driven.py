@@ -243,10 +243,9 @@ def driven(drive: Drive, room: Room, node: int, row: int, m: np.ndarray, out: np
 
 
 @inlined
-def midpoint(drive: Drive, room: Room, time: float, m: np.ndarray, out: np.ndarray) -> int:
-    """Solve m' = m + j((m + m') / 2) by Newton's method, from the explicit momenta and their impulse."""
-    first, second, third, missed = room.momenta[0], room.momenta[1], room.momenta[2], room.missed
-    slopes, used = room.slopes[0], room.slopes[1]
+def see_slopes(drive: Drive, room: Room, time: float, m: np.ndarray, out: np.ndarray) -> None:
+    """Write the slopes of m' - m - j((m + m') / 2), by differences from the second impulse on the way."""
+    first, second, third, slopes = room.momenta[0], room.momenta[1], room.momenta[2], room.slopes[0]
     size = largest(m, first)
     size = _DIFFERENCE * (size if size > 0 else 1.0)
     for j in range(len(m)):
@@ -256,6 +255,13 @@ def midpoint(drive: Drive, room: Room, time: float, m: np.ndarray, out: np.ndarr
         for i in range(len(m)):
             slopes[i, j] = (1.0 if i == j else 0.0) - (third[i] - second[i]) / size
         out[j] = kept
+
+
+@inlined
+def midpoint(drive: Drive, room: Room, time: float, m: np.ndarray, out: np.ndarray) -> int:
+    """Solve m' = m + j((m + m') / 2) by Newton's method, from the explicit momenta and their impulse."""
+    second, missed, slopes, used = room.momenta[1], room.missed, room.slopes[0], room.slopes[1]
+    see_slopes(drive, room, time, m, out)
     for _ in range(_ITERATIONS):
         for i in range(len(m)):
             missed[i, 0] = m[i] + second[i] - out[i]

@@ -56,8 +56,8 @@ class Forced(AbstractSystem):
 
     Functions marked `numba.njit` run in the compiled step of a constraint that is fixed in the body, in a fraction of a
     microsecond beside their own time; they may return a tuple, and must not write to their arguments. What they raise
-    is printed, and ends the run as "nonfinite". Functions of Python cost some hundred microseconds a step; where both are
-    possible the bits are the same.
+    is printed, and ends the run as "nonfinite". Functions of Python have the same bits, and cost some hundred
+    microseconds a step.
 
     Raises:
         ValueError: A system that is forced already or that has no matrices; a potential or force
