@@ -1,5 +1,8 @@
 """Steps with forces beside free ones, in the kernel: process time of runs of a top and a sleigh, in turns.
 
+Functions are compiled, and one is run in Python for comparison; a step calls one four times, or more often where it
+depends on the velocity.
+
 A table of zeros must give the bits of the free run first. Free runs of an unbalanced body end at an equilibrium, where
 one correction solves a step; what moves on under a weight may need two, so there is a balanced top as well.
 
@@ -9,10 +12,12 @@ With --drift, not speed: how the error of T + U grows under weights in a million
 """
 
 import argparse
+import math
 import statistics
 import time
 from typing import Any
 
+import numba
 import numpy as np
 
 import nonholo as nh
@@ -23,6 +28,16 @@ BODIES = {
     "balanced top": nh.SuslovTop(np.diag([1.0, 1.2, 0.7])),
     "sleigh": nh.ChaplyginSleigh(1.0, 1.0, 0.5),
 }
+
+
+def push(time: float, g: np.ndarray, w: np.ndarray) -> tuple[float, float, float]:
+    """Return a force of the time."""
+    return 1e-3 * math.sin(time), 0.0 * g[0, 0] * w[0], 0.0
+
+
+def drag(time: float, g: np.ndarray, w: np.ndarray) -> tuple[float, float, float]:
+    """Return a force of the velocity."""
+    return -1e-6 * w[0] * abs(w[0]), 0.0 * g[0, 0] * time, -1e-6 * w[2]
 
 
 def forced(system: Any, steps: int) -> dict[str, nh.Forced]:
@@ -36,6 +51,9 @@ def forced(system: Any, steps: int) -> dict[str, nh.Forced]:
         "friction": nh.Forced(system, force=rub),
         "weight": nh.Forced(system, heavy),
         "weight and friction": nh.Forced(system, heavy, rub),
+        "function of time": nh.Forced(system, force=numba.njit(push)),
+        "of velocity": nh.Forced(system, force=numba.njit(drag)),
+        "in Python": nh.Forced(system, force=drag),
     }
 
 
@@ -78,7 +96,8 @@ def main() -> None:
         for h in (0.1, 0.005):
             routes = {kind: nh.discretize(each, h).route for kind, each in forced(system, given.steps).items()}
             bodies = {"free": nh.discretize(system, h).route.body}
-            bodies |= {kind: route.body for kind, route in routes.items()}
+            bodies |= {kind: getattr(route, "loop", route).body for kind, route in routes.items()}
+            counts = {kind: 200 if route.compiled is None else given.steps for kind, route in routes.items()}
             free = nh.discretize(system, h).route
             start = free.encode(np.array([0.4, 0.9])), free.encode_poses(np.asarray(system.frame_pose))
             rows = tuple(np.empty((given.steps, width)) for width in free.sizes)
@@ -87,10 +106,10 @@ def main() -> None:
             for _ in range(given.rounds + 1):
                 for kind, body in bodies.items():
                     _, state = kernels.start(body, *start)
-                    begun = time.process_time()
-                    done = kernels.advance(body, state, given.steps, 1, rows)
-                    taken[kind].append((time.process_time() - begun) / given.steps * 1e9)
-                    if done != (given.steps, 0):
+                    begun, count = time.process_time(), counts.get(kind, given.steps)
+                    done = kernels.advance(body, state, count, 1, rows)
+                    taken[kind].append((time.process_time() - begun) / count * 1e9)
+                    if done != (count, 0):
                         raise RuntimeError(f"{name}, {kind}: {done}")
                     ends[kind] = [row[-1].copy() for row in rows]
             if not all(map(np.array_equal, ends["free"], ends["zeros"])):

@@ -31,7 +31,7 @@ PAGE_ROOMS = {  # each page and its rooms, whose classes are described too: what
     "testing": ("Checks", ["testing"]),
 }
 INSIDE = ("io",)  # its classes serve other rooms
-INNER = {"Frame", "FunctionRoute", "Landscape", "Members", "Place", "ScalarRoute", "Start"}  # as do these
+INNER = {"Frame", "Landscape", "Members", "Place", "ScalarRoute", "Start"}  # as do these
 _LINE = re.compile(r"^    (\w+)(?:: .*)?$", re.MULTILINE)
 _WIDTH = 120
 

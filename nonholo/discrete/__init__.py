@@ -29,7 +29,7 @@ from nonholo.discrete.branching import (
     landscape,
     next_places,
 )
-from nonholo.discrete.routes import AbstractCompiledRoute, FunctionRoute, ScalarRoute, reversal_defects
+from nonholo.discrete.routes import AbstractCompiledRoute, ScalarRoute, reversal_defects
 
 __all__ = [
     "PRINCIPAL",
@@ -40,7 +40,6 @@ __all__ = [
     "Branches",
     "Discretization",
     "Frame",
-    "FunctionRoute",
     "Landscape",
     "MeasuredMotion",
     "Place",

@@ -4,12 +4,12 @@ from nonholo.kernels._composition import ComposedBody, whole_steps
 from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged, flat_run
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
-from nonholo.kernels._forced import ForcedBody, Kick
 from nonholo.kernels._interface import Body, certified, correction, increment, move, residual, tangent
 from nonholo.kernels._nearest import NearestBody
 from nonholo.kernels._nearest import advance as advance_to_nearest
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
+from nonholo.kernels.forced import Drive, ForcedBody, Kick, function_of
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.secular import SecularBody, secular_sleigh, secular_top
 from nonholo.kernels.taylor import (
@@ -31,6 +31,7 @@ __all__ = [
     "Arrowhead",
     "Body",
     "ComposedBody",
+    "Drive",
     "ForcedBody",
     "GeneralBody",
     "Kick",
@@ -48,6 +49,7 @@ __all__ = [
     "converged",
     "correction",
     "flat_run",
+    "function_of",
     "increment",
     "move",
     "order_for",

@@ -5,10 +5,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo.kernels import _composition, _driver, _forced
+from nonholo.kernels import _composition, _driver
 from nonholo.kernels._composition import ComposedBody
-from nonholo.kernels._forced import ForcedBody
 from nonholo.kernels._interface import Body
+from nonholo.kernels.forced import ForcedBody
+from nonholo.kernels.forced import run as forced_run
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.general import run as general_run
 from nonholo.kernels.secular import SecularBody
@@ -105,7 +106,7 @@ def _composed_advance(body: ComposedBody, state: np.ndarray, steps: int, every: 
 
 
 def _forced_start(body: ForcedBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
-    return _forced.start(body, momentum, pose, sizes(body.body))
+    return forced_run.start(body, momentum, pose, sizes(body.body))
 
 
 def _forced_chart(body: ForcedBody, state: np.ndarray) -> np.ndarray:
@@ -118,5 +119,5 @@ _RUNS: dict[type, _Runs] = {
     SecularBody: _Runs(_secular_sizes, secular_run.start, secular_run.chart_in, secular_run.advance, _SECULAR_EACH),
     GeneralBody: _Runs(_general_sizes, general_run.start, _general_chart, general_run.advance, _general_each),
     ComposedBody: _Runs(lambda body: sizes(body.body), _composition.start, _composed_chart, _composed_advance, None),
-    ForcedBody: _Runs(lambda body: sizes(body.body), _forced_start, _forced_chart, _forced.advance, None),
+    ForcedBody: _Runs(lambda body: sizes(body.body), _forced_start, _forced_chart, forced_run.advance, None),
 }

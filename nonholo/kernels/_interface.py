@@ -30,6 +30,11 @@ def correction(p: Body, m1: Any, m2: Any, y1: Any, y2: Any) -> tuple[Any, Any]:
     return _file_of(type(p)).correction(p, m1, m2, y1, y2)
 
 
+def corrections(p: Body, m1: Any, m2: Any, y1: Any, y2: Any) -> tuple[Any, Any, Any, Any]:
+    """Return the Newton correction of y, and the one that follows it with the same slopes."""
+    return _file_of(type(p)).corrections(p, m1, m2, y1, y2)
+
+
 def certified(p: Body, m1: Any, m2: Any, y1: Any, y2: Any) -> Any:
     """Tell whether a root y is certainly the principal one."""
     return _file_of(type(p)).certified(p, m1, m2, y1, y2)
@@ -67,7 +72,7 @@ def _compile(function: Callable[..., Any]) -> None:
     overload(function, jit_options=COMPILED, strict=False)(choose)
 
 
-for _function in (residual, correction, certified, increment, move):
+for _function in (residual, correction, corrections, certified, increment, move):
     _compile(_function)
 
 

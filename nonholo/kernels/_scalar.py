@@ -25,6 +25,10 @@ scalar = register_jitable(**COMPILED)
 """Mark a scalar function: numba inlines it, plain Python and JAX call it as it is."""
 
 
+inlined = register_jitable(**INLINED)
+"""Mark a function that writes to arrays of its callers likewise, with the options INLINED."""
+
+
 def sqrt(x: Any) -> Any:
     """Return the square root of a float or of a traced array."""
     return x.__array_namespace__().sqrt(x) if hasattr(x, "__array_namespace__") else math.sqrt(x)

@@ -57,6 +57,15 @@ def correction(p: SleighBody, m1: float, m2: float, y1: float, y2: float) -> tup
     return dt, slide(p, m2, y1 + dt) - y2
 
 
+@scalar
+def corrections(p: SleighBody, m1: float, m2: float, y1: float, y2: float) -> tuple[float, float, float, float]:
+    """Return the Newton correction of y, and the one after it with the same slope, for what the first one leaves."""
+    dt, d2 = correction(p, m1, m2, y1, y2)
+    hat = p_hat(p, m2)
+    et = ((m1 - 3 * hat * y1) - hat * dt) * dt * dt / slope(p, m1, m2, y1)
+    return dt, d2, et, slide(p, m2, y1 + dt + et) - (y2 + d2)
+
+
 def slopes(p: SleighBody, m1: Any, m2: Any, y1: Any, y2: Any) -> tuple[Any, Any, Any, Any]:
     """Return the derivative of m by y at a root, times 1 + t^2."""
     weight, pull = 1 + y1 * y1, -2 * y1 * (2 * p.mass * p.a + m2)

@@ -1,7 +1,7 @@
 """Functions of bodies for a substep of a composition: a root over given momenta, the push and the move at that root.
 
 The same pieces for every body, chosen by its type; numba chooses when it compiles. Tops in space and sleighs in the
-plane have loops of their own, in `_composition` and `_forced`.
+plane have loops of their own, in `_composition` and `forced`, where no function is called.
 """
 
 from collections.abc import Callable
@@ -11,7 +11,8 @@ import numpy as np
 from numba.extending import overload
 
 from nonholo.base.compiled import njit
-from nonholo.kernels._interface import Body
+from nonholo.kernels._driver import _solve
+from nonholo.kernels._interface import Body, increment, move
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels._small import assign
 from nonholo.kernels.general import GeneralBody, Workspace, increments, workspace
@@ -29,6 +30,20 @@ def _two_prepared(p: Body, m: np.ndarray, weights: np.ndarray) -> np.ndarray:
 @njit(**COMPILED)
 def _two_charted(p: Body, m: np.ndarray, root: np.ndarray, chart: np.ndarray) -> None:
     assign(chart, root)
+
+
+@njit(**COMPILED)
+def _two_solved(
+    p: Body, w: np.ndarray, stage: int, m: np.ndarray, guess: np.ndarray, pose: np.ndarray, root: np.ndarray
+) -> int:
+    code, root[0], root[1] = _solve(p, m[0], m[1], guess[0], guess[1])
+    return code
+
+
+@njit(**COMPILED)
+def _two_pushed(p: Body, w: np.ndarray, m: np.ndarray, root: np.ndarray, change: np.ndarray, pose: np.ndarray) -> None:
+    change[0], change[1] = increment(p, m[0], m[1], root[0], root[1])
+    pose[0], pose[1], pose[2], pose[3] = move(p, root[0], root[1], pose[0], pose[1], pose[2], pose[3])
 
 
 @njit(**COMPILED)
@@ -127,9 +142,9 @@ def chosen(secular: Callable[..., Any], general: Callable[..., Any], two: Any = 
 
 prepared = chosen(_secular_prepared, _general_prepared, _two_prepared)
 """(p, m, weights): what the other pieces need beside the body."""
-solved = chosen(_secular_solved, _general_solved)
+solved = chosen(_secular_solved, _general_solved, _two_solved)
 """(p, w, stage, m, guess, pose, root): write the principal root over m; return the outcome."""
-pushed = chosen(_secular_pushed, _general_pushed)
+pushed = chosen(_secular_pushed, _general_pushed, _two_pushed)
 """(p, w, m, root, change, pose): write the change of m, right after `solved`; move the pose."""
 charted = chosen(_secular_charted, _general_charted, _two_charted)
 """(p, m, root, chart): write the chart coordinates of a root."""

@@ -94,10 +94,23 @@ def slopes(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> tuple[f
 @scalar
 def correction(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> tuple[float, float]:
     """Return the Newton correction of y."""
+    d1, d2, _, _ = corrections(p, m1, m2, y1, y2)
+    return d1, d2
+
+
+@scalar
+def corrections(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> tuple[float, float, float, float]:
+    """Return the Newton correction d of y, and the one after it with the same slopes.
+
+    Of the two quadratics d leaves exactly their terms of second order: the equations at d without the others.
+    """
     g1, g2 = residual(p, m1, m2, y1, y2)
     j11, j12, j21, j22 = slopes(p, m1, m2, y1, y2)
     inverse = 1 / (j11 * j22 - j12 * j21)
-    return (j12 * g2 - j22 * g1) * inverse, (j21 * g1 - j11 * g2) * inverse
+    d1, d2 = (j12 * g2 - j22 * g1) * inverse, (j21 * g1 - j11 * g2) * inverse
+    s, square = c_perp(p, d1, d2), d1 * d1 + d2 * d2
+    h1, h2 = -s * d2 - square * m1, s * d1 - square * m2
+    return d1, d2, (j12 * h2 - j22 * h1) * inverse, (j21 * h1 - j11 * h2) * inverse
 
 
 @scalar

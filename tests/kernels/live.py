@@ -12,6 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeAlias
 
+import numba
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -57,6 +58,27 @@ def forced(system: Any) -> Arrays:
     heavy, rub = nh.Gravity(rng.normal(size=n), rng.normal(size=n)), nh.Friction(rng.uniform(0, 1, system.group.dim))
     for force in (rub, rng.normal(size=(STEPS, system.group.dim))):
         discrete = nh.discretize(nh.Forced(system, heavy, force), STEP / 10)
+        orbit = nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS, throw=False)
+        found += [orbit.reduced_momentum, orbit.cayley, orbit.pose]
+    return found
+
+
+@numba.njit
+def _pushed(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
+    return (0.3 - 0.1 * time) * g[0, 0] - w * w
+
+
+@numba.njit
+def _well(g: np.ndarray) -> float:
+    return 0.2 * g[0, 1] * g[0, 1] + 0.1 * g[1, 2]
+
+
+def driven(system: Any) -> Arrays:
+    """Run single orbits under functions that are compiled, where compilation is not turned off."""
+    found = []
+    for potential, force in ((_well, _pushed), (_well, nh.Friction(np.linspace(0.1, 0.2, system.group.dim)))):
+        discrete = nh.discretize(nh.Forced(system, potential, force), STEP / 10)
+        velocity = np.linspace(0.5, -0.3, system.rank)
         orbit = nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS, throw=False)
         found += [orbit.reduced_momentum, orbit.cayley, orbit.pose]
     return found
@@ -157,6 +179,9 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     "sleigh with forces": lambda: forced(SLEIGH),
     "top on SO(4) with forces": lambda: forced(nh.SuslovTop(mass_tensor(nh.SO(4), np.random.default_rng(4)))),
     "any d on SO(4) with forces": lambda: forced(GENERAL["any d on SO(4)"][0]),
+    "top under functions": lambda: driven(TOP),
+    "sleigh under functions": lambda: driven(SLEIGH),
+    "top on SO(4) under functions": lambda: driven(nh.SuslovTop(mass_tensor(nh.SO(4), np.random.default_rng(4)))),
     "a fold on SO(4)": lambda: orbits(GENERAL["any d on SO(4)"][0], size=20.0),
     "a fold of a top on SO(5)": lambda: orbits(
         nh.SuslovTop(mass_tensor(nh.SO(5), np.random.default_rng(5))), size=20.0

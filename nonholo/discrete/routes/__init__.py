@@ -7,7 +7,8 @@
 | `MatrixRoute` | any constraint with difference "matrix", by the matrix equations |
 | `DefinitionRoute` | everything, by derivatives of the discrete Lagrangian in JAX |
 | `ComposedRoute` | compositions of one of the first three |
-| `ForcedRoute` | one of the first three, with half an impulse at each end of its steps; `FunctionRoute` in Python |
+| `ForcedRoute` | one of the first three, with half an impulse at each end of its steps |
+| `PythonRoute` | its loop in plain Python; `FunctionRoute` the definition, for constraints fixed in space |
 """
 
 from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute

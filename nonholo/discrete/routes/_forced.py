@@ -3,6 +3,7 @@
 import contextlib
 import dataclasses
 import functools
+from collections.abc import Callable
 from typing import Any, ClassVar, NoReturn
 
 import numpy as np
@@ -11,6 +12,7 @@ from nonholo import kernels
 from nonholo.base.checks import error
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome, OutcomeError
+from nonholo.base.types import Float
 from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Rows
 from nonholo.discrete.routes._outer import AbstractOuterRoute
 from nonholo.groups import SE
@@ -27,8 +29,10 @@ def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:
         remedy = "Use order=2, and the default difference and constraint of a system with a mass tensor."
         got = f"order {free.order}, route {free.name!r}"
         raise error("discretize(system=Forced(...))", "have a compiled step of order 2 inside", got, remedy)
-    in_python = forced.needs_function or forced.is_spatial
-    return FunctionRoute(inside, forced) if in_python else ForcedRoute(inside, forced)
+    if forced.is_spatial:
+        return FunctionRoute(inside, forced)
+    route = ForcedRoute(inside, forced)
+    return route if forced.is_jitted else PythonRoute(route)
 
 
 class AbstractForcedRoute(AbstractRoute):
@@ -56,7 +60,7 @@ class AbstractForcedRoute(AbstractRoute):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
-    """Compiled: gravity, friction and rows of a table, for left-invariant constraints.
+    """The loop of the kernel, for left-invariant constraints; it calls functions that numba compiled.
 
     Attributes:
         free: The route of the free step.
@@ -74,12 +78,13 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
     @property
     def needs_pose(self) -> bool:
         """Whether it carries a pose along even where none is kept."""
-        return self.free.needs_pose or self.forced.potential is not None
+        return self.free.needs_pose or self.forced.potential is not None or callable(self.forced.force)
 
     @functools.cached_property
     def body(self) -> kernels.ForcedBody:
         """The body and its half impulse."""
-        return kernels.ForcedBody(self.free.body, half_kick(self.free, self.forced))
+        half = half_drive if self.forced.needs_function else half_kick
+        return kernels.ForcedBody(self.free.body, half(self.free, self.forced))
 
     def parts_of_steps(self, momenta: np.ndarray, poses: np.ndarray, fraction: float = 1.0) -> Rows:
         """Take a step of a part of the length from each row; the forces must not depend on time."""
@@ -90,8 +95,47 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
+class PythonRoute(AbstractForcedRoute):
+    """The same loop in plain Python, for functions that are not compiled.
+
+    Attributes:
+        loop: The route of the kernel.
+    """
+
+    loop: ForcedRoute
+    needs_pose: ClassVar[bool] = True
+    compiled: ClassVar[None] = None
+
+    @property
+    def free(self) -> AbstractCompiledRoute:  # type: ignore[override]
+        """The route of the free step."""
+        return self.loop.free
+
+    def run(
+        self, reduced: np.ndarray, pose: np.ndarray, steps: int, every: int, progress: bool
+    ) -> tuple[Rows, Outcome, int]:
+        """Run from canonical momenta and pose; return canonical rows, the outcome and the last good step."""
+        free, done = self.free, 0
+        first = free.encode(reduced), free.encode_poses(pose)
+        code, state = self.loop.start(*first)
+        found = tuple(np.empty((1 + steps // every, width)) for width in free.sizes)
+        for rows, row in zip(found, (first[0], self.loop.chart_of(state), first[1]), strict=True):
+            rows[0] = row
+        kept = int(code == 0)
+        with progress_bar("steps", progress) as show:
+            while code == 0 and done < steps:
+                room = (found[0][kept:], found[1][kept:], found[2][kept:])
+                good, code = self.loop.advance(state, min(every, steps - done), every, room)
+                done += good
+                kept += good // every
+                show(done, steps)
+        momenta, charts, poses = (rows[:kept] for rows in found)
+        return (free.decode(momenta), free.from_kernel(charts), free.decode_poses(poses)), Outcome(code), done
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
 class FunctionRoute(AbstractForcedRoute):
-    """In Python, by the definition of the impulses: functions, and constraints that are fixed in space.
+    """In Python, by the definition of the impulses: for constraints that are fixed in space.
 
     Attributes:
         free: The route of the free step.
@@ -160,18 +204,83 @@ def kick_of(
 
 def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
     """Return half the impulse of a step in the units and axes of a kernel."""
-    S, k, group = np.asarray(forced.constraint_subspace), forced.rank, forced.group
+    kick, _ = _linear_part(free, forced)
+    weight, arms = kick.weight, kick.arms
+    if len(weight):
+        arms = arms @ _kernel_frame(free, forced).T
+    if free.is_scalar and forced.group == SE(2):
+        weight, arms = weight[:2], arms[:, :2]
+    return kick._replace(weight=_plain(weight), arms=_plain(arms))
+
+
+def half_drive(free: AbstractCompiledRoute, forced: Forced) -> kernels.Drive:
+    """Return half the impulse of functions; those that numba compiled are asked once before a run."""
+    kick, along = _linear_part(free, forced)
+    group, S, has = (
+        forced.group,
+        np.asarray(forced.constraint_subspace),
+        (callable(forced.force), callable(forced.potential)),
+    )
+    momenta = forced.from_canonical(free.decode(np.eye(forced.rank)))
+    velocity = S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
+    moves, weights = forced.differences
+    force, potential = _in_python(forced)
+    if forced.is_jitted:
+        shape, asked = (group.size, group.dim), np.zeros(group.dim)
+        for write in (force,) * has[0] + (potential,) * has[1]:
+            write(0.0, group.identity, np.zeros(group.dim), asked)
+        force = kernels.function_of(forced.force, shape, 3) if has[0] else 0
+        potential = kernels.function_of(forced.potential, shape, 1) if has[1] else 0
+    return kernels.Drive(
+        kick=kick,
+        planar=(2 if group == SE(2) else 3) if free.is_scalar else 0,
+        turn=_plain(_kernel_frame(free, forced)),
+        velocity=_plain(velocity),
+        along=_plain(along.T),
+        moves=_plain(moves),
+        weights=_plain(weights),
+        time_step=float(free.time_step),
+        has=has,
+        force=force,
+        potential=potential,
+    )
+
+
+def _in_python(forced: Forced) -> tuple[Callable[..., None], Callable[..., None]]:
+    """Return what writes force and potential by the definition; a function may keep the arrays that it gets."""
+
+    def force(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
+        out[:] = forced.applied_force(time, g.copy(), velocity.copy())
+
+    def potential(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
+        del time, velocity
+        out[0] = forced.potential_energy(g.copy())
+
+    return force, potential
+
+
+def _linear_part(free: AbstractCompiledRoute, forced: Forced) -> tuple[kernels.Kick, Float[np.ndarray, "dim k"]]:
+    """Return what is linear, with the weight in the user's frame, and the momenta of body covectors."""
+    S, k = np.asarray(forced.constraint_subspace), forced.rank
     keep, push, _ = forced.propagator(S.T, float(free.time_step) / 2)
     to_kernel = free.encode(forced.to_canonical(np.eye(k)))
     along, kept, weight, arms = S.T @ push.T @ to_kernel, np.zeros((0, 0)), np.zeros(0), np.zeros((k, 0))
     if forced.friction is not None:
         kept = np.linalg.solve(to_kernel, keep.T @ to_kernel).T
     if forced.gravity is not None:
-        frame = free.encode_poses(forced.frame_pose[None])
-        frame = group.matrix_from_pose(frame) if free.is_scalar else frame.reshape(-1, group.size, group.size)
-        weight, levers = forced.gravity.levers(group)
-        arms = along.T @ levers @ np.linalg.inv(frame[0]).T
-    if free.is_scalar and group == SE(2):
-        weight, arms = weight[:2], arms[:, :2]
+        weight, levers = forced.gravity.levers(forced.group)
+        arms = along.T @ levers
     rows = forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))) @ along
-    return kernels.Kick(*(np.array(part, order="C") for part in (kept, weight, arms, rows)))
+    return kernels.Kick(*map(_plain, (kept, weight, arms, rows))), along
+
+
+def _kernel_frame(free: AbstractCompiledRoute, forced: Forced) -> Float[np.ndarray, "N N"]:
+    """Return T: a pose of the user is that of the kernel times T."""
+    frame, group = free.encode_poses(forced.frame_pose[None]), forced.group
+    matrix = group.matrix_from_pose(frame) if free.is_scalar else frame.reshape(-1, group.size, group.size)
+    return np.linalg.inv(matrix[0])
+
+
+def _plain(array: np.ndarray) -> np.ndarray:
+    """Return a writable copy row by row: every other layout would be compiled for itself."""
+    return np.array(array, order="C")

@@ -28,7 +28,9 @@ def watched_events(
 ) -> dict[str, Event]:
     """Return events by name, refused where parts of a step are not defined or cannot be computed."""
     named, where = checked_events(owner, events), f"{owner}(events=...)"
-    if (forced := discrete.forces) is not None and (forced.table is not None or discrete.route.compiled is None):
+    if (forced := discrete.forces) is not None and (
+        (forced.force is not None and forced.friction is None) or discrete.route.compiled is None
+    ):
         remedy = "Look for changes of sign in the states yourself."
         raise error(where, "be looked for under forces that do not depend on time", "a table or a function", remedy)
     if branch != PRINCIPAL.name:

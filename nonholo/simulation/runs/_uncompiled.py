@@ -1,12 +1,12 @@
 """Runs of maps that are not compiled: which of them there are, and how each is run."""
 
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from nonholo.base.checks import error, needs, shown
-from nonholo.discrete import Discretization, FunctionRoute, check_first_state, has_frame
+from nonholo.discrete import Discretization, check_first_state, has_frame
 from nonholo.orbit import Orbit
 from nonholo.simulation.runs._by_rule import Run, run_by_rule
 from nonholo.simulation.runs._first_state import FirstState
@@ -32,8 +32,9 @@ def uncompiled_run(discrete: Discretization, start: FirstState, options: RunOpti
 
 
 def _principal_run(discrete: Discretization, options: RunOptions) -> Run:
-    if isinstance(discrete.route, FunctionRoute):
-        return discrete.route.run
+    route: Any = discrete.route
+    if discrete.forces is not None:
+        return route.run
     if options.backend == "numba":
         remedy = "Pass backend='jax', or difference='matrix'."
         raise error("simulate(backend=...)", "have a closed form of the step", shown(discrete.difference), remedy)

@@ -1,0 +1,281 @@
+r"""Half impulses of functions: a force by the midpoint rule, a potential by differences.
+
+At a node with pose g the momenta m of a kernel go to $m' = A\,m + r_k + N\,(-dU(g))$, or under a force to
+
+$$ m' = m + N\,(-dU(g) + f(t, g, V(m + m')/2)), $$
+
+with the body velocity V m and the momenta N j of impulses j. Poses and covectors are those of the user's frame.
+Functions are addresses in compiled code, so that one loop serves all of them, and Python functions in plain Python,
+whose loop is the same.
+"""
+
+import functools
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numba
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic, overload
+from numba.np.numpy_support import carray
+
+from nonholo.kernels._scalar import INLINED, inlined, scalar
+from nonholo.kernels._small import assign, eliminate, multiply
+from nonholo.kernels.forced._kick import Kick, linear, pulled_by_weight, seen
+
+_ITERATIONS = 30  # of Newton's method with one slope
+_ROUNDING = 1e-12  # relative, before the last correction
+_DIFFERENCE = 1e-7  # relative, of a momentum
+_ROW = types.CPointer(types.float64)
+_SIGNATURE = types.void(types.float64, _ROW, _ROW, _ROW)
+
+
+class Drive(NamedTuple):
+    """Half an impulse of functions.
+
+    Attributes:
+        kick: What is linear in the momenta; its weight is for poses of the user's frame.
+        planar: 2 or 3 where poses of the kernel are headings or quaternions, 0 where they are matrices.
+        turn: T, the pose of the user is that of the kernel times T, (N, N).
+        velocity: V, (dim, k).
+        along: N, (k, dim).
+        moves: Displacements to and fro for differences of U, (dim, orders, 2, N, N).
+        weights: Weights of the differences, (orders,).
+        time_step: h.
+        has: Whether there is a force, and whether there is a potential.
+        force: Writes f to its last argument, of (time, pose, body velocity, f).
+        potential: Writes U to the first number of its last argument, of the same arguments.
+    """
+
+    is_python = property(lambda self: callable(self.force))
+    kick: Kick
+    planar: int
+    turn: np.ndarray
+    velocity: np.ndarray
+    along: np.ndarray
+    moves: np.ndarray
+    weights: np.ndarray
+    time_step: float
+    has: tuple[bool, bool]
+    force: Any
+    potential: Any
+
+
+class Room(NamedTuple):
+    """What a half impulse writes to.
+
+    Attributes:
+        force: The momenta of what does not depend on velocities, (k,).
+        poses: The user's pose and another matrix, (2, N, N).
+        rows: The same numbers, (2, N N).
+        covectors: A body velocity, what a function writes, and -dU, (3, dim).
+        momenta: Momenta on the way, (3, k).
+        missed: What they lack, a column, (k, 1).
+        slopes: The slope of the midpoint rule, and one to be destroyed, (2, k, k).
+    """
+
+    force: np.ndarray
+    poses: np.ndarray
+    rows: np.ndarray
+    covectors: np.ndarray
+    momenta: np.ndarray
+    missed: np.ndarray
+    slopes: np.ndarray
+
+
+@scalar
+def room_for_drive(drive: Drive) -> Room:
+    """Return room for the half impulses of one run."""
+    (k, dim), n = drive.along.shape, len(drive.turn)
+    poses = np.zeros((2, n, n))
+    rows = poses.reshape(2, n * n)
+    return Room(np.zeros(k), poses, rows, np.zeros((3, dim)), np.zeros((3, k)), np.zeros((k, 1)), np.zeros((2, k, k)))
+
+
+def function_at(address: Callable[..., None], time: float, g: np.ndarray, w: np.ndarray, out: np.ndarray) -> None:
+    """Call a function of a drive."""
+    address(time, g, w, out)
+
+
+@intrinsic
+def _call(typing: Any, address: Any, time: Any, g: Any, w: Any, out: Any) -> Any:
+    """Call the function at an address, with pointers to arrays."""
+    del typing
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        number = ir.DoubleType()
+        kind = ir.FunctionType(ir.VoidType(), [number] + 3 * [number.as_pointer()])
+        data = (
+            context.make_array(each)(context, builder, array).data
+            for each, array in zip(signature.args[2:], arguments[2:], strict=True)
+        )
+        builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), [arguments[1], *data])
+        return context.get_dummy_value()
+
+    return types.void(address, time, g, w, out), code
+
+
+@overload(function_at, jit_options=INLINED, strict=False)
+def _compiled_function_at(address: Any, time: Any, g: Any, w: Any, out: Any) -> Any:
+    return lambda address, time, g, w, out: _call(address, time, g, w, out)  # pyright: ignore
+
+
+@functools.cache
+def function_of(function: Any, shape: tuple[int, int], arguments: int) -> int:
+    """Return the address of a function that numba compiled, of time, pose and velocity or of a pose alone.
+
+    Where it raises, or returns another number of numbers, what it writes is NaN. It is kept as long as the process.
+    """
+    size, dim = shape
+
+    if arguments == 1:
+
+        @numba.cfunc(_SIGNATURE)
+        def call(time: Any, g: Any, w: Any, out: Any) -> None:  # pyright: ignore
+            found = carray(out, dim)
+            found[0] = np.nan
+            found[0] = function(carray(g, (size, size)))
+
+    else:
+
+        @numba.cfunc(_SIGNATURE)
+        def call(time: Any, g: Any, w: Any, out: Any) -> None:
+            found = carray(out, dim)
+            found[:] = np.nan
+            value = function(time, carray(g, (size, size)), carray(w, dim))
+            if len(value) == dim:
+                for i in range(dim):
+                    found[i] = value[i]
+
+    _KEPT.append(call)
+    return int(call.address or 0)
+
+
+_KEPT: list[Any] = []
+"""Functions whose addresses are known."""
+
+
+@inlined
+def place(drive: Drive, room: Room, pose: np.ndarray) -> None:
+    """Write the user's pose from that of the kernel."""
+    P, n = room.poses[1], drive.planar
+    if n == 0:
+        assign(room.rows[1], pose)
+    else:
+        q0, q1, q2, q3 = pose[0], pose[1], pose[2], pose[3]
+        P[0, 0], P[0, 1], P[0, 2] = seen(n, (1.0, 0.0, 0.0), q0, q1, q2, q3)
+        P[1, 0], P[1, 1], P[1, 2] = seen(n, (0.0, 1.0, 0.0), q0, q1, q2, q3)
+        P[2, 0], P[2, 1], P[2, 2] = seen(n, (0.0, 0.0, 1.0), q0, q1, q2, q3)
+        if n == 2:
+            P[0, 2], P[1, 2], P[2, 0], P[2, 1], P[2, 2] = q2, q3, 0.0, 0.0, 1.0
+    multiply(P, drive.turn, room.poses[0])
+
+
+@inlined
+def pulled_by_functions(drive: Drive, room: Room, pose: np.ndarray) -> None:
+    """Write what the weight and the potential add to momenta at a pose."""
+    place(drive, room, pose)
+    g, other, force = room.poses[0], room.poses[1], room.force
+    pulled_by_weight(drive.kick, force, room.rows[0])
+    if not drive.has[1]:
+        return
+    value, slope = room.covectors[1], room.covectors[2]
+    for i in range(len(slope)):
+        slope[i] = 0.0
+        for j in range(len(drive.weights)):
+            for k in range(2):
+                multiply(g, drive.moves[i, j, k], other)
+                function_at(drive.potential, 0.0, other, room.covectors[0], value)
+                slope[i] += (2 * k - 1) * drive.weights[j] * value[0]
+    for i in range(len(force)):
+        for j in range(len(slope)):
+            force[i] += drive.along[i, j] * slope[j]
+
+
+@inlined
+def pushed_by_function(
+    drive: Drive, room: Room, time: float, m: np.ndarray, after: np.ndarray, out: np.ndarray
+) -> None:
+    """Write what the force at the velocity of the mean of two momenta, and all else, add to momenta."""
+    velocity, value = room.covectors[0], room.covectors[1]
+    for i in range(len(velocity)):
+        velocity[i] = 0.0
+        for j in range(len(m)):
+            velocity[i] += drive.velocity[i, j] * ((m[j] + after[j]) / 2)
+    function_at(drive.force, time, room.poses[0], velocity, value)
+    for i in range(len(m)):
+        out[i] = room.force[i]
+        for j in range(len(value)):
+            out[i] += drive.along[i, j] * value[j]
+
+
+@inlined
+def largest(a: np.ndarray, b: np.ndarray) -> float:
+    """Return the largest size of the numbers of two rows; NaN or infinity if there is one among them."""
+    total = 0.0
+    for i in range(len(a)):
+        for x in (abs(a[i]), abs(b[i])):
+            total = x if not x <= total else total
+    return total
+
+
+@inlined
+def driven(drive: Drive, room: Room, node: int, row: int, m: np.ndarray, out: np.ndarray) -> int:
+    """Write the momenta after half an impulse; return the outcome: 3 if it is not found, 5 if it is not finite.
+
+    A force that does not depend on the velocity is asked twice: then the momenta are explicit.
+    """
+    if not drive.has[0]:
+        return linear(drive.kick, room.force, node, row, m, out)
+    time, first, second = node * drive.time_step, room.momenta[0], room.momenta[1]
+    pushed_by_function(drive, room, time, m, m, first)
+    for i in range(len(m)):
+        out[i] = m[i] + first[i]
+    if not largest(out, out) < math.inf:
+        return 5
+    pushed_by_function(drive, room, time, m, out, second)
+    same = True
+    for i in range(len(m)):
+        same = same and first[i] == second[i]
+    return 0 if same else midpoint(drive, room, time, m, out)
+
+
+@inlined
+def see_slopes(drive: Drive, room: Room, time: float, m: np.ndarray, out: np.ndarray) -> None:
+    """Write the slopes of m' - m - j((m + m') / 2), by differences from the second impulse on the way."""
+    first, second, third, slopes = room.momenta[0], room.momenta[1], room.momenta[2], room.slopes[0]
+    size = largest(m, first)
+    size = _DIFFERENCE * (size if size > 0 else 1.0)
+    for j in range(len(m)):
+        kept = out[j]
+        out[j] = kept + size
+        pushed_by_function(drive, room, time, m, out, third)
+        for i in range(len(m)):
+            slopes[i, j] = (1.0 if i == j else 0.0) - (third[i] - second[i]) / size
+        out[j] = kept
+
+
+@inlined
+def midpoint(drive: Drive, room: Room, time: float, m: np.ndarray, out: np.ndarray) -> int:
+    """Solve m' = m + j((m + m') / 2) by Newton's method, from the explicit momenta and their impulse."""
+    second, missed, slopes, used = room.momenta[1], room.missed, room.slopes[0], room.slopes[1]
+    see_slopes(drive, room, time, m, out)
+    for _ in range(_ITERATIONS):
+        for i in range(len(m)):
+            missed[i, 0] = m[i] + second[i] - out[i]
+            for j in range(len(m)):
+                used[i, j] = slopes[i, j]
+        left = largest(missed[:, 0], missed[:, 0])
+        if not left < math.inf:
+            return 5
+        small = left <= _ROUNDING * largest(m, out)
+        if eliminate(used, missed) == 0:
+            return 3
+        for i in range(len(m)):
+            out[i] += missed[i, 0]
+        if small:
+            return 0
+        pushed_by_function(drive, room, time, m, out, second)
+    return 3

@@ -1,0 +1,133 @@
+"""Runs of tops in space and sleighs in the plane under forces, with numbers in place of arrays."""
+
+from typing import Any
+
+import numpy as np
+
+from nonholo.base.compiled import njit
+from nonholo.kernels._driver import SETTLED, _compensated, _solve, _unpack, converged
+from nonholo.kernels._interface import Body, certified, corrections, increment, move
+from nonholo.kernels._scalar import COMPILED, scalar
+from nonholo.kernels._small import assign
+from nonholo.kernels.forced._kick import Kick, seen
+
+RENEWED = 64
+"""Steps after which the weight as the body sees it is taken from the pose again, lest it drift away from it."""
+
+Rows = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+@scalar
+def swept(n: int, y1: float, y2: float, x: float, y: float, z: float) -> tuple[float, float, float, float]:
+    """Return a and v of W^T u = u - a v for u = (x, y, z) and the rotation of a displacement.
+
+    It turns about (-y2, y1, 0), or in the plane by 2 atan y1. So the force at the next node does not wait for its pose,
+    whose square root would be the longest way of a step.
+    """
+    if n == 3:
+        square, lean = y1 * y1 + y2 * y2, y1 * x + y2 * y
+        return 2 / (1 + square), y1 * (z + lean), y2 * (z + lean), square * z - lean
+    return 2 / (1 + y1 * y1), y1 * (y1 * x - y), y1 * (x + y1 * y), 0.0
+
+
+@scalar
+def leaned(L: Any, x: float, y: float, z: float) -> tuple[float, float]:
+    """Return L (x, y, z)."""
+    return L[0] * x + (L[1] * y + L[2] * z), L[3] * x + (L[4] * y + L[5] * z)
+
+
+@scalar
+def turned(n: int, L: Any, y1: float, y2: float, u: Any) -> tuple[float, float, Any]:
+    """Return the two of L W^T u, and W^T u; only the last product of each waits for a quotient."""
+    a, v1, v2, v3 = swept(n, y1, y2, *u)
+    f1, f2 = leaned(L, *u)
+    h1, h2 = leaned(L, v1, v2, v3)
+    return f1 - a * h1, f2 - a * h2, (u[0] - a * v1, u[1] - a * v2, u[2] - a * v3)
+
+
+@scalar
+def kicked_two(kick: Kick, A: Any, m1: float, m2: float, k1: float, k2: float) -> tuple[float, float]:
+    """Return A m + k."""
+    if len(kick.keep) > 0:
+        return A[0] * m1 + A[1] * m2 + k1, A[2] * m1 + A[3] * m2 + k2
+    return m1 + k1, m2 + k2
+
+
+@njit(**COMPILED)
+def _numbers(kick: Kick):  # noqa: ANN202
+    """Return F, L and A as numbers: arrays would be counted at every step of a loop."""
+    F, L, a, n = np.zeros(3), np.zeros(6), np.zeros(4), len(kick.weight)
+    for j in range(n):
+        F[j], L[j], L[3 + j] = kick.weight[j], kick.arms[0, j], kick.arms[1, j]
+    for j in range(2 * len(kick.keep)):
+        a[j] = kick.keep[j // 2, j % 2]
+    return n, (F[0], F[1], F[2]), (L[0], L[1], L[2], L[3], L[4], L[5]), (a[0], a[1], a[2], a[3])
+
+
+@njit(forceinline=True, **COMPILED)
+def _root(p: Body, heavy: bool, m1: float, m2: float, y1: float, y2: float) -> tuple[int, float, float]:
+    """Correct a guess and verify that it is the principal root; under a weight by two corrections of one slope.
+
+    Without one the root has the bits of a free step. An error of the second correction is a product of both.
+    """
+    d1, d2, e1, e2 = corrections(p, m1, m2, y1, y2)
+    y1, y2 = y1 + d1, y2 + d2
+    good = converged(d1, d2, y1, y2)
+    if heavy and not good:
+        y1, y2 = y1 + e1, y2 + e2
+        weight = 1 + y1 * y1 + y2 * y2
+        good = 4 * (d1 * d1 + d2 * d2) * (e1 * e1 + e2 * e2) <= 1e-36 * weight * weight
+    if good and certified(p, m1, m2, y1, y2):
+        return 0, y1, y2
+    return _solve(p, m1, m2, y1, y2)
+
+
+@njit(forceinline=True, **COMPILED)
+def _posed(p: Body, n: int, F: Any, row: int, y1: float, y2: float, q: Any, weight: Any) -> Any:
+    """Return the pose of the next node, and the weight there: as it is, or now and then from the pose."""
+    q = move(p, y1, y2, *q)
+    return q, (seen(n, F, *q) if n > 0 and row % RENEWED == 0 else weight)
+
+
+@njit(nogil=True, **COMPILED)
+def advance_two(p: Body, kick: Kick, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
+    """Advance a top in space or a sleigh in the plane, with numbers in place of arrays."""
+    momenta, charts, poses = rows
+    m1, m2, l1, l2, q0, q1, q2, q3, y1, y2, u1, u2, v1, v2 = _unpack(state)
+    t1, t2, f1, f2 = state[14], state[15], state[16], state[17]
+    q, weight = (q0, q1, q2, q3), (state[18], state[19], state[20])
+    table, last, row, code, done = kick.rows, len(kick.rows) - 1, int(state[21]), 0, 0
+    n, F, L, A = _numbers(kick)
+    if row == 0:
+        weight = seen(n, F, *q)
+        f1, f2 = leaned(L, *weight)
+    while done < steps:
+        r1, r2 = table[min(row, last), 0], table[min(row, last), 1]
+        s1, s2 = kicked_two(kick, A, m1, m2, f1 + r1, f2 + r2)
+        g1, g2 = 3 * (y1 - u1) + v1, 3 * (y2 - u2) + v2
+        if n > 0:
+            g1, g2 = 4 * (y1 + v1) - (6 * u1 + t1), 4 * (y2 + v2) - (6 * u2 + t2)
+        code, w1, w2 = _root(p, n > 0, s1, s2, g1, g2)
+        if code != 0:
+            break
+        if done > 0:  # not before: processors begin with what stands first, and no root waits for a pose
+            q, weight = _posed(p, n, F, row, y1, y2, q, weight)
+        t1, t2, v1, v2, u1, u2, y1, y2 = v1, v2, u1, u2, y1, y2, w1, w2
+        done += 1
+        row += 1
+        if done % every == 0:
+            at = done // every - 1
+            momenta[at, 0], momenta[at, 1], charts[at, 0], charts[at, 1] = m1, m2, w1, w2
+            poses[at, 0], poses[at, 1], poses[at, 2], poses[at, 3] = q
+        d1, d2 = increment(p, s1, s2, w1, w2)
+        settled = SETTLED * max(abs(s1), abs(s2))
+        s1, l1 = _compensated(s1, l1, d1, settled)
+        s2, l2 = _compensated(s2, l2, d2, settled)
+        if n > 0:
+            f1, f2, weight = turned(n, L, w1, w2, weight)
+        m1, m2 = kicked_two(kick, A, s1, s2, f1 + r1, f2 + r2)
+    if done > 0:
+        q, weight = _posed(p, n, F, row, y1, y2, q, weight)
+    roots = y1, y2, u1, u2, v1, v2, t1, t2
+    assign(state, np.array((m1, m2, l1, l2, *q, *roots, f1, f2, *weight, float(row))))
+    return done, code

@@ -1,0 +1,163 @@
+"""Forces and potentials that numba compiled: the same motions as of Python functions and of the definition."""
+
+import math
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numba
+import numpy as np
+import pytest
+from bodies import GENERAL
+
+import nonholo as nh
+from nonholo.discrete.routes import FunctionRoute
+from nonholo.systems import AbstractSystem
+
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+SYSTEMS: dict[str, AbstractSystem] = {
+    "top": TOP,
+    "tilted top": nh.SuslovTop.from_inertia(np.diag([2.0, 3.0, 4.0]), (0.6, 0.8, 0)),
+    "sleigh": nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3),
+    "suslov 4": GENERAL["suslov 4"][0],
+    "any d on SE(3)": GENERAL["any d on SE(3)"][0],
+}
+START = [0.5, -0.3, 0.4, 0.2]
+
+
+def _drive(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """A force of time, pose and velocity."""
+    force = -0.4 * w * w[0] - 0.2 * w + 0.3 * g[0, 1]
+    force[0] += math.cos(3 * time)
+    return force
+
+
+def _push(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """A force that does not depend on the velocity."""
+    return 0.0 * w + math.cos(3 * time) * g[0, 0]
+
+
+def _well(g: np.ndarray) -> float:
+    """A potential."""
+    return 0.5 * (g[0, 1] - 0.3) ** 2 + math.sin(g[1, 0]) + 0.2 * g[1, 2]
+
+
+DRIVE, PUSH, WELL = numba.njit(_drive), numba.njit(_push), numba.njit(_well)
+
+
+def _weight(system: AbstractSystem) -> nh.Gravity:
+    n = 2 if system.has_blade else 3 + (system is SYSTEMS["suslov 4"])
+    return nh.Gravity(np.linspace(0.2, -1.0, n), np.linspace(0.1, 0.3, n))
+
+
+KINDS: dict[str, Callable[[AbstractSystem], tuple[Any, Any]]] = {
+    "push": lambda _: (None, _push),
+    "weight and drive": lambda system: (_weight(system), _drive),
+    "well and drive": lambda _: (_well, _drive),
+    "well": lambda _: (_well, None),
+    "well and friction": lambda system: (_well, nh.Friction(np.linspace(0.1, 0.4, system.group.dim))),
+    "well and table": lambda system: (_well, np.random.default_rng(3).normal(size=(12, system.group.dim))),
+}
+
+
+def _compiled(function: Any) -> Any:
+    return {_drive: DRIVE, _push: PUSH, _well: WELL}[function] if callable(function) else function
+
+
+def _rows(orbit: Any) -> list[np.ndarray]:
+    return [orbit.reduced_momentum, orbit.cayley, orbit.canonical_pose]
+
+
+@pytest.mark.profile("routes", keep=["top-well and drive"])
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_compiled_functions_have_the_bits_of_python(name: str, kind: str) -> None:
+    """A compiled function and the same in Python give the same orbit, bit for bit, and the definition to rounding."""
+    system, found = SYSTEMS[name], []
+    g = system.group.random(np.random.default_rng(5))
+    start: dict[str, Any] = {"restricted_velocity": START[: system.rank], "configuration": g}
+    for functions in (lambda f: f, _compiled):
+        forced = nh.Forced(system, *map(functions, KINDS[kind](system)))
+        discrete = nh.discretize(forced, 0.05)
+        found.append(nh.simulate(discrete, **start, steps=12))
+        thin = nh.simulate(discrete, **start, steps=11, save_every=3)
+        for every, some in zip(_rows(found[-1]), _rows(thin), strict=True):
+            assert np.array_equal(every[:12:3], some)
+    assert discrete.route.compiled is not None
+    route = FunctionRoute(discrete.route.compiled.single, forced)
+    by_definition, _, _ = route.run(found[0].reduced_momentum[0], found[0].canonical_pose[0], 12, 1, False)
+    for in_python, compiled, defined in zip(*map(_rows, found), by_definition, strict=True):
+        assert np.array_equal(in_python, compiled)
+        assert np.abs(compiled - defined).max() < 3e-13
+
+
+def test_compiled_functions_run_in_blocks_stores_and_ensembles(tmp_path: Path) -> None:
+    """Blocks, a run into a store that is extended, and members have the bits of one run."""
+    start: dict[str, Any] = {"restricted_velocity": START[:2]}
+    discrete = nh.discretize(nh.Forced(TOP, WELL, DRIVE), 0.05)
+    orbit = nh.simulate(discrete, **start, steps=30)
+    blocks = map(_rows, nh.iterate(discrete, **start, steps=30, block_steps=7))
+    joint = [np.concatenate(rows) for rows in zip(*blocks, strict=True)]
+    nh.simulate(discrete, **start, steps=20, store=tmp_path / "run.zarr")
+    extended = nh.extend(tmp_path / "run.zarr", 10, discrete=discrete)
+    for whole, joined, stored in zip(_rows(orbit), joint, _rows(extended), strict=True):
+        assert np.array_equal(whole, joined)
+        assert np.array_equal(whole, stored)
+    batch = nh.ensemble(discrete, restricted_velocity=np.array([START[:2]] * 3), steps=30)
+    assert np.array_equal(batch.reduced_momentum[:, 0], np.array([orbit.reduced_momentum[-1]] * 3))
+
+
+def test_events_are_found_under_a_compiled_potential() -> None:
+    """A potential does not depend on time, so a part of a step is the step of that length; a force may."""
+    event = nh.Event(lambda states: states.configuration[:, 0, 0] - 0.95)
+    run: dict[str, Any] = {"restricted_velocity": START[:2], "steps": 60, "events": [event]}
+    orbit = nh.simulate(nh.discretize(nh.Forced(TOP, WELL), 0.05), **run)
+    found = orbit.events[0]
+    assert len(found) > 0
+    assert np.abs(found.states.configuration[:, 0, 0] - 0.95).max() < 1e-14
+    with pytest.raises(ValueError, match="do not depend on time"):
+        nh.simulate(nh.discretize(nh.Forced(TOP, WELL, PUSH), 0.05), **run)
+
+
+@numba.njit
+def _short(time: float, g: np.ndarray, w: np.ndarray) -> Any:
+    return time * g[0, :2] + w[:2]
+
+
+@numba.njit
+def _ending(time: float, g: np.ndarray, w: np.ndarray) -> Any:
+    return g[2] * w + (math.nan if time > 0.25 else 0.0)
+
+
+@numba.njit
+def _jumping(time: float, g: np.ndarray, w: np.ndarray) -> Any:
+    return -1e4 * np.sign(w - 0.01) if time > 0.25 else 0.0 * g[2]
+
+
+@numba.njit
+def _raising(time: float, g: np.ndarray, w: np.ndarray) -> Any:
+    if time > 0.25:
+        raise ValueError("too late")
+    return g[2] * w
+
+
+FAILING = {"nonfinite": _ending, "not_converged": _jumping, "raises": _raising}
+
+
+@pytest.mark.profile("routes", keep=["raises"])
+@pytest.mark.parametrize("name", FAILING)
+def test_compiled_functions_that_fail(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What ends a run has a name, and what a function raises is printed."""
+    printed: list[str] = []
+    monkeypatch.setattr(sys, "unraisablehook", lambda raised: printed.append(str(raised.exc_value)))
+    discrete = nh.discretize(nh.Forced(TOP, force=FAILING[name]), 0.1)
+    run = nh.simulate(discrete, restricted_velocity=START[:2], steps=9, throw=False)
+    assert (str(run.outcome), len(run)) == ("nonfinite" if name == "raises" else name, 3)
+    assert printed == ["too late"] * (name == "raises")
+
+
+def test_a_compiled_function_of_another_size_is_refused() -> None:
+    """It is asked before the run, since compiled code does not see how many numbers it returns."""
+    with pytest.raises(ValueError, match="return 3 real numbers"):
+        nh.simulate(nh.discretize(nh.Forced(TOP, force=_short), 0.1), restricted_velocity=START[:2], steps=9)
