@@ -6,6 +6,7 @@ with needs("jax", "nonholo.lagrange_dalembert"):
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
     from nonholo.lagrange_dalembert._orbit import AbstractCoordinateOrbit, CoordinateOrbit
     from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+    from nonholo.lagrange_dalembert._tracing import check_value
     from nonholo.lagrange_dalembert.on_groups import (
         GroupDiscretization,
         GroupLagrangeDAlembert,
@@ -21,5 +22,6 @@ __all__ = [
     "GroupLagrangeDAlembert",
     "GroupOrbit",
     "LagrangeDAlembert",
+    "check_value",
     "mass_tensor_lagrangian",
 ]
