@@ -35,9 +35,7 @@ def terms(free: tuple[int, ...], W: Array, dW: Array, M: Array, dM: Array) -> Te
     E[..., list(free), :] = np.eye(k)
     E[..., pivots, :] = -solve(B[..., pivots], B[..., list(free)])
     turned = np.einsum("...caj,...ab->...cbj", dB, E)  # B E = 0, so B dE = -dB E
-    dE[..., pivots, :, :] = -solve(B[..., pivots], turned.reshape(*turned.shape[:-2], -1)).reshape(
-        *W.shape[:-2], len(pivots), *turned.shape[-2:]
-    )
+    dE[..., pivots, :, :] = -_solve_each(B[..., pivots], turned)
     P = np.swapaxes(E, -1, -2) @ M[..., :3, :]
     dP = np.einsum("...abj,...ac->...bcj", dE, M[..., :3, :]) + np.einsum("...ab,...acj->...bcj", E, dM[..., :3, :, :])
     return Terms(np.concatenate([P, W], -2), np.concatenate([dP, dW], -3), E, dE, M)
@@ -54,6 +52,11 @@ def solve(matrix: Array, right: Array) -> Array:
     return np.linalg.solve(np.where(is_regular[..., None, None], matrix, np.nan), right)
 
 
+def _solve_each(matrix: Array, right: Array) -> Array:
+    """Solve for each derivative, along the last axis."""
+    return np.moveaxis(solve(matrix[..., None, :, :], np.moveaxis(right, -1, -3)), -3, -1)
+
+
 def connection(at: Terms) -> Array:
     r"""Return A of $\xi = -A\dot s$ for p = 0."""
     return solve(at.matrix[..., :3], at.matrix[..., 3:])
@@ -61,9 +64,9 @@ def connection(at: Terms) -> Array:
 
 def curvature(at: Terms) -> Array:
     """Return F[:, i, j] = d_i A_j - d_j A_i - [A_i, A_j]."""
-    A, m = connection(at), at.slopes.shape[-1]
+    A = connection(at)
     right = at.slopes[..., 3:, :] - np.einsum("...abj,...bc->...acj", at.slopes[..., :3, :], A)
-    dA = solve(at.matrix[..., :3], right.reshape(*right.shape[:-2], -1)).reshape(*A.shape, m)  # its axes: xi, j, i
+    dA = _solve_each(at.matrix[..., :3], right)  # its axes: xi, j, i
     a = np.swapaxes(A, -1, -2)
     brackets = _bracket(a[..., :, None, :], a[..., None, :, :])
     return np.swapaxes(dA, -1, -2) - dA - np.moveaxis(brackets, -1, -3)

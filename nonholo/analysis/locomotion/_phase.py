@@ -127,7 +127,7 @@ def _displacement(connection: LocalConnection, shape_at: Any, edges: Array, p: A
     area = -np.einsum("t,k,tkaij,tki,tkj->a", h, _WEIGHTS, F, s - center, ds)
 
     def whole(first: Array, between: Array, last: Array) -> Array:
-        return np.vstack([first, between.reshape(-1, between.shape[-1]), last])
+        return np.vstack([first, between.reshape(time.size, between.shape[-1]), last])
 
     path = whole(np.zeros(3), pose, end)
     columns = path[:, 2], whole(p, momentum, p_end), _matrices(holonomy), SE(2).exp(area)
