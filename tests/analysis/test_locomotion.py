@@ -6,6 +6,7 @@ snakeboard v1 = (p + (J0 / r) tan(phi) psi') cos(phi)^2 / m, omega = -v1 tan(phi
 
 import dataclasses
 import functools
+from typing import Any
 
 import jax.numpy as jnp
 import mpmath
@@ -34,7 +35,7 @@ def board() -> LocalConnection:
     return nh.local_connection(nh.examples.snakeboard(mass=MASS, half_length=HALF, rotor_inertia=ROTOR).system)
 
 
-def rolling(phi: float) -> np.ndarray:
+def rolling(phi: Any) -> np.ndarray:
     """Return the body velocity of a snakeboard without momentum, for psi' = 1."""
     v1 = ROTOR / (MASS * HALF) * np.sin(phi) * np.cos(phi)
     return np.array([-v1 * np.tan(phi) / HALF, v1, 0 * v1])
@@ -114,12 +115,12 @@ def test_the_momentum_after_a_gait_is_a_quadrature() -> None:
     def gait(time: Array) -> Array:
         return jnp.array([0.9 * jnp.sin(time), 0.2 + 0.6 * jnp.sin(time + 0.4)])
 
-    def made(t: mpmath.mpf) -> mpmath.mpf:
+    def made(t: Any) -> Any:
         phi = mpmath.mpf("0.2") + 0.6 * mpmath.sin(t + mpmath.mpf("0.4"))
         return -mpmath.cos(phi) * 0.6 * mpmath.cos(t + mpmath.mpf("0.4")) * 0.9 * mpmath.cos(t) * ROTOR / HALF
 
     with mpmath.workdps(30):
-        gained = 3 * float(mpmath.quad(made, mpmath.linspace(0, 2 * mpmath.pi, 9)))
+        gained = 3 * float(str(mpmath.quad(made, mpmath.linspace(0, 2 * mpmath.pi, 9))))
     phase = nh.geometric_phase(board(), gait, period=6 * np.pi, momentum=[0.5])
     cosine = float(np.cos(phase.shape[0, 1]))
     np.testing.assert_allclose(phase.momentum[-1, 0], 0.5 + gained / cosine, rtol=1e-12)
@@ -188,7 +189,7 @@ def test_without_constraints_the_momentum_is_that_of_the_body() -> None:
 def test_names_say_where_pose_and_shape_are() -> None:
     """The car with its coordinates in another order and by other names has the same connection."""
     order = [3, 2, 4, 1, 0]
-    system = nh.examples.kinematic_car(wheel_radius=RADIUS, wheelbase=BASE).system
+    system: Any = nh.examples.kinematic_car(wheel_radius=RADIUS, wheelbase=BASE).system
     back = np.argsort(order)
 
     def forms(q: Array) -> Array:
@@ -209,7 +210,7 @@ def test_names_say_where_pose_and_shape_are() -> None:
 def test_brackets_grow_as_known(name: str, growth: tuple[int, ...]) -> None:
     """The car reaches everything; the robot keeps theta - R (right - left) / (2 c), and its directions do."""
     ready = getattr(nh.examples, name)()
-    found = nh.accessibility(ready.system, ready.configuration + [0.3, -0.2, 0.5, 0.1, 0.2])
+    found = nh.accessibility(ready.system, ready.configuration + np.array([0.3, -0.2, 0.5, 0.1, 0.2]))
     assert found.growth == growth
     assert found.is_accessible == (growth[-1] == 5)
     if name == "two_wheeled_robot":

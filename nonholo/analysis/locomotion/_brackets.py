@@ -27,7 +27,8 @@ def brackets(system: Any, q: Float[np.ndarray, "n"], length: int) -> Float[np.nd
     The basis is X = (I, Y(q)), the identity in coordinates that the constraints leave free at q.
     """
     forms = forms_at(system, q)
-    pivots, free = np.split(qr(forms, pivoting=True, mode="r")[1], [len(forms)])
+    factors: Any = qr(forms, pivoting=True, mode="r")
+    pivots, free = np.split(factors[1], [len(forms)])
     x = jnp.asarray(q)
     scaling = np.linalg.inv(_forms(system, x)[:, pivots])
     return np.asarray(_compiled(system, tuple(pivots.tolist()), tuple(free.tolist()), length)(scaling, x))
@@ -54,7 +55,10 @@ def _compiled(
         across = jax.vmap(lambda w: jax.jvp(own, (x,), (w,))[1], 1, 1)(values)
         return (along - across).reshape(len(x), -1)
 
-    return jax.jit(functools.reduce(lambda inner, _: functools.partial(longer, inner), range(length - 1), basis))
+    fields: Any = basis
+    for _ in range(length - 1):
+        fields = functools.partial(longer, fields)
+    return jax.jit(fields)
 
 
 def _forms(system: Any, q: Array) -> Array:

@@ -122,13 +122,16 @@ def _sides(bounds: Any, path: Array | None, chosen: list[int]) -> Float[np.ndarr
 
 def _values(connection: LocalConnection, component: str, chosen: list[int], sides: Array, at: Array) -> Array:
     """Return minus the curvature in the middle of cells."""
-    middles = [np.linspace(*side, _POINTS)[:-1] + np.ptp(side) / (2 * (_POINTS - 1)) for side in sides]
     points = np.broadcast_to(at, (_POINTS - 1, _POINTS - 1, len(at))).copy()
-    points[..., chosen[0]], points[..., chosen[1]] = np.meshgrid(*middles)
+    points[..., chosen[0]], points[..., chosen[1]] = np.meshgrid(*_middles(sides))
     values = -connection.curvature(points)[..., tuple(_COMPONENTS).index(component), chosen[0], chosen[1]]
     if not np.isfinite(values).any():
         raise error("plot.curvature(bounds=...)", "hold regular shapes", shown(sides.tolist()), "Choose other ranges.")
     return values
+
+
+def _middles(sides: Array) -> list[Array]:
+    return [np.linspace(low, high, 2 * _POINTS - 1)[1::2] for low, high in sides]
 
 
 def _map(axes: Axes, component: str, sides: Array, values: Array) -> tuple[QuadMesh, Any, Colorbar]:
@@ -136,15 +139,13 @@ def _map(axes: Axes, component: str, sides: Array, values: Array) -> tuple[QuadM
     most = float(np.nanmax(np.abs(values)))
     top = min(most, 3 * float(np.nanquantile(np.abs(values), _TYPICAL))) or most or 1.0
     hues = LinearSegmentedColormap.from_list("nonholo_signed", [theme.UNSTABLE, theme.PAPER, theme.DISCRETE])
-    edges, cells = zip(
-        *((np.linspace(*s, _POINTS), np.linspace(*s, 2 * _POINTS - 1)[1::2]) for s in sides), strict=True
-    )
+    edges = [np.linspace(low, high, _POINTS) for low, high in sides]
     shown_as: Any = {"cmap": hues, "norm": Normalize(-top, top), "rasterized": True, "zorder": 1}
     mesh = axes.pcolormesh(*edges, np.ma.masked_invalid(values), **shown_as)
     zero = None
     if values[np.isfinite(values)].min() < 0 < values[np.isfinite(values)].max():
         line: Any = {"colors": [theme.QUIET], "linewidths": 1.0, "linestyles": "dashed", "zorder": 2}
-        zero = axes.contour(*cells, np.ma.masked_invalid(values), levels=[0.0], **line)
+        zero = axes.contour(*_middles(sides), np.ma.masked_invalid(values), levels=[0.0], **line)
     figure: Any = axes.get_figure(root=False)
     words = f"gain in ${_COMPONENTS[component]}$ per area"
     bar = figure.colorbar(mesh, ax=axes, label=words, pad=0.02, extend="both" if most > top else "neither")
