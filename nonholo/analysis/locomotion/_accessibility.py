@@ -9,7 +9,7 @@ from nonholo.analysis.locomotion._connection import checked_names
 from nonholo.base.checks import array, count, error, needs
 from nonholo.base.types import Float
 
-_MOST = 8  # the longest bracket: derivatives are nested as deeply
+_MOST = 8  # the longest bracket: their derivatives are tensors of that order
 _RANK = 1e-9  # of singular values, relative to the largest
 
 
@@ -38,7 +38,7 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
     a kinematic system, whose shape moves as its owner likes, this is controllability. Otherwise it says that no
     part of the constraint is integrable; what can be reached with forces on the shape alone is another question.
 
-    Brackets are derivatives of a basis of D by JAX; ranks count singular values above $10^{-9}$ of the largest, so
+    Derivatives of the constraints are by JAX; ranks count singular values above $10^{-9}$ of the largest, so
     choose units in which coordinates are of one size.
 
     Args:
@@ -66,11 +66,11 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
         raise error("accessibility(configuration=...)", "have independent constraints", f"{forms.tolist()}", remedy)
     longest = rank + 1 if depth is None else count("accessibility(depth=...)", depth, "Pass a length of brackets.")
     if longest > _MOST:
-        remedy = "Pass a smaller `depth=`: derivatives are nested as deeply."
+        remedy = "Pass a smaller `depth=`: higher derivatives grow too large."
         raise error("accessibility(depth=...)", f"be at most {_MOST}", str(longest), remedy)
     growth, fields = [], np.zeros((n, 0))
-    for length in range(1, longest + 1):
-        fields = np.hstack([fields, _brackets.brackets(system, q, length)])
+    for longer in _brackets.brackets(system, q, longest):
+        fields = np.hstack([fields, longer])
         growth.append(int(np.linalg.matrix_rank(fields, rtol=_RANK)))
         if growth[-1] == n:
             break

@@ -19,7 +19,7 @@ from nonholo.plotting.motion import symbol
 _POINTS = 121  # a side
 _MARGIN = 0.3  # of the extent of a gait
 _REACH = 1.2  # of each shape variable, by default
-_TYPICAL = 0.8  # part of the values, of which the colors reach thrice the largest: near singular shapes is no bound
+_REACHED = 3  # by the colors, in units of the median: near singular shapes values have no bound
 _COMPONENTS = {"omega": r"\omega", "v1": "v_1", "v2": "v_2"}
 
 
@@ -137,7 +137,7 @@ def _middles(sides: Array) -> list[Array]:
 def _map(axes: Axes, component: str, sides: Array, values: Array) -> tuple[QuadMesh, Any, Colorbar]:
     """Draw the map in two hues that meet at zero, the line of zeros, and the key."""
     most = float(np.nanmax(np.abs(values)))
-    top = min(most, 3 * float(np.nanquantile(np.abs(values), _TYPICAL))) or most or 1.0
+    top = min(most, _REACHED * float(np.nanmedian(np.abs(values)))) or most or 1.0
     hues = LinearSegmentedColormap.from_list("nonholo_signed", [theme.UNSTABLE, theme.PAPER, theme.DISCRETE])
     edges = [np.linspace(low, high, _POINTS) for low, high in sides]
     shown_as: Any = {"cmap": hues, "norm": Normalize(-top, top), "rasterized": True, "zorder": 1}
