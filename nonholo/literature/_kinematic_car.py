@@ -55,7 +55,7 @@ def kinematic_car(
 
     Example:
         >>> ready = nh.examples.kinematic_car(wheelbase=2.0)
-        >>> round(float(ready.body_velocity[2]), 6), round(np.tan(0.3) / 2, 6)
+        >>> round(ready.body_velocity[2].item(), 6), round(np.tan(0.3).item() / 2, 6)
         (0.154668, 0.154668)
     """
     name = "kinematic_car"

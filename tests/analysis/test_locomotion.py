@@ -239,8 +239,10 @@ def with_forms(forms: object, **others: object) -> nh.LagrangeDAlembert:
     ("refused", "words"),
     [
         (lambda: nh.local_connection(nh.examples.kinematic_car()), "be a system in coordinates"),
-        (lambda: nh.local_connection(nh.examples.particle().system), "have coordinates x, y, theta"),
-        (lambda: nh.local_connection(FREE, pose=("x", "y", "s2")), "have coordinates x, y, s2"),
+        (lambda: nh.local_connection(nh.examples.particle().system), "pose=...\\)` must be one of"),
+        (lambda: nh.local_connection(FREE, pose=("x", "y", "s2")), "pose=...\\)` must be one of"),
+        (lambda: nh.local_connection(FREE, pose=("x", "y", "x")), "three different names"),
+        (lambda: nh.local_connection(nh.examples.chaplygin_ball().system), "be a system in coordinates"),
         (lambda: nh.local_connection(dataclasses.replace(FREE, force=nh.Friction(np.ones(4)))), "have no force"),
         (lambda: nh.local_connection(with_forms(lambda q: jnp.array([[q[0], 1.0, 0.0, 0.0]]))), "same at every pose"),
         (lambda: nh.local_connection(with_forms(lambda q: jnp.array([[0.0, 0.0, 0.0, 1 + q[3]]]))), "bind the body"),

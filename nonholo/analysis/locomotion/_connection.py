@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.analysis.locomotion import _equations
-from nonholo.base.checks import error, instance, needs, shown, trailing
+from nonholo.base.checks import choice, error, instance, needs, shown, trailing
 from nonholo.base.types import Array, Float
 from nonholo.systems import AbstractCoordinateSystem
 
@@ -97,8 +97,8 @@ class LocalConnection:
 
         Example:
             >>> board = nh.local_connection(nh.examples.snakeboard().system)
-            >>> print(board.body_velocity((0.0, 0.0), (0.0, 0.0), momentum=(3.0,)))
-            [0. 3. 0.]
+            >>> print(board.body_velocity((0.0, 0.3), (0.0, 0.0), momentum=(3.0,))[:2].round(3))
+            [-0.847  2.738]
         """
         return self._motion("body_velocity", shape, shape_velocity, momentum)[0]
 
@@ -146,7 +146,9 @@ class LocalConnection:
         """Return momenta p, zero for None."""
         k = len(self.momentum_components)
         remedy = f"Pass {k} numbers: momenta of {', '.join(self.momentum_components)}."
-        return np.zeros(k) if momentum is None else trailing(f"{owner}(momentum=...)", momentum, (k,), remedy)
+        return (
+            np.zeros(k) if momentum is None else trailing(f"{owner}(momentum=...)", momentum, (k,), remedy, real=True)
+        )
 
     def _points(self, where: str, values: Any) -> Array:
         names = self.shape_coordinates
@@ -185,9 +187,12 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
         >>> board.shape_coordinates, board.momentum_components
         (('psi', 'phi'), ('v1',))
     """
-    names = checked_names("local_connection", system, pose)
+    names = checked_names("local_connection", system)
+    where, asked, remedy = "local_connection(system=...)", "local_connection(pose=...)", "Name x, y and the heading."
+    chosen = [choice(asked, name, names, remedy) for name in instance(asked, pose, tuple, "be three names", remedy)]
+    if len(set(chosen)) != 3 or len(chosen) != 3:
+        raise error(asked, "be three different names", shown(pose), remedy)
     shape = tuple(i for i, name in enumerate(names) if name not in pose)
-    where = "local_connection(system=...)"
     if not shape:
         raise error(where, "have a shape beside its pose", shown(names), "A rigid body has no connection.")
     x, y, theta = (names.index(name) for name in pose)
@@ -201,15 +206,14 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
     return LocalConnection(system, tuple(names[i] for i in shape), components, reduction, free)
 
 
-def checked_names(owner: str, system: Any, pose: tuple[str, ...] = ()) -> tuple[str, ...]:
+def checked_names(owner: str, system: Any) -> tuple[str, ...]:
     """Return the coordinates of a system whose constraints are linear and do not depend on time."""
     where = f"{owner}(system=...)"
     remedy = "Pass a `LagrangeDAlembert`; of a ready example its `.system`."
     instance(where, system, AbstractCoordinateSystem, "be a system in coordinates", remedy)
     names: tuple[str, ...] = getattr(system, "coordinates", ())
-    if not names or len(set(pose)) < len(pose) or not set(pose) <= set(names):
-        wanted = "coordinates" + f" {', '.join(map(str, pose))}" * bool(pose)
-        raise error(where, f"have {wanted}", shown(names), "Name them by `coordinates=`, or tell by `pose=` which.")
+    if not names:
+        raise error(where, "be a system in coordinates", "one on a group", remedy)
     if system.force is not None or dataclasses.replace(system, prescribed=()).is_driven:
         got = "a force, moving constraints or functions of time"
         raise error(where, "not depend on time, and have no force", got, "Leave these out.")
