@@ -15,6 +15,7 @@ import pytest
 
 import nonholo as nh
 from nonholo.analysis import LocalConnection
+from nonholo.analysis.locomotion import _equations
 from nonholo.base.types import Array
 
 LONG = pytest.mark.profile("routes", instead="test_the_car_has_the_connection_of_the_closed_form")
@@ -268,3 +269,29 @@ def test_a_lagrangian_must_not_depend_on_the_pose() -> None:
     with pytest.raises(ValueError, match="quadratic"):
         nh.local_connection(dataclasses.replace(FREE, lagrangian=lambda q, v: v @ v + v[3] * q[3]))
     assert nh.local_connection(dataclasses.replace(FREE, lagrangian=lambda q, v: v @ v - q[3] ** 2))
+
+
+def test_momenta_and_curvature_of_the_snakeboard_follow_from_its_matrices() -> None:
+    """Rows, inertia and their slopes by hand: curvature and momentum equation of the closed form, without JAX."""
+    rng = np.random.default_rng(3)
+    phi, ds, p = rng.uniform(-1.3, 1.3, 9), rng.normal(size=(9, 2)), rng.normal(size=(9, 1))
+    W, dW = np.zeros((9, 2, 5)), np.zeros((9, 2, 5, 2))
+    for row, side in enumerate((1.0, -1.0)):
+        W[:, row, :3] = np.stack([-side * HALF * np.cos(phi), -side * np.sin(phi), np.cos(phi)], -1)
+        dW[:, row, :3, 1] = np.stack([side * HALF * np.sin(phi), -side * np.cos(phi), -np.sin(phi)], -1)
+    M = np.diag([MASS * HALF**2, MASS, MASS, ROTOR, 0.2])
+    M[0, 3] = M[3, 0] = ROTOR
+    at = _equations.terms((1,), W, dW, np.broadcast_to(M, (9, 5, 5)), np.zeros((9, 5, 5, 2)))
+    F = _equations.curvature(at)[:, :, 0, 1]
+    wanted = ROTOR / (MASS * HALF) * np.stack([-np.sin(2 * phi) / HALF, np.cos(2 * phi), 0 * phi], -1)
+    np.testing.assert_allclose(F, wanted, rtol=0, atol=1e-12)
+    rate = np.tan(phi) * ds[:, 1] * p[:, 0] - ROTOR / HALF * ds[:, 0] * ds[:, 1]
+    np.testing.assert_allclose(_equations.motion(at, ds, p)[1][:, 0], rate, rtol=0, atol=1e-12)
+
+
+def test_the_curvature_of_two_wheels_is_a_bracket() -> None:
+    """A is constant, so F = -[A_right, A_left]: a robot that turns one wheel after the other moves aside."""
+    turn, ahead = 0.25 / (2 * 0.5), 0.25 / 2
+    W = np.array([[0.0, 0, 1, 0, 0], [0, 1, 0, -ahead, -ahead], [1, 0, 0, -turn, turn]])
+    at = _equations.terms((), W, np.zeros((3, 5, 2)), W, W)
+    np.testing.assert_allclose(_equations.curvature(at)[:, 0, 1], [0, 0, -2 * turn * ahead], rtol=0, atol=1e-16)
