@@ -145,7 +145,8 @@ class LocalConnection:
     def checked_momentum(self, owner: str, momentum: Any) -> Array:
         """Return momenta p, zero for None."""
         k = len(self.momentum_components)
-        remedy = f"Pass {k} numbers: momenta of {', '.join(self.momentum_components)}."
+        named = f"Pass {k} numbers: momenta of {', '.join(self.momentum_components)}."
+        remedy = named if k else "Leave it out: the constraints alone determine the motion."
         return (
             np.zeros(k) if momentum is None else trailing(f"{owner}(momentum=...)", momentum, (k,), remedy, real=True)
         )

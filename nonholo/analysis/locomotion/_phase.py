@@ -13,7 +13,7 @@ from nonholo.base.types import Array, Float
 from nonholo.groups import SE
 
 _AGREED = 1e-12  # of two results, the second with twice as many pieces
-_PANELS, _MOST = 8, 2048  # pieces of a period, at first and at most
+_PANELS, _MOST = 8, 512  # pieces of a period, at first and at most
 _LOOKS = 401  # shapes at which a gait is checked
 _CLOSED = 1e-9  # gap of a gait, relative to its size
 _ITERATIONS = 60
@@ -39,7 +39,8 @@ class GeometricPhase:
         momentum: The momenta p at these times.
         holonomy: The geometric phase: the pose after the gait if the momenta were kept at zero. Of a kinematic system
             this is the last pose.
-        area_rule: The exponential of minus the curvature inside the gait, which agrees with it to second order.
+        area_rule: The exponential of minus the curvature inside the gait, which agrees with it to second order; NaN if
+            there are singular shapes inside.
     """
 
     connection: LocalConnection
@@ -99,16 +100,17 @@ def geometric_phase(
     p = connection.checked_momentum("geometric_phase", momentum)
     p = array("geometric_phase(momentum=...)", p, (len(connection.momentum_components),))
     shape_at = functools.partial(_reduction.called, _reduction.moving_shape, gait)
-    _check_closed(connection, shape_at(np.linspace(0.0, end, _LOOKS)[:, None])[0], end)
+    _check_closed(connection, shape_at(np.linspace(0.0, end, _LOOKS)[:, None])[0])
     panels, coarse = _PANELS, None
     while True:
         edges = np.union1d(np.linspace(0.0, end, panels + 1), breaks[(breaks > 0) & (breaks < end)])
-        fine = _displacement(connection, shape_at, edges, p)
-        if coarse is not None and _distance(coarse, fine) < _AGREED:
+        with np.errstate(all="ignore"):  # beside singular shapes
+            fine = _displacement(connection, shape_at, edges, p)
+        moved, inside = (np.inf, np.inf) if coarse is None else _distances(coarse, fine)
+        if moved < _AGREED and inside < _AGREED:
             return fine
         if panels == _MOST:
-            got, remedy = "one that 2048 pieces do not resolve", "Name its corners, or keep away from singular shapes."
-            raise error("geometric_phase(gait=...)", "be smooth between its corners", got, remedy)
+            return _unresolved(fine, moved)
         panels, coarse = 2 * panels, fine
 
 
@@ -122,8 +124,10 @@ def _displacement(connection: LocalConnection, shape_at: Any, edges: Array, p: A
     pose, end = _poses(h, _equations.motion(at, ds, momentum)[0])
     holonomy = _poses(h, _equations.motion(at, ds, np.zeros_like(momentum))[0])[1]
     center = s.mean((0, 1))
-    inside = center + _NODES[:, None, None, None] * (s - center)
-    F = np.einsum("x,xtkaij->tkaij", _WEIGHTS * _NODES, _equations.curvature(connection.terms(inside)))
+    F: Any = sum(  # along the segments from the center
+        weight * x * _equations.curvature(connection.terms(center + x * (s - center)))
+        for x, weight in zip(_NODES, _WEIGHTS, strict=True)
+    )
     area = -np.einsum("t,k,tkaij,tki,tkj->a", h, _WEIGHTS, F, s - center, ds)
 
     def whole(first: Array, between: Array, last: Array) -> Array:
@@ -166,14 +170,24 @@ def _momenta(at: _equations.Terms, ds: Array, h: Array, p: Array) -> tuple[Float
     return found, p
 
 
-def _distance(one: GeometricPhase, other: GeometricPhase) -> float:
-    """Return by how much two results differ; NaN if one is not finite."""
+def _distances(one: GeometricPhase, other: GeometricPhase) -> tuple[float, float]:
+    """Return by how much two motions and two area rules differ; NaN if they are not finite."""
     ends = [(x.configuration[-1], x.momentum[-1:], x.holonomy, x.area_rule) for x in (one, other)]
     gaps = [np.abs(a - b).max(initial=0.0) / (1 + np.abs(a).max(initial=0.0)) for a, b in zip(*ends, strict=True)]
-    return float(np.max(gaps))
+    return float(np.max(gaps[:3])), float(gaps[3])
 
 
-def _check_closed(connection: LocalConnection, shape: Array, end: float) -> None:
+def _unresolved(phase: GeometricPhase, moved: float) -> GeometricPhase:
+    """Return a phase without area rule, if there are singular shapes inside the gait alone."""
+    if moved < _AGREED:
+        return dataclasses.replace(phase, area_rule=np.full((3, 3), np.nan))
+    at = _nearest(phase.connection, phase.shape)
+    got = f"one that {_MOST} pieces do not resolve, next to a singular shape at {at}"
+    remedy = "Name its corners, or keep away from singular shapes."
+    raise error("geometric_phase(gait=...)", "be smooth between its corners", got, remedy)
+
+
+def _check_closed(connection: LocalConnection, shape: Array) -> None:
     """Refuse a gait with a gap, with numbers that are not finite, or across a singular shape."""
     where = "geometric_phase(gait=...)"
     if not np.abs(shape[-1] - shape[0]).max() <= _CLOSED * (1 + np.abs(shape).max()):
@@ -181,10 +195,14 @@ def _check_closed(connection: LocalConnection, shape: Array, end: float) -> None
         raise error(where, "be closed and finite", f"{shape[0].tolist()} to {shape[-1].tolist()}", remedy)
     regular = _equations.regularity(connection.terms(shape).matrix[..., :3])
     if not (regular * regular[0] > 0).all():
-        first = int(np.argmax(~(regular * regular[0] > 0)))
-        at = dict(zip(connection.shape_coordinates, shape[first].round(6).tolist(), strict=True))
         remedy = "There the constraints do not determine the motion; pass a smaller gait."
-        raise error(where, "keep away from singular shapes", f"{at} at time {first * end / (_LOOKS - 1):g}", remedy)
+        raise error(where, "keep away from singular shapes", f"{_nearest(connection, shape)} on its way", remedy)
+
+
+def _nearest(connection: LocalConnection, shape: Array) -> dict[str, float]:
+    """Return the shape that is nearest to a singular one."""
+    nearness = np.abs(_equations.regularity(connection.terms(shape).matrix[..., :3]))
+    return dict(zip(connection.shape_coordinates, shape[np.argmin(nearness)].round(6).tolist(), strict=True))
 
 
 def _matrices(pose: Float[np.ndarray, "... 3"]) -> Float[np.ndarray, "... 3 3"]:
