@@ -137,17 +137,20 @@ if TYPE_CHECKING:
     from nonholo import literature as examples  # noqa: F401
     from nonholo import plotting as plot  # noqa: F401
     from nonholo import testing as testing
+    from nonholo.analysis import accessibility as accessibility
     from nonholo.analysis import asymptotics as asymptotics
     from nonholo.analysis import compare as compare
     from nonholo.analysis import conserved_momenta as conserved_momenta
     from nonholo.analysis import critical_energies as critical_energies
     from nonholo.analysis import equilibria as equilibria
     from nonholo.analysis import flow_obstruction as flow_obstruction
+    from nonholo.analysis import geometric_phase as geometric_phase
     from nonholo.analysis import half_planes as half_planes
     from nonholo.analysis import heteroclinic as heteroclinic
     from nonholo.analysis import invariant_curve as invariant_curve
     from nonholo.analysis import invariant_measure as invariant_measure
     from nonholo.analysis import invariants as invariants
+    from nonholo.analysis import local_connection as local_connection
     from nonholo.analysis import lyapunov_exponents as lyapunov_exponents
     from nonholo.analysis import lyapunov_function as lyapunov_function
     from nonholo.analysis import momentum_locus as momentum_locus
@@ -266,6 +269,7 @@ _HOMES = {
     "Translations": "groups",
     "Uniform": "ensembles",
     "VeselovaTop": "systems",
+    "accessibility": "analysis",
     "allow_float32": "discrete.definition",
     "asymptotics": "analysis",
     "branch_tree": "discrete",
@@ -288,6 +292,7 @@ _HOMES = {
     "flow": "simulation",
     "flow_obstruction": "analysis",
     "fold_distance": "discrete",
+    "geometric_phase": "analysis",
     "half_planes": "analysis",
     "heteroclinic": "analysis",
     "in_exp_d": "systems",
@@ -299,6 +304,7 @@ _HOMES = {
     "iterate": "simulation",
     "load_orbit": "io",
     "load_sweep": "ensembles",
+    "local_connection": "analysis",
     "lyapunov_exponents": "analysis",
     "lyapunov_function": "analysis",
     "mass_tensor_lagrangian": "lagrange_dalembert",

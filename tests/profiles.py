@@ -109,6 +109,12 @@ DOCTESTS = {  # examples that compile for long
     "nonholo.simulation.members._in_coordinates.CoordinateEnsemble": "routes",
     "nonholo.discrete._consistency.consistency_defect": "routes",
     "nonholo.literature._robot.two_wheeled_robot": "routes",
+    "nonholo.analysis.locomotion._accessibility.accessibility": "routes",
+    "nonholo.analysis.locomotion._connection.LocalConnection.body_velocity": "routes",
+    "nonholo.analysis.locomotion._connection.LocalConnection.momentum_rate": "routes",
+    "nonholo.analysis.locomotion._connection.local_connection": "routes",
+    "nonholo.analysis.locomotion._phase.geometric_phase": "routes",
+    "nonholo.plotting.geometry._curvature.curvature": "routes",
 }
 
 

@@ -83,7 +83,11 @@ def calls(which: str) -> dict[str, str]:
 
     for missing in names():  # the table names them when it is made
         vars(nh)[missing] = functools.partial(_home_of, missing)
-    for group in ("_in_coordinates", "_examples"):  # systems that cannot be made without an extra: see `names`
+    for group in (
+        "_in_coordinates",
+        "_locomotion",
+        "_examples",
+    ):  # systems that cannot be made without an extra: see `names`
         try:
             getattr(calls_systems, group)()
         except (MissingExtraError, AttributeError):

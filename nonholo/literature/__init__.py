@@ -7,6 +7,7 @@ with needs("jax", "nonholo.examples"):
     from nonholo.literature._driven_sleigh import driven_sleigh
     from nonholo.literature._example import Example
     from nonholo.literature._heavy_suslov_top import heavy_suslov_top
+    from nonholo.literature._kinematic_car import kinematic_car
     from nonholo.literature._knife_edge import knife_edge_on_incline
     from nonholo.literature._oscillators import chaotic_quartic_oscillator, non_reversible
     from nonholo.literature._particle import particle
@@ -22,6 +23,7 @@ __all__ = [
     "chaplygin_ball",
     "driven_sleigh",
     "heavy_suslov_top",
+    "kinematic_car",
     "knife_edge_on_incline",
     "non_reversible",
     "particle",

@@ -1,5 +1,6 @@
 """Calls that make systems, ready ones of the literature included, and methods of systems."""
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -18,9 +19,24 @@ def _kinetic(_: Any, v: Any) -> Any:
     return v @ v / 2
 
 
+def _still(time: Any) -> Any:
+    import jax.numpy as jnp
+
+    return jnp.array([0.1, 0.2]) + 0 * time
+
+
 def calls() -> list[Call]:
     """Return the calls of this file."""
-    return [*_tops(), *_sleighs(), *_general(), *_forces(), *_methods(), *_in_coordinates(), *_examples()]
+    return [
+        *_tops(),
+        *_sleighs(),
+        *_general(),
+        *_forces(),
+        *_methods(),
+        *_in_coordinates(),
+        *_locomotion(),
+        *_examples(),
+    ]
 
 
 def _tops() -> list[Call]:
@@ -150,6 +166,38 @@ def _in_coordinates() -> list[Call]:
     ]
 
 
+def _locomotion() -> list[Call]:
+    car, pose, shape = nh.examples.kinematic_car(), anything(("x", "y", "theta")), array([0.1, 0.2], "batch")
+    moving = {"shape": shape, "shape_velocity": array([0.3, 0.4], "batch")}
+    gait = {"period": positive(1.0), "corners": array([0.5], "any"), "momentum": array([], none=True)}
+
+    @functools.cache
+    def connection() -> Any:  # made when it is asked for: JAX compiles it
+        return nh.local_connection(car.system)
+
+    def drawn(**given: Any) -> None:
+        import matplotlib.pyplot as plt
+
+        try:
+            nh.plot.curvature(connection(), **given)
+        finally:
+            plt.close("all")
+
+    ranges, names = array([[-1.0, 1], [-1, 1]], none=True), anything(("psi", "phi"))
+    drawing = {"component": text("omega"), "along": names, "bounds": ranges, "shape": array([0.0, 0.1], none=True)}
+    asked = {"system": thing(car.system), "configuration": array(car.configuration), "depth": count(2, none=True)}
+    return [
+        call("accessibility", nh.accessibility, **asked, slow=True),
+        call("geometric_phase", nh.geometric_phase, system=thing(car.system), gait=function(_still), **gait, slow=True),
+        call("local_connection", nh.local_connection, system=thing(car.system), pose=pose, slow=True),
+        call("connection.matrix", lambda shape: connection().matrix(shape), shape=shape, slow=True),
+        call("connection.curvature", lambda shape: connection().curvature(shape), shape=shape, slow=True),
+        call("connection.body_velocity", lambda **given: connection().body_velocity(**given), **moving, slow=True),
+        call("connection.momentum_rate", lambda **given: connection().momentum_rate(**given), **moving, slow=True),
+        call("plot.curvature", drawn, **drawing, slow=True),
+    ]
+
+
 def _examples() -> list[Call]:
     made = nh.examples
     common: dict[str, Argument] = {"mass": positive(1.0), "inertia": positive(1.0), "speed": number(0.5)}
@@ -159,6 +207,7 @@ def _examples() -> list[Call]:
     place, upright = array([0.0, 0.0, 0.0]), array([0.0, 0.0, 0.0, 0.0])
     odd = {"asymmetry": number(0.5), "turning": number(2.6)}
     velocity = array([1.0, 1.0])
+    car = {"wheelbase": positive(1.0), "wheel_radius": positive(0.25), "steering_rate": number(0.1)}
     racer = {"mass": positive(1.0), "inertia": positive(0.2), "joint": positive(1.0), "amplitude": number(0.5)}
     driven = {**common, "moving_mass": positive(0.3), "ahead": number(-0.3), "frequency": positive(1.0)}
     return [
@@ -168,6 +217,7 @@ def _examples() -> list[Call]:
         call("examples.driven_sleigh", made.driven_sleigh, **driven, slow=True),
         call("examples.roller_racer", made.roller_racer, **racer, slow=True),
         call("examples.chaotic_quartic_oscillator", made.chaotic_quartic_oscillator, pairs=count(3), slow=True),
+        call("examples.kinematic_car", made.kinematic_car, **common, **car, slow=True),
         call("examples.knife_edge_on_incline", made.knife_edge_on_incline, **common, configuration=place, slow=True),
         call("examples.non_reversible", made.non_reversible, **odd, slow=True),
         call("examples.particle", made.particle, configuration=place, planar_velocity=velocity, slow=True),

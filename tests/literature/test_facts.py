@@ -14,11 +14,12 @@ EXAMPLES = {
     "rolling_disk": nh.examples.rolling_disk,
     "knife_edge_on_incline": nh.examples.knife_edge_on_incline,
     "snakeboard": nh.examples.snakeboard,
+    "kinematic_car": nh.examples.kinematic_car,
     "two_wheeled_robot": nh.examples.two_wheeled_robot,
     "chaotic_quartic_oscillator": nh.examples.chaotic_quartic_oscillator,
     "non_reversible": nh.examples.non_reversible,
 }
-EXACT = ("particle", "rolling_disk", "knife_edge_on_incline")
+EXACT = ("particle", "rolling_disk", "knife_edge_on_incline", "kinematic_car")
 TIMES = np.linspace(0.0, 4.0, 9)
 
 
@@ -162,11 +163,12 @@ def test_one_pair_of_oscillators_has_its_own_potential() -> None:
         (lambda: nh.examples.knife_edge_on_incline(turning=0.0), r"turning=...\)` must not be zero"),
         (lambda: nh.examples.snakeboard(rotor_inertia=1.0), r"be less than m r\^2 = 1"),
         (lambda: nh.examples.snakeboard(configuration=(0, 0, 0, 0, 1.6)), r"have \|phi\| < pi/2"),
+        (lambda: nh.examples.kinematic_car(configuration=(0, 0, 0, 0, 1.6)), r"have \|phi\| < pi/2"),
         (lambda: nh.examples.two_wheeled_robot(half_width=-1.0), r"half_width=...\)` must be positive"),
         (lambda: nh.examples.chaotic_quartic_oscillator(pairs=0), r"pairs=...\)` must be a positive integer"),
         (lambda: nh.examples.non_reversible(turning="fast"), r"turning=...\)` must be an array of real numbers"),
     ],
-    ids=["mass", "shape", "nan", "straight", "heavy rotor", "crossed wheels", "width", "pairs", "text"],
+    ids=["mass", "shape", "nan", "straight", "heavy rotor", "crossed wheels", "car across", "width", "pairs", "text"],
 )
 def test_bad_parameters_are_refused(make: object, words: str) -> None:
     """Each refusal names the argument and what it must be."""

@@ -1,0 +1,14 @@
+"""How changes of shape move a body in the plane: its local connection, gaits, and where brackets lead."""
+
+from nonholo.analysis.locomotion._accessibility import Accessibility, accessibility
+from nonholo.analysis.locomotion._connection import LocalConnection, local_connection
+from nonholo.analysis.locomotion._phase import GeometricPhase, geometric_phase
+
+__all__ = [
+    "Accessibility",
+    "GeometricPhase",
+    "LocalConnection",
+    "accessibility",
+    "geometric_phase",
+    "local_connection",
+]

@@ -1,0 +1,78 @@
+"""`accessibility`: the directions in which brackets of admissible velocities lead."""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from nonholo.analysis.locomotion._connection import checked_names
+from nonholo.base.checks import array, count, error, needs
+from nonholo.base.types import Float
+
+_MOST = 8  # the longest bracket: their derivatives are tensors of that order
+_RANK = 1e-9  # of singular values, relative to the largest
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Accessibility:
+    r"""How the brackets of admissible velocities grow at a configuration.
+
+    Attributes:
+        growth: The ranks of $D \subset D + [D, D] \subset \dots$, as far as they were computed.
+        directions: An orthonormal basis of the last of them, in rows.
+        is_accessible: Whether every direction is among them.
+    """
+
+    growth: tuple[int, ...]
+    directions: Float[np.ndarray, "r n"]
+    is_accessible: bool
+
+
+def accessibility(system: Any, configuration: Any, *, depth: int | None = None) -> Accessibility:
+    r"""Return how far brackets of admissible velocities lead from a configuration.
+
+    $$ D_1 = D = \{v : A(q)\,v = 0\}, \qquad D_{i+1} = D_i + [D, D_i], \qquad
+       \text{growth} = (\dim D_1, \dim D_2, \dots). $$
+
+    If some $D_i$ is all of $\mathbb R^n$, motions along the constraint lead to every neighbor (Chow and Rashevskii). Of
+    a kinematic system, whose shape moves as its owner likes, this is controllability. Otherwise it says that no
+    part of the constraint is integrable; what can be reached with forces on the shape alone is another question.
+
+    Derivatives of the constraints are by JAX; ranks count singular values above $10^{-9}$ of the largest, so
+    choose units in which coordinates are of one size.
+
+    Args:
+        system: A `LagrangeDAlembert` system without forces whose constraints do not depend on time. Prescribed motions
+            are left aside.
+        configuration: q.
+        depth: The longest brackets, at most 8; by default n - dim D + 1, enough wherever the ranks are constant nearby.
+
+    Raises:
+        ValueError: Another system, a wrong shape, constraints that are dependent or infinite at q.
+
+    Example:
+        >>> ready = nh.examples.kinematic_car()
+        >>> nh.accessibility(ready.system, ready.configuration).growth
+        (2, 3, 4, 5)
+    """
+    n = len(checked_names("accessibility", system))
+    q = array("accessibility(configuration=...)", configuration, (n,), f"Pass {n} coordinates.")
+    with needs("jax", "accessibility"):
+        from nonholo.analysis.locomotion import _brackets
+    forms = _brackets.forms_at(system, q)
+    rank = np.linalg.matrix_rank(forms) if np.isfinite(forms).all() else -1
+    if rank < len(forms):
+        remedy = "Choose another configuration, or drop constraints that follow from others."
+        raise error("accessibility(configuration=...)", "have independent constraints", f"{forms.tolist()}", remedy)
+    longest = rank + 1 if depth is None else count("accessibility(depth=...)", depth, "Pass a length of brackets.")
+    if longest > _MOST:
+        remedy = "Pass a smaller `depth=`: higher derivatives grow too large."
+        raise error("accessibility(depth=...)", f"be at most {_MOST}", str(longest), remedy)
+    growth, fields = [], np.zeros((n, 0))
+    for longer in _brackets.brackets(system, q, longest):
+        fields = np.hstack([fields, longer])
+        growth.append(int(np.linalg.matrix_rank(fields, rtol=_RANK)))
+        if growth[-1] == n:
+            break
+    directions = np.linalg.svd(fields)[0][:, : growth[-1]].T
+    return Accessibility(tuple(growth), directions, growth[-1] == n)

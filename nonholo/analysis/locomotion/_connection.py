@@ -1,0 +1,263 @@
+"""`local_connection`: the body velocity that a change of shape causes, for systems in the plane."""
+
+import dataclasses
+import functools
+import itertools
+from typing import Any
+
+import numpy as np
+
+from nonholo.analysis.locomotion import _equations
+from nonholo.base.checks import choice, error, instance, needs, shown, trailing
+from nonholo.base.types import Array, Float
+from nonholo.systems import AbstractCoordinateSystem
+
+_SAMPLES = 8  # shapes and poses at which the symmetry is checked
+_SYMMETRIC = 1e-9  # relative
+_INDEPENDENT = 1e-7  # least singular value of rows of length one
+_COMPONENTS = ("omega", "v1", "v2")
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class LocalConnection:
+    r"""The local connection of a system in the plane, $\xi = -A(s)\,\dot s + \Gamma(s)\,p$.
+
+    Attributes:
+        system: The system.
+        shape_coordinates: Names of the shape variables s: all coordinates but position and heading.
+        momentum_components: The components of $\xi = (\omega, v_1, v_2)$ that number the momenta p. None if the
+            constraints alone determine the body velocity: the principal kinematic case.
+    """
+
+    system: Any
+    shape_coordinates: tuple[str, ...]
+    momentum_components: tuple[str, ...]
+    _reduction: Any
+    _free: tuple[int, ...]
+
+    def __repr__(self) -> str:
+        shape, momenta = ", ".join(self.shape_coordinates), ", ".join(self.momentum_components) or "none"
+        return f"<LocalConnection of {self.system.name!r}: shape {shape}; momenta {momenta}>"
+
+    def matrix(self, shape: Any) -> Float[np.ndarray, "... 3 m"]:
+        r"""Return A(s), rows for $\omega, v_1, v_2$; NaN where the constraints do not determine the body velocity.
+
+        Args:
+            shape: s, with free leading axes.
+
+        Raises:
+            ValueError: A wrong shape of the array, a number that is not finite.
+
+        Example:
+            >>> car = nh.local_connection(nh.examples.kinematic_car(wheel_radius=0.5, wheelbase=2.0).system)
+            >>> car.matrix((0.0, np.pi / 4)).round(12)
+            array([[-0.25,  0.  ],
+                   [-0.5 ,  0.  ],
+                   [ 0.  ,  0.  ]])
+        """
+        return _equations.connection(self.terms(self._points("matrix(shape=...)", shape)))
+
+    def curvature(self, shape: Any) -> Float[np.ndarray, "... 3 m m"]:
+        r"""Return the curvature of the connection.
+
+        $$ F_{ij} = \partial_i A_j - \partial_j A_i - [A_i, A_j], \qquad
+           g = \exp\Bigl(-\sum_{i<j}\iint F_{ij}\,ds_i\,ds_j + O(\varepsilon^3)\Bigr) $$
+
+        is the displacement by a gait of size $\varepsilon$. It vanishes identically where only the ends of a change
+        of shape count.
+
+        Args:
+            shape: s, with free leading axes.
+
+        Returns:
+            F with axes for the body velocity, i and j; NaN where A is.
+
+        Raises:
+            ValueError: A wrong shape of the array, a number that is not finite.
+
+        Example:
+            A car that steers and rolls, turns: $F_{\psi\varphi} = (\rho/\ell)\cos^{-2}\varphi$.
+
+            >>> car = nh.local_connection(nh.examples.kinematic_car(wheel_radius=0.5, wheelbase=2.0).system)
+            >>> print(car.curvature((0.0, np.pi / 4))[:, 0, 1].round(12))
+            [0.5 0.  0. ]
+        """
+        return _equations.curvature(self.terms(self._points("curvature(shape=...)", shape)))
+
+    def body_velocity(self, shape: Any, shape_velocity: Any, momentum: Any = None) -> Float[np.ndarray, "... 3"]:
+        r"""Return $\xi = -A(s)\,\dot s + \Gamma(s)\,p$.
+
+        Args:
+            shape: s, with free leading axes.
+            shape_velocity: $\dot s$.
+            momentum: p; zero by default.
+
+        Raises:
+            ValueError: A wrong shape of an array, a number that is not finite.
+
+        Example:
+            >>> board = nh.local_connection(nh.examples.snakeboard().system)
+            >>> print(board.body_velocity((0.0, 0.3), (0.0, 0.0), momentum=(3.0,))[:2].round(3))
+            [-0.847  2.738]
+        """
+        return self._motion("body_velocity", shape, shape_velocity, momentum)[0]
+
+    def momentum_rate(self, shape: Any, shape_velocity: Any, momentum: Any = None) -> Float[np.ndarray, "... k"]:
+        r"""Return the right-hand side of the nonholonomic momentum equation.
+
+        $$ p_a = \Bigl\langle\frac{\partial l}{\partial\xi}, e_a(s)\Bigr\rangle, \qquad
+           \dot p_a = \Bigl\langle\frac{\partial l}{\partial\xi}, [\xi, e_a] + \dot e_a\Bigr\rangle , $$
+
+        where $e_a(s)$ span the body velocities that the constraints admit while the shape rests. Of their components
+        that `momentum_components` names, that of number a is one and the others vanish.
+
+        Args:
+            shape: s, with free leading axes.
+            shape_velocity: $\dot s$.
+            momentum: p; zero by default.
+
+        Raises:
+            ValueError: A wrong shape of an array, a number that is not finite.
+
+        Example:
+            Of the snakeboard, $\dot p = \tan\varphi\,\dot\varphi\,p - (J_0/r)\,\dot\varphi\,\dot\psi$:
+
+            >>> board = nh.local_connection(nh.examples.snakeboard(rotor_inertia=0.5, half_length=1.0).system)
+            >>> print(board.momentum_rate((0.0, 0.0), (2.0, 3.0)))
+            [-3.]
+        """
+        return self._motion("momentum_rate", shape, shape_velocity, momentum)[1]
+
+    def _motion(self, name: str, shape: Any, shape_velocity: Any, momentum: Any) -> tuple[Array, Array]:
+        s, ds = self._points(f"{name}(shape=...)", shape), self._points(f"{name}(shape_velocity=...)", shape_velocity)
+        p = self.checked_momentum(name, momentum)
+        leading = np.broadcast_shapes(s.shape[:-1], ds.shape[:-1], p.shape[:-1])
+        s, ds, p = (np.broadcast_to(each, (*leading, each.shape[-1])) for each in (s, ds, p))
+        return _equations.motion(self.terms(s), ds, p)
+
+    def terms(self, shape: Float[np.ndarray, "... m"]) -> _equations.Terms:
+        """Return the equations at shapes, for this room."""
+        traced = _door()
+        W = traced.called(traced.constraint_terms, self._reduction, shape)
+        M = traced.called(traced.inertia_terms, self._reduction, shape) if self._free else W
+        return _equations.terms(self._free, *W, *M)
+
+    def checked_momentum(self, owner: str, momentum: Any) -> Array:
+        """Return momenta p, zero for None."""
+        k = len(self.momentum_components)
+        named = f"Pass {k} numbers: momenta of {', '.join(self.momentum_components)}."
+        remedy = named if k else "Leave it out: the constraints alone determine the motion."
+        return (
+            np.zeros(k) if momentum is None else trailing(f"{owner}(momentum=...)", momentum, (k,), remedy, real=True)
+        )
+
+    def _points(self, where: str, values: Any) -> Array:
+        names = self.shape_coordinates
+        return trailing(where, values, (len(names),), f"Pass one number each for {', '.join(names)}.", real=True)
+
+
+def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "theta")) -> LocalConnection:
+    r"""Return the local connection of a system in the plane: the body velocity that a change of shape causes.
+
+    Coordinates are position, heading and shape s. With the body velocity $\xi = (\omega, v_1, v_2)$,
+    $\omega = \dot\theta$, $v_1 = \dot x\cos\theta + \dot y\sin\theta$, $v_2 = -\dot x\sin\theta + \dot y\cos\theta$,
+    the constraints are $B(s)\,\xi + C(s)\,\dot s = 0$, whatever the pose. Where B is a square matrix,
+
+    $$ \xi = -A(s)\,\dot s, \qquad A = B^{-1}C : $$
+
+    the principal kinematic case. Otherwise k velocities $e_a(s)$ in the kernel of B are left, and their momenta
+    $p_a = \langle\partial l/\partial\xi, e_a\rangle$ complete the equations, $\xi = -A(s)\dot s + \Gamma(s)p$. Without
+    constraints A is the mechanical connection, and p the momentum in the body.
+
+    Prescribed motions of the shape are left aside: the connection holds for every motion of it. That constraints and,
+    where there are momenta, Lagrangian do not depend on the pose is checked at 8 random shapes and poses.
+
+    Reference: [bloch-krishnaprasad-marsden-murray-1996], [kelly-murray-1995]; signs are derived in the how-to "Gaits".
+
+    Args:
+        system: A `LagrangeDAlembert` system without forces whose constraints and Lagrangian do not depend on time.
+        pose: Names of position and heading among its coordinates.
+
+    Raises:
+        ValueError: Another system; coordinates without such names, or without a shape; constraints or a Lagrangian
+            that depend on the pose, or on time; constraints between shape variables alone; kinetic energy that is not
+            quadratic.
+
+    Example:
+        >>> board = nh.local_connection(nh.examples.snakeboard().system)
+        >>> board.shape_coordinates, board.momentum_components
+        (('psi', 'phi'), ('v1',))
+    """
+    names = checked_names("local_connection", system)
+    where, asked, remedy = "local_connection(system=...)", "local_connection(pose=...)", "Name x, y and the heading."
+    chosen = [choice(asked, name, names, remedy) for name in instance(asked, pose, tuple, "be three names", remedy)]
+    if len(set(chosen)) != 3 or len(chosen) != 3:
+        raise error(asked, "be three different names", shown(pose), remedy)
+    shape = tuple(i for i, name in enumerate(names) if name not in pose)
+    if not shape:
+        raise error(where, "have a shape beside its pose", shown(names), "A rigid body has no connection.")
+    x, y, theta = (names.index(name) for name in pose)
+    reduction = _door().Reduction(system, (x, y, theta), shape)
+    rng = np.random.default_rng(0)
+    shapes, poses = rng.normal(0.0, 0.6, (_SAMPLES, len(shape))), rng.normal(0.0, 2.0, (_SAMPLES, 3))
+    free = _free_components(where, reduction, shapes, poses)
+    if free:
+        _check_energy(where, reduction, shapes, poses, rng.normal(size=(_SAMPLES, len(names))))
+    components = tuple(_COMPONENTS[i] for i in free)
+    return LocalConnection(system, tuple(names[i] for i in shape), components, reduction, free)
+
+
+def checked_names(owner: str, system: Any) -> tuple[str, ...]:
+    """Return the coordinates of a system whose constraints are linear and do not depend on time."""
+    where = f"{owner}(system=...)"
+    remedy = "Pass a `LagrangeDAlembert`; of a ready example its `.system`."
+    instance(where, system, AbstractCoordinateSystem, "be a system in coordinates", remedy)
+    names: tuple[str, ...] = getattr(system, "coordinates", ())
+    if not names:
+        raise error(where, "be a system in coordinates", "one on a group", remedy)
+    if system.force is not None or dataclasses.replace(system, prescribed=()).is_driven:
+        got = "a force, moving constraints or functions of time"
+        raise error(where, "not depend on time, and have no force", got, "Leave these out.")
+    return names
+
+
+def _free_components(where: str, reduction: Any, shapes: Array, poses: Array) -> tuple[int, ...]:
+    """Return the components of the body velocity that the constraints leave free, of those choices the best one."""
+    at_identity, elsewhere = (_door().called(_door().rows, reduction, g, shapes) for g in (np.zeros(3), poses))
+    usable = np.isfinite(at_identity).all((1, 2)) & np.isfinite(elsewhere).all((1, 2))
+    at_identity, elsewhere = _unit(at_identity[usable]), _unit(elsewhere[usable])
+    least = np.linalg.svd(at_identity[..., :3], compute_uv=False).min(-1, initial=1.0)
+    if not (least > _INDEPENDENT).any():
+        got = "constraints that are dependent, infinite, or between shape variables alone"
+        raise error(where, "have constraints that bind the body velocity", got, "Solve those of the shape first.")
+    at_identity, elsewhere = at_identity[least > _INDEPENDENT], elsewhere[least > _INDEPENDENT]
+    off = elsewhere - elsewhere @ np.linalg.pinv(at_identity) @ at_identity
+    if np.abs(off).max(initial=0.0) > _SYMMETRIC:
+        got = f"constraints that change by {np.abs(off).max():.2g} where it is moved and turned"
+        raise error(where, "have constraints that are the same at every pose", got, "Check names and forms.")
+    choices = itertools.combinations(range(3), 3 - at_identity.shape[1])
+    return max(choices, key=lambda free: np.median(np.abs(np.linalg.det(np.delete(at_identity[..., :3], free, -1)))))
+
+
+def _check_energy(where: str, reduction: Any, shapes: Array, poses: Array, u: Array) -> None:
+    """Refuse a Lagrangian that depends on the pose, or that is not quadratic in the velocities."""
+    here, there = (_door().called(_door().lagrangian, reduction, g, shapes, u) for g in (np.zeros(3), poses))
+    if np.nanmax(np.abs(there - here) / (1 + np.abs(here))) > _SYMMETRIC:
+        got = "one that changes where it is moved and turned"
+        raise error(where, "have a Lagrangian that is the same at every pose", got, "Leave potentials of the pose out.")
+    M = _door().called(_door().inertia_terms, reduction, shapes)[0]
+    momenta, quadratic = _door().called(_door().momenta, reduction, shapes, u), np.einsum("...ab,...b->...a", M, u)
+    if np.nanmax(np.abs(momenta - quadratic) / (1 + np.abs(quadratic))) > _SYMMETRIC:
+        raise error(where, "have a kinetic energy quadratic in velocities", "another one", "Leave other terms out.")
+
+
+def _unit(rows: Array) -> Array:
+    return rows / np.maximum(np.linalg.norm(rows, axis=-1, keepdims=True), np.finfo(float).tiny)
+
+
+@functools.cache
+def _door() -> Any:
+    """Return the functions that JAX compiles."""
+    with needs("jax", "local_connection"):
+        from nonholo.analysis.locomotion import _reduction
+    return _reduction

@@ -1,0 +1,212 @@
+"""`geometric_phase`: where a gait takes a body, exactly and by the area rule."""
+
+import dataclasses
+import functools
+from typing import Any
+
+import numpy as np
+
+from nonholo.analysis.locomotion import _equations
+from nonholo.analysis.locomotion._connection import LocalConnection, local_connection
+from nonholo.base.checks import array, error, needs, scale
+from nonholo.base.types import Array, Float
+from nonholo.groups import SE
+
+_AGREED = 1e-12  # of two results, the second with twice as many pieces
+_PANELS, _MOST = 8, 512  # pieces of a period, at first and at most
+_LOOKS = 401  # shapes at which a gait is checked
+_CLOSED = 1e-9  # gap of a gait, relative to its size
+_ITERATIONS = 60
+_ROUNDING = 4e-16
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
+_POWERS = np.polynomial.legendre.legint(np.eye(20), lbnd=-1, axis=0)  # integrals of Legendre polynomials
+_TO_NODES = (
+    np.polynomial.legendre.legval(_NODES, _POWERS).T @ np.linalg.inv(np.polynomial.legendre.legvander(_NODES, 19)) / 2
+)
+_NODES, _WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class GeometricPhase:
+    """Where a gait takes a body that starts at the identity pose.
+
+    Attributes:
+        connection: The local connection.
+        time: Times during the gait.
+        shape: The shape at these times.
+        configuration: The pose at these times, momenta included.
+        heading: The heading at these times, unwrapped.
+        momentum: The momenta p at these times.
+        holonomy: The geometric phase: the pose after the gait if the momenta were kept at zero. Of a kinematic system
+            this is the last pose.
+        area_rule: The exponential of minus the curvature inside the gait, which agrees with it to second order; NaN if
+            there are singular shapes inside.
+    """
+
+    connection: LocalConnection
+    time: Float[np.ndarray, "K"]
+    shape: Float[np.ndarray, "K m"]
+    configuration: Float[np.ndarray, "K 3 3"]
+    heading: Float[np.ndarray, "K"]
+    momentum: Float[np.ndarray, "K k"]
+    holonomy: Float[np.ndarray, "3 3"]
+    area_rule: Float[np.ndarray, "3 3"]
+
+
+def geometric_phase(
+    system: Any, gait: Any, *, period: float = 2 * np.pi, corners: Any = (), momentum: Any = None
+) -> GeometricPhase:
+    r"""Return the displacement by a gait: a closed motion s(t) of the shape, which its owner prescribes.
+
+    $$ \dot g = -g\,A(s)\,\dot s \quad\text{(holonomy)}, \qquad
+       \dot g = g\,(-A(s)\,\dot s + \Gamma(s)\,p) \quad\text{(configuration)}, \qquad
+       g_{\mathrm{area}} = \exp\Bigl(-\int_\Sigma F\Bigr), $$
+
+    with the momentum equation of `LocalConnection.momentum_rate`. The surface $\Sigma$ is the cone over the gait from
+    its mean shape: in a plane, the inside with its sense of rotation, counted as often as the gait runs around it. The
+    area rule is right to second order in the size of the gait: its error is of third order. Equations are solved by
+    polynomials of degree 20 on pieces of the period, which are halved until the result agrees to 1e-12.
+
+    Reference: [kelly-murray-1995], [bloch-krishnaprasad-marsden-murray-1996]; the area rule with the bracket in it is
+    that of [hatton-choset-2011].
+
+    Args:
+        system: A system, or its `local_connection`.
+        gait: time -> shape (m,), written with `jax.numpy`, in the order of `shape_coordinates`.
+        period: When the gait ends; a multiple of its period repeats it.
+        corners: Times at which the gait has a corner.
+        momentum: p at the start; zero by default.
+
+    Raises:
+        ValueError: What `local_connection` refuses; a gait that is not closed, or that meets a shape where the
+            connection is singular.
+
+    Example:
+        A car that rolls to and fro while it steers moves aside, and does not turn:
+
+        >>> import jax.numpy as jnp
+        >>> def gait(time):
+        ...     return jnp.array([jnp.sin(time), 0.5 * jnp.sin(2 * time)])
+        >>> phase = nh.geometric_phase(nh.examples.kinematic_car().system, gait)
+        >>> print(phase.holonomy[:2, 2].round(4), bool(abs(phase.heading[-1]) < 1e-12))
+        [ 0.0046 -0.0522] True
+    """
+    connection = system if hasattr(system, "curvature") else local_connection(system)
+    with needs("jax", "geometric_phase"):
+        from nonholo.analysis.locomotion import _reduction
+    _reduction.check_gait(gait, len(connection.shape_coordinates))
+    end = float(scale("geometric_phase(period=...)", period, "Pass the time that the gait takes."))
+    breaks = array("geometric_phase(corners=...)", corners, (None,), "Pass times, or () for a smooth gait.")
+    p = connection.checked_momentum("geometric_phase", momentum)
+    p = array("geometric_phase(momentum=...)", p, (len(connection.momentum_components),))
+    shape_at = functools.partial(_reduction.called, _reduction.moving_shape, gait)
+    _check_closed(connection, shape_at(np.linspace(0.0, end, _LOOKS)[:, None])[0])
+    panels, coarse = _PANELS, None
+    while True:
+        edges = np.union1d(np.linspace(0.0, end, panels + 1), breaks[(breaks > 0) & (breaks < end)])
+        with np.errstate(all="ignore"):  # beside singular shapes
+            fine = _displacement(connection, shape_at, edges, p)
+        moved, inside = (np.inf, np.inf) if coarse is None else _distances(coarse, fine)
+        if moved < _AGREED and inside < _AGREED:
+            return fine
+        if panels == _MOST:
+            return _unresolved(fine, moved)
+        panels, coarse = 2 * panels, fine
+
+
+def _displacement(connection: LocalConnection, shape_at: Any, edges: Array, p: Array) -> GeometricPhase:
+    """Return the phase by polynomials of degree 20 in the time between edges."""
+    h = np.diff(edges)
+    time = edges[:-1, None] + h[:, None] * _NODES
+    s, ds = shape_at(time[..., None])
+    at = connection.terms(s)
+    momentum, p_end = _momenta(at, ds, h, p)
+    pose, end = _poses(h, _equations.motion(at, ds, momentum)[0])
+    holonomy = _poses(h, _equations.motion(at, ds, np.zeros_like(momentum))[0])[1]
+    center = s.mean((0, 1))
+    F: Any = sum(  # along the segments from the center
+        weight * x * _equations.curvature(connection.terms(center + x * (s - center)))
+        for x, weight in zip(_NODES, _WEIGHTS, strict=True)
+    )
+    area = -np.einsum("t,k,tkaij,tki,tkj->a", h, _WEIGHTS, F, s - center, ds)
+
+    def whole(first: Array, between: Array, last: Array) -> Array:
+        return np.vstack([first, between.reshape(time.size, between.shape[-1]), last])
+
+    path = whole(np.zeros(3), pose, end)
+    columns = path[:, 2], whole(p, momentum, p_end), _matrices(holonomy), SE(2).exp(area)
+    first, last = (shape_at(edges[[i], None])[0] for i in (0, -1))
+    times = np.concatenate([edges[:1], time.ravel(), edges[-1:]])
+    return GeometricPhase(connection, times, whole(first, s, last), _matrices(path), *columns)
+
+
+def _integral(h: Array, rates: Float[np.ndarray, "t k d"]) -> tuple[Float[np.ndarray, "t k d"], Float[np.ndarray, "d"]]:
+    """Return integrals from the first edge to the nodes, and to the last edge."""
+    pieces = h[:, None] * np.einsum("k,tkd->td", _WEIGHTS, rates)
+    before = np.cumsum(pieces, 0) - pieces
+    return before[:, None] + h[:, None, None] * np.einsum("jk,tkd->tjd", _TO_NODES, rates), pieces.sum(0)
+
+
+def _poses(h: Array, xi: Float[np.ndarray, "t k 3"]) -> tuple[Float[np.ndarray, "t k 3"], Float[np.ndarray, "3"]]:
+    """Return the poses (x, y, theta) of a motion with these body velocities, at the nodes and at the end."""
+    heading, turn = _integral(h, xi[..., :1])
+    v1, v2, cos, sin = xi[..., 1:2], xi[..., 2:], np.cos(heading), np.sin(heading)
+    place, end = _integral(h, np.concatenate([cos * v1 - sin * v2, sin * v1 + cos * v2], -1))
+    return np.concatenate([place, heading], -1), np.concatenate([end, turn])
+
+
+def _momenta(at: _equations.Terms, ds: Array, h: Array, p: Array) -> tuple[Float[np.ndarray, "t k p"], Array]:
+    """Return the momenta at the nodes and at the end, piece by piece by Picard's iteration."""
+    found = np.zeros((*ds.shape[:-1], len(p)))
+    for i in range(len(h) if len(p) else 0):
+        here = _equations.Terms(*(values[i] for values in at))
+        found[i] = p
+        for _ in range(_ITERATIONS):
+            rates = _equations.motion(here, ds[i], found[i])[1]
+            before, found[i] = found[i].copy(), p + h[i] * _TO_NODES @ rates
+            if not np.abs(found[i] - before).max() > _ROUNDING * np.abs(found[i]).max():
+                break
+        p = p + h[i] * _WEIGHTS @ rates
+    return found, p
+
+
+def _distances(one: GeometricPhase, other: GeometricPhase) -> tuple[float, float]:
+    """Return by how much two motions and two area rules differ; NaN if they are not finite."""
+    ends = [(x.configuration[-1], x.momentum[-1:], x.holonomy, x.area_rule) for x in (one, other)]
+    gaps = [np.abs(a - b).max(initial=0.0) / (1 + np.abs(a).max(initial=0.0)) for a, b in zip(*ends, strict=True)]
+    return float(np.max(gaps[:3])), float(gaps[3])
+
+
+def _unresolved(phase: GeometricPhase, moved: float) -> GeometricPhase:
+    """Return a phase without area rule, if there are singular shapes inside the gait alone."""
+    if moved < _AGREED:
+        return dataclasses.replace(phase, area_rule=np.full((3, 3), np.nan))
+    at = _nearest(phase.connection, phase.shape)
+    got = f"one that {_MOST} pieces do not resolve, next to a singular shape at {at}"
+    remedy = "Name its corners, or keep away from singular shapes."
+    raise error("geometric_phase(gait=...)", "be smooth between its corners", got, remedy)
+
+
+def _check_closed(connection: LocalConnection, shape: Array) -> None:
+    """Refuse a gait with a gap, with numbers that are not finite, or across a singular shape."""
+    where = "geometric_phase(gait=...)"
+    if not np.abs(shape[-1] - shape[0]).max() <= _CLOSED * (1 + np.abs(shape).max()):
+        remedy = "Pass its period, and a gait that returns to its first shape."
+        raise error(where, "be closed and finite", f"{shape[0].tolist()} to {shape[-1].tolist()}", remedy)
+    regular = _equations.regularity(connection.terms(shape).matrix[..., :3])
+    if not (regular * regular[0] > 0).all():
+        remedy = "There the constraints do not determine the motion; pass a smaller gait."
+        raise error(where, "keep away from singular shapes", f"{_nearest(connection, shape)} on its way", remedy)
+
+
+def _nearest(connection: LocalConnection, shape: Array) -> dict[str, float]:
+    """Return the shape that is nearest to a singular one."""
+    nearness = np.abs(_equations.regularity(connection.terms(shape).matrix[..., :3]))
+    return dict(zip(connection.shape_coordinates, shape[np.argmin(nearness)].round(6).tolist(), strict=True))
+
+
+def _matrices(pose: Float[np.ndarray, "... 3"]) -> Float[np.ndarray, "... 3 3"]:
+    """Return the matrices of poses (x, y, theta)."""
+    x, y, theta = np.moveaxis(pose, -1, 0)
+    zero, one, cos, sin = np.zeros_like(x), np.ones_like(x), np.cos(theta), np.sin(theta)
+    return np.moveaxis(np.array([[cos, -sin, x], [sin, cos, y], [zero, zero, one]]), (0, 1), (-2, -1))

@@ -1,0 +1,297 @@
+"""Local connections, gaits and brackets against closed forms, the flow and exact algebra.
+
+Closed forms are derived in docs/how-to/gaits.md: of the car omega = (rho / l) tan(phi) psi', v1 = rho psi'; of the
+snakeboard v1 = (p + (J0 / r) tan(phi) psi') cos(phi)^2 / m, omega = -v1 tan(phi) / r.
+"""
+
+import dataclasses
+import functools
+from typing import Any
+
+import jax.numpy as jnp
+import mpmath
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.analysis import LocalConnection
+from nonholo.analysis.locomotion import _equations
+from nonholo.base.types import Array
+
+LONG = pytest.mark.profile("routes", instead="test_the_car_has_the_connection_of_the_closed_form")
+RADIUS, BASE = 0.3, 1.7
+MASS, HALF, ROTOR = 1.3, 0.8, 0.6
+FREE = nh.LagrangeDAlembert(lambda q, v: v @ v / 2 + 0 * q[0], None, dimension=4, coordinates=("x", "y", "theta", "s"))
+
+
+@functools.cache
+def car() -> LocalConnection:
+    """Return the connection of a car."""
+    return nh.local_connection(nh.examples.kinematic_car(wheel_radius=RADIUS, wheelbase=BASE).system)
+
+
+@functools.cache
+def board() -> LocalConnection:
+    """Return the connection of a snakeboard."""
+    return nh.local_connection(nh.examples.snakeboard(mass=MASS, half_length=HALF, rotor_inertia=ROTOR).system)
+
+
+def rolling(phi: Any) -> np.ndarray:
+    """Return the body velocity of a snakeboard without momentum, for psi' = 1."""
+    v1 = ROTOR / (MASS * HALF) * np.sin(phi) * np.cos(phi)
+    return np.array([-v1 * np.tan(phi) / HALF, v1, 0 * v1])
+
+
+def around(corners: list) -> tuple:
+    """Return a gait along straight sides at unit intervals, its period and the times of its corners."""
+    points = np.array([*corners, corners[0]], dtype=float)
+    times = np.arange(len(points), dtype=float)
+
+    def gait(time: Array) -> Array:
+        return jnp.stack([jnp.interp(time, times, side) for side in points.T])
+
+    return gait, float(times[-1]), times[1:-1]
+
+
+def placed(x: float, y: float, theta: float) -> np.ndarray:
+    """Return the matrix of a pose."""
+    return np.array([[np.cos(theta), -np.sin(theta), x], [np.sin(theta), np.cos(theta), y], [0.0, 0.0, 1.0]])
+
+
+def test_the_car_has_the_connection_of_the_closed_form() -> None:
+    """A and F at random shapes, to rounding; NaN where the front wheels are across."""
+    shapes = np.random.default_rng(1).uniform(-1.4, 1.4, (3, 4, 2))
+    tan, wanted = np.tan(shapes[..., 1]), np.zeros((3, 4, 3, 2))
+    wanted[..., 0, 0], wanted[..., 1, 0] = -RADIUS / BASE * tan, -RADIUS
+    np.testing.assert_allclose(car().matrix(shapes), wanted, rtol=0, atol=1e-13)
+    F = np.zeros((3, 4, 3, 2, 2))
+    F[..., 0, 0, 1] = RADIUS / BASE * (1 + tan**2)
+    np.testing.assert_allclose(car().curvature(shapes), F - np.swapaxes(F, -1, -2), rtol=0, atol=1e-11)
+    assert np.isnan(car().matrix((0.3, np.pi / 2))).all()
+    assert car().momentum_components == ()
+
+
+@LONG
+def test_the_snakeboard_has_the_connection_of_the_closed_form() -> None:
+    """A, F and the momentum equation at random shapes, to 1e-12."""
+    rng = np.random.default_rng(2)
+    shapes, rates, p = rng.uniform(-1.3, 1.3, (20, 2)), rng.normal(size=(20, 2)), rng.normal(size=(20, 1))
+    phi, A = shapes[:, 1], np.zeros((20, 3, 2))
+    A[:, :, 0] = -rolling(phi).T
+    np.testing.assert_allclose(board().matrix(shapes), A, rtol=0, atol=1e-13)
+    F = np.zeros((20, 3, 2, 2))
+    F[:, 0, 0, 1] = -ROTOR / (MASS * HALF**2) * np.sin(2 * phi)
+    F[:, 1, 0, 1] = ROTOR / (MASS * HALF) * np.cos(2 * phi)
+    np.testing.assert_allclose(board().curvature(shapes), F - np.swapaxes(F, -1, -2), rtol=0, atol=1e-12)
+    rate = np.tan(phi) * rates[:, 1] * p[:, 0] - ROTOR / HALF * rates[:, 0] * rates[:, 1]
+    np.testing.assert_allclose(board().momentum_rate(shapes, rates, p)[:, 0], rate, rtol=0, atol=1e-12)
+    speed = p[:, 0] * np.cos(phi) ** 2 / MASS
+    wanted = np.stack([-speed * np.tan(phi) / HALF, speed, 0 * speed], -1) - np.einsum("tai,ti->ta", A, rates)
+    np.testing.assert_allclose(board().body_velocity(shapes, rates, p), wanted, rtol=0, atol=1e-12)
+    assert board().momentum_components == ("v1",)
+
+
+@LONG
+def test_gaits_along_sides_are_products_of_exponentials() -> None:
+    """While one shape variable rests the body velocity is constant: both phases to 1e-13 by exact algebra."""
+    gait, period, corners = around([(0, 0), (2.0, 0), (2.0, 0.7), (0, 0.7)])
+    forth, back = np.array([0.0, 2 * RADIUS, 0.0]), -2 * RADIUS * np.array([np.tan(0.7) / BASE, 1.0, 0.0])
+    exact = nh.SE(2).exp(forth) @ nh.SE(2).exp(back)
+    phase = nh.geometric_phase(car(), gait, period=period, corners=corners)
+    np.testing.assert_allclose(phase.holonomy, exact, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(phase.configuration[-1], exact, rtol=0, atol=1e-13)
+    inside = nh.SE(2).exp([-2 * RADIUS / BASE * np.tan(0.7), 0.0, 0.0])  # the integral of (rho / l) / cos(phi)^2
+    np.testing.assert_allclose(phase.area_rule, inside, rtol=0, atol=1e-13)
+    gait, period, corners = around([(0, -0.3), (2.0, -0.3), (2.0, 0.7), (0, 0.7)])
+    exact = nh.SE(2).exp(2 * rolling(-0.3)) @ nh.SE(2).exp(-2 * rolling(0.7))
+    phase = nh.geometric_phase(board(), gait, period=period, corners=corners)
+    np.testing.assert_allclose(phase.holonomy, exact, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(phase.configuration[-1], exact, rtol=0, atol=1e-13)  # no momentum is ever made
+
+
+@LONG
+def test_the_momentum_after_a_gait_is_a_quadrature() -> None:
+    """(p cos phi)' = -(J0 / r) cos(phi) phi' psi': against 30 digits, over three periods, from a moving start."""
+
+    def gait(time: Array) -> Array:
+        return jnp.array([0.9 * jnp.sin(time), 0.2 + 0.6 * jnp.sin(time + 0.4)])
+
+    def made(t: Any) -> Any:
+        phi = mpmath.mpf("0.2") + 0.6 * mpmath.sin(t + mpmath.mpf("0.4"))
+        return -mpmath.cos(phi) * 0.6 * mpmath.cos(t + mpmath.mpf("0.4")) * 0.9 * mpmath.cos(t) * ROTOR / HALF
+
+    with mpmath.workdps(30):
+        gained = 3 * float(str(mpmath.quad(made, mpmath.linspace(0, 2 * mpmath.pi, 9))))
+    phase = nh.geometric_phase(board(), gait, period=6 * np.pi, momentum=[0.5])
+    cosine = float(np.cos(phase.shape[0, 1]))
+    np.testing.assert_allclose(phase.momentum[-1, 0], 0.5 + gained / cosine, rtol=1e-12)
+
+
+@LONG
+@pytest.mark.parametrize("name", ["snakeboard", "roller_racer", "kinematic_car"])
+def test_the_phase_is_the_flow_with_a_prescribed_shape(name: str) -> None:
+    """From rest, momenta included: the pose of the Lagrange-d'Alembert equations, whose steps err by 1e-13."""
+    ready = getattr(nh.examples, name)()
+    connection = nh.local_connection(ready.system)
+    sizes = [0.7, 0.5][-len(connection.shape_coordinates) :]
+
+    def gait(time: Array) -> Array:
+        return jnp.array([size * (1 - jnp.cos(time + 0.9 * i * jnp.sin(time))) for i, size in enumerate(sizes)])
+
+    prescribed = {3 + i: lambda time, i=i: gait(time)[i] for i in range(len(sizes))}
+    driven = dataclasses.replace(ready.system, prescribed=prescribed)
+    at = np.zeros(3 + len(sizes))
+    times = np.linspace(0.0, 2 * np.pi, 3)
+    end = nh.flow(driven, configuration=at, body_velocity=at, times=times, rtol=1e-13, atol=1e-14).configuration[-1]
+    phase = nh.geometric_phase(connection, gait)
+    np.testing.assert_allclose(phase.configuration[-1], placed(*end[:3]), rtol=0, atol=2e-10)
+    np.testing.assert_allclose(phase.heading[-1], end[2], rtol=0, atol=2e-10)
+
+
+@LONG
+@pytest.mark.parametrize("connection", [car, board])
+def test_the_area_rule_errs_by_the_third_power_of_the_size(connection: functools.partial) -> None:
+    """Halving a gait divides the error by eight, and the displacement by four."""
+    errors, moved = [], []
+    for size in 0.4 * 0.5 ** np.arange(5):
+
+        def gait(time: Array, size: float = size) -> Array:
+            return jnp.array([size * jnp.cos(time), 0.3 + size * jnp.sin(time)])
+
+        phase = nh.geometric_phase(connection(), gait)
+        errors.append(np.abs(phase.holonomy - phase.area_rule).max())
+        moved.append(np.abs(phase.holonomy - np.eye(3)).max())
+    slope = -np.diff(np.log2(errors))
+    assert abs(slope[-1] - 3) < 0.1
+    assert abs(-np.diff(np.log2(moved))[-1] - 2) < 0.1
+
+
+@LONG
+def test_without_constraints_the_momentum_is_that_of_the_body() -> None:
+    """A rotor on a free body: A = J / (I + J), no curvature, and p' = ad*_xi p."""
+    mass, body, rotor = 1.4, 0.9, 0.3
+
+    def lagrangian(q: Array, v: Array) -> Array:
+        del q
+        return (mass * (v[0] ** 2 + v[1] ** 2) + body * v[2] ** 2 + rotor * (v[2] + v[3]) ** 2) / 2
+
+    names = ("x", "y", "theta", "rotor")
+    free = nh.local_connection(nh.LagrangeDAlembert(lagrangian, None, dimension=4, coordinates=names))
+    assert free.momentum_components == ("omega", "v1", "v2")
+    np.testing.assert_allclose(free.matrix([0.4])[:, 0], [rotor / (body + rotor), 0, 0], rtol=0, atol=1e-15)
+    np.testing.assert_array_equal(free.curvature([0.4]), np.zeros((3, 1, 1)))
+    p = np.array([0.3, -0.5, 0.7])
+    xi = free.body_velocity([0.4], [2.0], p)
+    np.testing.assert_allclose(xi, [(p[0] - 2 * rotor) / (body + rotor), *(p[1:] / mass)], rtol=1e-14)
+    np.testing.assert_allclose(free.momentum_rate([0.4], [2.0], p), nh.SE(2).coad(xi, p), rtol=0, atol=1e-14)
+
+
+@LONG
+def test_names_say_where_pose_and_shape_are() -> None:
+    """The car with its coordinates in another order and by other names has the same connection."""
+    order = [3, 2, 4, 1, 0]
+    system: Any = nh.examples.kinematic_car(wheel_radius=RADIUS, wheelbase=BASE).system
+    back = np.argsort(order)
+
+    def forms(q: Array) -> Array:
+        return system.constraint_forms(q[back])[:, np.array(order)]
+
+    names = ("psi", "heading", "phi", "north", "east")
+    other = nh.LagrangeDAlembert(lambda q, v: v @ v + 0 * q[0], forms, dimension=5, coordinates=names)
+    connection = nh.local_connection(other, pose=("east", "north", "heading"))
+    assert connection.shape_coordinates == ("psi", "phi")
+    np.testing.assert_allclose(connection.matrix((0.1, 0.7)), car().matrix((0.1, 0.7)), rtol=0, atol=1e-15)
+
+
+@LONG
+@pytest.mark.parametrize(
+    ("name", "growth"),
+    [("kinematic_car", (2, 3, 4, 5)), ("two_wheeled_robot", (2, 3, 4, 4)), ("snakeboard", (3, 4, 5))],
+)
+def test_brackets_grow_as_known(name: str, growth: tuple[int, ...]) -> None:
+    """The car reaches everything; the robot keeps theta - R (right - left) / (2 c), and its directions do."""
+    ready = getattr(nh.examples, name)()
+    found = nh.accessibility(ready.system, ready.configuration + np.array([0.3, -0.2, 0.5, 0.1, 0.2]))
+    assert found.growth == growth
+    assert found.is_accessible == (growth[-1] == 5)
+    if name == "two_wheeled_robot":
+        kept = np.array([0.0, 0.0, 1.0, -0.25, 0.25])
+        np.testing.assert_allclose(found.directions @ kept, 0.0, rtol=0, atol=1e-12)
+
+
+@LONG
+def test_longer_brackets_help_where_the_ranks_jump() -> None:
+    """The plane field z' = y^2 x' (Martinet): (2, 3), but (2, 2, 3) where y = 0, seen with brackets of length 3."""
+    martinet = nh.LagrangeDAlembert(
+        lambda q, v: v @ v + 0 * q[0], lambda q: jnp.array([[-(q[1] ** 2), 0.0, 1.0]]), dimension=3
+    )
+    assert nh.accessibility(martinet, (0.0, 0.5, 0.0)).growth == (2, 3)
+    flat = nh.accessibility(martinet, (0.0, 0.0, 0.0))
+    assert (flat.growth, flat.is_accessible) == ((2, 2), False)
+    assert nh.accessibility(martinet, (0.0, 0.0, 0.0), depth=3).growth == (2, 2, 3)
+
+
+def with_forms(forms: object, **others: object) -> nh.LagrangeDAlembert:
+    """Return a system in x, y, theta and a shape variable s."""
+    return dataclasses.replace(FREE, constraint_forms=forms, **others)
+
+
+@pytest.mark.parametrize(
+    ("refused", "words"),
+    [
+        (lambda: nh.local_connection(nh.examples.kinematic_car()), "be a system in coordinates"),
+        (lambda: nh.local_connection(nh.examples.particle().system), "pose=...\\)` must be one of"),
+        (lambda: nh.local_connection(FREE, pose=("x", "y", "s2")), "pose=...\\)` must be one of"),
+        (lambda: nh.local_connection(FREE, pose=("x", "y", "x")), "three different names"),
+        (lambda: nh.local_connection(nh.examples.chaplygin_ball().system), "be a system in coordinates"),
+        (lambda: nh.local_connection(dataclasses.replace(FREE, force=nh.Friction(np.ones(4)))), "have no force"),
+        (lambda: nh.local_connection(with_forms(lambda q: jnp.array([[q[0], 1.0, 0.0, 0.0]]))), "same at every pose"),
+        (lambda: nh.local_connection(with_forms(lambda q: jnp.array([[0.0, 0.0, 0.0, 1 + q[3]]]))), "bind the body"),
+        (lambda: nh.geometric_phase(car(), lambda t: jnp.array([t, 0.0])), "be closed"),
+        (lambda: nh.geometric_phase(car(), lambda t: jnp.array([t])), "return an array of shape"),
+        (lambda: nh.geometric_phase(car(), lambda t: jnp.array([jnp.sin(t), 2 * jnp.sin(t)])), "singular shapes"),
+        (lambda: nh.accessibility(FREE, np.zeros(4), depth=9), "be at most 8"),
+        (lambda: nh.accessibility(with_forms(lambda q: jnp.zeros((1, 4)) * q), np.zeros(4)), "independent constraints"),
+    ],
+)
+def test_others_are_refused(refused: functools.partial, words: str) -> None:
+    """Errors say what is required."""
+    with pytest.raises(ValueError, match=words):
+        refused()
+
+
+@LONG
+def test_a_lagrangian_must_not_depend_on_the_pose() -> None:
+    """Gravity in the plane and a term linear in the velocity are refused; a spring of the shape is not."""
+    heavy = dataclasses.replace(FREE, lagrangian=lambda q, v: v @ v - q[1])
+    with pytest.raises(ValueError, match="Lagrangian that is the same at every pose"):
+        nh.local_connection(heavy)
+    with pytest.raises(ValueError, match="quadratic"):
+        nh.local_connection(dataclasses.replace(FREE, lagrangian=lambda q, v: v @ v + v[3] * q[3]))
+    assert nh.local_connection(dataclasses.replace(FREE, lagrangian=lambda q, v: v @ v - q[3] ** 2))
+
+
+def test_momenta_and_curvature_of_the_snakeboard_follow_from_its_matrices() -> None:
+    """Rows, inertia and their slopes by hand: curvature and momentum equation of the closed form, without JAX."""
+    rng = np.random.default_rng(3)
+    phi, ds, p = rng.uniform(-1.3, 1.3, 9), rng.normal(size=(9, 2)), rng.normal(size=(9, 1))
+    W, dW = np.zeros((9, 2, 5)), np.zeros((9, 2, 5, 2))
+    for row, side in enumerate((1.0, -1.0)):
+        W[:, row, :3] = np.stack([-side * HALF * np.cos(phi), -side * np.sin(phi), np.cos(phi)], -1)
+        dW[:, row, :3, 1] = np.stack([side * HALF * np.sin(phi), -side * np.cos(phi), -np.sin(phi)], -1)
+    M = np.diag([MASS * HALF**2, MASS, MASS, ROTOR, 0.2])
+    M[0, 3] = M[3, 0] = ROTOR
+    at = _equations.terms((1,), W, dW, np.broadcast_to(M, (9, 5, 5)), np.zeros((9, 5, 5, 2)))
+    F = _equations.curvature(at)[:, :, 0, 1]
+    wanted = ROTOR / (MASS * HALF) * np.stack([-np.sin(2 * phi) / HALF, np.cos(2 * phi), 0 * phi], -1)
+    np.testing.assert_allclose(F, wanted, rtol=0, atol=1e-12)
+    rate = np.tan(phi) * ds[:, 1] * p[:, 0] - ROTOR / HALF * ds[:, 0] * ds[:, 1]
+    np.testing.assert_allclose(_equations.motion(at, ds, p)[1][:, 0], rate, rtol=0, atol=1e-12)
+
+
+def test_the_curvature_of_two_wheels_is_a_bracket() -> None:
+    """A is constant, so F = -[A_right, A_left]: a robot that turns one wheel after the other moves aside."""
+    turn, ahead = 0.25 / (2 * 0.5), 0.25 / 2
+    W = np.array([[0.0, 0, 1, 0, 0], [0, 1, 0, -ahead, -ahead], [1, 0, 0, -turn, turn]])
+    at = _equations.terms((), W, np.zeros((3, 5, 2)), W, W)
+    np.testing.assert_allclose(_equations.curvature(at)[:, 0, 1], [0, 0, -2 * turn * ahead], rtol=0, atol=1e-16)
