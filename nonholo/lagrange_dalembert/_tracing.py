@@ -11,7 +11,7 @@ import numpy as np
 
 from nonholo.base.checks import error, shown
 from nonholo.base.numerics import double_precision
-from nonholo.base.types import Array, Float
+from nonholo.base.types import Array, Float, Int
 
 
 def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str) -> tuple[int, ...]:
@@ -84,9 +84,16 @@ class ForceTable:
 
     def row(self, step: Array) -> Array:
         """Return the force of a step, whose number may carry rounding errors."""
-        k = jnp.rint(step).astype(int)
-        inside = (k >= 0) & (k < len(self.rows))
-        return jnp.where(inside, jnp.asarray(self.rows)[jnp.clip(k, 0, max(len(self.rows) - 1, 0))], 0.0)
+        return jnp.asarray(self._padded)[jnp.clip(jnp.rint(step).astype(int), -1, len(self.rows))]
+
+    def acting(self, steps: Int[np.ndarray, "K"]) -> Float[np.ndarray, "K n"]:
+        """Return the forces of steps with these numbers."""
+        return self._padded[np.clip(steps, -1, len(self.rows))]
+
+    @property
+    def _padded(self) -> Float[np.ndarray, "rows n"]:
+        """The rows with one of zeros, which is the first after them and the last one."""
+        return np.concatenate([self.rows, np.zeros((1, self.rows.shape[1]))])
 
 
 @dataclasses.dataclass(frozen=True)

@@ -22,7 +22,7 @@ class AbstractOrbit(abc.ABC):
         momentum: Momenta.
         restricted_momentum: Momenta along admissible directions, which follow the flow to second order.
         energy: Energies, shape (K,).
-        work: Work of forces on the motion since the first state, shape (K,); None in coordinates.
+        work: Work of forces, and of what drives it, on the motion since the first state, shape (K,).
         multipliers: Impulses or forces of constraint.
         outcome: How the run ended.
         motion: The rule of motion: a discretization or a flow.
@@ -45,7 +45,7 @@ class AbstractOrbit(abc.ABC):
     momentum: Float[np.ndarray, "K n"]
     restricted_momentum: Float[np.ndarray, "K k"]
     energy: Float[np.ndarray, "K"]
-    work: Float[np.ndarray, "K"] | None
+    work: Float[np.ndarray, "K"]
     multipliers: Float[np.ndarray, "L s"]
     outcome: Outcome
     motion: Any
