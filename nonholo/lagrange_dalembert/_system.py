@@ -73,8 +73,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
 
     Raises:
         ValueError: A function that JAX cannot trace, or whose result is not real or has the wrong shape; an unknown
-            rule; a driven system with discrete functions of its own; names that are not n different words; a heading that is
-            not among them, an outline that is no drawing.
+            rule; a driven system with discrete functions of its own; names that are not n different words; a heading
+            that is not among them, an outline that is no drawing.
 
     Example:
         A particle in space with the constraint z' = y x':
@@ -156,6 +156,10 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     def parts(self, q: Any) -> tuple[Float[np.ndarray, "P 2"], ...]:
         """Return the parts of the outline at a configuration, in body axes."""
         return as_parts(_named("outline"), self.outline(q) if callable(self.outline) else self.outline)
+
+    def takes_time(self, function: str) -> bool:
+        """Return whether the Lagrangian or the constraint forms are called with the time."""
+        return bool(self._time(function, {"lagrangian": 2, "constraint_forms": 1}[function]))
 
     @property
     def table(self) -> ForceTable | None:

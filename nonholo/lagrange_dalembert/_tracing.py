@@ -3,7 +3,7 @@
 import dataclasses
 import inspect
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -101,6 +101,7 @@ class TwoPoint:
     """A function of two configurations that was made for one time step."""
 
     function: Callable[[Array, Array], Array]
+    has_own_step: ClassVar[bool] = True
 
     def __call__(self, q: Array, q_next: Array, time_step: Array) -> Array:
         """Return the value, whatever the time step."""

@@ -6,8 +6,7 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import error, number, shape_of, shown
-from nonholo.base.numerics import double_precision
+from nonholo.base.checks import number
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.literature._example import Example, numbers, positives, ready

@@ -68,7 +68,8 @@ def bodies_of(orbit: AbstractOrbit, points: Float[np.ndarray, "K d"]) -> Bodies 
     if not orbit.coordinates or system.heading is None:
         return None
     extent = float(np.ptp(points, axis=0).max())
-    radius = max((float(np.linalg.norm(part, axis=1).max()) for part in system.parts(orbit.configuration[0])), default=0.0)
+    corners = np.concatenate([np.zeros((1, 2)), *system.parts(orbit.configuration[0])])
+    radius = float(np.linalg.norm(corners, axis=1).max())
     shown = (radius if radius > _SMALL * extent else _ENLARGED * extent) or 1.0
     way = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
     count = int(np.clip(way / (_APART * shown), 1, _MOST - 1))
