@@ -13,6 +13,8 @@ from nonholo.base.checks import error, shown
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float, Int
 
+_END = 120  # letters of either end of a long message
+
 
 def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str) -> tuple[int, ...]:
     """Return the shape of a function's value; `of` says in words what it is called with."""
@@ -21,8 +23,10 @@ def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str)
     try:
         traced = jax.make_jaxpr(lambda *x: _array(function(*x)))(*arguments)
     except Exception as failure:
-        got = f"{type(failure).__name__}: {str(failure).splitlines()[0]}"
-        remedy = f"Write it with jax.numpy, for arrays of {of}; use jnp.where, not `if`."
+        words = " ".join(str(failure).split()).rstrip(".")
+        said = words if len(words) <= 2 * _END else f"{words[:_END]} ... {words[-_END:]}"
+        got, columns = f"{type(failure).__name__}: {said}", "`.to_numpy()` of columns of pandas"
+        remedy = f"Write it with jax.numpy, for arrays of {of}; use jnp.where, not `if`, and {columns}."
         raise error(where, f"be traceable by JAX on {of}", got, remedy) from failure
     if any(getattr(constant, "dtype", None) == jnp.float32 for constant in traced.consts):
         remedy = "Keep parameters as Python numbers or NumPy arrays, not as jax.numpy arrays made outside."

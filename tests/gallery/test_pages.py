@@ -16,12 +16,13 @@ PAGES = (
     "how-to/choose-a-discretisation.md",
     "how-to/compare-motions.md",
     "how-to/differentiate-and-fit.md",
+    "how-to/drive-a-robot.md",
     "how-to/run-an-ensemble.md",
     "how-to/style-a-picture.md",
 )
 
 
-@pytest.mark.profile("paper", cases=["how-to/choose-a-discretisation.md", "how-to/differentiate-and-fit.md"])
+@pytest.mark.profile("paper", cases=["how-to/choose-a-discretisation.md", "how-to/d*.md"])
 @pytest.mark.parametrize("page", PAGES)
 def test_the_blocks_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The blocks of a page, one after another in one namespace, raise nothing."""
