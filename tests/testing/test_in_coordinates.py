@@ -19,6 +19,10 @@ def _ball(q: Any, v: Any) -> Any:
     return v @ v / 2 - q[0] ** 2 / 2
 
 
+def _late(time: Any, _q: Any, v: Any) -> Any:
+    return jnp.cos(time) - 0.2 * v
+
+
 def _pushed(time: Any, q: Any, v: Any) -> Any:
     return jnp.stack([jnp.sin(time) - 0.1 * v[0], 0.3 * q[0]])
 
@@ -50,8 +54,9 @@ def test_torques_friction_and_tables_pass() -> None:
 
 
 def test_a_spring_passes() -> None:
-    """Momentum, energy and equations of motion are those of the Lagrangian."""
-    report = check_system(nh.LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=1))
+    """Momentum, energy and equations of motion are those of the Lagrangian and the force, whose work balances."""
+    spring = nh.LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=1, force=_late)
+    report = check_system(spring)
     assert {result.status for result in report.results} == {"ok"}
 
 
