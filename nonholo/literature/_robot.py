@@ -6,7 +6,7 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import number
+from nonholo.base.checks import error, number
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.literature._example import Example, numbers, positives, ready
@@ -83,6 +83,8 @@ def two_wheeled_robot(
     m, J, c, R, Jw = positives(name, mass=mass, inertia=inertia, **wheels)
     given = {"offset": offset, "speed": speed, "turning": turning, "friction": friction}
     ell, u, omega, d = (float(number(f"examples.{name}({what}=...)", value)) for what, value in given.items())
+    if d < 0:
+        raise error(f"examples.{name}(friction=...)", "not be negative", f"{d:g}", "Pass the friction of a wheel.")
     q = numbers(name, "configuration", configuration, 5, "x, y, theta, right and left")
     M, K = m + 2 * Jw / R**2, J + m * ell**2 + 2 * Jw * c**2 / R**2
     v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, (u + c * omega) / R, (u - c * omega) / R])
