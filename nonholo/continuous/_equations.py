@@ -13,11 +13,11 @@ import numpy as np
 
 from nonholo.base.checks import array, error, number, shape_of, shown, trailing
 from nonholo.base.types import Array, Float
-from nonholo.continuous._forced import forced_reaction
+from nonholo.continuous._forced import forced_field, forced_reaction
 from nonholo.continuous._solution import States
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.systems import AbstractSystem, inertia_form, refuse_forces
+from nonholo.systems import AbstractSystem, inertia_form
 
 Body = tuple[Array, Array, Array]
 r"""Constraint subspace $S$, inertia operator $\mathbb{I}$ and $(S\mathbb{I}S^T)^{-1}S$, which takes r to $\omega$."""
@@ -157,7 +157,7 @@ def vector_field(system: AbstractSystem) -> Callable[[Array, Float[Array, "size"
     The state is flat: the k components of the momentum along the rows of `constraint_subspace`, then the N x N entries
     of the configuration, row by row, all in the user's body frame. For a right-invariant constraint the momenta are
     spatial, and constant. It may be a NumPy array or, inside `jax.jit` or
-    diffrax, a traced one; leading axes broadcast.
+    diffrax, a traced one; leading axes broadcast. Of a `Forced` it is a NumPy array, and the forces are added.
 
     Reference: [fedorov-zenkov-2004], section 2, the Euler-Poincare-Suslov equations.
 
@@ -165,7 +165,7 @@ def vector_field(system: AbstractSystem) -> Callable[[Array, Float[Array, "size"
         system: What moves.
 
     Raises:
-        ValueError: `system` is not a system.
+        ValueError: `system` is not a system, or has one force for each step.
 
     Example:
         >>> from scipy.integrate import solve_ivp
@@ -178,7 +178,8 @@ def vector_field(system: AbstractSystem) -> Callable[[Array, Float[Array, "size"
     """
     if not isinstance(system, AbstractSystem):
         raise error("vector_field(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
-    refuse_forces("vector_field(system=...)", system)
+    if system.forces is not None:
+        return forced_field(system.forces)
     group, S = system.group, system.constraint_subspace
     k, shape = len(S), group.identity.shape
     body = None if system.is_spatial else body_of(system)

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from nonholo.base.checks import error
+from nonholo.base.checks import error, number, trailing
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
@@ -31,9 +31,7 @@ def by_runge_kutta(
     tolerances: tuple[float, float],
 ) -> Solved:
     """Solve the equations of a system with forces, from canonical momenta and pose at the time `begins`."""
-    if forced.table is not None:
-        remedy = "Discretize the system, or pass a function of time."
-        raise error("flow(system=Forced(...))", "have forces at times", "one force for each step", remedy)
+    _refuse_table("flow", forced)
     group, k = forced.group, forced.rank
     r, g = forced.from_canonical(reduced_momentum), group.matrix_from_pose(pose) @ group.inverse(forced.frame)
     start = np.concatenate([r, g.ravel(), first_heading(group, pose)])
@@ -45,6 +43,28 @@ def by_runge_kutta(
     outcome = Outcome.successful if found.status == 0 else Outcome.not_converged
     steps, states = found.sol.ts[:-1], _states(forced, found.y.T)
     return Solved(states, outcome, lambda t: _states(forced, found.sol(t).T), lambda: steps)
+
+
+def forced_field(forced: Forced) -> Callable[[float, np.ndarray], np.ndarray]:
+    """Return the equations of motion as a function of time and states, as `vector_field` does."""
+    _refuse_table("vector_field", forced)
+    size = forced.rank + forced.group.size**2
+    field = _field(forced, 0.0, forced.rank)
+
+    def derivative(time: float, state: np.ndarray) -> np.ndarray:
+        now = number("vector_field(...)(time=...)", time)
+        remedy = "Pass momenta along the subspace, then the pose row by row."
+        rows = trailing("vector_field(...)(state=...)", state, (size,), remedy, real=True)
+        return np.apply_along_axis(lambda row: field(now, row), -1, rows)
+
+    return derivative
+
+
+def _refuse_table(owner: str, forced: Forced) -> None:
+    """Refuse forces that belong to steps."""
+    if forced.table is not None:
+        remedy = "Discretize the system, or pass a function of time."
+        raise error(f"{owner}(system=Forced(...))", "have forces at times", "one force for each step", remedy)
 
 
 def _field(forced: Forced, begins: float, k: int) -> Callable[[float, np.ndarray], np.ndarray]:

@@ -101,7 +101,7 @@ def explore(value: Any) -> Page:
     and its content security policy lets nothing run in it but its own view.
 
     Args:
-        value: A system, what `discretize` returned, or an orbit with poses.
+        value: A system, what `discretize` returned, or an orbit with poses; in coordinates with x and y among them.
 
     Raises:
         ValueError: Something else, an orbit without poses, a system without a kernel for the page.

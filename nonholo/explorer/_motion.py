@@ -7,10 +7,10 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import error, instance, shown
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization, discretize
-from nonholo.orbit import Orbit, as_orbit
+from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.simulation import simulate
 from nonholo.systems import AbstractSystem, ChaplyginSleigh, NormalForm, SuslovTop
 
@@ -39,11 +39,14 @@ def shown_motion(where: str, value: Any) -> Shown:
         value = discretize(cast(Any, value), _TIME_STEP)
     if isinstance(value, Discretization):
         return _of_discretization(where, value)
-    orbit = as_orbit(where, value, "one in coordinates has no page.")
-    if orbit.canonical_pose is None or not len(orbit):
+    orbit = instance(where, value, AbstractOrbit, "be an orbit", "Pass what `simulate` or `flow` returned.")
+    if not orbit.has_poses or not len(orbit):
         got = "reconstruct=False" if len(orbit) else "no state"
         raise error(where, "have poses", got, "Run with reconstruct=True, from a start that has a real branch.")
-    return _live(orbit) or _replay(orbit)
+    if orbit.coordinates and not {"x", "y"} <= set(orbit.coordinates):
+        remedy = "Name its coordinates: LagrangeDAlembert(coordinates=...)."
+        raise error(where, "have coordinates named x and y", ", ".join(orbit.coordinates), remedy)
+    return (_live(orbit) if isinstance(orbit, Orbit) else None) or _replay(orbit)
 
 
 def _of_discretization(where: str, discrete: Discretization) -> Shown:
@@ -132,24 +135,52 @@ def _frame_note(system: AbstractSystem) -> str:
     return "Shown in the canonical body frame: its last axis is the forbidden one, or b = 0." if turned else ""
 
 
-def _replay(orbit: Orbit) -> Shown:
+def _replay(orbit: AbstractOrbit) -> Shown:
     chosen = np.unique(np.linspace(0, len(orbit) - 1, min(len(orbit), MOST_STATES)).round().astype(np.int64))
-    part = orbit.chosen(chosen) if len(chosen) < len(orbit) else orbit
-    momenta = np.pad(part.restricted_momentum, ((0, 0), (0, 2)))[:, :2]
-    arrays = {"time": part.time, "energy": part.energy, "frames": _frames(part), "momentum": momenta}
-    replay = {name: base64.b64encode(rows.astype("<f8").tobytes()).decode() for name, rows in arrays.items()}
-    data = {"kind": "replay", "replay": {**replay, "outcome": int(orbit.outcome)}, "momenta": ["r\u2081", "r\u2082"]}
-    thinned = f" {len(part):,} of {len(orbit):,} saved states." if part is not orbit else ""
-    note = f"A replay of numbers from Python: there is no kernel in the page for this motion.{thinned}"
-    return Shown(data, _name(orbit.system), note)
+    part = orbit.chosen(chosen) if isinstance(orbit, Orbit) and len(chosen) < len(orbit) else orbit
+    rows = chosen if len(part) > len(chosen) else slice(None)
+    momenta = np.pad(part.restricted_momentum, ((0, 0), (0, 2)))[rows, :2]
+    energy, forces = _shown_energy(orbit)
+    frames = (_planar_frames(part) if orbit.coordinates else _frames(part))[rows]
+    arrays = {"time": orbit.time[chosen], "energy": energy[chosen], "frames": frames, "momentum": momenta}
+    replay = {name: base64.b64encode(each.astype("<f8").tobytes()).decode() for name, each in arrays.items()}
+    names = [f"p({name})" for name in orbit.coordinates[:2]] or ["r\u2081", "r\u2082"]
+    data = {"kind": "replay", "replay": {**replay, "outcome": int(orbit.outcome)}, "momenta": names}
+    thinned = f" {len(chosen):,} of {len(orbit):,} saved states." if len(chosen) < len(orbit) else ""
+    note = f"A replay of numbers from Python: there is no kernel in the page for this motion.{thinned}{forces}"
+    title = _name(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name
+    return Shown(data, title, note)
 
 
-def _frames(orbit: Orbit) -> Float[np.ndarray, "K 12"]:
+def _shown_energy(orbit: AbstractOrbit) -> tuple[Float[np.ndarray, "K"], str]:
+    """Return the energy, under forces less their work and from its largest value on, and a note on that."""
+    work = orbit.work
+    if not work.any():
+        return orbit.energy, ""
+    left = orbit.energy - orbit.energy[0] - work
+    return np.abs(orbit.energy).max() + left, " The energy is shown less the work of forces, from its largest value on."
+
+
+def _planar_frames(orbit: AbstractOrbit) -> Float[np.ndarray, "K 12"]:
+    """Return the same of an orbit in coordinates: the place, and axes along the heading where it is known."""
+    frames, names = np.zeros((len(orbit), 4, 3)), orbit.coordinates
+    for axis, name in enumerate("xyz"):
+        if name in names:
+            frames[:, 0, axis] = orbit.configuration[:, names.index(name)]
+    if orbit.system.heading is not None:
+        heading = orbit.configuration[:, names.index(orbit.system.heading)]
+        frames[:, 1, 0] = frames[:, 2, 1] = np.cos(heading)
+        frames[:, 1, 1], frames[:, 2, 0] = np.sin(heading), -np.sin(heading)
+        frames[:, 3, 2] = 1.0
+    return frames.reshape(len(orbit), 12)
+
+
+def _frames(orbit: AbstractOrbit) -> Float[np.ndarray, "K 12"]:
     """Return for each state an origin and three body axes in space: the first two and the last, in three coordinates.
 
     What a matrix does not have is zero.
     """
-    g, group = orbit.configuration, orbit.system.group
+    g, group = orbit.configuration, orbit.space
     turns = g[:, :-1, :-1] if group.is_affine else g
     n = turns.shape[1]
     axes = turns.transpose(0, 2, 1)[:, [0, 1, n - 1] if n > 2 else list(range(n)), :3]

@@ -11,7 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.types import Array
-from nonholo.lagrange_dalembert._system import ForceTable, LagrangeDAlembert
+from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 from nonholo.lagrange_dalembert._tracing import TwoPoint, takes_time
 
 _CORRECTIONS = 8  # of a velocity that belongs to a momentum: Newton's, one where L is quadratic
@@ -91,15 +91,16 @@ def momenta(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Ar
 
 def _impulses(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Array, Array]:
     """Return half the impulse of a step at each of its ends: of a table, half its row at both."""
-    if isinstance(system.force, ForceTable):
-        row = h / 2 * system.force.row(x[-1] / h)
+    if system.table is not None:
+        row = h / 2 * system.table.row(x[-1] / h)
         return row, row
     return h / 2 * applied(system, x, v), h / 2 * applied(system, ahead(system, x, v, h), v)
 
 
 def applied(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
-    """Return the force f(t, q, v)."""
-    return jnp.asarray(system.force(x[-1], x[:-1], v), dtype=x.dtype)  # type: ignore[misc]
+    """Return the force f(t, q, v); zero without a function, for a table belongs to steps."""
+    given = system.force
+    return jnp.asarray(given(x[-1], x[:-1], v), dtype=x.dtype) if callable(given) else jnp.zeros_like(v)
 
 
 def momentum(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
@@ -149,8 +150,7 @@ def force(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     r"""Return $\partial L/\partial q + f$ less the change of $\partial L/\partial v$ with q and t."""
     along_q = jax.grad(lagrangian, argnums=1)(system, x, v)[: system.dimension]
     _, carried = jax.jvp(lambda y: momentum(system, y, v), (x,), (rate(system, x, v),))
-    free = along_q - carried
-    return free if system.force is None else free + applied(system, x, v)
+    return along_q - carried + applied(system, x, v)
 
 
 def inverse_legendre(system: LagrangeDAlembert, x: Array, p: Array) -> Array:

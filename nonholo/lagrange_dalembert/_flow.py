@@ -14,7 +14,7 @@ from nonholo.base.checks import flow_times, flow_tolerances
 from nonholo.base.numerics.time_sweep import padded, reached, sweep
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array
-from nonholo.lagrange_dalembert._equations import solve_bordered
+from nonholo.lagrange_dalembert._acceleration import acceleration, bordered_solution
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._room import configurations, equations_of, places
 
@@ -74,26 +74,12 @@ def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array])
     def settled(current: State) -> State:
         """Return the state with the admissible velocity next to its own in the kinetic energy."""
         q, v = equations.normalized(system, current[0]), current[1]
-        return q, v - _bordered_solve(system, q, v, jnp.zeros_like(v), equations.constraint(system, q, v))[0]
+        return q, v - bordered_solution(system, q, v, jnp.zeros_like(v), equations.constraint(system, q, v))[0]
 
     def rate(current: State) -> State:
-        return equations.rate(system, *current), _acceleration(system, *current)[0]
+        return equations.rate(system, *current), acceleration(system, *current)[0]
 
     return sweep(lambda _, current: rate(settled(current)), settled, state, times, errors)
-
-
-def _acceleration(system: Any, q: Array, v: Array) -> tuple[Array, Array]:
-    r"""Return the rate of v and the forces $\lambda$, from the equations and $\tfrac{d}{dt}(A v - b) = 0$."""
-    equations = equations_of(system)
-    force = equations.force(system, q, v)
-    _, turned = jax.jvp(lambda x: equations.constraint(system, x, v), (q,), (equations.rate(system, q, v),))
-    return _bordered_solve(system, q, v, force, -turned)
-
-
-def _bordered_solve(system: Any, q: Array, v: Array, force: Array, off: Array) -> tuple[Array, Array]:
-    r"""Solve $M x - A^T\lambda$ = force, A x = off."""
-    matrix, units = equations_of(system).acceleration_matrix(system, q, v)
-    return solve_bordered(matrix, units, force, off)
 
 
 def _decode(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
@@ -102,7 +88,7 @@ def _decode(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
 
     def one(q: Array, v: Array) -> tuple[Array, ...]:
         residual = jnp.max(jnp.abs(equations.constraint(system, q, v)), initial=0.0)
-        momentum, force = equations.momentum(system, q, v), _acceleration(system, q, v)[1]
+        momentum, force = equations.momentum(system, q, v), acceleration(system, q, v)[1]
         return momentum, force, equations.energy(system, q, v), residual
 
     return jax.vmap(one)(q, v)

@@ -49,7 +49,6 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     has_poses: ClassVar[bool] = True
     is_compact: ClassVar[bool] = False
     is_measured: ClassVar[bool] = False
-    work: ClassVar[None] = None
     _labels: ClassVar[Labels]
 
     @abc.abstractmethod
@@ -97,6 +96,17 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         impulses = rows["multipliers"]
         known = len(impulses) - int(len(impulses) > 0 and bool(np.isnan(impulses[-1]).any()))
         return dataclasses.replace(self, **{**rows, "multipliers": impulses[:known]})
+
+    @property
+    def work(self) -> Float[np.ndarray, "K"]:
+        r"""Work on a driven system since the first state, by the trapezoidal rule; zero of one that is not driven.
+
+        $$ \dot W = f\cdot v + \lambda\cdot b - \partial L/\partial t: $$
+
+        that of the force, of moving constraints and driven joints, and of a Lagrangian of the time. The energy less
+        this work is constant up to an error of order 2 in the time between states.
+        """
+        return room("_acceleration").work(self) if self.system.is_driven else np.zeros(len(self))
 
     @property
     def restricted_momentum(self) -> Float[np.ndarray, "K n"]:

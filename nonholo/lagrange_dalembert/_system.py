@@ -11,6 +11,7 @@ import numpy as np
 from nonholo.base.checks import array, choice, count, error, shown, text
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
+from nonholo.lagrange_dalembert._outline import as_parts, check_heading, checked_outline
 from nonholo.lagrange_dalembert._room import room
 from nonholo.lagrange_dalembert._tracing import (
     ForceTable,
@@ -66,10 +67,14 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         coordinates: Names of the coordinates, for tables and pictures, such as ("x", "y", "theta"); by default "q1",
             "q2" and so on.
         name: What pictures call the system.
+        heading: The name of the coordinate that is the heading of a body with the coordinates x and y.
+        outline: What pictures of such a body draw: parts of at least two points (P, 2) in body axes, x ahead, the body
+            first, then what it carries, such as wheels; or a function of q that returns them.
 
     Raises:
         ValueError: A function that JAX cannot trace, or whose result is not real or has the wrong shape; an unknown
-            rule; a driven system with discrete functions of its own; names that are not n different words.
+            rule; a driven system with discrete functions of its own; names that are not n different words; a heading
+            that is not among them, an outline that is no drawing.
 
     Example:
         A particle in space with the constraint z' = y x':
@@ -98,6 +103,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     name: str = dataclasses.field(default="System in coordinates", kw_only=True)
     orbits: ClassVar[str] = "CoordinateOrbit"
     recorded: ClassVar[tuple[str, ...]] = ("constraints", "is_driven", "orbits", "shapes")
+    heading: str | None = dataclasses.field(default=None, kw_only=True, compare=False)
+    outline: Any = dataclasses.field(default=(), kw_only=True, compare=False, repr=False)
     _equations: ClassVar[str] = "_equations"
 
     def __post_init__(self) -> None:
@@ -105,6 +112,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         object.__setattr__(self, "dimension", dimension)
         object.__setattr__(self, "coordinates", _names(self.coordinates, dimension))
         text(_named("name"), self.name)
+        check_heading(_named("heading"), self.heading, self.coordinates)
+        object.__setattr__(self, "outline", checked_outline(_named("outline"), self.outline))
         choice(_named("rule"), self.rule, ("midpoint", "trapezoidal"))
         object.__setattr__(self, "discrete_lagrangian", with_time_step(self.discrete_lagrangian))
         object.__setattr__(self, "discrete_constraints", with_time_step(self.discrete_constraints))
@@ -143,6 +152,19 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         """Whether a force acts, or anything depends on time or moves by itself."""
         given = self.force is not None or self.constraint_velocities is not None or bool(self.prescribed)
         return given or takes_time(self.lagrangian, 2) or takes_time(self.constraint_forms, 1)
+
+    def parts(self, q: Any) -> tuple[Float[np.ndarray, "P 2"], ...]:
+        """Return the parts of the outline at a configuration, in body axes."""
+        return as_parts(_named("outline"), self.outline(q) if callable(self.outline) else self.outline)
+
+    def takes_time(self, function: str) -> bool:
+        """Return whether the Lagrangian or the constraint forms are called with the time."""
+        return bool(self._time(function, {"lagrangian": 2, "constraint_forms": 1}[function]))
+
+    @property
+    def table(self) -> ForceTable | None:
+        """The forces of the steps, where they are given one by one."""
+        return None if self.force is None or callable(self.force) else self.force
 
     @functools.cached_property
     def constraints(self) -> int:
@@ -255,6 +277,9 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             >>> print(orbit.configuration[-1].round(9))
             [-1.]
         """
+        if self.table is not None:
+            remedy = "Discretize the system, or pass a function of time."
+            raise error("flow(system=...)", "have forces at times", "one force for each step", remedy)
         starts = {"body_velocity": body_velocity, "momentum": momentum}
         kind, start = room("_orbit").CoordinateOrbit, room("_start").of_flow
         return room("_flow").flow(kind, self, start, configuration, starts, times, rtol, atol)

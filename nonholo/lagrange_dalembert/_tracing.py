@@ -11,7 +11,9 @@ import numpy as np
 
 from nonholo.base.checks import error, shown
 from nonholo.base.numerics import double_precision
-from nonholo.base.types import Array, Float
+from nonholo.base.types import Array, Float, Int
+
+_END = 120  # letters of either end of a long message
 
 
 def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str) -> tuple[int, ...]:
@@ -21,8 +23,10 @@ def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str)
     try:
         traced = jax.make_jaxpr(lambda *x: _array(function(*x)))(*arguments)
     except Exception as failure:
-        got = f"{type(failure).__name__}: {str(failure).splitlines()[0]}"
-        remedy = f"Write it with jax.numpy, for arrays of {of}; use jnp.where, not `if`."
+        words = " ".join(str(failure).split()).rstrip(".")
+        said = words if len(words) <= 2 * _END else f"{words[:_END]} ... {words[-_END:]}"
+        got, columns = f"{type(failure).__name__}: {said}", "`.to_numpy()` of columns of pandas"
+        remedy = f"Write it with jax.numpy, for arrays of {of}; use jnp.where, not `if`, and {columns}."
         raise error(where, f"be traceable by JAX on {of}", got, remedy) from failure
     if any(getattr(constant, "dtype", None) == jnp.float32 for constant in traced.consts):
         remedy = "Keep parameters as Python numbers or NumPy arrays, not as jax.numpy arrays made outside."
@@ -85,9 +89,16 @@ class ForceTable:
 
     def row(self, step: Array) -> Array:
         """Return the force of a step, whose number may carry rounding errors."""
-        k = jnp.rint(step).astype(int)
-        inside = (k >= 0) & (k < len(self.rows))
-        return jnp.where(inside, jnp.asarray(self.rows)[jnp.clip(k, 0, max(len(self.rows) - 1, 0))], 0.0)
+        return jnp.asarray(self._padded)[jnp.clip(jnp.rint(step).astype(int), -1, len(self.rows))]
+
+    def acting(self, steps: Int[np.ndarray, "K"]) -> Float[np.ndarray, "K n"]:
+        """Return the forces of steps with these numbers."""
+        return self._padded[np.clip(steps, -1, len(self.rows))]
+
+    @property
+    def _padded(self) -> Float[np.ndarray, "rows n"]:
+        """The rows with one of zeros, which is the first after them and the last one."""
+        return np.concatenate([self.rows, np.zeros((1, self.rows.shape[1]))])
 
 
 @dataclasses.dataclass(frozen=True)

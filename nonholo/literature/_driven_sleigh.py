@@ -9,6 +9,7 @@ from nonholo.base.checks import number
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.literature._example import Example, numbers, positives, ready
+from nonholo.literature._outlines import wheel
 
 
 @ready("configuration", "speed", "turning")
@@ -85,7 +86,21 @@ def _system(m: float, J: float, mu: float, Omega: float, a: float, d: float, A: 
     def blade(q: Array) -> Array:
         return jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]), 0.0, 0.0]])
 
+    size = np.sqrt(J / m)
+    platform = [a, 0.0] + size * np.array([[-1.0, -0.6], [0.8, -0.6], [1.2, 0.0], [0.8, 0.6], [-1.0, 0.6]])
+    contact = size * np.array([[-0.4, 0.0], [0.4, 0.0]])
+
+    def outline(q: Array) -> list[Array]:
+        return [platform, contact, wheel((d, q[3]), 0.25 * size)]
+
     names, prescribed = ("x", "y", "theta", "s"), {3: lambda time: A * jnp.sin(Omega * time)}
     return LagrangeDAlembert(
-        lagrangian, blade, dimension=4, prescribed=prescribed, coordinates=names, name="Driven sleigh"
+        lagrangian,
+        blade,
+        dimension=4,
+        prescribed=prescribed,
+        coordinates=names,
+        heading="theta",
+        outline=outline,
+        name="Driven sleigh",
     )

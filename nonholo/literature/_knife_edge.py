@@ -100,4 +100,13 @@ def _system(m: float, J: float, G: float) -> LagrangeDAlembert:
         return jnp.array([[jnp.sin(q[2]), -jnp.cos(q[2]), 0.0]])
 
     names = ("x", "y", "phi")
-    return LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=names, name="Knife edge on an incline")
+    blade = np.sqrt(J / m) * np.array([[-1.0, 0.0], [1.0, 0.0]])
+    return LagrangeDAlembert(
+        lagrangian,
+        forms,
+        dimension=3,
+        coordinates=names,
+        heading="phi",
+        outline=[blade],
+        name="Knife edge on an incline",
+    )

@@ -9,6 +9,7 @@ from nonholo.base.checks import number
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.literature._example import Example, numbers, positives, ready
+from nonholo.literature._outlines import pair, turn
 
 
 @ready("configuration", "speed")
@@ -89,12 +90,12 @@ def _energy(body: list[float], c: float, q: Array, v: Array) -> Array:
 
 @functools.cache
 def _system(
-    m: float, seat: float, J: float, ell: float, k: float, Omega: float, c: float, A: float | None
+    m: float, seat_inertia: float, J: float, ell: float, k: float, Omega: float, c: float, A: float | None
 ) -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array) -> Array:
         cos, sin = jnp.cos(q[2]), jnp.sin(q[2])
         u, w = cos * v[0] + sin * v[1], cos * v[1] - sin * v[0]
-        return (m * (u**2 + (w + c * v[2]) ** 2) + seat * v[2] ** 2 + J * (v[2] + v[3]) ** 2) / 2
+        return (m * (u**2 + (w + c * v[2]) ** 2) + seat_inertia * v[2] ** 2 + J * (v[2] + v[3]) ** 2) / 2
 
     def axles(q: Array) -> Array:
         cos, sin = jnp.cos(q[2]), jnp.sin(q[2])
@@ -104,6 +105,21 @@ def _system(
 
     prescribed = {} if A is None else {3: lambda time: A * jnp.sin(Omega * time)}
     names = ("x", "y", "theta", "phi")
+    half = 0.3 * ell
+    seat = np.array([[-0.1 * ell, -0.6 * half], [ell, 0.0], [-0.1 * ell, 0.6 * half]])
+
+    def outline(q: Array) -> list[Array]:
+        pivot, front = np.array([ell, 0.0]), np.array([ell, 0.0]) + k * turn(q[3])[0]
+        bar = np.stack([pivot, front])
+        return [seat, *pair((0.0, 0.0), half, 0.5 * half), bar, *pair((front[0], front[1]), half, 0.5 * half, q[3])]
+
     return LagrangeDAlembert(
-        lagrangian, axles, dimension=4, prescribed=prescribed, coordinates=names, name="Roller racer"
+        lagrangian,
+        axles,
+        dimension=4,
+        prescribed=prescribed,
+        coordinates=names,
+        heading="theta",
+        outline=outline,
+        name="Roller racer",
     )

@@ -8,6 +8,7 @@ import numpy as np
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.literature._example import Example, numbers, positives, rate, ready
+from nonholo.literature._outlines import wheel
 
 
 @ready("configuration", "rates")
@@ -78,4 +79,12 @@ def _system(m: float, R: float, rolling: float, turning: float) -> LagrangeDAlem
         return jnp.array([[1.0, 0.0, -R * jnp.cos(q[3]), 0.0], [0.0, 1.0, -R * jnp.sin(q[3]), 0.0]])
 
     names = ("x", "y", "theta", "phi")
-    return LagrangeDAlembert(lagrangian, forms, dimension=4, coordinates=names, name="Rolling disk")
+    return LagrangeDAlembert(
+        lagrangian,
+        forms,
+        dimension=4,
+        coordinates=names,
+        heading="phi",
+        outline=[wheel((0.0, 0.0), 2 * R, width=0.1)],
+        name="Rolling disk",
+    )

@@ -9,6 +9,7 @@ from nonholo.base.checks import error
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.literature._example import Example, numbers, positives, rate, ready
+from nonholo.literature._outlines import pair, turn
 
 
 @ready("configuration", "speed", "rotor_rate", "wheel_rate")
@@ -100,4 +101,18 @@ def _system(m: float, r: float, J0: float, J1: float) -> LagrangeDAlembert:
         return jnp.stack([row(1.0), row(-1.0)])
 
     names = ("x", "y", "theta", "psi", "phi")
-    return LagrangeDAlembert(lagrangian, forms, dimension=5, coordinates=names, name="Snakeboard")
+    board = r * np.array([[-1.15, -0.12], [1.15, -0.12], [1.15, 0.12], [-1.15, 0.12]])
+
+    def outline(q: Array) -> list[Array]:
+        rotor = 0.45 * r * np.array([[-1.0, 0.0], [1.0, 0.0]]) @ turn(q[3])
+        return [board, rotor, *pair((r, 0.0), 0.35 * r, 0.3 * r, q[4]), *pair((-r, 0.0), 0.35 * r, 0.3 * r, -q[4])]
+
+    return LagrangeDAlembert(
+        lagrangian,
+        forms,
+        dimension=5,
+        coordinates=names,
+        heading="theta",
+        outline=outline,
+        name="Snakeboard",
+    )

@@ -23,7 +23,7 @@ class AbstractOrbit(abc.ABC):
         momentum: Momenta.
         restricted_momentum: Momenta along admissible directions, which follow the flow to second order.
         energy: Energies, shape (K,).
-        work: Work of forces on the motion since the first state, shape (K,); None in coordinates.
+        work: Work of forces, and of what drives it, on the motion since the first state, shape (K,).
         multipliers: Impulses or forces of constraint.
         outcome: How the run ended.
         motion: The rule of motion: a discretization or a flow.
@@ -48,7 +48,7 @@ class AbstractOrbit(abc.ABC):
     momentum: Float[np.ndarray, "K n"]
     restricted_momentum: Float[np.ndarray, "K k"]
     energy: Float[np.ndarray, "K"]
-    work: Float[np.ndarray, "K"] | None
+    work: Float[np.ndarray, "K"]
     multipliers: Float[np.ndarray, "L s"]
     outcome: Outcome
     motion: Any
@@ -115,3 +115,7 @@ class AbstractOrbit(abc.ABC):
     def plot(self, path: str | None = None, *, overwrite: bool = False) -> Any:
         """Draw the overview picture of the orbit; return the matplotlib figure, saved to a new `path` if given."""
         return importlib.import_module("nonholo.plotting").overview(self, path, overwrite=overwrite)
+
+    def to_html(self, path: Any, *, overwrite: bool = False) -> None:
+        """Write the live page of the orbit to a new HTML file, which runs in any browser; see `nh.explore`."""
+        importlib.import_module("nonholo.explorer").orbit_to_html(self, path, overwrite=overwrite)

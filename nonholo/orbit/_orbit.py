@@ -394,10 +394,6 @@ class Orbit(AbstractOrbit):
         """
         return importlib.import_module("nonholo.io").orbit_to_dataset(self, decoded=decoded)
 
-    def to_html(self, path: Any, *, overwrite: bool = False) -> None:
-        """Write the live page of the orbit to a new HTML file, which runs in any browser; see `nh.explore`."""
-        importlib.import_module("nonholo.explorer").orbit_to_html(self, path, overwrite=overwrite)
-
     def _posed(self) -> np.ndarray:
         if self.canonical_pose is None:
             raise ValueError("`Orbit.configuration` needs poses. Got reconstruct=False. Run with reconstruct=True.")

@@ -117,6 +117,7 @@ class _Drawing:
 _NOTHING = _Drawing(Look())
 _DRAWING: contextvars.ContextVar[_Drawing] = contextvars.ContextVar("drawing", default=_NOTHING)
 _TITLES: weakref.WeakKeyDictionary[Axes, str] = weakref.WeakKeyDictionary()  # that are not the caller's
+_ASKED: weakref.WeakSet[Axes] = weakref.WeakSet()  # whose title was asked for, which later pictures keep
 _LEGENDS: weakref.WeakSet[Any] = weakref.WeakSet()  # above axes
 
 
@@ -285,14 +286,14 @@ def _choose_words(drawing: _Drawing) -> None:
 def write_title(axes: Axes, words: str, **look: Any) -> None:
     """Write the title of a picture at the left, unless the caller has one; one that comes later replaces it."""
     own = asked("title", None)
-    if own is None and any(
-        axes.get_title(place) not in ("", _TITLES.get(axes)) for place in ("left", "center", "right")
-    ):
+    others = (axes.get_title(place) not in ("", _TITLES.get(axes)) for place in ("left", "center", "right"))
+    if own is None and (axes in _ASKED or any(others)):
         return
     if axes not in _TITLES:
         watched = weakref.ref(axes)
         axes.title.add_callback(lambda _: _withdraw(watched()))
     if own is not None:
+        _ASKED.add(axes)
         axes.set_title("", loc="center")
     _TITLES[axes] = words if own is None else own
     axes.set_title(_TITLES[axes], loc="left", **look)

@@ -1,9 +1,11 @@
 """Short orbits of a discretization, from one random admissible start, and the continuous motion to compare with.
 
-The equations are homogeneous: n steps with an n-th of the velocity trace the path of one time step. So the order is
-measured at the given time step, which a discrete Lagrangian of the user's may contain.
+Free equations are homogeneous: n steps with an n-th of the velocity trace the path of one time step. So the order is
+measured at the given time step, which a discrete Lagrangian of the user's may contain. Under forces, which are no
+functions of a user's Lagrangian, the time step is divided instead.
 """
 
+import dataclasses
 import functools
 from collections.abc import Callable
 from typing import Any
@@ -14,13 +16,14 @@ import scipy.integrate
 from nonholo.base.checks import needs
 from nonholo.base.results import OutcomeError
 from nonholo.base.types import Float
-from nonholo.continuous import vector_field
 from nonholo.discrete import Discretization, discrete_legendre
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
+from nonholo.testing._impulses import fields_of, impulses_of
 from nonholo.testing._report import NotApplicableError, need
 
 COUNTS = (10, 20, 40)  # steps for the path whose order is measured
+EXACT = 1e-11  # errors below it are rounding, and have no order
 PATH = 1.0  # norm of the matrix of that path
 STEP = 0.2  # norm of the matrix of one step of the orbit, unless it folds
 
@@ -37,19 +40,25 @@ class OrbitSamples:
     def __init__(self, discrete: Discretization, rng: np.random.Generator, steps: int) -> None:
         self.discrete, self.system, self.group = discrete, discrete.system, discrete.system.group
         self.spatial, self.steps = self.system.is_spatial, steps
+        self.forced = discrete.forces
+        inside = getattr(self.system, "system", None)  # of a Forced
+        self.free = dataclasses.replace(discrete, system=inside) if inside else discrete
+        self.step = min(STEP, float(discrete.time_step)) if self.forced else STEP
+        self.span = min(PATH, COUNTS[0] * float(discrete.time_step)) if self.forced else float(discrete.time_step)
+        self.path = self.span if self.forced else PATH
         self.S, self.A = np.asarray(self.system.constraint_subspace), np.asarray(self.system.annihilator)
         self.pose = self.group.random(rng)
         self._rows = rng.normal(size=len(self.S))
 
     def start(self, size: float) -> dict[str, Any]:
         """Return a start with steps of the given size."""
+        return self.moving(size / self.discrete.time_step)
+
+    def moving(self, norm: float) -> dict[str, Any]:
+        """Return a start with a velocity of the given norm."""
         need(len(self.S), "the constraint forbids all motion")
-        velocity = self.directions.T @ self._rows
-        speed = np.linalg.norm(self.group.hat(velocity), 2)
-        return {
-            "restricted_velocity": self._rows * (size / speed / self.discrete.time_step),
-            "configuration": self.pose,
-        }
+        speed = np.linalg.norm(self.group.hat(self.directions.T @ self._rows), 2)
+        return {"restricted_velocity": self._rows * (norm / speed), "configuration": self.pose}
 
     @functools.cached_property
     def directions(self) -> Float[np.ndarray, "k dim"]:
@@ -60,17 +69,17 @@ class OrbitSamples:
     @functools.cached_property
     def run(self) -> tuple[list[Orbit], float] | Exception:
         """An orbit of moderate energy and the norm of its path, or why there is none."""
-        return self._tried([self.steps], self.steps * STEP)
+        return self._tried([self.steps], self.steps * self.step)
 
     @property
     def orbit(self) -> Orbit:
         """The orbit."""
-        return _made(self.run, "the orbit failed")[0][0]
+        return made(self.run, "the orbit failed")[0][0]
 
     @property
     def first(self) -> dict[str, Any]:
         """The start of the orbit."""
-        return self.start(_made(self.run, "the orbit failed")[1] / self.steps)
+        return self.start(made(self.run, "the orbit failed")[1] / self.steps)
 
     @functools.cached_property
     def W(self) -> Float[np.ndarray, "K N N"]:
@@ -80,39 +89,72 @@ class OrbitSamples:
     @functools.cached_property
     def finer(self) -> tuple[list[Orbit], float] | Exception:
         """One path in more and more steps and its norm, or why there is none."""
-        return self._tried(list(COUNTS), PATH)
+        return self._tried(list(COUNTS), self.path)
 
     @property
     def paths(self) -> list[Orbit]:
         """The path in more and more steps."""
-        return _made(self.finer, "the finer orbits failed")[0]
+        return made(self.finer, "the finer orbits failed")[0]
 
     def _tried(self, counts: list[int], norm: float, halvings: int = 5) -> Any:
         """Run a path of a norm in several numbers of steps; where it meets a fold, one of half the norm."""
         try:
-            return [simulate(self.discrete, steps=n, **self.start(norm / n)) for n in counts], norm
+            return [self._path(n, norm, len(counts) > 1) for n in counts], norm
         except OutcomeError as fold:
             return self._tried(counts, norm / 2, halvings - 1) if halvings else fold
         except Exception as other:  # the code under test is a user's and may raise anything
             return other
 
+    def slower(self, count: int) -> int:
+        """Return how many times slower than the flow a path of this many steps is."""
+        return 1 if self.forced else count
+
+    def _path(self, count: int, norm: float, divides: bool) -> Orbit:
+        if self.forced is None or not divides:
+            return simulate(self.discrete, steps=count, **self.start(norm / count))
+        forced = self.forced
+        if forced.table is not None:
+            repeated = np.repeat(forced.rows(np.arange(COUNTS[0])), count // COUNTS[0], axis=0)
+            forced = dataclasses.replace(forced, force=repeated)
+        discrete = dataclasses.replace(self.discrete, system=forced, time_step=np.float64(self.span / count))
+        return simulate(discrete, steps=count, **self.moving(norm / self.span))
+
+    @functools.cached_property
+    def kicks(self) -> tuple[Float[np.ndarray, "K dim"], Float[np.ndarray, "K dim"]]:
+        """The impulses of forces at both ends of the steps, body covectors; zero of a free system."""
+        orbit = self.orbit
+        if self.forced is None:
+            return np.zeros((len(orbit), self.group.dim)), np.zeros((len(orbit), self.group.dim))
+        return impulses_of(self.forced, orbit, self.momentum(self.W), float(self.discrete.time_step))
+
+    @property
+    def pushed(self) -> Float[np.ndarray, "K dim"]:
+        """The impulses of forces at the nodes between two steps."""
+        return self.kicks[0][1:] + self.kicks[1][:-1]
+
+    @functools.cached_property
+    def reverses(self) -> bool:
+        """Whether forces allow the motion backwards: potentials, and those that a reversal leaves as they are."""
+        if self.forced is None or self.forced.force is None:
+            return True
+        velocity = self._rows @ self.directions
+        acting = [self.forced.applied_force(t, self.pose, w) for t in (0.0, 0.7) for w in (velocity, -velocity)]
+        return self.forced.table is None and bool(np.ptp(acting, axis=0).max() == 0.0)
+
     @functools.cached_property
     def exact(self) -> tuple[Float[np.ndarray, "3 N N"], Float[np.ndarray, "k"], Float[np.ndarray, "N N"]]:
         """The continuous path: its first displacements, one for each count, its last momentum and pose."""
-        norm = _made(self.finer, "the finer orbits failed")[1]
-        k, h, start = len(self.S), float(self.discrete.time_step), self.start(norm)
+        norm = made(self.finer, "the finer orbits failed")[1]
+        k, h, start = len(self.S), self.span, self.moving(norm / self.span)
         velocity = start["restricted_velocity"] @ self.directions
         r = self.directions @ (self.system.inertia_operator @ velocity)
         times = [h / n for n in reversed(COUNTS)]
-        found = scipy.integrate.solve_ivp(
-            vector_field(self.system),
-            (0.0, h),
-            np.concatenate([r, self.pose.ravel()]),
-            method="DOP853",
-            t_eval=[*times, h],
-            rtol=1e-12,
-            atol=1e-13 * (1 + np.abs(r).max()),
-        ).y.T
+        options: Any = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13 * (1 + np.abs(r).max())}
+        state, found = np.concatenate([r, self.pose.ravel()]), np.zeros((0, k + self.pose.size))
+        for field, ends in fields_of(self.system, times, h):
+            rows = scipy.integrate.solve_ivp(field, (ends[0], ends[-1]), state, t_eval=ends[1:], **options).y.T
+            state, found = rows[-1], np.concatenate([found, rows])
+        found = found[[0, 1, 2, -1]]
         poses = found[:, k:].reshape(-1, *self.pose.shape)
         return np.linalg.inv(self.pose) @ poses[-2::-1], found[-1, :k], poses[-1]
 
@@ -140,21 +182,31 @@ class OrbitSamples:
             return group.log(D) @ self.A.T
         return group.vee((D - np.linalg.inv(D)) / 2 if kind == "skew" else D - group.identity) @ self.A.T
 
-    def impulse(self, before: np.ndarray, after: np.ndarray, g: np.ndarray) -> Float[np.ndarray, "K dim"]:
-        """Return P(after) - Ad* P(before) of displacements that meet at g; in space if the constraint is."""
-        arriving = self.group.coadjoint(before, self.momentum(before))
+    def impulse(self, before: np.ndarray, after: np.ndarray, g: np.ndarray, pushed: Any) -> Float[np.ndarray, "K dim"]:
+        """Return P(after) - Ad* P(before), less impulses of forces, of displacements that meet at g.
+
+        In space if the constraint is.
+        """
+        arriving = self.group.coadjoint(before, self.momentum(before)) + pushed
         jump = self.momentum(after) - arriving
         return self.group.coadjoint(np.linalg.inv(g), jump) if self.spatial else jump
 
     def momentum(self, W: np.ndarray) -> Float[np.ndarray, "K dim"]:
         """Return the discrete momenta of displacements."""
-        return discrete_legendre(self.discrete, W)
+        return discrete_legendre(self.free, W)
 
 
-def _made(found: Any, otherwise: str) -> Any:
+def made(found: Any, otherwise: str) -> Any:
     """Return what a run made; where it failed, one check has failed, and the others have nothing to judge."""
     if isinstance(found, Exception):
         raise NotApplicableError(str(found) if isinstance(found, NotApplicableError) else otherwise)
+    return found
+
+
+def raised(found: Any) -> Any:
+    """Return what a run made, or raise what it raised."""
+    if isinstance(found, Exception):
+        raise found
     return found
 
 
@@ -164,3 +216,13 @@ def _of_jax(function: Callable[[Any], Any], W: Float[np.ndarray, "... N N"]) -> 
         from nonholo.discrete.definition import map_each
 
     return map_each(function, W.reshape(-1, *W.shape[-2:])).reshape(W.shape[:-2])
+
+
+def slope(errors: list[float]) -> float:
+    """Return the order of errors in the numbers of steps, from the last two."""
+    return float(np.log(errors[-2] / errors[-1]) / np.log(COUNTS[-1] / COUNTS[-2]))
+
+
+def off_two(errors: list[float]) -> float:
+    """Return how far the order of errors is from two; zero of rounding."""
+    return abs(slope(errors) - 2) if errors[-1] > EXACT else 0.0

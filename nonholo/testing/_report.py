@@ -2,10 +2,11 @@
 
 import dataclasses
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 from nonholo.base.checks import positive
 
+Measure = TypeVar("Measure", bound=Callable[[Any], float])
 _HEADINGS = ("", "measured", "allowed", "", "what must hold")
 
 
@@ -34,6 +35,18 @@ class Check:
     requirement: str
     tolerance: float | None
     measure: Callable[[Any], float]
+
+
+def measures(
+    table: list[Check], name: str, requirement: str, tolerance: float | None = None
+) -> Callable[[Measure], Measure]:
+    """Add the decorated measurement to a table of checks, which has the order of the file."""
+
+    def add(measure: Measure) -> Measure:
+        table.append(Check(name, requirement, tolerance, measure))
+        return measure
+
+    return add
 
 
 @dataclasses.dataclass(frozen=True)

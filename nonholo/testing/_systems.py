@@ -6,15 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.analysis import conserved_momenta
-from nonholo.base.checks import error, flags
+from nonholo.analysis import ConservedMomenta, conserved_momenta
+from nonholo.base.checks import error, flags, refuse_given
 from nonholo.base.types import Float
 from nonholo.continuous import vector_field
-from nonholo.systems import AbstractSystem, Equilibria, refuse_forces
+from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Equilibria, Forced
+from nonholo.testing._coordinates import SYSTEM, CoordinateSamples
 from nonholo.testing._measures import derivative, gap, largest, relative, seeded
-from nonholo.testing._report import Check, NotApplicableError, Report, need, run_checks
+from nonholo.testing._report import Check, NotApplicableError, Report, measures, need, run_checks
 
 _COUNT = 4
+CHECKS: list[Check] = []
+"""Tolerances leave room for rounding at inertias of a few units, and for central differences, good to 1e-11 or so."""
 
 
 class SystemSamples:
@@ -26,7 +29,9 @@ class SystemSamples:
     """
 
     def __init__(self, system: AbstractSystem, rng: np.random.Generator) -> None:
-        self.system, self.group = system, system.group
+        self.moving = system
+        self.system: AbstractSystem = getattr(system, "system", system)  # a Forced has it inside, and adds forces alone
+        self.group = system.group
         self.spatial = system.is_spatial
         self.S, self.A = np.asarray(system.constraint_subspace), np.asarray(system.annihilator)
         self.inertia = np.asarray(system.inertia_operator)
@@ -71,7 +76,8 @@ class SystemSamples:
         """The rates of restricted momentum and pose by the vector field of the system."""
         k = len(self.S)
         state = np.concatenate([self.restricted, self.g.reshape(_COUNT, -1)], axis=-1)
-        rate = vector_field(self.system)(0.0, state)
+        need(self.forced is None or self.forced.table is None, "one force for each step")
+        rate = vector_field(self.moving)(0.0, state)
         return rate[:, :k], rate[:, k:].reshape(self.g.shape)
 
     def along_the_motion(self, quantity: Callable[[np.ndarray, np.ndarray], Any]) -> np.ndarray:
@@ -80,8 +86,24 @@ class SystemSamples:
         turn = self.group.vee(np.linalg.inv(self.g) @ pose_rate)
         return derivative(lambda t: quantity(self.restricted + t * momentum_rate, self.g @ self.group.exp(t * turn)))
 
+    @functools.cached_property
+    def force(self) -> Float[np.ndarray, "4 dim"]:
+        """What a function or friction exerts on them at time zero."""
+        states = zip(self.g, self.body_velocity, strict=True)
+        given = [] if self.forced is None else [self.forced.applied_force(0.0, *state) for state in states]
+        return np.reshape(given or np.zeros_like(self.momentum), self.momentum.shape)
+
+    @property
+    def forced(self) -> Forced | None:
+        """The system with its forces; None of a free one."""
+        return self.moving.forces
+
+    def potential(self, g: np.ndarray) -> Any:
+        """Return the potential energy."""
+        return 0.0 if self.forced is None else self.forced.potential_energy(g)
+
     def energy(self, restricted: np.ndarray, g: np.ndarray) -> np.ndarray:
-        """Return the constrained energy that the system states."""
+        """Return the constrained energy that the system states: the kinetic one."""
         system: Any = self.system
         return system.constrained_energy(restricted, g) if self.spatial else system.constrained_energy(restricted)
 
@@ -94,22 +116,26 @@ class SystemSamples:
         return (self.group.adjoint(np.linalg.inv(g)) @ spatial[..., None])[..., 0] @ self.inertia.T
 
 
+@measures(CHECKS, "sizes", "constraint_subspace (k, dim), annihilator (dim - k, dim), inertia_operator (dim, dim)", 0.0)
 def _sizes(s: SystemSamples) -> float:
     dim = s.group.dim
     shapes = [(s.S, (len(s.S), dim)), (s.A, (dim - len(s.S), dim)), (s.inertia, (dim, dim))]
     return sum(array.shape != shape for array, shape in shapes)
 
 
+@measures(CHECKS, "complementary", "rows of constraint_subspace and annihilator together span the space", 0.0)
 def _complementary(s: SystemSamples) -> float:
     rows = np.concatenate([s.S, s.A])
     return s.group.dim - np.linalg.matrix_rank(rows / np.linalg.norm(rows, axis=1)[:, None])
 
 
+@measures(CHECKS, "annihilator", "annihilator @ constraint_subspace.T = 0", 1e-13)
 def _annihilator(s: SystemSamples) -> float:
     scale = np.linalg.norm(s.A, axis=1)[:, None] * np.linalg.norm(s.S, axis=1)
     return largest(s.A @ s.S.T / scale)
 
 
+@measures(CHECKS, "inertia of the mass tensor", "inertia_operator[i, j] = tr(E_i J E_j*)", 1e-12)
 def _mass_tensor(s: SystemSamples) -> float:
     tensor = s.system.homogeneous_mass_tensor
     need(tensor is not None, "the kinetic energy comes from an inertia operator")
@@ -118,10 +144,12 @@ def _mass_tensor(s: SystemSamples) -> float:
     return relative(s.inertia, np.einsum("iab,bc,jdc,da->ij", E, np.asarray(tensor) @ np.linalg.inv(form), E, form))
 
 
+@measures(CHECKS, "inertia symmetric", "inertia_operator is symmetric", 1e-13)
 def _symmetry(s: SystemSamples) -> float:
     return largest(s.inertia - s.inertia.T) / max(largest(s.inertia), np.finfo(float).tiny)
 
 
+@measures(CHECKS, "inertia positive", "inertia along the constraint is positive, with a form invertible", 1e13)
 def _positive(s: SystemSamples) -> float:
     """Return the condition of the inertia along the constraint, infinite if an eigenvalue is not positive.
 
@@ -135,10 +163,12 @@ def _positive(s: SystemSamples) -> float:
     return float(eigenvalues[-1] / eigenvalues[0]) if eigenvalues[0] > 0 else np.inf
 
 
+@measures(CHECKS, "constrained_inertia", "constrained_inertia = S I S^T", 1e-12)
 def _constrained_inertia(s: SystemSamples) -> float:
     return relative(s.system.constrained_inertia, s.S @ s.inertia @ s.S.T)
 
 
+@measures(CHECKS, "restriction", "restrict(p) = S p (in space: S coadjoint(g^-1, p))", 1e-12)
 def _restriction(s: SystemSamples) -> float:
     system = s.system
     if s.spatial:
@@ -146,17 +176,20 @@ def _restriction(s: SystemSamples) -> float:
     return relative(system.restrict(s.momentum), s.restricted)
 
 
+@measures(CHECKS, "restricted_velocity", "restricted_velocity inverts velocity -> momentum", 1e-11)
 def _velocity(s: SystemSamples) -> float:
     need_motion(s)
     return relative(s.full_momentum(s.restricted, s.g), s.momentum)
 
 
+@measures(CHECKS, "energy", "constrained_energy = kinetic energy of the admissible velocity", 1e-11)
 def _kinetic_energy(s: SystemSamples) -> float:
     need_motion(s)
     kinetic = np.sum(s.momentum * s.body_velocity, axis=-1) / 2
     return relative(s.energy(s.restricted, s.g), kinetic)
 
 
+@measures(CHECKS, "energy of full momenta", "constrained_energy(p) = constrained_energy(p along S)", 1e-11)
 def _full_energy(s: SystemSamples) -> float:
     need_motion(s)
     need(len(s.S) < s.group.dim, "nothing is forbidden: full momenta are restricted ones")
@@ -169,21 +202,30 @@ def _into_canonical(s: SystemSamples) -> np.ndarray:
     return s.group.adjoint(np.asarray(s.system.frame))
 
 
+@measures(CHECKS, "frame", "residual(frame) = 0", 1e-12)
+def _frame(s: SystemSamples) -> float:
+    return largest(s.group.residual(np.asarray(s.system.frame)))
+
+
+@measures(CHECKS, "frame and constraint", "Ad of frame^-1 maps d to the canonical d", 1e-12)
 def _frame_of_subspace(s: SystemSamples) -> float:
     into = _into_canonical(s)
     return largest(np.asarray(s.system.canonical.annihilator) @ np.linalg.solve(into, s.S.T))
 
 
+@measures(CHECKS, "frame and inertia", "canonical inertia = Ad_T^T I Ad_T", 1e-11)
 def _frame_of_inertia(s: SystemSamples) -> float:
     into = _into_canonical(s)
     return relative(s.system.canonical.inertia_operator, into.T @ s.inertia @ into)
 
 
+@measures(CHECKS, "frame and momenta", "frame_map takes momenta along d to canonical ones", 1e-11)
 def _frame_of_momenta(s: SystemSamples) -> float:
     into = _into_canonical(s)
     return relative(s.restricted @ s.system.frame_map.T, s.system.canonical.restrict(s.momentum @ into))
 
 
+@measures(CHECKS, "frame and energy", "the canonical energy is the energy", 1e-11)
 def _frame_of_energy(s: SystemSamples) -> float:
     _into_canonical(s)
     found = s.system.canonical.constrained_energy(s.restricted @ s.system.frame_map.T)  # type: ignore[attr-defined]
@@ -194,31 +236,13 @@ def need_motion(s: SystemSamples) -> None:
     need(len(s.S), "the constraint forbids all motion")
 
 
-STATICS = (
-    Check(
-        "sizes", "constraint_subspace (k, dim), annihilator (dim - k, dim), inertia_operator (dim, dim)", 0.0, _sizes
-    ),
-    Check("complementary", "rows of constraint_subspace and annihilator together span the space", 0.0, _complementary),
-    Check("annihilator", "annihilator @ constraint_subspace.T = 0", 1e-13, _annihilator),
-    Check("inertia of the mass tensor", "inertia_operator[i, j] = tr(E_i J E_j*)", 1e-12, _mass_tensor),
-    Check("inertia symmetric", "inertia_operator is symmetric", 1e-13, _symmetry),
-    Check("inertia positive", "inertia along the constraint is positive, with a form invertible", 1e13, _positive),
-    Check("constrained_inertia", "constrained_inertia = S I S^T", 1e-12, _constrained_inertia),
-    Check("restriction", "restrict(p) = S p (in space: S coadjoint(g^-1, p))", 1e-12, _restriction),
-    Check("restricted_velocity", "restricted_velocity inverts velocity -> momentum", 1e-11, _velocity),
-    Check("energy", "constrained_energy = kinetic energy of the admissible velocity", 1e-11, _kinetic_energy),
-    Check("energy of full momenta", "constrained_energy(p) = constrained_energy(p along S)", 1e-11, _full_energy),
-    Check("frame", "residual(frame) = 0", 1e-12, lambda s: largest(s.group.residual(np.asarray(s.system.frame)))),
-    Check("frame and constraint", "Ad of frame^-1 maps d to the canonical d", 1e-12, _frame_of_subspace),
-    Check("frame and inertia", "canonical inertia = Ad_T^T I Ad_T", 1e-11, _frame_of_inertia),
-    Check("frame and momenta", "frame_map takes momenta along d to canonical ones", 1e-11, _frame_of_momenta),
-    Check("frame and energy", "the canonical energy is the energy", 1e-11, _frame_of_energy),
-)
-"""In the order of the report; tolerances leave room for rounding at inertias of a few units."""
-
-
 def check_system(
-    system: AbstractSystem, *, rng: Any = None, tolerance_factor: float = 1.0, throw: bool = True
+    system: AbstractSystem | AbstractCoordinateSystem,
+    *,
+    rng: Any = None,
+    configuration: Any = None,
+    tolerance_factor: float = 1.0,
+    throw: bool = True,
 ) -> Report:
     r"""Check that group, inertia, constraint, energy and frame of a system belong together, and that it moves rightly.
 
@@ -228,12 +252,14 @@ def check_system(
 
     Measured on random admissible states: symmetry and positivity of the inertia; subspace and annihilator; restriction
     of momenta and constrained energy against their definitions; the canonical frame; constraint and energy along
-    `vector_field`; equilibria and their attraction; `conserved_momenta`. The group is taken as right: `check_group`
-    checks it.
+    `vector_field`; equilibria and their attraction; `conserved_momenta`; under forces their part in the equations and
+    in the energy. The group is taken as right: `check_group` checks it. Of a `LagrangeDAlembert` momentum, energy,
+    constraint, equations and balance along its flow, against differences of the functions it was made of.
 
     Args:
-        system: A system on a group.
+        system: A system on a group, `Forced` or free, or in coordinates.
         rng: Seed or generator of the samples; by default a fixed seed.
+        configuration: Where motions begin, of a system in coordinates; random by default.
         tolerance_factor: On every tolerance, for badly scaled units.
         throw: Raise if a check fails; otherwise only the report says so.
 
@@ -241,7 +267,7 @@ def check_system(
         What was measured.
 
     Raises:
-        ValueError: `system` is not a system on a group.
+        ValueError: `system` is not such a system.
         AssertionError: With `throw`: names every check that failed, what is required and what was measured.
 
     Example:
@@ -249,41 +275,67 @@ def check_system(
         >>> report["energy conserved"].status, report["attraction"].value < 0
         ('ok', True)
     """
-    refuse_forces("check_system(system=...)", system)
-    if not isinstance(system, AbstractSystem):
-        remedy = "Pass an LLSystem, another system on a group or your own class; not a system in coordinates."
-        raise error("check_system(system=...)", "be a system on a group", _named(system), remedy)
     flags("check_system", throw=throw)
+    if isinstance(system, AbstractCoordinateSystem):
+        there = CoordinateSamples("check_system", system, seeded(rng), configuration)
+        return run_checks(f"check_system({there.system.name})", SYSTEM, there, tolerance_factor, throw)
+    refuse_given("check_system", "be left out on a group", "Leave it out.", configuration=(configuration, None))
+    if not isinstance(system, AbstractSystem):
+        raise error("check_system(system=...)", "be a system", _named(system), "Pass an LLSystem or your own class.")
     samples = SystemSamples(system, seeded(rng))
     owner = f"check_system({_named(system)} on {system.group!r})"
-    return run_checks(owner, (*STATICS, *MOTION), samples, tolerance_factor, throw)
+    return run_checks(owner, CHECKS, samples, tolerance_factor, throw)
 
 
 def _named(thing: Any) -> str:
     return type(thing).__name__
 
 
+@measures(CHECKS, "equations of motion", "rate of <p, S_i> = <p, [omega, S_i]> (in space: zero) + <f - dU, S_i>", 1e-11)
 def _equations(s: SystemSamples) -> float:
-    """Compare the rate of momentum with <p, [omega, S_i]>; momenta along a constraint fixed in space are constant."""
+    """Compare with <p, [omega, S_i]>, zero along a constraint fixed in space, and forces along the directions."""
     need_motion(s)
     brackets = s.group.bracket(s.body_velocity[:, None, :], s.directions)
     expected = 0 * s.restricted if s.spatial else (brackets @ s.momentum[:, :, None])[:, :, 0]
+    if s.forced is not None:
+        pushed = s.force + s.forced.potential_force(s.g)
+        expected = expected + (s.directions @ pushed[:, :, None])[:, :, 0]
     return largest(s.rate[0] - expected) / largest(s.momentum)
 
 
+@measures(CHECKS, "reconstruction", "g' = g hat(omega)", 1e-11)
 def _reconstruction(s: SystemSamples) -> float:
     return gap(s.rate[1], s.g @ s.group.hat(s.body_velocity))
 
 
+@measures(CHECKS, "constraint", "the vector field keeps the constraint", 1e-11)
 def _constraint(s: SystemSamples) -> float:
     back = np.linalg.inv(s.g)
     velocity = s.rate[1] @ back if s.spatial else back @ s.rate[1]
     return largest(s.group.vee(velocity) @ s.A.T)
 
 
+@measures(CHECKS, "energy conserved", "along the vector field the energy changes by the power of the force", 1e-8)
 def _energy(s: SystemSamples) -> float:
     need_motion(s)
-    return largest(s.along_the_motion(s.energy)) / largest(s.energy(s.restricted, s.g))
+    power = np.sum(s.force * s.body_velocity, axis=-1)
+    rate = s.along_the_motion(lambda restricted, g: s.energy(restricted, g) + s.potential(g))
+    return largest(rate - power) / max(largest(s.energy(s.restricted, s.g)), largest(power))
+
+
+@measures(CHECKS, "potential force", "the force of the potential is -dU", 1e-8)
+def _potential_force(s: SystemSamples) -> float:
+    forced, g, x = s.forced, s.g[:, None], np.eye(s.group.dim)
+    if forced is None or forced.potential is None:
+        raise NotApplicableError("no potential")
+    slope = derivative(lambda t: forced.potential_energy(g @ s.group.exp(t * x)))
+    return relative(forced.potential_force(s.g), -slope)
+
+
+@measures(CHECKS, "friction", "friction never adds energy: its largest power", 0.0)
+def _friction(s: SystemSamples) -> float:
+    need(s.forced is not None and s.forced.friction is not None, "no friction")
+    return float(np.sum(s.force * s.body_velocity, axis=-1).max())
 
 
 def _equilibria(s: SystemSamples) -> tuple[Equilibria, ...]:
@@ -291,6 +343,7 @@ def _equilibria(s: SystemSamples) -> tuple[Equilibria, ...]:
     need_motion(s)
     system: Any = s.system
     need(not s.spatial, "a right-invariant constraint")
+    need(not s.moving.is_forced, "forces act")
     try:
         known = system.equilibria()
     except ValueError:
@@ -306,6 +359,7 @@ def _rate_at(s: SystemSamples, velocity: np.ndarray) -> np.ndarray:
     return np.linalg.solve(inertia, (brackets @ (w @ s.S @ s.inertia.T)[:, :, None])[:, :, 0].T).T
 
 
+@measures(CHECKS, "equilibria", "equilibria are admissible and their velocities constant", 1e-11)
 def _at_rest(s: SystemSamples) -> float:
     spaces = [known.subspace for known in _equilibria(s)]
     mixed = np.concatenate([*spaces, *(rows.sum(axis=0)[None] for rows in spaces)])
@@ -313,6 +367,7 @@ def _at_rest(s: SystemSamples) -> float:
     return max(forbidden, largest(_rate_at(s, mixed)))
 
 
+@measures(CHECKS, "attraction", "small deviations from the attracting equilibrium decay: negative growth rate", -1e-9)
 def _growth(s: SystemSamples) -> float:
     """Return the largest growth rate across the equilibria that attract, relative to the velocity."""
     attracting = [known for known in _equilibria(s) if known.attracting is not None]
@@ -332,34 +387,27 @@ def _growth_beside(s: SystemSamples, known: Equilibria) -> float:
     return float(rates[across - 1] / np.linalg.norm(velocity))
 
 
+@measures(CHECKS, "conserved body momenta", "conserved_momenta(...).body are constant along the vector field", 1e-8)
 def _in_body(s: SystemSamples) -> float:
-    need_motion(s)
-    return _change(s, conserved_momenta(s.system).body, s.full_momentum)
+    return _change(s, _conserved(s).body, s.full_momentum)
 
 
+@measures(CHECKS, "conserved spatial momenta", "conserved_momenta(...).spatial are constant along it", 1e-8)
 def _in_space(s: SystemSamples) -> float:
-    need_motion(s)
 
     def spatial(restricted: np.ndarray, g: np.ndarray) -> np.ndarray:
         return s.group.coadjoint(s.group.inverse(g), s.full_momentum(restricted, g))
 
-    return _change(s, conserved_momenta(s.system).spatial, spatial)
+    return _change(s, _conserved(s).spatial, spatial)
+
+
+def _conserved(s: SystemSamples) -> ConservedMomenta:
+    need_motion(s)
+    need(not s.moving.is_forced, "forces act")
+    return conserved_momenta(s.system)
 
 
 def _change(s: SystemSamples, rows: np.ndarray, quantity: Any) -> float:
     need(len(rows), "none is conserved")
     slope = s.along_the_motion(quantity) @ rows.T
     return largest(slope) / (1 + largest(quantity(s.restricted, s.g)))
-
-
-MOTION = (
-    Check("equations of motion", "rate of <p, S_i> = <p, [omega, S_i]> (in space: zero)", 1e-11, _equations),
-    Check("reconstruction", "g' = g hat(omega)", 1e-11, _reconstruction),
-    Check("constraint", "the vector field keeps the constraint", 1e-11, _constraint),
-    Check("energy conserved", "the constrained energy is constant along the vector field", 1e-8, _energy),
-    Check("equilibria", "equilibria are admissible and their velocities constant", 1e-11, _at_rest),
-    Check("attraction", "small deviations from the attracting equilibrium decay: negative growth rate", -1e-9, _growth),
-    Check("conserved body momenta", "conserved_momenta(...).body are constant along the vector field", 1e-8, _in_body),
-    Check("conserved spatial momenta", "conserved_momenta(...).spatial are constant along it", 1e-8, _in_space),
-)
-"""In the order of the report; rates of change are central differences of order four, good to 1e-11 or so."""

@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 import nonholo as nh
 from nonholo.cli._app import app
 from nonholo.explorer import explore
+from nonholo.lagrange_dalembert import CoordinateOrbit
 
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
@@ -94,6 +95,33 @@ def test_replays(orbit: Any) -> None:
     )
 
 
+def _in_coordinates(names: tuple[str, ...], heading: str | None = None) -> CoordinateOrbit:
+    """Return an orbit of given numbers."""
+    t, n = np.linspace(0.0, 1.0, 6), len(names)
+    q = np.cos(t[:, None] + np.arange(n))
+    system = nh.LagrangeDAlembert(lambda _, v: v @ v / 2, None, dimension=n, coordinates=names, heading=heading)
+    return CoordinateOrbit(t, q, q, q, q, q[:, :0], t + 1, 0 * t, system=system, time_step=0.2)
+
+
+def test_replays_in_coordinates(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Place, and axes along the heading; the momenta are those along the coordinates; energy less work under forces."""
+    orbit = _in_coordinates(("a", "y", "x"), "a")
+    monkeypatch.setattr(CoordinateOrbit, "restricted_momentum", orbit.momentum)
+    data = _data(explore(orbit).text)
+    replay = {name: np.frombuffer(base64.b64decode(data["replay"][name])) for name in ("energy", "frames", "momentum")}
+    frames, a = replay["frames"].reshape(-1, 4, 3), orbit.configuration[:, 0]
+    np.testing.assert_array_equal(frames[:, 0], orbit.configuration[:, [2, 1]] @ np.eye(2, 3))
+    np.testing.assert_array_equal(frames[:, 1], np.stack([np.cos(a), np.sin(a), 0 * a], axis=1))
+    np.testing.assert_array_equal(replay["momentum"].reshape(-1, 2), orbit.momentum[:, :2])
+    np.testing.assert_array_equal(replay["energy"], orbit.energy)
+    assert data["momenta"] == ["p(a)", "p(y)"]
+    monkeypatch.setattr(CoordinateOrbit, "work", orbit.time**2)
+    text = explore(orbit).text
+    shown = np.frombuffer(base64.b64decode(_data(text)["replay"]["energy"]))
+    np.testing.assert_allclose(shown / shown[0] - 1, (orbit.time - orbit.time**2) / 2, atol=1e-15)
+    assert "less the work of forces" in text
+
+
 def test_long_orbits_are_thinned() -> None:
     """A replay of many states has some of them, the first and the last too, and says how many."""
     orbit = nh.simulate(nh.discretize(TOP, 0.1, order=4), restricted_velocity=(1.0, 0.5), steps=10_000)
@@ -113,9 +141,10 @@ def test_long_orbits_are_thinned() -> None:
             nh.simulate(nh.discretize(TOP, 0.1), restricted_velocity=(1.0, 0.5), steps=2, reconstruct=False),
             "have poses",
         ),
+        (_in_coordinates(("x", "u")), "coordinates named x and y. Got x, u"),
         (nh.simulate(nh.discretize(TOP, 2.0), momentum=(3.0, 3.0), steps=2, throw=False), "have poses"),
     ],
-    ids=["number", "free body", "wide top", "no poses", "no state"],
+    ids=["number", "free body", "wide top", "no poses", "no place", "no state"],
 )
 def test_refusals(value: Any, message: str) -> None:
     """What cannot be shown is refused with a remedy."""

@@ -16,13 +16,14 @@ PAGES = (
     "how-to/choose-a-discretisation.md",
     "how-to/compare-motions.md",
     "how-to/differentiate-and-fit.md",
+    "how-to/drive-a-robot.md",
     "how-to/gaits.md",
     "how-to/run-an-ensemble.md",
     "how-to/style-a-picture.md",
 )
 
 
-LONG = ["how-to/choose-a-discretisation.md", "how-to/differentiate-and-fit.md", "how-to/gaits.md"]
+LONG = ["how-to/choose-a-discretisation.md", "how-to/d*.md", "how-to/gaits.md"]
 
 
 @pytest.mark.profile("paper", cases=LONG)

@@ -9,6 +9,7 @@ import scipy.linalg
 from scipy.integrate import solve_ivp
 
 import nonholo as nh
+from nonholo.base.numerics import double_precision
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.literature import Example
 
@@ -72,6 +73,44 @@ def test_the_roller_racer_moves_as_derived_by_hand() -> None:
     by_hand = _solved(_racer_by_hand, [0.0, 0.0, 0.0, 0.0])
     found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
     assert np.abs(found.configuration[:, :3] - by_hand[1:].T).max() <= 1e-10
+
+
+def _robot_by_hand(time: float, z: np.ndarray) -> list[float]:
+    """Speed and turning rate of the two-wheeled robot with its default parameters, torques and friction; the pose."""
+    m, J, ell, c, R, Jw, d = 1.0, 0.5, 0.3, 0.5, 0.25, 0.01, 0.02
+    u, w, theta = z[0], z[1], z[4]
+    right, left = 0.1 + 0.05 * np.sin(time), 0.1 - 0.03 * time
+    M, K = m + 2 * Jw / R**2, J + m * ell**2 + 2 * Jw * c**2 / R**2
+    du = m * ell * w**2 + (right + left) / R - 2 * d * u / R**2
+    dw = -m * ell * u * w + (right - left) * c / R - 2 * d * c**2 * w / R**2
+    return [du / M, dw / K, u * np.cos(theta), u * np.sin(theta), w]
+
+
+@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
+def test_the_robot_moves_as_derived_by_hand() -> None:
+    """Path and heading of the flow under torques and friction, to 1e-10; the axle keeps its angle."""
+    ready = nh.examples.two_wheeled_robot(
+        torques=lambda time: (0.1 + 0.05 * jnp.sin(time), 0.1 - 0.03 * time), friction=0.02
+    )
+    by_hand = _solved(_robot_by_hand, [-0.5, 1.0, 0.0, 0.0, 0.0])
+    found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
+    assert np.abs(found.configuration[:, :3] - by_hand[2:].T).max() <= 1e-10
+    assert list(ready.conserved) == ["axle"]
+    assert np.ptp(ready.conserved["axle"](found.configuration, found.body_velocity)) <= 1e-11
+
+
+def test_torques_of_the_robot() -> None:
+    """Without torques and friction nothing drives it; two numbers are constant torques; others are refused."""
+    robot = nh.examples.two_wheeled_robot
+    assert not robot().system.is_driven
+    force = robot(torques=(0.3, 0.1), friction=0.5).system.force
+    with double_precision():
+        pushed = np.asarray(force(jnp.asarray(2.0), jnp.zeros(5), jnp.arange(5.0)))
+    assert np.allclose(pushed, [0, 0, 0, 0.3 - 1.5, 0.1 - 2.0], rtol=0, atol=1e-15)
+    with pytest.raises(ValueError, match=r"two_wheeled_robot\(torques=...\)` must have shape \(2,\)"):
+        robot(torques=(0.3, 0.1, 0.2))
+    with pytest.raises(ValueError, match=r"two_wheeled_robot\(friction=...\)` must not be negative. Got -0.1"):
+        robot(friction=-0.1)
 
 
 @pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")

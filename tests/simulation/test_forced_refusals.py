@@ -41,9 +41,7 @@ _REFUSED: dict[str, Callable[[], Any]] = {
     "conserved_momenta": lambda: nh.conserved_momenta(_FORCED),
     "lyapunov_function": lambda: nh.lyapunov_function(_FORCED),  # type: ignore[arg-type]
     "asymptotics": lambda: nh.asymptotics(_RUN),
-    "vector_field": lambda: nh.vector_field(_FORCED),
-    "check_system": lambda: nh.testing.check_system(_FORCED),
-    "check_discretization": lambda: nh.testing.check_discretization(_MAP),
+    "vector_field of a table": lambda: nh.vector_field(_PUSHED.system),
     "ensemble of longer runs": lambda: nh.ensemble(_PUSHED, restricted_velocity=np.ones((2, 2)), steps=9),
     "ensemble of flows of a table": lambda: nh.ensemble(
         nh.Forced(TOP, force=np.ones((3, 3))), restricted_velocity=np.ones((2, 2)), times=(0.0, 1.0)

@@ -103,11 +103,11 @@ def test_callables_in_place_of_names() -> None:
         (check_group, np.eye(3)),
         (check_system, nh.SE(2)),
         (check_discretization, ON_SL2),
-        (check_system, nh.LagrangeDAlembert(lambda _, v: v @ v, None, dimension=2)),
-        (check_discretization, nh.LagrangeDAlembert(lambda _, v: v @ v, None, dimension=2).discretize(0.1)),
+        (check_system, nh.examples.chaplygin_ball().system),
+        (check_discretization, nh.examples.chaplygin_ball().system.discretize(0.1)),
     ],
 )
 def test_other_things_are_refused(check: object, thing: object) -> None:
-    """Each check says what it takes; systems in coordinates are not among it."""
-    with pytest.raises(ValueError, match=rf"`{check.__name__}\(.*must be a .*Got .*Pass "):
+    """Each check says what it takes; Lagrange-d'Alembert systems on a group are not among it."""
+    with pytest.raises(ValueError, match=rf"`{check.__name__}\(.*must be .*Got .*Pass "):
         check(thing)

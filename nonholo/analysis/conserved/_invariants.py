@@ -25,7 +25,7 @@ class Invariants:
         steps: Steps they span (0 for a flow); of given poses the times between them.
         energy_drift: Largest change of the reduced constrained energy, relative to it (absolute at rest). Under forces
             what is left of the balance: the largest change of the energy less the work of the force, relative to the
-            largest energy. Of a driven system in coordinates, whose balance is not known, the change of its energy.
+            largest energy.
         constraint_residual: Largest forbidden part of (W - W^-1)/2 of a displacement, of log W where the variety is
             exp d alone, or of a velocity, of a flow and of given poses; where the variety is given by equations, and in
             coordinates, their largest residual.
@@ -33,7 +33,8 @@ class Invariants:
         reversal_defect: Largest relative miss of one step forward and back; not measured in coordinates.
         largest_step_angle: In degrees.
         outcome: How the run ended.
-        work: What the force did on the whole, minus what friction dissipated; None of a free system.
+        work: What forces, and what else drives it, did on the whole, less what friction dissipated; None of a free
+            system.
     """
 
     states: int
@@ -67,16 +68,18 @@ def invariants(orbit: AbstractOrbit) -> Invariants:
 
 def _in_coordinates(orbit: Any) -> Invariants:
     h, duration = orbit.time_step, abs(orbit.time[-1] - orbit.time[0])
+    work, driven = orbit.work, orbit.system.is_driven
     on_group = None if orbit.coordinates else float(np.max(orbit.space.residual(orbit.configuration)))
     return Invariants(
         states=len(orbit),
         steps=0 if h is None else round(duration / h),
-        energy_drift=_energy_drift(orbit.energy, 0.0, forced=False),
+        energy_drift=_energy_drift(orbit.energy, work, forced=driven),
         constraint_residual=float(orbit.constraint_residual.max()),
         group_residual=on_group,
         reversal_defect=None,
         largest_step_angle=None,
         outcome=orbit.outcome,
+        work=float(work[-1]) if driven else None,
     )
 
 

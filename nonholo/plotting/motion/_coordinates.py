@@ -6,13 +6,15 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
 from nonholo.base.types import Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.orbit import AbstractOrbit
 from nonholo.plotting import parts, theme
-from nonholo.plotting.motion._point_track import dress_path, mark_path_ends
+from nonholo.plotting.motion._bodies import bodies_of
+from nonholo.plotting.motion._path import dress_path, mark_path_ends
 from nonholo.plotting.motion._time_series import draw_components, velocity_names
 
 _GREEK = (
@@ -35,6 +37,8 @@ _GREEK = (
     *("pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega"),
 )
 _PLACES = ("x", "y", "z")
+Drawn = tuple[Artist, tuple[Artist, ...], Artist | None]
+"""The path, the body now and then, the path of a flow."""
 
 
 class Track(NamedTuple):
@@ -71,22 +75,27 @@ def track_of(orbit: AbstractOrbit) -> Track | None:
     return Track(title, names, functools.partial(_columns, [space.index(name) for name in shown]), is_place)
 
 
-@theme.styled
-def draw_path(track: Track, orbit: AbstractOrbit, flow: AbstractOrbit | None, axes: Any) -> None:
-    """Draw the path in the colors of time, its ends, and that of a flow beside it."""
+def draw_track(track: Track, orbit: AbstractOrbit, flow: AbstractOrbit | None, axes: Any) -> Drawn:
+    """Draw the path in the colors of time, its ends, the body now and then, and the path of a flow beside it."""
     points = track.points(orbit)
     chosen = parts.evenly_in_box(points)
     theme.write_title(axes, track.title)
+    bodies = bodies_of(orbit, points) if track.is_place else None
     if track.is_place:
-        dress_path(axes, points[chosen], track.names)
+        dress_path(axes, points[chosen] if bodies is None else bodies.with_corners(points), track.names)
     else:
         axes.set(xlabel=track.names[0], ylabel=track.names[1])
         axes.margins(0.1)
-    parts.draw_in_time(axes, orbit, points, chosen, zorder=3)
-    if flow is not None:
-        parts.draw_flow(axes, track.points(flow))
+    drawn = parts.draw_in_time(axes, orbit, points, chosen, zorder=3)
+    curve = None if flow is None else parts.draw_flow(axes, track.points(flow))
+    artists = () if bodies is None else bodies.draw(axes)
     mark_path_ends(axes, points, orbit)
     theme.legend_above(axes)
+    return drawn, artists, curve
+
+
+draw_path = theme.styled(draw_track)
+"""The same as a part of another picture, whose title it does not have."""
 
 
 @theme.styled

@@ -51,7 +51,7 @@ class EnergyError:
 def energy_error(orbit: AbstractOrbit, axes: Axes | None = None, **look: Unpack[theme.Look]) -> EnergyError:
     r"""Draw the relative error of the reduced constrained energy, under forces that of their balance, against time.
 
-    $$ (E_k - E_0)/E_0 , $$
+    $$ (E_k - E_0)/E_0, \qquad (E_k - E_0 - W_k)/\max_j|E_j| \text{ under forces that do the work } W_k, $$
 
     in units of 1e-16, or of a larger power of ten where rounding is not what is seen. The shaded band is the machine
     epsilon 2.2e-16 of double precision to either side. At rest, where E_0 = 0, the error is absolute. A line of
@@ -75,14 +75,17 @@ def energy_error(orbit: AbstractOrbit, axes: Axes | None = None, **look: Unpack[
     if not orbit.has_poses and orbit.system.is_spatial:
         posed("energy_error(orbit=...)", orbit)
     axes = theme.axes_or_new(axes, (6.0, 2.6))
-    energy = orbit.energy if orbit.work is None else orbit.energy - orbit.work
-    error = (energy - energy[0]) / (energy[0] or 1.0)
+    work = orbit.work
+    balanced = bool(work.any())
+    energy, name = orbit.energy - work, "(E - W)" if balanced else "E"
+    size = np.abs(orbit.energy).max() if balanced else energy[0]
+    error = (energy - energy[0]) / (size or 1.0)
     unit = _unit(float(np.abs(error).max()))
     rounding, drawn = _over_rounding(orbit, axes, error / unit, unit)
-    theme.write_title(axes, "Change of energy" if _is_driven(orbit) else "Energy error")
-    _dress(axes, orbit.time, error / unit, unit, rf"\Delta E{'/E' if energy[0] else ''}")
+    theme.write_title(axes, "Energy less work" if balanced else "Energy error")
+    _dress(axes, orbit.time, error / unit, unit, rf"\Delta {name}{'/E' if size else ''}")
     small: Any = {"color": theme.QUIET, "fontsize": "medium", "va": "top", "path_effects": theme.HALO, "zorder": 6}
-    expected = axes.text(0.012, 0.97, _expected(orbit), transform=axes.transAxes, **small)
+    expected = axes.text(0.012, 0.97, _expected(orbit, balanced), transform=axes.transAxes, **small)
     return EnergyError(axes, drawn, rounding, unit, expected)
 
 
@@ -108,15 +111,10 @@ def _over_rounding(
     return rounding, (_error if orbit.is_discrete else _curve)(axes, orbit.time, error)
 
 
-def _is_driven(orbit: AbstractOrbit) -> bool:
-    """Tell whether an orbit in coordinates is one of a driven system, whose balance of work is not known."""
-    return orbit.work is None and orbit.system.is_driven
-
-
-def _expected(orbit: AbstractOrbit) -> str:
+def _expected(orbit: AbstractOrbit, balanced: bool) -> str:
     if orbit.is_measured:
         return "of given poses"
-    return "changed by what drives the system" if _is_driven(orbit) else _EXPECTED[orbit.conserves_energy]
+    return "of order 2 in the time between states" if balanced else _EXPECTED[orbit.conserves_energy]
 
 
 def _unit(largest: float) -> float:

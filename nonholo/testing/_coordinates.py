@@ -1,0 +1,250 @@
+"""Whether a system in coordinates moves as its functions say, and its discretization as the discrete principle does."""
+
+import dataclasses
+import functools
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from nonholo.base.checks import error, shown
+from nonholo.base.types import Float
+from nonholo.simulation import flow, simulate
+from nonholo.testing._measures import derivative, gap, largest, relative
+from nonholo.testing._orbit_samples import COUNTS, made, off_two, raised
+from nonholo.testing._report import Check, measures, need
+
+SYSTEM: list[Check] = []
+MAP: list[Check] = []
+_OFFSET, _STATES = 1e-3, 5  # between times at which a flow is differentiated
+_SECOND = "errors against the flow fall with the square of the step: |slope - 2|"
+
+
+class CoordinateSamples:
+    """Motions of a system in coordinates from one start, and its functions as the user wrote them.
+
+    Args:
+        owner: The check.
+        system: The system.
+        rng: Where the start comes from.
+        configuration: Where it starts; random by default, with what is prescribed.
+        time_step: h, of a discretization.
+        steps: Number of steps of the orbit.
+    """
+
+    def __init__(
+        self,
+        owner: str,
+        system: Any,
+        rng: np.random.Generator,
+        configuration: Any,
+        time_step: Any = 1.0,
+        steps: int = 4,
+    ) -> None:
+        if not getattr(system, "coordinates", ()):
+            remedy = "Pass a LagrangeDAlembert, or a body on a group as an LLSystem or LRSystem."
+            raise error(f"{owner}(...)", "be in coordinates or an LL or LR system", shown(system), remedy)
+        self.system, self.time_step, self.steps, n = system, float(time_step), steps, system.dimension
+        self.q = rng.normal(size=n) if configuration is None else configuration
+        self._drawn = rng.normal(size=n)
+        if configuration is None:
+            for index, motion in system.prescribed:
+                self.q[index] = self._value(motion, 0.0)
+
+    def _value(self, function: Callable[..., Any], *arguments: Any) -> np.ndarray:
+        from nonholo.base.numerics import double_precision
+
+        with double_precision():
+            return np.asarray(function(*arguments))
+
+    def lagrangian(self, q: np.ndarray, v: np.ndarray, t: float) -> np.ndarray:
+        """Return L."""
+        return self._value(self.system.lagrangian, q, v, *([t] if self.system.takes_time("lagrangian") else []))
+
+    def forms(self, q: np.ndarray, t: float) -> Float[np.ndarray, "s n"]:
+        """Return the rows of the constraint, those of prescribed coordinates last."""
+        system, fixed = self.system, [i for i, _ in self.system.prescribed]
+        rows = np.zeros((0, system.dimension))
+        if system.constraint_forms is not None:
+            rows = self._value(system.constraint_forms, q, *([t] if system.takes_time("constraint_forms") else []))
+        return np.concatenate([rows, np.eye(system.dimension)[fixed]])
+
+    def force(self, t: float, q: np.ndarray, v: np.ndarray, step: int) -> np.ndarray:
+        """Return the force; of a table that of a step."""
+        if self.system.table is not None:
+            return self.system.table.acting(np.array([step]))[0]
+        return np.zeros_like(v) if self.system.force is None else self._value(self.system.force, t, q, v)
+
+    def gradient(self, function: Callable[[np.ndarray], Any], at: np.ndarray) -> Float[np.ndarray, "n"]:
+        """Return the derivatives of a function of n numbers."""
+        return np.array([derivative(lambda t, x=x: function(at + t * x)) for x in np.eye(len(at))])
+
+    @functools.cached_property
+    def momentum(self) -> Float[np.ndarray, "n"]:
+        """A momentum at the start, of velocities of about norm one."""
+        free = dataclasses.replace(self.system, force=None)  # a table has no flow
+        speed = np.linalg.norm(flow(free, configuration=self.q, momentum=self._drawn, times=[0.0]).body_velocity)
+        return self._drawn / max(1.0, float(speed))
+
+    @functools.cached_property
+    def near(self) -> Any:
+        """The flow at a few times close together."""
+        return self._flow(_OFFSET * np.arange(_STATES))
+
+    def _flow(self, times: Any) -> Any:
+        need(self.system.table is None, "one force for each step")
+        return flow(self.system, configuration=self.q, momentum=self.momentum, times=times, rtol=1e-13, atol=1e-14)
+
+    @functools.cached_property
+    def run(self) -> Any:
+        """An orbit of the discretization, or why there is none."""
+        try:
+            return self._run(self.time_step, self.steps)
+        except Exception as failure:  # the functions under test are a user's and may raise anything
+            return failure
+
+    @property
+    def orbit(self) -> Any:
+        """The orbit."""
+        return made(self.run, "the orbit failed")
+
+    def _run(self, time_step: float, steps: int, **start: Any) -> Any:
+        start = start or {"configuration": self.q, "momentum": self.momentum}
+        return simulate(self.system.discretize(time_step), steps=steps, **start)
+
+    @functools.cached_property
+    def span(self) -> float:
+        """A time in which velocities do not change much, ten time steps at most."""
+        return min(COUNTS[0] * self.time_step, 1.0)
+
+    @functools.cached_property
+    def paths(self) -> list[Any]:
+        """One path in more and more steps."""
+        made(self.run, "the orbit failed")
+        need(not getattr(self.system.discrete_lagrangian, "is_of_one_step", False), "made for one time step")
+        return [self._run(self.span / n, n) for n in COUNTS]
+
+    @functools.cached_property
+    def end(self) -> Any:
+        """The flow at its end."""
+        return self._flow([0.0, self.span])
+
+
+@measures(SYSTEM, "momentum", "p = dL/dv, by differences", 1e-8)
+def _momentum(s: CoordinateSamples) -> float:
+    q, v, t, p = _middle(s)
+    return relative(p, s.gradient(lambda w: s.lagrangian(q, w, t), v))
+
+
+@measures(SYSTEM, "energy", "E = v p - L", 1e-11)
+def _energy(s: CoordinateSamples) -> float:
+    q, v, t, p = _middle(s)
+    expected = v @ p - s.lagrangian(q, v, t)
+    return abs(s.near.energy[2] - expected) / (abs(expected) + abs(v @ p))
+
+
+@measures(SYSTEM, "velocity", "the flow moves with its velocity", 1e-8)
+def _velocity(s: CoordinateSamples) -> float:
+    return gap(_slope(s.near.configuration), s.near.body_velocity[2])
+
+
+@measures(SYSTEM, "constraint", "A v = b along the flow", 1e-11)
+def _constraint(s: CoordinateSamples) -> float:
+    return largest(s.near.constraint_residual) / (1 + largest(s.near.body_velocity))
+
+
+@measures(SYSTEM, "equations of motion", "p' = dL/dq + f + sum lambda_j A^j, by differences", 1e-6)
+def _equations(s: CoordinateSamples) -> float:
+    q, v, t, _ = _middle(s)
+    along = s.gradient(lambda x: s.lagrangian(x, v, t), q) + s.force(t, q, v, 0)
+    return gap(_slope(s.near.momentum), along + s.near.multipliers[2] @ s.forms(q, t))
+
+
+@measures(SYSTEM, "balance", "the energy changes by the work of forces: relative to both", 1e-4)
+def _balance(s: CoordinateSamples) -> float:
+    left = s.near.energy - s.near.energy[0] - s.near.work
+    return largest(left) / (_OFFSET * (1e-3 + largest(s.near.energy)) + largest(s.near.work))
+
+
+def _middle(s: CoordinateSamples) -> tuple[np.ndarray, np.ndarray, float, np.ndarray]:
+    return s.near.configuration[2], s.near.body_velocity[2], s.near.time[2], s.near.momentum[2]
+
+
+def _slope(rows: Float[np.ndarray, "5 n"]) -> Float[np.ndarray, "n"]:
+    return derivative(lambda t: rows[2 + round(t / _OFFSET)], _OFFSET)
+
+
+@measures(MAP, "orbit", "a run goes through: steps that are missing", 0.0)
+def _orbit(s: CoordinateSamples) -> float:
+    return float(s.steps + 1 - len(raised(s.run)))
+
+
+@measures(MAP, "discrete constraint", "F(q_k, q_(k+1)) = 0", 1e-11)
+def _discrete_constraint(s: CoordinateSamples) -> float:
+    return largest(s.orbit.constraint_residual) / (1 + largest(s.orbit.body_velocity))
+
+
+@measures(MAP, "prescribed", "prescribed coordinates are where they have to be", 1e-12)
+def _prescribed(s: CoordinateSamples) -> float:
+    need(s.system.prescribed, "nothing is prescribed")
+    pairs = ((s.orbit.configuration[:, i], motion) for i, motion in s.system.prescribed)
+    return max(gap(rows, [s._value(motion, t) for t in s.orbit.time]) for rows, motion in pairs)
+
+
+@measures(MAP, "start", "the first momentum along the constraint is that of the start", 1e-11)
+def _start(s: CoordinateSamples) -> float:
+    rows = s.forms(s.orbit.configuration[0], 0.0)
+    missed = s.orbit.momentum[0] - s.momentum
+    across = np.linalg.lstsq(rows.T, missed)[0] @ rows
+    return largest(missed - across) / (1 + largest(s.momentum))
+
+
+@measures(MAP, "discrete principle", "P_(k+1) - P+_k = sum lambda_j A^j, by differences of the Lagrangian", 1e-7)
+def _principle(s: CoordinateSamples) -> float:
+    need(s.system.discrete_lagrangian is None, "a discrete Lagrangian of its own")
+    leaving, arriving = np.array([_ends(s, k) for k in range(s.steps)]).transpose(1, 0, 2)
+    nodes = zip(s.orbit.multipliers, s.orbit.configuration[1:], s.orbit.time[1:], strict=True)
+    across = np.array([impulse @ s.forms(q, t) for impulse, q, t in nodes])
+    return largest(leaving[1:] - arriving[:-1] - across[:-1]) / (1 + largest(leaving))
+
+
+def _ends(s: CoordinateSamples, k: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return -D_1 L_d - f^- and D_2 L_d + f^+ of a step, by differences."""
+    q, t, h = s.orbit.configuration[k], s.orbit.time[k], s.time_step
+    after, v = q + s.orbit.displacement[k], s.orbit.body_velocity[k]
+
+    def action(ends: np.ndarray) -> np.ndarray:
+        first, last = np.split(ends, 2)
+        rate = (last - first) / h
+        if s.system.rule == "midpoint":
+            return h * s.lagrangian((first + last) / 2, rate, t + h / 2)
+        return h * (s.lagrangian(first, rate, t) + s.lagrangian(last, rate, t + h)) / 2
+
+    below, above = np.split(s.gradient(action, np.concatenate([q, after])), 2)
+    return -below - h / 2 * s.force(t, q, v, k), above + h / 2 * s.force(t + h, after, v, k)
+
+
+@measures(MAP, "reversal", "a motion that nothing drives goes back the way it came", 1e-9)
+def _reversal(s: CoordinateSamples) -> float:
+    need(not s.system.is_driven, "forces, or what drives it, act")
+    own = s.system.discrete_lagrangian or s.system.discrete_constraints
+    need(own is None, "discrete functions of its own")
+    q, d = s.orbit.configuration, s.orbit.displacement
+    back = s._run(s.time_step, s.steps - 1, configuration=q[-1], displacement=-d[-2])
+    return gap(back.configuration[::-1], q[1:])
+
+
+@measures(MAP, "order of momenta", _SECOND, 0.15)
+def _order_of_momenta(s: CoordinateSamples) -> float:
+    return off_two([relative(orbit.restricted_momentum[-1], s.end.restricted_momentum[-1]) for orbit in s.paths])
+
+
+@measures(MAP, "order of configurations", _SECOND, 0.15)
+def _order_of_configurations(s: CoordinateSamples) -> float:
+    return off_two([gap(orbit.configuration[-1], s.end.configuration[-1]) for orbit in s.paths])
+
+
+@measures(MAP, "order of the balance", "energy less work changes by the square of the step: |slope - 2|", 0.15)
+def _order_of_balance(s: CoordinateSamples) -> float:
+    left = [orbit.energy - orbit.energy[0] - orbit.work for orbit in s.paths]
+    return off_two([largest(each) / (1 + largest(orbit.energy)) for each, orbit in zip(left, s.paths, strict=True)])
