@@ -10,6 +10,7 @@ from nonholo.base.checks import array, count, error, is_traced, shape_of
 from nonholo.base.types import Array
 from nonholo.discrete import Discretization, ScalarRoute, as_discretization
 from nonholo.discrete.definition import Rollout, in_double, rolled, traceable
+from nonholo.simulation.runs import check_forces
 from nonholo.systems import Start
 
 _rolled = equinox.filter_jit(rolled)
@@ -31,6 +32,9 @@ def rollout(
     $$ P(W_k)|_{\mathfrak d} = r_k + \tfrac h2 u_k|_{\mathfrak d}, \qquad
        r_{k+1} = (\mathrm{Ad}^*_{W_k}P(W_k) + \tfrac h2 u_k)|_{\mathfrak d}, \qquad g_{k+1} = g_kW_k. $$
 
+    Of a `Forced` system `Gravity`, `Friction` and a table add to the half impulses as in `simulate`, and their numbers are
+    differentiated too.
+
     It works under `jax.jit`, `jax.vmap`, `jax.jvp`, `jax.vjp`, `jax.jacfwd`, `jax.grad` and repeated ones, and never
     raises there. Derivatives are those of the implicit function of a step, to rounding, never of the iteration that
     finds its root; they are finite at rest, and up to displacements of half a turn. Where roots of the map merge, at a
@@ -50,7 +54,7 @@ def rollout(
         restricted_velocity: The same, in rows of the constraint subspace.
         momentum: Start with this momentum, full (on the momentum locus) or along the constraint subspace.
         configuration: First pose, a matrix of the group; the identity by default.
-        controls: Body covectors u_k, (steps, dim), constant over a step: half of the impulse h u_k acts at each end of
+        controls: Body covectors u_k, (steps, dim), constant over a step, beside the forces of the system: half of the impulse h u_k acts at each end of
             step k, along the constraint; none by default.
         save_every: Steps between saved states.
 
@@ -73,7 +77,7 @@ def rollout(
         [[-0.228  1.864 -0.091]
          [ 1.719  0.543  0.688]]
     """
-    as_discretization("rollout(discrete=...)", discrete, composed=True)
+    as_discretization("rollout(discrete=...)", discrete, composed=True, forced=True)
     sizes = tuple(
         count(f"rollout({name}=...)", value, "Pass a number of steps.")
         for name, value in (("steps", steps), ("save_every", save_every))
@@ -89,9 +93,15 @@ def rollout(
         if discrete.order > 2:
             got = f"order {discrete.order}"
             raise error("rollout(controls=...)", "have a step of order 2", got, "Use discretize(..., order=2).")
-    route = dataclasses.replace(discrete, order=2).route
+    check_forces("rollout", discrete, sizes[0])
+    forced = discrete.forces
+    if forced is not None and forced.needs_function:
+        remedy = "Use Gravity, Friction or a table: what a function does is not traced."
+        raise error("rollout(discrete=...)", "have forces that are numbers", "a Python function", remedy)
+    free = discrete if not discrete.system.is_forced else dataclasses.replace(discrete, system=discrete.system.system)
+    route = dataclasses.replace(free, order=2).route
     closed = jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None
-    return in_double(_rolled, discrete, closed, (start.name, value, g), controls, sizes)
+    return in_double(_rolled, free, closed, (start.name, value, g), controls, sizes, forced)
 
 
 def _checked_start(discrete: Discretization, start: Start) -> tuple[Array, Array]:
