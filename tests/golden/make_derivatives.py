@@ -115,7 +115,7 @@ def end(case: Case, numbers: list[Any], roots: Roots) -> Array:
 
 
 def kicked(case: Case, body: Any, state: Any, forces: Any, tau: Any) -> Array:
-    """Return the momenta after half an impulse: the solution of r' = a - D r, a constant, from its matrix exponential."""
+    """Return the momenta after half an impulse: the solution of r' = a - D r by a matrix exponential."""
     (rows, basis, to_velocity), (r, g), (control, others), k = body, state, forces, len(case.rows)
     friction, weight = others[: len(case.friction)], others[len(case.friction) :]
     covector = control

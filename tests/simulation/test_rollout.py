@@ -76,7 +76,7 @@ def _point(name: str) -> np.ndarray:
 @pytest.mark.parametrize("state", ["moving", "at rest"])
 @pytest.mark.parametrize("name", BODIES)
 def test_derivatives_agree_with_40_digits(name: str, state: str) -> None:
-    """Every number of body, time step, start, controls, friction and weight moves the end as differences in 60 digits say."""
+    """Every number of body, time step, start, controls and forces moves the end as differences in 60 digits say."""
     case = CASES[name if state == "moving" else f"{name} at rest"]
     with jax.enable_x64(True):
         end, derivative = _derivatives(name)(_point(case["name"]))

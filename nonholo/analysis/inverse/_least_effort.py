@@ -2,7 +2,7 @@ r"""Forces of least effort that meet goals, of many members at once: Newton's me
 
 With $c(f) = 0$ and $l \le f \le u$ the least of $\tfrac12|f|^2$ obeys $f = \mathrm{clip}(J^T\lambda, l, u)$,
 $J = \partial c/\partial f$. A step goes to the bounds that this names and meets the linearized goal with what is left;
-conjugate gradients go on along the goal, with second derivatives from differences of J. Nothing here knows of motions.
+conjugate gradients then move along the goal, with second derivatives from differences of J. It knows of no motions.
 """
 
 import dataclasses

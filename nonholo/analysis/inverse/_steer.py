@@ -127,7 +127,7 @@ def steer(
     controls = forces.reshape(-1, steps, k) @ np.linalg.pinv(system.constraint_subspace).T
     effort = float(discrete.time_step) * (forces**2).sum(axis=1) / 2
     found = ends[:2], controls, effort, gap, is_least
-    return Steering(discrete, *(_chosen(found, 0) if is_one else found))
+    return Steering(discrete, *cast(Any, _chosen(found, 0) if is_one else found))
 
 
 def _best(

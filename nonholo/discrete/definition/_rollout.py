@@ -88,8 +88,7 @@ def rolled(
     """
     (name, value, g), (steps, every), system = start, sizes, discrete.system
     r, g = _along(discrete, name, jnp.asarray(value), jnp.asarray(g)), jnp.asarray(g)
-    impulse = None if controls is None and forced is None else _impulse_of(discrete.time_step / 2, forced)
-    rows = None if impulse is None else _rows(system.group.dim, steps, controls, forced)
+    impulse, rows = _impulse_of(discrete, forced, controls, steps)
     if closed is not None and discrete.order == 2:
         step, C, at = _closed_step(discrete, closed, g, impulse)
         start = C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2
@@ -100,25 +99,31 @@ def rolled(
     given = value if name == "momentum" and value.shape == (system.group.dim,) else None
     time = discrete.time_step * every * jnp.arange(1 + steps // every)
     states = jax.vmap(at)(nodes)
-    impulses = None if impulse is None else jax.vmap(impulse)(states[0], states[2], rows[::every])
-    potential = None if forced is None else forced.potential_energy(states[2])
-    return _decoded(discrete, nodes, states, given, (impulses, potential), time)
+    forces = jnp.zeros(()), jnp.zeros(())
+    if impulse is not None:
+        forces = jax.vmap(impulse)(states[0], states[2], rows[::every]), forces[1]
+    if forced is not None:
+        forces = forces[0], forced.potential_energy(states[2])
+    return _decoded(discrete, nodes, states, given, forces, time)
 
 
-def _impulse_of(half: Array, forced: Forced | None) -> _Impulse:
-    """Return the function that gives half the impulse of a step."""
+def _impulse_of(discrete: Scheme, forced: Forced | None, controls: Array | None, steps: int) -> tuple[Any, Any]:
+    """Return the function that gives half the impulse of a step, and the body covectors of steps; None where free.
+
+    Nothing of them acts over what follows the last step.
+    """
+    half, dim = discrete.time_step / 2, discrete.system.group.dim
+    rows = jnp.zeros((steps + 1, dim)) if controls is None else jnp.pad(controls, ((0, 1), (0, 0)))
     if forced is None:
-        return lambda r, g, row: half * row
+        return (None, None) if controls is None else (lambda _r, _g, row: half * row, rows)
     fixed = None
     if forced.friction is not None and not forced.is_spatial:
         fixed = forced.propagator(jnp.asarray(forced.constraint_subspace.T), half)
-    return lambda r, g, row: forced.impulse(r, g, forced.potential_force(g) + row, half, fixed)
 
+    def impulse(r: Array, g: Array, row: Array) -> Array:
+        return forced.impulse(r, g, forced.potential_force(g) + row, half, fixed)
 
-def _rows(dim: int, steps: int, controls: Array | None, forced: Forced | None) -> Array:
-    """Return the body covectors that act constantly over steps; none over what follows the last one."""
-    rows = jnp.zeros((steps + 1, dim)) if forced is None else jnp.asarray(forced.rows(np.arange(steps + 1)))
-    return rows if controls is None else rows.at[:-1].add(controls)
+    return impulse, rows + forced.rows(np.arange(steps + 1))
 
 
 def _as_it_is(node: _Node) -> tuple[Array, ...]:
@@ -272,7 +277,7 @@ def _decoded(
     nodes: _Node,
     states: tuple[Array, ...],
     momentum: Array | None,
-    forces: tuple[Array | None, Array | None],
+    forces: tuple[Array, Array],
     time: Array,
 ) -> Rollout:
     """Return what saved momenta, charts, poses and those that follow are, from the first one without a step on NaN.
@@ -289,8 +294,7 @@ def _decoded(
         return r, momentum_of(first, y, g, "left"), W, g, system.constrained_energy(r, g)
 
     (r, P, W, g, energy), code = jax.vmap(at)(*states), nodes.code
-    impulses, potential = forces
-    P, energy = P if impulses is None else P - impulses, energy if potential is None else energy + potential
+    P, energy = P - forces[0], energy + forces[1]
     if momentum is not None:
         missed = jnp.sum((P[0] - momentum) ** 2) > ON_LOCUS**2 * jnp.sum(momentum**2)
         code = jnp.where((code == 0) & missed, int(Outcome.off_momentum_locus), code)

@@ -184,7 +184,9 @@ class Forced(AbstractSystem):
         found = exponential_increment(tau * block)[..., :k, :] + np.eye(k, 3 * k)
         return found.__array_namespace__().stack([found[..., j * k : (j + 1) * k] for j in range(3)])
 
-    def impulse(self, r: Array, g: Array, constant: Array, tau: Array, propagator: Any = None) -> Float[Array, "... dim"]:
+    def impulse(
+        self, r: Array, g: Array, constant: Array, tau: Array, propagator: Any = None
+    ) -> Float[Array, "... dim"]:
         """Return the impulses of constant body covectors and friction over a time, as `impulses`."""
         if self.friction is None:
             return tau * constant
