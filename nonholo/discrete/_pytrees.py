@@ -5,10 +5,10 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from nonholo.systems import SYSTEMS
+from nonholo.systems import SYSTEMS, Forced, Friction, Gravity
 
 _Class = TypeVar("_Class", bound=type)
-_TREES: list[Any] = list(SYSTEMS)
+_TREES: list[Any] = [*SYSTEMS, Forced, Friction, Gravity]
 
 
 class _FixedArray(NamedTuple):

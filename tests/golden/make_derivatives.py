@@ -49,10 +49,12 @@ class Case:
     controls: list[list[float]]
     skew: bool
     time_step: float = 0.3
+    friction: tuple[float, ...] = ()  # coefficients
+    weight: tuple[float, ...] = ()  # the force, and the body point where it acts
 
     def numbers(self) -> list[Any]:
         """Return all numbers, exactly."""
-        flat = [x for row in self.controls for x in row]
+        flat = [*(x for row in self.controls for x in row), *self.friction, *self.weight]
         return [mpf(x) for x in (*self.body, self.time_step, *self.velocity, *flat)]
 
     def tensor(self, body: list[Any]) -> Array:
@@ -88,22 +90,45 @@ def end(case: Case, numbers: list[Any], roots: Roots) -> Array:
     count, k = len(case.body), len(case.rows)
     tensor, h = case.tensor(numbers[:count]), numbers[count]
     velocity = np.array(numbers[count + 1 : count + 1 + k])
-    impulses = np.array(numbers[count + 1 + k :], dtype=object).reshape(-1, len(case.basis)) * h / 2
+    rest = numbers[count + 1 + k :]
+    size = len(case.basis)
+    controls = np.array(rest[: size * len(case.controls)], dtype=object).reshape(-1, size)
+    others = np.array(rest[size * len(case.controls) :], dtype=object)
     basis, rows = exact(case.basis), exact(case.rows)
     skew = exact(int(case.skew))
     equations = Equations(basis, tensor, exact(h), rows, exact(case.annihilator).reshape(-1, len(basis)), skew)
     inertia = exact(inertia_operator(case.basis, tensor.tolist()))
     r, g = rows @ inertia @ rows.T @ velocity, exact(np.eye(len(tensor), dtype=int).tolist())
+    to_velocity = np.array(mp.inverse(mp.matrix((rows @ inertia @ rows.T).tolist())).tolist())
     for step in range(STEPS):
-        kick = rows @ impulses[step] if len(impulses) else 0 * r
+        control = controls[step] if len(controls) else exact([0] * size)
+        pushed = kicked(case, (rows, basis, to_velocity), (r, g), (control, others), h / 2)
         if step == len(roots):
-            x = solve(equations, r + kick, principal(equations, r + kick))
+            x = solve(equations, pushed, principal(equations, pushed))
             roots.append((x, np.linalg.inv(derivative(equations.rounded(), x.astype(float)))))
-        x = refined(equations, r + kick, roots[step])
+        x = refined(equations, pushed, roots[step])
         w = displacement(basis, x)
-        r = rows @ adjoint(basis, w, displacement(basis, -x)).T @ momentum(equations, w) + kick
         g = g @ w
+        arriving = rows @ adjoint(basis, w, displacement(basis, -x)).T @ momentum(equations, w)
+        r = kicked(case, (rows, basis, to_velocity), (arriving, g), (control, others), h / 2)
     return np.concatenate([r, g.ravel()])
+
+
+def kicked(case: Case, body: Any, state: Any, forces: Any, tau: Any) -> Array:
+    """Return the momenta after half an impulse: the solution of r' = a - D r by a matrix exponential."""
+    (rows, basis, to_velocity), (r, g), (control, others), k = body, state, forces, len(case.rows)
+    friction, weight = others[: len(case.friction)], others[len(case.friction) :]
+    covector = control
+    if len(weight):
+        force, point = (np.append(part, mpf(last)) for part, last in zip(np.split(weight, 2), (0, 1), strict=True))
+        covector = control + np.array([force @ g @ np.array(b, dtype=object) @ point for b in basis])
+    a = rows @ covector
+    if not len(friction):
+        return r + tau * a
+    block = np.full((k + 1, k + 1), mpf(0), dtype=object)
+    block[:k, :k], block[:k, k] = -tau * rows @ np.diag(friction) @ rows.T @ to_velocity, tau * a
+    whole = np.array(mp.expm(mp.matrix(block.tolist()), method="taylor").tolist(), dtype=object).reshape(k + 1, k + 1)
+    return whole[:k, :k] @ r + whole[:k, k]
 
 
 def make_case(case: Case) -> dict[str, Any]:
@@ -117,6 +142,7 @@ def make_case(case: Case) -> dict[str, Any]:
         rows.append((end(case, there, roots) - end(case, back, roots)) / (2 * offset))
     print(case.name, len(rows), flush=True)
     given = {"body": case.body, "time_step": case.time_step, "velocity": case.velocity, "controls": case.controls}
+    given |= {"friction": case.friction, "weight": case.weight} if case.friction else {}
     found = {"end": decimals(here.tolist()), "derivative": decimals(np.array(rows).tolist())}
     return {"name": case.name, "steps": STEPS, **given, **found}
 
@@ -130,7 +156,7 @@ TILTED_ROWS, TILTED_AXIS = [[0.0, 1.0, 0.0], [-0.8, 0.0, 0.6]], [[0.6, 0.0, 0.8]
 
 
 def cases() -> list[Case]:
-    """Return six bodies, each in motion and at rest, where the displacement is the identity."""
+    """Return seven bodies, each in motion and at rest, where the displacement is the identity."""
     so3, so4, se3 = special_orthogonal(3), special_orthogonal(4), special_euclidean(3)
     pushes = [[0.3, -0.5, 0.2], [-0.4, 0.6, 0.1], [0.2, 0.3, -0.3], [0.5, -0.1, 0.4]]
     moving = [
@@ -140,6 +166,18 @@ def cases() -> list[Case]:
         Case("four", so4, suslov_rows(4), remaining(suslov_rows(4)), FOUR, [0.5, -0.4, 0.3], [], False),
         Case("mixed", se3, MIXED_SUBSPACE, MIXED_ANNIHILATOR, MIXED, [0.3, -0.2, 0.25], [], True),
         Case("driven sleigh", SE2, sleigh_rows_of_plane(), [[0, 0, 1]], SLEIGH, [0.8, -0.5], pushes, False),
+        Case(
+            "heavy sleigh",
+            SE2,
+            sleigh_rows_of_plane(),
+            [[0, 0, 1]],
+            SLEIGH,
+            [0.8, -0.5],
+            pushes,
+            False,
+            friction=(0.3, 0.2, 0.1),
+            weight=(0.4, -1.0, 0.5, 0.3),
+        ),
     ]
     return [
         *moving,

@@ -15,6 +15,8 @@ from nonholo.systems import AbstractSystem
 
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 FIELDS = ("time", "restricted_momentum", "momentum", "displacement", "configuration", "energy")
+HEAVY, RUB = nh.Gravity([0.2, -0.3, -1.0], [0.1, 0.2, 0.3]), nh.Friction(np.eye(3) / 5 + 0.1)
+TABLE = np.outer(np.sin(np.arange(50.0)), [0.4, -0.3, 0.2])
 CASES = {case["name"]: case for case in golden("derivatives.json")}
 MIXED = [
     [1.0, 0.0, 1.0, 0.75, -0.5, 0.75],
@@ -35,6 +37,7 @@ BODIES: dict[str, Callable[[jax.Array], AbstractSystem]] = {
     "four": lambda x: nh.SuslovTop(_symmetric(x, 4)),
     "mixed": lambda x: nh.LLSystem(nh.SE(3), _symmetric(x, 4), constraint_subspace=MIXED),
     "driven sleigh": lambda x: nh.ChaplyginSleigh(*x),
+    "heavy sleigh": lambda x: nh.ChaplyginSleigh(*x),
 }
 
 
@@ -42,8 +45,12 @@ def _end(name: str, x: jax.Array) -> jax.Array:
     """Return the end of an orbit of a golden case, from all of its numbers."""
     case = CASES[name]
     k, cut = len(case["velocity"]), len(case["body"])
-    discrete = nh.discretize(BODIES[name](x[:cut]), x[cut])
-    controls = x[cut + 1 + k :].reshape(case["steps"], -1) if case["controls"] else None
+    system, many = BODIES[name](x[:cut]), np.size(case["controls"])
+    controls = x[cut + 1 + k :][:many].reshape(case["steps"], -1) if many else None
+    if "friction" in case:
+        friction, force, point = jnp.split(x[cut + 1 + k + many :], [3, 5])
+        system = nh.Forced(system, nh.Gravity(force, point), nh.Friction(friction))
+    discrete = nh.discretize(system, x[cut])
     orbit = nh.rollout(discrete, restricted_velocity=x[cut + 1 : cut + 1 + k], controls=controls, steps=case["steps"])
     return jnp.concatenate([orbit.restricted_momentum[-1], orbit.configuration[-1].ravel()])
 
@@ -61,14 +68,15 @@ def _derivatives(name: str) -> Callable[[np.ndarray], tuple[jax.Array, jax.Array
 
 def _point(name: str) -> np.ndarray:
     case = CASES[name]
-    return np.concatenate([case["body"], [case["time_step"]], case["velocity"], *case["controls"]])
+    parts = [case["body"], [case["time_step"]], case["velocity"], *case["controls"]]
+    return np.concatenate([*parts, case.get("friction", []), case.get("weight", [])])
 
 
-@pytest.mark.profile("routes", keep=["driven*"])
+@pytest.mark.profile("routes", keep=["heavy*"])
 @pytest.mark.parametrize("state", ["moving", "at rest"])
 @pytest.mark.parametrize("name", BODIES)
 def test_derivatives_agree_with_40_digits(name: str, state: str) -> None:
-    """Every number of body, time step, start and controls moves the end as differences in 60 digits say."""
+    """Every number of body, time step, start, controls and forces moves the end as differences in 60 digits say."""
     case = CASES[name if state == "moving" else f"{name} at rest"]
     with jax.enable_x64(True):
         end, derivative = _derivatives(name)(_point(case["name"]))
@@ -77,12 +85,12 @@ def test_derivatives_agree_with_40_digits(name: str, state: str) -> None:
 
 
 def test_reverse_mode_agrees_with_forward_mode() -> None:
-    """The transposed derivative of the driven sleigh is that of forward mode, at rest too."""
+    """The transposed derivative of the heavy sleigh is that of forward mode, at rest too."""
     with jax.enable_x64(True):
-        _, derivative = _derivatives("driven sleigh")(_point("driven sleigh at rest"))
+        _, derivative = _derivatives("heavy sleigh")(_point("heavy sleigh at rest"))
         weights = jnp.linspace(1.0, 2.0, derivative.shape[1])
-        pull = jax.jit(jax.grad(lambda x: _end("driven sleigh", x) @ weights))
-        np.testing.assert_allclose(pull(_point("driven sleigh at rest")), derivative @ weights, rtol=1e-12, atol=1e-12)
+        pull = jax.jit(jax.grad(lambda x: _end("heavy sleigh", x) @ weights))
+        np.testing.assert_allclose(pull(_point("heavy sleigh at rest")), derivative @ weights, rtol=1e-12, atol=1e-12)
 
 
 def _assert_same(found: Rollout, orbit: nh.Orbit, tolerance: float) -> None:
@@ -103,6 +111,9 @@ def _assert_same(found: Rollout, orbit: nh.Orbit, tolerance: float) -> None:
         pytest.param(nh.LLSystem(nh.SE(3), np.eye(4) + 0.1, constraint_subspace=MIXED), {}, id="mixed"),
         pytest.param(TOP, {"order": 4}, id="order 4"),
         pytest.param(TOP, {"difference": "logarithmic"}, id="logarithmic"),
+        pytest.param(nh.Forced(TOP, HEAVY, RUB), {}, id="heavy, with friction"),
+        pytest.param(nh.Forced(nh.ChaplyginSleigh(2.0, 1.0, 0.5, 0.3), force=TABLE), {}, id="driven"),
+        pytest.param(nh.Forced(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), HEAVY, RUB), {}, id="forces, fixed in space"),
     ],
 )
 def test_values_are_those_of_simulate(system: AbstractSystem, options: dict) -> None:
@@ -272,6 +283,8 @@ def test_near_half_a_turn_the_derivative_is_finite() -> None:
         ({"configuration": 2 * np.eye(3)}, "lie in SE"),
         ({"discrete": nh.discretize(nh.SuslovTop.arrowhead(np.ones(4), np.zeros(3)), 0.1)}, "system.dense"),
         ({"discrete": TOP}, "discretized system"),
+        ({"discrete": nh.discretize(nh.Forced(TOP, force=np.zeros((2, 3))), 0.1)}, "one for each row of the forces"),
+        ({"discrete": nh.discretize(nh.Forced(TOP, np.trace), 0.1)}, "have forces that are numbers"),
         (
             {"discrete": nh.discretize(TOP, 0.1, order=4), "controls": np.zeros((3, 3))},
             "have a step of order 2",

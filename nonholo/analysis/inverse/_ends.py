@@ -1,41 +1,61 @@
-"""How far controls end from a goal, with exact derivatives: in JAX."""
-
-from typing import Any
+"""How far controls end from goals, with exact derivatives: in JAX, many members at once."""
 
 import equinox
 import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.types import Array
+from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
-from nonholo.discrete.definition import in_double
+from nonholo.discrete.definition import Rollout, in_double
 from nonholo.simulation.traced import rollout
 
+Ends = tuple[Array, Array, Array | None, Array | None]
+"""First velocities and poses of members, and the poses and velocities that they are to have, None where free."""
 
-def missed_goal(discrete: Discretization, forces: np.ndarray, *ends: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Return what the goal is missed by, and its derivatives by the forces along the constraint, row by row."""
-    return in_double(_missed, discrete, forces, *ends)
+
+def missed_goals(
+    discrete: Discretization, forces: Float[np.ndarray, "m steps k"], ends: Ends, block: int
+) -> tuple[Float[np.ndarray, "m c"], Float[np.ndarray, "m c n"]]:
+    """Return what goals are missed by, and its derivatives by the forces along the constraint, n = steps k.
+
+    Members go in blocks of one size, for which alone the derivatives are compiled.
+    """
+    blocks = np.arange(-(-len(forces) // block) * block).reshape(-1, block) % len(forces)
+    parts = [in_double(_missed, discrete, *jax.tree.map(lambda x, at=at: x[at], (forces, ends))) for at in blocks]
+    values, slopes = (np.concatenate(part)[: len(forces)] for part in zip(*parts, strict=True))
+    return values, slopes.reshape(*values.shape, -1)
 
 
 @equinox.filter_jit
-def _missed(
-    discrete: Discretization, forces: Array, w: Array, g: Array, to_pose: Array | None, to_velocity: Array | None
-) -> tuple[Array, Array]:
-    system, steps = discrete.system, len(forces)
+def _missed(discrete: Discretization, forces: Array, ends: Ends) -> tuple[Array, Array]:
+    system = discrete.system
     covectors = np.linalg.pinv(system.constraint_subspace).T
 
-    def missed(forces: Array) -> tuple[Array, Array]:
-        start = {"restricted_velocity": w, "configuration": g}
-        orbit = rollout(discrete, **start, controls=forces @ covectors, steps=steps, save_every=steps)
-        parts = []
+    def missed(forces: Array, ends: Ends) -> tuple[Array, Array]:
+        (w, g, to_pose, to_velocity), parts = ends, []
+        orbit = _orbit(discrete, forces @ covectors, (w, g), len(forces))
         if to_pose is not None:
             parts.append(system.group.log(system.group.inverse(to_pose) @ orbit.configuration[-1]))
         if to_velocity is not None:
-            inertia = jnp.asarray(system.constrained_inertia)
-            parts.append(jnp.linalg.solve(inertia, orbit.restricted_momentum[-1]) - to_velocity)
-        found = jnp.concatenate(parts)
-        return found, found
+            parts.append(system.restricted_velocity(orbit.restricted_momentum[-1]) - to_velocity)
+        gap = jnp.concatenate(parts)
+        return gap, gap
 
-    slope, value = jax.jacrev(missed, has_aux=True)(forces)
-    return value, slope.reshape(len(value), -1)
+    slopes, values = jax.vmap(jax.jacrev(missed, has_aux=True))(forces, ends)
+    return values, slopes
+
+
+def driven(discrete: Discretization, controls: np.ndarray, start: tuple[np.ndarray, np.ndarray]) -> Rollout:
+    """Return the orbits under body covectors from velocities and poses of members."""
+    return in_double(_driven, discrete, controls, start)
+
+
+@equinox.filter_jit
+def _driven(discrete: Discretization, controls: Array, start: tuple[Array, Array]) -> Rollout:
+    return jax.vmap(lambda controls, start: _orbit(discrete, controls, start, 1))(controls, start)
+
+
+def _orbit(discrete: Discretization, controls: Array, start: tuple[Array, Array], every: int) -> Rollout:
+    at = dict(zip(("restricted_velocity", "configuration"), start, strict=True))
+    return rollout(discrete, **at, controls=controls, steps=len(controls), save_every=every)

@@ -1,41 +1,60 @@
 """`steer`: the controls that take a body from one state to another, by shooting over the exact step."""
 
 import dataclasses
-from collections.abc import Callable, Mapping
+import functools
+from collections.abc import Mapping
 from typing import Any, cast
 
 import numpy as np
-from scipy.optimize import least_squares, minimize
 
-from nonholo.base.checks import array, choice, count, error, needs, pair, shown
-from nonholo.base.types import Float
+from nonholo.analysis.inverse._least_effort import Missed, least_effort
+from nonholo.base.checks import array, choice, count, error, needs, pair, shape_of, shown
+from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, as_discretization
-from nonholo.systems import in_group
+from nonholo.systems import System, in_group
 
-_STARTS = 8  # random controls from which the goal is looked for
-_LOOKS = 100  # evaluations from each of them
-_TOLERANCE = 1e-8  # of the goal
-_ENDS = ("configuration", "restricted_velocity")
-_Missed = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+_SPREAD = (1.0, 2.0, 0.5, 4.0, 1.0, 2.0, 0.5, 4.0)  # of the random controls from which a goal is looked for, in turn
+_BLOCK = 32  # members in one call; of more JAX shares single operations among threads, which takes longer
+_TOLERANCE, _LEVEL = 1e-8, 1e-4  # of the goal, and of the gradient at a minimum
+Ends = tuple[np.ndarray, np.ndarray, np.ndarray | None, np.ndarray | None]
+"""First velocities and poses of members, and the poses and velocities that they are to have, None where free."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Steering:
-    """Controls that lead to a goal.
+    """Controls that lead to a goal; of many members at once every array has an axis of them in front.
 
     Attributes:
+        discrete: What was steered.
+        start: First velocities along the constraint, and poses.
         controls: Body covectors, (steps, dim), as `rollout` takes them.
-        orbit: The motion under them, a rollout.
         cost: Half the time integral of the squared forces along the rows of the constraint subspace.
         missed: The largest of the numbers by which the goal is missed.
         converged: Whether the goal is reached to 1e-8 and the cost is at a minimum nearby.
     """
 
-    controls: Float[np.ndarray, "steps dim"]
-    orbit: Any
-    cost: float
-    missed: float
-    converged: bool
+    discrete: Discretization
+    start: tuple[np.ndarray, np.ndarray]
+    controls: Float[np.ndarray, "... steps dim"]
+    cost: Float[np.ndarray, "..."]
+    missed: Float[np.ndarray, "..."]
+    converged: Array
+
+    @property
+    def failures(self) -> int:
+        """How many members have not converged."""
+        return int(np.sum(~self.converged))
+
+    @functools.cached_property
+    def orbit(self) -> Any:
+        """The motion under the controls, a `Rollout`."""
+        with needs("jax", "Steering.orbit"):
+            from nonholo.analysis.inverse._ends import driven
+        w, g = self.start
+        steps, dim = self.controls.shape[-2:]
+        members = w.reshape(-1, w.shape[-1]), g.reshape(-1, *g.shape[-2:])
+        orbits = driven(self.discrete, self.controls.reshape(-1, steps, dim), members)
+        return orbits if self.controls.ndim == 3 else type(orbits)(*(x[0] for x in orbits))
 
 
 def steer(
@@ -53,8 +72,11 @@ def steer(
 
     where $f_k$ are the components of the control of step k along the rows of the constraint subspace: of a sleigh the
     torque and the thrust along the blade. The orbit is the exact discrete one and its derivatives are exact
-    (`rollout`), so the goal is met to rounding, not to the error of a transcription. Least squares look for the goal
-    from random controls, sequential quadratic programming for the least effort; minima are local.
+    (`rollout`), so the goal is met to rounding, not to the error of a transcription. Newton's method on the equations
+    of the minimum begins at random controls, anew where it fails; minima are local.
+
+    Starts and goals may be many, with an axis of members in front: these are solved side by side. One that has no
+    such axis is that of all of them.
 
     Args:
         discrete: The discretized system, of order 2, with a left-invariant constraint.
@@ -65,7 +87,7 @@ def steer(
         cost: "effort".
 
     Returns:
-        The controls. `converged` is False where no way to the goal was found.
+        The controls. `converged` is False where no way to the goal was found; `failures` counts these members.
 
     Raises:
         ValueError: A bad argument.
@@ -74,80 +96,58 @@ def steer(
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.2), 0.1)
         >>> aside = np.array([[1.0, 0, 0], [0, 1, 1], [0, 0, 1]])
         >>> rest = {"configuration": aside, "restricted_velocity": (0.0, 0.0)}
-        >>> parked = nh.steer(sleigh, {}, rest, steps=40)
-        >>> parked.converged, bool(np.abs(parked.orbit.configuration[-1] - aside).max() < 1e-8)
-        (True, True)
+        >>> parked = nh.steer(sleigh, {"restricted_velocity": [(0.0, 0.0), (0.0, 0.5)]}, rest, steps=40)
+        >>> parked.controls.shape, parked.failures, bool(parked.missed.max() < 1e-8)
+        ((2, 40, 3), 0, True)
     """
-    as_discretization("steer(discrete=...)", discrete)
+    as_discretization("steer(discrete=...)", discrete, forced=True)
     steps = count("steer(steps=...)", steps, "Pass the number of steps.")
     choice("steer(cost=...)", cost, ("effort",))
     system, k = discrete.system, discrete.system.rank
     if system.is_spatial:
         got = type(system).__name__
         raise error("steer(discrete=...)", "have a left-invariant constraint", got, "Steer it by `nh.rollout`.")
-    g, w = _end("steer(start=...)", discrete, start)
-    to_pose, to_velocity = _end("steer(goal=...)", discrete, goal)
+    (w, g), (to_velocity, to_pose) = (
+        _end(f"steer({name}=...)", system, x) for name, x in (("start", start), ("goal", goal))
+    )
     if to_pose is None and to_velocity is None:
         raise error("steer(goal=...)", "name a pose or a velocity", "neither", "Pass configuration=.")
+    first = np.zeros(k) if w is None else w, system.group.identity if g is None else g
+    ends, is_one = _members((*first, to_pose, to_velocity))
     limits = _limits(bounds, steps, k)
     with needs("jax", "steer"):
-        from nonholo.analysis.inverse._ends import missed_goal
-        from nonholo.simulation.traced import rollout
-    g, w = system.group.identity if g is None else g, np.zeros(k) if w is None else w
-    known: dict[bytes, Any] = {}
+        from nonholo.analysis.inverse._ends import missed_goals
+    block, size = min(_BLOCK, len(ends[0])), system.constrained_inertia.diagonal()
+    size = np.tile(np.sqrt(steps) * size / (steps * float(discrete.time_step)) ** 2, steps)
 
-    def missed(forces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        key = forces.tobytes()
-        if key not in known:
-            known.clear()
-            known[key] = missed_goal(discrete, forces.reshape(steps, k), w, g, to_pose, to_velocity)
-        return known[key]
+    def missed(forces: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return missed_goals(discrete, forces.reshape(-1, steps, k), _chosen(ends, at), block)
 
-    forces, is_least = _least(missed, limits)
-    controls = forces.reshape(steps, k) @ np.linalg.pinv(system.constraint_subspace).T
-    start_at = {"restricted_velocity": w, "configuration": g}
-    orbit = rollout(discrete, **start_at, controls=controls, steps=steps)
-    gap = float(np.abs(missed(forces)[0]).max())
-    effort = float(discrete.time_step) * float(forces @ forces) / 2
-    return Steering(controls, orbit, effort, gap, bool(is_least and gap < _TOLERANCE))
+    forces, gap, is_least = _best(missed, size, len(ends[0]), limits)
+    controls = forces.reshape(-1, steps, k) @ np.linalg.pinv(system.constraint_subspace).T
+    effort = float(discrete.time_step) * (forces**2).sum(axis=1) / 2
+    found = ends[:2], controls, effort, gap, is_least
+    return Steering(discrete, *cast(Any, _chosen(found, 0) if is_one else found))
 
 
-def _least(missed: _Missed, limits: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, bool]:
-    """Return forces of least effort among those that meet the goal, and whether they are; else those that come near."""
-    low, high = limits
-    free, rng, best = high > low, np.random.default_rng(0), np.zeros(len(low))
-
-    def whole(x: np.ndarray) -> np.ndarray:
-        forces = low.copy()
-        forces[free] = x
-        return forces
-
-    box = list(zip(low[free], high[free], strict=True))
-    for _ in range(_STARTS):
-        first = np.clip(rng.normal(size=int(free.sum())), *np.transpose(box))
-        slope = cast(Any, lambda x: missed(whole(x))[1][:, free])
-        near = least_squares(
-            lambda x: missed(whole(x))[0], first, slope, bounds=(low[free] - 1e-12, high[free] + 1e-12), max_nfev=_LOOKS
-        )
-        best = whole(np.clip(near.x, *np.transpose(box)))
-        if np.abs(near.fun).max() > 1e-6:
-            continue
-        goal = {"type": "eq", "fun": lambda x: missed(whole(x))[0], "jac": slope}
-        options = {"ftol": 1e-14, "maxiter": 300}
-        found = minimize(
-            lambda x: (x @ x / 2, x),
-            best[free],
-            jac=True,
-            bounds=box,
-            constraints=goal,
-            method="SLSQP",
-            options=options,
-        )
-        if np.abs(missed(whole(found.x))[0]).max() < _TOLERANCE:
-            best = whole(found.x)
-            if found.success:
-                return best, True
-    return best, False
+def _best(
+    missed: Missed, size: np.ndarray, members: int, limits: tuple[np.ndarray, np.ndarray]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the forces of least effort, or those that come nearest, what they miss, and whether they are least."""
+    rng, left = np.random.default_rng(0), np.arange(members)
+    forces, gap, is_least = np.zeros((members, len(size))), np.full(members, np.inf), np.zeros(members, dtype=bool)
+    for spread in _SPREAD:
+        first = spread * size * rng.normal(size=(len(left), len(size)))
+        there = left
+        near, miss, rest = least_effort(lambda f, at, there=there: missed(f, there[at]), first, limits)
+        better = miss < gap[left]
+        now = left[better]
+        forces[now], gap[now] = near[better], miss[better]
+        is_least[now] = (miss < _TOLERANCE)[better] & (rest < _LEVEL)[better]
+        left = left[~is_least[left]]
+        if not len(left):
+            break
+    return forces, gap, is_least
 
 
 def _limits(bounds: Any, steps: int, k: int) -> tuple[np.ndarray, np.ndarray]:
@@ -162,13 +162,37 @@ def _limits(bounds: Any, steps: int, k: int) -> tuple[np.ndarray, np.ndarray]:
     return low, high
 
 
-def _end(where: str, discrete: Discretization, given: Any) -> tuple[np.ndarray | None, np.ndarray | None]:
-    """Return the pose and the velocity along the constraint that an end names."""
-    if not isinstance(given, Mapping) or not set(given) <= set(_ENDS):
-        raise error(where, f"name only {' and '.join(_ENDS)}", shown(given), "Pass a dictionary of them.")
-    pose, velocity = (given.get(name) for name in _ENDS)
-    g = None if pose is None else in_group(f"{where}['configuration']", discrete.system.group, pose)
-    remedy = "Pass one number for each admissible direction."
-    return g, None if velocity is None else array(
-        f"{where}['restricted_velocity']", velocity, (discrete.system.rank,), remedy
-    )
+def _end(where: str, system: System, given: Any) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """Return the velocities along the constraint and the poses that an end names, one or many of them."""
+    if not isinstance(given, Mapping) or not set(given) <= {"configuration", "restricted_velocity"}:
+        raise error(
+            where, "name only configuration and restricted_velocity", shown(given), "Pass a dictionary of them."
+        )
+    w, g = given.get("restricted_velocity"), given.get("configuration")
+    if w is not None:
+        shape = (None,) * (len(shape_of(w)) - 1) + (system.rank,)
+        w = array(f"{where}['restricted_velocity']", w, shape[-2:], "Pass one number for each admissible direction.")
+    if g is not None:
+        where, size = f"{where}['configuration']", system.group.identity.shape
+        shape = (None,) * (len(shape_of(g)) - 2) + size
+        g = array(where, g, shape[-3:], f"Pass elements of {system.group} as matrices.")
+        for one in g.reshape(-1, *size):
+            in_group(where, system.group, one)
+    return w, g
+
+
+def _members(ends: tuple[np.ndarray | None, ...]) -> tuple[Ends, bool]:
+    """Return ends with an axis of members each, and whether none had one."""
+    axes = (1, 2, 2, 1)
+    sizes = {len(x) for x, axis in zip(ends, axes, strict=True) if x is not None and x.ndim > axis}
+    if len(sizes) > 1 or 0 in sizes:
+        got = f"{sorted(sizes)} of them"
+        raise error("steer(start=..., goal=...)", "have as many members each", got, "Pass one, or one for each.")
+    count = max(sizes, default=1)
+    each = (x if x is None else np.broadcast_to(x, (count, *x.shape[-n:])) for x, n in zip(ends, axes, strict=True))
+    return cast(Any, tuple(each)), not sizes
+
+
+def _chosen(parts: Any, at: Any) -> Any:
+    """Return members of arrays."""
+    return parts if parts is None else parts[at] if hasattr(parts, "shape") else tuple(_chosen(x, at) for x in parts)

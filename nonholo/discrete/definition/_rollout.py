@@ -24,6 +24,7 @@ from nonholo.discrete.definition._root import ROOT
 from nonholo.discrete.definition._step import displaced, momentum_of, restricted
 from nonholo.discrete.routes import ScalarStep
 from nonholo.groups import AbstractMatrixGroup
+from nonholo.systems import Forced
 
 _SHORT = 64  # steps between saved states from which on reverse mode keeps checkpoints alone
 
@@ -66,9 +67,11 @@ class _Node(NamedTuple):
 
 
 _Step = Callable[[Array, Array, Array | None, Array | None], _Node]
-"""From momenta, pose, a guess of the chart and half an impulse to the node."""
+"""From momenta, pose, a guess of the chart and the control of the step to the node."""
 _Advance = Callable[[_Node, tuple[Array | None, Array | None]], tuple[_Node, None]]
-"""From a node, half an impulse and whether the step is taken at all to the node after it."""
+"""From a node, a control and whether the step is taken at all to the node after it."""
+_Impulse = Callable[[Array, Array, Array], Array]
+"""From momenta along the constraint, pose and control to half the impulse of a step, a body covector."""
 
 
 def rolled(
@@ -77,26 +80,50 @@ def rolled(
     start: tuple[str, Array, Array],
     controls: Array | None,
     sizes: tuple[int, int],
+    forced: Forced | None,
 ) -> Rollout:
-    """Return the orbit from a start, which has a name, a value and a pose; `sizes` are `steps` and `save_every`."""
+    """Return the orbit from a start, which has a name, a value and a pose; `sizes` are `steps` and `save_every`.
+
+    The discretization is that of the free system, `forced` the system with its forces.
+    """
     (name, value, g), (steps, every), system = start, sizes, discrete.system
     r, g = _along(discrete, name, jnp.asarray(value), jnp.asarray(g)), jnp.asarray(g)
-    impulses = kicks = None
-    if controls is not None:
-        nothing = jnp.zeros((1, system.group.dim), r.dtype)
-        impulses = kicks = jnp.concatenate([controls * discrete.time_step / 2, nothing])
+    impulse, rows = _impulse_of(discrete, forced, controls, steps)
     if closed is not None and discrete.order == 2:
-        step, C, at = _closed_step(discrete, closed, g)
-        kicks = None if kicks is None else kicks @ (C @ system.constraint_subspace).T
+        step, C, at = _closed_step(discrete, closed, g, impulse)
         start = C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2
     else:
-        step = _composed_step(discrete, closed) if discrete.order > 2 else _matrix_step(discrete)
+        step = _composed_step(discrete, closed) if discrete.order > 2 else _matrix_step(discrete, impulse)
         start, at = (r, g, len(discrete.variety.chart)), _as_it_is
-    nodes = _run(step, start, kicks, sizes)
+    nodes = _run(step, start, rows, sizes)
     given = value if name == "momentum" and value.shape == (system.group.dim,) else None
     time = discrete.time_step * every * jnp.arange(1 + steps // every)
-    impulses = None if impulses is None else impulses[::every]
-    return _decoded(discrete, nodes, jax.vmap(at)(nodes), given, impulses, time)
+    states = jax.vmap(at)(nodes)
+    forces = jnp.zeros(()), jnp.zeros(())
+    if impulse is not None:
+        forces = jax.vmap(impulse)(states[0], states[2], rows[::every]), forces[1]
+    if forced is not None:
+        forces = forces[0], forced.potential_energy(states[2])
+    return _decoded(discrete, nodes, states, given, forces, time)
+
+
+def _impulse_of(discrete: Scheme, forced: Forced | None, controls: Array | None, steps: int) -> tuple[Any, Any]:
+    """Return the function that gives half the impulse of a step, and the body covectors of steps; None where free.
+
+    Nothing of them acts over what follows the last step.
+    """
+    half, dim = discrete.time_step / 2, discrete.system.group.dim
+    rows = jnp.zeros((steps + 1, dim)) if controls is None else jnp.pad(controls, ((0, 1), (0, 0)))
+    if forced is None:
+        return (None, None) if controls is None else (lambda _r, _g, row: half * row, rows)
+    fixed = None
+    if forced.friction is not None and not forced.is_spatial:
+        fixed = forced.propagator(jnp.asarray(forced.constraint_subspace.T), half)
+
+    def impulse(r: Array, g: Array, row: Array) -> Array:
+        return forced.impulse(r, g, forced.potential_force(g) + row, half, fixed)
+
+    return impulse, rows + forced.rows(np.arange(steps + 1))
 
 
 def _as_it_is(node: _Node) -> tuple[Array, ...]:
@@ -113,35 +140,45 @@ def _along(discrete: Scheme, name: str, value: Array, g: Array) -> Array:
     return system.restrict_at(jnp.asarray(system.inertia_operator) @ value if name == "body_velocity" else value, g)
 
 
-def _closed_step(discrete: Scheme, closed: ScalarStep, g: Array) -> tuple[_Step, Array, Callable[[_Node], Any]]:
+def _closed_step(
+    discrete: Scheme, closed: ScalarStep, g: Array, impulse: _Impulse | None
+) -> tuple[_Step, Array, Callable[[_Node], Any]]:
     """Return the step of a kernel, the matrix of its momenta, and what its nodes are in the user's frame."""
     (body, C, rows), system = closed_step_of(discrete, closed), discrete.system
-    group, frame = system.group, jnp.asarray(system.form_frame)
+    group, frame, inverse = system.group, jnp.asarray(system.form_frame), jnp.linalg.inv(C)
 
-    def step(m: Array, q: Array, guess: Array | None, kick: Array | None) -> _Node:
-        kick = jnp.zeros_like(m) if kick is None else kick
-        pushed = m + kick
+    def pose(q: Array) -> Array:
+        return g @ frame @ group.matrix_from_pose(q) @ group.inverse(frame)
+
+    def kicked(m: Array, q: Array, row: Array | None) -> Array:
+        return m if impulse is None else m + C @ (system.constraint_subspace @ impulse(inverse @ m, pose(q), row))
+
+    def step(m: Array, q: Array, guess: Array | None, row: Array | None) -> _Node:
+        pushed = kicked(m, q, row)
         y, code = kernel_root(body, pushed, guess)
-        after = pushed + jnp.stack(kernels.increment(body, *pushed, *y)) + kick
-        return _Node(m, q, y, (after, jnp.stack(kernels.move(body, *y, *q))), code, jnp.sum(y))
+        after = jnp.stack(kernels.move(body, *y, *q))
+        arriving = kicked(pushed + jnp.stack(kernels.increment(body, *pushed, *y)), after, row)
+        return _Node(m, q, y, (arriving, after), code, jnp.sum(y))
 
     def at(node: _Node) -> tuple[Array, ...]:
-        pose = g @ frame @ group.matrix_from_pose(node.g) @ group.inverse(frame)
-        return jnp.linalg.solve(C, node.m), node.y if rows is None else node.y @ rows, pose, pose
+        place = pose(node.g)
+        return jnp.linalg.solve(C, node.m), node.y if rows is None else node.y @ rows, place, place
 
     return step, C, at
 
 
-def _matrix_step(discrete: Scheme) -> _Step:
+def _matrix_step(discrete: Scheme, impulse: _Impulse | None) -> _Step:
     """Return the step by the matrix equations."""
 
-    def step(r: Array, g: Array, guess: Array | None, kick: Array | None) -> _Node:
+    def kicked(r: Array, g: Array, row: Array | None) -> Array:
+        return r if impulse is None else r + restricted(discrete, impulse(r, g, row), g)
+
+    def step(r: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
         del guess  # there is no certificate
-        pushed = r if kick is None else r + restricted(discrete, kick, g)
+        pushed = kicked(r, g, row)
         y, code = principal_of(discrete, None, pushed, g)
         following, after = _moved(discrete, pushed, y, g)
-        following = following if kick is None else following + restricted(discrete, kick, after)
-        return _Node(r, g, y, (following, after), code, jnp.sum(y))
+        return _Node(r, g, y, (kicked(following, after, row), after), code, jnp.sum(y))
 
     return step
 
@@ -157,8 +194,8 @@ def _composed_step(discrete: Scheme, closed: ScalarStep | None) -> _Step:
         ahead, after = _moved(part, r, y, g)
         return (jnp.where(good, ahead, r), jnp.where(good, after, g), code), y
 
-    def step(r: Array, g: Array, guess: Array | None, kick: Array | None) -> _Node:
-        del guess, kick
+    def step(r: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
+        del guess, row
         begun = (r, g, jnp.zeros((), jnp.result_type(int)))
         (*after, code), charts = jax.lax.scan(substep, begun, jnp.asarray(weights(discrete.order), r.dtype))
         return _Node(r, g, charts[0], (after[0], after[1]), code, jnp.sum(charts))
@@ -187,22 +224,22 @@ def _rectified(group: AbstractMatrixGroup, g: Array) -> Array:
     return g.at[:n, :n].set(R @ (3 * jnp.eye(n, dtype=g.dtype) - square) / 2)
 
 
-def _run(step: _Step, start: tuple[Array, Array, int], kicks: Array | None, sizes: tuple[int, int]) -> _Node:
+def _run(step: _Step, start: tuple[Array, Array, int], controls: Array | None, sizes: tuple[int, int]) -> _Node:
     """Return the saved nodes from momenta, a pose and the size of a chart."""
     (m, g, size), (steps, every), advance = start, sizes, _advance_of(step)
     nothing = jnp.zeros(size, m.dtype)
     begin = _Node(m, g, nothing, (m, g), jnp.zeros((), jnp.result_type(int)), jnp.sum(nothing))
 
-    def stretch(node: _Node, pushes: Array | None) -> tuple[_Node, _Node]:
-        node = advance(node, (pushes, None))[0] if every == 1 else _advanced(advance, node, pushes, every)
+    def stretch(node: _Node, rows: Array | None) -> tuple[_Node, _Node]:
+        node = advance(node, (rows, None))[0] if every == 1 else _advanced(advance, node, rows, every)
         return node, node
 
     if every == 1:
-        return jax.lax.scan(stretch, begin, kicks, length=steps + 1)[1]
-    first, _ = advance(begin, (None if kicks is None else kicks[0], None))
+        return jax.lax.scan(stretch, begin, controls, length=steps + 1)[1]
+    first, _ = advance(begin, (None if controls is None else controls[0], None))
     saved = steps // every
-    pushes = None if kicks is None else kicks[1 : 1 + saved * every].reshape(saved, every, -1)
-    _, later = jax.lax.scan(stretch, first, pushes, length=saved)
+    rows = None if controls is None else controls[1 : 1 + saved * every].reshape(saved, every, -1)
+    _, later = jax.lax.scan(stretch, first, rows, length=saved)
     return jax.tree.map(lambda one, more: jnp.concatenate([one[None], more]), first, later)
 
 
@@ -210,8 +247,8 @@ def _advance_of(step: _Step) -> _Advance:
     """Return the step from node to node, which reverse mode computes once more but for its root."""
 
     def advance(node: _Node, row: tuple[Array | None, Array | None]) -> tuple[_Node, None]:
-        kick, acts = row
-        found = step(*node.after, node.y, kick)
+        control, acts = row
+        found = step(*node.after, node.y, control)
         acts = jnp.asarray(True) if acts is None else acts
         code = jnp.where((node.code == 0) & acts, found.code, node.code)
         kept = jax.tree.map(lambda new, old: jnp.where((code == 0) & acts, new, old), found, node)
@@ -222,17 +259,17 @@ def _advance_of(step: _Step) -> _Advance:
     return jax.checkpoint(advance, prevent_cse=False, policy=kept)
 
 
-def _advanced(advance: _Advance, node: _Node, kicks: Array | None, steps: int) -> _Node:
+def _advanced(advance: _Advance, node: _Node, controls: Array | None, steps: int) -> _Node:
     """Take steps; many of them in stretches whose insides reverse mode computes once more."""
     if steps <= _SHORT:
-        return jax.lax.scan(advance, node, (kicks, None), length=steps)[0]
+        return jax.lax.scan(advance, node, (controls, None), length=steps)[0]
     each = math.isqrt(steps - 1) + 1
     number = -(-steps // each)
     acts = (jnp.arange(number * each) < steps).reshape(number, each)
-    if kicks is not None:
-        kicks = jnp.pad(kicks, ((0, number * each - steps), (0, 0))).reshape(number, each, -1)
+    if controls is not None:
+        controls = jnp.pad(controls, ((0, number * each - steps), (0, 0))).reshape(number, each, -1)
     stretch = jax.checkpoint(lambda node, rows: jax.lax.scan(advance, node, rows), prevent_cse=False)
-    return jax.lax.scan(lambda node, rows: (stretch(node, rows)[0], None), node, (kicks, acts))[0]
+    return jax.lax.scan(lambda node, rows: (stretch(node, rows)[0], None), node, (controls, acts))[0]
 
 
 def _decoded(
@@ -240,12 +277,12 @@ def _decoded(
     nodes: _Node,
     states: tuple[Array, ...],
     momentum: Array | None,
-    impulses: Array | None,
+    forces: tuple[Array, Array],
     time: Array,
 ) -> Rollout:
     """Return what saved momenta, charts, poses and those that follow are, from the first one without a step on NaN.
 
-    A full momentum of the start must be that of the first node.
+    A full momentum of the start must be that of the first node. The forces are half impulses and potential energies.
     """
     system, first = discrete.system, cast(Any, discrete)
     if discrete.order > 2:
@@ -257,7 +294,7 @@ def _decoded(
         return r, momentum_of(first, y, g, "left"), W, g, system.constrained_energy(r, g)
 
     (r, P, W, g, energy), code = jax.vmap(at)(*states), nodes.code
-    P = P if impulses is None else P - impulses
+    P, energy = P - forces[0], energy + forces[1]
     if momentum is not None:
         missed = jnp.sum((P[0] - momentum) ** 2) > ON_LOCUS**2 * jnp.sum(momentum**2)
         code = jnp.where((code == 0) & missed, int(Outcome.off_momentum_locus), code)

@@ -1,7 +1,7 @@
 """`rollout`: an orbit of the discrete map as a pure JAX function, differentiable in everything that has numbers."""
 
 import dataclasses
-from typing import Any
+from typing import Any, cast
 
 import equinox
 import jax
@@ -10,7 +10,8 @@ from nonholo.base.checks import array, count, error, is_traced, shape_of
 from nonholo.base.types import Array
 from nonholo.discrete import Discretization, ScalarRoute, as_discretization
 from nonholo.discrete.definition import Rollout, in_double, rolled, traceable
-from nonholo.systems import Start
+from nonholo.simulation.runs import check_forces
+from nonholo.systems import Forced, Start
 
 _rolled = equinox.filter_jit(rolled)
 
@@ -30,6 +31,8 @@ def rollout(
 
     $$ P(W_k)|_{\mathfrak d} = r_k + \tfrac h2 u_k|_{\mathfrak d}, \qquad
        r_{k+1} = (\mathrm{Ad}^*_{W_k}P(W_k) + \tfrac h2 u_k)|_{\mathfrak d}, \qquad g_{k+1} = g_kW_k. $$
+
+    `Gravity`, `Friction` and the table of a `Forced` system act as in `simulate`, with derivatives by their numbers.
 
     It works under `jax.jit`, `jax.vmap`, `jax.jvp`, `jax.vjp`, `jax.jacfwd`, `jax.grad` and repeated ones, and never
     raises there. Derivatives are those of the implicit function of a step, to rounding, never of the iteration that
@@ -51,7 +54,7 @@ def rollout(
         momentum: Start with this momentum, full (on the momentum locus) or along the constraint subspace.
         configuration: First pose, a matrix of the group; the identity by default.
         controls: Body covectors u_k, (steps, dim), constant over a step: half of the impulse h u_k acts at each end of
-            step k, along the constraint; none by default.
+            step k, along the constraint, beside the forces of the system; none by default.
         save_every: Steps between saved states.
 
     Returns:
@@ -73,7 +76,7 @@ def rollout(
         [[-0.228  1.864 -0.091]
          [ 1.719  0.543  0.688]]
     """
-    as_discretization("rollout(discrete=...)", discrete, composed=True)
+    as_discretization("rollout(discrete=...)", discrete, composed=True, forced=True)
     sizes = tuple(
         count(f"rollout({name}=...)", value, "Pass a number of steps.")
         for name, value in (("steps", steps), ("save_every", save_every))
@@ -89,9 +92,17 @@ def rollout(
         if discrete.order > 2:
             got = f"order {discrete.order}"
             raise error("rollout(controls=...)", "have a step of order 2", got, "Use discretize(..., order=2).")
-    route = dataclasses.replace(discrete, order=2).route
+    check_forces("rollout", discrete, sizes[0])
+    forced = discrete.forces
+    if forced is not None and forced.needs_function:
+        remedy = "Use Gravity, Friction or a table: what a function does is not traced."
+        raise error("rollout(discrete=...)", "have forces that are numbers", "a Python function", remedy)
+    free = discrete
+    if discrete.system.is_forced:
+        free = dataclasses.replace(discrete, system=cast(Forced, discrete.system).system)
+    route = dataclasses.replace(free, order=2).route
     closed = jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None
-    return in_double(_rolled, discrete, closed, (start.name, value, g), controls, sizes)
+    return in_double(_rolled, free, closed, (start.name, value, g), controls, sizes, forced)
 
 
 def _checked_start(discrete: Discretization, start: Start) -> tuple[Array, Array]:

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from typing import Any, ClassVar, cast
 
 import numpy as np
-import scipy.linalg
 
 from nonholo.base.checks import array, as_floats, error, shape_of, shown, trailing
+from nonholo.base.numerics import exponential_increment, inverted
 from nonholo.base.types import Array, Float
 from nonholo.systems._base import AbstractSystem
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem
@@ -87,8 +87,8 @@ class Forced(AbstractSystem):
     system: AbstractSystem
     potential: Any = None
     force: Any = None
-    leaves: ClassVar[tuple[str, ...]] = ()
-    structure: ClassVar[tuple[str, ...]] = ("system", "potential", "force")
+    leaves: ClassVar[tuple[str, ...]] = ("system", "potential", "force")
+    structure: ClassVar[tuple[str, ...]] = ()
     normal_form: ClassVar[None] = None
     is_forced: ClassVar[bool] = True
     homogeneous_mass_tensor = constraint_subspace = carried = moved = cast(Any, None)  # seen by type checkers
@@ -168,7 +168,7 @@ class Forced(AbstractSystem):
             return np.zeros(g.shape[:-2])
         return _each(self._value, g)
 
-    def potential_force(self, configuration: Float[Array, "... N N"]) -> Float[np.ndarray, "... dim"]:
+    def potential_force(self, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
         """Return -dU, body covectors at configurations: exact of `Gravity`, by differences of a function."""
         g = self._at(configuration)
         if self.gravity is not None:
@@ -189,26 +189,41 @@ class Forced(AbstractSystem):
             raise error("Forced(force=...)", f"return {self.group.dim} real numbers", got, "Return a body covector.")
         return found
 
-    def rows(self, steps: np.ndarray) -> Float[np.ndarray, "K dim"]:
+    def rows(self, steps: np.ndarray) -> Float[Array, "K dim"]:
         """Return the rows of the table for numbers of steps from -1; zero before it, after its end, and without one."""
         table = np.zeros((0, self.group.dim)) if self.table is None else self.table
-        return np.vstack([table, np.zeros(self.group.dim)])[np.minimum(steps, len(table))]
+        after = table.__array_namespace__().zeros((1, self.group.dim))
+        return table.__array_namespace__().concatenate([table, after])[np.minimum(steps, len(table))]
 
-    def directions(self, g: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "... dim k"]:
+    def directions(self, g: Float[Array, "... N N"]) -> Float[Array, "... dim k"]:
         r"""Return E, whose columns are admissible body velocities: $S^T$, on LR systems $\mathrm{Ad}_{g^{-1}}S^T$."""
         S = np.asarray(self.constraint_subspace)
         return self.group.adjoint(self.group.inverse(g)) @ S.T if self.is_spatial else S.T
 
-    def propagator(self, E: Float[np.ndarray, "... dim k"], tau: float) -> Float[np.ndarray, "3 ... k k"]:
+    def propagator(self, E: Float[Array, "... dim k"], tau: Array) -> Float[Array, "3 ... k k"]:
         r"""Return A, V and W of $\dot r = a - Dr$, friction over a time: $r' = Ar + Va$ and $\int r\,dt = Vr + Wa$."""
-        k, along = E.shape[-1], np.swapaxes(E, -1, -2)
+        k, along = E.shape[-1], E.swapaxes(-1, -2)
         C = np.zeros((self.group.dim,) * 2) if self.friction is None else self.friction.matrix
-        D = along @ C @ E @ np.linalg.inv(along @ np.asarray(self.inertia_operator) @ E)
-        block = np.zeros((*D.shape[:-2], 3 * k, 3 * k))
-        block[..., :k, :k] = -tau * D
-        block[..., :k, k : 2 * k] = block[..., k : 2 * k, 2 * k :] = tau * np.eye(k)
-        found = scipy.linalg.expm(block)
-        return np.stack([found[..., :k, j * k : (j + 1) * k] for j in range(3)])
+        D = along @ C @ E @ inverted(along @ self.inertia_operator @ E)
+        xp, nothing = D.__array_namespace__(), 0 * D
+        one = nothing + np.eye(k)
+        rows = (-D, one, nothing), (nothing, nothing, one), (nothing, nothing, nothing)
+        block = xp.concatenate([xp.concatenate(row, axis=-1) for row in rows], axis=-2)
+        found = exponential_increment(tau * block)[..., :k, :] + np.eye(k, 3 * k)
+        return found.__array_namespace__().stack([found[..., j * k : (j + 1) * k] for j in range(3)])
+
+    def impulse(
+        self, r: Array, g: Array, constant: Array, tau: Array, propagator: Any = None
+    ) -> Float[Array, "... dim"]:
+        """Return the impulses of constant body covectors and friction over a time, as `impulses`."""
+        if self.friction is None:
+            return tau * constant
+        E = self.directions(g)
+        along = E.swapaxes(-1, -2)
+        _, push, gather = self.propagator(E, tau) if propagator is None else propagator
+        integral = push @ r[..., None] + gather @ (along @ constant[..., None])
+        velocity = E @ inverted(along @ self.inertia_operator @ E) @ integral
+        return tau * constant + self.friction.covector(velocity[..., 0])
 
     def impulses(
         self,
@@ -233,15 +248,10 @@ class Forced(AbstractSystem):
             tau: Half a time step, or its negative.
         """
         constant = self.potential_force(g) + self.rows(steps)
-        if not callable(self.force) and self.friction is None:
-            return tau * constant
+        if not callable(self.force):
+            return self.impulse(r, g, constant, tau)
         E = self.directions(g)
-        along = np.swapaxes(E, -1, -2)
-        to_velocity = E @ np.linalg.inv(along @ np.asarray(self.inertia_operator) @ E)
-        if self.friction is not None:
-            _, push, gather = self.propagator(E, tau)
-            integral = push @ r[..., None] + gather @ (along @ constant[..., None])
-            return tau * constant + self.friction.covector((to_velocity @ integral)[..., 0])
+        to_velocity = E @ inverted(E.swapaxes(-1, -2) @ self.inertia_operator @ E)
         found = np.empty((len(r), self.group.dim))
         E, to_velocity = (np.broadcast_to(x, (len(r), *x.shape[-2:])) for x in (E, to_velocity))
         for k in range(len(r)):

@@ -1,10 +1,11 @@
 """Viscous friction: a force against the body velocity, linear in it."""
 
 import dataclasses
+from typing import ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import array, error, shape_of
+from nonholo.base.checks import array, error, is_traced, shape_of
 from nonholo.base.types import Array, Float
 
 _ROUNDING = 1e-13  # relative, of an eigenvalue
@@ -29,6 +30,8 @@ class Friction:
     """
 
     coefficients: Array
+    leaves: ClassVar[tuple[str, ...]] = ("coefficients",)
+    structure: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         where, shape = "Friction(coefficients=...)", shape_of(self.coefficients)
@@ -37,15 +40,18 @@ class Friction:
         if not value.size:
             raise error(where, "have a coefficient for each direction", "none", "Pass (dim,) coefficients.")
         object.__setattr__(self, "coefficients", value)
+        if is_traced(value):
+            return
         least = np.linalg.eigvalsh((self.matrix + self.matrix.T) / 2).min()
         if least < -_ROUNDING * np.abs(value).max():
             got = f"a symmetric part with eigenvalue {least:.6g}"
             raise error(where, "never add energy", got, "Pass a function for a force that drives.")
 
     @property
-    def matrix(self) -> Float[np.ndarray, "dim dim"]:
+    def matrix(self) -> Float[Array, "dim dim"]:
         """C as a matrix."""
-        return np.diag(self.coefficients) if self.coefficients.ndim == 1 else np.asarray(self.coefficients)
+        C = self.coefficients
+        return C[:, None] * np.eye(len(C)) if C.ndim == 1 else C
 
     def check(self, dim: int) -> None:
         """Refuse a group of another dimension."""
@@ -54,6 +60,6 @@ class Friction:
             remedy = f"Pass ({dim},) coefficients, or a matrix of this size."
             raise error("Forced(force=Friction(...))", f"have a coefficient for each of {dim} directions", got, remedy)
 
-    def covector(self, body_velocity: Float[np.ndarray, "... dim"]) -> Float[np.ndarray, "... dim"]:
+    def covector(self, body_velocity: Float[Array, "... dim"]) -> Float[Array, "... dim"]:
         """Return the force at body velocities."""
         return -body_velocity @ self.matrix.T

@@ -1,6 +1,7 @@
 r"""A constant force in space that acts at a point of the body, such as the weight at the center of mass."""
 
 import dataclasses
+from typing import ClassVar
 
 import numpy as np
 
@@ -32,6 +33,8 @@ class Gravity:
 
     force: Array
     point: Array
+    leaves: ClassVar[tuple[str, ...]] = ("force", "point")
+    structure: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         point = array("Gravity(point=...)", self.point, (None,), "Pass the n body coordinates of a point.")
@@ -58,12 +61,13 @@ class Gravity:
         force, levers = self.levers(group)
         return (force @ configuration) @ levers.T
 
-    def levers(self, group: AbstractMatrixGroup) -> tuple[Float[np.ndarray, "N"], Float[np.ndarray, "dim N"]]:
+    def levers(self, group: AbstractMatrixGroup) -> tuple[Float[Array, "N"], Float[Array, "dim N"]]:
         """Return F and L for matrices of the group, homogeneous on SE(n): -dU is L g^T F."""
         weight, place = self._homogeneous(group)
         return weight, group.basis @ place
 
-    def _homogeneous(self, group: AbstractMatrixGroup) -> tuple[np.ndarray, np.ndarray]:
+    def _homogeneous(self, group: AbstractMatrixGroup) -> tuple[Array, Array]:
         if not group.is_affine:
-            return np.asarray(self.force), np.asarray(self.point)
-        return np.append(self.force, 0.0), np.append(self.point, 1.0)
+            return self.force, self.point
+        last = np.eye(len(self.point) + 1)
+        return self.force @ last[:-1], self.point @ last[:-1] + last[-1]
