@@ -1,6 +1,18 @@
 """The compiled steps: scalar arithmetic written once for numba and JAX, the matrix step for any body, the loops."""
 
 from nonholo.kernels._composition import ComposedBody, whole_steps
+from nonholo.kernels._coordinates import (
+    CONTRACTION,
+    ITERATIONS,
+    SINGULAR,
+    TOLERANCE,
+    CoordinateBody,
+    advance_coordinates,
+    coordinate_body,
+    each_root,
+    each_row,
+    set_out_coordinates,
+)
 from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged, flat_run
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
@@ -24,13 +36,18 @@ from nonholo.kernels.taylor import (
 )
 
 __all__ = [
+    "CONTRACTION",
     "CORRECTIONS",
+    "ITERATIONS",
     "LANES",
     "SETTLED",
+    "SINGULAR",
+    "TOLERANCE",
     "AnyBody",
     "Arrowhead",
     "Body",
     "ComposedBody",
+    "CoordinateBody",
     "ForcedBody",
     "GeneralBody",
     "Kick",
@@ -41,12 +58,16 @@ __all__ = [
     "SleighBody",
     "SuslovBody",
     "advance",
+    "advance_coordinates",
     "advance_members",
     "advance_to_nearest",
     "certified",
     "chart_of",
     "converged",
+    "coordinate_body",
     "correction",
+    "each_root",
+    "each_row",
     "flat_run",
     "increment",
     "move",
@@ -55,6 +76,7 @@ __all__ = [
     "revisit_series",
     "secular_sleigh",
     "secular_top",
+    "set_out_coordinates",
     "sizes",
     "solve_arrowhead",
     "solve_members",
