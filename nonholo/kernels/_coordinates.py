@@ -84,36 +84,44 @@ def _settle(body: CoordinateBody, near: np.ndarray, before: np.ndarray) -> None:
 
 
 @njit(**BORROWING)
+def _correct(body: CoordinateBody) -> tuple[float, float, float]:
+    """Move the root by Newton's correction; return the determinant, 0 with a doubt, and squares.
+
+    They are those of the correction of the velocity, in its unit, and of the inverse of the matrix.
+    """
+    n, size = body.velocity, len(body.root)
+    body.correct(body.settled.ctypes, body.equations.ctypes)
+    scale, doubt = body.equations[-2], body.equations[-1]
+    for i in range(size):
+        body.solution[i, 0] = body.missed[i]
+        for j in range(size):
+            body.solution[i, 1 + j] = 1.0 if i == j else 0.0
+    det = eliminate(body.matrix, body.solution)
+    moved = inverse = 0.0
+    for i in range(size):
+        step = body.solution[i, 0]
+        moved += step * step if i < n else 0.0
+        body.root[i] -= step * body.units[i] if i < n else step / body.units[i]
+        for j in range(size):
+            inverse += body.solution[i, 1 + j] * body.solution[i, 1 + j]
+    return det if doubt == 0 else 0.0, moved / (scale * scale) if moved > 0 else moved, inverse
+
+
+@njit(**BORROWING)
 def newton(body: CoordinateBody, sign: float) -> float:
     """Improve the root; return the sign of the determinant, which is the given one unless that is 0; 0 without trust.
 
     A root is trusted if corrections shrink, the determinant keeps its sign, the matrix is regular, without a doubt.
     """
-    n, size, before = body.velocity, len(body.root), math.inf
+    before = math.inf
     for _ in range(ITERATIONS):
-        body.correct(body.settled.ctypes, body.equations.ctypes)
-        scale, doubt = body.equations[-2], body.equations[-1]
-        for i in range(size):
-            body.solution[i, 0] = body.missed[i]
-            for j in range(size):
-                body.solution[i, 1 + j] = 1.0 if i == j else 0.0
-        det = eliminate(body.matrix, body.solution)
+        det, moved, inverse = _correct(body)
         sign = sign if sign != 0 else 1.0 if det > 0 else -1.0
-        if doubt != 0 or not abs(det) > 0:
+        if moved <= TOLERANCE * TOLERANCE:
+            return sign if det * sign > 0 and inverse * SINGULAR * SINGULAR <= 1 else 0.0
+        if not (abs(det) > 0 and moved <= CONTRACTION * CONTRACTION * before):
             return 0.0
-        moved = inverse = 0.0
-        for i in range(size):
-            step = body.solution[i, 0]
-            moved += step * step if i < n else 0.0
-            body.root[i] -= step * body.units[i] if i < n else step / body.units[i]
-            for j in range(size):
-                inverse += body.solution[i, 1 + j] * body.solution[i, 1 + j]
-        relative = math.sqrt(moved) / scale if moved > 0 else moved
-        if relative <= TOLERANCE:
-            return sign if det * sign > 0 and SINGULAR * math.sqrt(inverse) <= 1 else 0.0
-        if not relative <= CONTRACTION * before:
-            return 0.0
-        before = relative
+        before = moved
     return 0.0
 
 

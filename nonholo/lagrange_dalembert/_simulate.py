@@ -179,9 +179,9 @@ def _joined(tables: list[list[np.ndarray]]) -> list[np.ndarray]:
 
 def _decoded(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> list[np.ndarray]:
     """Return displacements, momenta, energies and residuals of all saved states, by JAX in blocks of one size."""
-    found = compiled.decoded(_decode, system, h, q, v)
-    if found is not None:
-        return found
+    columns = compiled.decoded(_decode, system, h, q, v)
+    if columns is not None:
+        return columns
     blocks = max(1, -(-len(q) // _ROWS))
     padded = [np.concatenate([x, np.zeros((blocks * _ROWS - len(x), *x.shape[1:]))]) for x in (q, v)]
     for x in padded:

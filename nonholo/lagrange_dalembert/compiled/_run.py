@@ -14,6 +14,7 @@ from nonholo.kernels import (
     each_row,
     set_out_coordinates,
 )
+from nonholo.lagrange_dalembert._precision import compiling
 from nonholo.lagrange_dalembert.compiled._programs import programs, values
 
 State = tuple[Any, Any, Any]
@@ -21,8 +22,8 @@ State = tuple[Any, Any, Any]
 
 def _body(system: Any, h: Any, q: Any, v: Any, *, at_node: bool = False) -> CoordinateBody | None:
     place, n = np.shape(q), len(v)
-    found = programs(system, place, n, at_node=at_node)
-    return found and coordinate_body(found[:3], found.settled, math.prod(place), n, system.constraints, float(h))
+    code = programs(system, place, n, at_node=at_node)
+    return code and coordinate_body(code[:3], code.settled, math.prod(place), n, system.constraints, float(h))
 
 
 def set_out(definition: Callable[..., Any], system: Any, h: Any, q: Any, v: Any, p: Any) -> Any:
@@ -30,9 +31,10 @@ def set_out(definition: Callable[..., Any], system: Any, h: Any, q: Any, v: Any,
 
     `definition(q, v, p)` finds it by JAX.
     """
-    body = _body(system, h, q, v)
-    sign = body and set_out_coordinates(body, np.ravel(q), p, v)
-    if not sign:
+    with compiling(system):
+        body = _body(system, h, q, v)
+        sign = set_out_coordinates(body, np.ravel(q), p, v) if body else 0.0
+    if body is None or sign == 0:
         return definition(q, v, p)
     first = body.root[: len(v)].copy()
     return (q, first, first), np.float64(sign), np.int64(0)
@@ -75,19 +77,23 @@ def decoded(function: Callable[..., Any], system: Any, h: Any, q: np.ndarray, v:
     Returns:
         None where there are no formulas, or doubts.
     """
-    columns = [np.full(len(q), float(h)), q, v]
-    if system.is_driven and len(q):
-        body, nodes = _body(system, h, q[0], v[0], at_node=True), np.empty_like(v)
-        if body is None or not each_root(body, q, v, nodes):
-            return None
-        columns.append(nodes)
-    found = values(function, system, *(column.shape[1:] for column in columns))
-    if found is None:
+    nodes = _nodes(system, h, q, v) if system.is_driven and len(q) else ()
+    if nodes is None:
         return None
-    sizes = [math.prod(shape) for shape in found.shapes]
+    columns = [np.full(len(q), float(h)), q, v, *nodes]
+    code = values(function, system, *(column.shape[1:] for column in columns))
+    if code is None:
+        return None
+    sizes = [math.prod(shape) for shape in code.shapes]
     table = np.empty((len(q), sum(sizes) + 1))
-    each_row(found.function, np.column_stack([x.reshape(len(q), math.prod(x.shape[1:])) for x in columns]), table)
+    each_row(code.function, np.column_stack([x.reshape(len(q), math.prod(x.shape[1:])) for x in columns]), table)
     if np.any(table[:, -1] != 0):
         return None
     parts = np.split(table[:, :-1], np.cumsum(sizes)[:-1], axis=1)
-    return [part.reshape(len(q), *shape) for part, shape in zip(parts, found.shapes, strict=True)]
+    return [part.reshape(len(q), *shape) for part, shape in zip(parts, code.shapes, strict=True)]
+
+
+def _nodes(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray] | None:
+    """Return the velocities that belong to the momenta at the nodes; None where they are not trusted."""
+    body, velocities = _body(system, h, q[0], v[0], at_node=True), np.empty_like(v)
+    return (velocities,) if body and each_root(body, q, v, velocities) else None

@@ -74,28 +74,28 @@ class Formulas:
     def _shorter(self, name: str, arguments: tuple[Scalar, ...]) -> Scalar | None:
         """Return what an operation with 0 or 1, or a choice that is fixed, comes to."""
         first, last = arguments[0], arguments[-1]
-        a, b = first.value, last.value
         if name == "select":
-            same = arguments[1] is last
-            return None if a is None and not same else last if a else arguments[1]
-        if (name, a) in _ZERO_TIMES or (name, b) == ("mul", 0):
-            return self._zero(self._result(name, arguments))
-        if (name, a) in _SECOND:
-            return last
-        if (name, b) in _FIRST:
-            return first
-        return self("neg", last) if (name, a) in _NEGATIVE else None
+            truth = True if arguments[1] is last else first.value
+            return None if truth is None else last if truth else arguments[1]
+        rule = _IF_FIRST.get((name, first.value)) or _IF_LAST.get((name, last.value))
+        return rule and rule(self, name, first, last)
 
-    def _zero(self, product: Scalar) -> Scalar:
+    def _zero(self, name: str, *factors: Scalar) -> Scalar:
+        product = self._result(name, factors)
         if not product.is_total:
             self.doubts[product] = None
         return self.constant(0.0)
 
 
-_ZERO_TIMES = {("mul", 0), ("div", 0)}
-_SECOND = {("add", 0), ("mul", 1)}
-_FIRST = {("add", 0), ("sub", 0), ("mul", 1), ("div", 1)}
-_NEGATIVE = {("sub", 0), ("mul", -1)}
+_IF_FIRST: dict[Any, Any] = {
+    **dict.fromkeys([("mul", 0), ("div", 0)], Formulas._zero),
+    **dict.fromkeys([("add", 0), ("mul", 1)], lambda _f, _name, _, y: y),
+    **dict.fromkeys([("sub", 0), ("mul", -1)], lambda f, _name, _, y: f("neg", y)),
+}
+_IF_LAST: dict[Any, Any] = {
+    ("mul", 0): Formulas._zero,
+    **dict.fromkeys([("add", 0), ("sub", 0), ("mul", 1), ("div", 1)], lambda _f, _name, x, _: x),
+}
 
 
 def needed(results: Collection[Scalar], given: Collection[Scalar]) -> list[Scalar]:

@@ -13,7 +13,11 @@ from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Untranslatabl
 from nonholo.lagrange_dalembert.compiled._windows import array_of, fixed, gathered, scattered
 
 _CALLS = {"jit", "pjit", "closed_call", "remat", "checkpoint", "custom_jvp_call", "custom_vjp_call"}
-_KINDS = {"f": set(OPERATIONS), "b": {*LOGIC, "eq", "ne"}, "i": {"add", "sub", "mul", "neg", "max", "min", *TRUTHS} - LOGIC}
+_KINDS = {
+    "f": set(OPERATIONS),
+    "b": {*LOGIC, "eq", "ne"},
+    "i": {"add", "sub", "mul", "neg", "max", "min", *TRUTHS} - LOGIC,
+}
 
 Rule = Callable[..., Any]
 """Maps formulas, arrays of numbers and the parameters of a primitive, by name, to its result."""
@@ -132,14 +136,14 @@ def _cumulated(f: Formulas, x: np.ndarray, *, axis: int, reverse: bool) -> np.nd
 def _product(f: Formulas, x: np.ndarray, y: np.ndarray, *, dimension_numbers: Any, **_: Any) -> np.ndarray:
     (along_x, along_y), (batch_x, batch_y) = dimension_numbers
 
-    def ordered(array: np.ndarray, batch: Any, along: Any) -> tuple[np.ndarray, tuple[int, ...], tuple[int, ...]]:
+    def ordered(array: np.ndarray, batch: Any, along: Any) -> tuple[np.ndarray, list[tuple[int, ...]]]:
         free = [axis for axis in range(array.ndim) if axis not in (*batch, *along)]
         shapes = [tuple(array.shape[axis] for axis in axes) for axes in (batch, free, along)]
-        return array.transpose([*batch, *free, *along]).reshape(list(map(math.prod, shapes))), *shapes[:2]
+        return array.transpose([*batch, *free, *along]).reshape(list(map(math.prod, shapes))), shapes
 
-    (a, batch, free_x), (b, _, free_y) = ordered(x, batch_x, along_x), ordered(y, batch_y, along_y)
+    (a, shapes), (b, others) = ordered(x, batch_x, along_x), ordered(y, batch_y, along_y)
     terms = _each(functools.partial(f, "mul"), a[:, :, None], b[:, None])
-    return _sum(f, terms, axes=(3,)).reshape(batch + free_x + free_y)
+    return _sum(f, terms, axes=(3,)).reshape(shapes[0] + shapes[1] + others[1])
 
 
 def _broadcast(_f: Formulas, x: np.ndarray, *, shape: Any, broadcast_dimensions: Any, **_: Any) -> np.ndarray:
@@ -148,14 +152,13 @@ def _broadcast(_f: Formulas, x: np.ndarray, *, shape: Any, broadcast_dimensions:
 
 
 def _padded(_f: Formulas, x: np.ndarray, value: np.ndarray, *, padding_config: Any) -> np.ndarray:
-    """Return an array between copies of a value: what AD makes of slices never cuts."""
-    low, high, inner = np.reshape(padding_config, (-1, 3)).T
-    if np.minimum(low, high).min(initial=0) < 0:
-        raise UntranslatableError("pad by less than nothing")
-    ends = low + np.maximum(np.array(x.shape) + (np.array(x.shape) - 1) * inner, 0)
-    result = np.full(ends + high, value.item(), dtype=object)
-    result[tuple(map(slice, low, ends, inner + 1))] = x
-    return result
+    """Return an array between copies of a value; where there are less than none of them, it is cut."""
+    low, high, inner = np.reshape(padding_config, (-1, 3)).astype(int).T
+    begin = np.maximum(low, 0)
+    end = begin + np.maximum(np.array(x.shape) + (np.array(x.shape) - 1) * inner, 0)
+    result = np.full(end + np.maximum(high, 0), value.item(), dtype=object)
+    result[tuple(map(slice, begin, end, inner + 1))] = x
+    return result[tuple(map(slice, begin - low, np.array(result.shape) + np.minimum(high, 0)))]
 
 
 def _counting(f: Formulas, *, dtype: Any, shape: Any, dimension: int, **_: Any) -> np.ndarray:

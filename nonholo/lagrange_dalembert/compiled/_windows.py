@@ -18,7 +18,7 @@ def array_of(numbers: list[Any], shape: tuple[int, ...]) -> np.ndarray:
     return result.reshape(shape)
 
 
-def fixed(array: np.ndarray) -> np.ndarray:
+def fixed(array: np.ndarray) -> Any:
     """Return the values of an array of constants."""
     values = [each.value for each in array.ravel()]
     if None in values:
@@ -50,15 +50,15 @@ def scattered(
     **_: Any,
 ) -> np.ndarray:
     """Return an array with windows replaced, or with numbers added to them."""
-    d, batch, numbers = dimension_numbers, indices.ndim - 1, x.flatten()
+    d, batch, numbers = dimension_numbers, indices.ndim - 1, x.ravel().tolist()
     dropped, windows = (*d.inserted_window_dims, *d.operand_batching_dims), iter(d.update_window_dims)
     sizes = [1 if axis in dropped else updates.shape[next(windows)] for axis in range(x.ndim)]
     batching = d.operand_batching_dims, d.scatter_indices_batching_dims
     places = _places(x.shape, fixed(indices), d.scatter_dims_to_operand_dims, batching, sizes, mode)
     ordered = np.moveaxis(updates, d.update_window_dims, range(batch, updates.ndim))
-    for place, number in zip(places.ravel(), ordered.ravel(), strict=True):
+    for place, number in zip(places.ravel().tolist(), ordered.ravel().tolist(), strict=True):
         numbers[place] = f("add", numbers[place], number) if adds else number
-    return numbers.reshape(x.shape)
+    return array_of(numbers, x.shape)
 
 
 def _places(
@@ -76,4 +76,4 @@ def _places(
         raise UntranslatableError("an index out of bounds")
     offsets = np.moveaxis(np.indices(tuple(sizes)), 0, -1)
     windows = inside.reshape(*batch, *(1 for _ in shape), len(shape)) + offsets
-    return np.ravel_multi_index(tuple(np.moveaxis(windows, -1, 0)), shape)
+    return np.asarray(np.ravel_multi_index(tuple(np.moveaxis(windows, -1, 0)), shape))
