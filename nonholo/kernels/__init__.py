@@ -1,7 +1,17 @@
 """The compiled steps: scalar arithmetic written once for numba and JAX, the matrix step for any body, the loops."""
 
 from nonholo.kernels._composition import ComposedBody, whole_steps
-from nonholo.kernels._coordinates import (
+from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged, flat_run
+from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
+from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
+from nonholo.kernels._forced import ForcedBody, Kick
+from nonholo.kernels._interface import Body, certified, correction, increment, move, residual, tangent
+from nonholo.kernels._nearest import NearestBody
+from nonholo.kernels._nearest import advance as advance_to_nearest
+from nonholo.kernels._sleigh import SleighBody
+from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
+from nonholo.kernels.general import GeneralBody
+from nonholo.kernels.general.coordinates import (
     CONTRACTION,
     ITERATIONS,
     SINGULAR,
@@ -13,16 +23,6 @@ from nonholo.kernels._coordinates import (
     each_row,
     set_out_coordinates,
 )
-from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged, flat_run
-from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
-from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
-from nonholo.kernels._forced import ForcedBody, Kick
-from nonholo.kernels._interface import Body, certified, correction, increment, move, residual, tangent
-from nonholo.kernels._nearest import NearestBody
-from nonholo.kernels._nearest import advance as advance_to_nearest
-from nonholo.kernels._sleigh import SleighBody
-from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
-from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.secular import SecularBody, secular_sleigh, secular_top
 from nonholo.kernels.taylor import (
     Arrowhead,
