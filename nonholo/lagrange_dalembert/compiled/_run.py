@@ -33,7 +33,9 @@ def set_out(definition: Callable[..., Any], system: Any, h: Any, q: Any, v: Any,
     """
     with compiling(system):
         body = _body(system, h, q, v)
-        sign = set_out_coordinates(body, np.ravel(q), p, v) if body else 0.0
+        sign = set_out_coordinates(body, *map(np.array, (np.ravel(q), p, v))) if body else 0.0  # one type of arrays
+        if body:
+            advance_coordinates(body, np.empty(0), sign, 0, 0, 1, *3 * [np.empty((0, 0))])  # which compiles it now
     if body is None or sign == 0:
         return definition(q, v, p)
     first = body.root[: len(v)].copy()
