@@ -11,6 +11,18 @@ from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
 from nonholo.kernels.forced import Drive, ForcedBody, Kick, function_of
 from nonholo.kernels.general import GeneralBody
+from nonholo.kernels.general.coordinates import (
+    CONTRACTION,
+    ITERATIONS,
+    SINGULAR,
+    TOLERANCE,
+    CoordinateBody,
+    advance_coordinates,
+    coordinate_body,
+    each_root,
+    each_row,
+    set_out_coordinates,
+)
 from nonholo.kernels.secular import SecularBody, secular_sleigh, secular_top
 from nonholo.kernels.taylor import (
     Arrowhead,
@@ -24,13 +36,18 @@ from nonholo.kernels.taylor import (
 )
 
 __all__ = [
+    "CONTRACTION",
     "CORRECTIONS",
+    "ITERATIONS",
     "LANES",
     "SETTLED",
+    "SINGULAR",
+    "TOLERANCE",
     "AnyBody",
     "Arrowhead",
     "Body",
     "ComposedBody",
+    "CoordinateBody",
     "Drive",
     "ForcedBody",
     "GeneralBody",
@@ -42,12 +59,16 @@ __all__ = [
     "SleighBody",
     "SuslovBody",
     "advance",
+    "advance_coordinates",
     "advance_members",
     "advance_to_nearest",
     "certified",
     "chart_of",
     "converged",
+    "coordinate_body",
     "correction",
+    "each_root",
+    "each_row",
     "flat_run",
     "function_of",
     "increment",
@@ -57,6 +78,7 @@ __all__ = [
     "revisit_series",
     "secular_sleigh",
     "secular_top",
+    "set_out_coordinates",
     "sizes",
     "solve_arrowhead",
     "solve_members",

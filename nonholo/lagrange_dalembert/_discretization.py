@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.types import Array, Float
+from nonholo.base.types import Float
 from nonholo.lagrange_dalembert import _start
 from nonholo.lagrange_dalembert._equations import momenta, momentum
 from nonholo.lagrange_dalembert._motion import CoordinateMotion
@@ -14,7 +14,7 @@ from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
 from nonholo.lagrange_dalembert._partial_step import after_parts
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._run import CoordinateRun
-from nonholo.lagrange_dalembert._simulate import Start, checked_block, checked_counts, iterated, set_out, simulated
+from nonholo.lagrange_dalembert._simulate import Start, checked_block, checked_counts, first_state, iterated, simulated
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 from nonholo.systems import AbstractCoordinateDiscretization, one_start
 
@@ -188,17 +188,9 @@ def _first(system: LagrangeDAlembert, h: Any, configuration: Any, starts: dict[s
     given = one_start("simulate", **starts)
     if given == "displacement":
         v = _start.velocity_of_displacement(system, q, starts["displacement"], h)
-        return in_double(_set_out_at, system, h, q, v)
+        return first_state(system, h, q, v, in_double(momenta, system, q, v, h)[0])
     if given == "momentum":
         p, v = _start.velocity_of_momentum("simulate", system, q, starts["momentum"])
-        return in_double(set_out, system, h, q, v, p)
+        return first_state(system, h, q, v, p)
     v = _start.velocity("simulate", system, q, starts["body_velocity"])
-    return in_double(_set_out_with, system, h, q, v)
-
-
-def _set_out_with(system: LagrangeDAlembert, h: Array, q: Array, v: Array) -> Start:
-    return set_out(system, h, q, v, momentum(system, q, v))
-
-
-def _set_out_at(system: LagrangeDAlembert, h: Array, q: Array, v: Array) -> Start:
-    return set_out(system, h, q, v, momenta(system, q, v, h)[0])
+    return first_state(system, h, q, v, in_double(momentum, system, q, v))

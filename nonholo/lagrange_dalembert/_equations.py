@@ -108,13 +108,14 @@ def momentum(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     return jax.grad(lagrangian, argnums=2)(system, x, v)
 
 
-def discrete_energy(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:
+def discrete_energy(system: LagrangeDAlembert, x: Array, v: Array, h: Array, node: Any = None) -> Array:
     r"""Return $E = -\partial L_d/\partial h$ at fixed end points; where h is not known to L_d, E at the midpoint.
 
-    Of a driven system it is E at the node, of the velocity that belongs to the momentum P.
+    Of a driven system it is E at the node, of the velocity that belongs to the momentum P, solved for or passed.
     """
     if system.is_driven:
-        return energy(system, x, inverse_legendre(system, x, momenta(system, x, v, h)[0]))
+        w = inverse_legendre(system, x, momenta(system, x, v, h)[0]) if node is None else node
+        return energy(system, x, w)
     d = h * v
     if isinstance(system.discrete_lagrangian, TwoPoint):
         return energy(system, x + d / 2, v)
@@ -205,12 +206,13 @@ def newton_matrix(
 ) -> tuple[Array, Scaled, tuple[Array, Array]]:
     """Return the scaled regularity matrix of a step, its units, and P and F at the step."""
 
-    def values(w: Array) -> tuple[Array, Array]:
-        return momenta(system, q, w, h)[0], discrete_constraints(system, q, w, h)
+    def values(w: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        both = momenta(system, q, w, h)[0], discrete_constraints(system, q, w, h)
+        return both, both
 
-    mass, below = jax.jacfwd(values)(v)
+    (mass, below), found = jax.jacfwd(values, has_aux=True)(v)
     matrix, units = bordered(mass, forms(system, q), below, kinetic)
-    return matrix, units, values(v)
+    return matrix, units, found
 
 
 def acceleration_matrix(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, Scaled]:

@@ -12,14 +12,11 @@ import jax.numpy as jnp
 
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array
+from nonholo.kernels import CONTRACTION, ITERATIONS, SINGULAR, TOLERANCE
 from nonholo.lagrange_dalembert._equations import Scaled
 from nonholo.lagrange_dalembert._room import equations_of
 
-_ITERATIONS = 12
-_TOLERANCE = 1e-10  # of the last correction, which is still applied: what is left is its square
-_CONTRACTION = 0.5
 _SMALLEST = 2.0**-20  # of the path; below it the continuation is given up
-_SINGULAR = 6e-8  # a few square roots of the rounding unit: no nearer to a fold can a computed root come
 _NEAR_FOLD = 0.05  # of the regularity at the start of the path, where a continuation that stops has met a fold
 
 
@@ -70,9 +67,24 @@ def solve(
     system: Any, h: Array, q: Array, p: Array, near: Array, guess: Array, sign: Array
 ) -> tuple[Array, Array, Array]:
     """Return velocity, multipliers and outcome of the root with this orientation next to `near`."""
+    return root(of_step(system, q, near, h), equations_of(system).forms(system, q), p, near, guess, sign)
+
+
+def of_step(system: Any, q: Array, near: Array, h: Array) -> Matrix:
+    """Return the equations of a step from q, in the units of the velocity `near`."""
+    kinetic = equations_of(system).kinetic_matrix(system, q, near, h)
+    return lambda v: equations_of(system).newton_matrix(system, q, v, h, kinetic)
+
+
+def of_node(system: Any, q: Array, _near: Array, _h: Array) -> Matrix:
+    """Return the equations of the velocity that belongs to a momentum."""
     equations = equations_of(system)
-    kinetic, rows = equations.kinetic_matrix(system, q, near, h), equations.forms(system, q)
-    return root(lambda v: equations.newton_matrix(system, q, v, h, kinetic), rows, p, near, guess, sign)
+
+    def matrix_at(v: Array) -> tuple[Array, Scaled, tuple[Array, Array]]:
+        matrix, units = equations.acceleration_matrix(system, q, v)
+        return matrix, units, (equations.momentum(system, q, v), equations.constraint(system, q, v))
+
+    return matrix_at
 
 
 def root(matrix: Matrix, rows: Array, p: Array, near: Array, guess: Array, sign: Array) -> tuple[Array, Array, Array]:
@@ -87,7 +99,10 @@ def root(matrix: Matrix, rows: Array, p: Array, near: Array, guess: Array, sign:
         fast, first = path.count == 0, path.count == 1
         ahead = jnp.where(first, 0.0, jnp.where(fast, 1.0, jnp.minimum(path.s + path.stride, 1.0)))
         begin = jnp.where(fast, guess, path.root.velocity)
-        found = _newton(correction, begin, path.root.multipliers, (1 - ahead) * offset)
+        left = jnp.where(
+            ahead == 1, 0.0, (1 - ahead) * offset
+        )  # which need not be finite, if the guess leads to a root
+        found = _newton(correction, begin, path.root.multipliers, left)
         good = found.converged & (found.sign == sign) & ~first
         kept = jax.tree.map(lambda new, old: jnp.where(good, new, old), found, path.root)
         stride = jnp.where(good, 2 * path.stride, path.stride / 2)
@@ -110,48 +125,53 @@ def root(matrix: Matrix, rows: Array, p: Array, near: Array, guess: Array, sign:
 
 def _outcome(path: _Path) -> Array:
     """Say what ended a path if it did not arrive."""
-    singular = path.root.regularity < _SINGULAR
+    singular = path.root.regularity < SINGULAR
     folded = (path.root.regularity < _NEAR_FOLD * path.regularity) | singular
     code = jnp.where(path.elsewhere, int(Outcome.branch_unverified), int(Outcome.not_converged))
     code = jnp.where(folded, int(Outcome.no_real_branch), code)
     return jnp.where((path.s == 1) & ~singular, int(Outcome.successful), code)
 
 
+def equations(
+    matrix_at: Matrix, rows: Array, p: Array, v: Array, multipliers: Array, offset: Array
+) -> tuple[Array, Array, Scaled, Array]:
+    """Return the scaled matrix, what the scaled equations less an offset miss, the units and the size of velocities."""
+    matrix, units, (P, F) = matrix_at(v)
+    n = len(p)
+    missed = jnp.concatenate([P - p - multipliers @ rows, F]) - offset
+    scaled = jnp.concatenate([missed[:n] * units.velocity, missed[n:] / units.constraints])
+    return matrix, scaled, units, jnp.linalg.norm(v / units.velocity) + jnp.linalg.norm(p * units.velocity)
+
+
 def _correction(matrix_at: Matrix, rows: Array, p: Array, near: Array) -> tuple[Correction, Array]:
     """Return the Newton correction of the equations less an offset, and the residual at the velocity `near`."""
-    s, n = rows.shape
-
-    def residual(P: Array, F: Array, multipliers: Array) -> Array:
-        return jnp.concatenate([P - p - multipliers @ rows, F])
+    n = len(p)
 
     def correct(v: Array, multipliers: Array, offset: Array) -> tuple[Array, Array, Array, Array, Array]:
-        matrix, units, (P, F) = matrix_at(v)
-        missed = residual(P, F, multipliers) - offset
-        scaled = jnp.concatenate([missed[:n] * units.velocity, missed[n:] / units.constraints])
+        matrix, scaled, units, scale = equations(matrix_at, rows, p, v, multipliers, offset)
         factors, pivots = jax.scipy.linalg.lu_factor(matrix)
         inverse = jax.scipy.linalg.lu_solve((factors, pivots), jnp.eye(len(scaled)))
         step = -(inverse @ scaled)
         swaps = jnp.sum(pivots != jnp.arange(len(scaled)))
         sign = jnp.prod(jnp.sign(jnp.diag(factors))) * (1 - 2 * (swaps % 2))
         size = jnp.linalg.norm(step[:n])
-        scale = jnp.linalg.norm(v / units.velocity) + jnp.linalg.norm(p * units.velocity)
         relative = jnp.where(size == 0, 0.0, size / scale)
         regularity = 1 / jnp.linalg.norm(inverse)
         return step[:n] * units.velocity, step[n:] / units.forms, relative, sign, regularity
 
     _, _, (P, F) = matrix_at(near)
-    return correct, residual(P, F, jnp.zeros(s))
+    return correct, jnp.concatenate([P - p, F])
 
 
 def _newton(correction: Correction, v: Array, multipliers: Array, offset: Array) -> Root:
     def body(carry: tuple[Array, Array, Root]) -> tuple[Array, Array, Root]:
         i, before, root = carry
         dv, dm, size, sign, regularity = correction(root.velocity, root.multipliers, offset)
-        done = size <= _TOLERANCE
-        contracts = (i == 0) | (size <= _CONTRACTION * before)
+        done = size <= TOLERANCE
+        contracts = (i == 0) | (size <= CONTRACTION * before)
         after = Root(root.velocity + dv, root.multipliers + dm, done, sign, regularity)
-        return jnp.where(contracts | done, i + 1, _ITERATIONS), size, after
+        return jnp.where(contracts | done, i + 1, ITERATIONS), size, after
 
     zero = jnp.zeros(())
     start = (jnp.asarray(0), zero, Root(v, multipliers, jnp.asarray(False), zero, zero))
-    return jax.lax.while_loop(lambda c: (c[0] < _ITERATIONS) & ~c[2].converged, body, start)[2]
+    return jax.lax.while_loop(lambda c: (c[0] < ITERATIONS) & ~c[2].converged, body, start)[2]

@@ -21,14 +21,14 @@ _told: set[Any] = set()
 
 def in_double(function: Callable[..., Any], system: Any, *arguments: Any) -> Any:
     """Call a JAX function of a system, for which it is compiled, with 64-bit numbers; return NumPy arrays."""
-    with double_precision(), contextlib.nullcontext() if (function, system) in _called else _said(system):
+    with double_precision(), contextlib.nullcontext() if (function, system) in _called else compiling(system):
         found = jax.tree.map(np.asarray, _compiled(function)(system, *arguments))
     _called.add((function, system))
     return found
 
 
 @contextlib.contextmanager
-def _said(system: Any) -> Iterator[None]:
+def compiling(system: Any) -> Iterator[None]:
     """Say on standard error what is waited for, once for a system: JAX compiles at the first call of each function."""
     kept = os.environ.get("JAX_COMPILATION_CACHE_DIR")
     remedy = "" if kept else "; set JAX_COMPILATION_CACHE_DIR to a folder to keep what is compiled"

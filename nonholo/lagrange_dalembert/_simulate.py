@@ -1,5 +1,6 @@
 """The run: one step, compiled blocks of steps, the decoding, and what is said when a step fails."""
 
+import functools
 from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
@@ -12,6 +13,7 @@ from nonholo.base.limits import within_a_year, within_memory
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome, finished
 from nonholo.base.types import Array
+from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._room import configurations, equations_of
@@ -94,6 +96,11 @@ def orbit_of(
     return kind(*arrays, Outcome(int(code)), system, float(h), every)
 
 
+def first_state(system: Any, h: Any, q: Any, v: Any, p: Any) -> Start:
+    """Return the start of `set_out`, computed."""
+    return compiled.set_out(functools.partial(in_double, set_out, system, h), system, h, q, v, p)
+
+
 def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> Start:
     """Return the start with a momentum, by the root next to the velocity v."""
     sign, _ = orientation(system, q, v, h)
@@ -147,11 +154,12 @@ def blocks(
     """
     state, sign, code = start
     started, done, given, tables = int(code == 0), 0, 0, []
+    by_jax = functools.partial(in_double, _advance, system, h)
     while code == 0 and done < steps:
         left, open_rows = steps - done, most - sum(len(table[0]) for table in tables)
         rows, stride = (min(_ROWS, open_rows, left // every), every) if left >= every else (1, left)
         counts = (np.int64(rows), np.int64(stride))
-        taken, state, code, table = in_double(_advance, system, h, state, sign, *counts)
+        taken, state, code, table = compiled.advance(by_jax, system, h, state, sign, *counts)
         begun = min(rows, int(taken) // stride + 1)
         tables.append([column[:begun] for column in table])
         done += int(taken)
@@ -170,21 +178,26 @@ def _joined(tables: list[list[np.ndarray]]) -> list[np.ndarray]:
 
 
 def _decoded(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> list[np.ndarray]:
-    """Return displacements, momenta, energies and residuals of all saved states, decoded in blocks of one size."""
+    """Return displacements, momenta, energies and residuals of all saved states, by JAX in blocks of one size."""
+    columns = compiled.decoded(_decode, system, h, q, v)
+    if columns is not None:
+        return columns
     blocks = max(1, -(-len(q) // _ROWS))
     padded = [np.concatenate([x, np.zeros((blocks * _ROWS - len(x), *x.shape[1:]))]) for x in (q, v)]
     for x in padded:
         x[len(q) :] = x[len(q) - 1] if len(q) else 0.0
-    parts = [in_double(_decode, system, h, *(x[i * _ROWS : (i + 1) * _ROWS] for x in padded)) for i in range(blocks)]
+    parts = [
+        in_double(_decode_all, system, h, *(x[i * _ROWS : (i + 1) * _ROWS] for x in padded)) for i in range(blocks)
+    ]
     return [np.concatenate(column)[: len(q)] for column in zip(*parts, strict=True)]
 
 
-def _decode(system: Any, h: Array, q: Array, v: Array) -> tuple[Array, ...]:
+def _decode_all(system: Any, h: Array, q: Array, v: Array) -> tuple[Array, ...]:
+    return jax.vmap(functools.partial(_decode, system, h))(q, v)
+
+
+def _decode(system: Any, h: Array, q: Array, v: Array, *node: Array) -> tuple[Array, ...]:
     equations = equations_of(system)
-
-    def one(q: Array, v: Array) -> tuple[Array, ...]:
-        residual = jnp.max(jnp.abs(equations.discrete_constraints(system, q, v, h)), initial=0.0)
-        momentum, energy = equations.momenta(system, q, v, h)[0], equations.discrete_energy(system, q, v, h)
-        return *equations.displaced(system, v, h), momentum, energy, residual
-
-    return jax.vmap(one)(q, v)
+    residual = jnp.max(jnp.abs(equations.discrete_constraints(system, q, v, h)), initial=0.0)
+    momentum, energy = equations.momenta(system, q, v, h)[0], equations.discrete_energy(system, q, v, h, *node)
+    return *equations.displaced(system, v, h), momentum, energy, residual

@@ -129,6 +129,16 @@ def members_of_flows(system: Any) -> Arrays:
     return [batch.reduced_momentum, batch.canonical_pose]
 
 
+def in_coordinates() -> Arrays:
+    """Run a snakeboard to the end of its motion, and a driven sleigh."""
+    found = []
+    for ready in (nh.examples.snakeboard(), nh.examples.driven_sleigh()):
+        how = {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
+        orbit = nh.discretize(ready.system, 0.1).simulate(**how, steps=MEMBERS, throw=False)
+        found += [orbit.configuration, orbit.momentum, orbit.multipliers, orbit.energy]
+    return found
+
+
 def body(group: Any, k: int, seed: int) -> nh.LLSystem:
     """Return a body with a random constraint."""
     rng = np.random.default_rng(seed)
@@ -182,6 +192,7 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     "top under functions": lambda: driven(TOP),
     "sleigh under functions": lambda: driven(SLEIGH),
     "top on SO(4) under functions": lambda: driven(nh.SuslovTop(mass_tensor(nh.SO(4), np.random.default_rng(4)))),
+    "in coordinates": in_coordinates,
     "a fold on SO(4)": lambda: orbits(GENERAL["any d on SO(4)"][0], size=20.0),
     "a fold of a top on SO(5)": lambda: orbits(
         nh.SuslovTop(mass_tensor(nh.SO(5), np.random.default_rng(5))), size=20.0

@@ -1,13 +1,17 @@
 """How runs end: three failures that are never confused, and good steps that are kept."""
 
+from collections.abc import Callable
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.lagrange_dalembert import LagrangeDAlembert
+from nonholo.lagrange_dalembert import LagrangeDAlembert, _simulate
 from nonholo.lagrange_dalembert._newton import solve
+from nonholo.lagrange_dalembert._precision import in_double
 
 FORCE = 0.15
 
@@ -52,6 +56,25 @@ def test_blocks_end_where_the_branch_folds() -> None:
     assert [each.outcome for each in (*good, last)] == [nh.Outcome.successful, nh.Outcome.no_real_branch]
     with pytest.raises(nh.OutcomeError, match=r"Start of the run.*no_real_branch"):
         next(FOLDING.discretize(1.0).iterate(**how | {"body_velocity": [1.5]}))
+
+
+def test_a_step_that_is_not_trusted_is_taken_by_continuation(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Next to the fold Newton's corrections shrink too slowly: JAX takes that step alone, whatever is saved."""
+    steps: list[str] = []
+
+    def noted(function: Callable[..., Any], *arguments: Any) -> Any:
+        steps.append(function.__name__)
+        return in_double(function, *arguments)
+
+    monkeypatch.setattr(_simulate, "in_double", noted)
+    last = 1 - 1e-8
+    how = {"configuration": [0.0], "displacement": [np.arcsin(last - 6 * FORCE)], "steps": 6}
+    orbits = [FOLDING.discretize(1.0).simulate(**how, save_every=every) for every in (1, 2, 3)]
+    assert steps.count("_advance") == len(orbits)
+    assert abs(orbits[0].displacement[-1, 0] - np.arcsin(last)) <= 1e-14 / np.sqrt(1 - last**2)
+    for every, orbit in zip((2, 3), orbits[1:], strict=True):
+        assert np.array_equal(orbit.displacement, orbits[0].displacement[::every])
+        assert np.array_equal(orbit.multipliers, orbits[0].multipliers[::every])
 
 
 @pytest.mark.parametrize("start", [{"body_velocity": [1.5]}, {"displacement": [np.pi / 2]}], ids=["beyond", "at"])

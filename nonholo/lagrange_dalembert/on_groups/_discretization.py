@@ -10,9 +10,8 @@ from nonholo.base.types import Float
 from nonholo.lagrange_dalembert._motion import CoordinateMotion
 from nonholo.lagrange_dalembert._orbit import GroupOrbit
 from nonholo.lagrange_dalembert._partial_step import after_parts
-from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._run import CoordinateRun
-from nonholo.lagrange_dalembert._simulate import Start, checked_block, checked_counts, iterated, set_out, simulated
+from nonholo.lagrange_dalembert._simulate import Start, checked_block, checked_counts, first_state, iterated, simulated
 from nonholo.lagrange_dalembert._start import fixed_time_step
 from nonholo.lagrange_dalembert.on_groups import _start as start
 from nonholo.lagrange_dalembert.on_groups._system import GroupLagrangeDAlembert
@@ -150,4 +149,4 @@ def _first(system: GroupLagrangeDAlembert, h: Any, configuration: Any, starts: d
         v, p = start.of_momentum("simulate", system, g, value)
     else:
         v, p = start.of_velocity("simulate", system, g, value)
-    return in_double(set_out, system, h, g, v, p)
+    return first_state(system, h, g, v, p)

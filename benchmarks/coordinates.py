@@ -1,0 +1,79 @@
+"""Steps in coordinates by compiled formulas beside the loop in JAX: process time of runs of ready systems, in turns.
+
+Both must end at the same place. The first call is that of a process: it traces and compiles, for each system anew; the
+kernels are loaded. "Equations" is one evaluation of the scaled equations, of which a step takes two or three.
+
+    python benchmarks/coordinates.py [--steps 20000] [--rounds 7]
+"""
+
+import argparse
+import statistics
+import time
+from typing import Any
+
+import numpy as np
+
+import nonholo as nh
+from nonholo.kernels import each_row
+from nonholo.lagrange_dalembert import _simulate
+from nonholo.lagrange_dalembert._precision import in_double
+from nonholo.lagrange_dalembert.compiled import _programs, advance
+
+NAMES = ("particle", "rolling_disk", "knife_edge_on_incline", "snakeboard", "two_wheeled_robot", "non_reversible")
+NAMES += ("roller_racer", "driven_sleigh", "chaotic_quartic_oscillator")
+STEP = 0.002
+
+
+def equations_time(system: Any, place: int) -> float:
+    """Return the microseconds of one evaluation of the equations."""
+    code = _programs.programs(system, (place,), system.dimension)
+    assert code is not None
+    size = system.dimension + system.constraints
+    inputs = np.ones((20000, code.settled + size))
+    results = np.empty((20000, size * size + 2 * size + 2))
+    each_row(code.correct, inputs, results)
+    start = time.process_time()
+    each_row(code.correct, inputs, results)
+    return (time.process_time() - start) / len(inputs) * 1e6
+
+
+def main() -> None:
+    """Print a table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--steps", type=int, default=20000)
+    parser.add_argument("--rounds", type=int, default=7)
+    options = parser.parse_args()
+    print("| system | n | JAX, us a step | compiled | ratio | equations | first call, s |")
+    print("| --- | ---: | ---: | ---: | ---: | ---: | ---: |")
+    for name in NAMES:
+        ready = getattr(nh.examples, name)()
+        system, h, counts = ready.system, np.float64(STEP), (np.int64(1), np.int64(options.steps))
+        begin = time.process_time()
+        how = {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
+        orbit = nh.discretize(system, STEP).simulate(**how, steps=10)
+        first = time.process_time() - begin
+        q = np.append(ready.configuration, 0.0) if system.is_driven else ready.configuration
+        state, sign = (q, orbit.body_velocity[0], orbit.body_velocity[0]), np.float64(1)
+
+        def by_jax(*arguments: Any, system: Any = system, h: Any = h) -> Any:
+            return in_double(_simulate._advance, system, h, *arguments)
+
+        def compiled(*arguments: Any, system: Any = system, h: Any = h, by_jax: Any = by_jax) -> Any:
+            return advance(by_jax, system, h, *arguments)
+
+        times: list[list[float]] = [[], []]
+        ends = [run(state, sign, *counts)[1][0] for run in (by_jax, compiled)]
+        assert np.abs(ends[0] - ends[1]).max() <= 1e-6 * np.abs(ends[0]).max()
+        for _ in range(options.rounds):
+            for run, spent in zip((by_jax, compiled), times, strict=True):
+                begin = time.process_time()
+                run(state, sign, *counts)
+                spent.append((time.process_time() - begin) / options.steps * 1e6)
+        jax, ours = map(statistics.median, times)
+        ratio = statistics.median(a / b for a, b in zip(*times, strict=True))
+        cells = f"{jax:.2f} | {ours:.2f} | {ratio:.1f} | {equations_time(system, len(q)):.2f} | {first:.2f}"
+        print(f"| {name} | {system.dimension} | {cells} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,224 @@
+"""JAX programs as formulas: arrays become arrays of single numbers, and each primitive acts on these."""
+
+import functools
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from jax.lax import RoundingMethod
+
+from nonholo.lagrange_dalembert.compiled._operations import LOGIC, OPERATIONS, TRUTHS
+from nonholo.lagrange_dalembert.compiled._scalars import Formulas, UntranslatableError
+from nonholo.lagrange_dalembert.compiled._windows import array_of, fixed, gathered, scattered
+
+_CALLS = {"jit", "pjit", "closed_call", "remat", "checkpoint", "custom_jvp_call", "custom_vjp_call"}
+_KINDS = {
+    "f": set(OPERATIONS),
+    "b": {*LOGIC, "eq", "ne"},
+    "i": {"add", "sub", "mul", "neg", "max", "min", *TRUTHS} - LOGIC,
+}
+
+Rule = Callable[..., Any]
+"""Maps formulas, arrays of numbers and the parameters of a primitive, by name, to its result."""
+
+
+def translated(f: Formulas, program: Any, arguments: list[np.ndarray]) -> list[np.ndarray]:
+    """Return the results of a JAX program of arrays of numbers."""
+    jaxpr = getattr(program, "jaxpr", program)
+    values = dict(zip(jaxpr.invars, arguments, strict=True))
+    for variable, constant in zip(jaxpr.constvars, getattr(program, "consts", ()), strict=True):
+        values[variable] = _constants(f, constant)
+
+    def read(atom: Any) -> np.ndarray:
+        return _constants(f, atom.val) if hasattr(atom, "val") else values[atom]
+
+    for step in jaxpr.eqns:
+        results = _applied(f, step, [read(atom) for atom in step.invars])
+        values |= dict(zip(step.outvars, results, strict=True))
+    return [read(atom) for atom in jaxpr.outvars]
+
+
+def _applied(f: Formulas, step: Any, arguments: list[np.ndarray]) -> list[np.ndarray]:
+    name, parameters = step.primitive.name, step.params
+    if name in _CALLS:
+        inner = next(parameters[key] for key in ("jaxpr", "call_jaxpr", "fun_jaxpr") if key in parameters)
+        return translated(f, inner, arguments)
+    if name == "cond":
+        return translated(f, parameters["branches"][fixed(arguments[0]).item()], arguments[1:])
+    if name not in _TABLE or (name in OPERATIONS and name not in _KINDS.get(step.invars[0].aval.dtype.kind, ())):
+        raise UntranslatableError(name)
+    result = _TABLE[name](f, *arguments, **parameters)
+    return [np.asarray(each, dtype=object) for each in (result if step.primitive.multiple_results else [result])]
+
+
+def _constants(f: Formulas, value: Any) -> np.ndarray:
+    return array_of([f.constant(each) for each in np.ravel(value)], np.shape(value))
+
+
+def _each(operation: Callable[..., Any], *arrays: np.ndarray) -> np.ndarray:
+    return np.frompyfunc(operation, len(arrays), 1)(*arrays)
+
+
+def _numberwise(formula: Callable[..., Any]) -> Rule:
+    """Return the rule of a formula(f, *numbers) that acts on each number of arrays."""
+    return lambda f, *arrays, **_: _each(functools.partial(formula, f), *arrays)
+
+
+def _sign(f: Formulas, x: Any) -> Any:
+    zero = f.constant(0.0)
+    not_positive = f("select", f("lt", x, zero), x, f.constant(-1.0))  # zeros and NaN stay what they are
+    return f("select", f("gt", x, zero), not_positive, f.constant(1.0))
+
+
+def _logistic(f: Formulas, x: Any) -> Any:
+    one = f.constant(1.0)
+    return f("div", one, f("add", one, f("exp", f("neg", x))))
+
+
+def _power(f: Formulas, x: np.ndarray, *, y: int, **_: Any) -> np.ndarray:
+    """Return integer powers by repeated squaring."""
+
+    def power(base: Any, exponent: int) -> Any:
+        if exponent < 0:
+            return f("div", f.constant(1.0), power(base, -exponent))
+        square = power(f("mul", base, base), exponent // 2) if exponent > 1 else f.constant(1.0)
+        return f("mul", square, base) if exponent % 2 else square
+
+    return _each(lambda number: power(number, y), x)
+
+
+def _rounded(f: Formulas, x: np.ndarray, *, rounding_method: Any) -> np.ndarray:
+    if rounding_method != RoundingMethod.TO_NEAREST_EVEN:
+        raise UntranslatableError("round half away from zero")
+    return _each(functools.partial(f, "rint"), x)
+
+
+def _converted(f: Formulas, x: np.ndarray, *, new_dtype: Any, **_: Any) -> np.ndarray:
+    name = np.dtype(new_dtype).name
+    if name == "float64":
+        return _each(lambda x: f("float", x) if x.is_truth or x.value is not None else x, x)
+    if name == "bool" and all(number.is_truth for number in x.ravel()):
+        return x
+    if name not in ("bool", "int32", "int64"):
+        raise UntranslatableError(name)
+    return _constants(f, fixed(x).astype(name))
+
+
+def _chosen(f: Formulas, which: np.ndarray, *cases: np.ndarray) -> np.ndarray:
+    if len(cases) != 2:
+        raise UntranslatableError("a choice of many")
+    return _each(functools.partial(f, "select"), which, *cases)
+
+
+def _reduction(name: str, of_none: float) -> Rule:
+    """Take the numbers along axes one after another, in rising order; `of_none` is the value of none."""
+
+    def reduce(f: Formulas, x: np.ndarray, *, axes: Any, **_: Any) -> np.ndarray:
+        ordered = np.moveaxis(x, axes, range(-len(axes), 0))
+        shape = ordered.shape[: x.ndim - len(axes)]
+        rows = ordered.reshape(math.prod(shape), math.prod(ordered.shape[len(shape) :]))
+        none = [] if rows.shape[1] else [f.constant(of_none)]
+        return array_of([functools.reduce(functools.partial(f, name), row, *none) for row in rows], shape)
+
+    return reduce
+
+
+_sum = _reduction("add", 0.0)
+
+
+def _cumulated(f: Formulas, x: np.ndarray, *, axis: int, reverse: bool) -> np.ndarray:
+    forward = np.flip(x, axis) if reverse else x
+    sums = np.frompyfunc(functools.partial(f, "add"), 2, 1).accumulate(forward, axis=axis)
+    return np.flip(sums, axis) if reverse else sums
+
+
+def _product(f: Formulas, x: np.ndarray, y: np.ndarray, *, dimension_numbers: Any, **_: Any) -> np.ndarray:
+    (along_x, along_y), (batch_x, batch_y) = dimension_numbers
+
+    def ordered(array: np.ndarray, batch: Any, along: Any) -> tuple[np.ndarray, list[tuple[int, ...]]]:
+        free = [axis for axis in range(array.ndim) if axis not in (*batch, *along)]
+        shapes = [tuple(array.shape[axis] for axis in axes) for axes in (batch, free, along)]
+        return array.transpose([*batch, *free, *along]).reshape(list(map(math.prod, shapes))), shapes
+
+    (a, shapes), (b, others) = ordered(x, batch_x, along_x), ordered(y, batch_y, along_y)
+    terms = _each(functools.partial(f, "mul"), a[:, :, None], b[:, None])
+    return _sum(f, terms, axes=(3,)).reshape(shapes[0] + shapes[1] + others[1])
+
+
+def _broadcast(_f: Formulas, x: np.ndarray, *, shape: Any, broadcast_dimensions: Any, **_: Any) -> np.ndarray:
+    sizes = dict(zip(broadcast_dimensions, x.shape, strict=True))
+    return np.broadcast_to(x.reshape([sizes.get(axis, 1) for axis in range(len(shape))]), shape)
+
+
+def _padded(_f: Formulas, x: np.ndarray, value: np.ndarray, *, padding_config: Any) -> np.ndarray:
+    """Return an array between copies of a value; where there are less than none of them, it is cut."""
+    low, high, inner = np.reshape(padding_config, (-1, 3)).astype(int).T
+    begin = np.maximum(low, 0)
+    end = begin + np.maximum(np.array(x.shape) + (np.array(x.shape) - 1) * inner, 0)
+    result = np.full(end + np.maximum(high, 0), value.item(), dtype=object)
+    result[tuple(map(slice, begin, end, inner + 1))] = x
+    return result[tuple(map(slice, begin - low, np.array(result.shape) + np.minimum(high, 0)))]
+
+
+def _counting(f: Formulas, *, dtype: Any, shape: Any, dimension: int, **_: Any) -> np.ndarray:
+    return _constants(f, np.indices(shape, dtype)[dimension])
+
+
+def _platform(f: Formulas, *, platforms: Any) -> np.ndarray:
+    return _constants(f, next(i for i, names in enumerate(platforms) if names is None or "cpu" in names))
+
+
+def _window(x: np.ndarray, starts: Any, sizes: Any) -> tuple[slice, ...]:
+    corner = np.clip([int(fixed(each)) for each in starts], 0, np.subtract(x.shape, sizes))
+    return tuple(map(slice, corner, corner + sizes))
+
+
+def _pasted(_f: Formulas, x: np.ndarray, part: np.ndarray, *starts: np.ndarray) -> np.ndarray:
+    result = x.copy()
+    result[_window(x, starts, part.shape)] = part
+    return result
+
+
+_TABLE: dict[str, Rule] = {
+    **{name: _numberwise(lambda f, *numbers, name=name: f(name, *numbers)) for name in OPERATIONS},
+    "add_any": _numberwise(lambda f, x, y: f("add", x, y)),
+    "square": _numberwise(lambda f, x: f("mul", x, x)),
+    "rsqrt": _numberwise(lambda f, x: f("div", f.constant(1.0), f("sqrt", x))),
+    "clamp": _numberwise(lambda f, least, x, most: f("min", f("max", x, least), most)),
+    "is_finite": _numberwise(lambda f, x: f("eq", f("sub", x, x), f.constant(0.0))),
+    "sign": _numberwise(_sign),
+    "logistic": _numberwise(_logistic),
+    "copy": _numberwise(lambda _f, x: x),
+    "integer_pow": _power,
+    "round": _rounded,
+    "select_n": _chosen,
+    "convert_element_type": _converted,
+    "reduce_sum": _sum,
+    "reduce_prod": _reduction("mul", 1.0),
+    "reduce_max": _reduction("max", -math.inf),
+    "reduce_min": _reduction("min", math.inf),
+    "cumsum": _cumulated,
+    "dot_general": _product,
+    "iota": _counting,
+    "platform_index": _platform,
+    "broadcast_in_dim": _broadcast,
+    "pad": _padded,
+    "gather": gathered,
+    "scatter": scattered,
+    "scatter-add": functools.partial(scattered, adds=True),
+    "dynamic_update_slice": _pasted,
+    "dynamic_slice": lambda _f, x, *starts, slice_sizes: x[_window(x, starts, slice_sizes)],
+    "slice": lambda _f, x, *, start_indices, limit_indices, strides: x[
+        tuple(map(slice, start_indices, limit_indices, strides or (1,) * x.ndim))
+    ],
+    "split": lambda _f, x, *, sizes, axis: np.split(x, np.cumsum(sizes)[:-1], axis),
+    "reshape": lambda _f, x, *, new_sizes, **_: x.reshape(new_sizes),
+    "squeeze": lambda _f, x, *, dimensions: np.squeeze(x, dimensions),
+    "expand_dims": lambda _f, x, *, dimensions: np.expand_dims(x, dimensions),
+    "transpose": lambda _f, x, *, permutation: x.transpose(permutation),
+    "rev": lambda _f, x, *, dimensions: np.flip(x, dimensions),
+    "concatenate": lambda _f, *arrays, dimension: np.concatenate(arrays, dimension),
+    "unstack": lambda _f, x, *, axis: list(np.moveaxis(x, axis, 0)),
+    "stack": lambda _f, *arrays, axis: np.stack(arrays, axis),
+}

@@ -1,0 +1,188 @@
+"""Compiled formulas: each primitive, the doubts, and runs, all against JAX."""
+
+import functools
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import lax
+
+from nonholo.base.numerics import double_precision
+from nonholo.lagrange_dalembert import LagrangeDAlembert
+from nonholo.lagrange_dalembert.compiled import _programs, _run
+from nonholo.lagrange_dalembert.compiled._machine import machine_code
+from nonholo.lagrange_dalembert.compiled._operations import LOGIC, OPERATIONS
+from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError
+
+EPS = np.finfo(float).eps
+CYCLE = np.array([2, 0, 1])
+FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "arithmetic": lambda x, y: x + y - x * y / (-x) + lax.rem(x, y) + jnp.square(x) + lax.rsqrt(jnp.abs(y)) + x % y,
+    "powers": lambda x, y: x**3 + x**-2 + x**7 + x**0 + jnp.abs(x) ** y + jnp.cbrt(x) + jnp.sqrt(jnp.abs(y)),
+    "angles": lambda x, y: jnp.arctan2(x, y) + jnp.tan(x) + jnp.arcsin(x / 9) + jnp.arccos(y / 9) + jnp.arctan(x),
+    "hyperbolic": lambda x, y: jnp.sinh(x) + jnp.cosh(y) + jnp.tanh(x) + jnp.arcsinh(x) + jnp.arctanh(x / 9),
+    "exponentials": lambda x, y: jnp.exp(x) + jnp.log(y * y) + jnp.expm1(x) + jnp.log1p(y * y) + jnp.arccosh(1 + y * y),
+    "smooth steps": lambda x, y: jax.nn.sigmoid(x) + jax.nn.softplus(y) + lax.erf(x) + jax.nn.relu(x),
+    "choices": lambda x, y: jnp.where((x > y) & ~(x < 0.3) | (y == x), x, y * 2) + jnp.where(x >= y, 3 * x, 1),
+    "comparisons": lambda x, y: (x > 0).astype(float) * y + jnp.where(x != y, 1.0, 2.0) + jnp.where(x <= y, x, 1),
+    "rounding": lambda x, y: jnp.round(3 * x) + jnp.floor(3 * y) + jnp.ceil(5 * y) + jnp.abs(x) + jnp.sign(x) * y,
+    "bounds": lambda x, y: jnp.clip(x, -0.5, 0.5) + jnp.maximum(x, y) * jnp.minimum(x, 0.1),
+    "reductions": lambda x, y: jnp.stack([jnp.sum(x), jnp.prod(x), jnp.max(y), jnp.min(x), jnp.linalg.norm(x)]),
+    "sums on the way": lambda x, y: jnp.cumsum(x) + lax.cumsum(y, reverse=True),
+    "products": lambda x, y: jnp.outer(x, y) @ y + jnp.einsum("i,j->ji", x, y) @ x + jnp.cross(x, y),
+    "batches": lambda x, y: jax.vmap(lambda a: a * y @ x)(x),
+    "indices": lambda x, y: x[CYCLE] * y[::-1] + x[-1] + x[np.array([0, 0, 1])] + jnp.roll(x, 1),
+    "entries": lambda x, y: jnp.zeros((2, 3)).at[0, 1].set(x[2]).at[:, 2].set(y[:2]).at[1].add(x),
+    "repeated entries": lambda x, y: x.at[np.array([1, 1, 0])].add(y),
+    "windows": lambda x, y: lax.dynamic_slice(x, (2,), (2,))[0] * lax.dynamic_update_slice(x, y[:1], (1,)),
+    "padding": lambda x, y: lax.pad(x, y[0], ((1, 2, 1),)),
+    "matrices": lambda x, y: jnp.linalg.det(jnp.stack([x, y, x * y])) * jnp.trace(jnp.diag(x) + jnp.outer(y, x).T),
+    "pieces": lambda x, y: jnp.concatenate([jnp.split(x, [1, 2])[1], y[1:] * x[:-1], jnp.eye(3)[0]]).reshape(3, 2),
+    "calls": lambda x, y: jax.jit(lambda z: z * 2)(x) + jnp.sinc(y),
+}
+OTHERS: dict[str, Callable[..., Any]] = {
+    "loop": lambda x, y: lax.fori_loop(0, 3, lambda _, z: z * y, x),
+    "solver": lambda x, y: jnp.linalg.solve(jnp.eye(3) + jnp.outer(x, x), y),
+    "index that is computed": lambda x, _: x[jnp.argmax(x)],
+    "branch that is computed": lambda x, y: lax.cond(x[0] > 0, lambda z: z, lambda z: 2 * z, y),
+    "32 bits": lambda x, y: x.astype(jnp.float32) * y.astype(jnp.float32),
+}
+DERIVATIVES: dict[str, Callable[..., Any]] = {
+    "value": lambda f: f,
+    "first": lambda f: jax.jacfwd(f, argnums=(0, 1)),
+    "second": lambda f: jax.jacfwd(jax.grad(lambda x, y: jnp.sum(jnp.sin(f(x, y))))),
+}
+
+
+def computed(function: Callable[..., Any], *arrays: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return the values of a function by its formulas, and their doubt."""
+    program = _programs.program(function, *(array.shape for array in arrays))
+    numbers, results = np.concatenate([np.ravel(x) for x in arrays]), np.empty(len(program.results) + 1)
+    machine_code(program.inputs, [*program.results, program.doubt])(numbers.ctypes, results.ctypes)
+    return results[:-1], results[-1]
+
+
+def by_jax(function: Callable[..., Any], *arrays: np.ndarray) -> np.ndarray:
+    """Return the values of a function by JAX."""
+    with double_precision():
+        return np.concatenate([np.ravel(x) for x in jax.tree.leaves(jax.jit(function)(*arrays))])
+
+
+@pytest.mark.profile("routes", keep=["value-indices", "value-entries", "second-padding"])
+@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.parametrize("order", DERIVATIVES)
+def test_primitives(order: str, name: str) -> None:
+    """Formulas of functions and of their derivatives have JAX's values; elementary functions differ by some ulp."""
+    x, y = np.random.default_rng(len(name)).normal(size=(2, 3))
+    function = DERIVATIVES[order](FUNCTIONS[name])
+    values, doubt = computed(function, x, y)
+    expected = by_jax(function, x, y)
+    assert doubt == 0
+    assert np.abs(values - expected).max() <= 100 * EPS * max(1.0, np.abs(expected).max())
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_what_has_no_formulas_is_refused(name: str) -> None:
+    """Loops, linear solvers and computed indices are left to JAX."""
+    with pytest.raises(UntranslatableError):
+        _programs.program(OTHERS[name], (3,), (3,))
+
+
+def test_constants_have_the_values_of_the_code() -> None:
+    """Each operation gives to constants what its instruction gives to numbers, to an ulp or two."""
+    f, points = Formulas(), (0.3, 0.7, 0.2)
+    binary = {"add", "sub", "mul", "div", "rem", "pow", "max", "min", "atan2", "lt", "le", "gt", "ge", "eq", "ne"}
+    names = sorted(set(OPERATIONS) - LOGIC - {"float", "select", "acosh"})
+    inputs, constants = [Scalar("input") for _ in points], [f.constant(point) for point in points]
+
+    def every(numbers: list[Scalar]) -> list[Scalar]:
+        results = [f(name, *numbers[: 1 + (name in binary)]) for name in names]
+        results.append(f("acosh", f("add", numbers[0], f.constant(1.0))))
+        less, more = f("lt", *numbers[:2]), f("gt", *numbers[:2])
+        chosen = [f("select", truth, *numbers[1:]) for truth in (less, more, f("and", less, more), f("not", more))]
+        return [
+            *(f("float", each) if each.is_truth else each for each in results),
+            *chosen,
+            f("float", f("or", less, more)),
+        ]
+
+    folded, values = [each.value for each in every(constants)], np.empty(len(names) + 6)
+    machine_code(inputs, every(inputs))(np.array(points).ctypes, values.ctypes)
+    assert None not in folded
+    assert np.abs(np.array(folded) - values).max() <= 2 * EPS
+
+
+def test_zeros_are_doubted_where_a_factor_may_not_be_finite() -> None:
+    """0 log x is 0 without its logarithm only where x > 0; 0 sin x is 0 everywhere."""
+    points = np.array([1.0, -1.0, 0.0])
+    logarithms = [computed(lambda x: 0.0 * jnp.log(x), point[None]) for point in points]
+    assert [value[0] for value, _ in logarithms] == [0.0, 0.0, 0.0]
+    assert [doubt == 0 for _, doubt in logarithms] == [True, False, False]
+    assert [computed(lambda x: 0.0 / x, point[None])[1] == 0 for point in points] == [True, True, False]
+    assert _programs.program(lambda x: 0.0 * jnp.sin(x), (1,)).doubt.value == 0.0
+
+
+def test_a_number_is_computed_once() -> None:
+    """What is written twice, and in derivatives again, has one operation."""
+    program = _programs.program(lambda x: (jnp.sin(x) * jnp.sin(x), jax.grad(jnp.cos)(x) + jnp.sin(x)), ())
+    square, difference = program.results
+    assert square.arguments[0] is square.arguments[1] is difference.arguments[1]
+
+
+def random_system(seed: int) -> LagrangeDAlembert:
+    """Return a system with a mass matrix, forms and a potential of no symmetry; odd ones are driven."""
+    rng = np.random.default_rng(seed)
+    n, s = int(rng.integers(2, 6)), 1 + seed % 2
+    s = min(s, n - 1)
+    B, C, D = rng.normal(size=(n, n)), rng.normal(size=(s, n)), rng.normal(size=(s, n, n))
+
+    def lagrangian(q: Any, v: Any) -> Any:
+        w = B @ v * (1 + jnp.sin(q) ** 2)
+        return w @ w / 2 + v @ v / 2 - jnp.sum(jnp.cos(B @ q)) - q @ q / 2
+
+    def forms(q: Any) -> Any:
+        return C + jnp.sin(D @ q) / 2
+
+    def force(time: Any, q: Any, v: Any) -> Any:
+        return jnp.cos(time) * q - 0.1 * v
+
+    driven: dict[str, Any] = {"force": force, "prescribed": {0: lambda time: jnp.sin(time)}} if seed % 2 else {}
+    free = forms if not driven or s < n - 1 else None
+    return LagrangeDAlembert(lagrangian, free, dimension=n, rule=("midpoint", "trapezoidal")[seed // 2 % 2], **driven)
+
+
+def started(system: LagrangeDAlembert, seed: int) -> dict[str, np.ndarray]:
+    """Return a start of a random system."""
+    rng = np.random.default_rng(seed)
+    q, p = rng.normal(size=(2, system.dimension))
+    q[: len(system.prescribed)] = 0.0
+    return {"configuration": q, "momentum": p}
+
+
+def left_to_jax(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let every run take JAX's route."""
+    monkeypatch.setattr(_run, "programs", lambda *_, **__: None)
+    monkeypatch.setattr(_run, "values", lambda *_: None)
+
+
+@pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
+@pytest.mark.parametrize("time_step", [0.01, 0.3])
+@pytest.mark.parametrize("seed", range(8))
+def test_runs_are_those_of_jax(seed: int, time_step: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Orbits differ by rounding; large steps, of which some are not trusted, end alike."""
+    system = random_system(seed)
+    start = started(system, seed)
+    run = functools.partial(system.discretize(time_step).simulate, **start, steps=100, throw=False)
+    compiled = run()
+    assert _programs.programs(system, (system.dimension + system.is_driven,), system.dimension) is not None
+    left_to_jax(monkeypatch)
+    orbit = run()
+    assert compiled.outcome == orbit.outcome or (time_step > 0.1 and compiled.outcome and orbit.outcome)
+    assert len(compiled) == len(orbit)
+    for name in ("configuration", "body_velocity", "momentum", "multipliers", "energy"):
+        ours, theirs = getattr(compiled, name), getattr(orbit, name)
+        growth = 1e-12 if time_step < 0.1 else 1e-9  # rounding errors grow with the motion
+        assert np.abs(ours - theirs).max(initial=0.0) <= growth * np.abs(theirs).max(initial=1.0), name
