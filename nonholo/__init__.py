@@ -71,10 +71,10 @@ Many motions:
     ensemble: Run or solve many members of one system, that differ in where they start, in parameters, or in both.
     Ensemble: Motions of M members at K saved states, from `ensemble`: arrays as in an `Orbit`, with a leading ...
     FlowEnsemble: Continuous motions of M members at K times, from `ensemble` of a system: as `Ensemble`, with no ...
-    CoordinateEnsemble:
+    CoordinateEnsemble: Motions of M members in coordinates at K saved states: the arrays of their orbits, with a ...
     sweep: Run a task for every member of a design and keep what it returns in one store.
     EnsembleTask: Run the members of a design and keep some numbers of each.
-    FamilyTask:
+    FamilyTask: Run the members of a family: systems that a function of parameters makes, such as ...
     MemberBlock: Some members of a sweep in order: a mapping of names to arrays whose first axis is that of the members.
     load_sweep: Open the result of a finished sweep, after checking every chunk of it.
     Grid: Every combination of values along axes.
@@ -111,6 +111,11 @@ Where motions come from and go to:
 The surface of discrete momenta:
     momentum_locus: Return the surface $\{P(W) : W \in \exp\mathfrak{d}\}$ of the discrete momenta of a top (n = 3) ...
     invariant_curve: Return the curve of displacements with a reduced constrained energy, all its components.
+
+Gaits, the geometry of locomotion:
+    local_connection: Return the local connection of a system in the plane: the body velocity that a change of shape ...
+    geometric_phase: Return the displacement by a gait: a closed motion s(t) of the shape, which its owner prescribes.
+    accessibility: Return how far brackets of admissible velocities lead from a configuration.
 
 Derivatives, measured motion, control:
     rollout: Run the discrete map as `simulate` does, as a pure JAX function of body, start and controls.
