@@ -15,9 +15,9 @@ import numpy as np
 
 import nonholo as nh
 from nonholo.kernels import each_row
-from nonholo.lagrange_dalembert import _simulate
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert.compiled import _programs, advance
+from nonholo.lagrange_dalembert.runs import _simulate
 
 NAMES = ("particle", "rolling_disk", "knife_edge_on_incline", "snakeboard", "two_wheeled_robot", "non_reversible")
 NAMES += ("roller_racer", "driven_sleigh", "chaotic_quartic_oscillator")

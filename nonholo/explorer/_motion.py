@@ -154,7 +154,7 @@ def _replay(orbit: AbstractOrbit) -> Shown:
 
 def _shown_energy(orbit: AbstractOrbit) -> tuple[Float[np.ndarray, "K"], str]:
     """Return the energy, under forces less their work and from its largest value on, and a note on that."""
-    work = orbit.work
+    work = np.nan_to_num(orbit.work)
     if not work.any():
         return orbit.energy, ""
     left = orbit.energy - orbit.energy[0] - work

@@ -33,6 +33,7 @@ class _Recorded(BaseModel):
     shapes: tuple[tuple[NonNegativeInt, ...], tuple[NonNegativeInt]]
     constraints: NonNegativeInt
     is_driven: bool
+    heading: str | None = None
 
 
 def recorded_system(kind: str, parameters: dict[str, Any], group: Any) -> Any:

@@ -11,11 +11,18 @@ from nonholo.lagrange_dalembert import _start
 from nonholo.lagrange_dalembert._equations import momenta, momentum
 from nonholo.lagrange_dalembert._motion import CoordinateMotion
 from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
-from nonholo.lagrange_dalembert._partial_step import after_parts
 from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._run import CoordinateRun
-from nonholo.lagrange_dalembert._simulate import Start, checked_block, checked_counts, first_state, iterated, simulated
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+from nonholo.lagrange_dalembert.runs import (
+    CoordinateRun,
+    Start,
+    after_parts,
+    checked_block,
+    checked_counts,
+    first_state,
+    iterated,
+    simulated,
+)
 from nonholo.systems import AbstractCoordinateDiscretization, one_start
 
 

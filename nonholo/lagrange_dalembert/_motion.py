@@ -83,6 +83,7 @@ class RecordedSystem(AbstractCoordinateSystem):
         ValueError: `load_orbit(discrete=...)` must be the discretization. Got None: stores hold no functions. ...
     """
 
+    has_functions: ClassVar[bool] = False
     known: Mapping[str, Any]
     described: tuple[str, dict[str, Any]]  # pyright: ignore[reportGeneralTypeIssues]
 
@@ -94,6 +95,11 @@ class RecordedSystem(AbstractCoordinateSystem):
             remedy = "Pass the one that made the store to load_orbit, resume or extend: discrete=..."
             raise error("load_orbit(discrete=...)", "be the discretization", "None: stores hold no functions", remedy)
         return self.known[name]
+
+    def parts(self, q: Any) -> tuple[()]:
+        """Return no outline: it may be a function."""
+        del q
+        return ()
 
     def discretize(self, time_step: Any) -> Any:
         """Return the map of the store, which cannot run."""

@@ -101,11 +101,15 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     def work(self) -> Float[np.ndarray, "K"]:
         r"""Work on a driven system since the first state, by the trapezoidal rule; zero of one that is not driven.
 
+        Of a store that holds no functions it is not known: NaN.
+
         $$ \dot W = f\cdot v + \lambda\cdot b - \partial L/\partial t: $$
 
         that of the force, of moving constraints and driven joints, and of a Lagrangian of the time. The energy less
         this work is constant up to an error of order 2 in the time between states.
         """
+        if not self.system.has_functions:
+            return np.full(len(self), np.nan if self.system.is_driven else 0.0)
         return room("_acceleration").work(self) if self.system.is_driven else np.zeros(len(self))
 
     @property

@@ -80,6 +80,9 @@ class AbstractCoordinateSystem(abc.ABC, Generic[DiscretizationT, OrbitT]):
         described: What stores say of it in place of its fields: a name and parameters.
     """
 
+    has_functions: ClassVar[bool] = True
+    """Whether it has its Lagrangian: one from a store need not."""
+
     described: tuple[str, dict[str, Any]] | None = None
 
     @property

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.lagrange_dalembert import LagrangeDAlembert, _simulate
+from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.lagrange_dalembert._newton import solve
 from nonholo.lagrange_dalembert._precision import in_double
+from nonholo.lagrange_dalembert.runs import _simulate
 
 FORCE = 0.15
 

@@ -9,12 +9,19 @@ import numpy as np
 from nonholo.base.types import Float
 from nonholo.lagrange_dalembert._motion import CoordinateMotion
 from nonholo.lagrange_dalembert._orbit import GroupOrbit
-from nonholo.lagrange_dalembert._partial_step import after_parts
-from nonholo.lagrange_dalembert._run import CoordinateRun
-from nonholo.lagrange_dalembert._simulate import Start, checked_block, checked_counts, first_state, iterated, simulated
 from nonholo.lagrange_dalembert._start import fixed_time_step
 from nonholo.lagrange_dalembert.on_groups import _start as start
 from nonholo.lagrange_dalembert.on_groups._system import GroupLagrangeDAlembert
+from nonholo.lagrange_dalembert.runs import (
+    CoordinateRun,
+    Start,
+    after_parts,
+    checked_block,
+    checked_counts,
+    first_state,
+    iterated,
+    simulated,
+)
 from nonholo.systems import AbstractCoordinateDiscretization, one_start
 
 

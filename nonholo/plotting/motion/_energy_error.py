@@ -75,7 +75,7 @@ def energy_error(orbit: AbstractOrbit, axes: Axes | None = None, **look: Unpack[
     if not orbit.has_poses and orbit.system.is_spatial:
         posed("energy_error(orbit=...)", orbit)
     axes = theme.axes_or_new(axes, (6.0, 2.6))
-    work = orbit.work
+    work = np.nan_to_num(orbit.work)
     balanced = bool(work.any())
     energy, name = orbit.energy - work, "(E - W)" if balanced else "E"
     size = np.abs(orbit.energy).max() if balanced else energy[0]

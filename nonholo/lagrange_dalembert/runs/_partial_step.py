@@ -15,7 +15,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._room import equations_of, places
-from nonholo.lagrange_dalembert._simulate import orbit_of, set_out
+from nonholo.lagrange_dalembert.runs._simulate import orbit_of, set_out
 
 _ROWS = 32  # states of one call, one after another: the bits of each do not depend on the others
 

@@ -12,7 +12,7 @@ from nonholo.base.types import Float
 from nonholo.lagrange_dalembert._motion import ORBITS
 from nonholo.lagrange_dalembert._orbit import AbstractCoordinateOrbit
 from nonholo.lagrange_dalembert._room import equations_of
-from nonholo.lagrange_dalembert._simulate import LEAST, Start, State, blocks, orbit_of
+from nonholo.lagrange_dalembert.runs._simulate import LEAST, Start, State, blocks, orbit_of
 
 
 class RunState(NamedTuple):
