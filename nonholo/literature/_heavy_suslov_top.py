@@ -2,6 +2,7 @@
 
 import functools
 
+import numba
 import numpy as np
 
 from nonholo.base.types import Array, Float
@@ -61,6 +62,7 @@ def heavy_suslov_top(
         "of the second axis": functools.partial(kept, turning=1, tilting=0),
     }
 
+    @numba.njit
     def potential(g: Float[np.ndarray, "3 3"]) -> np.float64:
         return c @ g[2] ** 2 / 2
 

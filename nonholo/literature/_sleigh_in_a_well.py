@@ -1,5 +1,6 @@
 """The Chaplygin sleigh in a potential well."""
 
+import numba
 import numpy as np
 
 from nonholo.base.checks import number
@@ -51,6 +52,7 @@ def sleigh_in_a_well(
     given = {"a": a, "stiffness": stiffness, "speed": speed, "turning": turning}
     a, k, u, omega = (float(number(f"examples.{name}({what}=...)", value)) for what, value in given.items())
 
+    @numba.njit
     def potential(g: Float[np.ndarray, "3 3"]) -> np.float64:
         return k * (g[0, 2] ** 2 + g[1, 2] ** 2) / 2
 
