@@ -104,7 +104,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     orbits: ClassVar[str] = "CoordinateOrbit"
     recorded: ClassVar[tuple[str, ...]] = ("constraints", "is_driven", "orbits", "shapes")
     heading: str | None = dataclasses.field(default=None, kw_only=True, compare=False)
-    outline: Any = dataclasses.field(default=(), kw_only=True, compare=False, repr=False)
+    outline: Any = dataclasses.field(default=(), kw_only=True, compare=False, repr=False, metadata={"stored": False})
     _equations: ClassVar[str] = "_equations"
 
     def __post_init__(self) -> None:
