@@ -10,7 +10,7 @@ from nonholo.literature import Example
 
 NAMES = sorted(set(nh.examples.__all__) - {"Example"})
 DRIVEN = {"driven_sleigh", "roller_racer"}  # their velocities are not to be scaled: some are prescribed
-WITHOUT_PARTS = {"heavy_suslov_top", "sleigh_in_a_well"}  # potentials in Python
+BODIES = {"heavy_suslov_top", "sleigh_in_a_well"}  # on groups, under potentials
 STEP, STEPS, MEMBERS = 0.1, 30, 1000
 ROWS = ("time", "configuration", "displacement", "body_velocity", "momentum", "energy")
 
@@ -24,7 +24,7 @@ def test_a_ready_system_is_first_class(name: str, tmp_path) -> None:  # noqa: AN
     start = {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
     orbit = nh.simulate(discrete, **start, steps=STEPS)
     _drawn_and_written(orbit, tmp_path)
-    _crosses_by_steps_of_the_map(orbit, discrete, start, is_driven=name in DRIVEN, has_parts=name not in WITHOUT_PARTS)
+    _crosses_by_steps_of_the_map(orbit, discrete, start, name)
     _members_are_runs_alone(name, discrete, start)
     _is_swept(name, discrete, start, tmp_path)
 
@@ -43,23 +43,20 @@ def _drawn_and_written(orbit: nh.Orbit, folder) -> None:  # noqa: ANN001
         assert any(np.array_equal(written[column], table[other]) for other in table)
 
 
-def _crosses_by_steps_of_the_map(orbit, discrete, start, *, is_driven: bool, has_parts: bool) -> None:  # noqa: ANN001
+def _crosses_by_steps_of_the_map(orbit, discrete, start, name: str) -> None:  # noqa: ANN001
     """The level lies between states 17 and 18: the crossing is what a step of that part of the length reaches."""
     flat = orbit.configuration.reshape(len(orbit), -1)
     place = int(np.argmax(np.ptp(flat, axis=0)))
     level = (flat[17, place] + flat[18, place]) / 2
     event = nh.Event(lambda states: states.configuration.reshape(len(states), -1)[:, place] - level, name="level")
-    if not has_parts:
-        with pytest.raises(ValueError, match="under forces that do not depend on time"):
-            nh.simulate(discrete, **start, steps=STEPS, events=[event])
-        return
     found = nh.simulate(discrete, **start, steps=STEPS, events=[event]).events["level"]
     at = int(np.flatnonzero(found.step == 17)[0])
     assert np.abs(event.function(found.states)).max() <= 4 * np.spacing(np.abs(flat[:, place]).max())
     assert len(nh.plot.section(found, lambda states: states.time, lambda states: states.energy).points) == len(found)
-    if not is_driven:  # whose runs begin at time 0
+    if name not in DRIVEN:  # whose runs begin at time 0
         part = dataclasses.replace(discrete, time_step=found.fraction[at] * STEP)
-        reached = part.simulate(configuration=orbit.configuration[17], momentum=orbit.momentum[17], steps=1)
+        momentum = (orbit.restricted_momentum if name in BODIES else orbit.momentum)[17]
+        reached = nh.simulate(part, configuration=orbit.configuration[17], momentum=momentum, steps=1)
         # starts from a momentum solve the same equations; their roots are exact to 1e-10 squared
         assert np.abs(found.states.configuration[at] - reached.configuration[1]).max() <= 1e-13
 
@@ -70,7 +67,7 @@ def _members_are_runs_alone(name: str, discrete, start: dict) -> None:  # noqa: 
         rows = start | {"configuration": start["configuration"] + along[:, None] * np.eye(4)[0]}
     else:
         rows = start | {"body_velocity": along[:, None] * start["body_velocity"]}
-    if name in WITHOUT_PARTS:  # bodies, whose members start at the identity
+    if name in BODIES:  # whose members start at the identity
         del rows["configuration"]
     batch = nh.ensemble(discrete, **rows, steps=4, save_every=2)
     assert batch.outcome.tolist() == [0] * MEMBERS
@@ -80,7 +77,7 @@ def _members_are_runs_alone(name: str, discrete, start: dict) -> None:  # noqa: 
         own = {key: value[member] if len(value) == MEMBERS else value for key, value in rows.items()}
         alone = nh.simulate(discrete, **own, steps=4, save_every=2)
         for row in ROWS:
-            if name not in WITHOUT_PARTS:
+            if name not in BODIES:
                 assert np.array_equal(getattr(batch, row)[member], getattr(alone, row)), row
         # bodies: starts of many are converted by other products of matrices (docs/conventions.md, "Bits")
         assert np.abs(batch.configuration[member] - alone.configuration).max() <= 1e-14

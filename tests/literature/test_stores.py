@@ -24,8 +24,8 @@ from nonholo.lagrange_dalembert import (
 )
 from nonholo.literature import Example
 
-FORCED = {"heavy_suslov_top", "sleigh_in_a_well"}  # functions in Python, which no store runs
-NAMES = sorted(set(nh.examples.__all__) - {"Example"} - FORCED)
+NAMES = sorted(set(nh.examples.__all__) - {"Example"})
+BODIES = {"heavy_suslov_top", "sleigh_in_a_well"}  # whose blocks begin with the state at their end
 HERE = pytest.mark.profile("routes", keep=["particle*"])
 
 
@@ -61,18 +61,19 @@ def same(one: AbstractCoordinateOrbit, other: AbstractCoordinateOrbit) -> bool:
 @pytest.mark.parametrize("name", NAMES)
 def test_a_run_that_is_stopped_resumed_and_extended_is_the_run(name: str, tmp_path: Path) -> None:
     """Stores name the system and its parameters; what is stopped has lost one block, and opens by itself."""
-    run, path = {**start(name), "save_every": 3}, tmp_path / "run.zarr"
-    with stopped_at(3, match=r"Stopped at step 36 of 50\. Resume with nonholo\.resume"):
+    run, path, last = {**start(name), "save_every": 3}, tmp_path / "run.zarr", 33 if name in BODIES else 36
+    with stopped_at(3, match=rf"Stopped at step {last} of 50\. Resume with nonholo\.resume"):
         nh.simulate(discrete(name), **run, steps=50, store=path, checkpoint_every=12, scenario="mine")
     found = standing(path)
     assert found is not None
-    assert (found.done, found.steps) == (36, 50)
+    assert (found.done, found.steps) == (last, 50)
     assert same(nh.resume(path), nh.simulate(discrete(name), **run, steps=50))
     whole = nh.simulate(discrete(name), **run, steps=74)
     assert same(nh.extend(path, 24), whole)
     opened = nh.load_orbit(path)
     assert same(opened, whole)
-    assert opened.system == whole.system
+    assert opened.system.described == whole.system.described == (f"examples.{name}", opened.system.described[1])
+    assert name in BODIES or opened.system == whole.system
     assert np.array_equal(opened.restricted_momentum, whole.restricted_momentum)
     stored = json.loads((path / "zarr.json").read_text())["attributes"]
     assert stored["system"] == f"examples.{name}"
@@ -95,8 +96,10 @@ def test_saved_orbits_and_tables_are_read_back_exactly(name: str, tmp_path: Path
     header, *lines = (tmp_path / "orbit.csv").read_text().splitlines()
     assert (tmp_path / "run.csv").read_text().splitlines() == [header, *lines]
     assert (tmp_path / "thin.csv").read_text().splitlines() == [header, *lines[::4]]
-    table = np.genfromtxt(tmp_path / "run.csv", delimiter=",", names=True)
-    assert np.array_equal(table["x"], np.reshape(orbit.configuration, (41, -1))[:, 0 if orbit.coordinates else 3])
+    if name != "heavy_suslov_top":  # which moves no place
+        table = np.genfromtxt(tmp_path / "run.csv", delimiter=",", names=True)
+        x = orbit.configuration[:, 0] if orbit.coordinates else orbit.configuration[:, 0, -1]
+        assert np.array_equal(table["x"], x)
 
 
 @pytest.mark.parametrize("rows", [1, 20, 21])
@@ -224,17 +227,6 @@ def test_what_is_changed_is_no_ready_system_any_more() -> None:
     assert nh.Forced(system, lambda q: q[2]).described is None
     assert dataclasses.replace(system, rule="trapezoidal").described is None
     assert nh.examples.chaotic_quartic_oscillator(pairs=1).system.described[1] == {"pairs": 1}
-
-
-@pytest.mark.profile("routes", instead="test_what_is_changed_is_no_ready_system_any_more")
-@pytest.mark.parametrize("name", sorted(FORCED))
-def test_orbits_of_ready_bodies_under_forces_load_by_themselves(name: str, tmp_path: Path) -> None:
-    """Their potential is a function, which their name stands for."""
-    orbit = nh.simulate(discrete(name), **start(name), steps=5)
-    nh.save_orbit(orbit, tmp_path / "orbit.zarr")
-    loaded = nh.load_orbit(tmp_path / "orbit.zarr")
-    assert np.array_equal(loaded.configuration, orbit.configuration)
-    assert np.array_equal(loaded.energy, orbit.energy)
 
 
 def test_damage_is_refused_and_computed_again(tmp_path: Path) -> None:
