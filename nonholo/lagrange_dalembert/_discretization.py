@@ -1,33 +1,21 @@
 """The discrete map in coordinates: a system with a time step, and its run."""
 
 import dataclasses
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
-from nonholo.base.types import Float
 from nonholo.lagrange_dalembert import _start
 from nonholo.lagrange_dalembert._equations import momenta, momentum
-from nonholo.lagrange_dalembert._motion import CoordinateMotion
 from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-from nonholo.lagrange_dalembert.runs import (
-    CoordinateRun,
-    Start,
-    after_parts,
-    checked_block,
-    checked_counts,
-    first_state,
-    iterated,
-    simulated,
-)
-from nonholo.systems import AbstractCoordinateDiscretization, one_start
+from nonholo.lagrange_dalembert.runs import AbstractLagrangeDAlembertMap, Start, first_state
+from nonholo.systems import one_start
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class CoordinateDiscretization(CoordinateMotion, AbstractCoordinateDiscretization[CoordinateOrbit]):
+class CoordinateDiscretization(AbstractLagrangeDAlembertMap[CoordinateOrbit]):
     """A discretized system in coordinates, made by `nonholo.discretize`.
 
     Attributes:
@@ -42,9 +30,6 @@ class CoordinateDiscretization(CoordinateMotion, AbstractCoordinateDiscretizatio
 
     system: LagrangeDAlembert
     time_step: float
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "time_step", _start.fixed_time_step(self.time_step))
 
     def simulate(
         self,
@@ -92,75 +77,7 @@ class CoordinateDiscretization(CoordinateMotion, AbstractCoordinateDiscretizatio
                    [1. , 2. ]])
         """
         starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
-        system, h = self.system, np.float64(self.time_step)
-        steps, every = checked_counts(steps, save_every, 4 * system.dimension)
-        first = self.start(configuration, **starts)
-        return simulated(CoordinateOrbit, system, h, first, steps, every, throw, progress)
-
-    def iterate(
-        self,
-        *,
-        configuration: Any,
-        steps: int,
-        block_steps: int | None = None,
-        body_velocity: Any = None,
-        displacement: Any = None,
-        momentum: Any = None,
-        save_every: int = 1,
-        throw: bool = True,
-        progress: bool = False,
-    ) -> Iterator[CoordinateOrbit]:
-        """Run the map of `simulate`, and give its orbit block by block, in bounded memory.
-
-        The blocks together are the orbit of `simulate`, bit for bit: no state is given twice.
-
-        Args:
-            configuration: As in `simulate`, and so are the others.
-            steps: See `simulate`.
-            block_steps: Steps of a block, a multiple of `save_every`; by default a thousand saved states.
-            body_velocity: See `simulate`.
-            displacement: See `simulate`.
-            momentum: See `simulate`.
-            save_every: See `simulate`.
-            throw: Raise if the run cannot continue, after its last good block; otherwise that block's outcome says so.
-            progress: See `simulate`.
-
-        Returns:
-            An iterator over orbits of `block_steps // save_every` states, the last one of those that are left.
-
-        Raises:
-            ValueError: A bad argument, before any work.
-            OutcomeError: As in `simulate`; with `throw` its `orbit` is the last block.
-
-        Example:
-            >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
-            >>> free = LagrangeDAlembert(lambda q, v: v @ v / 2, None, dimension=2).discretize(0.5)
-            >>> blocks = free.iterate(configuration=(0, 0), body_velocity=(1, 2), steps=10, block_steps=4)
-            >>> [len(block) for block in blocks]
-            [4, 4, 3]
-        """
-        starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
-        system, h = self.system, np.float64(self.time_step)
-        steps, every = checked_counts(steps, save_every, 0)
-        rows = self.rows_of_block(block_steps, every)
-        first = self.start(configuration, **starts)
-        return iterated(CoordinateOrbit, system, h, first, steps, every, rows, throw, progress)
-
-    def rows_of_block(self, block_steps: Any, save_every: int) -> int:
-        """Return the saved states of a block of `iterate`, refused where memory cannot hold them."""
-        return checked_block(block_steps, save_every, 4 * self.system.dimension)
-
-    def after_parts(self, states: CoordinateOrbit, fractions: Float[np.ndarray, "K"]) -> CoordinateOrbit:
-        r"""Return what is reached from states after parts of the steps that begin there.
-
-        After a fraction s that is the step of length s h from the same configuration and momentum: the definition of
-        the map itself, with another time step.
-
-        Args:
-            states: States of an orbit of this map.
-            fractions: Numbers in (0, 1), one for each.
-        """
-        return after_parts(CoordinateOrbit, self, states, fractions)
+        return self._simulated(steps, save_every, throw, progress, configuration, **starts)
 
     def regularity(self, q: Any, q_next: Any) -> float:
         """Return the smallest singular value of the scaled regularity matrix of a step; zero at a fold.
@@ -182,22 +99,15 @@ class CoordinateDiscretization(CoordinateMotion, AbstractCoordinateDiscretizatio
 
     def start(self, configuration: Any, **starts: Any) -> Start:
         """Return the checked state at the start of a run, the orientation to keep and the outcome so far."""
-        return _first(self.system, np.float64(self.time_step), configuration, starts)
-
-    def run(self, every: int) -> CoordinateRun:
-        """Return what computes blocks of a run that keeps one in `every` states."""
-        return CoordinateRun(self, every)
-
-
-def _first(system: LagrangeDAlembert, h: Any, configuration: Any, starts: dict[str, Any]) -> Start:
-    q = _start.point("simulate", system, configuration)
-    _start.consistent(system, q, h)
-    given = one_start("simulate", **starts)
-    if given == "displacement":
-        v = _start.velocity_of_displacement(system, q, starts["displacement"], h)
-        return first_state(system, h, q, v, in_double(momenta, system, q, v, h)[0])
-    if given == "momentum":
-        p, v = _start.velocity_of_momentum("simulate", system, q, starts["momentum"])
-        return first_state(system, h, q, v, p)
-    v = _start.velocity("simulate", system, q, starts["body_velocity"])
-    return first_state(system, h, q, v, in_double(momentum, system, q, v))
+        system, h = self.system, np.float64(self.time_step)
+        q = _start.point("simulate", system, configuration)
+        _start.consistent(system, q, h)
+        given = one_start("simulate", **starts)
+        if given == "displacement":
+            v = _start.velocity_of_displacement(system, q, starts["displacement"], h)
+            return first_state(system, h, q, v, in_double(momenta, system, q, v, h)[0])
+        if given == "momentum":
+            p, v = _start.velocity_of_momentum("simulate", system, q, starts["momentum"])
+            return first_state(system, h, q, v, p)
+        v = _start.velocity("simulate", system, q, starts["body_velocity"])
+        return first_state(system, h, q, v, in_double(momentum, system, q, v))
