@@ -34,6 +34,7 @@ SECTIONS = {
         "rolling_disk",
         "knife_edge_on_incline",
         "snakeboard",
+        "kinematic_car",
         "two_wheeled_robot",
         "roller_racer",
         "driven_sleigh",

@@ -8,9 +8,11 @@ import numpy as np
 from nonholo.base.checks import error
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.literature._example import Example, numbers, positives, rate
+from nonholo.literature._example import Example, numbers, positives, rate, ready
+from nonholo.literature._outlines import pair, wheel
 
 
+@ready("configuration", "speed", "steering_rate")
 def kinematic_car(
     *,
     mass: float = 1.0,
@@ -100,4 +102,11 @@ def _system(m: float, J: float, ell: float, R: float, Jw: float, Js: float) -> L
         return jnp.stack([jnp.array([-sin, cos, 0.0, 0.0, 0.0]), front, jnp.array([cos, sin, 0.0, -R, 0.0])])
 
     names = ("x", "y", "theta", "psi", "phi")
-    return LagrangeDAlembert(lagrangian, forms, dimension=5, coordinates=names, name="Kinematic car")
+    board = np.array([[-0.2, -0.22], [1.2, -0.22], [1.2, 0.22], [-0.2, 0.22]]) * ell
+
+    def outline(q: Array) -> list[Array]:
+        front = [wheel((ell, side * 0.3 * ell), 2 * R, q[4]) for side in (-1, 1)]
+        return [board, *pair((0.0, 0.0), 0.3 * ell, 2 * R), *front]
+
+    looks = {"coordinates": names, "heading": "theta", "outline": outline, "name": "Kinematic car"}
+    return LagrangeDAlembert(lagrangian, forms, dimension=5, **looks)

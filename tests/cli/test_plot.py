@@ -32,7 +32,7 @@ def _free() -> nh.Orbit:
 def test_every_kind_of_picture() -> None:
     """Each function that draws a run is a kind, named with hyphens, and gives a figure with the title that is asked."""
     functions = {name.replace("_", "-") for name in nh.plot.__all__ if name.islower()}
-    assert set(KINDS) == functions - {"animate", "comparison", "convergence", "sweep-map"}
+    assert set(KINDS) == functions - {"animate", "comparison", "convergence", "curvature", "sweep-map"}
     sleigh = _sleigh(steps=20, events=[nh.cusp])
     others = {"body-axis-track": _top(), "momentum-sphere": _free()}
     for kind in KINDS:

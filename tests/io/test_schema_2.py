@@ -103,7 +103,8 @@ def test_finished_sweep(tmp_path: Path) -> None:
             assert np.array_equal(found[name].values, _EXPECTED["random"][name]), name
     drawn = nh.RandomDesign(4, {"restricted_velocity_1": nh.Uniform(0.1, 1.0)}, seed=3).values(0, 4)
     assert drawn["restricted_velocity_1"].tolist() == _EXPECTED["random"]["restricted_velocity[1]"]
-    nh.resume(path).close()
+    with pytest.warns(RuntimeWarning, match=r'was begun with .*"nonholo": "0\.1\.0"'):
+        nh.resume(path).close()
     stream = io.StringIO()
     sweep_to_csv(path, stream)
     assert np.abs(_numbers(stream.getvalue()) - _numbers(_EXPECTED["random"]["csv"])).max() < 1e-13
