@@ -84,6 +84,7 @@ def test_derivatives_agree_with_40_digits(name: str, state: str) -> None:
     np.testing.assert_allclose(derivative, numbers(case["derivative"]), rtol=1e-9, atol=1e-11)
 
 
+@pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")
 def test_reverse_mode_agrees_with_forward_mode() -> None:
     """The transposed derivative of the heavy sleigh is that of forward mode, at rest too."""
     with jax.enable_x64(True):
@@ -177,7 +178,7 @@ def test_controls_act_half_at_each_end_of_a_step() -> None:
     np.testing.assert_allclose(found.momentum @ SLEIGH.system.constraint_subspace.T, r, rtol=0, atol=1e-13)
 
 
-@pytest.mark.profile("routes", instead="test_reverse_mode_agrees_with_forward_mode")
+@pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")
 def test_map_over_members_is_a_loop_and_compiled_is_not_compiled() -> None:
     """`vmap` of 3 members in `jit` equals 3 eager calls and `simulate`, where stretches have a remainder too."""
     members = np.array([[0.5, 1.0, 0.0], [0.0, 0.0, 0.0], [-0.7, 0.3, 0.0]])
@@ -215,7 +216,7 @@ def test_gradient_through_checkpoints_is_a_difference() -> None:
     np.testing.assert_allclose(found, differences, rtol=1e-7)
 
 
-@pytest.mark.profile("routes", instead="test_reverse_mode_agrees_with_forward_mode")
+@pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")
 def test_second_derivatives() -> None:
     """The Hessian matrix of a short orbit is the difference of gradients, at rest too."""
 
@@ -232,7 +233,7 @@ def test_second_derivatives() -> None:
 PUSHED = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.2), 1.0)
 
 
-@pytest.mark.profile("routes", instead="test_reverse_mode_agrees_with_forward_mode")
+@pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")
 def test_fold_is_an_outcome_with_derivative_nan_and_states_before_keep_theirs() -> None:
     """A push beyond the fold ends the orbit at node 2; what comes from there on is NaN, with its derivatives alone."""
 
