@@ -117,9 +117,9 @@ def _page(title: str, rooms: list[str]) -> str:
 
 
 def _ready_systems() -> str:
-    """Return the table of ready systems: what they are, their source, what is known, and whether they have events."""
-    head = "| system | what | coordinates | source | known | events |"
-    rows = [head, "|---" * 6 + "|"]
+    """Return the table of ready systems: what they are, their source, and what is known."""
+    head = "| system | what | coordinates | source | known |"
+    rows = [head, "|---" * 5 + "|"]
     for name in sorted({*nh.examples.__all__} - {"Example"}):
         ready, text = getattr(nh.examples, name)(), inspect.getdoc(getattr(nh.examples, name)) or ""
         source = " ".join(text.partition("Reference: ")[2].partition("\n\n")[0].split())
@@ -131,13 +131,8 @@ def _ready_systems() -> str:
             source,
             " ".join(ready.facts).replace("|", "\\|"),
         ]
-        rows.append("| " + " | ".join([*cells, "yes" if _has_events(ready.system) else "no"]) + " |")
+        rows.append("| " + " | ".join(cells) + " |")
     return "\n".join([_READY, *rows, "", ""])
-
-
-def _has_events(system: Any) -> bool:
-    """Tell whether runs find events: parts of steps are defined in coordinates, and where the step is compiled."""
-    return getattr(system, "has_parts", None) or nh.discretize(system, 0.1).route.compiled is not None
 
 
 def _entries(names: dict[str, Any]) -> str:
@@ -167,8 +162,9 @@ def _named_by(room: str) -> list[str]:
 
 
 _READY = """\
-All have pictures, `to_csv`, `to_pandas`, `nh.compare`, `nh.ensemble`, and sweeps over their parameters and starts by
-`nh.FamilyTask`. Those without events have a potential written in Python, whose steps are not compiled.
+All have pictures, `to_csv`, `to_pandas`, stores whose runs resume and extend, events, `nh.compare`, `nh.ensemble`, and
+sweeps over their parameters and starts by `nh.FamilyTask`. Two tests do all of it with each of them:
+`tests/literature/test_first_class.py` and `tests/literature/test_stores.py`.
 """
 
 _TEXT = """\
