@@ -72,7 +72,7 @@ def program(function: Callable[..., Any], *shapes: tuple[int, ...], varying: int
     return Program([x for each in inputs for x in each], results, doubt, [each.shape for each in arrays], f)
 
 
-@functools.cache
+@functools.lru_cache(maxsize=64)  # a sweep makes a system for each member
 def programs(system: Any, place: tuple[int, ...], n: int, *, at_node: bool = False) -> Programs | None:
     """Return the compiled equations of a step of a system, with places of a shape and n velocities.
 
@@ -106,7 +106,7 @@ def programs(system: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
     return Programs(machine_code(first.inputs, [*first.results, first.doubt]), settle, corrections, len(kept))
 
 
-@functools.cache
+@functools.lru_cache(maxsize=64)  # a sweep makes a system for each member
 def values(function: Callable[..., Any], system: Any, *shapes: tuple[int, ...]) -> Values | None:
     """Return the compiled function(system, ...) of arrays with these shapes; None if JAX must do it."""
     try:
