@@ -86,8 +86,10 @@ def _numbers(where: str, value: Any, remedy: str) -> np.ndarray:
             raw = np.array([float(entry) for entry in raw.flat]).reshape(raw.shape)
     except OverflowError:
         raise error(where, "be finite", f"an integer beyond {sys.float_info.max:.2g}", remedy) from None
-    except (TypeError, ValueError, ArithmeticError, RecursionError):
+    except (TypeError, ValueError, ArithmeticError, RecursionError) as reason:
         raw = np.array(None)
+        if type(reason).__name__ == "TracerArrayConversionError":  # a list with a tracer in it
+            remedy = "JAX traces some of these numbers: put them together with jax.numpy.array([...])."
     if raw.dtype.kind not in "iufc" or np.ma.is_masked(value):
         raise error(where, "be an array of real numbers", shown(value), remedy)
     if raw.ndim > _MOST_AXES:
