@@ -24,6 +24,9 @@ _SMALLEST = 1 / LARGEST  # mass, inertia and time step, so that squares do not u
 _MOST = 2**53  # the integers up to it are floats too
 _MOST_INDEX = 2**63 - 1
 _MOST_AXES = 16  # NumPy broadcasts 32
+_OTHER_REMEDIES = {  # of a list with a tracer in it
+    "TracerArrayConversionError": "JAX traces some of these numbers: put them together with jax.numpy.array([...])."
+}
 _FEW = 1 << 12  # numbers that are looked at by one sum; one that is repeated without end has no sum
 _LONGEST_NAME = 255  # bytes; more is more than any file system has
 
@@ -86,8 +89,8 @@ def _numbers(where: str, value: Any, remedy: str) -> np.ndarray:
             raw = np.array([float(entry) for entry in raw.flat]).reshape(raw.shape)
     except OverflowError:
         raise error(where, "be finite", f"an integer beyond {sys.float_info.max:.2g}", remedy) from None
-    except (TypeError, ValueError, ArithmeticError, RecursionError):
-        raw = np.array(None)
+    except (TypeError, ValueError, ArithmeticError, RecursionError) as reason:
+        raw, remedy = np.array(None), _OTHER_REMEDIES.get(type(reason).__name__, remedy)
     if raw.dtype.kind not in "iufc" or np.ma.is_masked(value):
         raise error(where, "be an array of real numbers", shown(value), remedy)
     if raw.ndim > _MOST_AXES:

@@ -3,11 +3,13 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import jax
 import numpy as np
 import pytest
 
 import nonholo as nh
 from nonholo.analysis.inverse import Fit
+from nonholo.base.types import Array
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=0.7, a=0.4), 0.05)
 TENSOR = np.array([[1.2, 0.1, 0.3], [0.1, 1.0, -0.2], [0.3, -0.2, 0.9]])
@@ -127,6 +129,7 @@ def test_trials_share_the_body_and_tables_may_have_any_form(tmp_path: Path) -> N
 def test_residuals_are_drawn() -> None:
     """The picture has a panel for each kind of number, with the residuals as dots inside the band for the most part."""
     found = nh.fit(_sleigh, _sleigh_record(0), GUESS)
+    assert len(repr(found)) < 500  # the residuals are not in it
     figure = found.plot()
     assert [len(axes.lines) for axes in figure.axes] == [3, 2]  # a line at zero each
     dots = figure.axes[1].lines[1].get_ydata()
@@ -141,6 +144,16 @@ def test_poses_of_a_top_are_read_as_quaternions() -> None:
     record = {"t": orbit.time, **dict(zip(("qw", "qx", "qy", "qz"), orbit.pose.T, strict=True))}
     found = nh.fit(_top, record, {"c": np.array([0.2, -0.1]), "b": 1.1})
     np.testing.assert_allclose(found.parameters["c"], [0.3, -0.2], rtol=1e-9)
+
+
+def test_lists_of_traced_numbers_are_refused() -> None:
+    """A nested list around a parameter is no array for NumPy: the message says how to make one."""
+
+    def weight(b: Array) -> Array:
+        return nh.SuslovTop([[b, 0.0, 0.1], [0.0, 1.0, 0.2], [0.1, 0.2, 0.9]]).mass_tensor.sum()
+
+    with pytest.raises(ValueError, match=r"put them together with jax\.numpy\.array"):
+        jax.grad(weight)(1.2)
 
 
 def test_unit_of_mass_is_refused() -> None:

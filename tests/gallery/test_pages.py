@@ -20,6 +20,7 @@ PAGES = (
     "how-to/gaits.md",
     "how-to/run-an-ensemble.md",
     "how-to/style-a-picture.md",
+    "how-to/why-a-run-stopped.md",
 )
 
 

@@ -44,7 +44,7 @@ class Fit:
     covariance: Float[np.ndarray, "P P"]
     system: System
     orbit: Orbit | tuple[Orbit, ...]
-    residuals: tuple[dict[str, np.ndarray], ...]
+    residuals: tuple[dict[str, np.ndarray], ...] = dataclasses.field(repr=False)
     noise: dict[str, float]
     samples: int
 
