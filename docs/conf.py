@@ -41,7 +41,12 @@ html_theme_options = {"header_links_before_dropdown": 8}
 myst_enable_extensions = ["amsmath", "colon_fence", "dollarmath"]
 myst_heading_anchors = 4
 nb_execution_mode = "auto"  # notebooks and tutorials; blocks of other pages are run by the tests
-nb_execution_excludepatterns = ["*the-live-page*"]  # a widget, for which a page would load scripts from elsewhere
+nb_execution_excludepatterns = [
+    "*the-live-page*",  # a widget, for which a page would load scripts from elsewhere
+    *(
+        f"*notebooks/{name}*" for name in ("differentiate-and-fit", "gaits", "steer")
+    ),  # JAX compiles: the tests run them
+]
 nb_execution_in_temp = True
 nb_execution_raise_on_error = True
 nb_execution_timeout = 120

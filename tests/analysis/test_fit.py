@@ -47,9 +47,9 @@ def _sleigh_record(seed: int, discrete: nh.Discretization = SLEIGH, noise: float
     return {"t": orbit.time + 3, "x": data[:, 0], "y": data[:, 1], "theta": data[:, 2]}
 
 
-def _top_record(seed: int) -> dict[str, np.ndarray]:
-    orbit = nh.simulate(TOP, restricted_velocity=(0.9, -0.7), steps=60)
-    rates = orbit.body_velocity + np.random.default_rng(seed).normal(scale=5e-3, size=(61, 3))
+def _top_record(seed: int, discrete: nh.Discretization = TOP, noise: float = 1.0) -> dict[str, np.ndarray]:
+    orbit = nh.simulate(discrete, restricted_velocity=(0.9, -0.7), steps=60)
+    rates = orbit.body_velocity + np.random.default_rng(seed).normal(scale=5e-3 * noise, size=(61, 3))
     return {"t": orbit.time, **dict(zip(("omega_x", "omega_y", "omega_z"), rates.T, strict=True))}
 
 
@@ -69,13 +69,27 @@ def test_sleigh_is_found_within_its_errors() -> None:
 
 @pytest.mark.profile("routes", instead="test_sleigh_is_found_within_its_errors")
 @pytest.mark.parametrize(
-    ("system_of", "truth", "guess", "noise"),
+    ("system_of", "record", "truth", "guess", "noise"),
     [
         pytest.param(
-            _driven, {"mass": 1.0, "inertia": 0.7, "a": 0.4}, {"mass": 1.3, "inertia": 1.0, "a": 0.3}, 1.0, id="driven"
+            _top,
+            _top_record,
+            {"c": np.array([0.3, -0.2]), "b": 1.0},
+            {"c": np.array([0.2, -0.1]), "b": 1.1},
+            1.0,
+            id="top",
+        ),
+        pytest.param(
+            _driven,
+            _sleigh_record,
+            {"mass": 1.0, "inertia": 0.7, "a": 0.4},
+            {"mass": 1.3, "inertia": 1.0, "a": 0.3},
+            1.0,
+            id="driven",
         ),
         pytest.param(
             _rubbed,
+            _sleigh_record,
             {"inertia": 0.7, "a": 0.4, "root": np.array([0.7, 0.6])},
             {"inertia": 1.0, "a": 0.3, "root": np.array([0.5, 0.5])},
             0.1,
@@ -83,14 +97,14 @@ def test_sleigh_is_found_within_its_errors() -> None:
         ),
     ],
 )
-def test_sleigh_under_forces_is_found_within_its_errors(
-    system_of: Callable, truth: dict, guess: dict, noise: float
+def test_bodies_are_found_within_their_errors(
+    system_of: Callable, record: Callable, truth: dict, guess: dict, noise: float
 ) -> None:
-    """Known pushes tell the mass too, slowing down the friction: 95 of 100 within 3 sigma, intervals as said."""
+    """Rates tell a top, known pushes the mass too, slowing down the friction: 95 of 100 in 3 sigma, intervals hold."""
     discrete = nh.discretize(system_of(truth), 0.05)
     values = [float(x) for part in truth.values() for x in np.ravel(part)]
-    records = (_sleigh_record(seed, discrete, noise) for seed in range(100))
-    errors = np.array([_errors(nh.fit(system_of, record, guess), values) for record in records])
+    records = (record(seed, discrete, noise) for seed in range(100))
+    errors = np.array([_errors(nh.fit(system_of, each, guess), values) for each in records])
     assert (np.abs(errors) < 3).all(axis=1).sum() >= 95
     assert ((np.abs(errors) < 1.98).mean(axis=0) >= 0.87).all()  # of one parameter, binomial: 3.5 sigma for 100
 
@@ -127,10 +141,11 @@ def test_trials_share_the_body_and_tables_may_have_any_form(tmp_path: Path) -> N
 
 
 def test_residuals_are_drawn() -> None:
-    """The picture has a panel for each kind of number, with the residuals as dots inside the band for the most part."""
+    """A panel for each kind of number, shown in notebooks, with residuals as dots in the band for the most part."""
     found = nh.fit(_sleigh, _sleigh_record(0), GUESS)
     assert len(repr(found)) < 500  # the residuals are not in it
     figure = found.plot()
+    assert figure._repr_png_().startswith(b"\x89PNG")
     assert [len(axes.lines) for axes in figure.axes] == [3, 2]  # a line at zero each
     dots = figure.axes[1].lines[1].get_ydata()
     np.testing.assert_array_equal(dots, found.residuals[0]["turn"][:, 0])

@@ -2,11 +2,13 @@
 
 import functools
 from collections.abc import Callable
+from typing import Any
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from groups.examples import HEISENBERG, WHEELED
 from references import golden, numbers
 
 import nonholo as nh
@@ -99,24 +101,37 @@ def _assert_same(found: Rollout, orbit: nh.Orbit, tolerance: float) -> None:
         np.testing.assert_allclose(getattr(found, field), getattr(orbit, field), rtol=0, atol=tolerance)
 
 
+SYSTEMS = [
+    pytest.param(TOP, {}, id="top"),
+    pytest.param(nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]), (0.6, 0.0, 0.8)), {}, id="tilted top"),
+    pytest.param(nh.ChaplyginSleigh(2.0, 1.0, 0.5, 0.3), {}, id="offset sleigh"),
+    pytest.param(nh.SuslovTop(np.diag([1.0, 2.0, 1.5, 1.0]) + 0.1), {}, id="four"),
+    pytest.param(
+        nh.SuslovTop.arrowhead(np.array([1.0, 2.0, 1.5, 1.0]), np.array([0.3, 0.2, 0.1])).dense, {}, id="arrowhead"
+    ),
+    pytest.param(nh.MultidimensionalSleigh(1.0, [0.5, 0.1, 0.2], np.diag([1.0, 2.0, 1.5])), {}, id="in space"),
+    pytest.param(nh.RigidBody(np.diag([1.0, 2.0, 3.0]) + 0.1), {}, id="free body"),
+    pytest.param(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0]) + 0.1), {}, id="Veselova top"),
+    pytest.param(nh.LRSystem(nh.SE(2), np.eye(3) + 0.1, np.eye(3)[:2]), {}, id="fixed in the plane"),
+    pytest.param(nh.LLSystem(nh.SE(3), np.eye(4) + 0.1, constraint_subspace=MIXED), {}, id="mixed"),
+    pytest.param(
+        nh.LLSystem(HEISENBERG, inertia_operator=np.eye(3) + 0.1, constraint_subspace=np.eye(3)[:2]),
+        {},
+        id="Heisenberg",
+    ),
+    pytest.param(
+        nh.LLSystem(WHEELED, inertia_operator=np.eye(5) + 0.1, constraint_subspace=np.eye(5)[::2]), {}, id="product"
+    ),
+    *(pytest.param(TOP, {"order": order}, id=f"order {order}") for order in (4, 6, 8)),
+    pytest.param(TOP, {"difference": "logarithmic"}, id="logarithmic"),
+    pytest.param(nh.Forced(TOP, HEAVY, RUB), {}, id="heavy, with friction"),
+    pytest.param(nh.Forced(nh.ChaplyginSleigh(2.0, 1.0, 0.5, 0.3), force=TABLE), {}, id="driven"),
+    pytest.param(nh.Forced(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), HEAVY, RUB), {}, id="forces, fixed in space"),
+]
+
+
 @pytest.mark.profile("routes", keep=["top"])
-@pytest.mark.parametrize(
-    ("system", "options"),
-    [
-        pytest.param(TOP, {}, id="top"),
-        pytest.param(nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]), (0.6, 0.0, 0.8)), {}, id="tilted top"),
-        pytest.param(nh.ChaplyginSleigh(2.0, 1.0, 0.5, 0.3), {}, id="offset sleigh"),
-        pytest.param(nh.SuslovTop(np.diag([1.0, 2.0, 1.5, 1.0]) + 0.1), {}, id="four"),
-        pytest.param(nh.MultidimensionalSleigh(1.0, [0.5, 0.1, 0.2], np.diag([1.0, 2.0, 1.5])), {}, id="in space"),
-        pytest.param(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0]) + 0.1), {}, id="fixed in space"),
-        pytest.param(nh.LLSystem(nh.SE(3), np.eye(4) + 0.1, constraint_subspace=MIXED), {}, id="mixed"),
-        pytest.param(TOP, {"order": 4}, id="order 4"),
-        pytest.param(TOP, {"difference": "logarithmic"}, id="logarithmic"),
-        pytest.param(nh.Forced(TOP, HEAVY, RUB), {}, id="heavy, with friction"),
-        pytest.param(nh.Forced(nh.ChaplyginSleigh(2.0, 1.0, 0.5, 0.3), force=TABLE), {}, id="driven"),
-        pytest.param(nh.Forced(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), HEAVY, RUB), {}, id="forces, fixed in space"),
-    ],
-)
+@pytest.mark.parametrize(("system", "options"), SYSTEMS)
 def test_values_are_those_of_simulate(system: AbstractSystem, options: dict) -> None:
     """Eager rollouts are NumPy arrays that agree with the compiled orbit to rounding, state by state."""
     discrete = nh.discretize(system, 0.1, **options)
@@ -129,6 +144,35 @@ def test_values_are_those_of_simulate(system: AbstractSystem, options: dict) -> 
     assert all(type(x) is np.ndarray and x.dtype == np.float64 for x in found[:-1])
     assert found.outcome == 0
     _assert_same(found, nh.simulate(discrete, **start, steps=50), 1e-13)
+
+
+def _symmetrized(x: np.ndarray) -> np.ndarray:
+    return (x + x.T) / 2 if x.ndim == 2 and len(x) == len(x.T) else x
+
+
+@pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")
+@pytest.mark.parametrize(("system", "options"), SYSTEMS)
+def test_gradients_of_every_system_are_differences(system: AbstractSystem, options: dict) -> None:
+    """By all numbers of body, forces, time step and start at once the gradient is a difference of `simulate`."""
+    rng = np.random.default_rng(0)
+    point = (nh.discretize(system, 0.1, **options), np.linspace(0.4, 0.6, system.rank))
+    pose = system.group.exp(np.linspace(0.1, 0.5, system.group.dim))
+    weights, on_pose = rng.normal(size=system.rank), rng.normal(size=pose.size)
+
+    def end(run: Callable, discrete: nh.Discretization, velocity: Any) -> Any:
+        orbit = run(discrete, restricted_velocity=velocity, configuration=pose, steps=50)
+        return orbit.restricted_momentum[-1] @ weights + orbit.configuration[-1].ravel() @ on_pose
+
+    def moved(size: float) -> float:
+        return end(nh.simulate, *jax.tree.map(lambda x, way: np.asarray(x + size * way)[()], point, way))
+
+    with jax.enable_x64(True):
+        gradient = jax.jit(jax.grad(functools.partial(end, nh.rollout), argnums=(0, 1)))(*point)
+    for _ in range(5):
+        way = jax.tree.map(lambda x: _symmetrized(rng.normal(size=np.shape(x))), point)
+        slope = sum(np.sum(x * np.asarray(y)) for x, y in zip(*map(jax.tree.leaves, (way, gradient)), strict=True))
+        difference = (8 * (moved(2e-4) - moved(-2e-4)) - moved(4e-4) + moved(-4e-4)) / 24e-4
+        np.testing.assert_allclose(slope, difference, rtol=1e-7, atol=1e-9)
 
 
 @pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")

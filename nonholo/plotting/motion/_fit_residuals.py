@@ -2,8 +2,6 @@
 
 from typing import TYPE_CHECKING, Any
 
-from matplotlib.figure import Figure
-
 from nonholo.plotting import theme
 
 if TYPE_CHECKING:
@@ -23,7 +21,7 @@ def fit_residuals(fit: "Fit") -> Any:
         The matplotlib figure.
     """
     orbits = fit.orbit if isinstance(fit.orbit, tuple) else (fit.orbit,)
-    figure = Figure(figsize=(7.0, 2.2 * len(fit.noise) + 0.4), layout="constrained")
+    figure = theme.new_figure((7.0, 2.2 * len(fit.noise) + 0.4))
     panels = figure.subplots(len(fit.noise), 1, sharex=True, squeeze=False)[:, 0]
     for axes, (kind, level) in zip(panels, fit.noise.items(), strict=True):
         axes.axhspan(-2 * level, 2 * level, color=theme.LEVEL, alpha=0.4, lw=0)
