@@ -7,6 +7,7 @@ import pytest
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = (
+    "index.md",
     "theory/euler-poincare-suslov.md",
     "theory/discrete-equations.md",
     "theory/energy-theorem.md",
@@ -17,14 +18,22 @@ PAGES = (
     "how-to/compare-motions.md",
     "how-to/differentiate-and-fit.md",
     "how-to/drive-a-robot.md",
+    "how-to/explore.md",
     "how-to/gaits.md",
     "how-to/run-an-ensemble.md",
+    "how-to/steer.md",
     "how-to/style-a-picture.md",
     "how-to/why-a-run-stopped.md",
 )
-
-
-LONG = ["how-to/choose-a-discretisation.md", "how-to/d*.md", "how-to/gaits.md"]
+ELSEWHERE = {  # pages whose blocks run with what stands around them, and where
+    "how-to/beyond-one-machine.md": "ensembles/test_cluster.py",
+    "how-to/define-your-own-system.md": "testing/test_how_to.py",
+    "how-to/events-and-sections.md": "simulation/test_events.py",
+    "how-to/export-poses.md": "io/test_csv.py",
+    "how-to/run-a-sweep.md": "cli/test_sweep.py",
+    "how-to/run-for-days.md": "simulation/test_stored_runs.py",
+}
+LONG = ["how-to/choose-a-discretisation.md", "how-to/d*.md", "how-to/gaits.md", "how-to/steer.md"]
 
 
 @pytest.mark.profile("paper", cases=LONG)
@@ -37,6 +46,14 @@ def test_the_blocks_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert blocks
     for block in blocks:
         exec(compile(block, page, "exec"), names)  # noqa: S102
+
+
+def test_every_page_with_blocks_is_run() -> None:
+    """No block of Python in the docs is left out; those of tutorials run when the site is built."""
+    written = {str(path.relative_to(DOCS)) for path in DOCS.rglob("*.md") if "```python\n" in path.read_text()}
+    assert written == {*PAGES, *ELSEWHERE}
+    for page, test in ELSEWHERE.items():
+        assert Path(page).name in (Path(__file__).parents[1] / test).read_text()
 
 
 def test_tests_that_the_theory_names_exist() -> None:
