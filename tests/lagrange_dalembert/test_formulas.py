@@ -175,7 +175,8 @@ def test_runs_are_those_of_jax(seed: int, time_step: float, monkeypatch: pytest.
     """Orbits differ by rounding; large steps, of which some are not trusted, end alike."""
     system = random_system(seed)
     start = started(system, seed)
-    run = functools.partial(system.discretize(time_step).simulate, **start, steps=100, throw=False)
+    steps = 100 if time_step < 0.1 else 30  # large steps of random systems are chaotic
+    run = functools.partial(system.discretize(time_step).simulate, **start, steps=steps, throw=False)
     compiled = run()
     assert _programs.programs(system, (system.dimension + system.is_driven,), system.dimension) is not None
     left_to_jax(monkeypatch)
