@@ -3,13 +3,15 @@
 import abc
 import importlib
 from collections.abc import Sequence
-from typing import Any, Self
+from typing import Any, TypeVar
 
 import numpy as np
 
 from nonholo.base.html import table
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
+
+OrbitT = TypeVar("OrbitT", bound="AbstractOrbit")
 
 
 class AbstractOrbit(abc.ABC):
@@ -75,14 +77,14 @@ class AbstractOrbit(abc.ABC):
         """Return the states at any times of the span."""
 
     @abc.abstractmethod
-    def chosen(self, states: slice | np.ndarray) -> Self:
+    def chosen(self: OrbitT, states: slice | np.ndarray) -> OrbitT:
         """Return some of the states, by a slice, a mask or their numbers."""
 
     @abc.abstractmethod
-    def joined(self, others: Sequence[Self]) -> Self:
+    def joined(self: OrbitT, others: Sequence[OrbitT]) -> OrbitT:
         """Return the states with those of other parts of the same motion after them."""
 
-    def with_headings(self, before: float | None) -> Self:
+    def with_headings(self: OrbitT, before: float | None) -> OrbitT:
         """Return the states with headings that continue from the given one, where there are any."""
         del before
         return self

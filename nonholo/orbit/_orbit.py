@@ -9,7 +9,7 @@ import abc
 import dataclasses
 import importlib
 from collections.abc import Sequence
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -171,19 +171,19 @@ class Orbit(AbstractOrbit):
             raise ValueError(f"`Orbit[...]` must be sliced forwards. Got stride {stride}. Reverse the arrays instead.")
         return dataclasses.replace(self.chosen(states), save_every=self.save_every * stride)
 
-    def chosen(self, states: slice | np.ndarray) -> Self:
+    def chosen(self, states: slice | np.ndarray) -> "Orbit":
         """Return some of the states, by a slice or a mask, each with the same `save_every` as before."""
         states = selection("Orbit.chosen(states=...)", states)
         kept = {name: None if (rows := getattr(self, name)) is None else rows[states] for name in STATES}
         return dataclasses.replace(self, **kept)
 
-    def joined(self, others: Sequence[Self]) -> Self:
+    def joined(self, others: Sequence["Orbit"]) -> "Orbit":
         """Return the states with those of other parts of the same motion after them."""
         columns = {name: [getattr(part, name) for part in (self, *others)] for name in STATES}
         kept = {name: None if rows[0] is None else np.concatenate(rows) for name, rows in columns.items()}
         return dataclasses.replace(self, **kept)
 
-    def with_headings(self, before: float | None) -> Self:
+    def with_headings(self, before: float | None) -> "Orbit":
         """Return states of the plane with headings that continue from the given one; others as they are."""
         pose = self.canonical_pose
         if self.space != SE(2) or pose is None or self.turned is not None or not len(self):
