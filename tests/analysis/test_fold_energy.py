@@ -215,7 +215,7 @@ def test_no_fold_below_the_saddle_for_three(sigma: float) -> None:
         assert fold_energy(B, c) == pytest.approx(saddle, rel=1e-9)
 
 
-@pytest.mark.profile("problems", instead="test_no_fold_below_the_saddle_for_three")
+@pytest.mark.profile("long", instead="test_no_fold_below_the_saddle_for_three")
 def test_the_bound_on_many_bodies() -> None:
     """On 4000 bodies with D > 2|c|^2 the fold is not below the bound; for D >= 3|c|^2 it is the saddle."""
     rng, below = np.random.default_rng(0), 0
