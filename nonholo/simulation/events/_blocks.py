@@ -9,7 +9,6 @@ import numpy as np
 
 from nonholo.base.results import Outcome
 from nonholo.io import Plan
-from nonholo.orbit import Orbit
 from nonholo.simulation.events._search import Watch, search
 from nonholo.simulation.runs import CompiledRun, Rows, RunState
 
@@ -17,7 +16,7 @@ PIECE, NUMBERS = 1 << 14, 1 << 20  # at most in a stretch that is searched at on
 _SHORT = 256  # steps of the first stretch, which an event may soon end; others are at most as long as all before
 
 
-def searched_first(watch: Watch | None, first: Orbit) -> tuple[Orbit, Watch | None]:
+def searched_first(watch: Watch | None, first: Any) -> tuple[Any, Watch | None]:
     """Return the first state of a run with what was found there if there is a watch, and what is known then."""
     if watch is None:
         return first, None
@@ -26,21 +25,22 @@ def searched_first(watch: Watch | None, first: Orbit) -> tuple[Orbit, Watch | No
 
 
 class Block(NamedTuple):
-    """A computed block: its states, the state and step of the last good one, and what is known of the events then."""
+    """A computed block: its orbit, the state and step of the last good one, and what is known of the events then."""
 
-    orbit: Orbit
-    state: RunState
+    orbit: Any
+    state: Any
     done: int
     watch: Watch | None
 
 
 def computed_block(
-    run: CompiledRun, state: RunState, watch: Watch | None, plan: Plan, block: int, report: Callable[[int], object]
+    run: Any, state: Any, watch: Watch | None, plan: Plan, block: int, report: Callable[[int], object]
 ) -> Block:
-    """Compute a block of a run, to its end or to what ends the run, looking for events if there is a watch."""
+    """Compute a block of any run, to its end or to what ends the run, looking for events if there is a watch."""
     if watch is not None:
         return _searched_block(run, state, watch, plan, block, report)
-    return Block(*run.stretch(state, plan, block, report), None)
+    orbit, reached, done = run.stretch(state, plan, block, report)
+    return Block(orbit, reached, done, None)
 
 
 def _searched_block(

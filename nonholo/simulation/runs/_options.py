@@ -1,6 +1,6 @@
 """The options of a run, checked."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from nonholo.base.checks import choice, error, step_counts
 from nonholo.discrete import (
@@ -13,7 +13,7 @@ from nonholo.discrete import (
 )
 
 
-def check_forces(owner: str, discrete: Discretization, steps: int, *, free: str | None = None) -> None:
+def check_forces(owner: str, discrete: Any, steps: int, *, free: str | None = None) -> None:
     """Refuse what runs with forces do not have, which `free` names, and more steps than their table has rows."""
     if (forced := discrete.forces) is None:
         return

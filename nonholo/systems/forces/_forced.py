@@ -275,7 +275,7 @@ class Forced(AbstractSystem):
             power = (now[:-1] + now[1:]) / 2
         return np.concatenate([np.zeros(min(1, len(time))), np.cumsum(np.diff(time) * power)])
 
-    def _at(self, configuration: Float[Array, "... N N"]) -> Float[np.ndarray, "... N N"]:
+    def _at(self, configuration: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
         where, shape = "Forced (configuration=...)", (self.group.size, self.group.size)
         return trailing(where, configuration, shape, "Pass the matrix of a pose.", real=True)
 
