@@ -58,6 +58,7 @@ def _errors(found: Fit, truth: list[float]) -> np.ndarray:
     return (values - truth) / np.sqrt(found.covariance.diagonal())
 
 
+@pytest.mark.profile("problems", instead="test_exact_record_is_fitted_exactly")
 def test_sleigh_is_found_within_its_errors() -> None:
     """Of 100 noisy records with gaps at least 95 are fitted within 3 sigma, and 95 % intervals hold the truth."""
     errors = np.array(

@@ -129,6 +129,7 @@ def test_a_negative_step_is_the_inverse(name: str) -> None:
     assert np.abs(back.configuration[1] - orbit.configuration[0]).max() < 1e-14
 
 
+@pytest.mark.profile("routes", keep=["top", "sleigh", "suslov 4", "sleigh 3"])
 @pytest.mark.parametrize("name", ["top", "sleigh", "suslov 4", "sleigh 3", "any d on SE(3)"])
 def test_energy_is_kept(name: str) -> None:
     """Each substep keeps the energy, so the whole step does, at any step size: rounding of 1000 x 15 substeps."""

@@ -17,7 +17,7 @@ Settings = Annotated[
 Plot = Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a picture beside the store.")]
 Gif = Annotated[bool | None, typer.Option("--gif/--no-gif", help="Draw an animation beside the store.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of the table.")]
-Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace an older run at STORE.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace what an earlier call wrote there.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print only the path of the store.")]
 
 
