@@ -68,7 +68,7 @@ def test_sleigh_is_found_within_its_errors() -> None:
     assert 0.89 <= (np.abs(errors) < 1.98).mean() <= 0.99  # two-sided, binomial: 3.5 sigma for 200
 
 
-@pytest.mark.profile("routes", instead="test_sleigh_is_found_within_its_errors")
+@pytest.mark.profile("routes", instead="test_exact_record_is_fitted_exactly")
 @pytest.mark.parametrize(
     ("system_of", "record", "truth", "guess", "noise"),
     [
