@@ -19,7 +19,6 @@ from pydantic import (
     ValidationError,
     model_validator,
 )
-from zarr.codecs.bytes import Endian
 
 from nonholo.base.checks import error, printable
 from nonholo.base.limits import within_memory
@@ -184,7 +183,7 @@ def check_array(where: str, name: str, array: zarr.Array) -> None:
     remedy = f"The array {name} is damaged or was edited."
     within_memory(where, 8.0 * min(math.prod(array.chunks), _MOST), remedy)
     orders = {getattr(codec, "endian", None) for codec in array.metadata.codecs}  # type: ignore[union-attr]
-    if orders - {None, Endian.little}:
+    if {getattr(order, "value", order) for order in orders} - {None, "little"}:  # an enumeration before zarr 3.4
         raise error(where, f"hold the array {name} in the order of bytes that is written", "another one", remedy)
 
 
