@@ -19,7 +19,7 @@ _TOLERANCE = 1e-12
 def flow_tangents(
     where: str, system: AbstractSystem, momenta: Float[np.ndarray, "K k"], time: Float[np.ndarray, "K"]
 ) -> Float[np.ndarray, "L k k"]:
-    """Return the derivative of each momentum by the one before, for canonical momenta of a flow."""
+    """Return the derivative of each momentum by the one before, for restricted momenta of a flow."""
     k = system.rank
     V, torques = body_numbers(system.group, system.constraint_subspace, system.inertia_operator)
     slopes = np.einsum("abn,bc->acn", torques + torques.swapaxes(0, 1), V)

@@ -58,7 +58,8 @@ class Page:
     @property
     def state(self) -> dict[str, Any] | None:
         """Body, start and time step that the page shows now: the last that its sliders in a notebook said."""
-        return self.first_state and (self.first_state if self._widget is None else dict(self._widget.state))
+        shown = vars(self).get("_widget")  # there is one when a notebook has shown the page
+        return self.first_state if shown is None or self.first_state is None else dict(shown.state)
 
     def orbit(self) -> Orbit:
         """Return the motion that the page shows now, computed here: in a notebook that of its sliders.

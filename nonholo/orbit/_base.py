@@ -97,14 +97,11 @@ class AbstractOrbit(abc.ABC):
         return len(self.time)
 
     def _repr_html_(self) -> str:
-        rows = [("system", repr(self.system)), ("states", f"{len(self):,}"), ("outcome", self.outcome.name)]
+        rows = [("system", repr(self.system)), ("states", f"{len(self):,}")]
         if len(self):
-            change = np.ptp(self.energy)
-            rows[2:2] = [
-                ("time", f"{self.time[0]:g} to {self.time[-1]:g}"),
-                ("energy", f"{self.energy[0]:.6g} at first, between extremes {change:.2g}"),
-            ]
-        return table(type(self).__name__, rows)
+            energy = f"{self.energy[0]:.6g} at first, between extremes {np.ptp(self.energy):.2g}"
+            rows += [("time", f"{self.time[0]:g} to {self.time[-1]:g}"), ("energy", energy)]
+        return table(type(self).__name__, [*rows, ("outcome", self.outcome.name)])
 
     def to_pandas(self) -> Any:
         """Return the orbit as a `pandas.DataFrame` with one column for each number of `to_dataset`, indexed by time."""

@@ -130,8 +130,6 @@ export class Controls {
     this.app[name] = on;
     byId(name).setAttribute("aria-pressed", String(on));
     this.app.refresh();
-    this.app.drawn = null;
-    this.app.show();
   }
 
   clockButtons() {
@@ -159,8 +157,6 @@ export class Controls {
     byId("theme").addEventListener("click", () => {
       document.documentElement.dataset.theme = colors().dark ? "light" : "dark";
       app.refresh();
-      app.drawn = null;
-      app.show();
     });
   }
 
@@ -218,8 +214,6 @@ export class Controls {
       app.crowd = app.crowd ? null : new Crowd();
       byId("many").setAttribute("aria-pressed", String(Boolean(app.crowd)));
       app.refresh();
-      app.drawn = null;
-      app.show();
     });
     for (const name of ["whole", "values"]) byId(name).addEventListener("click", () => this.toggle(name, !app[name]));
   }

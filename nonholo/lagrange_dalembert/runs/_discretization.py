@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.types import Float
-from nonholo.lagrange_dalembert._motion import ORBITS, CoordinateMotion
+from nonholo.lagrange_dalembert._motion import CoordinateMotion
 from nonholo.lagrange_dalembert._start import fixed_time_step
 from nonholo.lagrange_dalembert.runs._partial_step import after_parts
 from nonholo.lagrange_dalembert.runs._run import CoordinateRun
@@ -31,11 +31,6 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
         object.__setattr__(self, "time_step", fixed_time_step(self.time_step))
 
     @property
-    def _orbits(self) -> Any:
-        """The class of its orbits."""
-        return ORBITS[self.system.orbits]
-
-    @property
     def _numbers(self) -> int:
         """Numbers that memory holds of a saved state."""
         return 2 * sum(int(np.prod(shape)) for shape in self.system.shapes)
@@ -45,7 +40,7 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
     ) -> OrbitT:
         steps, every = checked_counts(steps, save_every, self._numbers)
         first = self.start(configuration, **starts)
-        return simulated(self._orbits, self.system, np.float64(self.time_step), first, steps, every, throw, progress)
+        return simulated(self.system, np.float64(self.time_step), first, steps, every, throw, progress)
 
     def iterate(
         self,
@@ -94,7 +89,7 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
         steps, every = checked_counts(steps, save_every, 0)
         rows = self.rows_of_block(block_steps, every)
         first = self.start(configuration, **starts)
-        return iterated(self._orbits, system, h, first, steps, every, rows, throw, progress)
+        return iterated(system, h, first, steps, every, rows, throw, progress)
 
     def run(self, every: int) -> CoordinateRun:
         """Return what computes blocks of a run that keeps one in `every` states."""
@@ -114,4 +109,4 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
             states: States of an orbit of this map.
             fractions: Numbers in (0, 1), one for each.
         """
-        return after_parts(self._orbits, self, states, fractions)
+        return after_parts(self, states, fractions)

@@ -5,7 +5,7 @@ next to the velocity v of the whole step. The whole step from its end begins wit
 """
 
 import dataclasses
-from typing import Any, TypeVar
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -19,11 +19,9 @@ from nonholo.lagrange_dalembert.runs._simulate import orbit_of, set_out
 
 _ROWS = 32  # states of one call, one after another: the bits of each do not depend on the others
 
-OrbitT = TypeVar("OrbitT")
 
-
-def after_parts(kind: type[OrbitT], discrete: Any, states: Any, fractions: Float[np.ndarray, "K"]) -> OrbitT:
-    """Return what is reached from states of an orbit of a kind; NaN where there is no such step, or none from there."""
+def after_parts(discrete: Any, states: Any, fractions: Float[np.ndarray, "K"]) -> Any:
+    """Return what is reached from states of an orbit; NaN where there is no such step, or none from there."""
     system, h, count = discrete.system, np.float64(discrete.time_step), len(states)
     x, v = places(system, states.configuration, states.time), states.body_velocity
     given = [_padded(rows) for rows in (fractions, x, v, states.momentum)]
@@ -33,8 +31,8 @@ def after_parts(kind: type[OrbitT], discrete: Any, states: Any, fractions: Float
     ]
     ends, ahead = (np.concatenate(column)[:count] for column in zip(*parts, strict=True)) if parts else (x, v)
     impulses = np.empty((0, system.constraints))
-    found = orbit_of(kind, system, h, [ends, ahead, impulses], 0, 1, Outcome.successful)
-    return dataclasses.replace(found, time=states.time + fractions * h)  # type: ignore[type-var]
+    reached = orbit_of(system, h, [ends, ahead, impulses], 0, 1, Outcome.successful)
+    return dataclasses.replace(reached, time=states.time + fractions * h)
 
 
 def _padded(rows: np.ndarray) -> np.ndarray:

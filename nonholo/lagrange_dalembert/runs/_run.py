@@ -9,7 +9,6 @@ import numpy as np
 from nonholo.base.limits import within_a_year
 from nonholo.base.results import finished
 from nonholo.base.types import Float
-from nonholo.lagrange_dalembert._motion import ORBITS
 from nonholo.lagrange_dalembert._orbit import AbstractCoordinateOrbit
 from nonholo.lagrange_dalembert._room import equations_of
 from nonholo.lagrange_dalembert.runs._simulate import LEAST, Start, State, blocks, orbit_of
@@ -93,4 +92,4 @@ class CoordinateRun:
 
     def _orbit(self, columns: list[np.ndarray], first: int, code: Any) -> AbstractCoordinateOrbit:
         system, h = self.discrete.system, np.float64(self.discrete.time_step)
-        return orbit_of(ORBITS[system.orbits], system, h, columns, first, self.every, code)
+        return orbit_of(system, h, columns, first, self.every, code)

@@ -2,7 +2,7 @@
 
 import functools
 from collections.abc import Callable, Iterator
-from typing import Any, TypeVar
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -14,6 +14,7 @@ from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome, finished
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import compiled
+from nonholo.lagrange_dalembert._motion import ORBITS
 from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._room import configurations, equations_of
@@ -21,7 +22,6 @@ from nonholo.lagrange_dalembert._room import configurations, equations_of
 _ROWS = 1024  # saved states of one block: one size of table, one compilation
 LEAST = 1e-6  # seconds of a step, at least
 
-OrbitT = TypeVar("OrbitT")
 State = tuple[Array, Array, Array]
 """Configuration, velocity of its step, velocity of the step before."""
 
@@ -38,7 +38,6 @@ def checked_counts(steps: Any, save_every: Any, numbers: int) -> tuple[int, int]
 
 
 def simulated(
-    kind: Callable[..., OrbitT],
     system: Any,
     h: Any,
     start: Start,
@@ -46,15 +45,14 @@ def simulated(
     every: int,
     throw: bool,
     progress: bool,
-) -> OrbitT:
-    """Run the map from a checked start and return its orbit of a kind."""
+) -> Any:
+    """Run the map from a checked start and return its orbit."""
     with progress_bar("steps", progress) as report:
         ((columns, _, code, done),) = blocks(system, h, start, steps, every, steps + 2, report)
-    return finished(orbit_of(kind, system, h, columns, 0, every, code), h, done, steps, throw)
+    return finished(orbit_of(system, h, columns, 0, every, code), h, done, steps, throw)
 
 
 def iterated(
-    kind: Callable[..., OrbitT],
     system: Any,
     h: Any,
     start: Start,
@@ -63,12 +61,12 @@ def iterated(
     rows: int,
     throw: bool,
     progress: bool,
-) -> Iterator[OrbitT]:
+) -> Iterator[Any]:
     """Run the map from a checked start and give its orbit in blocks of this many states."""
     first = 0
     with progress_bar("steps", progress) as report:
         for columns, _, code, done in blocks(system, h, start, steps, every, rows, report):
-            orbit = orbit_of(kind, system, h, columns, first, every, code)
+            orbit = orbit_of(system, h, columns, first, every, code)
             first += len(columns[0])
             if len(columns[0]) or not throw:
                 yield orbit
@@ -85,15 +83,13 @@ def checked_block(block_steps: Any, every: int, numbers: int) -> int:
     return steps // every
 
 
-def orbit_of(
-    kind: Callable[..., OrbitT], system: Any, h: Any, columns: list[np.ndarray], first: int, every: int, code: Any
-) -> OrbitT:
+def orbit_of(system: Any, h: Any, columns: list[np.ndarray], first: int, every: int, code: Any) -> Any:
     """Return states that were reached, of which the first has a number, as an orbit."""
     q, v, impulses = columns
     *displaced, momentum, energy, residual = _decoded(system, h, q, v)
     displacement, time = displaced[0] if displaced else h * v, h * (every * np.arange(first, first + len(q)))
     arrays = time, configurations(system, q), displacement, v, momentum, impulses, energy, residual
-    return kind(*arrays, Outcome(int(code)), system, float(h), every)
+    return ORBITS[system.orbits](*arrays, Outcome(int(code)), system, float(h), every)
 
 
 def first_state(system: Any, h: Any, q: Any, v: Any, p: Any) -> Start:
