@@ -10,7 +10,7 @@ $$ \dot r = S\,\mathrm{ad}^*_\omega p + E^Tf \quad\text{(left)}, \qquad \dot r =
 from collections.abc import Callable
 
 import numpy as np
-from scipy.integrate import solve_ivp
+import scipy  # its parts load on first use
 
 from nonholo.base.checks import error, number, trailing
 from nonholo.base.results import Outcome
@@ -39,7 +39,9 @@ def by_runge_kutta(
     if len(elapsed) == 1:
         states = _states(forced, start[None])
         return Solved(states, Outcome.successful, lambda times: states.chosen(np.zeros(len(times), dtype=int)))
-    found = solve_ivp(field, (0.0, elapsed[-1]), start, "DOP853", elapsed, True, rtol=rtol, atol=_SHARE * rtol)
+    found = scipy.integrate.solve_ivp(
+        field, (0.0, elapsed[-1]), start, "DOP853", elapsed, True, rtol=rtol, atol=_SHARE * rtol
+    )
     outcome = Outcome.successful if found.status == 0 else Outcome.not_converged
     steps, states = found.sol.ts[:-1], _states(forced, found.y.T)
     return Solved(states, outcome, lambda t: _states(forced, found.sol(t).T), lambda: steps)

@@ -5,11 +5,11 @@ import re
 from typing import Any, NamedTuple, cast
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from nonholo.base.checks import error, instance, shown
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization, discretize
+from nonholo.groups import matrix_from_quaternion
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.simulation import simulate
 from nonholo.systems import AbstractSystem, ChaplyginSleigh, NormalForm, SuslovTop
@@ -116,7 +116,7 @@ def simulated(where: str, state: Any) -> Orbit:
     p, (w, *xyz) = state["parameters"], state["pose"]
     if state["kind"] == "top":
         rows = [[p[f"J{min(i, j)}{max(i, j)}"] for j in (1, 2, 3)] for i in (1, 2, 3)]
-        body, pose = SuslovTop(rows), Rotation.from_quat([*xyz, w]).as_matrix()
+        body, pose = SuslovTop(rows), matrix_from_quaternion(np.array([w, *xyz]))
     else:
         sine, *place = xyz
         body, pose = ChaplyginSleigh(**p), [[w, -sine, place[0]], [sine, w, place[1]], [0.0, 0.0, 1.0]]

@@ -4,7 +4,16 @@ from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._families import SE, SO
 from nonholo.groups._matrix_group import MatrixGroup
 from nonholo.groups._product import ProductGroup
-from nonholo.groups._quaternion import quaternion_from_matrix
+from nonholo.groups._quaternion import matrix_from_quaternion, quaternion_from_matrix
 from nonholo.groups._translations import Translations
 
-__all__ = ["SE", "SO", "AbstractMatrixGroup", "MatrixGroup", "ProductGroup", "Translations", "quaternion_from_matrix"]
+__all__ = [
+    "SE",
+    "SO",
+    "AbstractMatrixGroup",
+    "MatrixGroup",
+    "ProductGroup",
+    "Translations",
+    "matrix_from_quaternion",
+    "quaternion_from_matrix",
+]

@@ -7,13 +7,13 @@ from ._attributes import on_route_of as on_route_of
 from ._attributes import other_versions as other_versions
 from ._attributes import restore_motion as restore_motion
 from ._attributes import versions_text as versions_text
+from ._beside import check_file as check_file
 from ._beside import new_beside as new_beside
+from ._beside import new_file as new_file
 from ._chunks import DamagedError as DamagedError
 from ._chunks import chunk_name as chunk_name
 from ._chunks import chunk_path as chunk_path
 from ._chunks import read_chunk as read_chunk
-from ._csv import check_file as check_file
-from ._csv import new_file as new_file
 from ._csv import orbit_to_csv as orbit_to_csv
 from ._csv import store_to_csv as store_to_csv
 from ._csv import table_lines as table_lines

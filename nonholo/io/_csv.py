@@ -1,6 +1,5 @@
 """Poses as CSV, of an orbit or of a store of any length: all rows or no file, in bounded memory."""
 
-import contextlib
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, TextIO
@@ -11,7 +10,7 @@ from nonholo.base.checks import count, error, flags, instance
 from nonholo.base.checks import path as checked_path
 from nonholo.base.progress import progress_bar
 from nonholo.base.types import Float
-from nonholo.io._beside import new_beside
+from nonholo.io._beside import check_file, new_file
 from nonholo.io.datasets import Stretch, column_names, coordinate_rows, rows_of
 from nonholo.orbit import AbstractOrbit
 
@@ -134,28 +133,3 @@ def _reported(stretches: Iterable[Stretch], report: Callable[[int], object]) -> 
         yield stretch
         done += len(stretch.time)
         report(done)
-
-
-@contextlib.contextmanager
-def new_file(target: str | Path | TextIO, *, overwrite: bool) -> Iterator[TextIO]:
-    """Give a file to write to, which takes its name only when it is complete, or the stream that is the target."""
-    if not isinstance(target, str | Path):
-        yield target
-        return
-    check_file(target, overwrite=overwrite)
-    with new_beside(Path(target)) as part:
-        with part.open("w", encoding="ascii", newline="\n") as file:
-            yield file
-        check_file(target, overwrite=overwrite)
-        part.replace(Path(target).resolve())
-
-
-def check_file(target: str | Path | TextIO, *, overwrite: bool, where: str = "to_csv(path=...)") -> None:
-    """Refuse, in the name of `where`, a path that exists, unless it is a file that may be replaced."""
-    if hasattr(target, "writelines"):
-        return
-    path = checked_path(where, target)
-    if path.exists() and not (overwrite and path.is_file()):
-        how = "Choose another path"
-        remedy = f"It is not a file. {how}." if overwrite else f"{how}, or pass overwrite=True (--overwrite)."
-        raise FileExistsError(f"`{where}` must be new. Got '{path}', which exists. {remedy}")
