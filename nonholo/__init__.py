@@ -76,6 +76,7 @@ Many motions:
     EnsembleTask: Run the members of a design and keep some numbers of each.
     FamilyTask: Run the members of a family: systems that a function of parameters makes, such as ...
     MemberBlock: Some members of a sweep in order: a mapping of names to arrays whose first axis is that of the members.
+    dataset: Write a data set of orbits of a ready system, for people who train models.
     load_sweep: Open the result of a finished sweep, after checking every chunk of it.
     Grid: Every combination of values along axes.
     RandomDesign: Members drawn from distributions: member i is the same in every design with this seed, however ...
@@ -188,6 +189,7 @@ if TYPE_CHECKING:
     from nonholo.ensembles import Normal as Normal
     from nonholo.ensembles import RandomDesign as RandomDesign
     from nonholo.ensembles import Uniform as Uniform
+    from nonholo.ensembles import dataset as dataset
     from nonholo.ensembles import load_sweep as load_sweep
     from nonholo.ensembles import resume as resume
     from nonholo.ensembles import sweep as sweep
@@ -286,6 +288,7 @@ _HOMES = {
     "crossings": "simulation",
     "cusp": "simulation",
     "discrete_legendre": "discrete",
+    "dataset": "ensembles",
     "discretize": "discrete",
     "displacements_over": "discrete",
     "ensemble": "simulation",

@@ -67,6 +67,7 @@ COMMANDS = [
     "extend sleigh.zarr --steps 60",
     "resume sleigh.zarr",
     "sweep SWEEP --members 20",
+    "dataset sleigh -o sleighs --orbits 5 --steps 5",
     "new sleigh",
     "systems",
     "cite",

@@ -14,6 +14,7 @@ from nonholo.cli.commands.about.cite import cite
 from nonholo.cli.commands.about.examples import examples
 from nonholo.cli.commands.about.new import new
 from nonholo.cli.commands.about.systems import systems
+from nonholo.cli.commands.dataset import dataset
 from nonholo.cli.commands.explore import explore
 from nonholo.cli.commands.export import export
 from nonholo.cli.commands.extend import extend
@@ -63,7 +64,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for _command in (simulate, sweep, new, systems, examples, info, plot, explore, export, resume, extend, paper, cite):
+_COMMANDS = (simulate, sweep, dataset, new, systems, examples, info, plot, explore, export, resume, extend, paper, cite)
+for _command in _COMMANDS:
     app.command()(
         _command if _command in (new, systems, cite) else with_cache_folder(_command)
     )  # these compile nothing
@@ -102,6 +104,7 @@ def describe(
     nonholo new sleigh > my.toml        write a commented scenario to edit
     nonholo simulate my.toml            run it; the result is kept under runs/
     nonholo sweep sweep.toml            many motions: a grid or random draws
+    nonholo dataset sleigh -o sleighs   orbits for people who train models
     nonholo info runs/my-001.zarr       what was run, and how exact it is
     nonholo explore suslov              the live page, in the browser
     nonholo export run.zarr -o run.csv  its poses, for other programs

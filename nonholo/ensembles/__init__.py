@@ -2,11 +2,13 @@
 
 from nonholo.ensembles._begin import functions_of
 from nonholo.ensembles._block import MemberBlock
+from nonholo.ensembles._dataset import dataset
 from nonholo.ensembles._ensemble_task import EnsembleTask
 from nonholo.ensembles._family_task import FamilyTask
 from nonholo.ensembles._names import component_name
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles._sweep import load_sweep, resume, sweep
+from nonholo.ensembles.datasets import DEFINITIONS
 from nonholo.ensembles.designs import (
     AbstractDesign,
     AbstractDistribution,
@@ -22,6 +24,7 @@ from nonholo.ensembles.designs import (
 from nonholo.ensembles.stores import SweepStanding, standing_of, sweep_to_csv
 
 __all__ = [
+    "DEFINITIONS",
     "REDUCTIONS",
     "AbstractDesign",
     "AbstractDistribution",
@@ -38,6 +41,7 @@ __all__ = [
     "SweepStanding",
     "Uniform",
     "component_name",
+    "dataset",
     "functions_of",
     "load_sweep",
     "resume",

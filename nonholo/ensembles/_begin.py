@@ -24,6 +24,7 @@ from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
 from nonholo.ensembles._family_task import FamilyTask, family_task_from, imported_functions
 from nonholo.ensembles._names import Axes, check_dimensions
 from nonholo.ensembles._reductions import REDUCTIONS
+from nonholo.ensembles.datasets import DatasetTask, dataset_task_from
 from nonholo.ensembles.designs import Design, Grid, RandomDesign, axis_dimensions
 from nonholo.ensembles.stores import Layout, Output, SweepStore, Task, create_store, layout_of, open_store, probed
 from nonholo.simulation import in_one_thread
@@ -33,8 +34,8 @@ _PIECES = 32  # blocks of a small sweep, so that all cores have work to the end
 _LEAST = 1e-8  # seconds of a member of any task
 _FILE = 4096  # bytes that a file takes at least, on most file systems
 _LANES = 32  # members that a compiled loop takes at once
-DESCRIBED = (EnsembleTask, FamilyTask)
-_MAKERS = {"EnsembleTask": ensemble_task_from, "FamilyTask": family_task_from}
+DESCRIBED = (DatasetTask, EnsembleTask, FamilyTask)
+_MAKERS = {"EnsembleTask": ensemble_task_from, "FamilyTask": family_task_from, "DatasetTask": dataset_task_from}
 
 
 def check_task(task: Any, design: Any) -> None:
@@ -117,7 +118,7 @@ def functions_of(store: str | Path) -> list[str]:
     entry = open_store(store).description["task"]
     if entry["kind"] == "FamilyTask":
         return imported_functions(entry)
-    names = entry["reductions"] if entry["kind"] == "EnsembleTask" else [entry["name"]]
+    names = entry.get("reductions", []) if entry["kind"] in _MAKERS else [entry["name"]]
     return [name for name in names if name not in REDUCTIONS]
 
 

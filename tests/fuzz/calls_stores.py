@@ -46,9 +46,18 @@ def _sweeps() -> list[Call]:
     family = {"family": function(_family), "time_step": positive(0.1), "steps": count(3)}
     family_names = {name: argument for name, argument in names.items() if name != "reconstruct"}
     family_names |= {"parameters": anything({"a": 2.0})}
+    data = {"orbits": count(3), "steps": count(3), "time_step": positive(0.1), "seed": integer(0)}
+    labels = {
+        "noise": number(0.1),
+        "split": array([0.5, 0.25, 0.25]),
+        "file_format": text("csv"),
+        "license_name": text("MIT"),
+    }
+    labels |= {"progress": flag(False)}
     return [
         call("sweep", nh.sweep, task=function(shelf.task), design=thing(design), **where, **how),
         call("load_sweep", nh.load_sweep, store=path(shelf.SWEEP), stores=True),
+        call("dataset", nh.dataset, name=text("sleigh"), folder=path("sleighs"), **data, **labels),
         call("FamilyTask", nh.FamilyTask, **family, **family_names),
         call("EnsembleTask", nh.EnsembleTask, **task, **names),
     ]

@@ -1,0 +1,77 @@
+"""`nonholo dataset`: orbits of a ready system, for people who train models."""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from nonholo.cli.commands.simulate import Quiet
+
+
+def dataset(
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="One of those that --list shows.")] = None,
+    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="FOLDER", help="A new folder.")] = None,
+    orbits: Annotated[int, typer.Option(metavar="N", min=1, help="How many orbits.")] = 1000,
+    steps: Annotated[int, typer.Option(metavar="N", min=1, help="Steps of each; there is one state more.")] = 500,
+    time_step: Annotated[float, typer.Option(metavar="H", help="Time between states.")] = 0.05,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="The same seed gives the same numbers.")] = 0,
+    noise: Annotated[float, typer.Option(metavar="SIGMA", help="Also write fields `observed_...` with noise.")] = 0.0,
+    split: Annotated[str, typer.Option(metavar="A/B/C", help="For training, validation, test.")] = "0.8/0.1/0.1",
+    file_format: Annotated[str, typer.Option("--format", metavar="HOW", help="zarr, or csv: tables.")] = "zarr",
+    license_name: Annotated[
+        str, typer.Option("--license", metavar="NAME", help="What the data card says.")
+    ] = "CC0-1.0",
+    shown: Annotated[bool, typer.Option("--list", help="List the data sets.")] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Write orbits of a ready system with labels, a split and a data card, for people who train models.
+
+    The folder gets orbits.zarr (or train.csv, validation.csv, test.csv),
+    metadata.json with hashes and versions, and README.md, a data card.
+    Fields: poses or coordinates, velocities, momenta, multipliers, energy;
+    row k is a state, row k + 1 the next one. Orbit i does not depend on
+    how many there are. Stopped? The same command resumes it.
+
+    nonholo dataset --list
+    nonholo dataset sleigh -o sleighs
+    nonholo dataset snakeboard -o boards --orbits 200 --noise 0.01
+    nonholo dataset top -o tops --seed 7 --format csv
+    """
+    from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, store_errors
+
+    if shown:
+        _show_all()
+        return
+    if name is None or output is None:
+        leave("Pass a name and -o FOLDER; `nonholo dataset --list` lists the names.", USAGE)
+    options = {"orbits": orbits, "steps": steps, "time_step": time_step, "seed": seed, "noise": noise}
+    with store_errors(USAGE), reporting_warnings():
+        from nonholo.ensembles import dataset as write
+
+        try:
+            how = {"split": _fractions(split), "file_format": file_format, "license_name": license_name}
+            folder = write(name, output, **options, **how, progress=sys.stderr.isatty() and not quiet)
+        except KeyboardInterrupt:
+            leave("Stopped; the same command resumes it.", FAILED)
+    typer.echo(folder if quiet else f"{folder / 'README.md'} says what is there.")
+
+
+def _fractions(split: str) -> list[float]:
+    try:
+        return [float(part) for part in split.split("/")]
+    except ValueError:
+        raise ValueError(f"`--split` must be three numbers such as 0.8/0.1/0.1. Got {split!r}. Mend it.") from None
+
+
+def _show_all() -> None:
+    from rich.console import Console
+    from rich.table import Column, Table
+
+    from nonholo.ensembles import DEFINITIONS
+
+    named = Column("name", no_wrap=True)
+    table = Table(named, "what moves", "energies", "version", title="Data sets", title_justify="left")
+    for name, each in DEFINITIONS.items():
+        table.add_row(name, each.title, "{:g} to {:g}".format(*each.energy), str(each.version))
+    Console().print(table)

@@ -1,0 +1,129 @@
+"""`dataset`: the folder of a data set."""
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from nonholo import io
+from nonholo.base.checks import array, choice, count, error, flags, natural, number, path, scale, text
+from nonholo.ensembles._sweep import sweep
+from nonholo.ensembles.datasets import (
+    DEFINITIONS,
+    SPLITS,
+    DatasetTask,
+    card,
+    record_of,
+    system_of,
+    write_tables,
+)
+from nonholo.ensembles.designs import RandomDesign
+from nonholo.ensembles.stores import open_store
+
+STORE, METADATA, CARD = "orbits.zarr", "metadata.json", "README.md"
+_FORMATS, _SEED = ("zarr", "csv"), "Pass a natural number: with it every orbit is the same again."
+
+
+def dataset(
+    name: str,
+    folder: str | Path,
+    *,
+    orbits: int = 1000,
+    steps: int = 500,
+    time_step: float = 0.05,
+    seed: int = 0,
+    noise: float = 0.0,
+    split: Any = (0.8, 0.1, 0.1),
+    file_format: str = "zarr",
+    license_name: str = "CC0-1.0",
+    progress: bool = False,
+) -> Path:
+    """Write a data set of orbits of a ready system, for people who train models.
+
+    First configurations and kinetic energies are drawn from the distributions of the definition, which has a version.
+    Orbit i is the same in every data set with this seed, time step and version, however many there are. Each row is a
+    state; the row after it is the next one. An orbit that ends early has NaN in its later rows, and `outcome` says why.
+
+    The folder gets `orbits.zarr`, which `xarray.open_zarr` opens, or tables `train.csv`, `validation.csv`, `test.csv`;
+    `metadata.json` with the SHA-256 of every array; and `README.md`, a data card. A call that was stopped is resumed by
+    the same call.
+
+    Args:
+        name: A data set; `nonholo dataset --list` lists them.
+        folder: A new folder, or that of the same call, stopped.
+        orbits: How many.
+        steps: Number of steps N; there are N + 1 states.
+        time_step: h.
+        seed: Of all random numbers.
+        noise: Standard deviation of normal noise, in the unit of each number: fields `observed_...` have it.
+        split: Fractions of the orbits for training, validation and test, in this order.
+        file_format: "zarr" or "csv".
+        license_name: What the card says.
+        progress: Show a progress bar on standard error.
+
+    Returns:
+        The folder.
+
+    Raises:
+        ValueError: A bad argument, or a folder with another data set that is not finished, with the difference.
+        FileExistsError: There is something at the path.
+        BlockingIOError: Another process is writing it.
+        OSError: The disk is full; the same call resumes.
+
+    Example:
+        >>> from tempfile import TemporaryDirectory
+        >>> with TemporaryDirectory() as parent:
+        ...     folder = nh.dataset("sleigh", f"{parent}/sleighs", orbits=20, steps=10)
+        ...     orbits = nh.load_sweep(folder / "orbits.zarr")
+        ...     orbits.heading.shape, orbits.split.values[:17].tolist().count(0)
+        ((20, 11), 16)
+    """
+    choice("dataset(name=...)", name, tuple(DEFINITIONS), "`nonholo dataset --list` says what they are.")
+    choice("dataset(file_format=...)", file_format, _FORMATS)
+    flags("dataset", progress=progress)
+    text("dataset(license_name=...)", license_name)
+    members, definition = count("dataset(orbits=...)", orbits, "Pass how many."), DEFINITIONS[name]
+    h = float(scale("dataset(time_step=...)", time_step, "Pass a positive time step."))
+    steps = count("dataset(steps=...)", steps, "Pass the number of steps.")
+    task = DatasetTask(name, definition.version, h, steps, _deviation(noise), _ends(split, members))
+    design = RandomDesign(members, definition.distributions, natural("dataset(seed=...)", seed, _SEED))
+    target = _checked_folder(folder)
+    system_of(name)  # which says what extra it needs
+    sweep(task, design, target / STORE, resume=True, progress=progress)
+    store = open_store(target / STORE)
+    if file_format == "csv":
+        write_tables(store, target, task.ends)
+    record = record_of(store, task, file_format, license_name)
+    io.write_whole(target / CARD, card(record))
+    io.write_whole(target / METADATA, json.dumps(record, indent=1) + "\n")  # the last one: now it is whole
+    if file_format == "csv":
+        shutil.rmtree(store.path)
+    return target
+
+
+def _deviation(noise: Any) -> float:
+    deviation = float(number("dataset(noise=...)", noise))
+    if deviation < 0:
+        raise error("dataset(noise=...)", "not be negative", f"{deviation}", "Pass a standard deviation, or 0.")
+    return deviation
+
+
+def _ends(split: Any, orbits: int) -> tuple[int, ...]:
+    """Return the first orbit after each part, from fractions."""
+    where, remedy = "dataset(split=...)", "Pass fractions for training, validation and test, such as (0.8, 0.1, 0.1)."
+    fractions = array(where, split, (len(SPLITS),), remedy)
+    if (fractions < 0).any() or abs(fractions.sum() - 1) > 1e-9:
+        raise error(where, "be fractions whose sum is 1", f"{fractions.tolist()}", remedy)
+    return tuple(round(end) for end in (orbits * np.cumsum(fractions)).tolist())
+
+
+def _checked_folder(folder: Any) -> Path:
+    """Return a folder that is new, or that of a call that was stopped."""
+    target = path("dataset(folder=...)", folder)
+    stopped = (target / STORE / "zarr.json").exists() and not (target / METADATA).exists()
+    hidden = target.is_dir() and all(each.name.startswith(".") for each in target.iterdir())  # left by a killed call
+    if target.exists() and not (stopped or hidden):
+        raise FileExistsError(f"`dataset(folder=...)` must be new. Got '{target}', which exists. Choose another path.")
+    return target
