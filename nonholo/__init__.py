@@ -114,7 +114,8 @@ The surface of discrete momenta:
     invariant_curve: Return the curve of displacements with a reduced constrained energy, all its components.
 
 Gaits, the geometry of locomotion:
-    local_connection: Return the local connection of a system in the plane: the body velocity that a change of shape ...
+    ShapedBody: A body on a matrix group G with a shape s, seen from itself: for `local_connection` and what follows ...
+    local_connection: Return the local connection of a system: the body velocity that a change of shape causes.
     geometric_phase: Return the displacement by a gait: a closed motion s(t) of the shape, which its owner prescribes.
     accessibility: Return how far brackets of admissible velocities lead from a configuration.
 
@@ -143,6 +144,7 @@ if TYPE_CHECKING:
     from nonholo import literature as examples  # noqa: F401
     from nonholo import plotting as plot  # noqa: F401
     from nonholo import testing as testing
+    from nonholo.analysis import ShapedBody as ShapedBody
     from nonholo.analysis import accessibility as accessibility
     from nonholo.analysis import asymptotics as asymptotics
     from nonholo.analysis import compare as compare
@@ -272,6 +274,7 @@ _HOMES = {
     "RigidBody": "systems",
     "SE": "groups",
     "SO": "groups",
+    "ShapedBody": "analysis",
     "SuslovTop": "systems",
     "Translations": "groups",
     "Uniform": "ensembles",

@@ -115,6 +115,7 @@ DOCTESTS = {  # examples that compile for long
     "nonholo.analysis.locomotion._connection.LocalConnection.momentum_rate": "routes",
     "nonholo.analysis.locomotion._connection.local_connection": "routes",
     "nonholo.analysis.locomotion._phase.geometric_phase": "routes",
+    "nonholo.analysis.locomotion._shaped_body.ShapedBody": "routes",
     "nonholo.plotting.geometry._curvature.curvature": "routes",
 }
 

@@ -7,7 +7,7 @@ with needs("jax", "nonholo.lagrange_dalembert"):
     from nonholo.lagrange_dalembert._motion import CoordinateFlow, RecordedSystem
     from nonholo.lagrange_dalembert._orbit import AbstractCoordinateOrbit, CoordinateOrbit
     from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-    from nonholo.lagrange_dalembert._tracing import check_value
+    from nonholo.lagrange_dalembert._tracing import check_forms, check_value
     from nonholo.lagrange_dalembert.on_groups import (
         GroupDiscretization,
         GroupLagrangeDAlembert,
@@ -25,6 +25,7 @@ __all__ = [
     "GroupOrbit",
     "LagrangeDAlembert",
     "RecordedSystem",
+    "check_forms",
     "check_value",
     "mass_tensor_lagrangian",
 ]

@@ -282,11 +282,11 @@ def test_momenta_and_curvature_of_the_snakeboard_follow_from_its_matrices() -> N
     M = np.diag([MASS * HALF**2, MASS, MASS, ROTOR, 0.2])
     M[0, 3] = M[3, 0] = ROTOR
     at = _equations.terms((1,), W, dW, np.broadcast_to(M, (9, 5, 5)), np.zeros((9, 5, 5, 2)))
-    F = _equations.curvature(at)[:, :, 0, 1]
+    F = _equations.curvature(nh.SE(2), at)[:, :, 0, 1]
     wanted = ROTOR / (MASS * HALF) * np.stack([-np.sin(2 * phi) / HALF, np.cos(2 * phi), 0 * phi], -1)
     np.testing.assert_allclose(F, wanted, rtol=0, atol=1e-12)
     rate = np.tan(phi) * ds[:, 1] * p[:, 0] - ROTOR / HALF * ds[:, 0] * ds[:, 1]
-    np.testing.assert_allclose(_equations.motion(at, ds, p)[1][:, 0], rate, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(_equations.motion(nh.SE(2), at, ds, p)[1][:, 0], rate, rtol=0, atol=1e-12)
 
 
 def test_the_curvature_of_two_wheels_is_a_bracket() -> None:
@@ -294,4 +294,5 @@ def test_the_curvature_of_two_wheels_is_a_bracket() -> None:
     turn, ahead = 0.25 / (2 * 0.5), 0.25 / 2
     W = np.array([[0.0, 0, 1, 0, 0], [0, 1, 0, -ahead, -ahead], [1, 0, 0, -turn, turn]])
     at = _equations.terms((), W, np.zeros((3, 5, 2)), W, W)
-    np.testing.assert_allclose(_equations.curvature(at)[:, 0, 1], [0, 0, -2 * turn * ahead], rtol=0, atol=1e-16)
+    F = _equations.curvature(nh.SE(2), at)[:, 0, 1]
+    np.testing.assert_allclose(F, [0, 0, -2 * turn * ahead], rtol=0, atol=1e-16)

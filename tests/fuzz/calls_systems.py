@@ -186,7 +186,10 @@ def _locomotion() -> list[Call]:
     ranges, names = array([[-1.0, 1], [-1, 1]], none=True), anything(("psi", "phi"))
     drawing = {"component": text("omega"), "along": names, "bounds": ranges, "shape": array([0.0, 0.1], none=True)}
     asked = {"system": thing(car.system), "configuration": array(car.configuration), "depth": count(2, none=True)}
+    rows = lambda s: np.eye(3, 5) + 0 * s.sum()  # noqa: E731
+    body = {"group": thing(nh.SO(3)), "shape_coordinates": anything(("a", "b")), "name": text("Satellite")}
     return [
+        call("ShapedBody", nh.ShapedBody, **body, constraint_forms=function(rows), lagrangian=thing(None), slow=True),
         call("accessibility", nh.accessibility, **asked, slow=True),
         call("geometric_phase", nh.geometric_phase, system=thing(car.system), gait=function(_still), **gait, slow=True),
         call("local_connection", nh.local_connection, system=thing(car.system), pose=pose, slow=True),

@@ -1,13 +1,15 @@
-"""How changes of shape move a body in the plane: its local connection, gaits, and where brackets lead."""
+"""How changes of shape move a body: its local connection, gaits, and where brackets lead."""
 
 from nonholo.analysis.locomotion._accessibility import Accessibility, accessibility
 from nonholo.analysis.locomotion._connection import LocalConnection, local_connection
 from nonholo.analysis.locomotion._phase import GeometricPhase, geometric_phase
+from nonholo.analysis.locomotion._shaped_body import ShapedBody
 
 __all__ = [
     "Accessibility",
     "GeometricPhase",
     "LocalConnection",
+    "ShapedBody",
     "accessibility",
     "geometric_phase",
     "local_connection",

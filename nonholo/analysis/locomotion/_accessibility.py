@@ -42,9 +42,9 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
     choose units in which coordinates are of one size.
 
     Args:
-        system: A `LagrangeDAlembert` system without forces whose constraints do not depend on time. Prescribed motions
-            are left aside.
-        configuration: q.
+        system: A `LagrangeDAlembert` system without forces whose constraints do not depend on time, or a `ShapedBody`,
+            whose directions are $(\xi, \dot s)$. Prescribed motions are left aside.
+        configuration: q; of a `ShapedBody` the shape s, which is all that matters.
         depth: The longest brackets, at most 8; by default n - dim D + 1, enough wherever the ranks are constant nearby.
 
     Raises:
@@ -55,10 +55,14 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
         >>> nh.accessibility(ready.system, ready.configuration).growth
         (2, 3, 4, 5)
     """
-    n = len(checked_names("accessibility", system))
-    q = array("accessibility(configuration=...)", configuration, (n,), f"Pass {n} coordinates.")
     with needs("jax", "accessibility"):
-        from nonholo.analysis.locomotion import _brackets
+        from nonholo.analysis.locomotion import _brackets, _reduction
+    shaped = hasattr(system, "shape_coordinates")
+    names = system.shape_coordinates if shaped else checked_names("accessibility", system)
+    q = array("accessibility(configuration=...)", configuration, (len(names),), f"Pass {len(names)} coordinates.")
+    if shaped:
+        system, q = _reduction.Reduced(system), np.append(np.zeros(system.group.dim), q)
+    n = len(q)
     forms = _brackets.forms_at(system, q)
     rank = np.linalg.matrix_rank(forms) if np.isfinite(forms).all() else -1
     if rank < len(forms):

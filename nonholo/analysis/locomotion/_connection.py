@@ -1,4 +1,4 @@
-"""`local_connection`: the body velocity that a change of shape causes, for systems in the plane."""
+"""`local_connection`: the body velocity that a change of shape causes."""
 
 import dataclasses
 import functools
@@ -10,22 +10,22 @@ import numpy as np
 from nonholo.analysis.locomotion import _equations
 from nonholo.base.checks import choice, error, instance, needs, shown, trailing
 from nonholo.base.types import Array, Float
+from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems import AbstractCoordinateSystem
 
 _SAMPLES = 8  # shapes and poses at which the symmetry is checked
 _SYMMETRIC = 1e-9  # relative
 _INDEPENDENT = 1e-7  # least singular value of rows of length one
-_COMPONENTS = ("omega", "v1", "v2")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class LocalConnection:
-    r"""The local connection of a system in the plane, $\xi = -A(s)\,\dot s + \Gamma(s)\,p$.
+    r"""The local connection of a system, $\xi = -A(s)\,\dot s + \Gamma(s)\,p$.
 
     Attributes:
         system: The system.
-        shape_coordinates: Names of the shape variables s: all coordinates but position and heading.
-        momentum_components: The components of $\xi = (\omega, v_1, v_2)$ that number the momenta p. None if the
+        shape_coordinates: Names of the shape variables s: of a planar system all coordinates but position and heading.
+        momentum_components: The components of $\xi$ that number the momenta p. None if the
             constraints alone determine the body velocity: the principal kinematic case.
     """
 
@@ -39,8 +39,18 @@ class LocalConnection:
         shape, momenta = ", ".join(self.shape_coordinates), ", ".join(self.momentum_components) or "none"
         return f"<LocalConnection of {self.system.name!r}: shape {shape}; momenta {momenta}>"
 
-    def matrix(self, shape: Any) -> Float[np.ndarray, "... 3 m"]:
-        r"""Return A(s), rows for $\omega, v_1, v_2$; NaN where the constraints do not determine the body velocity.
+    @property
+    def group(self) -> AbstractMatrixGroup:
+        """The group of the poses: SE(2) of a system in the plane."""
+        return self._reduction.group
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        r"""Names of the components of $\xi$: of a planar system omega, v1, v2."""
+        return components_of(self.group)
+
+    def matrix(self, shape: Any) -> Float[np.ndarray, "... d m"]:
+        r"""Return A(s), rows for the components of $\xi$; NaN where the constraints do not determine the body velocity.
 
         Args:
             shape: s, with free leading axes.
@@ -57,7 +67,7 @@ class LocalConnection:
         """
         return _equations.connection(self.terms(self._points("matrix(shape=...)", shape)))
 
-    def curvature(self, shape: Any) -> Float[np.ndarray, "... 3 m m"]:
+    def curvature(self, shape: Any) -> Float[np.ndarray, "... d m m"]:
         r"""Return the curvature of the connection.
 
         $$ F_{ij} = \partial_i A_j - \partial_j A_i - [A_i, A_j], \qquad
@@ -82,9 +92,9 @@ class LocalConnection:
             >>> print(car.curvature((0.0, np.pi / 4))[:, 0, 1].round(12))
             [0.5 0.  0. ]
         """
-        return _equations.curvature(self.terms(self._points("curvature(shape=...)", shape)))
+        return _equations.curvature(self.group, self.terms(self._points("curvature(shape=...)", shape)))
 
-    def body_velocity(self, shape: Any, shape_velocity: Any, momentum: Any = None) -> Float[np.ndarray, "... 3"]:
+    def body_velocity(self, shape: Any, shape_velocity: Any, momentum: Any = None) -> Float[np.ndarray, "... d"]:
         r"""Return $\xi = -A(s)\,\dot s + \Gamma(s)\,p$.
 
         Args:
@@ -133,7 +143,7 @@ class LocalConnection:
         p = self.checked_momentum(name, momentum)
         leading = np.broadcast_shapes(s.shape[:-1], ds.shape[:-1], p.shape[:-1])
         s, ds, p = (np.broadcast_to(each, (*leading, each.shape[-1])) for each in (s, ds, p))
-        return _equations.motion(self.terms(s), ds, p)
+        return _equations.motion(self.group, self.terms(s), ds, p)
 
     def terms(self, shape: Float[np.ndarray, "... m"]) -> _equations.Terms:
         """Return the equations at shapes, for this room."""
@@ -157,11 +167,12 @@ class LocalConnection:
 
 
 def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "theta")) -> LocalConnection:
-    r"""Return the local connection of a system in the plane: the body velocity that a change of shape causes.
+    r"""Return the local connection of a system: the body velocity that a change of shape causes.
 
-    Coordinates are position, heading and shape s. With the body velocity $\xi = (\omega, v_1, v_2)$,
-    $\omega = \dot\theta$, $v_1 = \dot x\cos\theta + \dot y\sin\theta$, $v_2 = -\dot x\sin\theta + \dot y\cos\theta$,
-    the constraints are $B(s)\,\xi + C(s)\,\dot s = 0$, whatever the pose. Where B is a square matrix,
+    Of a `LagrangeDAlembert` system in the plane coordinates are position, heading and shape s. With the body velocity
+    $\xi = (\omega, v_1, v_2)$, $\omega = \dot\theta$, $v_1 = \dot x\cos\theta + \dot y\sin\theta$,
+    $v_2 = -\dot x\sin\theta + \dot y\cos\theta$, the constraints are $B(s)\,\xi + C(s)\,\dot s = 0$, whatever the pose.
+    A `ShapedBody`, on any group, is given in this form. Where B is a square matrix,
 
     $$ \xi = -A(s)\,\dot s, \qquad A = B^{-1}C : $$
 
@@ -175,8 +186,9 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
     Reference: [bloch-krishnaprasad-marsden-murray-1996], [kelly-murray-1995]; signs are derived in the how-to "Gaits".
 
     Args:
-        system: A `LagrangeDAlembert` system without forces whose constraints and Lagrangian do not depend on time.
-        pose: Names of position and heading among its coordinates.
+        system: A `LagrangeDAlembert` system without forces whose constraints and Lagrangian do not depend on time, or
+            a `ShapedBody`.
+        pose: Names of position and heading among its coordinates; a `ShapedBody` has its pose apart.
 
     Raises:
         ValueError: Another system; coordinates without such names, or without a shape; constraints or a Lagrangian
@@ -188,6 +200,8 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
         >>> board.shape_coordinates, board.momentum_components
         (('psi', 'phi'), ('v1',))
     """
+    if hasattr(system, "shape_coordinates"):
+        return _connection(_door().Reduced(system), system, system.shape_coordinates)
     names = checked_names("local_connection", system)
     where, asked, remedy = "local_connection(system=...)", "local_connection(pose=...)", "Name x, y and the heading."
     chosen = [choice(asked, name, names, remedy) for name in instance(asked, pose, tuple, "be three names", remedy)]
@@ -197,20 +211,36 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
     if not shape:
         raise error(where, "have a shape beside its pose", shown(names), "A rigid body has no connection.")
     x, y, theta = (names.index(name) for name in pose)
-    reduction = _door().Reduction(system, (x, y, theta), shape)
-    rng = np.random.default_rng(0)
+    return _connection(_door().Planar(system, (x, y, theta), shape), system, tuple(names[i] for i in shape))
+
+
+def components_of(group: AbstractMatrixGroup) -> tuple[str, ...]:
+    """Return names of the coordinates of an algebra."""
+    turns, shifts = group.dim, 0
+    if group == SE(2):
+        return "omega", "v1", "v2"
+    if group == SE(3):
+        turns = shifts = 3
+    return (*(f"omega{i + 1}" for i in range(turns)), *(f"v{i + 1}" for i in range(shifts)))
+
+
+def _connection(reduction: Any, system: Any, shape: tuple[str, ...]) -> LocalConnection:
+    """Return the connection of a system whose constraints and Lagrangian are checked at random shapes and poses."""
+    where, rng, names = "local_connection(system=...)", np.random.default_rng(0), components_of(reduction.group)
     shapes, poses = rng.normal(0.0, 0.6, (_SAMPLES, len(shape))), rng.normal(0.0, 2.0, (_SAMPLES, 3))
     free = _free_components(where, reduction, shapes, poses)
+    if free and system.lagrangian is None:
+        got, remedy = f"{len(names) - len(free)} constraints", "Pass lagrangian=, or a constraint for each component."
+        raise error(where, f"determine {len(names)} components of the body velocity", got, remedy)
     if free:
-        _check_energy(where, reduction, shapes, poses, rng.normal(size=(_SAMPLES, len(names))))
-    components = tuple(_COMPONENTS[i] for i in free)
-    return LocalConnection(system, tuple(names[i] for i in shape), components, reduction, free)
+        _check_energy(where, reduction, shapes, poses, rng.normal(size=(_SAMPLES, len(names) + len(shape))))
+    return LocalConnection(system, shape, tuple(names[i] for i in free), reduction, free)
 
 
 def checked_names(owner: str, system: Any) -> tuple[str, ...]:
     """Return the coordinates of a system whose constraints are linear and do not depend on time."""
     where = f"{owner}(system=...)"
-    remedy = "Pass a `LagrangeDAlembert`; of a ready example its `.system`."
+    remedy = "Pass a `LagrangeDAlembert`, of a ready example its `.system`; on a group a `ShapedBody`."
     instance(where, system, AbstractCoordinateSystem, "be a system in coordinates", remedy)
     names: tuple[str, ...] = getattr(system, "coordinates", ())
     if not names:
@@ -226,7 +256,8 @@ def _free_components(where: str, reduction: Any, shapes: Array, poses: Array) ->
     at_identity, elsewhere = (_door().called(_door().rows, reduction, g, shapes) for g in (np.zeros(3), poses))
     usable = np.isfinite(at_identity).all((1, 2)) & np.isfinite(elsewhere).all((1, 2))
     at_identity, elsewhere = _unit(at_identity[usable]), _unit(elsewhere[usable])
-    least = np.linalg.svd(at_identity[..., :3], compute_uv=False).min(-1, initial=1.0)
+    d = reduction.group.dim
+    least = np.linalg.svd(at_identity[..., :d], compute_uv=False).min(-1, initial=1.0)
     if not (least > _INDEPENDENT).any():
         got = "constraints that are dependent, infinite, or between shape variables alone"
         raise error(where, "have constraints that bind the body velocity", got, "Solve those of the shape first.")
@@ -235,8 +266,8 @@ def _free_components(where: str, reduction: Any, shapes: Array, poses: Array) ->
     if np.abs(off).max(initial=0.0) > _SYMMETRIC:
         got = f"constraints that change by {np.abs(off).max():.2g} where it is moved and turned"
         raise error(where, "have constraints that are the same at every pose", got, "Check names and forms.")
-    choices = itertools.combinations(range(3), 3 - at_identity.shape[1])
-    return max(choices, key=lambda free: np.median(np.abs(np.linalg.det(np.delete(at_identity[..., :3], free, -1)))))
+    choices = itertools.combinations(range(d), d - at_identity.shape[1])
+    return max(choices, key=lambda free: np.median(np.abs(np.linalg.det(np.delete(at_identity[..., :d], free, -1)))))
 
 
 def _check_energy(where: str, reduction: Any, shapes: Array, poses: Array, u: Array) -> None:

@@ -9,10 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from nonholo.base.types import Array
-from nonholo.groups import SE
+from nonholo.groups import AbstractMatrixGroup
 
 _SINGULAR = 1e-10  # determinant of rows of length one
-_bracket = SE(2).bracket
 
 
 class Terms(NamedTuple):
@@ -27,18 +26,28 @@ class Terms(NamedTuple):
 
 def terms(free: tuple[int, ...], W: Array, dW: Array, M: Array, dM: Array) -> Terms:
     """Return the equations from W = (B, C) and the inertia. Rows `free` of E are the identity."""
-    k = len(free)
-    E, dE = np.zeros((*W.shape[:-2], 3, k)), np.zeros((*W.shape[:-2], 3, k, dW.shape[-1]))
+    k, d = len(free), len(free) + W.shape[-2]
+    E, dE = np.zeros((*W.shape[:-2], d, k)), np.zeros((*W.shape[:-2], d, k, dW.shape[-1]))
     if not k:
         return Terms(W, dW, E, dE, M)
-    pivots, B, dB = np.setdiff1d(np.arange(3), free), W[..., :3], dW[..., :3, :]
+    pivots, B, dB = np.setdiff1d(np.arange(d), free), W[..., :d], dW[..., :d, :]
     E[..., list(free), :] = np.eye(k)
     E[..., pivots, :] = -solve(B[..., pivots], B[..., list(free)])
     turned = np.einsum("...caj,...ab->...cbj", dB, E)  # B E = 0, so B dE = -dB E
     dE[..., pivots, :, :] = -_solve_each(B[..., pivots], turned)
-    P = np.swapaxes(E, -1, -2) @ M[..., :3, :]
-    dP = np.einsum("...abj,...ac->...bcj", dE, M[..., :3, :]) + np.einsum("...ab,...acj->...bcj", E, dM[..., :3, :, :])
+    P = np.swapaxes(E, -1, -2) @ M[..., :d, :]
+    dP = np.einsum("...abj,...ac->...bcj", dE, M[..., :d, :]) + np.einsum("...ab,...acj->...bcj", E, dM[..., :d, :, :])
     return Terms(np.concatenate([P, W], -2), np.concatenate([dP, dW], -3), E, dE, M)
+
+
+def singularity(at: Terms) -> Array:
+    """Return what is zero at singular shapes."""
+    return regularity(_of_pose(at.matrix))
+
+
+def _of_pose(matrix: Array) -> Array:
+    """Return the columns of the body velocity: as many as there are rows."""
+    return matrix[..., : matrix.shape[-2]]
 
 
 def regularity(matrix: Array) -> Array:
@@ -59,26 +68,28 @@ def _solve_each(matrix: Array, right: Array) -> Array:
 
 def connection(at: Terms) -> Array:
     r"""Return A of $\xi = -A\dot s$ for p = 0."""
-    return solve(at.matrix[..., :3], at.matrix[..., 3:])
+    return solve(_of_pose(at.matrix), at.matrix[..., at.matrix.shape[-2] :])
 
 
-def curvature(at: Terms) -> Array:
+def curvature(group: AbstractMatrixGroup, at: Terms) -> Array:
     """Return F[:, i, j] = d_i A_j - d_j A_i - [A_i, A_j]."""
-    A = connection(at)
-    right = at.slopes[..., 3:, :] - np.einsum("...abj,...bc->...acj", at.slopes[..., :3, :], A)
-    dA = _solve_each(at.matrix[..., :3], right)  # its axes: xi, j, i
+    A, d = connection(at), group.dim
+    right = at.slopes[..., d:, :] - np.einsum("...abj,...bc->...acj", at.slopes[..., :d, :], A)
+    dA = _solve_each(_of_pose(at.matrix), right)  # its axes: xi, j, i
     a = np.swapaxes(A, -1, -2)
-    brackets = _bracket(a[..., :, None, :], a[..., None, :, :])
+    brackets = group.bracket(a[..., :, None, :], a[..., None, :, :])
     return np.swapaxes(dA, -1, -2) - dA - np.moveaxis(brackets, -1, -3)
 
 
-def motion(at: Terms, ds: Array, p: Array) -> tuple[Array, Array]:
+def motion(group: AbstractMatrixGroup, at: Terms, ds: Array, p: Array) -> tuple[Array, Array]:
     r"""Return $\xi$ and $\dot p_a = \langle\partial l/\partial\xi, [\xi, e_a] + \dot e_a\rangle$."""
-    right = -np.einsum("...ai,...i->...a", at.matrix[..., 3:], ds)
+    d = group.dim
+    right = -np.einsum("...ai,...i->...a", at.matrix[..., d:], ds)
     right[..., : p.shape[-1]] += p
-    xi = solve(at.matrix[..., :3], right[..., None])[..., 0]
+    xi = solve(_of_pose(at.matrix), right[..., None])[..., 0]
     if not p.shape[-1]:
         return xi, np.zeros((*xi.shape[:-1], 0))
-    mu = np.einsum("...ab,...b->...a", at.inertia[..., :3, :], np.concatenate([xi, ds], -1))
+    mu = np.einsum("...ab,...b->...a", at.inertia[..., :d, :], np.concatenate([xi, ds], -1))
     moved = np.swapaxes(np.einsum("...abj,...j->...ab", at.coasting_slopes, ds), -1, -2)
-    return xi, np.einsum("...ba,...a->...b", moved + _bracket(xi[..., None, :], np.swapaxes(at.coasting, -1, -2)), mu)
+    carried = moved + group.bracket(xi[..., None, :], np.swapaxes(at.coasting, -1, -2))
+    return xi, np.einsum("...ba,...a->...b", carried, mu)

@@ -10,7 +10,7 @@ from nonholo.analysis.locomotion import _equations
 from nonholo.analysis.locomotion._connection import LocalConnection, local_connection
 from nonholo.base.checks import array, error, needs, scale
 from nonholo.base.types import Array, Float
-from nonholo.groups import SE
+from nonholo.groups import SE, AbstractMatrixGroup
 
 _AGREED = 1e-12  # of two results, the second with twice as many pieces
 _PANELS, _MOST = 8, 512  # pieces of a period, at first and at most
@@ -35,7 +35,7 @@ class GeometricPhase:
         time: Times during the gait.
         shape: The shape at these times.
         configuration: The pose at these times, momenta included.
-        heading: The heading at these times, unwrapped.
+        heading: The heading at these times, unwrapped; None where poses are not of the plane.
         momentum: The momenta p at these times.
         holonomy: The geometric phase: the pose after the gait if the momenta were kept at zero. Of a kinematic system
             this is the last pose.
@@ -46,11 +46,11 @@ class GeometricPhase:
     connection: LocalConnection
     time: Float[np.ndarray, "K"]
     shape: Float[np.ndarray, "K m"]
-    configuration: Float[np.ndarray, "K 3 3"]
-    heading: Float[np.ndarray, "K"]
+    configuration: Float[np.ndarray, "K N N"]
+    heading: Float[np.ndarray, "K"] | None
     momentum: Float[np.ndarray, "K k"]
-    holonomy: Float[np.ndarray, "3 3"]
-    area_rule: Float[np.ndarray, "3 3"]
+    holonomy: Float[np.ndarray, "N N"]
+    area_rule: Float[np.ndarray, "N N"]
 
 
 def geometric_phase(
@@ -120,49 +120,57 @@ def _displacement(connection: LocalConnection, shape_at: Any, edges: Array, p: A
     time = edges[:-1, None] + h[:, None] * _NODES
     s, ds = shape_at(time[..., None])
     at = connection.terms(s)
-    momentum, p_end = _momenta(at, ds, h, p)
-    pose, end = _poses(h, _equations.motion(at, ds, momentum)[0])
-    holonomy = _poses(h, _equations.motion(at, ds, np.zeros_like(momentum))[0])[1]
+    momentum, p_end = _momenta(connection.group, at, ds, h, p)
+    group = connection.group
+    pose, end = _poses(group, h, _equations.motion(group, at, ds, momentum)[0])
+    holonomy = _poses(group, h, _equations.motion(group, at, ds, np.zeros_like(momentum))[0])[1]
     center = s.mean((0, 1))
     F: Any = sum(  # along the segments from the center
-        weight * x * _equations.curvature(connection.terms(center + x * (s - center)))
+        weight * x * _equations.curvature(group, connection.terms(center + x * (s - center)))
         for x, weight in zip(_NODES, _WEIGHTS, strict=True)
     )
     area = -np.einsum("t,k,tkaij,tki,tkj->a", h, _WEIGHTS, F, s - center, ds)
 
     def whole(first: Array, between: Array, last: Array) -> Array:
-        return np.vstack([first, between.reshape(time.size, between.shape[-1]), last])
+        return np.concatenate([first[None], between.reshape(time.size, *between.shape[2:]), last[None]])
 
-    path = whole(np.zeros(3), pose, end)
-    columns = path[:, 2], whole(p, momentum, p_end), _matrices(holonomy), SE(2).exp(area)
-    first, last = (shape_at(edges[[i], None])[0] for i in (0, -1))
+    g = whole(group.identity, pose, end)
+    heading = np.unwrap(np.arctan2(g[:, 1, 0], g[:, 0, 0])) if group == SE(2) else None
+    first, last = (shape_at(edges[[i], None])[0][0] for i in (0, -1))
     times = np.concatenate([edges[:1], time.ravel(), edges[-1:]])
-    return GeometricPhase(connection, times, whole(first, s, last), _matrices(path), *columns)
+    columns = heading, whole(p, momentum, p_end), holonomy, group.exp(area)
+    return GeometricPhase(connection, times, whole(first, s, last), g, *columns)
 
 
-def _integral(h: Array, rates: Float[np.ndarray, "t k d"]) -> tuple[Float[np.ndarray, "t k d"], Float[np.ndarray, "d"]]:
-    """Return integrals from the first edge to the nodes, and to the last edge."""
-    pieces = h[:, None] * np.einsum("k,tkd->td", _WEIGHTS, rates)
-    before = np.cumsum(pieces, 0) - pieces
-    return before[:, None] + h[:, None, None] * np.einsum("jk,tkd->tjd", _TO_NODES, rates), pieces.sum(0)
+def _poses(
+    group: AbstractMatrixGroup, h: Array, xi: Float[np.ndarray, "t k d"]
+) -> tuple[Float[np.ndarray, "t k N N"], Float[np.ndarray, "N N"]]:
+    r"""Return the poses of a motion with these body velocities, at the nodes and at the end, by collocation.
+
+    In each piece $g_j = 1 + h\sum_l T_{jl}\,g_l\hat\xi_l$ are linear equations.
+    """
+    speed, one = h[:, None, None, None] * group.hat(xi), group.identity
+    pieces, k, N = speed.shape[:3]
+    steps = np.einsum("jl,tlba->tjalb", _TO_NODES, speed).reshape(pieces, k * N, k * N)
+    found = np.linalg.solve(np.eye(k * N) - steps, np.tile(one, (k, 1)))
+    inside = np.swapaxes(found.reshape(pieces, k, N, N), -1, -2)
+    across = one + np.einsum("l,tlab,tlbc->tac", _WEIGHTS, inside, speed)
+    before = [one]
+    for each in across:
+        before.append(before[-1] @ each)
+    return np.array(before[:-1])[:, None] @ inside, before[-1]
 
 
-def _poses(h: Array, xi: Float[np.ndarray, "t k 3"]) -> tuple[Float[np.ndarray, "t k 3"], Float[np.ndarray, "3"]]:
-    """Return the poses (x, y, theta) of a motion with these body velocities, at the nodes and at the end."""
-    heading, turn = _integral(h, xi[..., :1])
-    v1, v2, cos, sin = xi[..., 1:2], xi[..., 2:], np.cos(heading), np.sin(heading)
-    place, end = _integral(h, np.concatenate([cos * v1 - sin * v2, sin * v1 + cos * v2], -1))
-    return np.concatenate([place, heading], -1), np.concatenate([end, turn])
-
-
-def _momenta(at: _equations.Terms, ds: Array, h: Array, p: Array) -> tuple[Float[np.ndarray, "t k p"], Array]:
+def _momenta(
+    group: AbstractMatrixGroup, at: _equations.Terms, ds: Array, h: Array, p: Array
+) -> tuple[Float[np.ndarray, "t k p"], Array]:
     """Return the momenta at the nodes and at the end, piece by piece by Picard's iteration."""
     found = np.zeros((*ds.shape[:-1], len(p)))
     for i in range(len(h) if len(p) else 0):
         here = _equations.Terms(*(values[i] for values in at))
         found[i] = p
         for _ in range(_ITERATIONS):
-            rates = _equations.motion(here, ds[i], found[i])[1]
+            rates = _equations.motion(group, here, ds[i], found[i])[1]
             before, found[i] = found[i].copy(), p + h[i] * _TO_NODES @ rates
             if not np.abs(found[i] - before).max() > _ROUNDING * np.abs(found[i]).max():
                 break
@@ -180,7 +188,7 @@ def _distances(one: GeometricPhase, other: GeometricPhase) -> tuple[float, float
 def _unresolved(phase: GeometricPhase, moved: float) -> GeometricPhase:
     """Return a phase without area rule, if there are singular shapes inside the gait alone."""
     if moved < _AGREED:
-        return dataclasses.replace(phase, area_rule=np.full((3, 3), np.nan))
+        return dataclasses.replace(phase, area_rule=np.full_like(phase.area_rule, np.nan))
     at = _nearest(phase.connection, phase.shape)
     got = f"one that {_MOST} pieces do not resolve, next to a singular shape at {at}"
     remedy = "Name its corners, or keep away from singular shapes."
@@ -193,7 +201,7 @@ def _check_closed(connection: LocalConnection, shape: Array) -> None:
     if not np.abs(shape[-1] - shape[0]).max() <= _CLOSED * (1 + np.abs(shape).max()):
         remedy = "Pass its period, and a gait that returns to its first shape."
         raise error(where, "be closed and finite", f"{shape[0].tolist()} to {shape[-1].tolist()}", remedy)
-    regular = _equations.regularity(connection.terms(shape).matrix[..., :3])
+    regular = _equations.singularity(connection.terms(shape))
     if not (regular * regular[0] > 0).all():
         remedy = "There the constraints do not determine the motion; pass a smaller gait."
         raise error(where, "keep away from singular shapes", f"{_nearest(connection, shape)} on its way", remedy)
@@ -201,12 +209,5 @@ def _check_closed(connection: LocalConnection, shape: Array) -> None:
 
 def _nearest(connection: LocalConnection, shape: Array) -> dict[str, float]:
     """Return the shape that is nearest to a singular one."""
-    nearness = np.abs(_equations.regularity(connection.terms(shape).matrix[..., :3]))
+    nearness = np.abs(_equations.singularity(connection.terms(shape)))
     return dict(zip(connection.shape_coordinates, shape[np.argmin(nearness)].round(6).tolist(), strict=True))
-
-
-def _matrices(pose: Float[np.ndarray, "... 3"]) -> Float[np.ndarray, "... 3 3"]:
-    """Return the matrices of poses (x, y, theta)."""
-    x, y, theta = np.moveaxis(pose, -1, 0)
-    zero, one, cos, sin = np.zeros_like(x), np.ones_like(x), np.cos(theta), np.sin(theta)
-    return np.moveaxis(np.array([[cos, -sin, x], [sin, cos, y], [zero, zero, one]]), (0, 1), (-2, -1))

@@ -20,7 +20,6 @@ _POINTS = 121  # a side
 _MARGIN = 0.3  # of the extent of a gait
 _REACH = 1.2  # of each shape variable, by default
 _REACHED = 3  # by the colors, in units of the median: near singular shapes values have no bound
-_COMPONENTS = {"omega": r"\omega", "v1": "v_1", "v2": "v_2"}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -62,7 +61,7 @@ def curvature(
 
     Args:
         connection: A `local_connection` with at least two shape variables.
-        component: "omega", "v1" or "v2" of the body velocity.
+        component: One of `connection.components`, those of the body velocity: in the plane "omega", "v1", "v2".
         phase: The result of `geometric_phase`, whose gait is drawn.
         along: Names of the two shape variables, i and j; by default the first two.
         bounds: The range of each, a pair of pairs; by default around the gait, without one from -1.2 to 1.2.
@@ -85,7 +84,7 @@ def curvature(
     names = connection.shape_coordinates
     if len(names) < 2:
         raise error("plot.curvature(connection=...)", "have two shape variables", shown(names), "One encloses no area.")
-    choice("plot.curvature(component=...)", component, tuple(_COMPONENTS))
+    choice("plot.curvature(component=...)", component, connection.components)
     chosen = [names.index(choice("plot.curvature(along=...)", name, names)) for name in _two(along, names)]
     if chosen[0] == chosen[1]:
         raise error("plot.curvature(along=...)", "name two shape variables", shown(along), "Name another one.")
@@ -98,7 +97,7 @@ def curvature(
     mesh, zero, bar = _map(axes, component, sides, values)
     gait = None if path is None else _draw_gait(axes, path[:, chosen])
     axes.set(xlabel=symbol(names[chosen[0]]), ylabel=symbol(names[chosen[1]]), xlim=sides[0], ylim=sides[1])
-    theme.write_title(axes, f"{connection.system.name}: curvature, ${_COMPONENTS[component]}$")
+    theme.write_title(axes, f"{connection.system.name}: curvature, {symbol(component)}")
     theme.legend_above(axes)
     return CurvaturePicture(axes, mesh, zero, gait, bar)
 
@@ -124,7 +123,7 @@ def _values(connection: LocalConnection, component: str, chosen: list[int], side
     """Return minus the curvature in the middle of cells."""
     points = np.broadcast_to(at, (_POINTS - 1, _POINTS - 1, len(at))).copy()
     points[..., chosen[0]], points[..., chosen[1]] = np.meshgrid(*_middles(sides))
-    values = -connection.curvature(points)[..., tuple(_COMPONENTS).index(component), chosen[0], chosen[1]]
+    values = -connection.curvature(points)[..., connection.components.index(component), chosen[0], chosen[1]]
     if not np.isfinite(values).any():
         raise error("plot.curvature(bounds=...)", "hold regular shapes", shown(sides.tolist()), "Choose other ranges.")
     return values
@@ -147,7 +146,7 @@ def _map(axes: Axes, component: str, sides: Array, values: Array) -> tuple[QuadM
         line: Any = {"colors": [theme.QUIET], "linewidths": 1.0, "linestyles": "dashed", "zorder": 2}
         zero = axes.contour(*_middles(sides), np.ma.masked_invalid(values), levels=[0.0], **line)
     figure: Any = axes.get_figure(root=False)
-    words = f"gain in ${_COMPONENTS[component]}$ per area"
+    words = f"gain in {symbol(component)} per area"
     bar = figure.colorbar(mesh, ax=axes, label=words, pad=0.02, extend="both" if most > top else "neither")
     bar.outline.set_visible(False)
     return mesh, zero, bar
