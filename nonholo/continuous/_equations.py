@@ -11,13 +11,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import array, error, number, shape_of, shown, trailing
+from nonholo.base.checks import array, error, number, shape_of, trailing
 from nonholo.base.types import Array, Float
 from nonholo.continuous._forced import forced_field, forced_reaction
 from nonholo.continuous._solution import States
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.systems import AbstractSystem, inertia_form
+from nonholo.systems import AbstractSystem, as_system, inertia_form
 
 Body = tuple[Array, Array, Array]
 r"""Constraint subspace $S$, inertia operator $\mathbb{I}$ and $(S\mathbb{I}S^T)^{-1}S$, which takes r to $\omega$."""
@@ -176,8 +176,7 @@ def vector_field(system: AbstractSystem) -> Callable[[Array, Float[Array, "size"
         >>> bool(np.allclose(end[2:].reshape(3, 3), orbit.configuration[-1], atol=1e-8))
         True
     """
-    if not isinstance(system, AbstractSystem):
-        raise error("vector_field(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
+    as_system("vector_field(system=...)", system)
     if system.forces is not None:
         return forced_field(system.forces)
     group, S = system.group, system.constraint_subspace

@@ -22,6 +22,7 @@ from nonholo.systems import (
     DiscretizationT,
     Forced,
     System,
+    as_system,
     refuse_forces,
     refuse_in_coordinates,
 )
@@ -243,8 +244,7 @@ def discretize(
             "discretize", difference=(difference, None), constraint=(constraint, None), order=(order, 2)
         )
         return system.discretize(time_step)
-    if not isinstance(system, AbstractSystem):
-        raise error("discretize(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
+    as_system("discretize(system=...)", system)
     step = scale("discretize(time_step=...)", time_step, "Pass a positive real time step.")
     chosen = _difference(system, difference)
     variety = _constraint(system, constraint)

@@ -150,11 +150,18 @@ def _name(orbit: AbstractOrbit) -> str:
     return _name_of_body(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name
 
 
+_NAMES = {  # by is_sleigh and is_planar: of its own class, and of an LLSystem that equals one
+    (True, True): ("Chaplygin sleigh", "a sleigh in the plane"),
+    (True, False): ("Multidimensional sleigh", "a multidimensional sleigh"),
+    **dict.fromkeys([(False, True), (False, False)], ("Suslov top", "a Suslov top")),
+}
+
+
 def _name_of_body(system: System) -> str:
     form = system.normal_form
     if form is not None:
-        sleigh = "Chaplygin sleigh" if form.is_planar else "Multidimensional sleigh"
-        return sleigh if form.is_sleigh else "Suslov top"
+        name, recognized = _NAMES[form.is_sleigh, form.is_planar]
+        return f"LLSystem, {recognized}" if type(system) is LLSystem else name
     if system.homogeneous_mass_tensor is not None and system.group.is_rigid:
         if is_free(system):
             return "Free rigid body"

@@ -6,13 +6,13 @@ from typing import Any, overload
 
 import numpy as np
 
-from nonholo.base.checks import error, flags, flow_times, flow_tolerances, shown
+from nonholo.base.checks import error, flags, flow_times, flow_tolerances
 from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, Solved, solver_of
 from nonholo.orbit import Orbit
 from nonholo.simulation.events import Event, check_functions, checked_events, flow_in_coordinates, flow_with_events
-from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, OrbitT, Start, System, refuse_in_coordinates
+from nonholo.systems import AbstractCoordinateSystem, OrbitT, Start, System, as_system, refuse_in_coordinates
 
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
 
@@ -117,8 +117,7 @@ def flow(
         refuse_in_coordinates("flow", **{name: (value, None) for name, value in refused.items()}, **no_pose)
         errors = {"rtol": 1e-10 if rtol is None else rtol, "atol": atol}
         return flow_in_coordinates(system, events, configuration=configuration, times=times, **starts, **errors)
-    if not isinstance(system, AbstractSystem):
-        raise error("flow(system=...)", "be a system", shown(system), "Pass a SuslovTop or an LLSystem.")
+    as_system("flow(system=...)", system)
     flags("flow", reconstruct=reconstruct)
     time = flow_times(times)
     solver, posed = solver_of(system, method, float(time[0]), reconstruct=reconstruct)

@@ -7,6 +7,7 @@ from nonholo.systems._base import (
     AbstractSystem,
     Equilibria,
     System,
+    as_system,
     refuse_forces,
     unchecked,
 )
@@ -76,6 +77,7 @@ __all__ = [
     "SuslovTop",
     "System",
     "VeselovaTop",
+    "as_system",
     "checked_group",
     "euler_angle_discrete_lagrangian",
     "group_mass_tensor",

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
-from nonholo.base.checks import error, is_traced, shape_of, trailing
+from nonholo.base.checks import error, instance, is_traced, shape_of, trailing
 from nonholo.base.html import table
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float, Inexact
@@ -425,6 +425,12 @@ class AbstractLRSystem(AbstractSystem):
 
 System = AbstractSystem
 """Any system on a group."""
+
+
+def as_system(where: str, value: Any) -> "AbstractSystem":
+    """Return a system on a group; anything else is refused."""
+    remedy = "Pass a SuslovTop or an LLSystem; of a ready example its `.system`."
+    return instance(where, value, AbstractSystem, "be a system", remedy)
 
 
 def refuse_forces(where: str, system: Any) -> None:

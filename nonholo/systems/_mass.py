@@ -9,6 +9,8 @@ from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._wide import narrow
 
+_MADE = "Of a mass, an inertia and a center of mass `LLSystem.from_inertia` and `RigidBody.from_inertia` make it."
+
 
 def inertia_tensor(mass_tensor: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:
     r"""Return $\mathrm{tr}(J)\,\mathrm{Id} - J$, the inertia tensor of a body with mass tensor $J = \int r r^T dm$.
@@ -88,7 +90,7 @@ def group_mass_tensor(where: str, group: AbstractMatrixGroup, value: Array, inst
         reason = f"the group {group!r}, which does not move the points of a rigid body"
         raise error(where, "be used on SO(n) or SE(n)", reason, instead)
     size = group.identity.shape[0]
-    remedy = f"On {group!r} the mass tensor is ({size}, {size}): J on SO(n), homogeneous on SE(n)."
+    remedy = f"On {group!r} the mass tensor is ({size}, {size}): J on SO(n), homogeneous on SE(n). {_MADE}"
     return symmetric(where, array(where, value, (size, size), remedy), remedy)
 
 

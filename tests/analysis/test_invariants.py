@@ -9,6 +9,7 @@ from problems import PROBLEMS
 import nonholo as nh
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+RUN = nh.simulate(SLEIGH, body_velocity=(0.1, 1.0, 0.0), steps=2)
 
 
 def test_no_states() -> None:
@@ -16,6 +17,11 @@ def test_no_states() -> None:
     empty = nh.simulate(nh.discretize(PROBLEMS[0].system, 1.0), body_velocity=(40.0, 0.0, 0.0), steps=3, throw=False)
     with pytest.raises(ValueError, match=r"at least one state.*outcome"):
         nh.invariants(empty)
+
+
+def test_the_help_names_every_field() -> None:
+    """`help(nh.invariants)` lists what it measures."""
+    assert all(f"`{field.name}`" in str(nh.invariants.__doc__) for field in dataclasses.fields(nh.invariants(RUN)))
 
 
 def test_rest() -> None:

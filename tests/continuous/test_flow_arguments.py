@@ -136,6 +136,9 @@ def test_not_a_system() -> None:
         nh.flow(SLEIGH.group, times=(0.0, 1.0), **START)
     with pytest.raises(ValueError, match=r"`vector_field\(system=...\)` must be a system"):
         nh.vector_field("sleigh")
+    for function in (lambda ready: nh.discretize(ready, 0.1), lambda ready: nh.flow(ready, times=(0.0, 1.0), **START)):
+        with pytest.raises(ValueError, match=r"of a ready example its `.system`"):
+            function(nh.examples.sleigh_in_a_well())  # type: ignore[arg-type]
 
 
 def test_no_closed_form() -> None:

@@ -110,6 +110,13 @@ def test_definition(discrete: Discretization, r: list[float]) -> None:
     assert found.multiplicity.sum() == (2 * k if isinstance(discrete.system, nh.SuslovTop) else 2 * k - 1)
 
 
+def test_components_of_a_top_are_p2_and_minus_p1() -> None:
+    """Along the rows (0, 1, 0) and (-1, 0, 0) a momentum P has r = (P_2, -P_1), for every value over r."""
+    top = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.5)
+    P = nh.displacements_over(top, [0.1, -0.05]).momentum
+    np.testing.assert_allclose(P[:, :2], np.broadcast_to([0.05, 0.1], (4, 2)), rtol=0, atol=1e-13)
+
+
 @pytest.mark.parametrize(("discrete", "r"), _DEFINED.values(), ids=_DEFINED)
 def test_momenta_are_those_of_the_displacements(discrete: Discretization, r: list[float]) -> None:
     """The momenta of real branches are what `discrete_legendre` says, and share the given components and energy."""

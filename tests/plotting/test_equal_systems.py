@@ -115,11 +115,14 @@ def test_values(pair: Pair) -> None:
 
 @by_pair
 def test_overviews(pair: Pair, tmp_path: Path) -> None:
-    """The overview has the same panels, name and parameters; the animation has the same frames."""
+    """The overview has the same panels and parameters, and says what an LLSystem is; the same frames of animations."""
     orbits = pair.runs(0.1, 30)
     one, other = (nh.plot.overview(orbit) for orbit in orbits)
     assert [axes.get_title(loc="left") for axes in one.axes] == [axes.get_title(loc="left") for axes in other.axes]
-    assert [text.get_text() for text in one.texts] == [text.get_text() for text in other.texts]
+    (name, *facts), (recognized, *others) = ([text.get_text() for text in figure.texts] for figure in (one, other))
+    assert facts == others
+    assert recognized.startswith("LLSystem, a " if type(orbits[1].system) is nh.LLSystem else name)
+    assert name.split()[-1] in recognized
     frames = []
     for number, orbit in enumerate(orbits):
         with Image.open(nh.plot.animate(orbit, tmp_path / f"{number}.gif", frames=2)) as movie:

@@ -77,3 +77,9 @@ def test_what_does_not_know_of_forces_is_refused(question: str) -> None:
     """Whatever serves free motions alone says so, in place of leaving the forces out."""
     with pytest.raises(ValueError, match=r"Force|force|Friction|Gravity"):
         _REFUSED[question]()
+
+
+def test_friction_in_the_place_of_a_potential_is_sent_to_the_force() -> None:
+    """The second argument is the potential: friction there is refused with the name of its own argument."""
+    with pytest.raises(ValueError, match=r"Friction and other forces as force="):
+        nh.Forced(TOP, nh.Friction([1.0, 2.0, 0.0]))

@@ -133,6 +133,12 @@ def test_wrong_measurements_are_refused(arguments: tuple[Any, ...], match: str) 
             cls.from_inertia(*arguments, **more)
 
 
+def test_an_inertia_in_place_of_a_mass_tensor_is_told_the_door() -> None:
+    """On SE(n) the shapes differ, and the message names the constructors that take an inertia."""
+    with pytest.raises(ValueError, match=r"have shape \(4, 4\).*`LLSystem.from_inertia` and `RigidBody.from_inertia`"):
+        LLSystem(nh.SE(3), np.eye(3), annihilator=np.eye(6)[3:])
+
+
 def test_both_tensors_are_shown() -> None:
     """`repr` shows the mass tensor and the inertia tensor, so that one is not given for the other."""
     J = np.diag([1.0, 2.0, 4.5])

@@ -51,6 +51,11 @@ class Invariants:
 def invariants(orbit: AbstractOrbit) -> Invariants:
     """Measure what an orbit should keep.
 
+    Returns:
+        `Invariants`, with the fields `states`, `steps`, `energy_drift` (relative), `constraint_residual`,
+        `group_residual`, `reversal_defect`, `largest_step_angle` (in degrees), `outcome`, `work`: the last five None
+        where they are not defined. `help(type(nh.invariants(orbit)))` says what each of them is.
+
     Raises:
         ValueError: The orbit has no states.
 

@@ -35,7 +35,8 @@ def displacements_over(discrete: Discretization, restricted_momentum: Any, certi
 
     Args:
         discrete: A discretized SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference "matrix".
-        restricted_momentum: r, in physical units.
+        restricted_momentum: r, in physical units, along the rows of `constraint_subspace`: of a `SuslovTop` with n = 3
+            about e3, whose rows are (0, 1, 0) and (-1, 0, 0), r = (P_2, -P_1).
         certify: Also prove that these are all of them, with exact multiplicities and enclosures; needs the extra
             `certify` (python-flint). The statement is about the polynomial equations with the doubles of the canonical
             body (`system.canonical`), of the time step and of the canonical r as exact numbers. Where it is not
@@ -52,6 +53,8 @@ def displacements_over(discrete: Discretization, restricted_momentum: Any, certi
         >>> values = displacements_over(top, [0.1, -0.05])
         >>> values.is_real, values.principal
         (array([ True,  True, False, False]), 0)
+        >>> values.momentum[0, :2].real.round(12)  # (P_1, P_2)
+        array([0.05, 0.1 ])
         >>> certified = displacements_over(top, [0.1, -0.05], certify=True)
         >>> certified.is_real, bool(certified.radius.max() < 1e-14)
         (array([ True,  True, False, False]), True)

@@ -107,7 +107,7 @@ class Forced(AbstractSystem):
         if self.gravity is not None:
             self.gravity.check(inside.group)
         elif self.potential is not None and not callable(self.potential):
-            remedy = "Pass a function of a configuration, or Gravity."
+            remedy = "Pass a function of a configuration, or Gravity; Friction and other forces as force=."
             raise error("Forced(potential=...)", "be a potential", shown(self.potential), remedy)
         if self.friction is not None:
             self.friction.check(inside.group.dim)
