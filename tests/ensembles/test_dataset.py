@@ -51,6 +51,15 @@ def test_hashes_are_those_of_the_arrays(folder: Path) -> None:
         assert list(data[name].dims) == field["dimensions"]
 
 
+def test_the_body_is_named_with_its_parameters(folder: Path) -> None:
+    """Record and card say which body moved: what is learned from orbits can be compared with it."""
+    system = json.loads((folder / "metadata.json").read_text())["system"]
+    body = system_of("sleigh")
+    assert system["kind"] == "ChaplyginSleigh"
+    assert repr(nh.ChaplyginSleigh(**system["parameters"])) == repr(body)
+    assert "- a: 0.5" in (folder / "README.md").read_text()
+
+
 @pytest.mark.profile("routes", keep=["top", "sleigh_se3"])
 @pytest.mark.parametrize("name", DEFINITIONS)
 def test_every_definition_runs_as_it_says(name: str, tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from nonholo import io
-from nonholo.ensembles.datasets._definitions import DEFINITIONS
+from nonholo.ensembles.datasets._definitions import DEFINITIONS, system_of
 from nonholo.ensembles.datasets._task import SPLITS, DatasetTask
 from nonholo.ensembles.stores import SweepStore, standing_of
 
@@ -23,11 +23,13 @@ _STARTS = (
 def record_of(store: SweepStore, task: DatasetTask, file_format: str, license_name: str) -> dict[str, Any]:
     """Return the record of a data set whose store is finished."""
     definition = DEFINITIONS[task.dataset]
+    kind, parameters = io.described_system(system_of(task.dataset))
     parts = zip(SPLITS, (0, *task.ends), task.ends, strict=False)
     return {
         "name": task.dataset,
         "title": definition.title,
         "definition": {name: value for name, value in definition._asdict().items() if name != "title"},
+        "system": {"kind": kind, "parameters": parameters},
         "starts": _STARTS,
         "versions": json.loads(io.versions_text("scipy", "jax")),
         "command": _command(store, task, file_format, license_name),
@@ -81,6 +83,8 @@ def card(record: dict[str, Any]) -> str:
     last = record["split"]["train"][1]
     ended = ", ".join(f"{number} {outcome}" for outcome, number in record["outcomes"].items())
     definition = "\n".join(f"- {name}: {value}" for name, value in record["definition"].items() if value is not None)
+    system = record["system"]
+    parameters = "\n".join(f"- {name}: {value}" for name, value in system["parameters"].items())
     return f"""# {record["title"]}: {record["orbits"]} orbits of {record["steps"]} steps
 
 Orbits of the data set `{record["name"]}`, version {record["definition"]["version"]}, computed by the discrete
@@ -95,6 +99,12 @@ Written by
     {record["command"]}
 
 {_LOADING[record["format"]].format(last)}
+
+## System
+
+`{system["kind"]}` with
+
+{parameters}
 
 ## Starts
 
