@@ -123,6 +123,7 @@ Derivatives, measured motion, control:
     rollout: Run the discrete map as `simulate` does, as a pure JAX function of body, start and controls.
     fit: Fit the numbers of a body to recorded motion, and the start of each trial with them.
     steer: Find forces along the constraint that take a body from a start to a goal with little effort.
+    tracking_feedback: Make the linear feedback along an orbit that spends least on errors and on forces together (LQR).
 
 Checks of custom systems:
     testing: The properties that groups, systems and discretizations must have, checked for ours and for users' own.
@@ -165,6 +166,7 @@ if TYPE_CHECKING:
     from nonholo.analysis import single_valued_region as single_valued_region
     from nonholo.analysis.inverse import fit as fit
     from nonholo.analysis.inverse import steer as steer
+    from nonholo.analysis.inverse import tracking_feedback as tracking_feedback
     from nonholo.base.results import Outcome as Outcome
     from nonholo.base.results import OutcomeError as OutcomeError
     from nonholo.continuous import vector_field as vector_field
@@ -331,6 +333,7 @@ _HOMES = {
     "step": "discrete._step",
     "sweep": "ensembles",
     "trace_constraints": "systems",
+    "tracking_feedback": "analysis.inverse",
     "vector_field": "continuous",
 }
 _ROOMS = {"examples": "literature", "plot": "plotting", "testing": "testing"}

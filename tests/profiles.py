@@ -109,6 +109,7 @@ DOCTESTS = {  # examples that compile for long
     "nonholo.simulation.members._in_coordinates.CoordinateEnsemble": "routes",
     "nonholo.discrete._consistency.consistency_defect": "routes",
     "nonholo.literature._robot.two_wheeled_robot": "routes",
+    "nonholo.analysis.inverse._feedback.tracking_feedback": "routes",
     "nonholo.analysis.inverse._steer.steer": "routes",
     "nonholo.analysis.locomotion._accessibility.accessibility": "routes",
     "nonholo.analysis.locomotion._connection.LocalConnection.body_velocity": "routes",

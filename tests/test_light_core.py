@@ -45,6 +45,7 @@ def test_names_that_need_an_extra() -> None:
                 "steer": "jax",
                 "step": "jax",
                 "step [flat]": "jax",
+                "tracking_feedback": "jax",
             },
         ),
     ],

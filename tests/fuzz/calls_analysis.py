@@ -74,6 +74,18 @@ def _of_maps() -> list[Call]:
             cost=text("effort"),
             slow=True,
         ),
+        call(
+            "tracking_feedback",
+            nh.tracking_feedback,
+            discrete=thing(SLEIGH),
+            start=anything({"restricted_velocity": (0.1, 0.2)}),
+            controls=array(np.zeros((3, 3))),
+            state_weight=positive(1.0),
+            control_weight=positive(1.0),
+            final_weight=positive(1.0),
+            bounds=anything(None),
+            slow=True,
+        ),
         call("momentum_locus", nh.momentum_locus, **top, resolution=count(12)),
         call("single_valued_region", nh.single_valued_region, sleigh=thing(SLEIGH)),
     ]
