@@ -49,6 +49,7 @@ def forced(system: Any, steps: int) -> dict[str, nh.Forced]:
         "zeros": nh.Forced(system, force=np.zeros((1, 3))),
         "table": nh.Forced(system, force=table),
         "friction": nh.Forced(system, force=rub),
+        "friction and table": nh.Forced(system, force=(rub, table)),
         "weight": nh.Forced(system, heavy),
         "weight and friction": nh.Forced(system, heavy, rub),
         "function of time": nh.Forced(system, force=numba.njit(push)),

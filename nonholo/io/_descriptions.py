@@ -90,10 +90,13 @@ def restore_group(described: dict[str, Any]) -> AbstractMatrixGroup:
 def _plain(value: Any) -> Any:
     if isinstance(value, AbstractMatrixGroup):
         return describe_group(value)
+    several = value if isinstance(value, tuple) else (value,)
+    if any(map(callable, several)):
+        return _CALLABLE
     if type(value).__name__ in _FORCES:
         return {"kind": type(value).__name__, "parameters": fields_of(value)}
-    if callable(value) or (isinstance(value, tuple) and any(map(callable, value))):
-        return _CALLABLE
+    if any(type(each).__name__ in _FORCES for each in several):
+        return [_plain(each) for each in several]
     if value is None or isinstance(value, str | AbstractSystem):
         return value
     plain = np.asarray(value)
@@ -101,6 +104,8 @@ def _plain(value: Any) -> Any:
 
 
 def _restored(value: Any) -> Any:
+    if type(value) is list and dict in map(type, value):
+        return tuple(map(_restored, value))
     if not isinstance(value, dict):
         return value
     if "kind" not in value:

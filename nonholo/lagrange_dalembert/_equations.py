@@ -91,16 +91,16 @@ def momenta(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Ar
 
 def _impulses(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Array, Array]:
     """Return half the impulse of a step at each of its ends: of a table, half its row at both."""
-    if system.table is not None:
-        row = h / 2 * system.table.row(x[-1] / h)
-        return row, row
-    return h / 2 * applied(system, x, v), h / 2 * applied(system, ahead(system, x, v, h), v)
+    row = 0.0 if system.table is None else system.table.row(x[-1] / h)
+    if system.applied is None:
+        return h / 2 * row, h / 2 * row
+    return h / 2 * (row + applied(system, x, v)), h / 2 * (row + applied(system, ahead(system, x, v, h), v))
 
 
 def applied(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     """Return the force f(t, q, v); zero without a function, for a table belongs to steps."""
-    given = system.force
-    return jnp.asarray(given(x[-1], x[:-1], v), dtype=x.dtype) if callable(given) else jnp.zeros_like(v)
+    given = system.applied
+    return jnp.zeros_like(v) if given is None else jnp.asarray(given(x[-1], x[:-1], v), dtype=x.dtype)
 
 
 def momentum(system: LagrangeDAlembert, x: Array, v: Array) -> Array:

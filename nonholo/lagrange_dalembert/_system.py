@@ -21,7 +21,7 @@ from nonholo.lagrange_dalembert._tracing import (
     takes_time,
     with_time_step,
 )
-from nonholo.systems import AbstractCoordinateSystem
+from nonholo.systems import AbstractCoordinateSystem, joined, parts_of
 
 _TAKEN = {"constraint_residual", "energy", "t", "time"}  # columns of their own
 
@@ -62,7 +62,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         constraint_velocities: `constraint_velocities(q, time)` -> (s,), the right-hand side b of moving constraints.
         prescribed: Motions s(time) of coordinates, by index: joints that are driven. Discrete motions follow them
             exactly; their multipliers, the last ones, are what drives them.
-        force: `force(time, q, v)` -> (n,); or `nonholo.Friction`; or an array (steps, n), whose row k acts over step k.
+        force: `force(time, q, v)` -> (n,); or `nonholo.Friction`; or an array (steps, n), whose row k acts over step k;
+            or a tuple with at most one of each.
             `nonholo.Forced(system, potential, force)` adds one.
         coordinates: Names of the coordinates, for tables and pictures, such as ("x", "y", "theta"); by default "q1",
             "q2" and so on.
@@ -133,8 +134,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             self._check("discrete_lagrangian", (), q, q, time)
             self._check("discrete_constraints", (self.constraints,), q, q, time)
             self._check("constraint_velocities", (self.constraints - len(self.prescribed),), q, time)
-            if callable(self.force):
-                self._check("force", (n,), time, q, q)
+            if self.applied is not None:
+                check_value(_named("force"), self.applied, (n,), (time, q, q), *2 * (f"{n} coordinates",))
         if self.is_driven and (self.discrete_lagrangian or self.discrete_constraints):
             remedy = 'Use rule="midpoint" or "trapezoidal".'
             raise error(_named("discrete_lagrangian"), "be left out of a driven system", "discrete functions", remedy)
@@ -164,7 +165,12 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     @property
     def table(self) -> ForceTable | None:
         """The forces of the steps, where they are given one by one."""
-        return None if self.force is None or callable(self.force) else self.force
+        return parts_of(self.force).get("table")
+
+    @property
+    def applied(self) -> Callable[[Array, Array, Array], Array] | None:
+        """The force as a function, where there is one."""
+        return parts_of(self.force).get("function")
 
     @functools.cached_property
     def constraints(self) -> int:
@@ -180,7 +186,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     @property
     def has_parts(self) -> bool:
         """Whether parts of a step are defined: functions and tables that were made for one time step have none."""
-        given = (self.discrete_lagrangian, self.discrete_constraints, self.force)
+        given = (self.discrete_lagrangian, self.discrete_constraints, self.table)
         return not any(getattr(each, "is_of_one_step", False) for each in given)
 
     def forced(self, potential: Any, force: Any) -> "LagrangeDAlembert":
@@ -312,15 +318,16 @@ def _motions(given: Any, dimension: int) -> tuple[tuple[int, Callable[[Array], A
 
 
 def _force(given: Any, dimension: int) -> Any:
-    """Return a force as a function, a table or None; of `Friction` the function."""
-    if given is None or callable(given) or isinstance(given, ForceTable):
-        return given
-    matrix = getattr(given, "matrix", None)
-    if matrix is not None:
-        given.check(dimension)
-        return lambda _time, _q, v: -(matrix @ v)
-    remedy = "Pass a function of time, configuration and velocity, Friction, or one force a step."
-    return ForceTable(array(_named("force"), given, (None, dimension), remedy))
+    """Return a force as a function, with that of `Friction`, a table, both, or None."""
+    parts = parts_of(given)
+    if (friction := parts.pop("friction", None)) is not None:
+        friction.check(dimension)
+        matrix, other = friction.matrix, parts.get("function")
+        parts["function"] = lambda time, q, v: (0 if other is None else other(time, q, v)) - matrix @ v
+    if "table" in parts and not isinstance(parts["table"], ForceTable):
+        remedy = "Pass a function of time, configuration and velocity, Friction, or one force a step."
+        parts["table"] = ForceTable(array(_named("force"), parts["table"], (None, dimension), remedy))
+    return joined(parts)
 
 
 def _named(argument: str) -> str:

@@ -46,7 +46,7 @@ from nonholo.systems.families import (
     SuslovTop,
     VeselovaTop,
 )
-from nonholo.systems.forces import Forced, Friction, Gravity
+from nonholo.systems.forces import Forced, Friction, Gravity, joined, parts_of
 
 SYSTEMS = tuple(vars(families)[name] for name in families.__all__)
 """Every final class of this room."""
@@ -90,10 +90,12 @@ __all__ = [
     "inertia_from_mass_tensor",
     "inertia_tensor",
     "is_symmetric_pair",
+    "joined",
     "mass_tensor_from_inertia",
     "null_space",
     "of_finite_energy",
     "one_start",
+    "parts_of",
     "reference_point_subspace",
     "refuse_forces",
     "refuse_in_coordinates",

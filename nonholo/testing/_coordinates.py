@@ -70,10 +70,9 @@ class CoordinateSamples:
         return np.concatenate([rows, np.eye(system.dimension)[fixed]])
 
     def force(self, t: float, q: np.ndarray, v: np.ndarray, step: int) -> np.ndarray:
-        """Return the force; of a table that of a step."""
-        if self.system.table is not None:
-            return self.system.table.acting(np.array([step]))[0]
-        return np.zeros_like(v) if self.system.force is None else self._value(self.system.force, t, q, v)
+        """Return the force, of a table that of a step."""
+        row = np.zeros_like(v) if self.system.table is None else self.system.table.acting(np.array([step]))[0]
+        return row if self.system.applied is None else row + self._value(self.system.applied, t, q, v)
 
     def gradient(self, function: Callable[[np.ndarray], Any], at: np.ndarray) -> Float[np.ndarray, "n"]:
         """Return the derivatives of a function of n numbers."""

@@ -279,7 +279,7 @@ def order_of_balance(s: OrbitSamples) -> float:
 def friction(s: OrbitSamples) -> float:
     """Return the largest growth of the energy in one step, relative to the first energy."""
     forced = s.forced
-    need(forced and forced.friction is not None and forced.potential is None, "not friction alone")
+    need(forced and [*forced.parts] == ["friction"] and forced.potential is None, "not friction alone")
     need(s.free.conserves_energy, "free steps do not keep the energy")
     return float(np.diff(s.orbit.energy).max() / s.orbit.energy[0])
 

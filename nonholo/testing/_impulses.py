@@ -19,7 +19,7 @@ def impulses_of(
     r"""Return the half impulses before and after each step of an orbit, from its own momenta.
 
     A kick takes r to $r + E^Tj$. Friction acts all the while, $\dot j = F(r + E^Tj)$; any other force with the
-    velocity of the mean of both momenta.
+    velocity of the mean of both momenta, if need be beside it.
 
     Args:
         forced: What moves.
@@ -45,12 +45,13 @@ def _impulse(
     E = forced.directions(g)
     to_velocity = E @ np.linalg.inv(E.T @ np.asarray(forced.inertia_operator) @ E)
     constant = forced.potential_force(g) + forced.rows(np.array([step]))[0]
+    constant = constant + forced.driving_force(time, g, to_velocity @ ((before + after) / 2))
+    if (friction := forced.friction) is None:
+        return tau * constant
 
     def rate(_: Any, j: np.ndarray) -> np.ndarray:
-        return constant + forced.applied_force(time, g, to_velocity @ (before + E.T @ j))
+        return constant + friction.covector(to_velocity @ (before + E.T @ j))
 
-    if forced.friction is None:
-        return tau * (constant + forced.applied_force(time, g, to_velocity @ ((before + after) / 2)))
     size = 1e-14 * (1.0 + np.abs(before).max())
     return scipy.integrate.solve_ivp(rate, (0.0, tau), np.zeros(len(E)), "DOP853", rtol=1e-13, atol=size).y[:, -1]
 
@@ -64,5 +65,5 @@ def fields_of(
         yield vector_field(system), [0.0, *times, end]
         return
     for k, row in enumerate(forced.rows(np.arange(pieces))):
-        acting = dataclasses.replace(forced, force=lambda _t, _g, _w, row=row: row)
+        acting = dataclasses.replace(forced, force=lambda *state, row=row: row + forced.applied_force(*state))
         yield vector_field(acting), [0.0, *times] if k == 0 else [k * end / pieces, (k + 1) * end / pieces]

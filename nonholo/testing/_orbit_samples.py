@@ -19,6 +19,7 @@ from nonholo.base.types import Float
 from nonholo.discrete import Discretization, discrete_legendre
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
+from nonholo.systems import joined
 from nonholo.testing._impulses import fields_of, impulses_of
 from nonholo.testing._report import NotApplicableError, need
 
@@ -115,7 +116,7 @@ class OrbitSamples:
         forced = self.forced
         if forced.table is not None:
             repeated = np.repeat(forced.rows(np.arange(COUNTS[0])), count // COUNTS[0], axis=0)
-            forced = dataclasses.replace(forced, force=repeated)
+            forced = dataclasses.replace(forced, force=joined(forced.parts | {"table": repeated}))
         discrete = dataclasses.replace(self.discrete, system=forced, time_step=np.float64(self.span / count))
         return simulate(discrete, steps=count, **self.moving(norm / self.span))
 

@@ -334,8 +334,9 @@ def _potential_force(s: SystemSamples) -> float:
 
 @measures(CHECKS, "friction", "friction never adds energy: its largest power", 0.0)
 def _friction(s: SystemSamples) -> float:
-    need(s.forced is not None and s.forced.friction is not None, "no friction")
-    return float(np.sum(s.force * s.body_velocity, axis=-1).max())
+    if s.forced is None or s.forced.friction is None:
+        raise NotApplicableError("no friction")
+    return float(np.sum(s.forced.friction.covector(s.body_velocity) * s.body_velocity, axis=-1).max())
 
 
 def _equilibria(s: SystemSamples) -> tuple[Equilibria, ...]:

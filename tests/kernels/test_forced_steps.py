@@ -26,7 +26,7 @@ def _forced(system: AbstractSystem, kind: str) -> nh.Forced:
     n = system.group.size - bool(np.all(system.group.basis[:, -1] == 0))
     heavy, rub = nh.Gravity(rng.normal(size=n), rng.normal(size=n)), nh.Friction(rng.uniform(0, 1, system.group.dim))
     table = rng.normal(size=(STEPS - 3, system.group.dim))
-    return nh.Forced(system, heavy, {"weight": None, "friction": rub, "table": table}[kind])
+    return nh.Forced(system, heavy, {"weight": None, "friction": rub, "table": table, "both": (rub, table)}[kind])
 
 
 def _kicked(kick: kernels.Kick, row: int, m: np.ndarray, force: np.ndarray) -> np.ndarray:
@@ -92,7 +92,7 @@ def test_weights_seen_from_the_body_are_those_of_matrices() -> None:
             assert np.abs(turned(n, np.ones(6), *y, here)[2][:n] - after.T @ F[:n]).max() < 2e-15
 
 
-@pytest.mark.parametrize("kind", ["weight", "friction", "table"])
+@pytest.mark.parametrize("kind", ["weight", "friction", "table", "both"])
 @pytest.mark.parametrize("name", BODIES)
 def test_the_loop_has_the_bits_of_plain_python(name: str, kind: str) -> None:
     """The compiled loop, at once and in pieces, gives the bits of a Python loop over the same half impulses."""

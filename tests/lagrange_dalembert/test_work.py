@@ -38,6 +38,7 @@ CASES: dict[str, Callable[[float], LagrangeDAlembert]] = {
     "force": lambda _: _skate(force=_push),
     "friction": lambda _: nh.Forced(_skate(), lambda q: q[0] ** 2, nh.Friction([0.1, 0.2, 0.3])),
     "table": lambda h: nh.Forced(_skate(), force=_table(h)),
+    "all three": lambda h: nh.Forced(_skate(), force=(nh.Friction([0.1, 0.2, 0.3]), _push, _table(h))),
     "driven heading": lambda _: _skate(prescribed={2: lambda time: jnp.sin(2 * time)}, force=_push),
     "moving belt": lambda _: _skate(constraint_velocities=lambda q, time: jnp.stack([0.3 * jnp.cos(time) + q[0]])),
     "growing mass": lambda _: _skate(lambda q, v, time: (1 + time**2 / 2) * _kinetic(q, v) - q[1]),

@@ -57,11 +57,18 @@ KINDS: dict[str, Callable[[AbstractSystem], tuple[Any, Any]]] = {
     "well and drive": lambda _: (_well, _drive),
     "well": lambda _: (_well, None),
     "well and friction": lambda system: (_well, nh.Friction(np.linspace(0.1, 0.4, system.group.dim))),
+    "well, drive and friction": lambda system: (_well, (_drive, nh.Friction(np.linspace(0.1, 0.4, system.group.dim)))),
+    "all three": lambda system: (
+        _weight(system),
+        (np.random.default_rng(3).normal(size=(12, system.group.dim)), nh.Friction(np.eye(system.group.dim)), _drive),
+    ),
     "well and table": lambda system: (_well, np.random.default_rng(3).normal(size=(12, system.group.dim))),
 }
 
 
 def _compiled(function: Any) -> Any:
+    if isinstance(function, tuple):
+        return tuple(map(_compiled, function))
     return {_drive: DRIVE, _push: PUSH, _well: WELL}[function] if callable(function) else function
 
 
@@ -69,7 +76,7 @@ def _rows(orbit: Any) -> list[np.ndarray]:
     return [orbit.reduced_momentum, orbit.cayley, orbit.canonical_pose]
 
 
-@pytest.mark.profile("routes", keep=["top-well and drive"])
+@pytest.mark.profile("routes", keep=["top-well and drive", "top-all three"])
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_compiled_functions_have_the_bits_of_python(name: str, kind: str) -> None:

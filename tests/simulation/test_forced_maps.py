@@ -41,6 +41,11 @@ def _push(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
     return np.cos(3 * time + np.arange(len(w)))
 
 
+def _drive_and_push(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """Both."""
+    return _drive(time, g, w) + _push(time, g, w)
+
+
 def _spring(g: np.ndarray) -> float:
     """A potential that is no weight."""
     return float(0.5 * np.sum((g[:2] - 0.3) ** 2) + np.sin(g[0, 1]))
@@ -70,8 +75,18 @@ KINDS: dict[str, Callable[[AbstractSystem], nh.Forced]] = {
     "function": lambda system: nh.Forced(system, force=_drive),
     "both functions": lambda system: nh.Forced(system, _spring, _drive),
     "table": lambda system: nh.Forced(system, force=_push),
+    "friction and table": lambda system: nh.Forced(system, force=(_friction(system), _push)),
+    "weight and all three": lambda system: nh.Forced(system, _weight(system), (_friction(system), _drive_and_push)),
 }
 """Of a table the function that it samples, which the flow knows."""
+TABLES: dict[str, Callable[[nh.Forced, np.ndarray], nh.Forced]] = {
+    "table": lambda forced, table: nh.Forced(forced.system, force=table),
+    "friction and table": lambda forced, table: nh.Forced(forced.system, force=(forced.friction, table)),
+    "weight and all three": lambda forced, table: nh.Forced(
+        forced.system, forced.potential, (table, _drive, forced.friction)
+    ),
+}
+"""The forces of the map, from those of the flow and the table."""
 
 
 def _start(system: AbstractSystem) -> dict[str, Any]:
@@ -91,7 +106,7 @@ def test_the_map_is_of_order_two(system: AbstractSystem, kind: str) -> None:
     of_flow, missed = KINDS[kind](system), []
     flow = nh.flow(of_flow, **_start(system), times=(0.0, SPAN))
     for h in (0.08, 0.04, 0.02):
-        of_map = nh.Forced(system, force=_table(h, system.group.dim)) if kind == "table" else of_flow
+        of_map = TABLES[kind](of_flow, _table(h, system.group.dim)) if kind in TABLES else of_flow
         orbit = nh.simulate(nh.discretize(of_map, h), **_start(system), steps=round(SPAN / h))
         balance = orbit.energy - orbit.energy[0] - orbit.work
         momentum = orbit.restricted_momentum[-1] - flow.restricted_momentum[-1]
@@ -145,7 +160,7 @@ def test_functions_give_the_impulses_of_what_is_compiled() -> None:
     rng = np.random.default_rng(6)
     for system, heavy in ((TOP, HEAVY), (SLEIGH, SLOPE), (tilted, HEAVY), (GENERAL["any d on SE(3)"][0], spatial)):
         rub, dim = nh.Friction(rng.uniform(0, 0.3, system.group.dim)), system.group.dim
-        for force in (rub, rng.normal(size=(16, dim))):
+        for force in (rub, rng.normal(size=(16, dim)), (rng.normal(size=(16, dim)), rub)):
             forced = nh.Forced(system, heavy, force)
             discrete, g = nh.discretize(forced, 0.05), system.group.random(rng)
             orbit = nh.simulate(discrete, restricted_velocity=rng.normal(size=system.rank), configuration=g, steps=16)

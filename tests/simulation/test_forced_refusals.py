@@ -66,6 +66,12 @@ _REFUSED: dict[str, Callable[[], Any]] = {
     "points of another dimension": lambda: nh.Forced(TOP, SLOPE),
     "friction of another dimension": lambda: nh.Forced(TOP, force=nh.Friction([1.0, 2.0])),
     "friction that drives": lambda: nh.Friction([1.0, -2.0, 0.0]),
+    "two frictions": lambda: nh.Forced(TOP, force=(RUB, RUB)),
+    "two tables beside friction": lambda: nh.Forced(TOP, force=(RUB, np.ones((5, 3)), np.ones((5, 3)))),
+    "a table of another dimension in a sum": lambda: nh.Forced(TOP, force=(RUB, np.ones((3, 2)))),
+    "flow of a sum with a table": lambda: nh.flow(
+        nh.Forced(TOP, force=(RUB, np.ones((3, 3)))), restricted_velocity=[0.5, -0.3], times=(0.0, 1.0)
+    ),
     "a table of another dimension": lambda: nh.Forced(TOP, force=np.ones((3, 2))),
     "a potential of two numbers": lambda: nh.Forced(TOP, lambda g: g[0]).potential_energy(np.eye(3)),
     "a force of two numbers": lambda: _PAIR.applied_force(0.0, np.eye(3), np.ones(3)),

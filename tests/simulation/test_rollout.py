@@ -125,6 +125,7 @@ SYSTEMS = [
     *(pytest.param(TOP, {"order": order}, id=f"order {order}") for order in (4, 6, 8)),
     pytest.param(TOP, {"difference": "logarithmic"}, id="logarithmic"),
     pytest.param(nh.Forced(TOP, HEAVY, RUB), {}, id="heavy, with friction"),
+    pytest.param(nh.Forced(TOP, HEAVY, (RUB, TABLE)), {}, id="heavy, with friction and a table"),
     pytest.param(nh.Forced(nh.ChaplyginSleigh(2.0, 1.0, 0.5, 0.3), force=TABLE), {}, id="driven"),
     pytest.param(nh.Forced(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), HEAVY, RUB), {}, id="forces, fixed in space"),
 ]

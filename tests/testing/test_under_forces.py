@@ -35,6 +35,8 @@ CASES = {
     "function": (nh.Forced(SLEIGH, _spring, _drive), "reported"),
     "even force": (nh.Forced(SLEIGH, force=_even), "ok"),
     "table": (nh.Forced(SLEIGH, force=np.cos(np.arange(90.0)).reshape(30, 3)), "reported"),
+    "friction and table": (nh.Forced(SLEIGH, force=(RUB, np.cos(np.arange(90.0)).reshape(30, 3))), "reported"),
+    "all three": (nh.Forced(SLEIGH, SLOPE, (_drive, RUB, np.cos(np.arange(90.0)).reshape(30, 3))), "reported"),
     "veselova": (nh.Forced(VESELOVA, force=_drive), "reported"),
 }
 

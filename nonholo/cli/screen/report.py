@@ -127,6 +127,8 @@ def _shown(value: Any) -> str:
         return value
     if isinstance(value, dict):  # a system inside another, or a force
         return "\n".join(f"{_label(name)}: {_shown(inside)}" for name, inside in value.items())
+    if type(value) is list and dict in map(type, value):  # several forces
+        return "\n".join(map(_shown, value))
     shape = np.shape(value)
     if 0 in shape or max(shape, default=0) > _WIDEST:
         return " x ".join(map(str, shape)) if shape != (0,) else "none"

@@ -78,7 +78,7 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
     @property
     def needs_pose(self) -> bool:
         """Whether it carries a pose along even where none is kept."""
-        return self.free.needs_pose or self.forced.potential is not None or callable(self.forced.force)
+        return self.free.needs_pose or self.forced.potential is not None or self.forced.function is not None
 
     @functools.cached_property
     def body(self) -> kernels.ForcedBody:
@@ -219,7 +219,7 @@ def half_drive(free: AbstractCompiledRoute, forced: Forced) -> kernels.Drive:
     group, S, has = (
         forced.group,
         np.asarray(forced.constraint_subspace),
-        (callable(forced.force), callable(forced.potential)),
+        (forced.function is not None, callable(forced.potential)),
     )
     momenta = forced.from_canonical(free.decode(np.eye(forced.rank)))
     velocity = S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
@@ -229,7 +229,7 @@ def half_drive(free: AbstractCompiledRoute, forced: Forced) -> kernels.Drive:
         shape, asked = (group.size, group.dim), np.zeros(group.dim)
         for write in (force,) * has[0] + (potential,) * has[1]:
             write(0.0, group.identity, np.zeros(group.dim), asked)
-        force = kernels.function_of(forced.force, shape, 3) if has[0] else 0
+        force = kernels.function_of(forced.function, shape, 3) if has[0] else 0
         potential = kernels.function_of(forced.potential, shape, 1) if has[1] else 0
     return kernels.Drive(
         kick=kick,
@@ -250,7 +250,7 @@ def _in_python(forced: Forced) -> tuple[Callable[..., None], Callable[..., None]
     """Return what writes force and potential by the definition; a function may keep the arrays that it gets."""
 
     def force(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
-        out[:] = forced.applied_force(time, g.copy(), velocity.copy())
+        out[:] = forced.driving_force(time, g.copy(), velocity.copy())
 
     def potential(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
         del time, velocity

@@ -1,10 +1,11 @@
 r"""Half impulses of functions: a force by the midpoint rule, a potential by differences.
 
-At a node with pose g the momenta m of a kernel go to $m' = A\,m + r_k + N\,(-dU(g))$, or under a force to
+At a node with pose g the momenta m of a kernel go to
 
-$$ m' = m + N\,(-dU(g) + f(t, g, V(m + m')/2)), $$
+$$ m' = A\,m + r_k + N\,(-dU(g) + f(t, g, V(m + m')/2)), $$
 
-with the body velocity V m and the momenta N j of impulses j. Poses and covectors are those of the user's frame.
+with the body velocity V m, the momenta N j of impulses j, and what friction leaves, A m. Poses and covectors are those
+of the user's frame.
 Functions are addresses in compiled code, so that one loop serves all of them, and Python functions in plain Python,
 whose loop is the same.
 """
@@ -23,7 +24,7 @@ from numba.np.numpy_support import carray
 
 from nonholo.kernels._scalar import INLINED, inlined, scalar
 from nonholo.kernels._small import assign, eliminate, multiply
-from nonholo.kernels.forced._kick import Kick, linear, pulled_by_weight, seen
+from nonholo.kernels.forced._kick import Kick, kept, linear, pulled_by_weight, seen
 
 _ITERATIONS = 30  # of Newton's method with one slope
 _ROUNDING = 1e-12  # relative, before the last correction
@@ -196,17 +197,20 @@ def pulled_by_functions(drive: Drive, room: Room, pose: np.ndarray) -> None:
 
 @inlined
 def pushed_by_function(
-    drive: Drive, room: Room, time: float, m: np.ndarray, after: np.ndarray, out: np.ndarray
+    drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, after: np.ndarray, out: np.ndarray
 ) -> None:
-    """Write what the force at the velocity of the mean of two momenta, and all else, add to momenta."""
+    """Write what the force at the velocity of the mean of two momenta, and all else, add to what friction leaves.
+
+    A time and a row of the table say when.
+    """
     velocity, value = room.covectors[0], room.covectors[1]
     for i in range(len(velocity)):
         velocity[i] = 0.0
         for j in range(len(m)):
             velocity[i] += drive.velocity[i, j] * ((m[j] + after[j]) / 2)
-    function_at(drive.force, time, room.poses[0], velocity, value)
+    function_at(drive.force, when[0], room.poses[0], velocity, value)
     for i in range(len(m)):
-        out[i] = room.force[i]
+        out[i] = room.force[i] + drive.kick.rows[when[1], i]
         for j in range(len(value)):
             out[i] += drive.along[i, j] * value[j]
 
@@ -229,42 +233,43 @@ def driven(drive: Drive, room: Room, node: int, row: int, m: np.ndarray, out: np
     """
     if not drive.has[0]:
         return linear(drive.kick, room.force, node, row, m, out)
-    time, first, second = node * drive.time_step, room.momenta[0], room.momenta[1]
-    pushed_by_function(drive, room, time, m, m, first)
+    first, second = room.momenta[0], room.momenta[1]
+    when = node * drive.time_step, min(row, len(drive.kick.rows) - 1)
+    pushed_by_function(drive, room, when, m, m, first)
     for i in range(len(m)):
-        out[i] = m[i] + first[i]
+        out[i] = kept(drive.kick, m, i) + first[i]
     if not largest(out, out) < math.inf:
         return 5
-    pushed_by_function(drive, room, time, m, out, second)
+    pushed_by_function(drive, room, when, m, out, second)
     same = True
     for i in range(len(m)):
         same = same and first[i] == second[i]
-    return 0 if same else midpoint(drive, room, time, m, out)
+    return 0 if same else midpoint(drive, room, when, m, out)
 
 
 @inlined
-def see_slopes(drive: Drive, room: Room, time: float, m: np.ndarray, out: np.ndarray) -> None:
-    """Write the slopes of m' - m - j((m + m') / 2), by differences from the second impulse on the way."""
+def see_slopes(drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, out: np.ndarray) -> None:
+    """Write the slopes of m' - A m - j((m + m') / 2), by differences from the second impulse on the way."""
     first, second, third, slopes = room.momenta[0], room.momenta[1], room.momenta[2], room.slopes[0]
     size = largest(m, first)
     size = _DIFFERENCE * (size if size > 0 else 1.0)
     for j in range(len(m)):
-        kept = out[j]
-        out[j] = kept + size
-        pushed_by_function(drive, room, time, m, out, third)
+        before = out[j]
+        out[j] = before + size
+        pushed_by_function(drive, room, when, m, out, third)
         for i in range(len(m)):
             slopes[i, j] = (1.0 if i == j else 0.0) - (third[i] - second[i]) / size
-        out[j] = kept
+        out[j] = before
 
 
 @inlined
-def midpoint(drive: Drive, room: Room, time: float, m: np.ndarray, out: np.ndarray) -> int:
-    """Solve m' = m + j((m + m') / 2) by Newton's method, from the explicit momenta and their impulse."""
+def midpoint(drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, out: np.ndarray) -> int:
+    """Solve m' = A m + j((m + m') / 2) by Newton's method, from the explicit momenta and their impulse."""
     second, missed, slopes, used = room.momenta[1], room.missed, room.slopes[0], room.slopes[1]
-    see_slopes(drive, room, time, m, out)
+    see_slopes(drive, room, when, m, out)
     for _ in range(_ITERATIONS):
         for i in range(len(m)):
-            missed[i, 0] = m[i] + second[i] - out[i]
+            missed[i, 0] = kept(drive.kick, m, i) + second[i] - out[i]
             for j in range(len(m)):
                 used[i, j] = slopes[i, j]
         left = largest(missed[:, 0], missed[:, 0])
@@ -277,5 +282,5 @@ def midpoint(drive: Drive, room: Room, time: float, m: np.ndarray, out: np.ndarr
             out[i] += missed[i, 0]
         if small:
             return 0
-        pushed_by_function(drive, room, time, m, out, second)
+        pushed_by_function(drive, room, when, m, out, second)
     return 3

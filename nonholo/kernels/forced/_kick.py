@@ -45,16 +45,22 @@ def pulled_by_weight(kick: Kick, force: np.ndarray, pose: np.ndarray) -> None:
 
 
 @inlined
+def kept(kick: Kick, m: np.ndarray, i: int) -> float:
+    """Return what friction leaves of a momentum, a number of A m."""
+    if len(kick.keep) == 0:
+        return m[i]
+    total = 0.0
+    for j in range(len(m)):
+        total += kick.keep[i, j] * m[j]
+    return total
+
+
+@inlined
 def linear(kick: Kick, force: np.ndarray, node: int, row: int, m: np.ndarray, out: np.ndarray) -> int:
     """Write the momenta after half an impulse of a step, from what the weight adds; return the outcome, zero."""
     at = min(row, len(kick.rows) - 1)
     for i in range(len(m)):
-        total = m[i]
-        if len(kick.keep) > 0:
-            total = 0.0
-            for j in range(len(m)):
-                total += kick.keep[i, j] * m[j]
-        out[i] = total + (force[i] + kick.rows[at, i])
+        out[i] = kept(kick, m, i) + (force[i] + kick.rows[at, i])
     return 0
 
 

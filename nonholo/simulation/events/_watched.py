@@ -29,7 +29,7 @@ def watched_events(
     """Return events by name, refused where parts of a step are not defined or cannot be computed."""
     named, where = checked_events(owner, events), f"{owner}(events=...)"
     if (forced := discrete.forces) is not None and (
-        (forced.force is not None and forced.friction is None) or discrete.route.compiled is None
+        forced.parts.keys() - {"friction"} or discrete.route.compiled is None
     ):
         remedy = "Look for changes of sign in the states yourself."
         raise error(where, "be looked for under forces that do not depend on time", "a table or a function", remedy)

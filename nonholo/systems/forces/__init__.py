@@ -3,3 +3,4 @@
 from nonholo.systems.forces._forced import Forced
 from nonholo.systems.forces._friction import Friction
 from nonholo.systems.forces._gravity import Gravity
+from nonholo.systems.forces._parts import joined, parts_of

@@ -19,6 +19,7 @@ from nonholo.systems._coordinate_system import AbstractCoordinateSystem
 from nonholo.systems.forces._friction import Friction
 from nonholo.systems.forces._gravity import Gravity
 from nonholo.systems.forces._midpoint import midpoint_impulse
+from nonholo.systems.forces._parts import joined, parts_of
 
 _OFFSET = 8e-3  # of a body direction, for central differences: its sixth power is at rounding
 _DIFFERENCES = np.array([45.0, -9.0, 1.0]) / (60 * _OFFSET)  # of order 6, at one, two and three offsets
@@ -52,7 +53,8 @@ class Forced(AbstractSystem):
             taken by central differences of order 6 along the body directions; their error is about 1e-13 of what U
             changes by over one radian or one unit of length.
         force: f, a function (time, configuration, body_velocity) -> (dim,); or `Friction`; or an array (steps, dim),
-            whose row k acts constantly over step k: for maps only. Time is that of the orbit, from zero.
+            whose row k acts constantly over step k: for maps only. Time is that of the orbit, from zero. Several forces
+            are a tuple of them, such as `(Friction(...), table)`, with at most one of each of these kinds.
 
     Functions marked `numba.njit` run in the compiled step of a constraint that is fixed in the body, in a fraction of a
     microsecond beside their own time; they may return a tuple, and must not write to their arguments. What they raise
@@ -101,7 +103,7 @@ class Forced(AbstractSystem):
 
     def __post_init__(self) -> None:
         inside = self.system
-        if not isinstance(inside, AbstractSystem) or isinstance(inside, Forced) or inside.is_wide:
+        if not isinstance(inside, AbstractSystem) or inside.is_forced or inside.is_wide:
             remedy = "Pass a SuslovTop, a sleigh or an LLSystem, with all forces at once."
             raise error("Forced(system=...)", "be a system on a group, with matrices", shown(inside), remedy)
         if self.gravity is not None:
@@ -109,27 +111,38 @@ class Forced(AbstractSystem):
         elif self.potential is not None and not callable(self.potential):
             remedy = "Pass a function of a configuration, or Gravity; Friction and other forces as force=."
             raise error("Forced(potential=...)", "be a potential", shown(self.potential), remedy)
-        if self.friction is not None:
-            self.friction.check(inside.group.dim)
-        elif self.table is not None:
+        parts = parts_of(self.force)
+        if "friction" in parts:
+            parts["friction"].check(inside.group.dim)
+        if "table" in parts:
             remedy = "Pass a function of time, configuration and body velocity, Friction, or one body covector a step."
-            shape = (None, inside.group.dim)
-            object.__setattr__(self, "force", array("Forced(force=...)", self.force, shape, remedy))
+            parts["table"] = array("Forced(force=...)", parts["table"], (None, inside.group.dim), remedy)
+        object.__setattr__(self, "force", joined(parts))
 
     @property
     def gravity(self) -> Gravity | None:
         """The potential, where it is that of a constant force."""
         return self.potential if isinstance(self.potential, Gravity) else None
 
+    @functools.cached_property
+    def parts(self) -> dict[str, Any]:
+        """What the force is made of: "friction", "table", "function", those that there are."""
+        return parts_of(self.force)
+
     @property
     def friction(self) -> Friction | None:
-        """The force, where it is viscous friction."""
-        return self.force if isinstance(self.force, Friction) else None
+        """The viscous friction, where there is one."""
+        return self.parts.get("friction")
 
     @property
     def table(self) -> Array | None:
         """The forces of the steps, (steps, dim), where they are given one by one."""
-        return None if callable(self.force) or self.friction is not None else self.force
+        return self.parts.get("table")
+
+    @property
+    def function(self) -> Callable[..., Any] | None:
+        """The force of time, pose and velocity, where there is one."""
+        return self.parts.get("function")
 
     @property
     def forces(self) -> "Forced | None":
@@ -139,12 +152,12 @@ class Forced(AbstractSystem):
     @property
     def needs_function(self) -> bool:
         """Whether a function has to be called, which no store holds."""
-        return callable(self.potential) or callable(self.force)
+        return callable(self.potential) or callable(self.function)
 
     @property
     def is_jitted(self) -> bool:
         """Whether numba compiled every function, so that a kernel can call it."""
-        return all(hasattr(each, "py_func") for each in (self.potential, self.force) if callable(each))
+        return all(hasattr(each, "py_func") for each in (self.potential, self.function) if callable(each))
 
     @functools.cached_property
     def differences(self) -> tuple[Float[np.ndarray, "dim orders 2 N N"], Float[np.ndarray, "orders"]]:
@@ -178,12 +191,15 @@ class Forced(AbstractSystem):
         return _each(self._slope, g)
 
     def applied_force(self, time: float, configuration: np.ndarray, body_velocity: np.ndarray) -> np.ndarray:
-        """Return f, one body covector, of `Friction` or of a function; zero of a table, which belongs to steps."""
-        if self.friction is not None:
-            return self.friction.covector(body_velocity)
-        if not callable(self.force):
+        """Return f, one body covector, of `Friction` and a function; nothing of a table, which belongs to steps."""
+        given = self.driving_force(time, configuration, body_velocity)
+        return given if self.friction is None else given + self.friction.covector(body_velocity)
+
+    def driving_force(self, time: float, configuration: np.ndarray, body_velocity: np.ndarray) -> np.ndarray:
+        """Return the body covector of the function alone; zero without one."""
+        if self.function is None:
             return np.zeros(self.group.dim)
-        found = as_floats(self.force(float(time), configuration, body_velocity))
+        found = as_floats(self.function(float(time), configuration, body_velocity))
         if found.shape != (self.group.dim,) or found.dtype.kind != "f":
             got = f"{found.dtype} numbers of shape {found.shape}"
             raise error("Forced(force=...)", f"return {self.group.dim} real numbers", got, "Return a body covector.")
@@ -235,10 +251,10 @@ class Forced(AbstractSystem):
     ) -> Float[np.ndarray, "K dim"]:
         r"""Return the impulses j of kicks over a time $\tau$, body covectors; a kick takes r to $r + E^Tj$.
 
-        $$ j = \tau\,(-dU + f_k) - C\,E B^{-1}\!\int_0^\tau\! r\,dt \qquad\text{or}\qquad
-           j = \tau\,\bigl(-dU + f(t, g, E B^{-1}(r + r')/2)\bigr), \quad B = E^T\mathbb{I}E: $$
+        $$ j = \tau\,\bigl(-dU + f_k + f(t, g, E B^{-1}(r + r')/2)\bigr) - C\,E B^{-1}\!\int_0^\tau\! r\,dt,
+           \quad B = E^T\mathbb{I}E: $$
 
-        exact for friction, by the midpoint rule for a function. A kick over $-\tau$ takes back the kick over $\tau$.
+        by the midpoint rule for a function, exact for friction. A kick over $-\tau$ takes back the kick over $\tau$.
 
         Args:
             r: Momenta before the kicks, along the rows of the constraint subspace; after them for a negative time.
@@ -248,7 +264,7 @@ class Forced(AbstractSystem):
             tau: Half a time step, or its negative.
         """
         constant = self.potential_force(g) + self.rows(steps)
-        if not callable(self.force):
+        if self.function is None:
             return self.impulse(r, g, constant, tau)
         E = self.directions(g)
         to_velocity = E @ inverted(E.swapaxes(-1, -2) @ self.inertia_operator @ E)
@@ -256,23 +272,24 @@ class Forced(AbstractSystem):
         E, to_velocity = (np.broadcast_to(x, (len(r), *x.shape[-2:])) for x in (E, to_velocity))
         for k in range(len(r)):
 
-            def force(velocity: np.ndarray, k: int = k) -> np.ndarray:
-                return tau * (constant[k] + self.applied_force(time[k], g[k], velocity))
+            def impulse(velocity: np.ndarray, k: int = k) -> np.ndarray:
+                return self.impulse(r[k], g[k], constant[k] + self.driving_force(time[k], g[k], velocity), tau)
 
-            found[k] = midpoint_impulse(force, r[k], E[k], to_velocity[k])
+            found[k] = midpoint_impulse(impulse, r[k], E[k], to_velocity[k])
         return found
 
     def work(self, time: np.ndarray, g: np.ndarray, velocity: np.ndarray, every: int) -> Float[np.ndarray, "K"]:
         """Return the work of the force along states since the first, by the trapezoidal rule."""
+        power = np.zeros(max(0, len(time) - 1))
         if self.table is not None:
             if every > 1:
                 got = f"save_every {every} with a force for each step"
                 raise error("Orbit.work", "know every step", got, "Run with save_every=1.")
             acting = self.rows(np.rint(time[:-1] / np.diff(time)).astype(int))
-            power = ((velocity[:-1] + velocity[1:]) * acting).sum(axis=1) / 2
-        else:
+            power += ((velocity[:-1] + velocity[1:]) * acting).sum(axis=1) / 2
+        if self.parts.keys() - {"table"}:
             now = np.array([self.applied_force(*row) @ row[2] for row in zip(time, g, velocity, strict=True)])
-            power = (now[:-1] + now[1:]) / 2
+            power += (now[:-1] + now[1:]) / 2
         return np.concatenate([np.zeros(min(1, len(time))), np.cumsum(np.diff(time) * power)])
 
     def _at(self, configuration: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
