@@ -347,3 +347,33 @@ def test_traced_single_precision_is_refused() -> None:
     """Tracing in 32 bits says how to trace in 64."""
     with pytest.raises(TypeError, match="enable_x64"):
         jax.jit(lambda v: nh.rollout(SLEIGH, body_velocity=v, steps=2).momentum)(np.zeros(3, np.float32))
+
+
+@pytest.mark.profile("routes", instead="test_tangent_map_of_flows")
+@pytest.mark.parametrize("reverse", [False, True], ids=["forward", "reverse"])
+def test_flows_are_differentiated_by_diffrax(reverse: bool) -> None:
+    """Through the vector field of a traced body, derivatives by body and start are differences of the flow."""
+    diffrax = pytest.importorskip("diffrax")
+    adjoint = diffrax.RecursiveCheckpointAdjoint() if reverse else diffrax.ForwardMode()
+
+    def traced(tensor: Any, velocity: Any) -> Any:
+        top = nh.SuslovTop(tensor)
+        field = nh.vector_field(top)
+        start = jnp.concatenate([top.restricted_momentum(velocity), jnp.eye(3).ravel()])
+        control, term = diffrax.PIDController(rtol=1e-11, atol=1e-13), diffrax.ODETerm(lambda t, y, _: field(t, y))
+        options = {"stepsize_controller": control, "adjoint": adjoint}
+        return diffrax.diffeqsolve(term, diffrax.Dopri5(), 0.0, 3.0, None, start, **options).ys[-1]
+
+    def flowed(size: float) -> np.ndarray:
+        body = nh.SuslovTop(TOP.mass_tensor + size * along_tensor)
+        end = nh.flow(body, restricted_velocity=velocity + size * along_velocity, times=(0.0, 3.0))
+        return np.concatenate([end.restricted_momentum[-1], end.configuration[-1].ravel()])
+
+    along_tensor = np.array([[0.3, -0.2, 0.5], [-0.2, 0.4, 0.1], [0.5, 0.1, -0.6]])
+    velocity, along_velocity = np.array([0.4, 0.7]), np.array([0.8, -0.5])
+    with jax.enable_x64(True):
+        by_both = (jax.jacrev if reverse else jax.jacfwd)(traced, (0, 1))
+        by_tensor, by_velocity = map(np.asarray, jax.jit(by_both)(TOP.mass_tensor, velocity))
+    slope = np.tensordot(by_tensor, along_tensor, 2) + by_velocity @ along_velocity
+    difference = (8 * (flowed(1e-3) - flowed(-1e-3)) - flowed(2e-3) + flowed(-2e-3)) / 12e-3
+    np.testing.assert_allclose(slope, difference, rtol=0, atol=1e-8)
