@@ -99,8 +99,11 @@ def _plain(value: Any) -> Any:
         return [_plain(each) for each in several]
     if value is None or isinstance(value, str | AbstractSystem):
         return value
-    plain = np.asarray(value)
-    return {"object": _OWN} if plain.dtype.kind == "O" else plain.tolist()
+    return _plain_array(np.asarray(value))
+
+
+def _plain_array(array: np.ndarray) -> Any:
+    return {"object": _OWN} if array.dtype.kind == "O" else array.tolist()
 
 
 def _restored(value: Any) -> Any:

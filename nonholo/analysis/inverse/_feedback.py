@@ -83,12 +83,8 @@ class Feedback:
         """
         with needs("jax", "Feedback.simulate"):
             from nonholo.analysis.inverse._closed_loop import closed_loop
-        where, nodes, S = (
-            "Feedback.simulate",
-            _states(self.discrete, self.reference),
-            self.discrete.system.constraint_subspace,
-        )
-        forces = self.controls @ S.T
+        where, nodes = "Feedback.simulate", _states(self.discrete, self.reference)
+        S = self.discrete.system.constraint_subspace
 
         def checked(name: str, value: Any, default: np.ndarray) -> np.ndarray:
             return default if value is None else array(f"{where}({name}=...)", value, default.shape)
@@ -98,7 +94,7 @@ class Feedback:
             g = in_group(f"{where}(configuration=...)", self.discrete.system.group, configuration)
         push = checked("disturbance", disturbance, np.zeros_like(self.controls))
         misread = checked("misreading", misreading, np.zeros_like(self.gains[:, 0]))
-        tables = forces, self.gains, push, misread
+        tables = self.controls @ S.T, self.gains, push, misread
         orbit, used, missed = closed_loop(self.discrete, nodes, (w, g), tables, self.limits)
         return Tracking(orbit, used @ np.linalg.pinv(S).T, missed)
 
@@ -157,16 +153,9 @@ def tracking_feedback(
         >>> bool(np.abs(motion.error[-1]).max() < 0.01), int((hold.controllability > 1e-9).sum())
         (True, 5)
     """
-    as_discretization("tracking_feedback(discrete=...)", discrete, forced=True)
-    system, where = discrete.system, "tracking_feedback"
-    if system.is_spatial or (discrete.forces is not None and discrete.forces.table is not None):
-        got = "a table of forces" if not system.is_spatial else type(system).__name__
-        remedy = "Add the table to the controls." if not system.is_spatial else "Steer it by `nh.rollout`."
-        raise error(f"{where}(discrete=...)", "have a left-invariant constraint, and no table", got, remedy)
-    remedy = "Pass a dictionary of configuration and restricted_velocity."
-    if not isinstance(start, Mapping) or not set(start) <= {"configuration", "restricted_velocity"}:
-        raise error(f"{where}(start=...)", "name only configuration and restricted_velocity", shown(start), remedy)
-    k, dim = system.rank, system.group.dim
+    where = "tracking_feedback"
+    _refuse(where, discrete, start)
+    k, dim = discrete.system.rank, discrete.system.group.dim
     Q, F = (
         _weight(f"{where}({name}=...)", value, dim + k)
         for name, value in (("state_weight", state_weight), ("final_weight", final_weight))
@@ -198,6 +187,20 @@ def riccati_gains(
         rest = A[j] - B[j] @ gains[j]
         P = Q + gains[j].T @ R @ gains[j] + rest.T @ P @ rest  # a sum of squares: no rounding makes it negative
     return gains
+
+
+def _refuse(where: str, discrete: Discretization, start: Any) -> None:
+    """Refuse maps without a linearization that is the same at every pose and time, and starts that are none."""
+    as_discretization(f"{where}(discrete=...)", discrete, forced=True)
+    if discrete.system.is_spatial:
+        got, remedy = type(discrete.system).__name__, "Steer it by `nh.rollout`."
+        raise error(f"{where}(discrete=...)", "have a left-invariant constraint", got, remedy)
+    if discrete.forces is not None and discrete.forces.table is not None:
+        got, remedy = "one force for each step", "Add the table to the controls."
+        raise error(f"{where}(discrete=...)", "have forces that do not depend on time", got, remedy)
+    remedy = "Pass a dictionary of configuration and restricted_velocity."
+    if not isinstance(start, Mapping) or not set(start) <= {"configuration", "restricted_velocity"}:
+        raise error(f"{where}(start=...)", "name only configuration and restricted_velocity", shown(start), remedy)
 
 
 def _states(discrete: Discretization, reference: Any) -> tuple[np.ndarray, np.ndarray]:
