@@ -16,10 +16,15 @@ from numba import types
 
 from nonholo.base.compiled import kept_bytes
 from nonholo.explorer._object import module_of
-from nonholo.kernels import SleighBody, SuslovBody, flat_run
+from nonholo.kernels import SleighBody, SuslovBody, flat_forced_run, flat_run
 
-KINDS = {"top": SuslovBody, "sleigh": SleighBody}
-"""The bodies that have a kernel for the page."""
+KINDS = {
+    "top": flat_run(SuslovBody),
+    "sleigh": flat_run(SleighBody),
+    "forced_top": flat_forced_run(SuslovBody),
+    "forced_sleigh": flat_forced_run(SleighBody),
+}
+"""The runs of the bodies that have a kernel for the page."""
 
 _TRIPLE = "wasm32-unknown-unknown"
 _OPTIONS: Any = {"nopython": True, "error_model": "numpy"}
@@ -29,10 +34,10 @@ _OF_THIS_MACHINE = r'"(?:target-cpu|target-features|probe-stack)"="[^"]*"'
 
 
 def kernel(body: str) -> bytes:
-    r"""Return the WebAssembly module that runs a body, "top" or "sleigh": compiled once, then kept on disk.
+    r"""Return the WebAssembly module that runs a body, one of `KINDS`: compiled once, then kept on disk.
 
-    Its only export is `run`, with the arguments of `nonholo.kernels.flat_run`; it imports a memory and the top of its
-    stack.
+    Its only export is `run`, with the arguments of `nonholo.kernels.flat_run` or `flat_forced_run`; it imports a memory
+    and the top of its stack.
 
     Example:
         >>> kernel("sleigh")[:4]
@@ -41,7 +46,7 @@ def kernel(body: str) -> bytes:
     own = hashlib.sha256()
     for file in ("_kernel.py", "_object.py"):
         own.update(Path(__file__).with_name(file).read_bytes())
-    function = flat_run(KINDS[body])
+    function = KINDS[body]
     return kept_bytes(function, f"wasm32 {body} {own.hexdigest()}", lambda: module_of(_object(function)))
 
 

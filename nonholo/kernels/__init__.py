@@ -9,7 +9,7 @@ from nonholo.kernels._nearest import NearestBody
 from nonholo.kernels._nearest import advance as advance_to_nearest
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
-from nonholo.kernels.forced import Drive, ForcedBody, Kick, function_of
+from nonholo.kernels.forced import Drive, ForcedBody, Kick, flat_forced_run, function_of, rubbed
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.general.coordinates import (
     CONTRACTION,
@@ -69,6 +69,7 @@ __all__ = [
     "correction",
     "each_root",
     "each_row",
+    "flat_forced_run",
     "flat_run",
     "function_of",
     "increment",
@@ -76,6 +77,7 @@ __all__ = [
     "order_for",
     "residual",
     "revisit_series",
+    "rubbed",
     "secular_sleigh",
     "secular_top",
     "set_out_coordinates",

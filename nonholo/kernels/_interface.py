@@ -40,6 +40,11 @@ def certified(p: Body, m1: Any, m2: Any, y1: Any, y2: Any) -> Any:
     return _file_of(type(p)).certified(p, m1, m2, y1, y2)
 
 
+def inertia(p: Body) -> tuple[Any, Any, Any]:
+    """Return the inertia along the constraint, B11, B12 and B22: velocities are those of B^-1 times the momenta."""
+    return _file_of(type(p)).inertia(p)
+
+
 def increment(p: Body, m1: Any, m2: Any, y1: Any, y2: Any) -> tuple[Any, Any]:
     """Return the change of the scaled momenta in one step."""
     return _file_of(type(p)).increment(p, m1, m2, y1, y2)
@@ -72,7 +77,7 @@ def _compile(function: Callable[..., Any]) -> None:
     overload(function, jit_options=COMPILED, strict=False)(choose)
 
 
-for _function in (residual, correction, corrections, certified, increment, move):
+for _function in (inertia, residual, correction, corrections, certified, increment, move):
     _compile(_function)
 
 

@@ -25,6 +25,12 @@ class SleighBody(NamedTuple):
 
 
 @scalar
+def inertia(p: SleighBody) -> tuple[float, float, float]:
+    """Return the moment of inertia about the contact, zero, and the mass."""
+    return p.inertia + p.mass * p.a * p.a, 0.0, p.mass
+
+
+@scalar
 def p_hat(p: SleighBody, m2: float) -> float:
     """Return the shifted momentum along the blade, the first coefficient of the cubic."""
     return p.a * (m2 + 2 * p.mass * p.a)

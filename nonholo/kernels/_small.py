@@ -61,7 +61,7 @@ def _wide_product(A: np.ndarray, B: np.ndarray, out: np.ndarray, n: int) -> None
 
 
 @njit(**BORROWING)
-def assign(target: np.ndarray, source: np.ndarray) -> None:
+def assign(target: np.ndarray, source: np.ndarray | tuple[float, ...]) -> None:
     """Write the numbers of a row to another one; numba compiles `target[:] = source` for seconds."""
     for i in range(len(source)):
         target[i] = source[i]

@@ -68,6 +68,12 @@ def _positive_root(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
 
 
 @scalar
+def inertia(p: SuslovBody) -> tuple[float, float, float]:
+    """Return B."""
+    return p.b11, p.b12, p.b22
+
+
+@scalar
 def c_perp(p: SuslovBody, y1: float, y2: float) -> float:
     """Return c . y_perp, which drives the momentum."""
     return p.c2 * y1 - p.c1 * y2

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from explorer.webassembly import Module
 
+import nonholo as nh
 from nonholo import kernels
 from nonholo.explorer import kernel
+from nonholo.explorer._kernel import KINDS
 from nonholo.explorer._object import module_of
 
 wasmtime = pytest.importorskip("wasmtime")
@@ -24,7 +26,7 @@ def _sleigh(rng: np.random.Generator) -> kernels.SleighBody:
     return kernels.SleighBody(float(mass), float(inertia), float(rng.choice([0.0, -1.0, 1.0]) * rng.uniform(0.05, 1)))
 
 
-def _native(body: kernels.Body, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, int, np.ndarray]:
+def _native(body: kernels.AnyBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, int, np.ndarray]:
     code, state = kernels.start(body, momentum, pose)
     rows = np.empty((_STEPS, 2)), np.empty((_STEPS, 2)), np.empty((_STEPS, 4))
     done = 0
@@ -50,6 +52,60 @@ def test_same_bits(kind: str, draw: object) -> None:
     assert {(0, False), (1, True), (1, False)} <= outcomes
 
 
+_ROWS = {
+    "forced_top": np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]),
+    "forced_sleigh": np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]),
+}
+
+
+def _forced(kind: str, rng: np.random.Generator, forces: str) -> tuple[kernels.ForcedBody, list[float], np.ndarray]:
+    """Return a body under forces as Python makes it, and from the same numbers as the module takes it; a momentum."""
+    n, h = 3 if kind == "forced_top" else 2, float(10 ** rng.uniform(-2.5, -1))
+    F, x, c = rng.normal(size=n), rng.normal(size=n), rng.uniform(0, 2, 3) * 10.0 ** rng.uniform(-2, 2)
+    table = rng.normal(size=(rng.integers(1, 400), 3))
+    if kind == "forced_top":
+        J = np.eye(3) + rng.uniform(-0.4, 0.4, (3, 3))
+        system, share = nh.SuslovTop(J + J.T), 0.5
+        lever = [x[2], 0.0, -x[0], 0.0, x[2], -x[1]]
+        C = [c[1], 0.0, 0.0, c[0]]
+    else:
+        system, share = nh.ChaplyginSleigh(*rng.uniform(0.2, 3, 2), rng.uniform(-1, 1)), 1.0
+        lever = [-x[1], x[0], 0.0, 1.0, 0.0, 0.0]
+        C = [c[0], 0.0, 0.0, c[1]]
+    has = [name in forces for name in ("weight", "friction", "table")]
+    force = nh.Friction(c) if has[1] else table if has[2] else None
+    route = nh.discretize(nh.Forced(system, nh.Gravity(F, x) if has[0] else None, force), h).route.compiled
+    assert route is not None
+    free = getattr(route.body, "body", route.body)
+    none = kernels.Kick(np.zeros((0, 0)), np.zeros(0), np.zeros((2, 0)), np.zeros((1, 2)))
+    body = route.body if any(has) else kernels.ForcedBody(free, none)
+    rows = body.kick.rows.ravel()
+    weight = [*np.resize([*F, 0.0], 3), *lever] if has[0] else [0.0] * 9
+    about = [n if has[0] else 0, has[1], h / 2, h * share, *C, *weight, len(rows) // 2, *rows]
+    return body, [*np.pad(free, (0, 8 - len(free))), *about], rng.normal(size=2) * 10.0 ** rng.uniform(-3, 0.5)
+
+
+@pytest.mark.profile("routes", keep=["*-20000"])
+@pytest.mark.parametrize("steps", [20_000, 1_000_000])
+@pytest.mark.parametrize("kind", list(_ROWS))
+def test_same_bits_under_forces(kind: str, steps: int) -> None:
+    """Weights, friction and tables: steps of random bodies and starts, refused ones and ones that stop among them."""
+    rng, module = np.random.default_rng(21), Module(kind, _STEPS)
+    outcomes, done_here = set(), 0
+    while done_here < steps:
+        forces = ["weight", "friction", "weight and friction", "table", "weight and table", "none"][rng.integers(6)]
+        body, flat, momentum = _forced(kind, rng, forces)
+        pose = np.array([0.8, 0.6, 0.0, 0.0])
+        done, code, rows = _native(body, momentum, pose)
+        there = module.orbit(tuple(flat), momentum, pose)
+        assert there[:2] == (done, code)
+        assert there[2].tobytes() == rows.tobytes()
+        outcomes.add((code, done == 0))
+        done_here += done
+    assert (0, False) in outcomes
+    assert steps < 1_000_000 or {(1, True), (1, False)} <= outcomes
+
+
 @pytest.mark.parametrize("momentum", [(0.0, 0.0), (np.inf, 1.0), (np.nan, 0.0), (1e300, -1e300), (1e-320, 0.3)])
 @pytest.mark.parametrize("kind", ["top", "sleigh"])
 def test_nasty_starts(kind: str, momentum: tuple[float, float]) -> None:
@@ -66,7 +122,7 @@ def test_nasty_starts(kind: str, momentum: tuple[float, float]) -> None:
     np.testing.assert_array_equal(there[2], rows)
 
 
-@pytest.mark.parametrize("kind", ["top", "sleigh"])
+@pytest.mark.parametrize("kind", list(KINDS))
 def test_asks_for_no_function(kind: str) -> None:
     """All arithmetic is the module's own: it imports memory and a stack, and exports `run`."""
     module = wasmtime.Module(wasmtime.Engine(), kernel(kind))

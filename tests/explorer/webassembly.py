@@ -1,13 +1,26 @@
 """The modules of the page under wasmtime, with numpy views of their memory."""
 
 import ctypes
+from typing import NamedTuple
 
 import numpy as np
 
 from nonholo.explorer import kernel
 
 STACK = 65536
-BODY, STATE, OUTCOME = 8, 16, 14
+
+
+class Layout(NamedTuple):
+    """Room for the numbers of a body and for a state, and the places of a state."""
+
+    body: int
+    state: int
+    chart: int
+    pose: int
+    outcome: int
+
+
+FREE, FORCED = Layout(8, 16, 4, 10, 14), Layout(1024, 24, 8, 4, 22)
 
 
 class Module:
@@ -19,7 +32,8 @@ class Module:
         engine = wasmtime.Engine()
         self.module = wasmtime.Module(engine, kernel(body))
         self.store = wasmtime.Store(engine)
-        size = STACK + 8 * (BODY + STATE + 8 * steps)
+        self.layout = FORCED if body.startswith("forced") else FREE
+        size = STACK + 8 * (self.layout.body + self.layout.state + 8 * steps)
         pages = wasmtime.MemoryType(wasmtime.Limits(-(-size // 65536), None))
         memory = wasmtime.Memory(self.store, pages)
         kind = wasmtime.GlobalType(wasmtime.ValType.i32(), True)
@@ -36,16 +50,15 @@ class Module:
 
     def orbit(self, body: tuple, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, int, np.ndarray]:
         """Return how many steps were good, the outcome, and rows of momenta, charts and poses."""
-        at = STACK // 8
+        at, own, steps = STACK // 8, self.layout, self.steps
         self.memory[at : at + len(body)] = body
-        state = self.memory[at + BODY : at + BODY + STATE]
+        state = self.memory[at + own.body : at + own.body + own.state]
         state[:] = 0.0
-        state[:2], state[4], state[10:14] = momentum, np.nan, pose
-        rows = at + BODY + STATE
-        steps = self.steps
-        first = [8 * at, 8 * (at + BODY)]
+        state[:2], state[own.chart], state[own.pose : own.pose + 4] = momentum, np.nan, pose
+        rows = at + own.body + own.state
+        first = [8 * at, 8 * (at + own.body)]
         done = self.run(self.store, *first, steps, *(8 * (rows + k * steps) for k in (0, 2, 4)))
         parts = [
             self.memory[rows + k * steps : rows + end * steps].reshape(steps, -1) for k, end in ((0, 2), (2, 4), (4, 8))
         ]
-        return done, int(state[OUTCOME]), np.hstack(parts)[:done]
+        return done, int(state[own.outcome]), np.hstack(parts)[:done]

@@ -33,7 +33,7 @@ def _kicked(kick: kernels.Kick, row: int, m: np.ndarray, force: np.ndarray) -> n
     """Return momenta after half an impulse, from the numbers of the kick, in plain Python."""
     if len(m) == 2:
         last = kick.rows[min(row, len(kick.rows) - 1)]
-        return np.array(kicked_two(kick, _numbers.py_func(kick)[3], *m, *(force + last)))
+        return np.array(kicked_two(_numbers.py_func(kick), *m, *(force + last)))
     out = np.empty_like(m)
     linear(kick, force, row, row, m, out)
     return out
@@ -44,7 +44,7 @@ def _run(forced: kernels.ForcedBody, m: np.ndarray, pose: np.ndarray, steps: int
     body, kick = forced
     lost, pose, found, force = np.zeros_like(m), pose.copy(), [], np.empty_like(m)
     y = u = v = t = at_rest(body)
-    n, F, L, _ = _numbers.py_func(kick) if len(m) == 2 else (0, (), (), ())
+    n, _, F, L, _ = _numbers.py_func(kick) if len(m) == 2 else (0, False, (), (), ())
     weight = seen(n, F, *pose) if len(m) == 2 else ()
     force[:] = leaned(L, *weight) if len(m) == 2 else 0.0
     for k in range(steps + 1):

@@ -261,17 +261,27 @@ def _in_python(forced: Forced) -> tuple[Callable[..., None], Callable[..., None]
 
 def _linear_part(free: AbstractCompiledRoute, forced: Forced) -> tuple[kernels.Kick, Float[np.ndarray, "dim k"]]:
     """Return what is linear, with the weight in the user's frame, and the momenta of body covectors."""
-    S, k = np.asarray(forced.constraint_subspace), forced.rank
-    keep, push, _ = forced.propagator(S.T, float(free.time_step) / 2)
-    to_kernel = free.encode(forced.to_canonical(np.eye(k)))
-    along, kept, weight, arms = S.T @ push.T @ to_kernel, np.zeros((0, 0)), np.zeros(0), np.zeros((k, 0))
-    if forced.friction is not None:
-        kept = np.linalg.solve(to_kernel, keep.T @ to_kernel).T
+    keep, along = _half_step(free, forced)
+    weight, arms = np.zeros(0), np.zeros((forced.rank, 0))
     if forced.gravity is not None:
         weight, levers = forced.gravity.levers(forced.group)
-        arms = along.T @ levers
+        arms = sum(map(np.multiply.outer, along, levers))  # summed in this order, as by the kernel of a page
     rows = forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))) @ along
-    return kernels.Kick(*map(_plain, (kept, weight, arms, rows))), along
+    return kernels.Kick(*map(_plain, (keep, weight, arms, rows))), along
+
+
+def _half_step(free: AbstractCompiledRoute, forced: Forced) -> tuple[np.ndarray, Float[np.ndarray, "dim k"]]:
+    """Return what friction leaves of the kernel's momenta in half a step, and the momenta of body covectors."""
+    S, half = np.asarray(forced.constraint_subspace), float(free.time_step) / 2
+    to_kernel = free.encode(forced.to_canonical(np.eye(forced.rank)))
+    if forced.friction is not None and free.is_scalar:
+        rows, scale = (to_kernel / free.scale).T @ S, float(free.scale)
+        C = rows @ forced.friction.matrix @ rows.T
+        keep, push = np.reshape(kernels.rubbed(free.body, C.ravel().tolist(), half), (2, 2, 2))
+        return keep, rows.T @ (scale * push).T
+    keep, push, _ = forced.propagator(S.T, half)
+    kept = np.zeros((0, 0)) if forced.friction is None else np.linalg.solve(to_kernel, keep.T @ to_kernel).T
+    return kept, S.T @ push.T @ to_kernel
 
 
 def _kernel_frame(free: AbstractCompiledRoute, forced: Forced) -> Float[np.ndarray, "N N"]:

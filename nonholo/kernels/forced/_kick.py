@@ -1,10 +1,14 @@
 """Half an impulse that is linear in the momenta: friction, a force that is fixed in space, rows of a table."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from nonholo.kernels._interface import Body, inertia
 from nonholo.kernels._scalar import inlined, scalar
+
+_TERMS = 14  # of a series at norm 1/2
+_DOUBLINGS = 1100  # more than any finite number needs
 
 
 class Kick(NamedTuple):
@@ -78,3 +82,40 @@ def seen(
             z - 2 * (q0 * u3 - (q1 * u2 - q2 * u1)),
         )
     return q0 * x + q1 * y, q0 * y - q1 * x, 0.0
+
+
+@scalar
+def _times(A: Any, B: Any) -> tuple[float, float, float, float]:
+    """Return A B of matrices with two rows."""
+    first, second = A[0] * B[0] + A[1] * B[2], A[0] * B[1] + A[1] * B[3]
+    return first, second, A[2] * B[0] + A[3] * B[2], A[2] * B[1] + A[3] * B[3]
+
+
+@scalar
+def _plus(A: Any, a: float, B: Any) -> tuple[float, float, float, float]:
+    """Return A + a B."""
+    return A[0] + a * B[0], A[1] + a * B[1], A[2] + a * B[2], A[3] + a * B[3]
+
+
+@scalar
+def rubbed(p: Body, C: Any, time: float) -> tuple[Any, Any]:
+    r"""Return A and V of friction $\dot r = a - Dr$ with two momenta over a time: $r' = Ar + Va$; $D = CB^{-1}$.
+
+    $$ V(t) = \int_0^t e^{-sD}ds, \qquad A(t) = I + E(t), \qquad V(2t) = 2V + EV, \qquad E(2t) = 2E + EE : $$
+
+    the series of a part of the time, which is doubled, by sums and products alone, as every processor has them.
+    """
+    b11, b12, b22 = inertia(p)
+    one, none, lean = (1.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 0.0), b12 / b11
+    second, fourth = (C[1] - C[0] * lean) / (b22 - b12 * lean), (C[3] - C[2] * lean) / (b22 - b12 * lean)
+    D = (C[0] - second * b12) / b11, second, (C[2] - fourth * b12) / b11, fourth
+    X, doublings = _plus(none, -time, D), 0
+    while doublings < _DOUBLINGS and abs(X[0]) + abs(X[1]) + abs(X[2]) + abs(X[3]) > 0.5:
+        X, time, doublings = _plus(none, 0.5, X), time / 2, doublings + 1
+    phi = one
+    for k in range(_TERMS, 1, -1):
+        phi = _plus(one, 1 / k, _times(X, phi))
+    E, V = _times(X, phi), _plus(none, time, phi)
+    for _ in range(doublings):
+        V, E = _plus(_times(E, V), 2.0, V), _plus(_times(E, E), 2.0, E)
+    return _plus(one, 1.0, E), V

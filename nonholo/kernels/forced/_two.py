@@ -1,13 +1,13 @@
 """Runs of tops in space and sleighs in the plane under forces, with numbers in place of arrays."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from nonholo.base.compiled import njit
 from nonholo.kernels._driver import SETTLED, _compensated, _solve, _unpack, converged
 from nonholo.kernels._interface import Body, certified, corrections, increment, move
-from nonholo.kernels._scalar import COMPILED, scalar
+from nonholo.kernels._scalar import BORROWING, COMPILED, scalar
 from nonholo.kernels._small import assign
 from nonholo.kernels.forced._kick import Kick, seen
 
@@ -15,6 +15,16 @@ RENEWED = 64
 """Steps after which the weight as the body sees it is taken from the pose again, lest it drift away from it."""
 
 Rows = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+class Numbers(NamedTuple):
+    """A kick without its rows, as numbers: how many of F there are, whether there is an A, then F, L and A."""
+
+    n: int
+    keeps: bool
+    F: tuple[float, float, float]
+    L: tuple[float, float, float, float, float, float]
+    A: tuple[float, float, float, float]
 
 
 @scalar
@@ -46,22 +56,24 @@ def turned(n: int, L: Any, y1: float, y2: float, u: Any) -> tuple[float, float, 
 
 
 @scalar
-def kicked_two(kick: Kick, A: Any, m1: float, m2: float, k1: float, k2: float) -> tuple[float, float]:
+def kicked_two(kick: Numbers, m1: float, m2: float, k1: float, k2: float) -> tuple[float, float]:
     """Return A m + k."""
-    if len(kick.keep) > 0:
+    A = kick.A
+    if kick.keeps:
         return A[0] * m1 + A[1] * m2 + k1, A[2] * m1 + A[3] * m2 + k2
     return m1 + k1, m2 + k2
 
 
 @njit(**COMPILED)
-def _numbers(kick: Kick):  # noqa: ANN202
-    """Return F, L and A as numbers: arrays would be counted at every step of a loop."""
+def _numbers(kick: Kick) -> Numbers:
+    """Return the numbers of a kick: arrays would be counted at every step of a loop."""
     F, L, a, n = np.zeros(3), np.zeros(6), np.zeros(4), len(kick.weight)
     for j in range(n):
         F[j], L[j], L[3 + j] = kick.weight[j], kick.arms[0, j], kick.arms[1, j]
     for j in range(2 * len(kick.keep)):
         a[j] = kick.keep[j // 2, j % 2]
-    return n, (F[0], F[1], F[2]), (L[0], L[1], L[2], L[3], L[4], L[5]), (a[0], a[1], a[2], a[3])
+    F3, L6, A4 = (F[0], F[1], F[2]), (L[0], L[1], L[2], L[3], L[4], L[5]), (a[0], a[1], a[2], a[3])
+    return Numbers(n, len(kick.keep) > 0, F3, L6, A4)
 
 
 @njit(forceinline=True, **COMPILED)
@@ -92,18 +104,33 @@ def _posed(p: Body, n: int, F: Any, row: int, y1: float, y2: float, q: Any, weig
 @njit(nogil=True, **COMPILED)
 def advance_two(p: Body, kick: Kick, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
     """Advance a top in space or a sleigh in the plane, with numbers in place of arrays."""
-    momenta, charts, poses = rows
+    return advance_numbers(p, _numbers(kick), kick.rows, state, steps, every, rows[0], rows[1], rows[2])
+
+
+@njit(nogil=True, **BORROWING)
+def advance_numbers(
+    p: Body,
+    kick: Numbers,
+    table: np.ndarray,
+    state: np.ndarray,
+    steps: int,
+    every: int,
+    momenta: np.ndarray,
+    charts: np.ndarray,
+    poses: np.ndarray,
+) -> tuple[int, int]:
+    """Do the same, with the rows of a kick."""
     m1, m2, l1, l2, q0, q1, q2, q3, y1, y2, u1, u2, v1, v2 = _unpack(state)
     t1, t2, f1, f2 = state[14], state[15], state[16], state[17]
     q, weight = (q0, q1, q2, q3), (state[18], state[19], state[20])
-    table, last, row, code, done = kick.rows, len(kick.rows) - 1, int(state[21]), 0, 0
-    n, F, L, A = _numbers(kick)
+    last, row, code, done = len(table) - 1, int(state[21]), 0, 0
+    n, F, L = kick.n, kick.F, kick.L
     if row == 0:
         weight = seen(n, F, *q)
         f1, f2 = leaned(L, *weight)
     while done < steps:
         r1, r2 = table[min(row, last), 0], table[min(row, last), 1]
-        s1, s2 = kicked_two(kick, A, m1, m2, f1 + r1, f2 + r2)
+        s1, s2 = kicked_two(kick, m1, m2, f1 + r1, f2 + r2)
         g1, g2 = 3 * (y1 - u1) + v1, 3 * (y2 - u2) + v2
         if n > 0:
             g1, g2 = 4 * (y1 + v1) - (6 * u1 + t1), 4 * (y2 + v2) - (6 * u2 + t2)
@@ -125,9 +152,9 @@ def advance_two(p: Body, kick: Kick, state: np.ndarray, steps: int, every: int, 
         s2, l2 = _compensated(s2, l2, d2, settled)
         if n > 0:
             f1, f2, weight = turned(n, L, w1, w2, weight)
-        m1, m2 = kicked_two(kick, A, s1, s2, f1 + r1, f2 + r2)
+        m1, m2 = kicked_two(kick, s1, s2, f1 + r1, f2 + r2)
     if done > 0:
         q, weight = _posed(p, n, F, row, y1, y2, q, weight)
     roots = y1, y2, u1, u2, v1, v2, t1, t2
-    assign(state, np.array((m1, m2, l1, l2, *q, *roots, f1, f2, *weight, float(row))))
+    assign(state, (m1, m2, l1, l2, *q, *roots, f1, f2, *weight, float(row)))
     return done, code
