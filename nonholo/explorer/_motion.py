@@ -9,10 +9,11 @@ import numpy as np
 from nonholo.base.checks import error, instance, shown
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization, discretize
+from nonholo.explorer._forces import force_numbers, under_forces
 from nonholo.groups import matrix_from_quaternion
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.simulation import simulate
-from nonholo.systems import AbstractSystem, ChaplyginSleigh, NormalForm, SuslovTop
+from nonholo.systems import AbstractSystem, ChaplyginSleigh, Forced, NormalForm, SuslovTop
 
 MOST_STEPS = 20_000
 """Steps that the kernel of a page takes."""
@@ -78,30 +79,41 @@ def _live(orbit: Orbit) -> Shown | None:
 
 def _kind(discrete: Discretization) -> str | None:
     """Return the kernel of a discretization that runs in the axes of the canonical frame, or None."""
-    form = discrete.system.normal_form
+    system = discrete.system
+    form = _inside(system).normal_form
     if (
         form is None
         or discrete.route_name != "scalar"
         or discrete.order != 2
         or form.frame is not None
         or np.any(form.offset)
+        or (system.is_forced and force_numbers(cast(Forced, system)) is None)
     ):
         return None
-    return "sleigh" if form.is_sleigh else "top" if form.frame_map is None else None
+    kind = "sleigh" if form.is_sleigh else "top" if form.frame_map is None else None
+    return kind and "forced_" * system.is_forced + kind
 
 
-def _parameters(form: NormalForm) -> dict[str, float]:
+def _inside(system: Any) -> AbstractSystem:
+    """Return the system without its forces."""
+    return system.system if system.is_forced else system
+
+
+def _parameters(system: AbstractSystem) -> dict[str, float]:
+    form = cast(NormalForm, _inside(system).normal_form)
+    forces = force_numbers(cast(Forced, system)) if system.is_forced else {}
     if form.is_sleigh:
-        return {"mass": float(form.mass), "inertia": float(form.stiffness[0, 0]), "a": float(form.arm)}
-    A, d, c = np.asarray(form.across), float(form.along), form.coupling
-    names = {"J11": A[0, 0], "J12": A[0, 1], "J22": A[1, 1], "J13": c[0], "J23": c[1], "J33": d}
-    return {name: float(value) for name, value in names.items()}
+        names = {"mass": form.mass, "inertia": form.stiffness[0, 0], "a": form.arm}
+    else:
+        A, d, c = np.asarray(form.across), form.along, form.coupling
+        names = {"J11": A[0, 0], "J12": A[0, 1], "J22": A[1, 1], "J13": c[0], "J23": c[1], "J33": d}
+    return {name: float(value) for name, value in (names | (forces or {})).items()}
 
 
 def _state(discrete: Discretization, kind: str, momentum: np.ndarray, pose: np.ndarray, steps: int) -> dict[str, Any]:
     return {
         "kind": kind,
-        "parameters": _parameters(cast(NormalForm, discrete.system.normal_form)),
+        "parameters": _parameters(discrete.system),
         "momentum": [float(r) for r in momentum],
         "pose": [float(x) + 0.0 for x in pose],
         "time_step": float(discrete.time_step),
@@ -114,17 +126,21 @@ def simulated(where: str, state: Any) -> Orbit:
     if not isinstance(state, dict) or state.keys() < {"kind", "parameters", "momentum", "pose", "time_step", "steps"}:
         raise error(where, "be asked of a page whose body runs in it", "a replay", "Use the orbit you passed.")
     p, (w, *xyz) = state["parameters"], state["pose"]
-    if state["kind"] == "top":
+    if state["kind"].endswith("top"):
         rows = [[p[f"J{min(i, j)}{max(i, j)}"] for j in (1, 2, 3)] for i in (1, 2, 3)]
         body, pose = SuslovTop(rows), matrix_from_quaternion(np.array([w, *xyz]))
     else:
         sine, *place = xyz
-        body, pose = ChaplyginSleigh(**p), [[w, -sine, place[0]], [sine, w, place[1]], [0.0, 0.0, 1.0]]
+        body = ChaplyginSleigh(p["mass"], p["inertia"], p["a"])
+        pose = [[w, -sine, place[0]], [sine, w, place[1]], [0.0, 0.0, 1.0]]
+    body = under_forces(body, p) if state["kind"].startswith("forced") else body
     start = {"momentum": state["momentum"], "configuration": pose}
     return simulate(discretize(body, state["time_step"]), **start, steps=state["steps"], throw=False)
 
 
 def _name(system: AbstractSystem) -> str:
+    if system.is_forced:
+        return f"{_name(_inside(system))}, under forces"
     words = re.findall("[A-Z][a-z]+|[A-Z]+(?![a-z])", type(system).__name__)
     name = " ".join([words[0], *(word.lower() for word in words[1:])])
     return name if system.normal_form is not None and system.normal_form.is_planar else f"{name}, {system.group}"

@@ -2,6 +2,7 @@
 
 import base64
 import functools
+import gzip
 import hashlib
 import json
 from pathlib import Path
@@ -18,7 +19,7 @@ _VIEW = Path(__file__).with_name("view")
 def page_text(data: dict[str, Any], title: str, note: str, version: str) -> str:
     """Return the text of a page, in ASCII; what it is given is escaped, and data cannot end their element."""
     outcomes = {int(outcome): (outcome.name, outcome.message) for outcome in Outcome}
-    kernels = {} if "replay" in data else {kind: base64.b64encode(kernel(kind)).decode() for kind in KINDS}
+    kernels = {} if "replay" in data else {kind: _packed(kernel(kind)) for kind in KINDS}
     known = {**data, "title": title, "library": version, "outcomes": outcomes, "kernels": kernels}
     text = json.dumps(known, allow_nan=False).replace("<", "\\u003c")
     script, style = _text("view.js"), _text("style.css")
@@ -44,6 +45,10 @@ def _text(name: str) -> str:
 @functools.cache
 def _template() -> jinja2.Template:
     return jinja2.Environment(autoescape=True).from_string(_text("page.html"))
+
+
+def _packed(module: bytes) -> str:
+    return base64.b64encode(gzip.compress(module, mtime=0)).decode()
 
 
 def _hash(text: str) -> str:

@@ -1,7 +1,9 @@
 // The page: controls, clock, and views of one state. `mount` serves the file; a host of widgets can call it too.
 
 import { BODIES } from "./bodies.mjs";
+import { EnergyBalance } from "./balance.mjs";
 import { Controls } from "./controls.mjs";
+import { levelsOf } from "./forces.mjs";
 import { kernelOf } from "./kernel.mjs";
 import { colors, short } from "./look.mjs";
 import { flowOf, orbitOf } from "./orbit.mjs";
@@ -13,6 +15,7 @@ import { checked, fragmentOf, stateOf } from "./state.mjs";
 import { SurfaceView } from "./surface_view.mjs";
 import { TopView } from "./top_view.mjs";
 import { isReal, valuesOver } from "./values.mjs";
+import { WeightView } from "./weight_view.mjs";
 import { WORDS } from "./words.mjs";
 
 const SECONDS = 16;
@@ -29,17 +32,19 @@ export class App {
     this.whole = false;
     this.playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.phase = new PhasePortrait(byId("phase-canvas"));
-    this.energy = new EnergyError(byId("energy-canvas"));
+    this.energies = [EnergyError, EnergyBalance].map((Kind) => new Kind(byId("energy-canvas")));
     this.surfaceStage = new Stage(byId("surface-canvas"), [1.5, -2, 1.3]);
     this.surface = new SurfaceView(this.surfaceStage);
     this.bodyStage = new Stage(byId("body-canvas"), EYES.top);
+    this.weight = new WeightView(this.bodyStage);
   }
 
   async begin() {
     if (this.data.replay) {
       this.kind = "replay";
     } else {
-      this.kernels = { top: await kernelOf(this.data.kernels.top), sleigh: await kernelOf(this.data.kernels.sleigh) };
+      this.kernels = {};
+      for (const [kind, text] of Object.entries(this.data.kernels)) this.kernels[kind] = await kernelOf(text, BODIES[kind].isForced);
     }
     this.controls = new Controls(this);
     const linked = this.kind === "replay" ? null : stateOf(location.hash);
@@ -85,15 +90,18 @@ export class App {
     const run = replay ? null : this.kernels[this.state.kind];
     this.orbit = replay ? replayed(this.data.replay) : orbitOf(this.body, this.state, run);
     this.took = { compute: performance.now() - began };
-    this.flow = replay ? noFlow(this.orbit) : this.withAxis(flowOf(this.body, this.state));
+    this.flow = replay ? noFlow(this.orbit) : this.flowBeside();
     const kind = replay ? "replay" : this.state.kind;
     if (this.shown !== kind) this.enter(kind);
     this.view.set(this.state, this.orbit, look, this.flow);
+    this.weight.set(this.body, this.state, this.orbit, look, this.view);
     if (!replay) this.surface.set(this.body, this.state, this.orbit, look, this.whole, this.values ? (k) => this.allValues(k).filter(isReal) : null);
     if (this.crowd) this.crowd.set(this.body, this.state, this.flow, run);
     const counts = this.values && !replay ? this.counts() : null;
     const picture = { crowd: this.crowd, orbit: this.orbit, flow: this.flow, body: this.body, counts };
     this.phase.set(picture, look);
+    this.energy = this.energies[Number(Boolean(this.body.isForced))];
+    for (const view of this.energies) view.data = null;
     this.energy.set(picture, look);
     this.clock = Math.min(this.clock, Math.max(0, this.orbit.count - 1));
     this.controls.fill();
@@ -103,9 +111,10 @@ export class App {
     this.took.refresh = performance.now() - began;
   }
 
-  /** The body axis of permanent rotation of a top: its velocity along the rows is that of c. */
-  withAxis(flow) {
-    const { J13: c1, J23: c2 } = this.state.parameters;
+  /** The continuous motion with the body axis of permanent rotation of a top: its velocity along the rows is that of c. */
+  flowBeside() {
+    const flow = flowOf(this.body, this.state), { J13: c1, J23: c2 } = this.state.parameters;
+    if (this.body.isForced) return levelsOf(flow, this.orbit);
     return { ...flow, velocityAxis: c1 || c2 ? [-c2, c1, 0] : null };
   }
 
@@ -125,11 +134,15 @@ export class App {
   enter(kind) {
     if (this.view) this.bodyStage.scene.remove(this.view.fixed, this.view.moving);
     this.bodyStage.turned = false;
-    this.bodyStage.eye.set(...EYES[kind]).normalize();
-    this.view = new VIEWS[kind](this.bodyStage);
+    const seen = this.body.kind ?? kind;
+    if (this.body.isForced) this.values = false; // values of the map are those of free steps
+    this.bodyStage.eye.set(...EYES[seen]).normalize();
+    this.view = new VIEWS[seen](this.bodyStage);
     this.shown = kind;
     document.documentElement.dataset.kind = kind;
     for (const [name, text] of Object.entries(WORDS[kind])) byId(`${name}-words`).innerHTML = text;
+    byId("energy-title").textContent = this.body.isForced ? "Energy" : "Energy error";
+    byId("energy-canvas").setAttribute("aria-label", this.body.isForced ? "Kinetic and whole energy at each step" : "Relative energy error at each step");
     byId("surface-axes").textContent = this.body.axes ? `${this.body.axes.join(", ")}, each in its own scale` : "";
     byId("title").textContent = this.data.title && kind === this.data.kind ? this.data.title : this.body.name;
   }
@@ -146,7 +159,8 @@ export class App {
     }
     const work = this.kind === "replay" ? "replayed: this body has no kernel in the page" : `computed here in ${short(this.took.compute, 2)} ms`;
     const drawn = this.view.enlarged > 1.05 ? ` · body drawn ${short(this.view.enlarged, 2)} times larger` : "";
-    this.say(`${count - 1} steps ${work} · energy kept to ${short(worst, 2)}${drawn}`, false);
+    const kept = this.body.isForced ? "energy and work agree to" : "energy kept to";
+    this.say(`${count - 1} steps ${work} · ${kept} ${short(worst, 2)}${drawn}`, false);
   }
 
   say(text, wrong) {
@@ -179,7 +193,7 @@ export class App {
     if (this.k === this.drawn?.k && this.orbit === this.drawn.orbit) return;
     this.drawn = { k: this.k, orbit: this.orbit };
     this.crowd?.to(this.k);
-    if (this.orbit.count) for (const view of [this.view, this.surface, this.phase, this.energy]) view.show(this.k);
+    if (this.orbit.count) for (const view of [this.view, this.weight, this.surface, this.phase, this.energy]) view.show(this.k);
     this.controls.clock();
     this.controls.now();
   }

@@ -1,6 +1,8 @@
 // The two bodies whose steps are known in closed form: the numbers that their kernels take, and what is drawn of them.
 // Formulas and rows are those of nonholo.discrete.routes and nonholo.analysis.planar.
 
+import { underForces } from "./forces.mjs";
+import { literal } from "./literal.mjs";
 import { sleighCount, sleighValues, topCount, topValues } from "./values.mjs";
 
 const cholesky = (b11, b12, b22) => {
@@ -30,9 +32,6 @@ function certain({ b11, b12, b22, c1, c2 }) {
 const range = (key, label, name, min, max, step = 0.01) => ({ key, label, name, min, max, step });
 const matrix = (p) => [[p.J11, p.J12, p.J13], [p.J12, p.J22, p.J23], [p.J13, p.J23, p.J33]];
 const rows = (p) => `[${matrix(p).map((row) => `[${row.map(literal).join(", ")}]`).join(", ")}]`;
-
-/** A number as Python and TOML write it: the shortest text that gives the same bits. */
-export const literal = (x) => (Number.isInteger(x) && Math.abs(x) < 1e16 ? x.toFixed(1) : String(x));
 
 export const top = {
   kind: "top",
@@ -163,4 +162,4 @@ export const sleigh = {
   configuration: ([cos, sin, x, y]) => [[cos, -sin, x], [sin, cos, y], [0, 0, 1]],
 };
 
-export const BODIES = { top, sleigh };
+export const BODIES = { top, sleigh, forced_top: underForces(top), forced_sleigh: underForces(sleigh) };

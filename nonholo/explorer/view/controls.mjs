@@ -50,9 +50,11 @@ export class Controls {
     this.kind = state.kind;
     this.fields = [];
     const group = (id, fields) => byId(id).replaceChildren(...fields.map((field) => this.field(field)));
-    group("parameters", body.parameters.map((p) => ({
+    const all = body.parameters.map((p) => ({
       ...p, get: () => app.state.parameters[p.key], set: (x) => ({ parameters: { ...app.state.parameters, [p.key]: x } }),
-    })));
+    }));
+    group("parameters", all.filter((p) => !p.isForce));
+    group("forces", all.filter((p) => p.isForce));
     group("start", body.momenta.map((label, k) => ({
       key: `r${k + 1}`, label, name: `momentum ${k + 1} at the start`, min: -3, max: 3, step: 0.01,
       get: () => app.state.momentum[k], set: (x) => ({ momentum: app.state.momentum.map((r, i) => (i === k ? x : r)) }),

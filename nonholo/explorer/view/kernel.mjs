@@ -1,33 +1,36 @@
 // The kernel of nonholo as WebAssembly: numbers go in and come out through its memory.
 
 const STACK = 65536;
-const BODY = 8, CHART = 4, POSE = 10;
-export const STATE = 16, OUTCOME = 14;
+const BODY = 32; // room for the numbers of a body and of forces
+/** Places in a state, and by how many nodes one that has begun is ahead: as `flat_run` and `flat_forced_run` have it. */
+const FREE = { size: 16, chart: 4, pose: 10, outcome: 14, ahead: 0 }, FORCED = { size: 24, chart: 8, pose: 4, outcome: 22, ahead: 1 };
 export const MOST_STEPS = 20000, MOST_MEMBERS = 10000;
 
 const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+const unpacked = (text) => new Response(new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
 
 /** Return what runs a body: `(table, momentum, pose, steps) => {done, outcome, start, momenta, charts, poses}`. */
-export async function kernelOf(text) {
+export async function kernelOf(text, isForced) {
+  const layout = isForced ? FORCED : FREE, { size: STATE, chart: CHART, pose: POSE, outcome: OUTCOME } = layout;
   const size = STACK + 8 * (BODY + STATE + 8 * MOST_STEPS + STATE * MOST_MEMBERS);
   const memory = new WebAssembly.Memory({ initial: Math.ceil(size / 65536) });
   const env = {
     __linear_memory: memory,
     __stack_pointer: new WebAssembly.Global({ value: "i32", mutable: true }, STACK),
   };
-  const { instance } = await WebAssembly.instantiate(bytesOf(text), { env });
+  const { instance } = await WebAssembly.instantiate(await unpacked(text), { env });
   const numbers = new Float64Array(memory.buffer);
   const body = STACK / 8, state = body + BODY, rows = state + STATE;
   const members = rows + 8 * MOST_STEPS;
   /** Begin many motions of one body, with momenta one after another. */
-  const gather = (momenta) => {
+  const gather = (momenta, pose) => {
     numbers.fill(0, members);
     for (let k = 0; k < MOST_MEMBERS; k++) {
       const own = members + STATE * k;
       numbers[own] = momenta[2 * k];
       numbers[own + 1] = momenta[2 * k + 1];
       numbers[own + CHART] = NaN;
-      numbers[own + POSE] = 1;
+      numbers.set(pose, own + POSE);
     }
     return numbers.subarray(members);
   };
@@ -57,5 +60,5 @@ export async function kernelOf(text) {
       poses: numbers.slice(at[2], at[2] + 4 * done),
     };
   };
-  return Object.assign(run, { gather, advance });
+  return Object.assign(run, { gather, advance, layout });
 }

@@ -3,7 +3,7 @@
 /** Run a state of the page; states 0 to `done` are those of `nonholo.simulate`, to the last bit. */
 export function orbitOf(body, state, run) {
   const scale = state.time_step * body.share;
-  const table = body.table(state.parameters);
+  const table = body.table(state.parameters, state.time_step);
   const start = [scale * state.momentum[0], scale * state.momentum[1]];
   const first = run(table, start, state.pose, 0);
   const { done, outcome, momenta, charts, poses } =
@@ -22,13 +22,14 @@ export function orbitOf(body, state, run) {
 }
 
 function finished(body, state, orbit) {
-  const { count, r } = orbit;
+  const { count, r } = orbit, time = (k) => k * state.time_step;
+  if (body.balance) return { ...orbit, ...body.balance(state, orbit), time };
   const energy = new Float64Array(count), error = new Float64Array(count);
   for (let k = 0; k < count; k++) {
     energy[k] = body.energy(state.parameters, r[2 * k], r[2 * k + 1]);
     error[k] = energy[0] === 0 ? 0 : Math.abs(energy[k] / energy[0] - 1);
   }
-  return { ...orbit, energy, error, time: (k) => k * state.time_step };
+  return { ...orbit, energy, error, time };
 }
 
 /** The continuous motion through the first momentum: a circle run through in the closed form of nonholo.continuous. */

@@ -8,7 +8,7 @@ const PEN = { willReadFrequently: isSoftware }; // drawn by the processor where 
 const FONT = "11px system-ui, sans-serif";
 
 /** A canvas that is drawn anew at its own size, sharp on every screen. */
-class Picture {
+export class Picture {
   constructor(canvas) {
     this.canvas = canvas;
     this.pen = canvas.getContext("2d", PEN);
@@ -67,7 +67,7 @@ class Picture {
   }
 }
 
-const curve = (pen, points) => {
+export const curve = (pen, points) => {
   pen.beginPath();
   points.forEach(([x, y], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
   pen.stroke();
@@ -108,7 +108,7 @@ export class PhasePortrait extends Picture {
       curve(pen, Array.from({ length: 65 }, (_, turn) => this.place(this.level(size, turn))));
     }
     if (flow.attracting) this.equilibria(pen, flow.attracting);
-    pen.strokeStyle = look.flow;
+    pen.strokeStyle = flow.isForced ? look.line : look.flow;
     pen.lineWidth = 2.2;
     curve(pen, Array.from({ length: 65 }, (_, turn) => this.place(this.level(1, turn))));
     const stride = Math.max(1, Math.floor(orbit.count / 600));

@@ -1,6 +1,7 @@
 // What leaves the page: the page itself, a link, programs that repeat it, pictures.
 
-import { BODIES, literal } from "./bodies.mjs";
+import { BODIES } from "./bodies.mjs";
+import { literal } from "./literal.mjs";
 
 const list = (values) => `[${values.map(literal).join(", ")}]`;
 

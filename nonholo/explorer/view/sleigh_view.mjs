@@ -35,6 +35,8 @@ export class SleighView {
     this.enlarged = Math.max(1, extent / (7 * (long + Math.abs(a))));
     const reach = extent / 2 + this.enlarged * (long + Math.abs(a));
     const center = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2, 0];
+    this.reach = reach;
+    this.height = 0.42 * this.enlarged * long; // of the center of mass
     this.ground(center, reach, look);
     this.track = count > 1 ? ribbon(track, () => {}, 0.02 * reach, look.dark) : null;
     if (this.track) this.track.position.z = 0.004 * reach;

@@ -10,7 +10,7 @@ const within = (value, low, high) => typeof value === "number" && value >= low &
 /** Return a checked state, or say in words what is wrong with it. */
 export function checked(given) {
   const body = Object.hasOwn(BODIES, given.kind) ? BODIES[given.kind] : null;
-  if (!body) return { problem: "There is no such body: “kind” is top or sleigh." };
+  if (!body) return { problem: "There is no such body: “kind” is top or sleigh, or one of them under forces." };
   const parameters = {};
   for (const { key, label } of body.parameters) {
     parameters[key] = number(given.parameters?.[key]);
@@ -22,7 +22,7 @@ export function checked(given) {
   if (!within(time_step, 1e-6, 100)) return { problem: "The time step must be a number from 0.000001 to 100." };
   if (!Number.isInteger(steps) || !within(steps, 1, MOST_STEPS)) return { problem: `Steps must be a whole number from 1 to ${MOST_STEPS}.` };
   const pose = [0, 1, 2, 3].map((k) => number(given.pose?.[k] ?? (k === 0 ? 1 : 0)));
-  const size = given.kind === "top" ? Math.hypot(...pose) : Math.hypot(pose[0], pose[1]);
+  const size = body.kind === "top" ? Math.hypot(...pose) : Math.hypot(pose[0], pose[1]);
   if (!pose.every((x) => within(x, -LARGEST, LARGEST)) || Math.abs(size - 1) > 1e-9) return { problem: "The first pose must be a pose." };
   return { state: { kind: given.kind, parameters, momentum, time_step, steps, pose } };
 }

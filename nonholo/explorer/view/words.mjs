@@ -58,6 +58,25 @@ export const WORDS = {
   },
 };
 
+const KICK = math(sub("p", next), o("="), sub("K", next), o("("), sup(`<mi>Ad</mi>`, o("∗")), sub("K", i("k")), o("("), sub("p", i("k")), o(")"), o(")"));
+const BALANCE = math(i("T"), o("+"), i("U"), o("−"), i("W"), o("="), i("const"), o(","), i("U"), o("="), o("−"), i("F"), o("·"), o("("), i("g"), i("x"), o(")"), o(","),
+  i("Ẇ"), o("="), o("−"), i("ω"), o("·"), i("C"), i("ω"), o("≤"), n(0));
+const PUSHED = `<p>Forces act as half an impulse of each step before it and after it, K, with the free step between them. The <b>arrow</b> is the force F, which is
+  constant in space and acts at the body point x, like a weight. Friction is −C times each velocity; its part of the step is solved exactly.</p>${KICK}`;
+const forced = (words, ends) => ({
+  ...words,
+  body: `${PUSHED}${words.body}`,
+  phase: `<p>The two momenta ${ends} along the constraint, at the nodes: between the half impulses of two steps. Dots are the states. Gray ellipses are levels of the
+    kinetic energy, the largest one among them; no energy is conserved here, and no continuous motion in closed form is drawn. Drag anywhere to start
+    there. “10,000” starts as many motions at once in the same pose, with the same kernel: under friction without a force they come to rest.</p>`,
+  surface: `${words.surface.split(" “values”")[0]}</p><p>The points are those of the displacements; half an impulse stands between them and the momenta at the nodes.</p>`,
+  energy: `<p>Energy is <em>not</em> conserved under forces. Dots are the whole energy T + U, the gray line is the kinetic energy T. The
+    <em class="flow">dashed line</em> is the first energy with the work W of friction, which only takes: a weight alone moves energy between T and U. Dots and dashes agree up
+    to an error that falls with the square of the time step; the status line has the largest one, as a part of the largest kinetic energy.</p>${BALANCE}`,
+});
+WORDS.forced_top = forced(WORDS.top, "r");
+WORDS.forced_sleigh = forced(WORDS.sleigh, "π and p₁");
+
 export const PRESETS = [
   { name: "Top: from one permanent rotation to the other", kind: "top", parameters: { J11: 1.4, J12: 0.2, J13: 0.5, J22: 1, J23: -0.3, J33: 0.9 }, momentum: [1.632, -0.7335], time_step: 0.1, steps: 800 },
   { name: "Top: large steps, the surface unfolds", kind: "top", parameters: { J11: 1.4, J12: 0.2, J13: 0.5, J22: 1, J23: -0.3, J33: 0.9 }, momentum: [1.2, -0.5], time_step: 0.9, steps: 120 },
@@ -68,5 +87,9 @@ export const PRESETS = [
   { name: "Sleigh: a loop and away", kind: "sleigh", parameters: { mass: 1, inertia: 1, a: 0.2 }, momentum: [1.2, -0.7], time_step: 0.1, steps: 500 },
   { name: "Sleigh: three values inside a deltoid", kind: "sleigh", parameters: { mass: 1, inertia: 1, a: 0.4 }, momentum: [0.2, -1.2], time_step: 1, steps: 30, values: true },
   { name: "Sleigh: balanced, circles", kind: "sleigh", parameters: { mass: 1, inertia: 1, a: 0 }, momentum: [0.5, 1], time_step: 0.2, steps: 100 },
+  { name: "Top under its weight", kind: "forced_top", parameters: { J11: 1, J12: 0, J13: 0.1, J22: 1.2, J23: 0, J33: 0.7, F1: 0, F2: 0, F3: -1, x1: 0, x2: 0.1, x3: 0.4, c1: 0, c2: 0 }, momentum: [0.3, 0.4], time_step: 0.05, steps: 600 },
+  { name: "Top: a weight that comes to rest", kind: "forced_top", parameters: { J11: 1, J12: 0, J13: 0, J22: 1.2, J23: 0, J33: 0.7, F1: 0, F2: 0, F3: -1, x1: 0, x2: 0, x3: 0.6, c1: 0.15, c2: 0.3 }, momentum: [0.4, 0.3], time_step: 0.05, steps: 800 },
+  { name: "Sleigh: friction brings it to rest", kind: "forced_sleigh", parameters: { mass: 1, inertia: 1, a: 0.5, F1: 0, F2: 0, x1: 0.5, x2: 0, c1: 0.05, c2: 0.1 }, momentum: [0.0625, -1.5], time_step: 0.1, steps: 400 },
+  { name: "Sleigh: a knife edge on a slope", kind: "forced_sleigh", parameters: { mass: 1, inertia: 1, a: 0, F1: 0, F2: -0.5, x1: 0, x2: 0, c1: 0, c2: 0 }, momentum: [0.5, 0], time_step: 0.1, steps: 400 },
   { name: "Sleigh: no real branch", kind: "sleigh", parameters: { mass: 1, inertia: 1, a: 0.5 }, momentum: [1.9, -1.5], time_step: 1.2, steps: 60 },
 ];
