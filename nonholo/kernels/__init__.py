@@ -4,7 +4,7 @@ from nonholo.kernels._composition import ComposedBody, whole_steps
 from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged, flat_run
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
-from nonholo.kernels._interface import Body, certified, correction, increment, move, residual, tangent
+from nonholo.kernels._interface import Body, certified, correction, increment, inertia, move, residual, tangent
 from nonholo.kernels._nearest import NearestBody
 from nonholo.kernels._nearest import advance as advance_to_nearest
 from nonholo.kernels._sleigh import SleighBody
@@ -73,6 +73,7 @@ __all__ = [
     "flat_run",
     "function_of",
     "increment",
+    "inertia",
     "move",
     "order_for",
     "residual",

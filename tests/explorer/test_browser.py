@@ -16,18 +16,26 @@ pytestmark = pytest.mark.profile("browser", instead="test_data_of_a_page")
 TENSOR = [[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]
 BODIES = {"top": nh.SuslovTop(TENSOR), "sleigh": nh.ChaplyginSleigh(1.0, 1.0, 0.5)}
 VELOCITY = {"top": (0.465, 0.75, 0.0), "sleigh": (0.05, -1.0, 0.0)}
+FORCES = {"top": (nh.Gravity([0.2, 0.1, -0.7], [0.1, -0.2, 0.4]), nh.Friction([0.1, 0.3, 0.2]))}
+FORCES["sleigh"] = (nh.Gravity([0.3, -0.2], [0.5, 0.1]), nh.Friction([0.2, 0.1, 0.4]))
+FORCED = {f"forced_{name}": nh.Forced(BODIES[name], *FORCES[name]) for name in BODIES}
 
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """The pages of a top, of a sleigh, and of a top in four dimensions, which is replayed."""
+    """The pages of a top and a sleigh, free and under forces, and of a top in four dimensions, which is replayed."""
     folder = tmp_path_factory.mktemp("pages")
-    found = {name: folder / f"{name}.html" for name in (*BODIES, "replay")}
-    for name, body in BODIES.items():
-        nh.simulate(nh.discretize(body, 0.1), body_velocity=VELOCITY[name], steps=300).to_html(found[name])
+    found = {name: folder / f"{name}.html" for name in (*BODIES, *FORCED, "replay")}
+    for name, body in (BODIES | FORCED).items():
+        _sent(name, body).to_html(found[name])
     wide = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0]) + 0.3), 0.1)
     nh.simulate(wide, restricted_velocity=(1.0, 0.5, 0.2), steps=100).to_html(found["replay"])
     return found
+
+
+def _sent(name: str, body: Any) -> nh.Orbit:
+    """Return the motion of a file."""
+    return nh.simulate(nh.discretize(body, 0.1), body_velocity=VELOCITY[name.removeprefix("forced_")], steps=300)
 
 
 def _same(page: Any, orbit: nh.Orbit) -> None:
@@ -38,7 +46,7 @@ def _same(page: Any, orbit: nh.Orbit) -> None:
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", [(1280, 800), (390, 844)], ids=["desk", "phone"])
-@pytest.mark.parametrize("name", ["top", "sleigh", "replay"])
+@pytest.mark.parametrize("name", [*BODIES, *FORCED, "replay"])
 def test_opens_quietly(visit: Callable, files: dict, name: str, size: tuple[int, int], scheme: str) -> None:
     """No error, no request but the file, nothing wider than the screen, and pictures that are not empty."""
     look = {"viewport": {"width": size[0], "height": size[1]}, "color_scheme": scheme}
@@ -68,11 +76,11 @@ def test_requests_are_counted(visit: Callable, files: dict) -> None:
     assert len(page.requests) == 2
 
 
-@pytest.mark.parametrize("name", list(BODIES))
+@pytest.mark.parametrize("name", [*BODIES, *FORCED])
 def test_same_numbers(visit: Callable, files: dict, name: str) -> None:
     """The motion as it was sent, and a hundred thousand steps of others, are those of Python to the last bit."""
-    page, body = visit(files[name]), BODIES[name]
-    _same(page, nh.simulate(nh.discretize(body, 0.1), body_velocity=VELOCITY[name], steps=300))
+    page, body = visit(files[name]), (BODIES | FORCED)[name]
+    _same(page, _sent(name, body))
     rng = np.random.default_rng(5)
     for _ in range(5):
         momentum, step = rng.normal(size=2).round(3).tolist(), round(float(rng.uniform(0.01, 0.2)), 4)
@@ -88,10 +96,13 @@ SLIDERS = {
     "top": {"J11": 1.7, "J22": 1.3, "J33": 0.75, "J12": -0.15, "J13": 0.31, "J23": 0.12, "r1": 0.4, "r2": 0.9},
     "sleigh": {"mass": 1.35, "inertia": 0.8, "a": -0.3, "r1": 0.45, "r2": -0.6},
 }
+PUSHES = {"F1": 0.4, "F2": -0.8, "x1": -0.35, "x2": 0.15, "c1": 0.25, "c2": 0.65}
+SLIDERS["forced_top"] = {**SLIDERS["top"], **PUSHES, "F3": -1.3, "x3": 0.55}
+SLIDERS["forced_sleigh"] = {**SLIDERS["sleigh"], **PUSHES}
 RUN = {"time_step": 0.17, "steps": 120}
 
 
-@pytest.mark.parametrize("name", list(BODIES))
+@pytest.mark.parametrize("name", [*BODIES, *FORCED])
 def test_sliders(visit: Callable, files: dict, name: str) -> None:
     """Each slider changes its number, and the motion is then that of Python."""
     page, before = visit(files[name]), None
@@ -101,7 +112,8 @@ def test_sliders(visit: Callable, files: dict, name: str) -> None:
         assert state != before
         before, state = state, json.loads(state)
         p = state["parameters"]
-        body = _top(p) if name == "top" else nh.ChaplyginSleigh(**p)
+        body = _top(p) if name.endswith("top") else nh.ChaplyginSleigh(p["mass"], p["inertia"], p["a"])
+        body = _pushed(body, p) if name in FORCED else body
         discrete = nh.discretize(body, state["time_step"])
         _same(page, nh.simulate(discrete, momentum=state["momentum"], steps=state["steps"]))
     assert {**p, **RUN, "r1": state["momentum"][0], "r2": state["momentum"][1]} == {**SLIDERS[name], **RUN}
@@ -111,6 +123,58 @@ def test_sliders(visit: Callable, files: dict, name: str) -> None:
 def _top(p: dict[str, float]) -> nh.SuslovTop:
     rows = [("J11", "J12", "J13"), ("J12", "J22", "J23"), ("J13", "J23", "J33")]
     return nh.SuslovTop([[p[name] for name in row] for row in rows])
+
+
+def _pushed(body: Any, p: dict[str, float]) -> nh.Forced:
+    """Return a body under the forces of the sliders; one that is zero does not act."""
+    F, x = ([p[name + i] for i in "123" if name + i in p] for name in "Fx")
+    rub = nh.Friction([p["c1"], p["c2"], 0.0]) if p["c1"] or p["c2"] else None
+    return nh.Forced(body, nh.Gravity(F, x) if any(F) else None, rub)
+
+
+@pytest.mark.parametrize("name", list(FORCED))
+def test_forces_at_zero(visit: Callable, files: dict, name: str) -> None:
+    """Without a weight, without friction and without both the motion is that of Python; friction is not negative."""
+    page = visit(files[name])
+    for part in ("Fxx", "c", "Fc"):
+        page.page.select_option("#preset", "own")
+        page.settle()
+        for key in [each for each in page.page.evaluate("nonholo.state.parameters") if each[0] in part]:
+            page.set(key, 0.0)
+        state = page.page.evaluate("nonholo.state")
+        assert state["steps"] == 300
+        body = _pushed(BODIES[name.removeprefix("forced_")], state["parameters"])
+        _same(page, nh.simulate(nh.discretize(body, 0.1), momentum=state["momentum"], steps=300))
+    page.page.fill("#number-c1", "-1")
+    page.page.press("#number-c1", "Enter")
+    page.settle()
+    assert "Friction must not be negative" in page.status
+
+
+@pytest.mark.parametrize("name", list(FORCED))
+def test_balance_of_energy(visit: Callable, files: dict, name: str) -> None:
+    """The page has energy, kinetic energy and work of Python, and says that they agree, not that energy is kept."""
+    page, orbit = visit(files[name]), _sent(name, FORCED[name])
+    kinetic = BODIES[name.removeprefix("forced_")].constrained_energy(orbit.reduced_momentum)
+    for key, values in (("energy", orbit.energy), ("work", orbit.work), ("kinetic", kinetic)):
+        np.testing.assert_allclose(page.numbers(key), values, rtol=1e-12, atol=1e-12)
+    assert "energy and work agree" in page.status
+    assert page.page.text_content("#energy-title") == "Energy"
+    assert not page.page.is_visible("#values")
+    assert not page.page.is_visible("#copy-toml")
+
+
+def test_points_of_a_pushed_orbit(visit: Callable, files: dict) -> None:
+    """An orbit under forces runs on the surface of momenta of displacements."""
+    for name in FORCED:
+        page, orbit = visit(files[name]), _sent(name, FORCED[name])
+        P = nh.discrete_legendre(nh.discretize(BODIES[name.removeprefix("forced_")], 0.1), orbit.displacement[7])
+        assert np.abs(P[:2] - orbit.momentum[7, :2]).max() > 1e-4
+        point = page.page.evaluate("nonholo.point(7)")
+        if name == "forced_top":
+            np.testing.assert_allclose(point, 0.1 * P, atol=1e-14)
+        else:
+            np.testing.assert_allclose(point[0], 0.5 * 0.1 * P[1] + 2 * 0.5**2, atol=1e-14)
 
 
 def test_presets(visit: Callable, files: dict) -> None:
@@ -158,10 +222,11 @@ def test_drag_to_start(visit: Callable, files: dict) -> None:
     assert abs(r2) < 0.1 * r1
 
 
-def test_link(visit: Callable, files: dict) -> None:
-    """A link opens the motion it was made of."""
-    page = visit(files["sleigh"])
-    page.set("a", 0.25)
+@pytest.mark.parametrize(("name", "key"), [("sleigh", "a"), ("forced_top", "c2"), ("forced_sleigh", "F1")])
+def test_link(visit: Callable, files: dict, name: str, key: str) -> None:
+    """A link opens the motion it was made of, in any page."""
+    page = visit(files[name])
+    page.set(key, 0.25)
     page.set("r1", 1.1)
     page.page.click("#share summary")
     page.page.click("#copy-link")
@@ -179,6 +244,9 @@ def test_link(visit: Callable, files: dict) -> None:
         "#kind=sleigh&mass=1&inertia=1&a=alert(1)&h=.1&steps=5&r=1+1",
         "#kind=sleigh&mass=1&inertia=1&a=1&h=.1&steps=1e9&r=1+1",
         "#kind=sleigh&mass=1&inertia=1&a=1&h=NaN&steps=5&r=1+1",
+        "#kind=forced_sleigh&mass=1&inertia=1&a=1&h=.1&steps=5&r=1+1",
+        "#kind=forced_sleigh&mass=1&inertia=1&a=1&F1=1e7&F2=0&x1=0&x2=0&c1=0&c2=0&h=.1&steps=5&r=1+1",
+        "#kind=forced_sleigh&mass=1&inertia=1&a=1&F1=alert(1)&F2=0&x1=0&x2=0&c1=0&c2=0&h=.1&steps=5&r=1+1",
     ],
 )
 def test_bad_links(visit: Callable, files: dict, fragment: str) -> None:
@@ -189,21 +257,22 @@ def test_bad_links(visit: Callable, files: dict, fragment: str) -> None:
     assert page.errors == []
 
 
-@pytest.mark.parametrize("name", list(BODIES))
+@pytest.mark.parametrize("name", [*BODIES, *FORCED])
 def test_ten_thousand(visit: Callable, files: dict, name: str) -> None:
     """Members of the crowd move by the same kernel: forwards, and after the time was set back."""
     page = visit(files[name])
     page.page.click("#play")
     page.page.click("#many")
-    body = nh.discretize(BODIES[name], 0.1).route.body
+    body = nh.discretize((BODIES | FORCED)[name], 0.1).route.body
     for step in (60, 17):
         page.page.fill("#scrub", str(step))
         for k in (0, 137, 9999):
             member = page.page.evaluate(f"nonholo.crowd.member({k})")
             code, state = kernels.start(body, np.array(member["first"]), np.array([1.0, 0.0, 0.0, 0.0]))
             assert code == 0
-            kernels.advance(body, state, step, step, (np.empty((1, 2)), np.empty((1, 2)), np.empty((1, 4))))
-            assert (member["now"], member["outcome"], member["step"]) == (state[:2].tolist(), 0, step)
+            rows = np.empty((1, 2)), np.empty((1, 2)), np.empty((1, 4))
+            kernels.advance(body, state, step, step, rows)
+            assert (member["now"], member["outcome"], member["step"]) == (rows[0][0].tolist(), 0, step)
     assert page.errors == []
 
 
@@ -274,6 +343,20 @@ def test_copied_programs(visit: Callable, files: dict, name: str, tmp_path: Path
     (tmp_path / "copied.toml").write_text(text["toml"])
     scenario = load_scenario(str(tmp_path / "copied.toml"), []).scenario
     _same(page, nh.simulate(scenario.discretization(), steps=scenario.run.steps, **scenario.options()))
+
+
+@pytest.mark.parametrize("key", ["F1", "c1"])
+@pytest.mark.parametrize("name", list(FORCED))
+def test_copied_forces(visit: Callable, files: dict, name: str, key: str) -> None:
+    """Copied Python of a body under forces gives the numbers of the page, a weight alone or friction alone."""
+    page = visit(files[name])
+    for other in [each for each in page.page.evaluate("nonholo.state.parameters") if each[0] in "Fc"]:
+        page.set(other, 0.3 if other == key else 0.0)
+    page.page.click("#share summary")
+    page.page.click("#copy-python")
+    names: dict[str, Any] = {}
+    exec(page.page.input_value("#dialog-text"), names)  # noqa: S102
+    _same(page, names["orbit"])
 
 
 @pytest.mark.parametrize("view", ["body", "phase", "surface", "energy"])

@@ -48,6 +48,41 @@ def test_data_of_a_top() -> None:
     assert "canonical body frame" not in explore(TOP).text
 
 
+def test_data_under_forces() -> None:
+    """A page of a body under a weight and friction has their numbers, and starts from the momentum at the node."""
+    body = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
+    forced = nh.Forced(body, nh.Gravity([0.3, -0.2], [0.5, 0.1]), nh.Friction([0.2, 0.1, 0.4]))
+    orbit = nh.simulate(nh.discretize(forced, 0.1), body_velocity=(0.3, -1.0, 0.0), steps=20)
+    page = explore(orbit)
+    state = _data(page.text)["state"]
+    about = {"F1": 0.3, "F2": -0.2, "x1": 0.5, "x2": 0.1, "c1": 0.2, "c2": 0.1}
+    assert (state["kind"], state["parameters"]) == ("forced_sleigh", {"mass": 1.0, "inertia": 1.0, "a": 0.5, **about})
+    assert state["momentum"] == orbit.reduced_momentum[0].tolist()
+    np.testing.assert_array_equal(page.orbit().reduced_momentum, orbit.reduced_momentum)
+    top = explore(nh.Forced(TOP, nh.Gravity([0.0, 0.0, -2.0], [0.1, 0.0, 0.3])))
+    assert "Suslov top, under forces" in top.text
+    assert top.orbit().system.gravity.point.tolist() == [0.1, 0.0, 0.3]
+
+
+@pytest.mark.parametrize(
+    ("body", "force"),
+    [
+        (SLEIGH, nh.Friction([1.0, 1.0, 1.0])),
+        (nh.SuslovTop(TOP.mass_tensor, axis=(1.0, 0.0, 0.0)), nh.Friction([1.0, 1.0, 1.0])),
+        (TOP, nh.Friction(np.eye(3))),
+        (TOP, np.ones((9, 3))),
+        (TOP, lambda t, g, w: -w),
+    ],
+    ids=["b", "axis", "matrix", "table", "function"],
+)
+def test_forces_without_sliders(body: Any, force: Any) -> None:
+    """Forces of other kinds, or in other axes than those of the page, are replayed."""
+    orbit = nh.simulate(nh.discretize(nh.Forced(body, force=force), 0.1), restricted_velocity=(0.3, 0.2), steps=9)
+    text = explore(orbit).text
+    assert _data(text)["kind"] == "replay"
+    assert "A replay of numbers from Python" in text
+
+
 def test_size_and_policy() -> None:
     """A page without data is small, in ASCII, fetches nothing, and names the only script and style that may run."""
     text = explore(TOP).text

@@ -1,5 +1,6 @@
 """Compiled runs under forces: the bits of the same steps in plain Python, whole and in pieces."""
 
+import mpmath
 import numpy as np
 import pytest
 from bodies import GENERAL
@@ -131,3 +132,21 @@ def test_the_second_correction_leaves_an_error_of_third_order(name: str) -> None
         left.append([np.abs(residual(route.body, *m, *y)).max() for y in guess + np.cumsum(found, axis=0)])
     assert np.log10(left[0][0] / left[1][0]) == pytest.approx(2, abs=0.1)
     assert np.log10(left[0][1] / left[1][1]) == pytest.approx(3, abs=0.1)
+
+
+@pytest.mark.parametrize("stiffness", [1e-6, 0.3, 40.0, 3000.0])
+def test_friction_of_two_momenta_is_an_exponential(stiffness: float) -> None:
+    """What friction leaves and what forces add are those of exponentials with 40 digits, also on stiff problems."""
+    rng = np.random.default_rng(8)
+    for name in ("top", "sleigh"):
+        body = nh.discretize(BODIES[name][0], 0.1).route.compiled.body  # type: ignore[union-attr]
+        K, skew = rng.normal(size=(2, 2)), np.array([[0.0, 0.3], [-0.3, 0.0]])
+        C, (b11, b12, b22) = stiffness * (K @ K.T + skew), kernels.inertia(body)
+        with mpmath.workdps(40 + int(stiffness)):  # the exponential is below that of its terms
+            D = mpmath.matrix(C.tolist()) * mpmath.matrix([[b11, b12], [b12, b22]]) ** -1
+            wanted = mpmath.expm(-0.7 * D)
+            push = D**-1 * (mpmath.eye(2) - wanted)
+        left, pushed = (np.reshape(X, (2, 2)) for X in kernels.rubbed(body, C.ravel().tolist(), 0.7))
+        scale = 1 + 0.7 * stiffness  # of the condition of an exponential
+        np.testing.assert_allclose(left, np.array(wanted.tolist(), float), rtol=0, atol=4e-16 * scale)
+        np.testing.assert_allclose(pushed, np.array(push.tolist(), float), rtol=2e-15 * scale)

@@ -13,7 +13,7 @@ const OWN = {
     coefficients: ({ c1, c2 }) => [c2, c1],
     lever: ([x1, x2, x3]) => [x3, 0, -x1, 0, x3, -x2],
     inertia: (p) => [p.J11 + p.J33, p.J12, p.J22 + p.J33],
-    point: (p, [x1, x2, x3]) => [x1, x2, x3],
+    point: ([x1, x2, x3]) => [x1, x2, x3],
   },
   sleigh: {
     n: 2,
@@ -21,7 +21,7 @@ const OWN = {
     coefficients: ({ c1, c2 }) => [c1, c2],
     lever: ([x1, x2]) => [-x2, x1, 0, 1, 0, 0],
     inertia: (p) => [p.inertia + p.mass * p.a * p.a, 0, p.mass],
-    point: (p, [x1, x2]) => [x1, x2, 1],
+    point: ([x1, x2]) => [x1, x2, 1],
     /** The momentum along the blade of a displacement: half an impulse stands between it and that of the node. */
     onLocus: (body) => (p, h, r1, r2, y1, y2) =>
       body.onLocus(p, h, 0, (2 * p.mass * (y2 - p.a * y1 * y1)) / (1 + y1 * y1) / h, y1),
@@ -33,8 +33,14 @@ export function underForces(body) {
   const own = OWN[body.kind], keys = { F: indexed("F", own.n), x: indexed("x", own.n) };
   const of = (p, name) => keys[name].map((key) => p[key]);
   const slider = (key, name, least, most) => ({ key, label: `${key[0].replace("c", "C")}${"₁₂₃"[key[1] - 1]}`, name, min: least, max: most, step: 0.01, isForce: true });
-  const place = (p, pose) => body.configuration(pose).map((row) => row.reduce((sum, entry, i) => sum + entry * own.point(p, of(p, "x"))[i], 0));
-  const potential = (p, pose) => place(p, pose).slice(0, own.n).reduce((sum, x, i) => sum - of(p, "F")[i] * x, 0);
+  const placed = (p) => {
+    const x = own.point(of(p, "x"));
+    return (pose) => body.configuration(pose).slice(0, own.n).map((row) => row.reduce((sum, entry, i) => sum + entry * x[i], 0));
+  };
+  const potentialOf = (p) => {
+    const place = placed(p), force = of(p, "F");
+    return (pose) => place(pose).reduce((sum, x, i) => sum - force[i] * x, 0);
+  };
   const power = (p, r1, r2) => {
     const [b11, b12, b22] = own.inertia(p), [c1, c2] = own.coefficients(p), det = b11 * b22 - b12 * b12;
     return -c1 * ((b22 * r1 - b12 * r2) / det) ** 2 - c2 * ((b11 * r2 - b12 * r1) / det) ** 2;
@@ -58,14 +64,14 @@ export function underForces(body) {
     },
     onLocus: own.onLocus?.(body) ?? body.onLocus.bind(body),
     /** Where the force acts, and the force, both in space. */
-    weight: (p, pose) => [place(p, pose), of(p, "F")].map((vector) => [...vector.slice(0, own.n), 0].slice(0, 3)),
+    weight: (p, pose) => [placed(p)(pose), of(p, "F")].map((vector) => [...vector, 0].slice(0, 3)),
     /** Kinetic and whole energy of the states, the work of friction up to them, and what is missing in the sum. */
     balance({ parameters: p, time_step: h }, { count, r, g }) {
-      const [kinetic, energy, work, error] = Array.from({ length: 4 }, () => new Float64Array(count));
+      const potential = potentialOf(p), [kinetic, energy, work, error] = Array.from({ length: 4 }, () => new Float64Array(count));
       for (let k = 0, last = 0; k < count; k++) {
         const now = power(p, r[2 * k], r[2 * k + 1]);
         kinetic[k] = body.energy(p, r[2 * k], r[2 * k + 1]);
-        energy[k] = kinetic[k] + potential(p, g.subarray(4 * k, 4 * k + 4));
+        energy[k] = kinetic[k] + potential(g.subarray(4 * k, 4 * k + 4));
         work[k] = k ? work[k - 1] + (h * (last + now)) / 2 : 0;
         last = now;
       }

@@ -29,6 +29,10 @@ globalThis.nonholo = {
   count(r) {
     return app.counts()(r);
   },
+  /** The point of a state on the surface of momenta. */
+  point(k) {
+    return app.surface.point(k);
+  },
   get crowd() {
     return app.crowd;
   },

@@ -16,9 +16,10 @@ export class SurfaceView {
   set(body, state, orbit, look, whole, values) {
     for (const group of [this.group, this.marker, this.others]) clear(group);
     const { parameters: p, time_step: h } = state, { count, y } = orbit, path = [];
+    this.point = (k) => body.onLocus(p, h, orbit.r[2 * k], orbit.r[2 * k + 1], y[2 * k], y[2 * k + 1]);
     let most = 0;
     for (let k = 0; k < count; k++) {
-      path.push(body.onLocus(p, h, orbit.r[2 * k], orbit.r[2 * k + 1], y[2 * k], y[2 * k + 1]));
+      path.push(this.point(k));
       most = Math.max(most, body.angle(y[2 * k], y[2 * k + 1]));
     }
     const reach = whole || values ? Math.PI : Math.min(Math.PI, Math.max(1.6 * most, 1e-3));
