@@ -87,11 +87,16 @@ def _kind(discrete: Discretization) -> str | None:
         or discrete.order != 2
         or form.frame is not None
         or np.any(form.offset)
-        or (system.is_forced and force_numbers(cast(Forced, system)) is None)
+        or _forces(system) is None
     ):
         return None
     kind = "sleigh" if form.is_sleigh else "top" if form.frame_map is None else None
     return kind and "forced_" * system.is_forced + kind
+
+
+def _forces(system: AbstractSystem) -> dict[str, float] | None:
+    """Return the numbers of the forces, none of a free body; None where no page computes them."""
+    return force_numbers(cast(Forced, system)) if system.is_forced else {}
 
 
 def _inside(system: Any) -> AbstractSystem:
@@ -101,13 +106,12 @@ def _inside(system: Any) -> AbstractSystem:
 
 def _parameters(system: AbstractSystem) -> dict[str, float]:
     form = cast(NormalForm, _inside(system).normal_form)
-    forces = force_numbers(cast(Forced, system)) if system.is_forced else {}
     if form.is_sleigh:
         names = {"mass": form.mass, "inertia": form.stiffness[0, 0], "a": form.arm}
     else:
         A, d, c = np.asarray(form.across), form.along, form.coupling
         names = {"J11": A[0, 0], "J12": A[0, 1], "J22": A[1, 1], "J13": c[0], "J23": c[1], "J33": d}
-    return {name: float(value) for name, value in (names | (forces or {})).items()}
+    return {name: float(value) for name, value in (names | (_forces(system) or {})).items()}
 
 
 def _state(discrete: Discretization, kind: str, momentum: np.ndarray, pose: np.ndarray, steps: int) -> dict[str, Any]:

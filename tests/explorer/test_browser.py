@@ -166,8 +166,8 @@ def test_balance_of_energy(visit: Callable, files: dict, name: str) -> None:
 
 def test_points_of_a_pushed_orbit(visit: Callable, files: dict) -> None:
     """An orbit under forces runs on the surface of momenta of displacements."""
-    for name in FORCED:
-        page, orbit = visit(files[name]), _sent(name, FORCED[name])
+    for name, forced in FORCED.items():
+        page, orbit = visit(files[name]), _sent(name, forced)
         P = nh.discrete_legendre(nh.discretize(BODIES[name.removeprefix("forced_")], 0.1), orbit.displacement[7])
         assert np.abs(P[:2] - orbit.momentum[7, :2]).max() > 1e-4
         point = page.page.evaluate("nonholo.point(7)")
@@ -185,7 +185,9 @@ def test_presets(visit: Callable, files: dict) -> None:
         page.page.select_option("#preset", value)
         page.settle()
         assert ("no real branch" in page.status) == ("no real branch" in label), label
-        assert page.page.text_content("#title") == ("Chaplygin sleigh" if "Sleigh" in label else "Suslov top")
+        title = "Chaplygin sleigh" if "Sleigh" in label else "Suslov top"
+        forced = page.page.evaluate("nonholo.state.kind").startswith("forced")
+        assert page.page.text_content("#title") == f"{title}{', under forces' * forced}"
     assert page.errors == []
 
 

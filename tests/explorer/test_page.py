@@ -71,7 +71,7 @@ def test_data_under_forces() -> None:
         (nh.SuslovTop(TOP.mass_tensor, axis=(1.0, 0.0, 0.0)), nh.Friction([1.0, 1.0, 1.0])),
         (TOP, nh.Friction(np.eye(3))),
         (TOP, np.ones((9, 3))),
-        (TOP, lambda t, g, w: -w),
+        (TOP, lambda *numbers: -numbers[2]),
     ],
     ids=["b", "axis", "matrix", "table", "function"],
 )

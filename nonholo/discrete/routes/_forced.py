@@ -265,7 +265,9 @@ def _linear_part(free: AbstractCompiledRoute, forced: Forced) -> tuple[kernels.K
     weight, arms = np.zeros(0), np.zeros((forced.rank, 0))
     if forced.gravity is not None:
         weight, levers = forced.gravity.levers(forced.group)
-        arms = sum(map(np.multiply.outer, along, levers))  # summed in this order, as by the kernel of a page
+        arms = functools.reduce(
+            np.add, map(np.multiply.outer, along, levers)
+        )  # summed in this order, as by the kernel of a page
     rows = forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))) @ along
     return kernels.Kick(*map(_plain, (keep, weight, arms, rows))), along
 

@@ -16,11 +16,12 @@ const ENERGY = (formula) => `<p>The relative error of the energy at each step, o
   The discrete map conserves the energy exactly, so what is seen is rounding. The dashed line is the spacing of double
   precision, 2.2·10<sup>−16</sup>.</p>${formula}`;
 
+const SETTLES = " The dark rod is the axis of permanent rotation, to which the motion settles.";
+
 export const WORDS = {
   top: {
     body: `<p>A rigid body about a fixed point that may not spin about the <em class="accent">axis with the ball</em>, which is fixed in the body. It is drawn as
-      the ellipsoid of its mass tensor. The tip of the axis leaves its trace on the unit sphere, from violet to yellow. The dark rod is the axis of permanent
-      rotation, to which the motion settles. Each pose is the one before, times a displacement W whose Cayley coordinates y solve two quadratics:</p>
+      the ellipsoid of its mass tensor. The tip of the axis leaves its trace on the unit sphere, from violet to yellow.${SETTLES} Each pose is the one before, times a displacement W whose Cayley coordinates y solve two quadratics:</p>
       ${math(i("B"), i("y"), o("+"), o("("), i("c"), o("·"), perp, o(")"), perp, o("="), o("("), n(1), o("+"), square, o(")"), frac(i("h"), n(2)), i("r"), o(","), sub("g", next), o("="), sub("g", i("k")), sub("W", i("k")))}`,
     phase: `<p>The two momenta r along the constraint. Dots are the states of the discrete map; the ring moves with the continuous motion, which
       runs on the <em class="flow">orange ellipse</em> of its energy in closed form. Gray ellipses are other energies. The full line is made of attracting
@@ -58,18 +59,18 @@ export const WORDS = {
   },
 };
 
-const KICK = math(sub("p", next), o("="), sub("K", next), o("("), sup(`<mi>Ad</mi>`, o("∗")), sub("K", i("k")), o("("), sub("p", i("k")), o(")"), o(")"));
+const KICK = math(sub("p", next), o("="), sub("K", next), o("("), `<msubsup>${i("Ad")}<mrow>${sub("W", i("k"))}</mrow>${o("∗")}</msubsup>`, sub("K", i("k")), o("("), sub("p", i("k")), o(")"), o(")"));
 const BALANCE = math(i("T"), o("+"), i("U"), o("−"), i("W"), o("="), i("const"), o(","), i("U"), o("="), o("−"), i("F"), o("·"), o("("), i("g"), i("x"), o(")"), o(","),
   i("Ẇ"), o("="), o("−"), i("ω"), o("·"), i("C"), i("ω"), o("≤"), n(0));
 const PUSHED = `<p>Forces act as half an impulse of each step before it and after it, K, with the free step between them. The <b>arrow</b> is the force F, which is
   constant in space and acts at the body point x, like a weight. Friction is −C times each velocity; its part of the step is solved exactly.</p>${KICK}`;
 const forced = (words, ends) => ({
   ...words,
-  body: `${PUSHED}${words.body}`,
+  body: `${PUSHED}${words.body.replace(SETTLES, "")}`,
   phase: `<p>The two momenta ${ends} along the constraint, at the nodes: between the half impulses of two steps. Dots are the states. Gray ellipses are levels of the
     kinetic energy, the largest one among them; no energy is conserved here, and no continuous motion in closed form is drawn. Drag anywhere to start
     there. “10,000” starts as many motions at once in the same pose, with the same kernel: under friction without a force they come to rest.</p>`,
-  surface: `${words.surface.split(" “values”")[0]}</p><p>The points are those of the displacements; half an impulse stands between them and the momenta at the nodes.</p>`,
+  surface: `${words.surface.split(" “values”")[0]}</p>${words.surface.slice(words.surface.indexOf("<math"))}<p>The points are those of the displacements; half an impulse stands between them and the momenta at the nodes.</p>`,
   energy: `<p>Energy is <em>not</em> conserved under forces. Dots are the whole energy T + U, the gray line is the kinetic energy T. The
     <em class="flow">dashed line</em> is the first energy with the work W of friction, which only takes: a weight alone moves energy between T and U. Dots and dashes agree up
     to an error that falls with the square of the time step; the status line has the largest one, as a part of the largest kinetic energy.</p>${BALANCE}`,

@@ -23,8 +23,8 @@ def flat_forced_run(kind: type[Body]) -> Callable[..., int]:
     stand: how many numbers F has (2 or 3; 0 without a weight), whether there is friction, half the time step, the
     factor to the momenta of the kernel, C (4), F (3) and the lever (2, 3) of the kernel's rows, both zero without a
     weight, and how many rows of half impulses follow from place TABLE on, the last one zero. The state is that of
-    `advance_two`: one whose chart is NaN, at place 8, is started first, from its momentum and its pose at place 4.
-    Before the steps it is then at the node after the start.
+    `advance_two`: one whose chart is NaN, at place 8, is started first, from its momentum and its pose at place 4;
+    all else is zero. Before the steps it is then at the node after the start.
     """
     count = len(kind._fields)  # pyright: ignore[reportAttributeAccessIssue]
 
@@ -41,20 +41,15 @@ def flat_forced_run(kind: type[Body]) -> Callable[..., int]:
         kick = Numbers(n, f[9] != 0, (f[16], f[17], f[18]), L, A)
         table = carray(body, (TABLE // 2 + rows, 2))[TABLE // 2 :]
         s = carray(state, STATE_SIZE + 1)
-        begins = math.isnan(s[8])
-        if begins:
-            s[2] = s[3] = 0.0
-            for i in range(8, STATE_SIZE):
-                s[i] = 0.0
-        done = code = 0
-        for at in range(0 if begins else 1, 2):
+        done, code, first = 0, 0, 0 if math.isnan(s[8]) else 1
+        s[8] = s[8] if first else 0.0
+        for at in range(first, 2):
             size = steps if at else 1
             into = carray(momenta, (size, 2)), carray(charts, (size, 2)), carray(poses, (size, 4))
-            done, code = advance_numbers(p, kick, table, s, size, 1, into[0], into[1], into[2])
-            if at == 0:
-                done = 0
-                for i in (10, 12, 14):
-                    s[i], s[i + 1] = s[8], s[9]
+            done, code = advance_numbers(p, kick, table, s, size, 1, into)
+            done = done * at
+            for i in range(10, 10 if at else 16):
+                s[i] = s[i - 2]  # the first root is the guess of those after it
             if code != 0:
                 break
         s[STATE_SIZE] = code

@@ -104,27 +104,19 @@ def _posed(p: Body, n: int, F: Any, row: int, y1: float, y2: float, q: Any, weig
 @njit(nogil=True, **COMPILED)
 def advance_two(p: Body, kick: Kick, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
     """Advance a top in space or a sleigh in the plane, with numbers in place of arrays."""
-    return advance_numbers(p, _numbers(kick), kick.rows, state, steps, every, rows[0], rows[1], rows[2])
+    return advance_numbers(p, _numbers(kick), kick.rows, state, steps, every, rows)
 
 
 @njit(nogil=True, **BORROWING)
 def advance_numbers(
-    p: Body,
-    kick: Numbers,
-    table: np.ndarray,
-    state: np.ndarray,
-    steps: int,
-    every: int,
-    momenta: np.ndarray,
-    charts: np.ndarray,
-    poses: np.ndarray,
+    p: Body, kick: Numbers, table: np.ndarray, state: np.ndarray, steps: int, every: int, rows: Rows
 ) -> tuple[int, int]:
     """Do the same, with the rows of a kick."""
+    momenta, charts, poses = rows
     m1, m2, l1, l2, q0, q1, q2, q3, y1, y2, u1, u2, v1, v2 = _unpack(state)
-    t1, t2, f1, f2 = state[14], state[15], state[16], state[17]
-    q, weight = (q0, q1, q2, q3), (state[18], state[19], state[20])
+    t1, t2, f1, f2, weight = state[14], state[15], state[16], state[17], (state[18], state[19], state[20])
     last, row, code, done = len(table) - 1, int(state[21]), 0, 0
-    n, F, L = kick.n, kick.F, kick.L
+    n, F, L, q = kick.n, kick.F, kick.L, (q0, q1, q2, q3)
     if row == 0:
         weight = seen(n, F, *q)
         f1, f2 = leaned(L, *weight)
@@ -155,6 +147,5 @@ def advance_numbers(
         m1, m2 = kicked_two(kick, s1, s2, f1 + r1, f2 + r2)
     if done > 0:
         q, weight = _posed(p, n, F, row, y1, y2, q, weight)
-    roots = y1, y2, u1, u2, v1, v2, t1, t2
-    assign(state, (m1, m2, l1, l2, *q, *roots, f1, f2, *weight, float(row)))
+    assign(state, (m1, m2, l1, l2, *q, y1, y2, u1, u2, v1, v2, t1, t2, f1, f2, *weight, float(row)))
     return done, code
