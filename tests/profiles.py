@@ -70,8 +70,8 @@ PROFILES = {
         "tests/simulation/test_ensemble.py tests/simulation/test_flow_ensemble.py",
     ),
     "browser": Profile(
-        "the live page in Chromium, and its bundle, made anew by npm; the site: its links, and what it asks for",
-        ("explorer", "kernels"),
+        "the live page in Chromium, its bundle, made anew by npm; films by ffmpeg; the site: links, and its requests",
+        ("explorer", "kernels", "plotting"),
     ),
     "site": Profile(
         "the pages and the docstrings of public names as a site; broken links and unknown names are errors",

@@ -8,6 +8,7 @@ from ._attributes import other_versions as other_versions
 from ._attributes import restore_motion as restore_motion
 from ._attributes import versions_text as versions_text
 from ._beside import check_file as check_file
+from ._beside import complete_file as complete_file
 from ._beside import new_beside as new_beside
 from ._beside import new_file as new_file
 from ._chunks import DamagedError as DamagedError

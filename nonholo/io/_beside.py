@@ -27,6 +27,17 @@ def new_beside(path: Path) -> Iterator[Path]:
         raise OSError(failure.errno, reason, str(path)) from failure
 
 
+@contextlib.contextmanager
+def complete_file(path: Path) -> Iterator[str]:
+    """Give a hidden name of the same suffix to write to, which takes the place of the path when it is complete."""
+    part = path.with_name(f".{uuid.uuid4().hex[:12]}.{path.name}")
+    try:
+        yield str(part)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
 def sibling(target: Path, purpose: str) -> Path:
     """Return a hidden new name beside a path."""
     return target.with_name(f".{target.name}.{uuid.uuid4().hex[:12]}.{purpose}")

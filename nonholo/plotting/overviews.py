@@ -146,7 +146,8 @@ def _form(orbit: AbstractOrbit) -> str:
     return f"{where},  {s or 'no'} constraint{'s' * (s != 1)}"
 
 
-def _name(orbit: AbstractOrbit) -> str:
+def name_of(orbit: AbstractOrbit) -> str:
+    """Return what moves, in words."""
     return _name_of_body(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name
 
 
@@ -242,7 +243,7 @@ def overview(
     if panels[0].is_timed:
         axes[0].set_xlabel("time")
     _share_time([own for panel, own in zip(panels[1:], axes[1:], strict=True) if panel.is_timed])
-    return finish_page(figure, _name(orbit), _facts(orbit), path)
+    return finish_page(figure, name_of(orbit), _facts(orbit), path)
 
 
 def _axes(figure: Figure, panels: list[Panel]) -> list[Axes]:

@@ -57,7 +57,7 @@ class Output(Section):
     plot: bool = True
     """Draw a picture beside the store."""
     gif: bool = False
-    """Draw an animation beside it: of tops in space and of plane sleighs."""
+    """Draw an animation beside it: of bodies on SO(3), SE(2) and SE(3), and of coordinates."""
 
 
 class AbstractScenario(Section):

@@ -1,15 +1,13 @@
 """Pictures of a run, drawn beside its store; a picture that fails never costs the run."""
 
-import contextlib
 import os
-import uuid
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nonholo.base.progress import progress_bar, waiting
 from nonholo.cli.screen.errors import warn
 from nonholo.cli.screen.kinds import KINDS, figure_of
+from nonholo.io import complete_file
 
 if TYPE_CHECKING:
     from nonholo.orbit import Orbit
@@ -43,12 +41,12 @@ def draw(
         from nonholo import plotting
 
         if picture is not None:
-            with complete(picture) as part, waiting("drawing", progress):
+            with complete_file(picture) as part, waiting("drawing", progress):
                 figure_of(kind, orbit, _flow, look, **names).savefig(part, dpi=dpi)
             drawn["picture"] = str(picture)
         if animation is not None:
-            with complete(animation) as part, progress_bar("frames", progress) as report:
-                plotting.animate(orbit, part, progress=report, **look)
+            with progress_bar("frames", progress) as report:
+                plotting.animate(orbit, animation, progress=report, overwrite=True, **look)
             drawn["animation"] = str(animation)
     except Exception as failure:
         warn(f"no picture: {type(failure).__name__}: {failure}")
@@ -60,17 +58,6 @@ def warn_of_older(store: Path, drawn: dict[str, str | None]) -> None:
     for path in (beside(store, "png"), beside(store, "gif")):
         if path.exists() and str(path) not in drawn.values():
             warn(f"'{path}' shows an older run. Remove it, or draw it again with: nonholo plot {store}")
-
-
-@contextlib.contextmanager
-def complete(path: Path) -> Iterator[str]:
-    """Give a path to draw to, which takes the name of the picture only when it is complete."""
-    part = path.with_name(f".{uuid.uuid4().hex[:12]}.{path.name}")
-    try:
-        yield str(part)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _flow(orbit: "Orbit") -> "Orbit | None":

@@ -9,7 +9,7 @@ from nonholo.base.progress import waiting
 from nonholo.cli.scenario.sweeps import library_name
 from nonholo.cli.scenario.toml import parsed
 from nonholo.cli.screen.errors import FAILED, store_errors, warn
-from nonholo.cli.screen.pictures import complete
+from nonholo.io import complete_file
 
 if TYPE_CHECKING:
     import xarray
@@ -25,7 +25,7 @@ def draw_sweep(
         from nonholo import plotting
 
         figure: Any = plotting.sweep_map(result, quantity, across, up, **look).axes.figure
-        with complete(picture) as part, waiting("drawing", sys.stderr.isatty()):
+        with complete_file(picture) as part, waiting("drawing", sys.stderr.isatty()):
             figure.savefig(part, dpi=dpi)
     except Exception as failure:
         warn(f"no picture: {type(failure).__name__}: {failure}")

@@ -1,138 +1,133 @@
-"""Moving pictures of orbits, as GIF files."""
+"""Moving pictures of orbits, as files."""
 
-import math
+import functools
 from collections.abc import Callable
 from pathlib import Path
-from typing import Unpack
+from typing import Any, Unpack, cast
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_rgba_array
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from PIL import Image
 
-from nonholo.base.checks import count, error, function, positive, shown
-from nonholo.base.checks import path as checked_path
-from nonholo.base.limits import within_memory
-from nonholo.base.types import Int
-from nonholo.io import check_file
-from nonholo.orbit import Orbit
+from nonholo.base.checks import count, error, function, positive
+from nonholo.base.types import Float
+from nonholo.groups import SE, SO
+from nonholo.io import complete_file
+from nonholo.orbit import AbstractOrbit
 from nonholo.plotting import theme
-from nonholo.plotting.animation._scenes import sleigh_motion, sleigh_scene, top_motion, top_scene
-from nonholo.plotting.parts import drawable, posed, window
-from nonholo.plotting.sheets import sheet_of
+from nonholo.plotting.animation import _in_plane, _in_space, _on_sphere
+from nonholo.plotting.animation._film import film_path, write_film
+from nonholo.plotting.animation._part import part_of, part_of_flow, shown_states
+from nonholo.plotting.motion import track_of
+from nonholo.plotting.overviews import name_of
+from nonholo.plotting.parts import drawable_in_time, posed
 
-_COLORS = 96
-_SHOWN_FOR_PALETTE = 6
+_SIZE = 4.8  # inches; 480 pixels
 
 
 @theme.styled
 def animate(
-    orbit: Orbit,
+    orbit: AbstractOrbit,
     path: str | Path,
     frames: int = 120,
     fps: float = 25.0,
     progress: Callable[[int, int], None] | None = None,
     *,
+    flow: AbstractOrbit | None = None,
     overwrite: bool = False,
     **look: Unpack[theme.Look],
 ) -> Path:
-    """Make a GIF of the moving body: a top with its forbidden axis on the sphere, or a sleigh with its track.
+    """Make a film of the moving body: a GIF, or an MP4 or WebM where the program ffmpeg is installed.
 
-    The top is drawn as the box whose mass tensor is proportional to its own, the sleigh as the ellipse that has its
-    mass and moment of inertia. Of a long orbit the part about the transition is shown, so that the body visibly moves
-    but does not flicker.
+    On SO(3) the body turns within the sphere on which its forbidden axis, otherwise body axis 3, leaves a trace. It is
+    drawn as the box whose mass tensor is proportional to its own; on SE(3) as the box that has its mass tensor; on
+    SE(2) as the ellipse that has its mass and moment of inertia. In coordinates it is the `outline` of its system, or
+    a point where there is none. Of a long orbit on a group the part about the transition is shown, so that the body
+    visibly moves but does not flicker.
 
     Args:
-        orbit: An orbit of a Suslov top on SO(3) or of a sleigh in the plane, with poses.
-        path: Where to write, a new file; ends in .gif.
+        orbit: An orbit on SO(3), SE(2) or SE(3), with poses, or one in coordinates.
+        path: Where to write, a new file; ends in .gif, .mp4 or .webm.
         frames: Number of frames; fewer if the orbit has fewer states.
         fps: Frames per second.
         progress: Called with the number of finished frames and their total.
-        overwrite: Replace an older animation at the path.
-        **look: Title, label, color and more: `nh.plot.Look`.
+        flow: The continuous motion from the same initial data, drawn beside the orbit at the same times.
+        overwrite: Replace an older film at the path.
+        **look: Title, label, color and more: `nh.plot.Look`. An inch of `size` has 100 pixels.
 
     Returns:
         The path.
 
     Raises:
         FileExistsError: The path exists, and is not to be replaced.
-        ValueError: An orbit of another system or without poses, another suffix, a number that is not positive.
+        ValueError: An orbit on another group or without poses, a flow of another body, another suffix or one that
+            needs ffmpeg, a number that is not positive.
 
     Example:
         >>> folder = getfixture("tmp_path")
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
         >>> orbit = nh.simulate(sleigh, body_velocity=(1, 0, 0), steps=20)
-        >>> nh.plot.animate(orbit, folder / "sleigh.gif", frames=3).name
+        >>> nh.plot.animate(orbit, folder / "sleigh.gif", frames=3, size=(3.2, 2.4)).name
         'sleigh.gif'
     """
-    motion, scene = _scene_of(orbit)
-    target = _target(path)
-    check_file(target, overwrite=overwrite, where="animate(path=...)")
+    orbit = drawable_in_time("animate(orbit=...)", orbit)
+    motion, scene = _scene_of("animate(orbit=...)", orbit)
+    flow = None if flow is None else _same_space("animate(flow=...)", flow, orbit)
+    target = film_path("animate(path=...)", path, overwrite=overwrite)
     remedy = "Pass how many frames there should be."
     total = min(count("animate(frames=...)", frames, remedy), len(orbit))
     if progress is not None:
         function("animate(progress=...)", progress)
     rate = float(positive("animate(fps=...)", fps, "Pass frames per second."))
-    shown = _shown_states(orbit, motion(orbit), total)
-    figure, show = scene(orbit, shown)
-    canvas = FigureCanvasAgg(figure)
-    within_memory("animate(frames=...)", float(len(shown)) * math.prod(canvas.get_width_height()), "Ask for fewer.")
-    sampled = np.unique(np.linspace(0, len(shown) - 1, _SHOWN_FOR_PALETTE).round().astype(int))
-    palette = _palette([_photograph(canvas, show, int(frame)) for frame in sampled])
-    pictures = []
-    for frame in range(len(shown)):
-        pictures.append(_photograph(canvas, show, frame).quantize(palette=palette, dither=Image.Dither.NONE))
-        if progress is not None:
-            progress(frame + 1, len(shown))
-    duration = max(20, round(1000 / rate))
-    pictures[0].save(target, save_all=True, append_images=pictures[1:], duration=duration, loop=0, optimize=True)
+    shown = shown_states(orbit, motion(orbit), total)
+    figure, axes, set_clock = _stage(orbit, orbit.time[shown])
+    others = [] if flow is None else [part_of_flow(flow, orbit.time[shown])]
+    show = scene(axes, orbit, [part_of(orbit, shown), *others])
+
+    def draw(frame: int) -> None:
+        set_clock(frame)
+        show(frame)
+
+    with complete_file(target) as part:
+        write_film(part, figure, draw, len(shown), rate, progress)
     return target
 
 
-def _scene_of(orbit: Orbit) -> tuple[Callable[[Orbit], float], Callable[..., tuple[Figure, Callable[[int], None]]]]:
-    where = "animate(orbit=...)"
-    sheet = sheet_of(drawable(where, orbit).system)
-    if sheet is None:
-        got = f"{orbit!r} on {orbit.system.group}"
-        requirement = "be an orbit of a Suslov top in space or a sleigh in the plane"
-        raise error(where, requirement, got, "Use `overview` for a still picture.")
-    posed(where, orbit)
-    return (top_motion, top_scene) if sheet.blade is None else (sleigh_motion, sleigh_scene)
+def _scene_of(where: str, orbit: AbstractOrbit) -> tuple[Callable[[Any], float], Callable[..., Callable[[int], None]]]:
+    """Return how far an orbit moves between saved states, in units of what the eye can follow, and what draws it."""
+    if orbit.coordinates:
+        track = cast(Any, track_of(orbit))
+        return lambda _: 0.0, functools.partial((_in_plane if len(track.names) == 2 else _in_space).draw_path, track)
+    group = posed(where, orbit).system.group
+    scenes = {SO(3): _on_sphere, SE(2): _in_plane, SE(3): _in_space}
+    if group not in scenes:
+        raise error(where, "move on SO(3), SE(2) or SE(3)", f"{group}", "Use `overview` for a still picture.")
+    return scenes[group].motion, scenes[group].draw_body
 
 
-def _target(path: str | Path) -> Path:
-    target = checked_path("animate(path=...)", path)
-    if target.suffix.lower() != ".gif":
-        raise error("animate(path=...)", "end in .gif", shown(str(path)), "Use `overview` for a still picture.")
-    return target
+def _same_space(where: str, flow: Any, orbit: AbstractOrbit) -> Any:
+    flow = drawable_in_time(where, flow) if orbit.coordinates else posed(where, flow)
+    if flow.space != orbit.space:
+        raise error(where, f"move in {orbit.space}", f"{flow.space}", "Pass a motion of the same body.")
+    return flow
 
 
-def _shown_states(orbit: Orbit, motion: float, total: int) -> Int[np.ndarray, "F"]:
-    """Return the states of the frames: the whole orbit, or the part about the transition if it moves too fast for that.
+def _stage(orbit: AbstractOrbit, times: Float[np.ndarray, "F"]) -> tuple[Figure, Axes, Callable[[int], None]]:
+    """Return a figure with a title, the time and a strip that shows how far it has come; its axes; what sets both."""
+    figure = theme.new_figure((_SIZE, _SIZE), None)
+    axes = figure.add_axes((0.02, 0.05, 0.96, 0.88))
+    title = theme.asked("title", name_of(orbit))
+    figure.text(0.03, 0.965, title, va="center", fontsize="large", fontweight="bold")
+    clock = figure.text(0.97, 0.965, "", va="center", ha="right", family="monospace", color=theme.QUIET)
+    strip = figure.add_axes((0.03, 0.022, 0.94, 0.012), xlim=(0, 1), ylim=(0, 1))
+    strip.set_axis_off()
+    colors = theme.time_colors(orbit, np.linspace(times[0], times[-1], 256))
+    strip.imshow(colors[None], extent=(0, 1, 0, 1), aspect="auto", alpha=0.9)
+    cover = strip.axvspan(0.0, 1.0, color=theme.LEVEL, linewidth=0)
 
-    `motion` is how far the body moves between two saved states, in units of what the eye can follow.
-    """
-    stride = max(1, int(1 / motion)) if motion > 0 else len(orbit)
-    if len(orbit) <= stride * total:
-        return np.linspace(0, len(orbit) - 1, total).round().astype(int)
-    return np.arange(len(orbit))[window(orbit, motion, 1.0, total)]
+    def set_clock(frame: int) -> None:
+        done = (frame + 1) / len(times)
+        cover.set(x=done, width=1 - done)
+        clock.set_text(f"t = {times[frame]:.4g}")
 
-
-def _photograph(canvas: FigureCanvasAgg, show: Callable[[int], None], frame: int) -> Image.Image:
-    show(frame)
-    canvas.draw()
-    return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy(), "RGB")
-
-
-def _palette(samples: list[Image.Image]) -> Image.Image:
-    width, height = samples[0].size
-    sheet = Image.new("RGB", (width, height * len(samples)))
-    for row, sample in enumerate(samples):
-        sheet.paste(sample, (0, row * height))
-    common = sheet.quantize(colors=_COLORS, method=Image.Quantize.MEDIANCUT).getpalette() or []
-    # thin lines are too few pixels to be given a color of their own, so theirs are added
-    lines = np.vstack([theme.TIME(np.linspace(0, 1, 24)), to_rgba_array([theme.PAPER, theme.UNSTABLE, theme.INK])])
-    palette = Image.new("P", (1, 1))
-    palette.putpalette(common[: 3 * _COLORS] + (255 * lines[:, :3]).round().astype(int).ravel().tolist())
-    return palette
+    return figure, axes, set_clock

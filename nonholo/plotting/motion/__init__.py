@@ -1,6 +1,7 @@
 """Pictures of an orbit: paths in space, momenta, the error of its energy, quantities in time."""
 
 from nonholo.plotting.motion._blade_track import BladeTrack, blade_track
+from nonholo.plotting.motion._bodies import Bodies, bodies_of
 from nonholo.plotting.motion._body_axis_track import BodyAxisTrack, body_axis_track, known_axes, rotation_axes
 from nonholo.plotting.motion._coordinates import Track, draw_path, draw_shape, draw_velocity, symbol, track_of
 from nonholo.plotting.motion._energy_error import EnergyError, draw_residual, energy_error

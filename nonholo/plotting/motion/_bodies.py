@@ -62,8 +62,13 @@ class Bodies:
 _LAYERS = slice(0, 1), slice(1, None)
 
 
-def bodies_of(orbit: AbstractOrbit, points: Float[np.ndarray, "K d"]) -> Bodies | None:
-    """Return the bodies to draw along the points of a path in the plane; None of a system that shows no heading."""
+def bodies_of(
+    orbit: AbstractOrbit, points: Float[np.ndarray, "K d"], states: AbstractOrbit | None = None
+) -> Bodies | None:
+    """Return the bodies to draw along the points of a path in the plane; None of a system that shows no heading.
+
+    They are at some of the points, or at all states that are given.
+    """
     system = orbit.system
     if not orbit.coordinates or system.heading is None:
         return None
@@ -73,7 +78,7 @@ def bodies_of(orbit: AbstractOrbit, points: Float[np.ndarray, "K d"]) -> Bodies 
     shown = (radius if radius > _SMALL * extent else _ENLARGED * extent) or 1.0
     way = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
     count = int(np.clip(way / (_APART * shown), 1, _MOST - 1))
-    q = orbit.configuration[parts.evenly_spread(points, count)]
+    q = orbit.configuration[parts.evenly_spread(points, count)] if states is None else states.configuration
     angle, larger = q[:, orbit.coordinates.index(system.heading)], shown / radius if radius else 1.0
     ahead = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     place = points[:0] if not len(q) else q[:, [orbit.coordinates.index(name) for name in ("x", "y")]]
