@@ -76,9 +76,7 @@ def bodies_of(
     corners = np.concatenate([np.zeros((1, 2)), *system.parts(orbit.configuration[0])])
     radius = float(np.linalg.norm(corners, axis=1).max())
     shown = (radius if radius > _SMALL * extent else _ENLARGED * extent) or 1.0
-    way = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
-    count = int(np.clip(way / (_APART * shown), 1, _MOST - 1))
-    q = orbit.configuration[parts.evenly_spread(points, count)] if states is None else states.configuration
+    q = (_some(orbit, points, shown) if states is None else states).configuration
     angle, larger = q[:, orbit.coordinates.index(system.heading)], shown / radius if radius else 1.0
     ahead = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     place = points[:0] if not len(q) else q[:, [orbit.coordinates.index(name) for name in ("x", "y")]]
@@ -88,3 +86,9 @@ def bodies_of(
         for foot, turn, row in zip(place, turns, q, strict=True)
     ]
     return Bodies(place, ahead, outlines, shown, larger)
+
+
+def _some(orbit: AbstractOrbit, points: Float[np.ndarray, "K d"], radius: float) -> AbstractOrbit:
+    """Return states along the points of a path at which bodies stay apart."""
+    way = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+    return orbit.chosen(parts.evenly_spread(points, int(np.clip(way / (_APART * radius), 1, _MOST - 1))))
