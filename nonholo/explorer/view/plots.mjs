@@ -4,7 +4,7 @@ import { css, raised, short, timeColor } from "./look.mjs";
 import { isSoftware } from "./stage.mjs";
 
 const EPSILON = 2 ** -52;
-const PEN = { willReadFrequently: isSoftware }; // drawn by the processor where there is nothing else
+const PEN = { alpha: false, willReadFrequently: isSoftware }; // drawn by the processor where there is nothing else
 const FONT = "11px system-ui, sans-serif";
 
 /** A canvas that is drawn anew at its own size, sharp on every screen. */
@@ -13,29 +13,39 @@ export class Picture {
     this.canvas = canvas;
     this.pen = canvas.getContext("2d", PEN);
     this.still = document.createElement("canvas");
-    new ResizeObserver(() => this.redraw()).observe(canvas);
+    new ResizeObserver(() => {
+      this.draw();
+      this.show(this.k ?? 0);
+    }).observe(canvas);
   }
 
+  /** Take a motion; who does so shows a state of it. */
   set(data, look) {
     Object.assign(this, { data, look });
-    this.redraw();
+    this.draw();
   }
 
-  redraw() {
+  /** Draw what stands still. */
+  draw() {
     if (!this.data) return;
     const ratio = Math.min(window.devicePixelRatio || 1, 2), { clientWidth: w, clientHeight: h } = this.canvas;
     if (!w || !h) return;
+    if (w !== this.w || h !== this.h || ratio !== this.ratio) this.resize(w, h, ratio);
+    const pen = this.still.getContext("2d", PEN);
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.font = FONT;
+    pen.fillStyle = this.look.card;
+    pen.fillRect(0, 0, w, h);
+    this.frame();
+    this.background(pen);
+  }
+
+  resize(w, h, ratio) {
+    Object.assign(this, { w, h, ratio });
     for (const canvas of [this.canvas, this.still]) {
       canvas.width = Math.round(w * ratio);
       canvas.height = Math.round(h * ratio);
     }
-    Object.assign(this, { w, h, ratio });
-    const pen = this.still.getContext("2d", PEN);
-    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-    pen.font = FONT;
-    this.frame();
-    this.background(pen);
-    this.show(this.k ?? 0);
   }
 
   /** Show a state: what stands still is a picture already. */
@@ -44,8 +54,6 @@ export class Picture {
     if (!this.data || !this.w) return;
     const { pen, ratio } = this;
     pen.setTransform(1, 0, 0, 1, 0, 0);
-    pen.fillStyle = this.look.card;
-    pen.fillRect(0, 0, this.canvas.width, this.canvas.height);
     pen.drawImage(this.still, 0, 0);
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.font = FONT;
@@ -100,7 +108,6 @@ export class PhasePortrait extends Picture {
 
   background(pen) {
     const { look, w, h, data: { orbit, flow, body } } = this;
-    pen.clearRect(0, 0, w, h);
     if (this.data.counts) this.shade(pen, this.data.counts);
     pen.strokeStyle = look.line;
     pen.lineWidth = 1;
@@ -182,7 +189,6 @@ export class EnergyError extends Picture {
 
   background(pen) {
     const { look, w, h, box, data: { orbit } } = this;
-    pen.clearRect(0, 0, w, h);
     pen.textBaseline = "middle";
     pen.textAlign = "right";
     const every = Math.max(1, Math.ceil(((this.top - this.bottom) * 18) / (box.bottom - box.top)));

@@ -17,8 +17,13 @@ export class SleighView {
   }
 
   set(state, orbit, look) {
+    const drawn = JSON.stringify(look);
     clear(this.fixed);
-    clear(this.moving);
+    if (drawn !== this.drawn) {
+      clear(this.moving);
+      this.build(look);
+      this.drawn = drawn;
+    }
     this.orbit = orbit;
     const { mass, inertia, a } = state.parameters;
     const long = SLENDER * Math.sqrt((4 * inertia) / mass / (1 + SLENDER * SLENDER));
@@ -42,8 +47,8 @@ export class SleighView {
     if (this.track) this.track.position.z = 0.004 * reach;
     if (count > 1) this.fixed.add(this.whole(track, 0.002 * reach, look));
     if (this.track) this.fixed.add(this.track);
-    this.body(long, a, look);
-    this.moving.scale.setScalar(this.enlarged);
+    for (const part of this.about) part.position.x = a / long;
+    this.moving.scale.setScalar(this.enlarged * long);
     this.stage.look(center, 0.97 * reach);
   }
 
@@ -66,21 +71,23 @@ export class SleighView {
     this.fixed.add(new LineSegments(new BufferGeometry().setFromPoints(points), thin(look.ground)));
   }
 
-  body(long, a, look) {
-    const wide = long / SLENDER, high = 0.13 * long, shape = new Shape();
-    shape.absellipse(a, 0, long, wide, 0, 2 * Math.PI);
-    const options = { depth: high, bevelEnabled: true, bevelSize: 0.04 * long, bevelThickness: 0.04 * long, curveSegments: 48 };
+  /** The body in units of its half length; the plate and the center of mass lie ahead of the blade. */
+  build(look) {
+    const shape = new Shape();
+    shape.absellipse(0, 0, 1, 1 / SLENDER, 0, 2 * Math.PI);
+    const options = { depth: 0.13, bevelEnabled: true, bevelSize: 0.04, bevelThickness: 0.04, curveSegments: 48 };
     const plate = new Mesh(new ExtrudeGeometry(shape, options), solid(look.body));
-    plate.position.z = 0.2 * long;
-    const blade = new Mesh(new BoxGeometry(0.8 * long, 0.05 * long, 0.26 * long), solid(look.ink));
-    blade.position.z = 0.13 * long;
-    const bow = new Mesh(new BoxGeometry(0.8 * long, 0.045 * long, 0.01 * long), solid(look.ink));
-    bow.position.z = 0.385 * long;
-    const mass = new Mesh(new SphereGeometry(0.1 * long, 24, 16), solid(look.accent));
-    mass.position.set(a, 0, 0.42 * long);
-    const contact = new Mesh(new CylinderGeometry(0.05 * long, 0.05 * long, 0.012 * long, 24), solid(look.card));
+    plate.position.z = 0.2;
+    const blade = new Mesh(new BoxGeometry(0.8, 0.05, 0.26), solid(look.ink));
+    blade.position.z = 0.13;
+    const bow = new Mesh(new BoxGeometry(0.8, 0.045, 0.01), solid(look.ink));
+    bow.position.z = 0.385;
+    const mass = new Mesh(new SphereGeometry(0.1, 24, 16), solid(look.accent));
+    mass.position.z = 0.42;
+    const contact = new Mesh(new CylinderGeometry(0.05, 0.05, 0.012, 24), solid(look.card));
     contact.rotation.x = Math.PI / 2;
-    contact.position.z = 0.395 * long;
+    contact.position.z = 0.395;
+    this.about = [plate, mass];
     this.moving.add(plate, blade, bow, mass, contact);
   }
 

@@ -2,7 +2,7 @@
 
 import {
   AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, LineBasicMaterial, Mesh, MeshBasicMaterial,
-  MeshLambertMaterial, MeshStandardMaterial, PerspectiveCamera, SRGBColorSpace, Scene, Spherical, Vector3, WebGLRenderer,
+  MeshStandardMaterial, PerspectiveCamera, SRGBColorSpace, Scene, ShaderMaterial, Spherical, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { timeColor } from "./look.mjs";
@@ -18,6 +18,7 @@ export const isSoftware = (() => {
 })();
 
 const STILL = 350; // milliseconds
+const AMBIENT = 1.5, SUNLIGHT = 2.1, SUN = [2, -3, 5];
 
 export class Stage {
   constructor(canvas, eye, up = [0, 0, 1]) {
@@ -35,9 +36,9 @@ export class Stage {
     this.controls.enablePan = false;
     canvas.style.touchAction = "pan-y";
     this.controls.addEventListener("change", () => (this.dirty = true));
-    this.scene.add(new AmbientLight(0xffffff, 1.5));
-    const sun = new DirectionalLight(0xffffff, 2.1);
-    sun.position.set(2, -3, 5);
+    this.scene.add(new AmbientLight(0xffffff, AMBIENT));
+    const sun = new DirectionalLight(0xffffff, SUNLIGHT);
+    sun.position.set(...SUN);
     this.scene.add(sun);
     canvas.addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
@@ -115,9 +116,38 @@ function material(Kind, options) {
   return materials.get(key);
 }
 
+/** A dull solid under the light of the stage, which is reckoned at corners instead of at every pixel. */
+class Dull extends ShaderMaterial {
+  constructor({ color, ...more }) {
+    const sun = new Vector3(...SUN).normalize();
+    super({ ...more, uniforms: { own: { value: new Color(color) }, sun: { value: sun } }, vertexShader: CORNER, fragmentShader: PIXEL });
+  }
+}
+
+const CORNER = `
+uniform vec3 own, sun;
+varying vec3 shade;
+void main() {
+  vec4 place = modelViewMatrix * vec4(position, 1.0);
+  vec3 outwards = normalize(normalMatrix * normal);
+  if (dot(outwards, place.xyz) > 0.0) outwards = -outwards;
+  float light = ${(AMBIENT / Math.PI).toFixed(4)} + ${(SUNLIGHT / Math.PI).toFixed(4)} * max(0.0, dot(outwards, mat3(viewMatrix) * sun));
+  shade = light * own;
+  #ifdef USE_COLOR
+  shade *= color;
+  #endif
+  gl_Position = projectionMatrix * place;
+}`;
+const PIXEL = `
+varying vec3 shade;
+void main() {
+  gl_FragColor = vec4(shade, 1.0);
+  #include <colorspace_fragment>
+}`;
+
 /** The material of a solid: simple without a graphics card. */
 export const solid = (color, more = {}) =>
-  isSoftware ? material(MeshLambertMaterial, { color, ...more }) : material(MeshStandardMaterial, { color, roughness: 0.55, ...more });
+  isSoftware ? material(Dull, { color, ...more }) : material(MeshStandardMaterial, { color, roughness: 0.55, ...more });
 
 export const plain = (color, more = {}) => material(MeshBasicMaterial, { color, ...more });
 
@@ -129,21 +159,23 @@ export const thin = (color, more = {}) => material(LineBasicMaterial, { color, .
  */
 export function ribbon(points, facing, width, dark, more = {}) {
   const count = points.length / 3, place = new Float32Array(6 * count), paint = new Float32Array(6 * count);
-  const index = new Uint32Array(6 * Math.max(0, count - 1)), normal = [0, 0, 1], across = [0, 0, 0], shades = timeShades(dark);
+  const index = new Uint32Array(6 * Math.max(0, count - 1)), shades = timeShades(dark);
+  const here = [0, 0, 0], normal = [0, 0, 1], across = [0, 0, 0];
   for (let k = 0; k < count; k++) {
     const p = 3 * Math.max(0, k - 1), q = 3 * Math.min(count - 1, k + 1), at = 3 * k;
     const x = points[q] - points[p], y = points[q + 1] - points[p + 1], z = points[q + 2] - points[p + 2];
-    facing([points[at], points[at + 1], points[at + 2]], normal);
+    for (let i = 0; i < 3; i++) here[i] = points[at + i];
+    facing(here, normal);
     const u = normal[1] * z - normal[2] * y, v = normal[2] * x - normal[0] * z, w = normal[0] * y - normal[1] * x;
-    const size = Math.sqrt(u * u + v * v + w * w);
-    if (size > 1e-12) [across[0], across[1], across[2]] = [u, v, w].map((c) => (c * width) / 2 / size);
+    const size = Math.sqrt(u * u + v * v + w * w), half = width / 2 / size;
+    if (size > 1e-12) [across[0], across[1], across[2]] = [half * u, half * v, half * w];
     const shade = 3 * Math.floor((SHADES * k) / count);
     for (let i = 0; i < 3; i++) {
       place[2 * at + i] = points[at + i] + across[i];
       place[2 * at + 3 + i] = points[at + i] - across[i];
       paint[2 * at + i] = paint[2 * at + 3 + i] = shades[shade + i];
     }
-    if (k) index.set([2 * k - 2, 2 * k - 1, 2 * k, 2 * k, 2 * k - 1, 2 * k + 1], 6 * k - 6);
+    for (let i = 0; i < 6 && k; i++) index[6 * k - 6 + i] = 2 * k + CORNERS[i];
   }
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(place, 3));
@@ -154,6 +186,7 @@ export function ribbon(points, facing, width, dark, more = {}) {
   return mesh;
 }
 
+const CORNERS = [-2, -1, 0, 0, -1, 1]; // of the two triangles between neighbors
 const SHADES = 256;
 const shadesOf = {};
 

@@ -2,11 +2,11 @@
 
 import {
   BufferAttribute, CapsuleGeometry, Group, LineLoop, BufferGeometry, Mesh, Quaternion, SphereGeometry,
-  Vector3, Matrix4,
+  Vector3,
 } from "three";
 import { clear, isSoftware, plain, ribbon, solid, thin } from "./stage.mjs";
 
-const Z = new Vector3(0, 0, 1);
+const UP = new Vector3(0, 1, 0), Z = new Vector3(0, 0, 1);
 
 /** Eigenvalues and eigenvectors (columns) of a symmetric 3 x 3 matrix, by Jacobi's rotations. */
 function principal(A) {
@@ -32,15 +32,16 @@ export class TopView {
   }
 
   set(state, orbit, look, flow) {
-    const drawn = JSON.stringify([state.parameters, look]), { count, g } = orbit;
+    const drawn = JSON.stringify(look), { count, g } = orbit;
     this.orbit = orbit;
     if (drawn !== this.drawn) {
       clear(this.fixed);
       clear(this.moving);
       this.globe(look);
-      this.body(state.parameters, look, flow);
+      this.build(look);
       this.drawn = drawn;
     }
+    this.shape(state.parameters, flow);
     if (this.trace) {
       this.fixed.remove(this.trace);
       this.trace.geometry.dispose();
@@ -77,10 +78,8 @@ export class TopView {
     }
   }
 
-  body(p, look, flow) {
-    const { values, vectors } = principal([[p.J11, p.J12, p.J13], [p.J12, p.J22, p.J23], [p.J13, p.J23, p.J33]]);
-    const axes = values.map((value) => Math.sqrt(Math.max(value, 0.02)));
-    const scale = 0.62 / Math.max(...axes);
+  /** The solid, its forbidden axis, and the axis of permanent rotation; `shape` gives them sides and direction. */
+  build(look) {
     const geometry = new SphereGeometry(1, isSoftware ? 40 : 72, isSoftware ? 24 : 48).toNonIndexed();
     const place = geometry.attributes.position, paint = new Float32Array(3 * place.count);
     const tones = [look.body, look.stripe].map((hex) => plain(hex).color.toArray());
@@ -91,22 +90,30 @@ export class TopView {
       for (let corner = k; corner < k + 3; corner++) paint.set(tone, 3 * corner);
     }
     geometry.setAttribute("color", new BufferAttribute(paint, 3));
-    const v = vectors, turn = new Matrix4().set(
-      v[0][0], v[0][1], v[0][2], 0, v[1][0], v[1][1], v[1][2], 0, v[2][0], v[2][1], v[2][2], 0, 0, 0, 0, 1,
-    );
+    this.solid = new Mesh(geometry, solid(0xffffff, { vertexColors: true }));
+    this.solid.matrixAutoUpdate = false;
+    this.moving.add(this.solid);
+    this.rod(Z, 0.98, 0.016, look.accent, true);
+    this.axis = this.rod(Z, 0.86, 0.012, look.ink, false);
+  }
+
+  shape(p, flow) {
+    const { values, vectors: v } = principal([[p.J11, p.J12, p.J13], [p.J12, p.J22, p.J23], [p.J13, p.J23, p.J33]]);
+    const axes = values.map((value) => Math.sqrt(Math.max(value, 0.02))), scale = 0.62 / Math.max(...axes), turn = this.solid.matrix;
+    turn.set(v[0][0], v[0][1], v[0][2], 0, v[1][0], v[1][1], v[1][2], 0, v[2][0], v[2][1], v[2][2], 0, 0, 0, 0, 1);
     if (turn.determinant() < 0) turn.scale(new Vector3(-1, 1, 1));
-    geometry.scale(...axes.map((axis) => scale * axis)).applyMatrix4(turn);
-    this.moving.add(new Mesh(geometry, solid(0xffffff, { vertexColors: true })));
-    this.rod(new Vector3(0, 0, 1), 0.98, 0.016, look.accent, true);
-    if (flow.velocityAxis) this.rod(new Vector3(...flow.velocityAxis).normalize(), 0.86, 0.012, look.ink, false);
+    turn.scale(new Vector3(...axes.map((axis) => scale * axis)));
+    this.solid.matrixWorldNeedsUpdate = true;
+    this.axis.visible = Boolean(flow.velocityAxis);
+    if (this.axis.visible) this.axis.quaternion.setFromUnitVectors(UP, new Vector3(...flow.velocityAxis).normalize());
   }
 
   rod(direction, length, radius, color, tipped) {
     const rod = new Mesh(new CapsuleGeometry(radius, length * (tipped ? 1 : 2), 4, 12), solid(color));
-    rod.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), direction);
+    rod.quaternion.setFromUnitVectors(UP, direction);
     if (tipped) rod.position.copy(direction).multiplyScalar(length / 2);
     this.moving.add(rod);
-    if (!tipped) return;
+    if (!tipped) return rod;
     const tip = new Mesh(new SphereGeometry(0.042, 20, 14), solid(color));
     tip.position.copy(direction);
     this.moving.add(tip);
