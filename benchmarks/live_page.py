@@ -38,7 +38,9 @@ _COMMON = """
       const gl = document.getElementById(id).getContext("webgl2");
       gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
     }
-    for (const id of ["phase-canvas", "energy-canvas"]) document.getElementById(id).getContext("2d").getImageData(0, 0, 1, 1);
+    for (const id of ["phase-canvas", "energy-canvas"]) {
+      document.getElementById(id).getContext("2d").getImageData(0, 0, 1, 1);
+    }
   };
 """
 _CHANGE = f"""async (key) => {{ {_COMMON}

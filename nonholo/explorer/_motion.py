@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 
 from nonholo.base.checks import error, instance, shown
-from nonholo.base.types import Float
+from nonholo.base.types import Float, Int
 from nonholo.discrete import Discretization, discretize
 from nonholo.explorer._forces import force_numbers, under_forces
 from nonholo.groups import matrix_from_quaternion
@@ -20,6 +20,8 @@ MOST_STEPS = 20_000
 
 MOST_STATES = 4_000
 """States that a page replays."""
+
+_RECORDED = 100  # states that it replays where its kernel may not run: 17 kB
 
 _LARGEST = 1e6
 _TIME_STEPS = (1e-6, 100.0)
@@ -57,7 +59,10 @@ def _of_discretization(where: str, discrete: Discretization) -> Shown:
         raise error(where, "be a top with n = 3 or a sleigh in the plane, of order 2", shown(discrete.system), remedy)
     lower = np.linalg.cholesky(discrete.system.canonical.constrained_inertia)
     state = _state(discrete, kind, lower @ np.array([0.4, -0.9]) * lower[0, 0], np.array([1.0, 0, 0, 0]), _STEPS)
-    return Shown({"kind": kind, "state": state}, _name(discrete.system), _frame_note(discrete.system))
+    orbit = simulated(where, state)
+    recorded = _numbers(orbit, _spread(orbit, _RECORDED))[0] if len(orbit) else None
+    data = {"kind": kind, "state": state, "recorded": recorded}
+    return Shown(data, _name(discrete.system), _frame_note(discrete.system))
 
 
 def _live(orbit: Orbit) -> Shown | None:
@@ -74,7 +79,8 @@ def _live(orbit: Orbit) -> Shown | None:
     if not (np.max(np.abs(numbers)) <= _LARGEST and _TIME_STEPS[0] <= state["time_step"] <= _TIME_STEPS[1]):
         return None
     cut = f" The first {steps:,} of {wanted:,} steps." if steps < wanted else ""
-    return Shown({"kind": kind, "state": state}, _name(orbit.system), _frame_note(orbit.system) + cut)
+    data = {"kind": kind, "state": state, "recorded": _numbers(orbit, _spread(orbit, _RECORDED))[0]}
+    return Shown(data, _name(orbit.system), _frame_note(orbit.system) + cut)
 
 
 def _kind(discrete: Discretization) -> str | None:
@@ -156,7 +162,23 @@ def _frame_note(system: AbstractSystem) -> str:
 
 
 def _replay(orbit: AbstractOrbit) -> Shown:
-    chosen = np.unique(np.linspace(0, len(orbit) - 1, min(len(orbit), MOST_STATES)).round().astype(np.int64))
+    chosen = _spread(orbit, MOST_STATES)
+    replay, forces = _numbers(orbit, chosen)
+    names = [f"p({name})" for name in orbit.coordinates[:2]] or ["r\u2081", "r\u2082"]
+    data = {"kind": "replay", "replay": replay, "momenta": names}
+    thinned = f" {len(chosen):,} of {len(orbit):,} saved states." if len(chosen) < len(orbit) else ""
+    note = f"A replay of numbers from Python: there is no kernel in the page for this motion.{thinned}{forces}"
+    title = _name(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name
+    return Shown(data, title, note)
+
+
+def _spread(orbit: AbstractOrbit, most: int) -> Int[np.ndarray, "L"]:
+    """Return at most this many states, evenly over an orbit."""
+    return np.unique(np.linspace(0, len(orbit) - 1, min(len(orbit), most)).round().astype(np.int64))
+
+
+def _numbers(orbit: AbstractOrbit, chosen: Int[np.ndarray, "L"]) -> tuple[dict[str, Any], str]:
+    """Return what a page replays of some states, and a note on their energy."""
     part = orbit.chosen(chosen) if isinstance(orbit, Orbit) and len(chosen) < len(orbit) else orbit
     rows = chosen if len(part) > len(chosen) else slice(None)
     momenta = np.pad(part.restricted_momentum, ((0, 0), (0, 2)))[rows, :2]
@@ -164,12 +186,7 @@ def _replay(orbit: AbstractOrbit) -> Shown:
     frames = (_planar_frames(part) if orbit.coordinates else _frames(part))[rows]
     arrays = {"time": orbit.time[chosen], "energy": energy[chosen], "frames": frames, "momentum": momenta}
     replay = {name: base64.b64encode(each.astype("<f8").tobytes()).decode() for name, each in arrays.items()}
-    names = [f"p({name})" for name in orbit.coordinates[:2]] or ["r\u2081", "r\u2082"]
-    data = {"kind": "replay", "replay": {**replay, "outcome": int(orbit.outcome)}, "momenta": names}
-    thinned = f" {len(chosen):,} of {len(orbit):,} saved states." if len(chosen) < len(orbit) else ""
-    note = f"A replay of numbers from Python: there is no kernel in the page for this motion.{thinned}{forces}"
-    title = _name(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name
-    return Shown(data, title, note)
+    return {**replay, "outcome": int(orbit.outcome)}, forces
 
 
 def _shown_energy(orbit: AbstractOrbit) -> tuple[Float[np.ndarray, "K"], str]:

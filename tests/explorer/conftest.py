@@ -28,9 +28,10 @@ def browser() -> Iterator[Any]:
 class Visit:
     """A page that is open, with the errors and requests that it made."""
 
-    def __init__(self, browser: Any, path: Path, fragment: str, **look: Any) -> None:
+    def __init__(self, browser: Any, path: Path, fragment: str, before: str, **look: Any) -> None:
         self.context = browser.new_context(**{"viewport": {"width": 1280, "height": 800}, **look})
         self.page = self.context.new_page()
+        self.page.add_init_script(before)
         self.errors: list[str] = []
         self.requests: list[str] = []
         self.page.on("console", lambda said: self.errors.append(said.text) if said.type == "error" else None)
@@ -78,8 +79,8 @@ def visit(browser: Any) -> Iterator[Callable[..., Visit]]:
     """Open files, and close them at the end of the test."""
     visits = []
 
-    def open_file(path: Path, fragment: str = "", **look: Any) -> Visit:
-        visits.append(Visit(browser, path, fragment, **look))
+    def open_file(path: Path, fragment: str = "", before: str = "", **look: Any) -> Visit:
+        visits.append(Visit(browser, path, fragment, before, **look))
         return visits[-1]
 
     yield open_file

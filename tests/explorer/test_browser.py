@@ -191,6 +191,22 @@ def test_presets(visit: Callable, files: dict) -> None:
     assert page.errors == []
 
 
+@pytest.mark.parametrize("name", list(BODIES))
+@pytest.mark.parametrize("host", ["without WebAssembly", "with a policy"])
+def test_where_the_kernel_may_not_run(visit: Callable, files: dict, tmp_path: Path, host: str, name: str) -> None:
+    """The motion of the page is replayed, the page says why, and has no sliders that would do nothing."""
+    path, is_policy = tmp_path / "page.html", host == "with a policy"
+    text = files[name].read_text()
+    path.write_text(text.replace(" 'wasm-unsafe-eval'", "") if is_policy else text)
+    opened = visit(path, before="" if is_policy else "delete window.WebAssembly")
+    assert "100 states replayed: WebAssembly is not allowed here" in opened.status
+    assert opened.page.evaluate("nonholo.orbit.count") == 100
+    assert not opened.page.is_visible("#parameters")
+    assert opened.page.is_visible("#body-canvas")
+    assert len(opened.requests) == 1
+    assert all("Content Security Policy" in said for said in opened.errors)
+
+
 def test_no_real_branch(visit: Callable, files: dict) -> None:
     """Where the map has no real value the page says so in words, and runs again when there is one."""
     page = visit(files["top"])

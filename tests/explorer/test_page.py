@@ -83,10 +83,24 @@ def test_forces_without_sliders(body: Any, force: Any) -> None:
     assert "A replay of numbers from Python" in text
 
 
+def test_what_a_page_replays_where_its_kernel_may_not_run() -> None:
+    """A live page carries some states of its motion, the first and the last among them, with the bits of Python."""
+    orbit = nh.simulate(nh.discretize(TOP, 0.1), body_velocity=(0.3, -1.0, 0.0), steps=500)
+    for live, steps in ((orbit, 500), (TOP, 400)):
+        page = explore(live)
+        recorded = _data(page.text)["recorded"]
+        time, frames = (np.frombuffer(base64.b64decode(recorded[name])) for name in ("time", "frames"))
+        assert len(time) == len(frames) / 12 == 100
+        states = np.rint(time / 0.1).astype(int)
+        assert (states[0], states[-1], recorded["outcome"]) == (0, steps, 0)
+        poses = page.orbit().configuration[states]
+        np.testing.assert_array_equal(frames.reshape(-1, 4, 3)[:, 1:], poses.transpose(0, 2, 1))
+
+
 def test_size_and_policy() -> None:
     """A page without data is small, in ASCII, fetches nothing, and names the only script and style that may run."""
     text = explore(TOP).text
-    assert len(text) <= LARGEST
+    assert len(text) - len(json.dumps(_data(text)["recorded"])) <= LARGEST
     assert text.isascii()
     assert "three.js authors\n\nPermission is hereby granted" in text
     script, style = (

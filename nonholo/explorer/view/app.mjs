@@ -20,6 +20,7 @@ import { WORDS } from "./words.mjs";
 
 const SECONDS = 16;
 const HOLD = 1.2;
+const RESTRICTED = ["r₁", "r₂"]; // momenta along the constraint
 const VIEWS = { top: TopView, sleigh: SleighView, replay: AxesView };
 const EYES = { top: [1.6, -2, 0.9], sleigh: [0.25, -1.1, 1.25], replay: [1.6, -2, 1.1] };
 const byId = (id) => document.getElementById(id);
@@ -40,12 +41,9 @@ export class App {
   }
 
   async begin() {
-    if (this.data.replay) {
-      this.kind = "replay";
-    } else {
-      this.kernels = {};
-      for (const [kind, text] of Object.entries(this.data.kernels)) this.kernels[kind] = await kernelOf(text, BODIES[kind].isForced);
-    }
+    this.replay = this.data.replay;
+    if (!this.replay) await this.compile();
+    if (this.replay) this.kind = "replay";
     this.controls = new Controls(this);
     const linked = this.kind === "replay" ? null : stateOf(location.hash);
     if (this.kind !== "replay") this.state = linked?.state ?? checked(this.data.state).state;
@@ -60,6 +58,19 @@ export class App {
       requestAnimationFrame(tick);
     };
     requestAnimationFrame(tick);
+  }
+
+  /** Make the kernels; where the host of the page allows no WebAssembly, replay the motion with which the page was made. */
+  async compile() {
+    const { kernels, recorded } = this.data;
+    try {
+      this.kernels = {};
+      for (const [kind, text] of Object.entries(kernels)) this.kernels[kind] = await kernelOf(text, BODIES[kind].isForced);
+    } catch (failure) {
+      if (!recorded || (globalThis.WebAssembly && !(failure instanceof WebAssembly.CompileError))) throw failure;
+      this.replay = recorded;
+      this.isBarred = true;
+    }
   }
 
   /** Take the state of a link that was typed or opened in this page. */
@@ -84,11 +95,11 @@ export class App {
     this.stale = false;
     const look = colors(), began = performance.now();
     const replay = this.kind === "replay";
-    this.body = replay ? { momenta: this.data.momenta, name: this.data.title } : BODIES[this.state.kind];
+    this.body = replay ? { momenta: this.data.momenta ?? RESTRICTED, name: this.data.title } : BODIES[this.state.kind];
     const refusal = replay ? "" : this.body.refusal(this.state.parameters);
     if (refusal) return this.say(refusal, true);
     const run = replay ? null : this.kernels[this.state.kind];
-    this.orbit = replay ? replayed(this.data.replay) : orbitOf(this.body, this.state, run);
+    this.orbit = replay ? replayed(this.replay) : orbitOf(this.body, this.state, run);
     this.took = { compute: performance.now() - began };
     this.flow = replay ? noFlow(this.orbit) : this.flowBeside();
     const kind = replay ? "replay" : this.state.kind;
@@ -157,10 +168,11 @@ export class App {
       byId("stop").textContent = name.replaceAll("_", " ");
       return this.say(`${where}: ${name.replaceAll("_", " ")}. ${message}`, true);
     }
-    const work = this.kind === "replay" ? "replayed: this body has no kernel in the page" : `computed here in ${short(this.took.compute, 2)} ms`;
+    const reason = this.isBarred ? "WebAssembly is not allowed here, so nothing can be computed anew" : "this body has no kernel in the page";
+    const replay = `${count} states replayed: ${reason}`, computed = `${count - 1} steps computed here in ${short(this.took.compute, 2)} ms`;
     const drawn = this.view.enlarged > 1.05 ? ` · body drawn ${short(this.view.enlarged, 2)} times larger` : "";
     const kept = this.body.isForced ? "energy and work agree to" : "energy kept to";
-    this.say(`${count - 1} steps ${work} · ${kept} ${short(worst, 2)}${drawn}`, false);
+    this.say(`${this.kind === "replay" ? replay : computed} · ${kept} ${short(worst, 2)}${drawn}`, false);
   }
 
   say(text, wrong) {

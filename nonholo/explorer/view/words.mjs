@@ -52,7 +52,7 @@ export const WORDS = {
     energy: ENERGY(math(i("E"), o("="), frac(sup(i("π"), n(2)), n(2) + o("(") + i("J") + o("+") + i("m") + sup(i("a"), n(2)) + o(")")), o("+"), frac(`<msubsup>${i("p")}${n(1)}${n(2)}</msubsup>`, n(2) + i("m")))),
   },
   replay: {
-    body: `<p>The motion was computed by nonholo and is replayed from numbers in this file: its step has no kernel for the page. The three body axes are
+    body: `<p>The motion was computed by nonholo and is replayed from numbers in this file, as the line below says why. The three body axes are
       drawn where they point; in more than three dimensions their first three coordinates.</p>`,
     phase: "<p>The first two momenta along the constraint. Dots are the saved states, from violet to yellow.</p>",
     energy: "<p>The relative change of the energy since the first state, on a logarithmic axis; zeros stand on its floor. The dashed line is the spacing of double precision, 2.2·10<sup>−16</sup>.</p>",

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
-from scipy.spatial import ConvexHull
 
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit, Orbit
@@ -95,7 +94,7 @@ def _draw_body(axes: Axes, part: Part, box: Box, floor: float) -> Show:
     show_box = draw_box(axes, _VIEW, box, zorder=3.5 if part.is_flow else 4, ghost=part.is_flow)
     if part.is_flow:
         return lambda frame: show_box(poses[frame])
-    shade = PolyCollection([], facecolors=theme.LEVEL, alpha=0.5, linewidths=0, zorder=1.2)
+    shade = PolyCollection([], facecolors=theme.LEVEL, linewidths=0, zorder=1.2)
     axes.add_collection(shade, autolim=False)
     arm = _ARM * float(np.linalg.norm(box.half))
     looks: list[Any] = [{"color": theme.COMPONENTS[i], "label": f"body axis {i + 1}"} for i in range(3)]
@@ -104,8 +103,7 @@ def _draw_body(axes: Axes, part: Part, box: Box, floor: float) -> Show:
     def show(frame: int) -> None:
         g = poses[frame]
         show_box(g)
-        fallen = _dropped(box.corners(g).reshape(-1, 3), floor)
-        shade.set_verts([fallen[ConvexHull(fallen).vertices]])
+        shade.set_verts(list(_dropped(box.corners(g), floor)))
         for axis, stick in zip(g[:3, :3].T, sticks, strict=True):
             flat, depth = _VIEW(np.stack([g[:3, 3], g[:3, 3] + arm * axis]))
             stick.set_data(*flat.T)
