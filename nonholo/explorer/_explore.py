@@ -41,14 +41,14 @@ class Page:
         return f'<iframe sandbox="{allowed}" style="{look}" title="The live page of nonholo" srcdoc="{inner}"></iframe>'
 
     def _repr_mimebundle_(self, **_: Any) -> Any:
-        if self._widget is None:
+        if self.widget is None:
             return {}
-        data, about = self._widget._repr_mimebundle_()
+        data, about = self.widget._repr_mimebundle_()
         return {**data, "text/plain": repr(self)}, about
 
     @functools.cached_property
-    def _widget(self) -> Any:
-        """The frame that tells of its state; None where anywidget is not installed."""
+    def widget(self) -> Any:
+        """The page as a widget, as `mo.ui.anywidget(page.widget)` takes it in marimo; None without anywidget."""
         try:
             from nonholo.explorer._widget import PageWidget
         except MissingExtraError:
@@ -58,7 +58,7 @@ class Page:
     @property
     def state(self) -> dict[str, Any] | None:
         """Body, start and time step that the page shows now: the last that its sliders in a notebook said."""
-        shown = vars(self).get("_widget")  # there is one when a notebook has shown the page
+        shown = vars(self).get("widget")  # there is one when a notebook has shown the page
         return self.first_state if shown is None or self.first_state is None else dict(shown.state)
 
     def orbit(self) -> Orbit:

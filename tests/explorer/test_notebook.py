@@ -44,7 +44,7 @@ def test_state_follows_the_widget() -> None:
     page = nh.explore(SLEIGH)
     data, _ = page._repr_mimebundle_()
     assert "application/vnd.jupyter.widget-view+json" in data
-    page._widget.state = {**page.first_state, "time_step": 0.5, "steps": 7}  # type: ignore[dict-item]
+    page.widget.state = {**page.first_state, "time_step": 0.5, "steps": 7}  # type: ignore[dict-item]
     assert page.state["time_step"] == 0.5  # type: ignore[index]
     assert page.orbit().time[-1] == 3.5
 
