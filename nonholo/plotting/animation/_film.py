@@ -26,6 +26,7 @@ Progress: TypeAlias = Callable[[int, int], None] | None
 _DPI = 100  # pixels per inch
 _COLORS = 96
 _SHOWN_FOR_PALETTE = 6
+_APART = 6  # colors of a palette, which pillow does not tell apart if they are closer
 _CODECS = {  # of constant quality: lines of one color need few bits
     ".mp4": ("h264", ["-crf", "18", "-movflags", "+faststart"]),
     ".webm": ("libvpx-vp9", ["-pix_fmt", "yuv420p", "-crf", "30", "-b:v", "0", "-cpu-used", "4", "-row-mt", "1"]),
@@ -95,9 +96,11 @@ def _palette(samples: list[Image.Image]) -> Image.Image:
     for row, sample in enumerate(samples):
         sheet.paste(sample, (0, row * height))
     common = sheet.quantize(colors=_COLORS, method=Image.Quantize.MEDIANCUT).getpalette() or []
-    # thin lines are too few pixels to be given a color of their own, so theirs are added
+    # thin lines are too few pixels to be given a color of their own, so theirs are added; white stays white
     own = (theme.PAPER, theme.INK, theme.CONTINUOUS, *theme.COMPONENTS)
-    lines = np.vstack([theme.TIME(np.linspace(0, 1, 24)), to_rgba_array(own)])
+    lines = (255 * np.vstack([theme.TIME(np.linspace(0, 1, 24)), to_rgba_array(own)])[:, :3]).round()
+    others = np.reshape(common[: 3 * _COLORS], (-1, 3))
+    apart = np.abs(others[:, None] - lines).max(axis=2).min(axis=1) > _APART
     palette = Image.new("P", (1, 1))
-    palette.putpalette(common[: 3 * _COLORS] + (255 * lines[:, :3]).round().astype(int).ravel().tolist())
+    palette.putpalette(np.concatenate([others[apart], lines]).astype(int).ravel().tolist())
     return palette
