@@ -76,10 +76,10 @@ def bodies_of(
     corners = np.concatenate([np.zeros((1, 2)), *system.parts(orbit.configuration[0])])
     radius = float(np.linalg.norm(corners, axis=1).max())
     shown = (radius if radius > _SMALL * extent else _ENLARGED * extent) or 1.0
-    q = (_some(orbit, points, shown) if states is None else states).configuration
+    q = (states or _some(orbit, points, shown)).configuration
     angle, larger = q[:, orbit.coordinates.index(system.heading)], shown / radius if radius else 1.0
     ahead = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    place = points[:0] if not len(q) else q[:, [orbit.coordinates.index(name) for name in ("x", "y")]]
+    place = q[:, [orbit.coordinates.index(name) for name in ("x", "y")]]
     turns = np.stack([ahead, ahead[:, ::-1] * [-1.0, 1.0]], axis=1)  # body axes, a row each
     outlines = [
         [foot + larger * part @ turn for part in system.parts(row)]
