@@ -25,7 +25,7 @@ from scipy.integrate import solve_ivp
 
 import nonholo as nh
 from nonholo.analysis.inverse._least_effort import Missed
-from nonholo.analysis.inverse._steer import _best
+from nonholo.analysis.inverse._shooting import best
 from nonholo.discrete.definition import in_double
 
 DURATION, STEPS = 4.0, 40
@@ -120,7 +120,7 @@ def solved(step: Step | None, begin: dict[str, np.ndarray], steps: int) -> tuple
     size = np.tile(np.sqrt(steps) * np.array([INERTIA, MASS]) / DURATION**2, steps)
     free = np.full(2 * steps, np.inf)
     first = states(begin)
-    forces, gap, is_least = _best(missed_by(step, first, steps), size, len(first), (-free, free))
+    forces, gap, is_least = best(missed_by(step, first, steps), size, len(first), (-free, free))
     return forces.reshape(-1, steps, 2), gap, is_least
 
 

@@ -21,6 +21,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 ABSENT = {
     "anywidget",
+    "casadi",
     "diffrax",
     "distributed",
     "equinox",

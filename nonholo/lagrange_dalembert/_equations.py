@@ -89,6 +89,19 @@ def momenta(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Ar
     return leaving - at_start, arriving + at_end
 
 
+def step_residual(
+    system: LagrangeDAlembert, state: tuple[Array, Array], z: Array, after: tuple[Array, Array], force: Array, h: Array
+) -> Array:
+    """Return what vanishes if z, a velocity with multipliers, is the step between two states under a constant force.
+
+    A state is a place and the momentum of its node; nothing is solved for.
+    """
+    (x, p), (end, following), v, kick = state, after, z[: system.dimension], h / 2 * force
+    leaving, arriving = momenta(system, x, v, h)
+    root = leaving - kick - p - z[system.dimension :] @ forms(system, x), discrete_constraints(system, x, v, h)
+    return jnp.concatenate([*root, arriving + kick - following, ahead(system, x, v, h) - end])
+
+
 def _impulses(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Array, Array]:
     """Return half the impulse of a step at each of its ends: of a table, half its row at both."""
     row = 0.0 if system.table is None else system.table.row(x[-1] / h)

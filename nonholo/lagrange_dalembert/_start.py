@@ -76,13 +76,13 @@ def least_value(rows: Float[np.ndarray, "s n"]) -> float:
 
 
 def of_flow(
-    system: LagrangeDAlembert, configuration: Any, starts: dict[str, Any], time: float
+    system: LagrangeDAlembert, configuration: Any, starts: dict[str, Any], time: float, owner: str = "flow"
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the checked start of a flow."""
-    q = point("flow", system, configuration, time)
-    if one_start("flow", **starts) == "momentum":
-        return q, velocity_of_momentum("flow", system, q, starts["momentum"])[1]
-    return q, velocity("flow", system, q, starts["body_velocity"])
+    """Return the checked start of a flow, or another place and velocity."""
+    q = point(owner, system, configuration, time)
+    if one_start(owner, **starts) == "momentum":
+        return q, velocity_of_momentum(owner, system, q, starts["momentum"])[1]
+    return q, velocity(owner, system, q, starts["body_velocity"])
 
 
 def consistent(system: LagrangeDAlembert, q: Float[np.ndarray, "n"], h: Any) -> None:

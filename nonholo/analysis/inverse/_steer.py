@@ -1,4 +1,4 @@
-"""`steer`: the controls that take a body from one state to another, by shooting over the exact step."""
+"""`steer`: the controls that take a body from one state to another, by shooting over the exact step or by IPOPT."""
 
 import dataclasses
 import functools
@@ -7,17 +7,14 @@ from typing import Any, cast
 
 import numpy as np
 
-from nonholo.analysis.inverse._least_effort import Missed, least_effort
-from nonholo.base.checks import array, choice, count, error, needs, pair, shape_of, shown
+from nonholo.analysis.inverse._arguments import Ends, Guess, Limits, checked_ends, checked_guess, checked_limits
+from nonholo.analysis.inverse._way import Way, body_points
+from nonholo.base.checks import choice, count, error, flag, needs, refuse_given
+from nonholo.base.progress import progress_bar
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, as_discretization
-from nonholo.systems import System, in_group
-
-_SPREAD = (1.0, 2.0, 0.5, 4.0, 1.0, 2.0, 0.5, 4.0)  # of the random controls from which a goal is looked for, in turn
-_BLOCK = 32  # members in one call; of more JAX shares single operations among threads, which takes longer
-_TOLERANCE, _LEVEL = 1e-8, 1e-4  # of the goal, and of the gradient at a minimum
-Ends = tuple[np.ndarray, np.ndarray, np.ndarray | None, np.ndarray | None]
-"""First velocities and poses of members, and the poses and velocities that they are to have, None where free."""
+from nonholo.simulation.runs import check_forces
+from nonholo.systems import in_coordinates
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -26,19 +23,27 @@ class Steering:
 
     Attributes:
         discrete: What was steered.
-        start: First velocities along the constraint, and poses.
-        controls: Body covectors, (steps, dim), as `rollout` takes them.
+        start: First velocities along the constraint, and poses; in coordinates velocity and configuration.
+        controls: Body covectors, (steps, dim), as `rollout` takes them; in coordinates forces on them.
         cost: Half the time integral of the squared forces along the rows of the constraint subspace.
-        missed: The largest of the numbers by which the goal is missed.
-        converged: Whether the goal is reached to 1e-8 and the cost is at a minimum nearby.
+        missed: The largest of the numbers by which the orbit under the controls misses the goal, a place on the way, or
+            the clearance of an obstacle.
+        outcome: "converged": nothing is missed by 1e-8, and the cost is at a minimum nearby. "not least": nothing is
+            missed, but there may be less cost. "infeasible": from every guess IPOPT came to where the equations and
+            bounds contradict each other, which proves nothing of other ways. "not found": none of these.
     """
 
-    discrete: Discretization
+    discrete: Any
     start: tuple[np.ndarray, np.ndarray]
     controls: Float[np.ndarray, "... steps dim"]
     cost: Float[np.ndarray, "..."]
     missed: Float[np.ndarray, "..."]
-    converged: Array
+    outcome: Array
+
+    @property
+    def converged(self) -> Any:
+        """Whether nothing is missed by 1e-8 and the cost is at a minimum nearby."""
+        return self.outcome == "converged"
 
     @property
     def failures(self) -> int:
@@ -47,9 +52,13 @@ class Steering:
 
     @functools.cached_property
     def orbit(self) -> Any:
-        """The motion under the controls, a `Rollout`."""
+        """The motion under the controls, a `Rollout`; an orbit in coordinates."""
         with needs("jax", "Steering.orbit"):
             from nonholo.analysis.inverse._ends import driven
+        if in_coordinates(self.discrete):
+            from nonholo.analysis.inverse._in_coordinates import driven_in_coordinates
+
+            return driven_in_coordinates(cast(Any, self.discrete), self.start, self.controls)
         w, g = self.start
         steps, dim = self.controls.shape[-2:]
         members = w.reshape(-1, w.shape[-1]), g.reshape(-1, *g.shape[-2:])
@@ -58,39 +67,62 @@ class Steering:
 
 
 def steer(
-    discrete: Discretization,
+    discrete: Any,
     start: Mapping[str, Any],
     goal: Mapping[str, Any],
     *,
     steps: int,
     bounds: Any = None,
     cost: str = "effort",
+    method: str | None = None,
+    obstacles: Any = None,
+    outline: Any = None,
+    via: Any = None,
+    guess: Any = None,
+    progress: bool = False,
 ) -> Steering:
     r"""Find forces along the constraint that take a body from a start to a goal with little effort.
 
     $$ \min_f\ \tfrac h2\sum_k |f_k|^2 \quad\text{with}\quad (g_N, w_N) = \text{goal}, $$
 
     where $f_k$ are the components of the control of step k along the rows of the constraint subspace: of a sleigh the
-    torque and the thrust along the blade. The orbit is the exact discrete one and its derivatives are exact
-    (`rollout`), so the goal is met to rounding, not to the error of a transcription. Newton's method on the equations
-    of the minimum begins at random controls, anew where it fails; minima are local.
+    torque and the thrust along the blade. The orbit is the exact discrete one and its derivatives are exact, so the
+    goal is met to rounding, not to the error of a transcription. Minima are local.
 
-    Starts and goals may be many, with an axis of members in front: these are solved side by side. One that has no
-    such axis is that of all of them.
+    "shooting" has the forces alone as unknowns, of many members at once, by derivatives of `rollout`: Newton's method
+    on the equations of the minimum begins at random controls, anew where it fails. "ipopt" has all states as unknowns
+    too, and the equations of all steps as sparse conditions with exact first and second derivatives, one member after
+    the other; it keeps clear of obstacles, and long motions do not trouble it.
+
+    Starts and goals may be many, with an axis of members in front. One that has no such axis is that of all of them.
+
+    A system in coordinates (`LagrangeDAlembert`) is steered by "ipopt", one member, with a force on each coordinate:
+    `bounds` say which of them have motors.
 
     Args:
-        discrete: The discretized system, of order 2, with a left-invariant constraint.
-        start: `configuration` and `restricted_velocity`; by default the identity, at rest.
-        goal: The same; what it does not name is free.
+        discrete: The discretized system, of order 2, with a left-invariant constraint; or one in coordinates.
+        start: `configuration` and `restricted_velocity`; by default the identity, at rest. In coordinates
+            `configuration` and `body_velocity`.
+        goal: The same; what it does not name is free. In coordinates a configuration may name some of them alone:
+            {"x": 1.0, "theta": 0.0}.
         steps: Number of steps N.
         bounds: Least and largest force, numbers or one for each row; zero for both where nothing pushes.
         cost: "effort".
+        method: "shooting" or "ipopt" (extra `steer`); by default "ipopt" where it alone can do what is asked.
+        obstacles: Discs or balls: their centers (obstacles, n), and one radius or one for each. States keep clear of
+            them; between two states a track may cut into one by up to $s^2/8\rho$ on a step of length s.
+        outline: Body points (points, n) that keep clear; by default the origin of the body frame.
+        via: Positions of the body frame on the way, by number of steps: {40: (1.0, 0.5)}.
+        guess: Where "ipopt" begins: positions (points, n) of a path, or a `Steering` of one member.
+        progress: Show a progress bar of the members on standard error.
 
     Returns:
-        The controls. `converged` is False where no way to the goal was found; `failures` counts these members.
+        The controls. `converged` is False where no way to the goal was found, and `outcome` says in a word why;
+        `failures` counts these members.
 
     Raises:
         ValueError: A bad argument.
+        MissingExtraError: "ipopt" without the extra `steer`.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.2), 0.1)
@@ -99,100 +131,106 @@ def steer(
         >>> parked = nh.steer(sleigh, {"restricted_velocity": [(0.0, 0.0), (0.0, 0.5)]}, rest, steps=40)
         >>> parked.controls.shape, parked.failures, bool(parked.missed.max() < 1e-8)
         ((2, 40, 3), 0, True)
+
+        Around a disc:
+
+        >>> around = nh.steer(sleigh, {}, rest, steps=40, obstacles=([(0.0, 0.5)], 0.3))
+        >>> str(around.outcome), bool(around.cost > parked.cost[0])
+        ('converged', True)
     """
-    as_discretization("steer(discrete=...)", discrete, forced=True)
+    if not in_coordinates(discrete):
+        as_discretization("steer(discrete=...)", discrete, forced=True)
     steps = count("steer(steps=...)", steps, "Pass the number of steps.")
     choice("steer(cost=...)", cost, ("effort",))
-    system, k = discrete.system, discrete.system.rank
+    choice("steer(method=...)", method, (None, "shooting", "ipopt"))
+    flag("steer(progress=...)", progress)
+    n = _size_of_positions(discrete)
+    way, hints = Way.of(n, steps, obstacles, outline, via), checked_guess(guess, steps, n)
+    asked = {"obstacles": obstacles, "outline": outline, "via": via, "guess": guess}
+    if method == "shooting":
+        for name, value in asked.items():
+            refuse_given("steer", "be left out of shooting", 'Use method="ipopt".', **{name: (value, None)})
+    if in_coordinates(discrete):
+        choice("steer(method=...)", method, (None, "ipopt"), "Systems in coordinates are steered by IPOPT.")
+        return _steered_in_coordinates(discrete, (start, goal), bounds, way, steps, hints)
+    _check(discrete, steps)
+    ends, is_one = checked_ends(discrete.system, start, goal, bool(way.via))
+    limits = checked_limits(bounds, steps, discrete.system.rank)
+    if method == "ipopt" or (method is None and any(each is not None for each in asked.values())):
+        forces, gap, outcome = _by_ipopt(discrete, ends, limits, way, hints, progress)
+    else:
+        forces, gap, outcome = _by_shooting(discrete, ends, limits)
+    controls = forces @ np.linalg.pinv(discrete.system.constraint_subspace).T
+    effort = float(discrete.time_step) * (forces**2).sum(axis=(-2, -1)) / 2
+    found = *ends[:2], controls, effort, gap, outcome
+    w, g, *rest = (np.asarray(each[0]) for each in found) if is_one else found
+    return Steering(discrete, (w, g), *rest)
+
+
+def _check(discrete: Discretization, steps: int) -> None:
+    """Refuse what `rollout` refuses, and constraints that are fixed in space."""
+    where, system, forces = "steer(discrete=...)", discrete.system, discrete.forces
     if system.is_spatial:
         got = type(system).__name__
-        raise error("steer(discrete=...)", "have a left-invariant constraint", got, "Steer it by `nh.rollout`.")
-    (w, g), (to_velocity, to_pose) = (
-        _end(f"steer({name}=...)", system, x) for name, x in (("start", start), ("goal", goal))
-    )
-    if to_pose is None and to_velocity is None:
-        raise error("steer(goal=...)", "name a pose or a velocity", "neither", "Pass configuration=.")
-    first = np.zeros(k) if w is None else w, system.group.identity if g is None else g
-    ends, is_one = _members((*first, to_pose, to_velocity))
-    limits = _limits(bounds, steps, k)
+        raise error(where, "have a left-invariant constraint", got, "Steer it by `nh.rollout`.")
+    if system.is_wide:
+        raise error(where, "have matrices", "a system without", "Discretize `system.dense`.")
+    check_forces("steer", discrete, steps)
+    if forces is not None and forces.needs_function:
+        remedy = "Use Gravity, Friction or a table: what a function does is not traced."
+        raise error(where, "have forces that are numbers", "a Python function", remedy)
+
+
+def _size_of_positions(discrete: Any) -> int | None:
+    """Return how many numbers a position has; None where bodies have none."""
+    if in_coordinates(discrete):
+        if discrete.system.orbits != "CoordinateOrbit":
+            remedy = "Steer an LLSystem, or a LagrangeDAlembert."
+            raise error("steer(discrete=...)", "have a constraint that poses do not change", "one of a pose", remedy)
+        return 2 if {"x", "y"} <= set(discrete.system.coordinates) else None
+    return discrete.system.group.size - 1 if discrete.system.group.is_affine else None
+
+
+def _by_shooting(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[Any, ...]:
+    """Return forces along the rows, what is missed, and outcomes of members, all at once."""
     with needs("jax", "steer"):
-        from nonholo.analysis.inverse._ends import missed_goals
-    block, size = min(_BLOCK, len(ends[0])), system.constrained_inertia.diagonal()
-    size = np.tile(np.sqrt(steps) * size / (steps * float(discrete.time_step)) ** 2, steps)
-
-    def missed(forces: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return missed_goals(discrete, forces.reshape(-1, steps, k), _chosen(ends, at), block)
-
-    forces, gap, is_least = _best(missed, size, len(ends[0]), limits)
-    controls = forces.reshape(-1, steps, k) @ np.linalg.pinv(system.constraint_subspace).T
-    effort = float(discrete.time_step) * (forces**2).sum(axis=1) / 2
-    found = ends[:2], controls, effort, gap, is_least
-    return Steering(discrete, *cast(Any, _chosen(found, 0) if is_one else found))
+        from nonholo.analysis.inverse._shooting import TOLERANCE, shot
+    forces, gap, is_least = shot(discrete, ends, limits)
+    outcome = np.where(is_least, "converged", np.where(gap < TOLERANCE, "not least", "not found"))
+    return forces.reshape(len(gap), -1, discrete.system.rank), gap, outcome
 
 
-def _best(
-    missed: Missed, size: np.ndarray, members: int, limits: tuple[np.ndarray, np.ndarray]
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the forces of least effort, or those that come nearest, what they miss, and whether they are least."""
-    rng, left = np.random.default_rng(0), np.arange(members)
-    forces, gap, is_least = np.zeros((members, len(size))), np.full(members, np.inf), np.zeros(members, dtype=bool)
-    for spread in _SPREAD:
-        first = spread * size * rng.normal(size=(len(left), len(size)))
-        there = left
-        near, miss, rest = least_effort(lambda f, at, there=there: missed(f, there[at]), first, limits)
-        better = miss < gap[left]
-        now = left[better]
-        forces[now], gap[now] = near[better], miss[better]
-        is_least[now] = (miss < _TOLERANCE)[better] & (rest < _LEVEL)[better]
-        left = left[~is_least[left]]
-        if not len(left):
-            break
-    return forces, gap, is_least
+def _by_ipopt(
+    discrete: Discretization, ends: Ends, limits: Limits, way: Way, guess: Guess, progress: bool
+) -> tuple[Any, ...]:
+    """Return forces along the rows, what is missed, and outcomes of members, one after the other."""
+    with needs("steer", "steer(method='ipopt')"):
+        from nonholo.analysis.inverse._on_groups import group_problem
+        from nonholo.analysis.inverse._transcription import transcribed
+    for name, poses in (("start", ends[1]), ("goal", ends[2])):
+        way.check(name, poses if poses is None else body_points(poses, way.outline))
+    found = []
+    with progress_bar("members", progress) as report:
+        for member in range(len(ends[0])):
+            one = tuple(each if each is None else each[member] for each in ends)
+            found.append(transcribed(group_problem(discrete, one, limits, way, guess)))
+            report(member + 1, len(ends[0]))
+    forces, gap, outcome = (np.array(part) for part in zip(*found, strict=True))
+    return forces, gap, outcome
 
 
-def _limits(bounds: Any, steps: int, k: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the least and the largest force of each step and row, one after the other."""
-    where, remedy = "steer(bounds=...)", "Pass the least and the largest force, numbers or one for each row."
-    if bounds is None:
-        return np.full(steps * k, -np.inf), np.full(steps * k, np.inf)
-    both = [array(where, end, (k,) if np.ndim(end) else (), remedy) for end in pair(where, bounds)]
-    low, high = (np.tile(np.broadcast_to(end, (k,)), steps) for end in both)
-    if not (low <= high).all() or not (low < high).any():
-        raise error(where, "leave room between them", shown(bounds), remedy)
-    return low, high
-
-
-def _end(where: str, system: System, given: Any) -> tuple[np.ndarray | None, np.ndarray | None]:
-    """Return the velocities along the constraint and the poses that an end names, one or many of them."""
-    if not isinstance(given, Mapping) or not set(given) <= {"configuration", "restricted_velocity"}:
-        raise error(
-            where, "name only configuration and restricted_velocity", shown(given), "Pass a dictionary of them."
-        )
-    w, g = given.get("restricted_velocity"), given.get("configuration")
-    if w is not None:
-        shape = (None,) * (len(shape_of(w)) - 1) + (system.rank,)
-        w = array(f"{where}['restricted_velocity']", w, shape[-2:], "Pass one number for each admissible direction.")
-    if g is not None:
-        where, size = f"{where}['configuration']", system.group.identity.shape
-        shape = (None,) * (len(shape_of(g)) - 2) + size
-        g = array(where, g, shape[-3:], f"Pass elements of {system.group} as matrices.")
-        for one in g.reshape(-1, *size):
-            in_group(where, system.group, one)
-    return w, g
-
-
-def _members(ends: tuple[np.ndarray | None, ...]) -> tuple[Ends, bool]:
-    """Return ends with an axis of members each, and whether none had one."""
-    axes = (1, 2, 2, 1)
-    sizes = {len(x) for x, axis in zip(ends, axes, strict=True) if x is not None and x.ndim > axis}
-    if len(sizes) > 1 or 0 in sizes:
-        got = f"{sorted(sizes)} of them"
-        raise error("steer(start=..., goal=...)", "have as many members each", got, "Pass one, or one for each.")
-    count = max(sizes, default=1)
-    each = (x if x is None else np.broadcast_to(x, (count, *x.shape[-n:])) for x, n in zip(ends, axes, strict=True))
-    return cast(Any, tuple(each)), not sizes
-
-
-def _chosen(parts: Any, at: Any) -> Any:
-    """Return members of arrays."""
-    return parts if parts is None else parts[at] if hasattr(parts, "shape") else tuple(_chosen(x, at) for x in parts)
+def _steered_in_coordinates(
+    discrete: Any, ends: tuple[Any, Any], bounds: Any, way: Way, steps: int, guess: Guess
+) -> Steering:
+    """Return the result for a system in coordinates."""
+    with needs("steer", "steer"):
+        from nonholo.analysis.inverse._in_coordinates import checked_goal, checked_start, coordinate_problem
+        from nonholo.analysis.inverse._transcription import transcribed
+    x, v = checked_start(discrete, ends[0])
+    limits = checked_limits(bounds, steps, discrete.system.dimension)
+    goal = checked_goal(discrete, ends[1], is_free=bool(way.via))
+    problem = coordinate_problem(discrete, ((x, v), goal), limits, way, steps, guess)
+    forces, gap, outcome = transcribed(problem)
+    effort = float(discrete.time_step) * (forces**2).sum() / 2
+    start = v, x[: discrete.system.dimension]
+    return Steering(discrete, start, forces, *map(np.asarray, (effort, gap, outcome)))

@@ -88,7 +88,7 @@ def rolled(
     """
     (name, value, g), (steps, every), system = start, sizes, discrete.system
     r, g = _along(discrete, name, jnp.asarray(value), jnp.asarray(g)), jnp.asarray(g)
-    impulse, rows = _impulse_of(discrete, forced, controls, steps)
+    impulse, rows = impulse_of(discrete, forced, controls, steps)
     if closed is not None and discrete.order == 2:
         step, C, at = _closed_step(discrete, closed, g, impulse)
         start = C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2
@@ -107,7 +107,7 @@ def rolled(
     return _decoded(discrete, nodes, states, given, forces, time)
 
 
-def _impulse_of(discrete: Scheme, forced: Forced | None, controls: Array | None, steps: int) -> tuple[Any, Any]:
+def impulse_of(discrete: Scheme, forced: Forced | None, controls: Array | None, steps: int) -> tuple[Any, Any]:
     """Return the function that gives half the impulse of a step, and the body covectors of steps; None where free.
 
     Nothing of them acts over what follows the last step.

@@ -93,17 +93,17 @@ def restricted(discrete: Scheme, momentum: Array, g: Array) -> Array:
 
 def principal_displacement(discrete: Scheme, r: Float[Array, "k"], g: Array) -> tuple[Array, Array]:
     """Return chart coordinates of the principal displacement with these momenta along d, and the outcome."""
-    return principal_root(_equations(discrete, g), r, discrete.variety.chart.shape[0])
+    return principal_root(equations_at(discrete, g), r, discrete.variety.chart.shape[0])
 
 
 def nearest_displacement(discrete: Scheme, y: Float[Array, "m"], r: Float[Array, "k"]) -> tuple[Array, Array]:
     """Return chart coordinates of the displacement that y reaches when its momenta along d move straight to r."""
     g = discrete.system.group.identity
     before = restricted(discrete, momentum_of(discrete, y, g, "left"), g)
-    return followed_root(_equations(discrete, g), (y, before), r)
+    return followed_root(equations_at(discrete, g), (y, before), r)
 
 
-def _equations(discrete: Scheme, g: Array) -> Callable[[Array, Array], Array]:
+def equations_at(discrete: Scheme, g: Array) -> Callable[[Array, Array], Array]:
     """Return the function of chart coordinates and momenta along d that vanishes at a displacement."""
     variety = discrete.variety
 

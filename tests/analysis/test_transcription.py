@@ -1,0 +1,311 @@
+"""Steering by IPOPT: exact derivatives, equal to shooting, obstacles and places kept, what is impossible said."""
+
+import functools
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.analysis.inverse import Steering
+from nonholo.analysis.inverse._nodes import CoordinateNodes, GroupNodes
+from nonholo.analysis.inverse._program import Program, Steps
+from nonholo.analysis.inverse._way import Way, resampled
+from nonholo.systems import Forced
+
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.2), 0.25)
+ASIDE = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]])
+GOAL = {"configuration": ASIDE, "restricted_velocity": (0.0, 0.0)}
+DISC = (np.array([[0.1, 0.5]]), 0.3)
+STEPS = 16
+
+
+def _program(discrete: Any, steps: int) -> Program:
+    """Return a program with an obstacle and a goal that are nothing special."""
+    rng = np.random.default_rng(2)
+    system = discrete.system
+    n = system.group.size - 1 if system.group.is_affine else 0
+    free = nh.discretize(system.system, float(discrete.time_step)) if system.is_forced else discrete
+    nodes = GroupNodes(free, discrete.forces, rng.normal(size=(1, n)), system.group.random(rng))
+    centers, radii = rng.normal(size=(min(n, 1), n)), rng.uniform(0.1, 0.3, min(n, 1))
+    shared = Steps(nodes, centers, radii, np.float64(discrete.time_step))
+    return Program(shared, rng.normal(size=nodes.sizes[0]), 0.1 * rng.normal(size=(steps, system.group.dim)))
+
+
+def _snakeboard() -> Program:
+    rng = np.random.default_rng(3)
+    system = nh.examples.snakeboard().system
+    nodes = CoordinateNodes(system, np.float64(0.1), rng.normal(size=(1, 2)), rng.normal(size=(3, 5)), np.zeros(5))
+    steps = Steps(nodes, rng.normal(size=(1, 2)), np.array([0.2]), nodes.time_step)
+    return Program(steps, rng.normal(size=10), np.zeros((3, 5)))
+
+
+SPACE = nh.LLSystem.from_inertia(
+    1.0,
+    np.diag([1.0, 1.2, 0.7]),
+    [0.1, 0.0, 0.0],
+    nh.SE(3),
+    constraint_subspace=np.eye(6)[[1, 2, 3]] + 0.1 * np.eye(6)[[4, 5, 0]],
+)
+FORCED = Forced(SLEIGH.system, nh.Gravity([0.0, -1.0], [0.2, 0.0]), nh.Friction([0.1, 0.3, 0.0]))
+PROGRAMS = {
+    "sleigh": lambda: _program(SLEIGH, STEPS),
+    "top": lambda: _program(nh.discretize(nh.SuslovTop(np.diag([1.0, 1.2, 0.8]) + 0.1), 0.1), 3),
+    "space": lambda: _program(nh.discretize(SPACE, 0.1), 2),
+    "forced": lambda: _program(nh.discretize(FORCED, 0.1), 3),
+    "logarithmic": lambda: _program(nh.discretize(SLEIGH.system, 0.1, difference="logarithmic"), 3),
+    "snakeboard": _snakeboard,
+}
+
+
+@pytest.mark.profile("routes", keep=["sleigh"])
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_derivatives_are_those_of_differences(name: str) -> None:
+    """Sparse first and second derivatives act on vectors as central differences of values and of first ones do."""
+    program, rng = PROGRAMS[name](), np.random.default_rng(0)
+    u, v = 0.3 * rng.normal(size=(2, program.unknowns))
+    if name == "space":  # far from the group its logarithm is not smooth
+        u[-len(program.first) : -SPACE.rank] = SPACE.group.random(rng)[:3].ravel()
+    weights, size = rng.normal(size=len(program.clear)), 2e-4
+
+    def slope(f: Any) -> np.ndarray:  # of order 4: its error is about size^4, and rounding over size
+        ahead, far = (f(u + k * size * v) - f(u - k * size * v) for k in (1, 2))
+        return (8 * ahead - far) / (12 * size)
+
+    def gradient(u: np.ndarray) -> np.ndarray:
+        return program.slopes(u).T @ weights + 0.7 * program.cost(u)[1]
+
+    conditions = slope(program.conditions)
+    np.testing.assert_allclose(program.slopes(u) @ v, conditions, rtol=0, atol=1e-9 * np.abs(conditions).max())
+    np.testing.assert_allclose(program.cost(u)[1] @ v, slope(lambda u: program.cost(u)[0]), rtol=1e-9)
+    upper, bent = program.curvatures(u, weights, 0.7).toarray(), slope(gradient)
+    np.testing.assert_array_equal(upper, np.triu(upper))
+    whole = upper + np.triu(upper, 1).T
+    np.testing.assert_allclose(whole @ v, bent, rtol=0, atol=1e-9 * np.abs(bent).max())
+
+
+def test_only_windows_of_unknowns_are_coupled() -> None:
+    """The matrices are banded: equations of a step see it and the state before, and each step has as many entries."""
+    program = _program(SLEIGH, STEPS)
+    places, (count, ends) = program.slope_places, program.shape
+    rows, columns = places.rows, np.repeat(np.arange(program.unknowns), np.diff(places.columns))
+    step = rows // count
+    inside = step < STEPS
+    assert (columns < program.width * np.minimum(step + 1, STEPS)).all()
+    assert (columns >= program.width * np.minimum(step, STEPS) - len(program.first)).all()
+    assert len(set(np.bincount(step[inside])[1:])) == 1
+    assert ends == 3
+    assert len(rows) < 0.2 * len(program.clear) * program.unknowns
+
+
+@pytest.mark.profile("routes", instead="test_a_disc_is_kept_clear_of")
+def test_an_orbit_satisfies_all_equations() -> None:
+    """States, charts and forces of a rollout leave nothing over: the equations are those of the exact step."""
+    forces = np.random.default_rng(1).normal(size=(6, 2))
+    controls = np.column_stack([forces, np.zeros(6)])
+    orbit = nh.rollout(SLEIGH, restricted_velocity=(0.3, 0.8), controls=controls, steps=6)
+    charts = np.array([SLEIGH.variety.coordinates(W) for W in orbit.displacement[:-1]])
+    states = np.column_stack([orbit.configuration[:, :2].reshape(7, 6), orbit.restricted_momentum])
+    steps = Steps(GroupNodes(SLEIGH, None, np.zeros((1, 2)), None), *_none(), SLEIGH.time_step)
+    program = Program(steps, states[0], np.zeros((6, 3)))
+    u = np.column_stack([charts, forces, states[1:]]).ravel()
+    np.testing.assert_allclose(program.conditions(u), 0.0, rtol=0, atol=1e-14)
+    assert np.abs(program.conditions(u + 1e-3)).max() > 1e-4
+
+
+def _none() -> tuple[np.ndarray, np.ndarray]:
+    return np.zeros((0, 2)), np.zeros(0)
+
+
+@functools.cache
+def _around() -> Steering:
+    pytest.importorskip("casadi")
+    return nh.steer(SLEIGH, {}, GOAL, steps=STEPS, obstacles=DISC)
+
+
+def test_a_disc_is_kept_clear_of() -> None:
+    """Run again by the compiled map under a table, the controls meet the goal and the clearance, which is used up."""
+    found = _around()
+    assert found.outcome == "converged"
+    driven = nh.discretize(nh.Forced(SLEIGH.system, force=found.controls), 0.25)
+    orbit = nh.simulate(driven, restricted_velocity=(0.0, 0.0), steps=STEPS)
+    np.testing.assert_allclose(orbit.configuration[-1], ASIDE, rtol=0, atol=1e-8)
+    np.testing.assert_allclose(orbit.restricted_momentum[-1], 0.0, rtol=0, atol=1e-8)
+    apart = np.linalg.norm(orbit.position - DISC[0], axis=1)
+    assert -1e-8 < apart.min() - DISC[1] < 1e-6
+    np.testing.assert_allclose(found.cost, 0.125 * (found.controls**2).sum(), rtol=1e-12)
+
+
+@pytest.mark.profile("routes", instead="test_a_disc_is_kept_clear_of")
+def test_without_obstacles_both_methods_find_the_same() -> None:
+    """IPOPT from the controls of shooting stays there: the same cost and the same controls."""
+    pytest.importorskip("casadi")
+    shot = nh.steer(SLEIGH, {}, GOAL, steps=STEPS)
+    found = nh.steer(SLEIGH, {}, GOAL, steps=STEPS, guess=shot)
+    assert (shot.outcome, found.outcome) == ("converged", "converged")
+    np.testing.assert_allclose(found.cost, shot.cost, rtol=1e-6)
+    np.testing.assert_allclose(found.controls, shot.controls, rtol=0, atol=1e-4 * np.abs(shot.controls).max())
+
+
+@pytest.mark.profile("routes", instead="test_words_of_outcomes")
+def test_torque_alone_is_said_to_be_infeasible() -> None:
+    """With its mass ahead no torque brings a sleigh to rest: IPOPT ends where the equations contradict each other."""
+    pytest.importorskip("casadi")
+    start, rest = {"restricted_velocity": (0.0, 0.3)}, {"restricted_velocity": (0.0, 0.0)}
+    found = nh.steer(SLEIGH, start, rest, steps=6, bounds=((-5.0, 0.0), (5.0, 0.0)), method="ipopt")
+    assert found.outcome == "infeasible"
+    assert not found.converged
+    assert found.missed > 0.2
+
+
+@pytest.mark.parametrize(
+    ("status", "gap", "word"),
+    [
+        ("Solve_Succeeded", 1e-9, "converged"),
+        ("Solve_Succeeded", 1e-7, "not found"),
+        ("Maximum_Iterations_Exceeded", 1e-9, "not least"),
+        ("Maximum_Iterations_Exceeded", np.inf, "not found"),
+        ("Infeasible_Problem_Detected", 1e-7, "infeasible"),
+    ],
+)
+def test_words_of_outcomes(status: str, gap: float, word: str) -> None:
+    """What the orbit misses decides before what IPOPT says of its equations."""
+    transcription = pytest.importorskip("nonholo.analysis.inverse._transcription", exc_type=ImportError)
+    assert transcription.outcome_of(status, gap) == word
+
+
+@pytest.mark.profile("routes", instead="test_a_disc_is_kept_clear_of")
+def test_members_go_one_after_the_other() -> None:
+    """Of two starts, with their own goals, each is what it is alone; bounds hold."""
+    starts = {"restricted_velocity": np.array([(0.0, 0.0), (0.2, 0.3)])}
+    size = 0.9 * np.abs(_around().controls).max()
+    both = nh.steer(SLEIGH, starts, GOAL, steps=STEPS, obstacles=DISC, bounds=(-size, size))
+    assert both.failures == 0
+    assert both.controls.shape == (2, STEPS, 3)
+    assert np.abs(both.controls).max() <= size
+    one = {"restricted_velocity": starts["restricted_velocity"][1]}
+    alone = nh.steer(SLEIGH, one, GOAL, steps=STEPS, obstacles=DISC, bounds=(-size, size))
+    np.testing.assert_array_equal(alone.controls, both.controls[1])
+    np.testing.assert_allclose(alone.orbit.configuration[-1], ASIDE, rtol=0, atol=1e-8)
+    assert both.cost[0] > _around().cost
+
+
+@pytest.mark.profile("routes", instead="test_a_disc_is_kept_clear_of")
+def test_places_on_the_way_and_the_goal_of_an_outline() -> None:
+    """A motion through two places back to its start, with both ends of a rod clear of a disc."""
+    pytest.importorskip("casadi")
+    via, rod = {10: (1.5, 0.7), 20: (1.5, -0.7)}, np.array([[0.3, 0.0], [-0.3, 0.0]])
+    goal = {"configuration": np.eye(3), "restricted_velocity": (0.0, 0.8)}
+    disc = (np.array([[0.9, 0.1]]), 0.2)
+    start = {"restricted_velocity": (0.0, 0.8)}
+    found = nh.steer(SLEIGH, start, goal, steps=40, via=via, obstacles=disc, outline=rod)
+    assert found.outcome == "converged"
+    poses = found.orbit.configuration
+    for step, place in via.items():
+        np.testing.assert_allclose(poses[step, :2, 2], place, rtol=0, atol=1e-8)
+    ends = poses[:, None, :2, 2] + np.einsum("kij,pj->kpi", poses[:, :2, :2], rod)
+    assert np.linalg.norm(ends - disc[0][0], axis=-1).min() > disc[1] - 1e-8
+    np.testing.assert_allclose(poses[-1], np.eye(3), rtol=0, atol=1e-8)
+
+
+@pytest.mark.profile("routes", instead="test_a_disc_is_kept_clear_of")
+@pytest.mark.parametrize("name", ["top", "space", "forced"])
+def test_bodies_meet_goals(name: str) -> None:
+    """A top about the axis that it must not turn about, a body in space, a sleigh under gravity and friction."""
+    pytest.importorskip("casadi")
+    top = nh.SuslovTop(np.diag([1.0, 1.2, 0.8]) + 0.1)
+    system, turn = {
+        "top": (top, nh.SO(3).exp(np.array([0.0, 0.0, 1.2]))),
+        "space": (SPACE, nh.SE(3).exp(np.array([0.3, 0.2, 0.5, 1.0, 0.5, 0.3]))),
+        "forced": (FORCED, ASIDE),
+    }[name]
+    goal = {"configuration": turn, "restricted_velocity": np.zeros(system.rank)}
+    found = nh.steer(nh.discretize(system, 0.1), {}, goal, steps=40, method="ipopt")
+    assert found.outcome == "converged"
+    np.testing.assert_allclose(found.orbit.configuration[-1], turn, rtol=0, atol=1e-8)
+    shot = nh.steer(nh.discretize(system, 0.1), {}, goal, steps=40)
+    guided = nh.steer(nh.discretize(system, 0.1), {}, goal, steps=40, guess=shot)
+    np.testing.assert_allclose(guided.cost, shot.cost, rtol=1e-6)
+
+
+@pytest.mark.profile("routes", instead="test_a_disc_is_kept_clear_of")
+def test_a_snakeboard_moves_by_its_rotor_and_wheels() -> None:
+    """Motors of the shape alone bring it aside, from rest to rest; simulated under a table it is there."""
+    pytest.importorskip("casadi")
+    board = nh.examples.snakeboard().system
+    motors, start = np.array([0.0, 0.0, 0.0, 2.0, 2.0]), {"configuration": np.zeros(5)}
+    goal = {"configuration": {"x": 1.0, "y": 0.3, "theta": 0.0}, "body_velocity": np.zeros(5)}
+    disc = (np.array([[0.5, 0.1]]), 0.05)
+    found = nh.steer(nh.discretize(board, 0.1), start, goal, steps=80, bounds=(-motors, motors), obstacles=disc)
+    assert found.outcome == "converged"
+    assert not found.controls[:, :3].any()
+    driven = nh.discretize(nh.Forced(board, force=found.controls), 0.1)
+    orbit = nh.simulate(driven, configuration=np.zeros(5), body_velocity=np.zeros(5), steps=80)
+    np.testing.assert_allclose(orbit.configuration[-1, :3], [1.0, 0.3, 0.0], rtol=0, atol=1e-8)
+    v = (orbit.configuration[-1] - orbit.configuration[-2]) / 0.1
+    assert np.abs(orbit.body_velocity[-1]).max() < 1e-8 < np.abs(v).max()  # the step after the last rests
+    assert np.linalg.norm(orbit.configuration[:, :2] - disc[0], axis=1).min() > disc[1] - 1e-8
+
+
+def test_a_leap_over_a_disc_is_missed() -> None:
+    """States on both sides of a disc are clear of it, but not the line between them; a cut of its edge is let pass."""
+    way = Way.of(2, 2, ([(0.0, 0.0)], 0.5), None, None)
+    leap, edge = (np.array([[-1.0, y], [1.0, y]]) for y in (0.1, 0.4))
+    np.testing.assert_allclose([way.missed(each[:, None], each) for each in (leap, edge)], [0.4, 0.0], rtol=1e-15)
+    inside = np.array([[0.0, 0.2], [1.0, 0.2]])
+    np.testing.assert_allclose(way.missed(inside[:, None], inside), 0.3, rtol=1e-15)
+
+
+def test_a_path_is_resampled_evenly() -> None:
+    """Points at equal distances along a bent path."""
+    path = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 3.0]])
+    np.testing.assert_allclose(resampled(path, 4), [[0, 0], [1, 0], [1, 1], [1, 2], [1, 3]], atol=1e-15)
+
+
+BOARD = {"start": {"configuration": np.zeros(5)}, "goal": {"configuration": {"x": 1.0}}}
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"obstacles": ([(0.0, 0.1)], 0.3)}, "clear of obstacles"),
+        ({"obstacles": ([(0.0, 1.1)], 0.3)}, r"goal=...\)` must be clear"),
+        ({"obstacles": 3}, "be a pair"),
+        ({"obstacles": ([(3.0, 1.0)], -0.1)}, "positive radii"),
+        ({"obstacles": ([(3.0, 1.0)], (0.1, 0.2))}, "shape"),
+        ({"outline": np.zeros((0, 2))}, "have a point"),
+        ({"via": {0: (1.0, 1.0)}}, "number of a step"),
+        ({"via": {2: (1.0, 1.0, 1.0)}}, "shape"),
+        ({"guess": [(0.0, 0.0)]}, "two positions or more"),
+        ({"guess": "_around"}, "4 steps"),
+        ({"method": "newton"}, "be one of"),
+        ({"method": "shooting", "via": {1: (0.0, 0.0)}}, "left out of shooting"),
+        ({"progress": 1}, "True or False"),
+        ({"discrete": nh.discretize(nh.SuslovTop(np.eye(3)), 0.1), "obstacles": DISC}, "have a position"),
+        ({"discrete": nh.discretize(nh.SuslovTop(np.eye(3)), 0.1), "guess": [(0, 0), (1, 1)]}, "without a position"),
+        ({"discrete": nh.discretize(Forced(SLEIGH.system, force=lambda *_: np.zeros(3)), 0.1)}, "that are numbers"),
+        ({"discrete": nh.discretize(Forced(SLEIGH.system, force=np.zeros((2, 3))), 0.1)}, "one for each row"),
+        ({"discrete": "board", "method": "shooting"}, "be one of None, 'ipopt'"),
+        ({"discrete": "board", "start": {}}, "be given for a system in coordinates"),
+        ({"discrete": "board", "start": {"pose": 1}}, "name only"),
+        ({"discrete": "board", "goal": {}}, "coordinates or a velocity"),
+        ({"discrete": "board", "goal": {"configuration": {"z": 1.0}}}, "coordinates of the system"),
+        ({"discrete": "ball"}, "that poses do not change"),
+        ({"discrete": "driven"}, "have no force yet"),
+    ],
+)
+def test_bad_arguments_are_refused(change: dict, words: str) -> None:
+    """What cannot be steered is named before any work."""
+    systems = {
+        "board": lambda: nh.examples.snakeboard().system,
+        "ball": lambda: nh.examples.chaplygin_ball().system,
+        "driven": lambda: nh.Forced(nh.examples.snakeboard().system, force=np.zeros((4, 5))),
+    }
+    defaults: dict[str, Any] = {"discrete": SLEIGH, "start": {}, "goal": {"configuration": ASIDE}, "steps": 4}
+    if change.get("discrete") in ("board", "ball", "driven"):
+        pytest.importorskip("casadi")
+        change = BOARD | change | {"discrete": nh.discretize(systems[change["discrete"]](), 0.1)}
+    if change.get("guess") == "_around":
+        change = {"guess": _around()}
+    with pytest.raises(ValueError, match=words):
+        nh.steer(**defaults | change)
