@@ -1,6 +1,6 @@
 """Many sleighs are parked at once: time per member, how many arrive, and with how much effort.
 
-    python benchmarks/steering.py [--members 1000] [--rounds 3] [--compare]
+    python benchmarks/steering.py [--members 1000] [--rounds 3] [--compare] [--obstacles]
 
 Starts are random poses (angles, and places within some units of length) and velocities, goals the pose at the origin,
 at rest; 40 steps over 4 units of time, with torque and thrust along the blade. The first call compiles. Seconds of the
@@ -9,6 +9,9 @@ processor stand beside those of the clock, which grow with whatever else runs.
 With --compare, the same problems by the same solver on other steps too: Runge's and Kutta's of fourth order and the
 implicit midpoint, of the reduced equations with angle and place; then in steps ten times as long. The controls that
 each finds, constant over a step, go through the continuous sleigh, and what these miss there is printed.
+
+With --obstacles, a robot on two wheels among ten discs by IPOPT, from a straight guess and from a path, in 100 to 800
+steps over ten units of time: seconds, iterations, effort.
 """
 
 import argparse
@@ -192,14 +195,50 @@ def speed(count: int, rounds: int) -> None:
     print(f"effort: median {np.median(parked.cost):.3f}, largest {parked.cost.max():.1f}")
 
 
+def among_obstacles(rounds: int) -> None:
+    """Print how long IPOPT takes for a robot among discs; its extra is needed for this alone."""
+    from nonholo.analysis.inverse import _transcription as transcription
+
+    wheels, counts = [[2.5, 0.5, 0.0], [-2.5, 0.5, 0.0]], []
+    body = nh.LLSystem.from_inertia(1.0, 0.05, (0.05, 0.0), nh.SE(2), constraint_subspace=wheels)
+    x, y = (0.2, 1.2, 1.0, 2.2, 2.0, 3.1, 3.2, 4.2, 2.9, 4.3), (1.0, 0.3, 1.6, 1.0, 2.3, 0.2, 1.9, 1.1, 3.0, 2.6)
+    radii = 0.2 + np.array([0.3, 0.4, 0.35, 0.4, 0.35, 0.45, 0.4, 0.4, 0.4, 0.3])
+    there = {"configuration": [[1, 0, 5], [0, 1, 3], [0, 0, 1]], "restricted_velocity": (0.0, 0.0)}
+    solve = transcription.minimized
+
+    def counted(*arguments: Any) -> Any:
+        solution = solve(*arguments)
+        counts.append(solution.iterations)
+        return solution
+
+    transcription.minimized = counted
+    for steps in (100, 200, 400, 800):
+        robot = nh.discretize(body, 10.0 / steps)
+        for name, guess in {"straight": None, "path": [(0.0, 0.0), (1.6, 1.6), (3.0, 1.2), (5.0, 3.0)]}.items():
+            times = []
+            for _ in range(1 + rounds):
+                counts.clear()
+                began, busy = time.perf_counter(), time.process_time()
+                obstacles = np.column_stack([x, y]), radii
+                found = nh.steer(robot, {}, there, steps=steps, obstacles=obstacles, bounds=(-1, 1), guess=guess)
+                times.append((time.process_time() - busy, time.perf_counter() - began))
+            busy, clock = np.median(times[1:], axis=0)
+            print(f"{steps} steps, {name} guess: {found.outcome}, {busy:.2f} s of the processor, {clock:.2f} s by the clock")
+            print(f"  iterations {counts}, effort {found.cost:.4f}, missed {found.missed:.0e}, first call {times[0][0]:.1f} s")
+
+
 def main() -> None:
     """Print all figures."""
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--members", type=int, default=1000)
     options.add_argument("--rounds", type=int, default=3)
     options.add_argument("--compare", action="store_true")
+    options.add_argument("--obstacles", action="store_true")
     chosen = options.parse_args()
-    compare(chosen.members) if chosen.compare else speed(chosen.members, chosen.rounds)
+    if chosen.obstacles:
+        among_obstacles(chosen.rounds)
+    else:
+        compare(chosen.members) if chosen.compare else speed(chosen.members, chosen.rounds)
 
 
 if __name__ == "__main__":

@@ -43,6 +43,7 @@ def test_names_that_need_an_extra() -> None:
                 "fit": "jax",
                 "rollout": "jax",
                 "steer": "jax",
+                "steer [ipopt]": "steer",
                 "step": "jax",
                 "step [flat]": "jax",
                 "tracking_feedback": "jax",

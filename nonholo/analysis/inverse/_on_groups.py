@@ -15,6 +15,7 @@ from nonholo.analysis.inverse._way import Way, body_points, evenly, resampled
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.discrete.definition import Rollout, free_rows
+from nonholo.groups import SE
 from nonholo.systems import Forced
 
 
@@ -68,17 +69,21 @@ def _numbers(nodes: GroupNodes, poses: Float[np.ndarray, "... N N"]) -> Float[np
 def _begun(
     discrete: Discretization, ends: tuple[Any, Any], way: Way, steps: int, guess: Guess
 ) -> tuple[Float[np.ndarray, "K N N"], Float[np.ndarray, "steps k"]]:
-    """Return poses and forces of a guess: by default evenly from the start to the goal, through places on the way."""
+    """Return poses and forces of a guess: by default evenly from the start to the goal, through places on the way.
+
+    In the plane the body looks along a path.
+    """
     group, (g, to_pose), rows = discrete.system.group, ends, np.asarray(discrete.system.constraint_subspace)
     if guess.configuration is not None:
         return guess.configuration, guess.controls @ rows.T
     last = g if to_pose is None else to_pose
     poses = g @ group.exp(np.linspace(0, 1, steps + 1)[:, None] * group.log(group.inverse(g) @ last))
-    if guess.path is not None:
-        poses[:, :-1, -1] = resampled(guess.path, steps)
-    elif group.is_affine:
+    if group.is_affine:
         known = {0: g[:-1, -1]} | ({} if to_pose is None else {steps: last[:-1, -1]})
-        poses[:, :-1, -1] = evenly(known | way.via, steps)
+        poses[:, :-1, -1] = evenly(known | way.via, steps) if guess.path is None else resampled(guess.path, steps)
+    if group == SE(2) and (way.via or guess.path is not None):
+        ahead = np.gradient(poses[:, 0, 2] + 1j * poses[:, 1, 2])
+        poses[:, :2, :2] = group.exp(np.angle(ahead)[:, None] * [1.0, 0.0, 0.0])[:, :2, :2]
     return poses, np.zeros((steps, len(rows)))
 
 
