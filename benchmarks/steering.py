@@ -27,8 +27,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import nonholo as nh
-from nonholo.analysis.inverse._least_effort import Missed
-from nonholo.analysis.inverse._shooting import best
+from nonholo.analysis.steering._least_effort import Missed
+from nonholo.analysis.steering._shooting import best
 from nonholo.discrete.definition import in_double
 
 DURATION, STEPS = 4.0, 40
@@ -197,7 +197,7 @@ def speed(count: int, rounds: int) -> None:
 
 def among_obstacles(rounds: int) -> None:
     """Print how long IPOPT takes for a robot among discs; its extra is needed for this alone."""
-    from nonholo.analysis.inverse import _transcription as transcription
+    from nonholo.analysis.steering import _transcription as transcription
 
     wheels, counts = [[2.5, 0.5, 0.0], [-2.5, 0.5, 0.0]], []
     body = nh.LLSystem.from_inertia(1.0, 0.05, (0.05, 0.0), nh.SE(2), constraint_subspace=wheels)
@@ -223,8 +223,12 @@ def among_obstacles(rounds: int) -> None:
                 found = nh.steer(robot, {}, there, steps=steps, obstacles=obstacles, bounds=(-1, 1), guess=guess)
                 times.append((time.process_time() - busy, time.perf_counter() - began))
             busy, clock = np.median(times[1:], axis=0)
-            print(f"{steps} steps, {name} guess: {found.outcome}, {busy:.2f} s of the processor, {clock:.2f} s by the clock")
-            print(f"  iterations {counts}, effort {found.cost:.4f}, missed {found.missed:.0e}, first call {times[0][0]:.1f} s")
+            print(
+                f"{steps} steps, {name} guess: {found.outcome}, {busy:.2f} s of the processor, {clock:.2f} s by the clock"
+            )
+            print(
+                f"  iterations {counts}, effort {found.cost:.4f}, missed {found.missed:.0e}, first call {times[0][0]:.1f} s"
+            )
 
 
 def main() -> None:

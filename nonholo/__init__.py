@@ -165,8 +165,8 @@ if TYPE_CHECKING:
     from nonholo.analysis import momentum_locus as momentum_locus
     from nonholo.analysis import single_valued_region as single_valued_region
     from nonholo.analysis.inverse import fit as fit
-    from nonholo.analysis.inverse import steer as steer
-    from nonholo.analysis.inverse import tracking_feedback as tracking_feedback
+    from nonholo.analysis.steering import steer as steer
+    from nonholo.analysis.steering import tracking_feedback as tracking_feedback
     from nonholo.base.results import Outcome as Outcome
     from nonholo.base.results import OutcomeError as OutcomeError
     from nonholo.continuous import vector_field as vector_field
@@ -329,11 +329,11 @@ _HOMES = {
     "save_orbit": "io",
     "simulate": "simulation",
     "single_valued_region": "analysis",
-    "steer": "analysis.inverse",
+    "steer": "analysis.steering",
     "step": "discrete._step",
     "sweep": "ensembles",
     "trace_constraints": "systems",
-    "tracking_feedback": "analysis.inverse",
+    "tracking_feedback": "analysis.steering",
     "vector_field": "continuous",
 }
 _ROOMS = {"examples": "literature", "plot": "plotting", "testing": "testing"}

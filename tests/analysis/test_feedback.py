@@ -8,8 +8,8 @@ import pytest
 from scipy.linalg import solve_discrete_are
 
 import nonholo as nh
-from nonholo.analysis.inverse import Feedback
-from nonholo.analysis.inverse._feedback import riccati_gains
+from nonholo.analysis.steering import Feedback
+from nonholo.analysis.steering._feedback import riccati_gains
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.2), 0.1)
 STEPS = 60
@@ -143,7 +143,7 @@ def test_resting_sleigh_is_not_moved_sideways() -> None:
         ({"state_weight": np.ones(3)}, "have shape"),
         ({"control_weight": 0.0}, "positive definite"),
         ({"final_weight": np.triu(np.ones((5, 5)))}, "be symmetric"),
-        ({"bounds": (1.0, -1.0)}, "the least force first"),
+        ({"bounds": (1.0, -1.0)}, "leave room between them"),
         ({"bounds": 3.0}, "be a pair"),
     ],
 )

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.analysis.inverse import Steering
+from nonholo.analysis.steering import Steering
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.2), 0.1)
 ASIDE = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]])

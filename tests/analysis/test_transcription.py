@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.analysis.inverse import Steering
-from nonholo.analysis.inverse._nodes import CoordinateNodes, GroupNodes
-from nonholo.analysis.inverse._program import Program, Steps
-from nonholo.analysis.inverse._way import Way, resampled
+from nonholo.analysis.steering import Steering
+from nonholo.analysis.steering._nodes import CoordinateNodes, GroupNodes
+from nonholo.analysis.steering._program import Program, Steps
+from nonholo.analysis.steering._way import Way, resampled
 from nonholo.systems import Forced
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.2), 0.25)
@@ -170,7 +170,7 @@ def test_torque_alone_is_said_to_be_infeasible() -> None:
 )
 def test_words_of_outcomes(status: str, gap: float, word: str) -> None:
     """What the orbit misses decides before what IPOPT says of its equations."""
-    transcription = pytest.importorskip("nonholo.analysis.inverse._transcription", exc_type=ImportError)
+    transcription = pytest.importorskip("nonholo.analysis.steering._transcription", exc_type=ImportError)
     assert transcription.outcome_of(status, gap) == word
 
 

@@ -1,5 +1,5 @@
-"""What motion a body must have made, or has to make: bodies for recorded motions, controls for goals."""
+"""What body must have moved: bodies for recorded motions."""
 
-from nonholo.analysis.inverse._feedback import Feedback, Tracking, tracking_feedback
 from nonholo.analysis.inverse._fit import Fit, fit
-from nonholo.analysis.inverse._steer import Steering, steer
+
+__all__ = ["Fit", "fit"]

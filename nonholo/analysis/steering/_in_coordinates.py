@@ -5,11 +5,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo.analysis.inverse._arguments import Guess, Limits
-from nonholo.analysis.inverse._nodes import CoordinateNodes
-from nonholo.analysis.inverse._program import Program, Steps
-from nonholo.analysis.inverse._transcription import Problem, bounded
-from nonholo.analysis.inverse._way import Way, evenly, planar_points, resampled
+from nonholo.analysis.steering._arguments import Guess, Limits
+from nonholo.analysis.steering._nodes import CoordinateNodes
+from nonholo.analysis.steering._program import Program, Steps
+from nonholo.analysis.steering._transcription import Problem, bounded
+from nonholo.analysis.steering._way import Way, evenly, planar_points, resampled
 from nonholo.base.checks import array, error, shown
 from nonholo.base.types import Float
 from nonholo.discrete import discretize

@@ -5,13 +5,13 @@ from typing import Any, cast
 
 import numpy as np
 
-from nonholo.analysis.inverse._arguments import Guess, Limits
-from nonholo.analysis.inverse._ends import driven
-from nonholo.analysis.inverse._nodes import GroupNodes
-from nonholo.analysis.inverse._program import Program, Steps
-from nonholo.analysis.inverse._shooting import sizes
-from nonholo.analysis.inverse._transcription import Problem, bounded
-from nonholo.analysis.inverse._way import Way, body_points, evenly, resampled
+from nonholo.analysis.steering._arguments import Guess, Limits
+from nonholo.analysis.steering._ends import driven
+from nonholo.analysis.steering._nodes import GroupNodes
+from nonholo.analysis.steering._program import Program, Steps
+from nonholo.analysis.steering._shooting import sizes
+from nonholo.analysis.steering._transcription import Problem, bounded
+from nonholo.analysis.steering._way import Way, body_points, evenly, resampled
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.discrete.definition import Rollout, free_rows

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.analysis.inverse._arguments import Ends, Limits
-from nonholo.analysis.inverse._ends import missed_goals
-from nonholo.analysis.inverse._least_effort import Missed, least_effort
+from nonholo.analysis.steering._arguments import Ends, Limits
+from nonholo.analysis.steering._ends import missed_goals
+from nonholo.analysis.steering._least_effort import Missed, least_effort
 from nonholo.discrete import Discretization
 
 SPREAD = (1.0, 2.0, 0.5, 4.0, 1.0, 2.0, 0.5, 4.0)  # of the random controls from which a goal is looked for, in turn

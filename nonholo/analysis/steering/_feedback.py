@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo.base.checks import array, error, needs, pair, positive_definite, shape_of, shown, symmetric
+from nonholo.analysis.steering._arguments import check_names, checked_limits
+from nonholo.base.checks import array, error, needs, positive_definite, shape_of, symmetric
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization
 from nonholo.systems import in_group
@@ -82,7 +83,7 @@ class Feedback:
             ValueError: A bad argument.
         """
         with needs("jax", "Feedback.simulate"):
-            from nonholo.analysis.inverse._closed_loop import closed_loop
+            from nonholo.analysis.steering._closed_loop import closed_loop
         where, nodes = "Feedback.simulate", _states(self.discrete, self.reference)
         S = self.discrete.system.constraint_subspace
 
@@ -163,9 +164,9 @@ def tracking_feedback(
     R = _weight(f"{where}(control_weight=...)", control_weight, k)
     positive_definite(f"{where}(control_weight=...)", R, "the weight", "Pass a positive number, or one for each row.")
     table = array(f"{where}(controls=...)", controls, (None, dim), "Pass a body covector for each step.")
-    limits = _limits(f"{where}(bounds=...)", bounds, k)
+    limits = checked_limits(f"{where}(bounds=...)", bounds, k)
     with needs("jax", where):
-        from nonholo.analysis.inverse._closed_loop import linearized
+        from nonholo.analysis.steering._closed_loop import linearized
         from nonholo.simulation.traced import rollout
     first = {"restricted_velocity": np.zeros(k), **start}
     reference = rollout(discrete, **first, controls=table, steps=len(table))
@@ -198,9 +199,7 @@ def _refuse(where: str, discrete: Discretization, start: Any) -> None:
     if discrete.forces is not None and discrete.forces.table is not None:
         got, remedy = "one force for each step", "Add the table to the controls."
         raise error(f"{where}(discrete=...)", "have forces that do not depend on time", got, remedy)
-    remedy = "Pass a dictionary of configuration and restricted_velocity."
-    if not isinstance(start, Mapping) or not set(start) <= {"configuration", "restricted_velocity"}:
-        raise error(f"{where}(start=...)", "name only configuration and restricted_velocity", shown(start), remedy)
+    check_names(f"{where}(start=...)", start)
 
 
 def _states(discrete: Discretization, reference: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -216,14 +215,3 @@ def _weight(where: str, value: Any, n: int) -> Float[np.ndarray, "n n"]:
     if np.linalg.eigvalsh(W)[0] < -1e-13 * np.abs(W).max():
         raise error(where, "not be negative", f"an eigenvalue {np.linalg.eigvalsh(W)[0]:.6g}", remedy)
     return W
-
-
-def _limits(where: str, bounds: Any, k: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the least and the largest force along each row."""
-    if bounds is None:
-        return np.full(k, -np.inf), np.full(k, np.inf)
-    remedy = "Pass the least and the largest force, numbers or one for each row."
-    low, high = (array(where, end, (k,) if np.ndim(end) else (), remedy) + np.zeros(k) for end in pair(where, bounds))
-    if not (low <= high).all():
-        raise error(where, "have the least force first", shown(bounds), remedy)
-    return low, high

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import casadi
 import numpy as np
 
-from nonholo.analysis.inverse._program import Program
+from nonholo.analysis.steering._program import Program
 from nonholo.base.types import Float
 
 _OPTIONS = {

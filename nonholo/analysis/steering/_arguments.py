@@ -12,7 +12,7 @@ from nonholo.systems import System, in_group
 Ends = tuple[np.ndarray, np.ndarray, np.ndarray | None, np.ndarray | None]
 """First velocities and poses of members, and the poses and velocities that they are to have, None where free."""
 Limits = tuple[np.ndarray, np.ndarray]
-"""The least and the largest force of each step and row, one after the other."""
+"""The least and the largest force, of each row or of each step and row."""
 
 
 class Guess(NamedTuple):
@@ -46,16 +46,27 @@ def checked_guess(guess: Any, steps: int, n: int | None) -> Guess:
     return Guess(path=path)
 
 
-def checked_limits(bounds: Any, steps: int, k: int) -> Limits:
-    """Return the least and the largest force of each step and row, one after the other."""
-    where, remedy = "steer(bounds=...)", "Pass the least and the largest force, numbers or one for each row."
+def checked_limits(where: str, bounds: Any, k: int) -> Limits:
+    """Return the least and the largest force of each row, (k,) both."""
+    remedy = "Pass the least and the largest force, numbers or one for each row."
     if bounds is None:
-        return np.full(steps * k, -np.inf), np.full(steps * k, np.inf)
-    both = [array(where, end, (k,) if np.ndim(end) else (), remedy) for end in pair(where, bounds)]
-    low, high = (np.tile(np.broadcast_to(end, (k,)), steps) for end in both)
+        return np.full(k, -np.inf), np.full(k, np.inf)
+    low, high = (array(where, end, (k,) if np.ndim(end) else (), remedy) + np.zeros(k) for end in pair(where, bounds))
     if not (low <= high).all() or not (low < high).any():
         raise error(where, "leave room between them", shown(bounds), remedy)
     return low, high
+
+
+def limits_of_steps(bounds: Any, steps: int, k: int) -> Limits:
+    """Return the least and the largest force of each step and row, one after the other."""
+    low, high = checked_limits("steer(bounds=...)", bounds, k)
+    return np.tile(low, steps), np.tile(high, steps)
+
+
+def check_names(where: str, end: Any) -> None:
+    """Refuse an end of a motion that is no dictionary of a configuration and a velocity."""
+    if not isinstance(end, Mapping) or not set(end) <= {"configuration", "restricted_velocity"}:
+        raise error(where, "name only configuration and restricted_velocity", shown(end), "Pass a dictionary of them.")
 
 
 def checked_ends(system: System, start: Any, goal: Any, is_free: bool) -> tuple[Ends, bool]:
@@ -71,10 +82,7 @@ def checked_ends(system: System, start: Any, goal: Any, is_free: bool) -> tuple[
 
 def _end(where: str, system: System, given: Any) -> tuple[np.ndarray | None, np.ndarray | None]:
     """Return the velocities along the constraint and the poses that an end names, one or many of them."""
-    if not isinstance(given, Mapping) or not set(given) <= {"configuration", "restricted_velocity"}:
-        raise error(
-            where, "name only configuration and restricted_velocity", shown(given), "Pass a dictionary of them."
-        )
+    check_names(where, given)
     w, g = given.get("restricted_velocity"), given.get("configuration")
     if w is not None:
         shape = (None,) * (len(shape_of(w)) - 1) + (system.rank,)

@@ -7,8 +7,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from nonholo.analysis.inverse._arguments import Ends, Guess, Limits, checked_ends, checked_guess, checked_limits
-from nonholo.analysis.inverse._way import Way, body_points
+from nonholo.analysis.steering._arguments import Ends, Guess, Limits, checked_ends, checked_guess, limits_of_steps
+from nonholo.analysis.steering._way import Way, body_points
 from nonholo.base.checks import choice, count, error, flag, needs, refuse_given
 from nonholo.base.progress import progress_bar
 from nonholo.base.types import Array, Float
@@ -54,9 +54,9 @@ class Steering:
     def orbit(self) -> Any:
         """The motion under the controls, a `Rollout`; an orbit in coordinates."""
         with needs("jax", "Steering.orbit"):
-            from nonholo.analysis.inverse._ends import driven
+            from nonholo.analysis.steering._ends import driven
         if in_coordinates(self.discrete):
-            from nonholo.analysis.inverse._in_coordinates import driven_in_coordinates
+            from nonholo.analysis.steering._in_coordinates import driven_in_coordinates
 
             return driven_in_coordinates(cast(Any, self.discrete), self.start, self.controls)
         w, g = self.start
@@ -142,21 +142,17 @@ def steer(
         as_discretization("steer(discrete=...)", discrete, forced=True)
     steps = count("steer(steps=...)", steps, "Pass the number of steps.")
     choice("steer(cost=...)", cost, ("effort",))
-    choice("steer(method=...)", method, (None, "shooting", "ipopt"))
     flag("steer(progress=...)", progress)
     n = _size_of_positions(discrete)
     way, hints = Way.of(n, steps, obstacles, outline, via), checked_guess(guess, steps, n)
     asked = {"obstacles": obstacles, "outline": outline, "via": via, "guess": guess}
-    if method == "shooting":
-        for name, value in asked.items():
-            refuse_given("steer", "be left out of shooting", 'Use method="ipopt".', **{name: (value, None)})
+    method = _method(discrete, method, asked)
     if in_coordinates(discrete):
-        choice("steer(method=...)", method, (None, "ipopt"), "Systems in coordinates are steered by IPOPT.")
         return _steered_in_coordinates(discrete, (start, goal), bounds, way, steps, hints)
     _check(discrete, steps)
     ends, is_one = checked_ends(discrete.system, start, goal, bool(way.via))
-    limits = checked_limits(bounds, steps, discrete.system.rank)
-    if method == "ipopt" or (method is None and any(each is not None for each in asked.values())):
+    limits = limits_of_steps(bounds, steps, discrete.system.rank)
+    if method == "ipopt":
         forces, gap, outcome = _by_ipopt(discrete, ends, limits, way, hints, progress)
     else:
         forces, gap, outcome = _by_shooting(discrete, ends, limits)
@@ -165,6 +161,19 @@ def steer(
     found = *ends[:2], controls, effort, gap, outcome
     w, g, *rest = (np.asarray(each[0]) for each in found) if is_one else found
     return Steering(discrete, (w, g), *rest)
+
+
+def _method(discrete: Any, method: Any, asked: dict[str, Any]) -> str:
+    """Return the method that can do what is asked, or refuse the one that is named."""
+    where = "steer(method=...)"
+    choice(where, method, (None, "shooting", "ipopt"))
+    if method == "shooting":
+        for name, value in asked.items():
+            refuse_given("steer", "be left out of shooting", 'Use method="ipopt".', **{name: (value, None)})
+    if in_coordinates(discrete):
+        choice(where, method, (None, "ipopt"), "Systems in coordinates are steered by IPOPT.")
+        return "ipopt"
+    return method or ("shooting" if all(each is None for each in asked.values()) else "ipopt")
 
 
 def _check(discrete: Discretization, steps: int) -> None:
@@ -194,7 +203,7 @@ def _size_of_positions(discrete: Any) -> int | None:
 def _by_shooting(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[Any, ...]:
     """Return forces along the rows, what is missed, and outcomes of members, all at once."""
     with needs("jax", "steer"):
-        from nonholo.analysis.inverse._shooting import TOLERANCE, shot
+        from nonholo.analysis.steering._shooting import TOLERANCE, shot
     forces, gap, is_least = shot(discrete, ends, limits)
     outcome = np.where(is_least, "converged", np.where(gap < TOLERANCE, "not least", "not found"))
     return forces.reshape(len(gap), -1, discrete.system.rank), gap, outcome
@@ -205,8 +214,8 @@ def _by_ipopt(
 ) -> tuple[Any, ...]:
     """Return forces along the rows, what is missed, and outcomes of members, one after the other."""
     with needs("steer", "steer(method='ipopt')"):
-        from nonholo.analysis.inverse._on_groups import group_problem
-        from nonholo.analysis.inverse._transcription import transcribed
+        from nonholo.analysis.steering._on_groups import group_problem
+        from nonholo.analysis.steering._transcription import transcribed
     for name, poses in (("start", ends[1]), ("goal", ends[2])):
         way.check(name, poses if poses is None else body_points(poses, way.outline))
     found = []
@@ -224,10 +233,10 @@ def _steered_in_coordinates(
 ) -> Steering:
     """Return the result for a system in coordinates."""
     with needs("steer", "steer"):
-        from nonholo.analysis.inverse._in_coordinates import checked_goal, checked_start, coordinate_problem
-        from nonholo.analysis.inverse._transcription import transcribed
+        from nonholo.analysis.steering._in_coordinates import checked_goal, checked_start, coordinate_problem
+        from nonholo.analysis.steering._transcription import transcribed
     x, v = checked_start(discrete, ends[0])
-    limits = checked_limits(bounds, steps, discrete.system.dimension)
+    limits = limits_of_steps(bounds, steps, discrete.system.dimension)
     goal = checked_goal(discrete, ends[1], is_free=bool(way.via))
     problem = coordinate_problem(discrete, ((x, v), goal), limits, way, steps, guess)
     forces, gap, outcome = transcribed(problem)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import jax.numpy as jnp
 
-from nonholo.analysis.inverse._way import body_points, planar_points
+from nonholo.analysis.steering._way import body_points, planar_points
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
 from nonholo.discrete.definition import free_rows, step_residual

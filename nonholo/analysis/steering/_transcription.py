@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo.analysis.inverse._ipopt import minimized
-from nonholo.analysis.inverse._program import Program
-from nonholo.analysis.inverse._shooting import TOLERANCE
+from nonholo.analysis.steering._ipopt import minimized
+from nonholo.analysis.steering._program import Program
+from nonholo.analysis.steering._shooting import TOLERANCE
 from nonholo.base.types import Float
 
 _SPREADS = (0.03, 0.3, 1.0, 2.0)  # of random bends of the first guess, in turn

@@ -1,0 +1,6 @@
+"""Controls for goals: steering by shooting and by IPOPT, over the exact step, and feedback along a motion."""
+
+from nonholo.analysis.steering._feedback import Feedback, Tracking, tracking_feedback
+from nonholo.analysis.steering._steer import Steering, steer
+
+__all__ = ["Feedback", "Steering", "Tracking", "steer", "tracking_feedback"]
