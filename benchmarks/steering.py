@@ -223,11 +223,9 @@ def among_obstacles(rounds: int) -> None:
                 found = nh.steer(robot, {}, there, steps=steps, obstacles=obstacles, bounds=(-1, 1), guess=guess)
                 times.append((time.process_time() - busy, time.perf_counter() - began))
             busy, clock = np.median(times[1:], axis=0)
+            print(f"{steps} steps, {name} guess: {found.outcome}, {busy:.2f} s of the processor ({clock:.2f} by clock)")
             print(
-                f"{steps} steps, {name} guess: {found.outcome}, {busy:.2f} s of the processor, {clock:.2f} s by the clock"
-            )
-            print(
-                f"  iterations {counts}, effort {found.cost:.4f}, missed {found.missed:.0e}, first call {times[0][0]:.1f} s"
+                f"  iterations {counts}, effort {found.cost:.4f}, missed {found.missed:.0e}, first {times[0][0]:.1f} s"
             )
 
 
