@@ -20,6 +20,7 @@ PAGES = (
     "how-to/drive-a-robot.md",
     "how-to/explore.md",
     "how-to/gaits.md",
+    "how-to/make-a-dataset.md",
     "how-to/run-an-ensemble.md",
     "how-to/steer.md",
     "how-to/style-a-picture.md",
@@ -33,7 +34,13 @@ ELSEWHERE = {  # pages whose blocks run with what stands around them, and where
     "how-to/run-a-sweep.md": "cli/test_sweep.py",
     "how-to/run-for-days.md": "simulation/test_stored_runs.py",
 }
-LONG = ["how-to/choose-a-discretisation.md", "how-to/d*.md", "how-to/gaits.md", "how-to/steer.md"]
+LONG = [
+    "how-to/choose-a-discretisation.md",
+    "how-to/d*.md",
+    "how-to/gaits.md",
+    "how-to/make-a-dataset.md",
+    "how-to/steer.md",
+]
 
 
 @pytest.mark.profile("paper", cases=LONG)

@@ -125,7 +125,7 @@ def test_overviews(pair: Pair, tmp_path: Path) -> None:
     assert name.split()[-1] in recognized
     frames = []
     for number, orbit in enumerate(orbits):
-        with Image.open(nh.plot.animate(orbit, tmp_path / f"{number}.gif", frames=2)) as movie:
+        with Image.open(nh.plot.animate(orbit, tmp_path / f"{number}.gif", frames=2, title="one")) as movie:
             movie.seek(1)
             frames.append(np.asarray(movie.convert("RGB"), dtype=int))
     assert np.mean(np.abs(frames[0] - frames[1]).max(axis=-1) > 8) < 1e-3  # shades of a palette may differ

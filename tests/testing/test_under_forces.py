@@ -90,7 +90,7 @@ def test_errors_in_systems(
 def test_errors_in_maps(monkeypatch: pytest.MonkeyPatch, name: str, factor: float, expected: set[str]) -> None:
     """Impulses that are too large, work of the wrong sign, friction that forgets: each fails the checks of its own."""
     force = RUB if name == "propagator" else _even
-    body = VESELOVA if name == "impulses" else SLEIGH  # whose steps call the function in Python
+    body = SLEIGH if name == "work" else VESELOVA  # whose steps call the functions in Python
     discrete = nh.discretize(nh.Forced(body, force=force), 0.1)
     monkeypatch.setattr(nh.Forced, name, _scaled(factor, getattr(nh.Forced, name)))
     assert _names(check_discretization(discrete, throw=False, definition=False)) >= expected
