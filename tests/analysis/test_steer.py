@@ -13,7 +13,7 @@ ASIDE = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]])
 REST = {"restricted_velocity": (0.0, 0.0)}
 
 
-@pytest.mark.profile("routes", instead="test_many_are_parked_at_once")
+@pytest.mark.profile("routes", instead="test_bounds_hold")
 def test_thousand_sleighs_are_parked() -> None:
     """From random poses and velocities to rest: at least 999 of 1000 meet pose and velocity to 1e-8, as rollouts do."""
     found = nh.steer(SLEIGH, _starts(1000), {"configuration": np.eye(3), **REST}, steps=40)
@@ -23,6 +23,7 @@ def test_thousand_sleighs_are_parked() -> None:
     assert ((np.abs(gap).max(axis=(1, 2)) < 1e-8) & (np.abs(speed).max(axis=1) < 1e-8)).sum() >= 999
 
 
+@pytest.mark.profile("routes", instead="test_bounds_hold")
 def test_many_are_parked_at_once() -> None:
     """Each of three members side by side meets its goal, in the compiled run of its controls too."""
     starts, found = _starts(3), _parked()

@@ -137,6 +137,7 @@ def test_energy_is_kept(name: str) -> None:
     assert np.ptp(orbit.energy) <= 1e-13 * orbit.energy[0]
 
 
+@pytest.mark.profile("routes", keep=["top", "sleigh"])
 @pytest.mark.parametrize("name", BODIES)
 def test_run_back(name: str) -> None:
     """From the opposite momentum at the last pose a run returns to the first state: each step is reversible."""

@@ -73,6 +73,7 @@ def _worker_of(store: Path) -> int:
     return int(done(store)[0].rpartition(":")[2])
 
 
+@pytest.mark.profile("faults", instead="test_a_cluster_without_workers_is_told")
 def test_workers_compute_the_bits_of_threads(running: Cluster, tmp_path: Path) -> None:
     """Two worker processes share the blocks of an ensemble, and write what threads write."""
     top = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.1)

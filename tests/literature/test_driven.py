@@ -141,7 +141,7 @@ def test_what_drives_them() -> None:
     assert speed[-200:].mean() > 1.5 * speed[:200].mean()
 
 
-@pytest.mark.profile("routes", keep=["sleigh_in_a_well"])
+@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
 @pytest.mark.parametrize("name", ["heavy_suslov_top", "sleigh_in_a_well"])
 def test_integrals_under_a_potential(name: str) -> None:
     """Constant along the flow; of the map off by an error of order two."""

@@ -76,7 +76,7 @@ def _rows(orbit: Any) -> list[np.ndarray]:
     return [orbit.reduced_momentum, orbit.cayley, orbit.canonical_pose]
 
 
-@pytest.mark.profile("routes", keep=["top-well and drive", "top-all three"])
+@pytest.mark.profile("routes", keep=["top-all three"])
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_compiled_functions_have_the_bits_of_python(name: str, kind: str) -> None:
