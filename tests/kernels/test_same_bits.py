@@ -40,7 +40,7 @@ def _printed(*arguments: str, **variables: str) -> Any:
     return json.loads(done.stdout)
 
 
-@pytest.mark.profile("routes", keep=["sleighs"])
+@pytest.mark.profile("long", keep=["sleighs"])
 @pytest.mark.parametrize("names", [(), ("sleighs",)], ids=["all", "sleighs"])
 def test_bits_of_a_fresh_cache(names: tuple[str, ...], tmp_path: Path) -> None:
     """Live motions have the same bits where kernels are compiled and where they are loaded, in 1 and in 7 threads."""

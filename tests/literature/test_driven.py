@@ -115,7 +115,7 @@ def test_torques_of_the_robot() -> None:
         robot(friction=-0.1)
 
 
-@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
+@pytest.mark.profile("long", instead="test_the_roller_racer_moves_as_derived_by_hand")
 def test_the_ball_moves_as_derived_by_hand() -> None:
     """Path and rotation of the flow, to 1e-10, momentum in space and energy constant."""
     ready = nh.examples.chaplygin_ball()
