@@ -79,7 +79,7 @@ def test_errors_in_systems(
     assert _names(check_system(nh.Forced(SLEIGH, SLOPE, RUB), throw=False)) == expected
 
 
-@pytest.mark.profile("routes", keep=["work*", "propagator*"])
+@pytest.mark.profile("routes", keep=["work*"])
 @pytest.mark.parametrize(
     ("name", "factor", "expected"),
     [
