@@ -151,6 +151,7 @@ def test_the_address_of_a_worker_is_refused(running: Cluster, tmp_path: Path) ->
         nh.sweep(slow, DESIGN, tmp_path / "a.zarr", worker)
 
 
+@pytest.mark.profile("faults", instead="test_a_cluster_without_workers_is_told")
 def test_the_page(running: Cluster, tmp_path: Path) -> None:
     """The code of the page on clusters runs, for fewer members: the script on a cluster, and its groups."""
     run, groups = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
