@@ -33,6 +33,7 @@ class Mutant:
     new: str
     why: str
     tests: tuple[str, ...]
+    profile: str = "default"
 
     @property
     def room(self) -> str:
@@ -61,7 +62,7 @@ def tried(mutant: Mutant, copy: Path, caches: Path) -> tuple[bool, str]:
         numba = Path(fresh) if mutant.file.startswith(_COMPILED) else caches / "numba"
         try:
             path.write_text(text.replace(mutant.old, mutant.new))
-            code, output = _run(copy, caches, numba, *_PYTEST, *mutant.tests)
+            code, output = _run(copy, caches, numba, *_PYTEST, f"--profile={mutant.profile}", *mutant.tests)
         finally:
             path.write_text(text)
             os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))  # what was compiled from it is still good

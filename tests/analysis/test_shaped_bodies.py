@@ -179,6 +179,19 @@ def test_brackets_on_groups_are_those_of_the_algebra() -> None:
     assert found.is_accessible
 
 
+@LONG
+def test_a_pose_that_is_a_function_of_the_shape_stays_one() -> None:
+    r"""With $g = e^{s_1e_1}e^{s_2e_2}$ motions fill a surface: brackets add nothing, the curvature is zero."""
+
+    def rows(s: Array) -> Array:
+        first = jnp.stack([jnp.cos(s[1]), 0.0, jnp.sin(s[1])])  # of g^-1 dg
+        return jnp.concatenate([jnp.eye(3), -jnp.stack([first, jnp.eye(3)[1]], 1)], 1)
+
+    body, s = nh.ShapedBody(nh.SO(3), ("a", "b"), constraint_forms=rows), (0.3, -0.7)
+    np.testing.assert_allclose(nh.local_connection(body).curvature(s), 0.0, rtol=0, atol=1e-15)
+    assert set(nh.accessibility(body, s).growth) == {2}
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [

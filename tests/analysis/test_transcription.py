@@ -101,13 +101,14 @@ def test_only_windows_of_unknowns_are_coupled() -> None:
 @pytest.mark.profile("routes", instead="test_a_disc_is_kept_clear_of")
 def test_an_orbit_satisfies_all_equations() -> None:
     """States, charts and forces of a rollout leave nothing over: the equations are those of the exact step."""
-    forces = np.random.default_rng(1).normal(size=(6, 2))
-    controls = np.column_stack([forces, np.zeros(6)])
+    table, forces = np.random.default_rng(1).normal(size=(2, 6, 3))
+    forces = forces[:, :2]
+    controls = np.column_stack([forces, np.zeros(6)]) + table
     orbit = nh.rollout(SLEIGH, restricted_velocity=(0.3, 0.8), controls=controls, steps=6)
     charts = np.array([SLEIGH.variety.coordinates(W) for W in orbit.displacement[:-1]])
     states = np.column_stack([orbit.configuration[:, :2].reshape(7, 6), orbit.restricted_momentum])
     steps = Steps(GroupNodes(SLEIGH, None, np.zeros((1, 2)), None), *_none(), SLEIGH.time_step)
-    program = Program(steps, states[0], np.zeros((6, 3)))
+    program = Program(steps, states[0], table)
     u = np.column_stack([charts, forces, states[1:]]).ravel()
     np.testing.assert_allclose(program.conditions(u), 0.0, rtol=0, atol=1e-14)
     assert np.abs(program.conditions(u + 1e-3)).max() > 1e-4

@@ -16,7 +16,7 @@ from nonholo.lagrange_dalembert import CoordinateOrbit, LagrangeDAlembert
 from nonholo.plotting.animation._in_plane import _outline
 from nonholo.plotting.animation._in_space import _box
 from nonholo.plotting.animation._on_sphere import _scaled
-from nonholo.plotting.animation._part import part_of_flow, shown_states
+from nonholo.plotting.animation._part import part_of, part_of_flow, shown_states
 
 
 @pytest.mark.parametrize("kind", ["top_orbit", "sleigh_orbit"])
@@ -59,6 +59,14 @@ def test_long_orbits_show_the_transition() -> None:
     assert set(np.diff(shown)) == {3}
     assert shown[0] < fastest < shown[-1]
     assert shown_states(orbit[:51], 0.3, 26).tolist() == list(range(0, 51, 2))
+
+
+def test_a_trail_ends_where_the_body_is(top_orbit: nh.Orbit) -> None:
+    """The path of a frame ends at its state, also where the film begins late, and so does that of a flow."""
+    orbit = part_of(top_orbit, np.array([3, 5, 9]))
+    flow = nh.flow(top_orbit.system, momentum=top_orbit.restricted_momentum[0], times=top_orbit.time)
+    for part in (orbit, part_of_flow(flow, orbit.frames.time)):
+        np.testing.assert_array_equal(part.path.time[part.past - 1], top_orbit.time[[3, 5, 9]])
 
 
 def test_box_of_a_top_has_its_mass_tensor(top_orbit: nh.Orbit) -> None:
