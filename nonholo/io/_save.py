@@ -192,7 +192,7 @@ def create_array(group: zarr.Group, name: str, variable: xarray.Variable, rows: 
             name,
             shape=(rows, *variable.shape[1:]),
             dtype="float64",
-            chunks=(chunk, *variable.shape[1:]),
+            chunks=(chunk, *(max(1, size) for size in variable.shape[1:])),
             compressors=(BloscCodec(cname="zstd", clevel=3, shuffle="shuffle"), Crc32cCodec()),
             fill_value=float("nan"),
             dimension_names=[str(dimension) for dimension in variable.dims],

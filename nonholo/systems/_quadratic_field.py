@@ -55,10 +55,14 @@ class QuadraticField(NamedTuple):
         return None
 
     def rates(self, x: Float[np.ndarray, "k"], zeros: Float[np.ndarray, "m k"]) -> np.ndarray:
-        """Return the eigenvalues of the linearized field at a zero, across the linear space of zeros it lies in."""
+        """Return the eigenvalues of the linearized field at a zero, across the linear space of zeros it lies in.
+
+        Real if all are: newer NumPy returns complex ones always.
+        """
         linear = self.signs[:, None] * np.einsum("abm,b->ma", self.tensor + self.tensor.transpose(1, 0, 2), x)
         across = np.linalg.svd(zeros)[2][np.linalg.matrix_rank(zeros) :]
-        return np.sort(np.linalg.eigvals(across @ linear @ across.T))
+        values = np.sort(np.linalg.eigvals(across @ linear @ across.T))
+        return values if np.imag(values).any() else np.real(values)
 
     def attracting(self, zeros: Float[np.ndarray, "m k"]) -> Float[np.ndarray, "k"] | None:
         """Return the point of a linear space of zeros, of unit length, where the field contracts most; None if none.

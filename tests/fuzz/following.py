@@ -141,7 +141,7 @@ def followed(equations: Equations, r: np.ndarray, rounds: int = 400) -> Path:
     """Follow the root of zero momentum along s r, each path with steps of its own, as long as its tangent foretells."""
     W, s = np.tile(np.eye(len(equations.tensor)), (len(r), 1, 1)), np.zeros(len(r))
     tangents, size, fold = Tangents.at(equations, W, r), np.full(len(r), 0.05), np.full(len(r), np.inf)
-    zero = tangents.determinants.copy()
+    zero, ends = tangents.determinants.copy(), np.full_like(W, np.nan)
     for _ in range(rounds):
         at = np.flatnonzero((s < 1.0) & (size > _SMALLEST))
         if not len(at):
@@ -152,15 +152,18 @@ def followed(equations: Equations, r: np.ndarray, rounds: int = 400) -> Path:
         root, last = newton(equations, guess, ahead[:, None] * r[at])
         missed, way = distance(root, guess), distance(guess, W[at])
         new = Tangents.at(equations, root, r[at])
-        good = (last <= np.maximum(SHARP, _BLURRED * way)) & (missed <= _BENT * way) & (way <= _JUMP)
+        blur = np.where(ahead < 1.0, _BLURRED * way, 0.0)  # the last root is sharp, or that of the tangent
+        good = (last <= np.maximum(SHARP, blur)) & (missed <= _BENT * way) & (way <= _JUMP)
         good &= new.continues(tangents[at])
         on = at[good]
         fold[on] = _fold(tangents[on].determinants, new[good].determinants)
         W[on], s[on], tangents[on] = root[good], ahead[good], new[good]
         size[at] = np.where(good, 1.5 * size[at], size[at] / 2)
+        end = equations.moved(W[on], tangents[on].rates * (1.0 - s[on])[:, None])
+        first = np.isnan(ends[on, 0, 0]) & (distance(end, W[on]) < _REST)  # closer to a half-turn rounding has its say
+        ends[on[first]] = end[first]
     folded = (s < 1.0) & (size <= _SMALLEST) & (fold < _FOLD)
-    ends = equations.moved(W, tangents.rates * (1.0 - s)[:, None])
-    near = ~folded & (distance(ends, W) < _REST)
+    near = ~folded & (s < 1.0) & ~np.isnan(ends[:, 0, 0])
     ends, s = np.where(near[:, None, None], ends, W), np.where(near, 1.0, s)
     return Path(ends, s, folded, np.abs(tangents.determinants / zero))
 
