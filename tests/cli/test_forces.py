@@ -177,7 +177,7 @@ def test_forces_of_a_template(kind: str) -> None:
     """The forces that stand as comments in what `nonholo new` writes act on its body."""
     own = re.sub(r"^# (\[forces\]|gravity|friction)", r"\1", built_in()[kind], flags=re.MULTILINE)
     Path("my.toml").write_text(own)
-    forces = load_scenario("my.toml", []).scenario.system()
+    forces: Any = load_scenario("my.toml", []).scenario.system()
     assert (forces.gravity is not None, forces.friction is not None) == (True, True)
 
 

@@ -18,7 +18,10 @@ DIAGONAL, WHOLE = "friction by coefficients", "friction by matrix"
 
 
 def _tag(given: Any) -> str:
-    return WHOLE if isinstance(given, list) and given and isinstance(given[0], list) else DIAGONAL
+    match given:
+        case [list(), *_]:
+            return WHOLE
+    return DIAGONAL
 
 
 Coefficients = Annotated[Annotated[Vector, Tag(DIAGONAL)] | Annotated[Matrix, Tag(WHOLE)], Discriminator(_tag)]
@@ -92,13 +95,13 @@ def read_table(document: dict[str, Any], folder: Path) -> None:
     Raises:
         ValueError: The file cannot be read, or is no table of numbers.
     """
-    forces = document.get("forces")
-    name = forces.get("table") if isinstance(forces, dict) else None
-    if isinstance(name, str):
-        try:
-            forces["table"] = rows_of(read_text(folder / name))  # type: ignore[index]
-        except (OSError, ValueError) as failure:
-            raise ValueError(f"must be rows, or the path of a CSV file of numbers. Got {name!r}: {failure}") from None
+    match document:
+        case {"forces": {"table": str(name)} as forces}:
+            try:
+                forces["table"] = rows_of(read_text(folder / name))
+            except (OSError, ValueError) as failure:
+                fault = f"Got {name!r}: {failure}"
+                raise ValueError(f"must be rows, or the path of a CSV file of numbers. {fault}") from None
 
 
 def rows_of(text: str) -> list[list[float]]:
