@@ -206,7 +206,7 @@ def _numbers(orbit: AbstractOrbit, chosen: Int[np.ndarray, "L"]) -> tuple[dict[s
 
 def _shown_energy(orbit: AbstractOrbit) -> tuple[Float[np.ndarray, "K"], str]:
     """Return the energy, under forces less their work and from its largest value on, and a note on that."""
-    work = np.nan_to_num(orbit.work)
+    work = np.nan_to_num(orbit.known_work)
     if not work.any():
         return orbit.energy, ""
     left = orbit.energy - orbit.energy[0] - work

@@ -1,5 +1,6 @@
 """Forces in scenarios: the same motion as in Python, the same text again, and refusals with their key."""
 
+import json
 import re
 import tomllib
 from collections.abc import Callable
@@ -8,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 from typer.testing import Result
 
 import nonholo as nh
@@ -187,6 +189,21 @@ def test_steps_that_take_no_forces(file: Path, option: str, nonholo: Callable[..
     result = nonholo("simulate", file, "--set", option)
     assert result.exit_code == 2
     assert "must have a compiled step of order 2 inside" in result.stderr
+
+
+def test_thinned_run_under_a_table(file: Path, nonholo: Callable[..., Result]) -> None:
+    """What needs every step is left out of the table, the picture and the page, and the rest is there."""
+    result = nonholo("simulate", file, "--set", "run.save_every=3", "-o", "a.zarr", "--json")
+    assert result.exit_code == 0
+    told = json.loads(result.stdout)
+    assert (told["work"], told["energy_drift"], told["outcome"]) == (None, None, "successful")
+    assert told["constraint_residual"] < 1e-14
+    assert "no picture" not in result.stderr
+    assert nonholo("info", "a.zarr").exit_code == 0
+    assert nonholo("explore", "a.zarr", "-o", "page.html", "--no-browser").exit_code == 0
+    orbit = nh.load_orbit("a.zarr")
+    assert nh.plot.energy_error(orbit).axes.get_title("left") == "Change of energy"
+    assert "Chaplygin sleigh, under forces" in [text.get_text() for text in nh.plot.overview(orbit).findobj(Text)]
 
 
 DESIGN = '[design]\nkind = "grid"\n[design.values]\n"start.restricted_velocity_0" = [0.1, 0.3]\n'
