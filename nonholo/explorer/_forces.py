@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from nonholo.base.checks import number
 from nonholo.base.types import Float
 from nonholo.systems import AbstractSystem, Forced, Friction, Gravity
 
@@ -32,7 +33,7 @@ def force_numbers(forced: Forced) -> dict[str, float] | None:
 def under_forces(system: AbstractSystem, numbers: Mapping[str, float], rows: Float[np.ndarray, "K dim"]) -> Forced:
     """Return the system under the forces of a page, which acts without those that are zero; rows: its table."""
     F, x, c = ([numbers[f"{name}{i}"] for i in (1, 2, 3) if f"{name}{i}" in numbers] for name in "Fxc")
-    weight, scale = Gravity(F, x) if any(F) else None, numbers.get("s", 0.0)
+    weight, scale = Gravity(F, x) if any(F) else None, number("Page.orbit()", numbers.get("s", 0.0))
     forces = [Friction([*c, 0.0])] * any(c) + [scale * rows] * bool(scale)
     return Forced(system, weight, forces[0] if len(forces) == 1 else tuple(forces) or None)
 
@@ -44,7 +45,7 @@ def packed_table(body: str, rows: Float[np.ndarray, "K dim"]) -> dict[str, Any]:
     return {"body": body, "name": name, "rows": base64.b64encode(content).decode()}
 
 
-def table_of(packed: dict[str, Any] | None, steps: int) -> Float[np.ndarray, "K dim"]:
-    """Return the rows of a page's table for steps, and what acts after them: nothing, after the last row."""
+def table_of(packed: dict[str, Any] | None, least: int) -> Float[np.ndarray, "K dim"]:
+    """Return the rows of a page's table, and after the last one as many that are zero as are missing from a number."""
     rows = np.zeros((0, 3)) if packed is None else np.frombuffer(base64.b64decode(packed["rows"]), "<f8").reshape(-1, 3)
-    return np.concatenate([rows[: steps + 1], np.zeros((max(0, steps + 1 - len(rows)), 3))])
+    return np.concatenate([rows, np.zeros((max(0, least - len(rows)), 3))])

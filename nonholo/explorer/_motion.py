@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from nonholo.base.checks import error, instance, shown
+from nonholo.base.checks import error, instance, is_integer, shown
 from nonholo.base.types import Float, Int
 from nonholo.discrete import Discretization, discretize
 from nonholo.explorer._forces import force_numbers, packed_table, table_of, under_forces
@@ -150,7 +150,7 @@ def simulated(where: str, state: Any, table: dict[str, Any] | None = None) -> Or
     """Return the motion of a state, which may come from a page and be anything, under the table of that page."""
     if not isinstance(state, dict) or state.keys() < {"kind", "parameters", "momentum", "pose", "time_step", "steps"}:
         raise error(where, "be asked of a page whose body runs in it", "a replay", "Use the orbit you passed.")
-    p, (w, *xyz) = state["parameters"], state["pose"]
+    p, (w, *xyz), steps = state["parameters"], state["pose"], state["steps"]
     if state["kind"].endswith("top"):
         rows = [[p[f"J{min(i, j)}{max(i, j)}"] for j in (1, 2, 3)] for i in (1, 2, 3)]
         body, pose = SuslovTop(rows), matrix_from_quaternion(np.array([w, *xyz]))
@@ -158,9 +158,10 @@ def simulated(where: str, state: Any, table: dict[str, Any] | None = None) -> Or
         sine, *place = xyz
         body = ChaplyginSleigh(p["mass"], p["inertia"], p["a"])
         pose = [[w, -sine, place[0]], [sine, w, place[1]], [0.0, 0.0, 1.0]]
-    body = under_forces(body, p, table_of(table, state["steps"])) if state["kind"].startswith("forced") else body
+    rows = table_of(table, steps if is_integer(steps) and steps <= MOST_STEPS else 0)
+    body = under_forces(body, p, rows) if state["kind"].startswith("forced") else body
     start = {"momentum": state["momentum"], "configuration": pose}
-    return simulate(discretize(body, state["time_step"]), **start, steps=state["steps"], throw=False)
+    return simulate(discretize(body, state["time_step"]), **start, steps=steps, throw=False)
 
 
 def _name(system: AbstractSystem) -> str:
