@@ -102,7 +102,7 @@ def test_forces_of_the_command_line(file: Path) -> None:
 
 
 REFUSED = {
-    "unknown key": ("forces.tabl=[]", "forces.tabl: is not a known key. Did you mean table?"),
+    "unknown key": ("forces.tables=[]", "forces.tables: is not a known key. Did you mean table?"),
     "unknown key of a weight": (
         "forces.gravity={force=[1,2],pint=[1,2]}",
         "pint: is not a known key. Did you mean point",
