@@ -56,7 +56,10 @@ def _scenarios() -> str:
     )
     own = {**built_in(), **built_in("sweeps")}
     texts = "\n\n".join(f"### `nonholo new {name}`\n\n```toml\n{text.strip()}\n```" for name, text in own.items())
-    motion, sweep = _nested(Scenario, ("start", "run", "output")), _nested(SweepScenario, ("design", "keep", "output"))
+    motion, sweep = (
+        _nested(Scenario, ("start", "run", "forces", "output")),
+        _nested(SweepScenario, ("design", "keep", "output")),
+    )
     return _SCENARIOS.format(bodies=bodies, texts=texts, motion=motion, sweep=sweep)
 
 
@@ -92,7 +95,7 @@ def _table(schema: dict[str, Any]) -> str:
 
 def _kind(about: dict[str, Any]) -> str:
     """Return in words what a key takes."""
-    if choices := about.get("anyOf"):
+    if choices := about.get("anyOf") or about.get("oneOf"):
         return " or ".join(filter(None, map(_kind, choices)))
     if "enum" in about or "const" in about:
         return ", ".join(f"`{value}`" for value in about.get("enum", [about.get("const")]))
@@ -124,15 +127,21 @@ _SCENARIOS = """\
 <!-- written by docs/make_reference_pages.py -->
 # The keys of scenarios
 
-A scenario is a TOML file with the tables `[body]`, `[start]`, `[run]` and `[output]`; sweeps have `[design]` and
-`[keep]` too. `nonholo new KIND` prints one with comments, as below. Everything is checked before anything runs, and all
-problems are reported at once, with file and key. `--set run.time_step=0.05` changes a value on the command line.
+A scenario is a TOML file with the tables `[body]`, `[start]`, `[run]`, `[forces]` and `[output]`; sweeps have
+`[design]` and `[keep]` too. `nonholo new KIND` prints one with comments, as below. Everything is checked before
+anything runs, and all problems are reported at once, with file and key. `--set run.time_step=0.05` changes a value on
+the command line.
 
 ## One motion
 
 `title`: a text for people.
 
 {motion}
+
+Forces are those of `nh.Forced`, for every kind of body. Components of friction and of a table are those of
+`body_velocity`. A table stops acting after its last row, so it has one for each step at least; a first line of its file
+may name the columns, and stores keep its rows. Ready: [scenarios/hanging_top.toml](../../scenarios/hanging_top.toml),
+[scenarios/twisted_sleigh.toml](../../scenarios/twisted_sleigh.toml). Sweeps under forces vary starts and time steps.
 
 ## Bodies
 

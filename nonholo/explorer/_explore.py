@@ -26,10 +26,12 @@ class Page:
     Attributes:
         text: The whole of it, HTML in ASCII.
         first_state: Body, start and time step with which it opens; None for a replay.
+        table: The table of forces that it carries, as in its data; None without one.
     """
 
     text: str
     first_state: dict[str, Any] | None = None
+    table: dict[str, Any] | None = None
 
     def __repr__(self) -> str:
         return f"<Page of {len(self.text) / 1e3:.0f} kB>"
@@ -71,7 +73,7 @@ class Page:
             >>> nh.explore(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5)).orbit()
             <Orbit of ChaplyginSleigh: 401 states, time 0 to 40, successful>
         """
-        return simulated("Page.orbit()", self.state)
+        return simulated("Page.orbit()", self.state, self.table)
 
     def save(self, path: str | Path, *, overwrite: bool = False) -> None:
         """Write the page to a new file.
@@ -97,10 +99,10 @@ class Page:
 def explore(value: Any) -> Page:
     """Return the live page of a motion: one file that runs the library's own kernel in the browser.
 
-    Tops with n = 3 and sleighs in the plane, also under `Gravity` and `Friction`, run there with the very numbers of
-    `nh.simulate`; sliders change the body, the forces, the start and the time step. Any other orbit is replayed from
-    its numbers, and the page says so. It fetches nothing, and its content security policy lets nothing run in it but
-    its own view.
+    Tops with n = 3 and sleighs in the plane, also under `Gravity`, `Friction` and a table of forces, run there with the
+    very numbers of `nh.simulate`; sliders change the body, the forces, the start and the time step. Any other orbit is
+    replayed from its numbers, and the page says so. It fetches nothing, and its content security policy lets nothing
+    run in it but its own view.
 
     Args:
         value: A system, what `discretize` returned, or an orbit with poses; in coordinates with x and y among them.
@@ -115,7 +117,7 @@ def explore(value: Any) -> Page:
         2
     """
     data, title, note = shown_motion("explore(value=...)", value)
-    return Page(page_text(data, title, note, version("nonholo")), data.get("state"))
+    return Page(page_text(data, title, note, version("nonholo")), data.get("state"), data.get("table"))
 
 
 def orbit_to_html(orbit: Any, path: str | Path, *, overwrite: bool = False) -> None:

@@ -6,10 +6,10 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from nonholo.base.checks import error, instance, shown
+from nonholo.base.checks import error, instance, is_integer, shown
 from nonholo.base.types import Float, Int
 from nonholo.discrete import Discretization, discretize
-from nonholo.explorer._forces import force_numbers, under_forces
+from nonholo.explorer._forces import force_numbers, packed_table, table_of, under_forces
 from nonholo.groups import matrix_from_quaternion
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.simulation import simulate
@@ -58,10 +58,12 @@ def _of_discretization(where: str, discrete: Discretization) -> Shown:
         remedy = "Run it, and pass the orbit: a page replays any."
         raise error(where, "be a top with n = 3 or a sleigh in the plane, of order 2", shown(discrete.system), remedy)
     lower = np.linalg.cholesky(discrete.system.canonical.constrained_inertia)
-    state = _state(discrete, kind, lower @ np.array([0.4, -0.9]) * lower[0, 0], np.array([1.0, 0, 0, 0]), _STEPS)
-    orbit = simulated(where, state)
+    table, momentum = _table(discrete.system, kind, 0), lower @ np.array([0.4, -0.9]) * lower[0, 0]
+    steps = min(_STEPS, len(discrete.system.table)) if table else _STEPS  # type: ignore[union-attr]
+    state = _state(discrete, kind, momentum, np.array([1.0, 0, 0, 0]), steps, table)
+    orbit = simulated(where, state, table)
     recorded = _numbers(orbit, _spread(orbit, _RECORDED))[0] if len(orbit) else None
-    data = {"kind": kind, "state": state, "recorded": recorded}
+    data = {"kind": kind, "state": state, "recorded": recorded, "table": table}
     return Shown(data, _name(discrete.system), _frame_note(discrete.system))
 
 
@@ -74,12 +76,14 @@ def _live(orbit: Orbit) -> Shown | None:
     if kind is None or wanted < 1:
         return None
     steps = min(wanted, MOST_STEPS)
-    state = _state(discrete, kind, orbit.reduced_momentum[0], orbit.canonical_pose[0], steps)
+    table = _table(orbit.system, kind, round(float(orbit.time[0]) / float(discrete.time_step)))
+    state = _state(discrete, kind, orbit.reduced_momentum[0], orbit.canonical_pose[0], steps, table)
     numbers = [*state["parameters"].values(), *state["momentum"], *state["pose"]]
     if not (np.max(np.abs(numbers)) <= _LARGEST and _TIME_STEPS[0] <= state["time_step"] <= _TIME_STEPS[1]):
         return None
     cut = f" The first {steps:,} of {wanted:,} steps." if steps < wanted else ""
-    data = {"kind": kind, "state": state, "recorded": _numbers(orbit, _spread(orbit, _RECORDED))[0]}
+    recorded = _numbers(orbit, _spread(orbit, _RECORDED))[0]
+    data = {"kind": kind, "state": state, "recorded": recorded, "table": table}
     return Shown(data, _name(orbit.system), _frame_note(orbit.system) + cut)
 
 
@@ -105,6 +109,13 @@ def _forces(system: AbstractSystem) -> dict[str, float] | None:
     return force_numbers(cast(Forced, system)) if system.is_forced else {}
 
 
+def _table(system: Any, kind: str, first: int) -> dict[str, Any] | None:
+    """Return the table of forces from a step on, as the data of a page hold it; None without one."""
+    if not system.is_forced or system.table is None:
+        return None
+    return packed_table(kind.removeprefix("forced_"), np.asarray(system.table)[first : first + MOST_STEPS + 1])
+
+
 def _inside(system: Any) -> AbstractSystem:
     """Return the system without its forces."""
     return system.system if system.is_forced else system
@@ -120,7 +131,10 @@ def _parameters(system: AbstractSystem) -> dict[str, float]:
     return {name: float(value) for name, value in (names | (_forces(system) or {})).items()}
 
 
-def _state(discrete: Discretization, kind: str, momentum: np.ndarray, pose: np.ndarray, steps: int) -> dict[str, Any]:
+def _state(
+    discrete: Discretization, kind: str, momentum: np.ndarray, pose: np.ndarray, steps: int, table: Any
+) -> dict[str, Any]:
+    named = {} if table is None else {"table": table["name"]}
     return {
         "kind": kind,
         "parameters": _parameters(discrete.system),
@@ -128,14 +142,15 @@ def _state(discrete: Discretization, kind: str, momentum: np.ndarray, pose: np.n
         "pose": [float(x) + 0.0 for x in pose],
         "time_step": float(discrete.time_step),
         "steps": steps,
+        **named,
     }
 
 
-def simulated(where: str, state: Any) -> Orbit:
-    """Return the motion of a state, which may come from a page and be anything."""
+def simulated(where: str, state: Any, table: dict[str, Any] | None = None) -> Orbit:
+    """Return the motion of a state, which may come from a page and be anything, under the table of that page."""
     if not isinstance(state, dict) or state.keys() < {"kind", "parameters", "momentum", "pose", "time_step", "steps"}:
         raise error(where, "be asked of a page whose body runs in it", "a replay", "Use the orbit you passed.")
-    p, (w, *xyz) = state["parameters"], state["pose"]
+    p, (w, *xyz), steps = state["parameters"], state["pose"], state["steps"]
     if state["kind"].endswith("top"):
         rows = [[p[f"J{min(i, j)}{max(i, j)}"] for j in (1, 2, 3)] for i in (1, 2, 3)]
         body, pose = SuslovTop(rows), matrix_from_quaternion(np.array([w, *xyz]))
@@ -143,9 +158,10 @@ def simulated(where: str, state: Any) -> Orbit:
         sine, *place = xyz
         body = ChaplyginSleigh(p["mass"], p["inertia"], p["a"])
         pose = [[w, -sine, place[0]], [sine, w, place[1]], [0.0, 0.0, 1.0]]
-    body = under_forces(body, p) if state["kind"].startswith("forced") else body
+    rows = table_of(table, steps if is_integer(steps) and steps <= MOST_STEPS else 0)
+    body = under_forces(body, p, rows) if state["kind"].startswith("forced") else body
     start = {"momentum": state["momentum"], "configuration": pose}
-    return simulate(discretize(body, state["time_step"]), **start, steps=state["steps"], throw=False)
+    return simulate(discretize(body, state["time_step"]), **start, steps=steps, throw=False)
 
 
 def _name(system: AbstractSystem) -> str:
@@ -191,7 +207,7 @@ def _numbers(orbit: AbstractOrbit, chosen: Int[np.ndarray, "L"]) -> tuple[dict[s
 
 def _shown_energy(orbit: AbstractOrbit) -> tuple[Float[np.ndarray, "K"], str]:
     """Return the energy, under forces less their work and from its largest value on, and a note on that."""
-    work = np.nan_to_num(orbit.work)
+    work = np.nan_to_num(orbit.known_work)
     if not work.any():
         return orbit.energy, ""
     left = orbit.energy - orbit.energy[0] - work

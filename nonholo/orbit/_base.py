@@ -93,6 +93,14 @@ class AbstractOrbit(abc.ABC):
     def to_dataset(self) -> Any:
         """Return the orbit as a labeled `xarray.Dataset`."""
 
+    @property
+    def known_work(self) -> Float[np.ndarray, "K"]:
+        """The work; NaN of a thinned run under a table of forces, whose steps between the states are not known."""
+        try:
+            return self.work
+        except ValueError:
+            return np.full(len(self), np.nan)
+
     def __len__(self) -> int:
         return len(self.time)
 

@@ -135,7 +135,7 @@ def _facts(orbit: AbstractOrbit) -> list[str]:
         steps = round(abs(orbit.time[-1] - orbit.time[0]) / step)
         run = f"{steps:,} step{'s' * (steps != 1)} of $h$ = {step:g}".replace(",", "\u2009")
     stopped = [] if orbit.outcome == Outcome.successful else [f"stopped: {orbit.outcome}"]
-    return [_parameters(orbit.system) if isinstance(orbit, Orbit) else _form(orbit), run, *stopped]
+    return [_parameters(_inside(orbit.system)) if isinstance(orbit, Orbit) else _form(orbit), run, *stopped]
 
 
 def _form(orbit: AbstractOrbit) -> str:
@@ -151,6 +151,11 @@ def name_of(orbit: AbstractOrbit) -> str:
     return _name_of_body(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name
 
 
+def _inside(system: Any) -> System:
+    """Return a system without its forces."""
+    return system.system if system.is_forced else system
+
+
 _NAMES = {  # by is_sleigh and is_planar: of its own class, and of an LLSystem that equals one
     (True, True): ("Chaplygin sleigh", "a sleigh in the plane"),
     (True, False): ("Multidimensional sleigh", "a multidimensional sleigh"),
@@ -159,6 +164,8 @@ _NAMES = {  # by is_sleigh and is_planar: of its own class, and of an LLSystem t
 
 
 def _name_of_body(system: System) -> str:
+    if system.is_forced:
+        return f"{_name_of_body(_inside(system))}, under forces"
     form = system.normal_form
     if form is not None:
         name, recognized = _NAMES[form.is_sleigh, form.is_planar]

@@ -19,14 +19,18 @@ VELOCITY = {"top": (0.465, 0.75, 0.0), "sleigh": (0.05, -1.0, 0.0)}
 FORCES = {"top": (nh.Gravity([0.2, 0.1, -0.7], [0.1, -0.2, 0.4]), nh.Friction([0.1, 0.3, 0.2]))}
 FORCES["sleigh"] = (nh.Gravity([0.3, -0.2], [0.5, 0.1]), nh.Friction([0.2, 0.1, 0.4]))
 FORCED = {f"forced_{name}": nh.Forced(BODIES[name], *FORCES[name]) for name in BODIES}
+TABLE = np.random.default_rng(1).normal(size=(350, 3)).round(3) / 4
+DRIVEN = {
+    f"driven_{name}": nh.Forced(BODIES[name], weight, (friction, TABLE)) for name, (weight, friction) in FORCES.items()
+}
 
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """The pages of a top and a sleigh, free and under forces, and of a top in four dimensions, which is replayed."""
+    """The pages of a top and a sleigh, free, under forces and a table; of a top in four dimensions, replayed."""
     folder = tmp_path_factory.mktemp("pages")
-    found = {name: folder / f"{name}.html" for name in (*BODIES, *FORCED, "replay")}
-    for name, body in (BODIES | FORCED).items():
+    found = {name: folder / f"{name}.html" for name in (*BODIES, *FORCED, *DRIVEN, "replay")}
+    for name, body in (BODIES | FORCED | DRIVEN).items():
         _sent(name, body).to_html(found[name])
     wide = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0]) + 0.3), 0.1)
     nh.simulate(wide, restricted_velocity=(1.0, 0.5, 0.2), steps=100).to_html(found["replay"])
@@ -35,7 +39,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 
 def _sent(name: str, body: Any) -> nh.Orbit:
     """Return the motion of a file."""
-    return nh.simulate(nh.discretize(body, 0.1), body_velocity=VELOCITY[name.removeprefix("forced_")], steps=300)
+    return nh.simulate(nh.discretize(body, 0.1), body_velocity=VELOCITY[name.rpartition("_")[2]], steps=300)
 
 
 def _same(page: Any, orbit: nh.Orbit) -> None:
@@ -46,7 +50,7 @@ def _same(page: Any, orbit: nh.Orbit) -> None:
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", [(1280, 800), (390, 844)], ids=["desk", "phone"])
-@pytest.mark.parametrize("name", [*BODIES, *FORCED, "replay"])
+@pytest.mark.parametrize("name", [*BODIES, *FORCED, *DRIVEN, "replay"])
 def test_opens_quietly(visit: Callable, files: dict, name: str, size: tuple[int, int], scheme: str) -> None:
     """No error, no request but the file, nothing wider than the screen, and pictures that are not empty."""
     look = {"viewport": {"width": size[0], "height": size[1]}, "color_scheme": scheme}
@@ -62,7 +66,11 @@ def test_opens_quietly(visit: Callable, files: dict, name: str, size: tuple[int,
         const { data } = pen.getImageData(0, 0, canvas.width, canvas.height);
         return new Set(new Uint32Array(data.buffer)).size;
     }"""
-    assert all(page.page.evaluate(drawn, name) > 20 for name in ("phase-canvas", "energy-canvas"))
+    canvases = ("phase-canvas", "energy-canvas")
+    assert all(page.page.evaluate(drawn, name) > 20 for name in canvases)
+    corner = "(id) => [...document.getElementById(id).getContext('2d').getImageData(1, 1, 1, 1).data].slice(0, 3)"
+    card = page.page.evaluate("getComputedStyle(document.getElementById('phase')).backgroundColor")
+    assert [f"rgb({', '.join(map(str, page.page.evaluate(corner, name)))})" for name in canvases] == [card] * 2
 
 
 def test_requests_are_counted(visit: Callable, files: dict) -> None:
@@ -151,17 +159,16 @@ def test_forces_at_zero(visit: Callable, files: dict, name: str) -> None:
     assert "Friction must not be negative" in page.status
 
 
-@pytest.mark.parametrize("name", list(FORCED))
+@pytest.mark.parametrize("name", [*FORCED, *DRIVEN])
 def test_balance_of_energy(visit: Callable, files: dict, name: str) -> None:
     """The page has energy, kinetic energy and work of Python, and says that they agree, not that energy is kept."""
-    page, orbit = visit(files[name]), _sent(name, FORCED[name])
-    kinetic = BODIES[name.removeprefix("forced_")].constrained_energy(orbit.reduced_momentum)
+    page, orbit = visit(files[name]), _sent(name, (FORCED | DRIVEN)[name])
+    kinetic = BODIES[name.rpartition("_")[2]].constrained_energy(orbit.reduced_momentum)
     for key, values in (("energy", orbit.energy), ("work", orbit.work), ("kinetic", kinetic)):
         np.testing.assert_allclose(page.numbers(key), values, rtol=1e-12, atol=1e-12)
     assert "energy and work agree" in page.status
     assert page.page.text_content("#energy-title") == "Energy"
     assert not page.page.is_visible("#values")
-    assert not page.page.is_visible("#copy-toml")
 
 
 def test_points_of_a_pushed_orbit(visit: Callable, files: dict) -> None:
@@ -346,10 +353,63 @@ def test_save_and_open(visit: Callable, files: dict, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", list(BODIES))
 def test_copied_programs(visit: Callable, files: dict, name: str, tmp_path: Path) -> None:
     """Copied Python and a copied scenario give the numbers of the page."""
+    page = visit(files[name])
+    page.set("r2", 0.35)
+    _copies_repeat(page, tmp_path)
+
+
+@pytest.mark.parametrize("key", ["F1", "c1"])
+@pytest.mark.parametrize("name", list(FORCED))
+def test_copied_forces(visit: Callable, files: dict, name: str, key: str, tmp_path: Path) -> None:
+    """What is copied of a body under forces gives the numbers of the page, by a weight alone or friction alone."""
+    page = visit(files[name])
+    for other in [each for each in page.page.evaluate("nonholo.state.parameters") if each[0] in "Fc"]:
+        page.set(other, 0.3 if other == key else 0.0)
+    _copies_repeat(page, tmp_path)
+
+
+@pytest.mark.parametrize("steps", [200, 300, 360])
+@pytest.mark.parametrize("name", list(DRIVEN))
+def test_table_of_forces(visit: Callable, files: dict, name: str, steps: int, tmp_path: Path) -> None:
+    """A page scales the table that it brings along; before its end and after it the motion is that of Python."""
+    page, body = visit(files[name]), name.rpartition("_")[2]
+    _same(page, _sent(name, DRIVEN[name]))
+    page.set("steps", steps)
+    for scale in (-1.3, 0.7, 0.0):
+        page.set("s", scale)
+        state = page.page.evaluate("nonholo.state")
+        assert bool(state.get("table")) == (scale != 0)
+        rows = scale * np.pad(TABLE, ((0, 50), (0, 0)))
+        forced = nh.Forced(BODIES[body], FORCES[body][0], (FORCES[body][1], rows))
+        orbit = nh.simulate(nh.discretize(forced, 0.1), momentum=state["momentum"], steps=steps)
+        _same(page, orbit)
+        _copies_repeat(page, tmp_path)
+    assert page.errors == []
+
+
+def test_links_of_a_table(visit: Callable, files: dict) -> None:
+    """A link to a motion under a table opens in pages with that table, and is refused in words by others."""
+    page = visit(files["driven_top"])
+    page.set("s", 0.4)
+    page.page.click("#share summary")
+    page.page.click("#copy-link")
+    fragment = "#" + page.page.input_value("#dialog-text").partition("#")[2]
+    again = visit(files["driven_top"], fragment)
+    assert again.numbers("r") == page.numbers("r")
+    assert "which this page does not have" in visit(files["forced_top"], fragment).status
+    again.page.select_option("#preset", label="Top under its weight")
+    again.settle()
+    assert again.page.evaluate("[nonholo.state.table ?? null, nonholo.state.parameters.s]") == [None, 0]
+    again.page.select_option("#preset", "own")
+    again.settle()
+    _same(again, _sent("driven_top", DRIVEN["driven_top"]))
+
+
+def _copies_repeat(page: Any, folder: Path) -> None:
+    """Copied Python and a copied scenario give the numbers of the page."""
     from nonholo.cli.scenario.files import load_scenario
 
-    page, text = visit(files[name]), {}
-    page.set("r2", 0.35)
+    text = {}
     for kind in ("python", "toml"):
         page.page.click("#share summary")
         page.page.click(f"#copy-{kind}")
@@ -358,23 +418,9 @@ def test_copied_programs(visit: Callable, files: dict, name: str, tmp_path: Path
     names: dict[str, Any] = {}
     exec(text["python"], names)  # noqa: S102
     _same(page, names["orbit"])
-    (tmp_path / "copied.toml").write_text(text["toml"])
-    scenario = load_scenario(str(tmp_path / "copied.toml"), []).scenario
+    (folder / "copied.toml").write_text(text["toml"])
+    scenario = load_scenario(str(folder / "copied.toml"), []).scenario
     _same(page, nh.simulate(scenario.discretization(), steps=scenario.run.steps, **scenario.options()))
-
-
-@pytest.mark.parametrize("key", ["F1", "c1"])
-@pytest.mark.parametrize("name", list(FORCED))
-def test_copied_forces(visit: Callable, files: dict, name: str, key: str) -> None:
-    """Copied Python of a body under forces gives the numbers of the page, a weight alone or friction alone."""
-    page = visit(files[name])
-    for other in [each for each in page.page.evaluate("nonholo.state.parameters") if each[0] in "Fc"]:
-        page.set(other, 0.3 if other == key else 0.0)
-    page.page.click("#share summary")
-    page.page.click("#copy-python")
-    names: dict[str, Any] = {}
-    exec(page.page.input_value("#dialog-text"), names)  # noqa: S102
-    _same(page, names["orbit"])
 
 
 @pytest.mark.parametrize("view", ["body", "phase", "surface", "energy"])

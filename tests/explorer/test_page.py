@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 import nonholo as nh
 from nonholo.cli._app import app
 from nonholo.explorer import explore
+from nonholo.explorer._motion import simulated
 from nonholo.lagrange_dalembert import CoordinateOrbit
 
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -64,16 +65,37 @@ def test_data_under_forces() -> None:
     assert top.orbit().system.gravity.point.tolist() == [0.1, 0.0, 0.3]
 
 
+def test_data_of_a_table() -> None:
+    """A page brings the rows from its first state on, and computes with them; later states of a run have later rows."""
+    rows = np.random.default_rng(2).normal(size=(40, 3))
+    discrete = nh.discretize(nh.Forced(TOP, force=(nh.Friction([0.1, 0.2, 0.0]), rows)), 0.1)
+    orbit = nh.simulate(discrete, body_velocity=(0.3, -1.0, 0.0), steps=30)
+    for sent, first in ((orbit, 0), (orbit.chosen(np.arange(10, 31)), 10)):
+        page = explore(sent)
+        data = _data(page.text)
+        assert data["state"]["table"] == data["table"]["name"]
+        assert data["state"]["parameters"]["s"] == 1.0
+        packed = np.frombuffer(base64.b64decode(data["table"]["rows"])).reshape(-1, 3)
+        np.testing.assert_array_equal(packed, rows[first:])
+        np.testing.assert_allclose(page.orbit().reduced_momentum, orbit.reduced_momentum[first:], atol=1e-13)
+    for change in ({"steps": 10**12}, {"steps": "x"}, {"parameters": {**data["state"]["parameters"], "s": "x"}}):
+        with pytest.raises((ValueError, TypeError)):
+            simulated("Page.orbit()", {**data["state"], **change}, data["table"])
+    longer = simulated("Page.orbit()", {**data["state"], "steps": 60}, data["table"])
+    assert (np.diff(longer.energy[31:]) < 0).all()  # friction alone, after the last row
+    assert np.diff(longer.energy[:31]).max() > 0
+    assert (explore(discrete).orbit().time[-1], explore(TOP).table) == (4.0, None)
+
+
 @pytest.mark.parametrize(
     ("body", "force"),
     [
         (SLEIGH, nh.Friction([1.0, 1.0, 1.0])),
         (nh.SuslovTop(TOP.mass_tensor, axis=(1.0, 0.0, 0.0)), nh.Friction([1.0, 1.0, 1.0])),
         (TOP, nh.Friction(np.eye(3))),
-        (TOP, np.ones((9, 3))),
         (TOP, lambda *numbers: -numbers[2]),
     ],
-    ids=["b", "axis", "matrix", "table", "function"],
+    ids=["b", "axis", "matrix", "function"],
 )
 def test_forces_without_sliders(body: Any, force: Any) -> None:
     """Forces of other kinds, or in other axes than those of the page, are replayed."""

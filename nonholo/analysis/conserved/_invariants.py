@@ -25,7 +25,7 @@ class Invariants:
         steps: Steps they span (0 for a flow); of given poses the times between them.
         energy_drift: Largest change of the reduced constrained energy, relative to it (absolute at rest). Under forces
             what is left of the balance: the largest change of the energy less the work of the force, relative to the
-            largest energy.
+            largest energy; NaN where that work is not known, of a thinned run under a table.
         constraint_residual: Largest forbidden part of (W - W^-1)/2 of a displacement, of log W where the variety is
             exp d alone, or of a velocity, of a flow and of given poses; where the variety is given by equations, and in
             coordinates, their largest residual.
@@ -73,7 +73,7 @@ def invariants(orbit: AbstractOrbit) -> Invariants:
 
 def _in_coordinates(orbit: Any) -> Invariants:
     h, duration = orbit.time_step, abs(orbit.time[-1] - orbit.time[0])
-    work, driven = orbit.work, orbit.system.is_driven
+    work, driven = orbit.known_work, orbit.system.is_driven
     on_group = None if orbit.coordinates else float(np.max(orbit.space.residual(orbit.configuration)))
     return Invariants(
         states=len(orbit),
@@ -93,7 +93,7 @@ def _of_body(orbit: Orbit) -> Invariants:
     stride = max(1, len(orbit) // (_SAMPLED if group.dim == 3 else _SAMPLED_LARGE))
     sample = orbit[::stride] if stride > 1 else orbit
     discrete = orbit.motion if isinstance(orbit.motion, Discretization) else None
-    work, forced = orbit.work, orbit.system.forces is not None
+    work, forced = orbit.known_work, orbit.system.forces is not None
     return Invariants(
         states=len(orbit),
         steps=0 if orbit.cayley is None else (len(orbit) - 1) * orbit.save_every,

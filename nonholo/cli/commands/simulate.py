@@ -38,7 +38,8 @@ def simulate(
     Without -o each run gets a new store under runs/: nothing is overwritten.
     A run that cannot continue keeps its good steps, says why, exits with code 1.
     Long runs go to the store as they are computed: after Ctrl-C or a kill,
-    `nonholo resume STORE` continues.
+    `nonholo resume STORE` continues. Weight, friction and tables of forces
+    are the table `forces` of a scenario.
 
     nonholo simulate suslov
     nonholo simulate sleigh --steps 1000 --time-step 0.05 --gif

@@ -1,6 +1,7 @@
 """Reading a scenario: a file or a built-in name, changed by options, checked as a whole."""
 
 import json
+import operator
 import re
 from importlib import resources
 from pathlib import Path
@@ -8,8 +9,9 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 from pydantic import ValidationError
 
+from nonholo.cli.scenario.forces import read_table
 from nonholo.cli.scenario.motion import Scenario
-from nonholo.cli.scenario.problems import Problem, ScenarioError, problems_of, suggestion
+from nonholo.cli.scenario.problems import Problem, ScenarioError, problem, problems_of, suggestion
 from nonholo.cli.scenario.sections import Section
 from nonholo.cli.scenario.toml import parsed, read_text
 
@@ -40,7 +42,17 @@ def load_scenario(name: str, settings: list[Setting]) -> Loaded[Scenario]:
         raise ScenarioError([Problem(source, "design", f"is for sweeps: nonholo sweep {name}")])
     for setting in settings:
         assign(document, setting)
+    take_table(document, name, source, settings)
     return checked(document, Scenario, Path(name).stem, source, settings)
+
+
+def take_table(document: dict[str, Any], name: str, source: str, settings: list[Setting]) -> None:
+    """Read the table of forces that a document names, from its own folder or, where an option does, from here."""
+    options = {setting.key: setting.option for setting in settings}
+    try:
+        read_table(document, Path() if {"forces", "forces.table"} & options.keys() else Path(name).parent)
+    except ValueError as failure:
+        raise ScenarioError([problem("forces.table", str(failure), source, options)]) from None
 
 
 def read_document(name: str, own: dict[str, str]) -> tuple[str, dict[str, Any]]:
@@ -106,9 +118,9 @@ def effective_text(scenario: Scenario) -> str:
 
 
 def toml_text(title: str, tables: dict[str, dict[str, Any]]) -> str:
-    """Return a title and tables as TOML."""
+    """Return a title and tables as TOML, without those that are empty."""
     lines = [f"title = {json.dumps(title, ensure_ascii=False)}"]
-    for name, table in tables.items():
+    for name, table in filter(operator.itemgetter(1), tables.items()):
         lines += ["", f"[{name}]", *(f"{_key(key)} = {_as_toml(value)}" for key, value in table.items())]
     return "\n".join(lines) + "\n"
 

@@ -1,15 +1,17 @@
-"""The contents of a scenario: a body, its start, a run, its output. The file itself is read in `files`."""
+"""The contents of a scenario: a body, its start, a run, forces, its output. The file itself is read in `files`."""
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 import nonholo
 from nonholo.cli.scenario.bodies import AnyBody
+from nonholo.cli.scenario.forces import Forces
 from nonholo.cli.scenario.sections import Count, Matrix, Positive, Section, Vector, exactly_one
 
 if TYPE_CHECKING:
     from nonholo.discrete import Discretization
+    from nonholo.systems import System
 
 
 class Start(Section):
@@ -67,11 +69,23 @@ class AbstractScenario(Section):
     body: Annotated[AnyBody, Field(discriminator="kind")]
     start: Start
     run: Run
+    forces: Forces = Forces()
+
+    @field_validator("forces")
+    @classmethod
+    def _can_act(cls, forces: Forces, rest: ValidationInfo) -> Forces:
+        if {"body", "run"} <= rest.data.keys():
+            forces.check(rest.data["body"].system(), rest.data["run"].steps)
+        return forces
+
+    def system(self) -> "System":
+        """Return the body under its forces."""
+        return self.forces.on(self.body.system())
 
     def discretization(self) -> "Discretization":
         """Return the discretized body."""
         run = self.run
-        return nonholo.discretize(self.body.system(), run.time_step, run.difference, run.constraint, run.order)
+        return nonholo.discretize(self.system(), run.time_step, run.difference, run.constraint, run.order)
 
     def in_force(self, discrete: "Discretization") -> Self:
         """Return the scenario with the library's choices of difference and constraint written out."""

@@ -4,12 +4,13 @@ import difflib
 import re
 import reprlib
 from collections.abc import Collection
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args
 
 from pydantic import ValidationError
 
 from nonholo.cli.scenario._groups import NAME, TABLE, GroupTable
 from nonholo.cli.scenario.bodies import BODIES
+from nonholo.cli.scenario.forces import DIAGONAL, WHOLE
 from nonholo.cli.scenario.sections import Section
 from nonholo.cli.scenario.sweeps import DESIGNS
 
@@ -92,7 +93,7 @@ def _text(entry: dict[str, Any], kinds: Collection[str]) -> str:
 def _location(path: tuple[int | str, ...], kinds: Collection[str]) -> list[int | str]:
     """Return a path of pydantic without what names the kind of a table, as it stands in the file."""
     named = [part for i, part in enumerate(path) if not (i == 1 and part in kinds)]
-    return [part for part in named if part not in (NAME, TABLE)]
+    return [part for part in named if part not in (NAME, TABLE, DIAGONAL, WHOLE)]
 
 
 def _known(location: tuple[int | str, ...], model: type[Section]) -> list[str]:
@@ -101,7 +102,8 @@ def _known(location: tuple[int | str, ...], model: type[Section]) -> list[str]:
         return list(GroupTable.model_fields)
     table: Any = model
     for name in location[:-1]:
-        table = _TAGGED.get(str(location[0]), {}).get(str(name)) or table.model_fields[str(name)].annotation
+        held = _TAGGED.get(str(location[0]), {}).get(str(name)) or table.model_fields[str(name)].annotation
+        table = (*get_args(held), held)[0]  # of one that may be left out, too
     return list(table.model_fields)
 
 

@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from nonholo.cli.scenario._values import along, drawn, needs_size
-from nonholo.cli.scenario.bodies import AbstractBody
-from nonholo.cli.scenario.files import Loaded, Setting, assign, built_in, checked, read_document, toml_text
+from nonholo.cli.scenario.files import Loaded, Setting, assign, built_in, checked, read_document, take_table, toml_text
 from nonholo.cli.scenario.problems import ScenarioError, problem, suggestion
 from nonholo.cli.scenario.sweeps import SweepScenario
 
@@ -23,6 +22,7 @@ def load_sweep_scenario(name: str, settings: list[Setting]) -> Loaded[SweepScena
     for setting in settings:
         assign(document, setting)
     _by_table(document)
+    take_table(document, name, source, settings)
     _complete(document)
     loaded = checked(document, SweepScenario, Path(name).stem, source, settings)
     refused = [problem(*found, source, loaded.options) for found in _refusals(loaded.scenario)]
@@ -120,7 +120,7 @@ def _refused_values(scenario: SweepScenario) -> list[tuple[str, str]]:
     found, values = [], scenario.design.values
     if not any((values.body, values.start, values.run)):
         found.append(("design.values", 'must name what is varied, for example "body.a" = [0.1, 0.2]'))
-    known = {"body": _parameters(scenario.body), "start": _STARTS, "run": ("time_step",)}
+    known = {"body": _parameters(scenario), "start": _STARTS, "run": ("time_step",)}
     for table, names in known.items():
         for name in getattr(values, table):
             whole = _COMPONENT.sub(r"\1", name) if table == "start" else name
@@ -132,7 +132,8 @@ def _refused_values(scenario: SweepScenario) -> list[tuple[str, str]]:
     return found
 
 
-def _parameters(body: AbstractBody) -> tuple[str, ...]:
-    """Return the keys of a body that are parameters of its system."""
-    leaves = (*body.system().leaves, "inertia_operator")
-    return tuple(name for name in type(body).model_fields if name in leaves)
+def _parameters(scenario: SweepScenario) -> tuple[str, ...]:
+    """Return the keys of a body that are parameters of its system; of one under forces there are none."""
+    system = scenario.system()
+    leaves = () if system.is_forced else (*system.leaves, "inertia_operator")
+    return tuple(name for name in type(scenario.body).model_fields if name in leaves)

@@ -265,11 +265,14 @@ def _linear_part(free: AbstractCompiledRoute, forced: Forced) -> tuple[kernels.K
     weight, arms = np.zeros(0), np.zeros((forced.rank, 0))
     if forced.gravity is not None:
         weight, levers = forced.gravity.levers(forced.group)
-        arms = functools.reduce(
-            np.add, map(np.multiply.outer, along, levers)
-        )  # summed in this order, as by the kernel of a page
-    rows = forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))) @ along
+        arms = _summed(along, levers)
+    rows = _summed(forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))).T, along)
     return kernels.Kick(*map(_plain, (keep, weight, arms, rows))), along
+
+
+def _summed(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Return the sum of outer products in their order, as by the kernel of a page."""
+    return functools.reduce(np.add, map(np.multiply.outer, columns, rows))
 
 
 def _half_step(free: AbstractCompiledRoute, forced: Forced) -> tuple[np.ndarray, Float[np.ndarray, "dim k"]]:

@@ -1,6 +1,6 @@
 // The page: controls, clock, and views of one state. `mount` serves the file; a host of widgets can call it too.
 
-import { BODIES } from "./bodies.mjs";
+import { BODIES, takeTable } from "./bodies.mjs";
 import { EnergyBalance } from "./balance.mjs";
 import { Controls } from "./controls.mjs";
 import { levelsOf } from "./forces.mjs";
@@ -28,6 +28,7 @@ const byId = (id) => document.getElementById(id);
 export class App {
   constructor(data) {
     this.data = data;
+    if (data.table) takeTable(data.table);
     this.clock = 0;
     this.speed = 1;
     this.whole = false;

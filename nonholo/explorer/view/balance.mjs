@@ -23,8 +23,7 @@ export class EnergyBalance extends Picture {
   }
 
   background(pen) {
-    const { look, w, h, box, data: { orbit } } = this;
-    pen.clearRect(0, 0, w, h);
+    const { look, h, box, data: { orbit } } = this;
     pen.textBaseline = "middle";
     pen.textAlign = "right";
     pen.lineWidth = 1;

@@ -163,3 +163,6 @@ export const sleigh = {
 };
 
 export const BODIES = { top, sleigh, forced_top: underForces(top), forced_sleigh: underForces(sleigh) };
+
+/** Put a body under the table of forces that the data of a page hold. */
+export const takeTable = (given) => (BODIES[`forced_${given.body}`] = underForces(BODIES[given.body], given));

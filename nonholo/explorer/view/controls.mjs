@@ -36,7 +36,7 @@ export class Controls {
     select.addEventListener("change", () => {
       const { data } = this.app;
       this.chosen = null;
-      const chosen = select.value === "own" ? data.state : { pose: [1, 0, 0, 0], ...PRESETS[select.value] };
+      const chosen = select.value === "own" ? data.state : { pose: [1, 0, 0, 0], table: undefined, ...PRESETS[select.value] };
       this.app.clock = 0;
       this.app.values = Boolean(chosen.values);
       byId("values").setAttribute("aria-pressed", String(this.app.values));
@@ -112,6 +112,7 @@ export class Controls {
     const known = orbit.count ? [
       [body.momenta[0], short(orbit.r[2 * k], 6)], [body.momenta[1], short(orbit.r[2 * k + 1], 6)],
       ["energy", short(orbit.energy[k], 6)],
+      ...(app.state?.table ? [["force", body.acting(app.state.parameters, k).map((f) => short(f, 3)).join(", ")]] : []),
       ...(body.angle ? [["step angle", `${short((body.angle(orbit.y[2 * k], orbit.y[2 * k + 1]) * 180) / Math.PI, 4)}°`]] : []),
     ] : [];
     if (app.values && app.kind !== "replay") known.push(["real values", this.counted(app.allValues(k))]);

@@ -1,7 +1,8 @@
-// Bodies under a weight and friction: their sliders, the numbers that `flat_forced_run` of nonholo.kernels takes, and
-// their balance of energy. F is constant in space and acts at the point x of the body, U = -F . (g x); friction is -C w.
+// Bodies under a weight, friction and a table: their sliders, the numbers that `flat_forced_run` of nonholo.kernels takes,
+// and their balance of energy. F is constant in space and acts at the point x of the body, U = -F . (g x); friction is -C w.
 
 import { literal } from "./literal.mjs";
+import { pushOf, tableOf } from "./table.mjs";
 
 const BODY = 8; // places before the forces
 const list = (values) => `[${values.map(literal).join(", ")}]`;
@@ -11,6 +12,7 @@ const OWN = {
     n: 3,
     frictions: ["friction against turning about body axis 1", "friction against turning about body axis 2"],
     coefficients: ({ c1, c2 }) => [c2, c1],
+    along: ([f1, f2]) => [f2, -f1],
     lever: ([x1, x2, x3]) => [x3, 0, -x1, 0, x3, -x2],
     inertia: (p) => [p.J11 + p.J33, p.J12, p.J22 + p.J33],
     point: ([x1, x2, x3]) => [x1, x2, x3],
@@ -19,6 +21,7 @@ const OWN = {
     n: 2,
     frictions: ["friction against turning", "friction against sliding along the blade"],
     coefficients: ({ c1, c2 }) => [c1, c2],
+    along: ([f1, f2]) => [f1, f2],
     lever: ([x1, x2]) => [-x2, x1, 0, 1, 0, 0],
     inertia: (p) => [p.inertia + p.mass * p.a * p.a, 0, p.mass],
     point: ([x1, x2]) => [x1, x2, 1],
@@ -28,9 +31,9 @@ const OWN = {
   },
 };
 
-/** A body that has sliders for forces as well; without any it moves as the body does. */
-export function underForces(body) {
-  const own = OWN[body.kind], keys = { F: indexed("F", own.n), x: indexed("x", own.n) };
+/** A body that has sliders for forces as well, for those of a table if one is given; without any it moves as the body does. */
+export function underForces(body, given) {
+  const own = OWN[body.kind], acting = tableOf(given), keys = { F: indexed("F", own.n), x: indexed("x", own.n) };
   const of = (p, name) => keys[name].map((key) => p[key]);
   const slider = (key, name, least, most) => ({ key, label: `${key[0].replace("c", "C")}${"₁₂₃"[key[1] - 1]}`, name, min: least, max: most, step: 0.01, isForce: true });
   const placed = (p) => {
@@ -41,9 +44,28 @@ export function underForces(body) {
     const place = placed(p), force = of(p, "F");
     return (pose) => place(pose).reduce((sum, x, i) => sum - force[i] * x, 0);
   };
-  const power = (p, r1, r2) => {
-    const [b11, b12, b22] = own.inertia(p), [c1, c2] = own.coefficients(p), det = b11 * b22 - b12 * b12;
-    return -c1 * ((b22 * r1 - b12 * r2) / det) ** 2 - c2 * ((b11 * r2 - b12 * r1) / det) ** 2;
+  const velocity = (p, r1, r2) => {
+    const [b11, b12, b22] = own.inertia(p), det = b11 * b22 - b12 * b12;
+    return [(b22 * r1 - b12 * r2) / det, (b11 * r2 - b12 * r1) / det];
+  };
+  const power = (p, [v1, v2]) => -own.coefficients(p)[0] * v1 ** 2 - own.coefficients(p)[1] * v2 ** 2;
+  /** Half impulses of the rows in the units of the kernel, and after them nothing. */
+  const pushes = (p, h, C) => {
+    const V = C[0] || C[3] ? pushOf(own.inertia(p), C, h / 2) : [h / 2, 0, 0, h / 2], [a, b, c, d] = V.map((x) => h * body.share * x), rows = [];
+    for (let k = 0; k < acting.count; k++) {
+      const [f1, f2] = own.along(acting.at(p, k));
+      rows.push(a * f1 + b * f2, c * f1 + d * f2);
+    }
+    return [acting.count + 1, ...rows, 0, 0];
+  };
+  /** What acts, as Python and TOML write it: the table to the end of the run, and one row more for the last displacement. */
+  const acts = ({ parameters: p, steps }) => {
+    const count = Math.max(steps, Math.min(acting.count, steps + 1)), rows = Array.from({ length: count }, (_, k) => list(acting.at(p, k)));
+    return {
+      gravity: of(p, "F").some(Boolean) && [list(of(p, "F")), list(of(p, "x"))],
+      friction: Boolean(p.c1 || p.c2) && list([p.c1, p.c2, 0]),
+      table: Boolean(p.s) && `[\n  ${rows.join(",\n  ")},\n]`,
+    };
   };
   return {
     ...body,
@@ -54,36 +76,46 @@ export function underForces(body) {
       ...keys.F.map((key, i) => slider(key, `force in space along axis ${i + 1}`, -5, 5)),
       ...keys.x.map((key, i) => slider(key, `coordinate ${i + 1} of the body point where the force acts`, -1, 1)),
       ...own.frictions.map((name, i) => slider(`c${i + 1}`, name, 0, 2)),
+      ...(given ? [{ key: "s", label: "s", name: "scale of the table of forces", min: -2, max: 2, step: 0.01, isForce: true, fallback: 0 }] : []),
     ],
+    tableName: given?.name,
+    /** The force of a table over a step. */
+    acting: given && ((p, k) => acting.at(p, k)),
     refusal: (p) => body.refusal(p) || (p.c1 >= 0 && p.c2 >= 0 ? "" : "Friction must not be negative: it would add energy."),
     table(p, h) {
       const [c1, c2] = own.coefficients(p), force = of(p, "F"), heavy = force.some(Boolean);
       const numbers = body.table(p), weight = heavy ? [...force, 0].slice(0, 3).concat(own.lever(of(p, "x"))) : new Array(9).fill(0);
       const first = [...numbers, ...new Array(BODY - numbers.length).fill(0), heavy ? own.n : 0, Number(Boolean(c1 || c2))];
-      return [...first, h / 2, h * body.share, c1, 0, 0, c2, ...weight, 1, 0, 0];
+      return [...first, h / 2, h * body.share, c1, 0, 0, c2, ...weight, ...pushes(p, h, [c1, 0, 0, c2])];
     },
     onLocus: own.onLocus?.(body) ?? body.onLocus.bind(body),
     /** Where the force acts, and the force, both in space. */
     weight: (p, pose) => [placed(p)(pose), of(p, "F")].map((vector) => [...vector, 0].slice(0, 3)),
-    /** Kinetic and whole energy of the states, the work of friction up to them, and what is missing in the sum. */
+    /** Kinetic and whole energy of the states, the work of friction and table up to them, what is missing in the sum. */
     balance({ parameters: p, time_step: h }, { count, r, g }) {
       const potential = potentialOf(p), [kinetic, energy, work, error] = Array.from({ length: 4 }, () => new Float64Array(count));
-      for (let k = 0, last = 0; k < count; k++) {
-        const now = power(p, r[2 * k], r[2 * k + 1]);
+      for (let k = 0, last = 0, before = [0, 0]; k < count; k++) {
+        const v = velocity(p, r[2 * k], r[2 * k + 1]), [f1, f2] = own.along(acting.at(p, k - 1)), now = power(p, v);
         kinetic[k] = body.energy(p, r[2 * k], r[2 * k + 1]);
         energy[k] = kinetic[k] + potential(g.subarray(4 * k, 4 * k + 4));
-        work[k] = k ? work[k - 1] + (h * (last + now)) / 2 : 0;
-        last = now;
+        work[k] = k ? work[k - 1] + (h * (last + now + f1 * (before[0] + v[0]) + f2 * (before[1] + v[1]))) / 2 : 0;
+        [last, before] = [now, v];
       }
       const most = kinetic.reduce((a, b) => Math.max(a, b), 0);
       energy.forEach((e, k) => (error[k] = most ? Math.abs(e - energy[0] - work[k]) / most : 0));
       return { kinetic, energy, work, error };
     },
     python: (state) => {
-      const p = state.parameters, heavy = of(p, "F").some(Boolean), rubs = p.c1 || p.c2;
-      const gravity = heavy ? [`potential=nh.Gravity(force=${list(of(p, "F"))}, point=${list(of(p, "x"))})`] : [];
-      const parts = [body.python(state), ...gravity, ...(rubs ? [`force=nh.Friction(${list([p.c1, p.c2, 0])})`] : [])];
-      return `nh.Forced(\n${parts.map((part) => `    ${part},\n`).join("")})`;
+      const { gravity, friction, table } = acts(state), forces = [friction && `nh.Friction(${friction})`, table].filter(Boolean);
+      const parts = [body.python(state), gravity && `potential=nh.Gravity(force=${gravity[0]}, point=${gravity[1]})`];
+      if (forces.length) parts.push(`force=${forces[1] ? `(${forces.join(", ")})` : forces[0]}`);
+      return `nh.Forced(\n${parts.filter(Boolean).map((part) => `    ${part},\n`).join("")})`;
+    },
+    /** The table `forces` of a scenario. */
+    forces: (state) => {
+      const { gravity, friction, table } = acts(state), weight = gravity && `{force = ${gravity[0]}, point = ${gravity[1]}}`;
+      const lines = Object.entries({ gravity: weight, friction, table }).filter(([, text]) => text).map(([key, text]) => `${key} = ${text}\n`);
+      return lines.length ? `\n[forces]\n${lines.join("")}` : "";
     },
   };
 }

@@ -1,10 +1,10 @@
 // The kernel of nonholo as WebAssembly: numbers go in and come out through its memory.
 
 const STACK = 65536;
-const BODY = 32; // room for the numbers of a body and of forces
 /** Places in a state, and by how many nodes one that has begun is ahead: as `flat_run` and `flat_forced_run` have it. */
 const FREE = { size: 16, chart: 4, pose: 10, outcome: 14, ahead: 0 }, FORCED = { size: 24, chart: 8, pose: 4, outcome: 22, ahead: 1 };
 export const MOST_STEPS = 20000, MOST_MEMBERS = 10000;
+const BODY = 32 + 2 * MOST_STEPS; // room for the numbers of a body and of forces, with a row for each step
 
 const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 const unpacked = (text) => new Response(new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();

@@ -3,7 +3,8 @@
 import { CapsuleGeometry, Group, Mesh, Vector3 } from "three";
 import { clear, ribbon, solid } from "./stage.mjs";
 
-const numbersOf = (text) => new Float64Array(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer);
+/** The numbers that a text holds. */
+export const numbersOf = (text) => new Float64Array(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer);
 
 /** The orbit in the data of a page: momenta, energies, and for each state an origin and three axes. */
 export function replayed(data) {

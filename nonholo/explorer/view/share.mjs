@@ -35,7 +35,7 @@ configuration = ${JSON.stringify(BODIES[state.kind].configuration(state.pose))}
 [run]
 time_step = ${literal(state.time_step)}
 steps = ${state.steps}
-`;
+${BODIES[state.kind].forces?.(state) ?? ""}`;
 }
 
 /** Give the user a file. */

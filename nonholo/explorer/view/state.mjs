@@ -12,10 +12,11 @@ export function checked(given) {
   const body = Object.hasOwn(BODIES, given.kind) ? BODIES[given.kind] : null;
   if (!body) return { problem: "There is no such body: “kind” is top or sleigh, or one of them under forces." };
   const parameters = {};
-  for (const { key, label } of body.parameters) {
-    parameters[key] = number(given.parameters?.[key]);
+  for (const { key, label, fallback } of body.parameters) {
+    parameters[key] = number(given.parameters?.[key] ?? fallback);
     if (!within(parameters[key], -LARGEST, LARGEST)) return { problem: `${label} must be a number of at most a million.` };
   }
+  if (given.table && given.table !== body.tableName) return { problem: "It is a motion under a table of forces, which this page does not have." };
   const momentum = [0, 1].map((k) => number(given.momentum?.[k]));
   if (!momentum.every((r) => within(r, -LARGEST, LARGEST))) return { problem: "The momentum must be two numbers of at most a million." };
   const time_step = number(given.time_step), steps = number(given.steps);
@@ -24,12 +25,14 @@ export function checked(given) {
   const pose = [0, 1, 2, 3].map((k) => number(given.pose?.[k] ?? (k === 0 ? 1 : 0)));
   const size = body.kind === "top" ? Math.hypot(...pose) : Math.hypot(pose[0], pose[1]);
   if (!pose.every((x) => within(x, -LARGEST, LARGEST)) || Math.abs(size - 1) > 1e-9) return { problem: "The first pose must be a pose." };
-  return { state: { kind: given.kind, parameters, momentum, time_step, steps, pose } };
+  const table = parameters.s ? body.tableName : undefined; // what acts, beside its scale
+  return { state: { kind: given.kind, parameters, momentum, time_step, steps, pose, table } };
 }
 
 /** The fragment of a link to a state. */
-export function fragmentOf({ kind, parameters, momentum, time_step, steps, pose }) {
-  const query = new URLSearchParams({ kind, ...parameters, h: time_step, steps, r: momentum.join(" "), g: pose.join(" ") });
+export function fragmentOf({ kind, parameters, momentum, time_step, steps, pose, table }) {
+  const named = table ? { table } : {};
+  const query = new URLSearchParams({ kind, ...parameters, h: time_step, steps, r: momentum.join(" "), g: pose.join(" "), ...named });
   return `#${query}`;
 }
 
@@ -45,6 +48,7 @@ export function stateOf(fragment) {
     momentum: numbers("r"),
     time_step: query.get("h"),
     steps: query.get("steps"),
+    table: query.get("table"),
     pose: g.length ? g : undefined,
   });
 }

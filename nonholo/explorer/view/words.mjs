@@ -63,7 +63,7 @@ const KICK = math(sub("p", next), o("="), sub("K", next), o("("), `<msubsup>${i(
 const BALANCE = math(i("T"), o("+"), i("U"), o("−"), i("W"), o("="), i("const"), o(","), i("U"), o("="), o("−"), i("F"), o("·"), o("("), i("g"), i("x"), o(")"), o(","),
   i("Ẇ"), o("="), o("−"), i("ω"), o("·"), i("C"), i("ω"), o("≤"), n(0));
 const PUSHED = `<p>Forces act as half an impulse of each step before it and after it, K, with the free step between them. The <b>arrow</b> is the force F, which is
-  constant in space and acts at the body point x, like a weight. Friction is −C times each velocity; its part of the step is solved exactly.</p>${KICK}`;
+  constant in space and acts at the body point x, like a weight. Friction is −C times each velocity; its part of the step is solved exactly. Where the page has a table of forces, its row k acts over step k, times s.</p>${KICK}`;
 const forced = (words, ends) => ({
   ...words,
   body: `${PUSHED}${words.body.replace(SETTLES, "")}`,
@@ -72,7 +72,7 @@ const forced = (words, ends) => ({
     there. “10,000” starts as many motions at once in the same pose, with the same kernel: under friction without a force they come to rest.</p>`,
   surface: `${words.surface.split(" “values”")[0]}</p>${words.surface.slice(words.surface.indexOf("<math"))}<p>The points are those of the displacements; half an impulse stands between them and the momenta at the nodes.</p>`,
   energy: `<p>Energy is <em>not</em> conserved under forces. Dots are the whole energy T + U, the gray line is the kinetic energy T. The
-    <em class="flow">dashed line</em> is the first energy with the work W of friction, which only takes: a weight alone moves energy between T and U. Dots and dashes agree up
+    <em class="flow">dashed line</em> is the first energy with the work W of friction, which only takes, and of a table: a weight alone moves energy between T and U. Dots and dashes agree up
     to an error that falls with the square of the time step; the status line has the largest one, as a part of the largest kinetic energy.</p>${BALANCE}`,
 });
 WORDS.forced_top = forced(WORDS.top, "r");

@@ -25,6 +25,7 @@ _EXPECTED = {
     False: "not exact for this discretization",
     None: "error of the solver",
 }
+_THINNED = "with the work of forces, which no thinned run knows"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -75,17 +76,19 @@ def energy_error(orbit: AbstractOrbit, axes: Axes | None = None, **look: Unpack[
     if not orbit.has_poses and orbit.system.is_spatial:
         posed("energy_error(orbit=...)", orbit)
     axes = theme.axes_or_new(axes, (6.0, 2.6))
-    work = np.nan_to_num(orbit.work)
+    work, is_known = np.nan_to_num(orbit.known_work), bool(np.isfinite(orbit.known_work).all())
     balanced = bool(work.any())
     energy, name = orbit.energy - work, "(E - W)" if balanced else "E"
     size = np.abs(orbit.energy).max() if balanced else energy[0]
     error = (energy - energy[0]) / (size or 1.0)
     unit = _unit(float(np.abs(error).max()))
     rounding, drawn = _over_rounding(orbit, axes, error / unit, unit)
-    theme.write_title(axes, "Energy less work" if balanced else "Energy error")
+    theme.write_title(axes, "Energy less work" if balanced else "Energy error" if is_known else "Change of energy")
     _dress(axes, orbit.time, error / unit, unit, rf"\Delta {name}{'/E' if size else ''}")
     small: Any = {"color": theme.QUIET, "fontsize": "medium", "va": "top", "path_effects": theme.HALO, "zorder": 6}
-    expected = axes.text(0.012, 0.97, _expected(orbit, balanced), transform=axes.transAxes, **small)
+    expected = axes.text(
+        0.012, 0.97, _expected(orbit, balanced) if is_known else _THINNED, transform=axes.transAxes, **small
+    )
     return EnergyError(axes, drawn, rounding, unit, expected)
 
 

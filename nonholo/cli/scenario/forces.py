@@ -1,0 +1,128 @@
+"""Forces in a scenario, as data: a weight, friction, a table; what `Forced` calls them too."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Self
+
+from pydantic import Discriminator, Tag, model_validator
+
+import nonholo
+from nonholo.cli.scenario.sections import Matrix, Section, Vector
+from nonholo.cli.scenario.toml import read_text
+
+if TYPE_CHECKING:
+    from nonholo.systems import System
+
+DIAGONAL, WHOLE = "friction by coefficients", "friction by matrix"
+"""Parts that pydantic adds to the key path of friction."""
+
+
+def _tag(given: Any) -> str:
+    match given:
+        case [list(), *_]:
+            return WHOLE
+    return DIAGONAL
+
+
+Coefficients = Annotated[Annotated[Vector, Tag(DIAGONAL)] | Annotated[Matrix, Tag(WHOLE)], Discriminator(_tag)]
+
+
+class Weight(Section):
+    """A force that is constant in space and acts at one point of the body."""
+
+    force: Vector
+    """In space: mass times the acceleration of gravity, for a weight."""
+    point: Vector
+    """In body coordinates: the center of mass, for a weight."""
+
+    @model_validator(mode="after")
+    def _is_one(self) -> Self:
+        nonholo.Gravity(self.force, self.point)
+        return self
+
+
+class Forces(Section):
+    """What acts on the body beside its constraint; several add up."""
+
+    gravity: Weight | None = None
+    """A force F that is constant in space, at a body point: `{force = [0, 0, -9.81], point = [0, 0, 0.3]}`."""
+    friction: Coefficients | None = None
+    """Against the body velocity: a coefficient for each of its components, or a matrix."""
+    table: Matrix | None = None
+    """A force for each step, in body axes: rows, or the path of a CSV file of them, from the folder of the scenario."""
+
+    def on(self, system: "System") -> "System":
+        """Return the system under these forces, the system itself without any."""
+        parts = {
+            name: self._part(name, make, system) for name, make in _PARTS.items() if getattr(self, name) is not None
+        }
+        gravity, force = parts.pop("gravity", None), tuple(parts.values())
+        if gravity is None and not force:
+            return system
+        return nonholo.Forced(system, gravity, force[0] if len(force) == 1 else force or None)
+
+    def check(self, system: "System", steps: int) -> None:
+        """Refuse forces that cannot act on a system, or that end before a run does."""
+        self.on(system)
+        if self.table is not None and len(self.table) < steps:
+            got = f"{len(self.table)}. Add rows, or take fewer steps"
+            raise ValueError(f"`Forces(table=...)` must have a row for each of {steps} steps. Got {got}")
+
+    def _part(self, name: str, make: "Callable[[System, Any], Any]", system: "System") -> Any:
+        try:
+            return make(system, getattr(self, name))
+        except ValueError as failure:
+            requirement, _, _ = (str(failure).partition("` ")[2] or str(failure)).partition(". Pass ")
+            raise ValueError(f"`Forces({name}=...)` {requirement}. {_REMEDIES[name]}") from None
+
+
+_PARTS: "dict[str, Callable[[System, Any], Any]]" = {
+    "gravity": lambda system, w: nonholo.Forced(system, nonholo.Gravity(w.force, w.point)).potential,
+    "friction": lambda system, given: nonholo.Forced(system, force=nonholo.Friction(given)).force,
+    "table": lambda system, rows: nonholo.Forced(system, force=rows).force,
+}
+"""How each acts on a system."""
+_REMEDIES = {
+    "gravity": "Give force and point as many numbers as space has directions",
+    "friction": "Give each direction of the group a coefficient that is not negative, or a matrix",
+    "table": "Give each row one number for each direction of the group",
+}
+
+
+def read_table(document: dict[str, Any], folder: Path) -> None:
+    """Put the rows of a CSV file where a document names it: the text of a scenario then says all of a run.
+
+    Raises:
+        ValueError: The file cannot be read, or is no table of numbers.
+    """
+    match document:
+        case {"forces": {"table": str(name)} as forces}:
+            try:
+                forces["table"] = rows_of(read_text(folder / name))
+            except (OSError, ValueError) as failure:
+                fault = f"Got {name!r}: {failure}"
+                raise ValueError(f"must be rows, or the path of a CSV file of numbers. {fault}") from None
+
+
+def rows_of(text: str) -> list[list[float]]:
+    r"""Return the rows of a table with commas; a first line without any number names its columns.
+
+    Example:
+        >>> rows_of("turn,push\n0.1,2\n0.2,3\n")
+        [[0.1, 2.0], [0.2, 3.0]]
+    """
+    import numpy as np
+
+    lines = [line for line in text.splitlines() if line.strip()]
+    named = bool(lines) and not any(map(_is_number, lines[0].split(",")))
+    if len(lines) <= named:
+        raise ValueError("it has no rows")
+    return np.loadtxt(lines[named:], delimiter=",", ndmin=2, comments=None).tolist()
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

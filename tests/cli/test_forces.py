@@ -1,0 +1,230 @@
+"""Forces in scenarios: the same motion as in Python, the same text again, and refusals with their key."""
+
+import json
+import re
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+from typer.testing import Result
+
+import nonholo as nh
+from nonholo.cli.scenario.bodies import BODIES
+from nonholo.cli.scenario.files import built_in, effective_text, load_scenario, parse_setting
+from nonholo.cli.scenario.forces import rows_of
+from nonholo.cli.scenario.problems import ScenarioError
+from nonholo.cli.scenario.sweep_files import load_sweep_scenario, sweep_text
+
+TABLE = [[0.5, 0.25, 0.0], [-0.1, 0.3, 1.0], [0.0, 1e-3, 0.0]]
+RUN = """
+[start]
+restricted_velocity = [0.3, 0.4]
+[run]
+time_step = 0.05
+steps = 3
+"""
+FORCES = """
+[forces]
+gravity = {force = [0.1, -1.0], point = [0.5, 0.1]}
+friction = [[0.2, 0.1, 0], [-0.1, 0.3, 0], [0, 0, 0.1]]
+table = "input/motor.csv"
+"""
+SLEIGH = '[body]\nkind = "sleigh"\nmass = 2.0\ninertia = 0.7\na = 0.4\n' + RUN
+
+
+@pytest.fixture
+def file() -> Path:
+    """A scenario with every force, and its table beside it."""
+    path = Path("study/my.toml")
+    (path.parent / "input").mkdir(parents=True)
+    path.write_text(SLEIGH + FORCES)
+    np.savetxt(path.parent / "input/motor.csv", TABLE, delimiter=",", header="torque,along,across", comments="")
+    return path
+
+
+def _forced(**forces: Any) -> nh.Forced:
+    return nh.Forced(nh.ChaplyginSleigh(2.0, 0.7, 0.4), **forces)
+
+
+GRAVITY, FRICTION = nh.Gravity([0.1, -1.0], [0.5, 0.1]), nh.Friction([[0.2, 0.1, 0], [-0.1, 0.3, 0], [0, 0, 0.1]])
+
+
+@pytest.mark.parametrize(
+    ("kept", "expected"),
+    [
+        ((), None),
+        (("gravity",), {"potential": GRAVITY}),
+        (("friction",), {"force": FRICTION}),
+        (("table",), {"force": np.array(TABLE)}),
+        (("gravity", "friction", "table"), {"potential": GRAVITY, "force": (FRICTION, np.array(TABLE))}),
+    ],
+    ids=["none", "gravity", "friction", "table", "all"],
+)
+def test_the_motion_is_that_of_python(file: Path, kept: tuple[str, ...], expected: Any) -> None:
+    """A body under forces of a file moves as `Forced`, to the last bit; without any it is the body itself."""
+    lines = FORCES.splitlines(keepends=True)
+    file.write_text(SLEIGH + "".join(line for line in lines if line[0] in "[\n" or line.split(" ")[0] in kept))
+    scenario = load_scenario(str(file), []).scenario
+    system = _forced(**expected) if expected else nh.ChaplyginSleigh(2.0, 0.7, 0.4)
+    assert scenario.system().is_forced == bool(expected)
+    orbit = nh.simulate(scenario.discretization(), steps=3, **scenario.options())
+    other = nh.simulate(nh.discretize(system, 0.05), restricted_velocity=(0.3, 0.4), steps=3)
+    for name in ("momentum", "configuration", "energy"):
+        np.testing.assert_array_equal(getattr(orbit, name), getattr(other, name))
+
+
+def test_the_text_kept_repeats_the_run(file: Path, nonholo: Callable[..., Result]) -> None:
+    """A store holds the rows of the table, not its path; its scenario alone gives the run again."""
+    assert nonholo("simulate", file, "-o", "a.zarr", "--no-plot", "-q").exit_code == 0
+    scenario = load_scenario(str(file), []).scenario
+    text = effective_text(scenario)
+    assert tomllib.loads(text)["forces"]["table"] == TABLE
+    Path("again.toml").write_text(text)
+    assert load_scenario("again.toml", []).scenario == scenario
+    assert nonholo("simulate", "again.toml", "-o", "b.zarr", "--no-plot", "-q").exit_code == 0
+    first, second = nh.load_orbit("a.zarr"), nh.load_orbit("b.zarr")
+    np.testing.assert_array_equal(first.momentum, second.momentum)
+    assert nonholo("info", "a.zarr").exit_code == 0
+    assert nonholo("explore", file, "-o", "page.html", "--no-browser").exit_code == 0
+
+
+def test_forces_of_the_command_line(file: Path) -> None:
+    """A table that an option names stands where the command runs; an option may take a force away."""
+    Path("own.csv").write_text("1,2,3\n" * 4)
+    settings = [parse_setting('forces.table="own.csv"'), parse_setting("forces.friction=[1, 2, 3]")]
+    forces = load_scenario(str(file), settings).scenario.forces
+    assert (forces.table, forces.friction) == ([[1.0, 2.0, 3.0]] * 4, [1.0, 2.0, 3.0])
+    assert load_scenario(str(file), [parse_setting("forces={}")]).scenario.system().is_forced is False
+
+
+REFUSED = {
+    "unknown key": ("forces.tables=[]", "forces.tables: is not a known key. Did you mean table?"),
+    "unknown key of a weight": (
+        "forces.gravity={force=[1,2],pint=[1,2]}",
+        "pint: is not a known key. Did you mean point",
+    ),
+    "no point": ("forces.gravity={force=[1,2]}", "forces.gravity.point: is missing"),
+    "no table": ("forces=1", "forces: must be a table. Got 1"),
+    "formula": ('forces.friction="-v"', "forces.friction: must be a valid list. Got '-v'"),
+    "shapes of a weight": ("forces.gravity.force=[1]", "forces.gravity.force: must have shape (2,). Got shape (1,)"),
+    "space": (
+        "forces.gravity={force=[1,2,3],point=[1,2,3]}",
+        "forces.gravity: must have points of SE(2). Got 3 numbers",
+    ),
+    "few coefficients": ("forces.friction=[1]", "forces.friction: must have a coefficient for each of 3 directions"),
+    "no coefficient": ("forces.friction=[]", "forces.friction: must have a coefficient for each direction"),
+    "drive": ("forces.friction=[-1, 0, 0]", "forces.friction: must never add energy"),
+    "rows of a matrix": ("forces.friction=[[1, 0], [0]]", "forces.friction: must"),
+    "nan": ("forces.friction=[[1,0,0],[0,nan,0],[0,0,1]]", "forces.friction[1][1]: must be a finite number. Got nan"),
+    "infinite": ("forces.gravity.point=[inf, 0]", "forces.gravity.point[0]: must be a finite number. Got inf"),
+    "no row": ("forces.table=[]", "forces.table: must have shape (any, 3)"),
+    "short rows": ("forces.table=[[1,2],[1,2],[1,2]]", "forces.table: must have shape (any, 3). Got shape (3, 2)"),
+    "uneven rows": ("forces.table=[[1,2],[1]]", "forces.table: must"),
+    "few rows": ("run.steps=4", "forces.table: must have a row for each of 4 steps. Got 3"),
+    "boolean": ("forces.table=[[true,0,0],[0,0,0],[0,0,0]]", "forces.table[0][0]: must be a valid number. Got True"),
+    "device": ('forces.table="/dev/zero"', "Got '/dev/zero': it is a folder, a device or a pipe"),
+    "no file": ('forces.table="none.csv"', "must be rows, or the path of a CSV file of numbers. Got 'none.csv'"),
+    "nul": (r'forces.table="a\u0000b"', "must be rows, or the path of a CSV file of numbers"),
+}
+
+
+@pytest.mark.parametrize(("setting", "text"), REFUSED.values(), ids=list(REFUSED))
+def test_refusals(file: Path, setting: str, text: str) -> None:
+    """What cannot act on the body is refused with its key and what to do, before anything runs."""
+    with pytest.raises(ScenarioError) as caught:
+        load_scenario(str(file), [parse_setting(setting)])
+    (found,) = {str(problem) for problem in caught.value.problems if text in str(problem)}
+    assert "a function" not in found  # no scenario holds one
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("", "it has no rows"),
+        ("a,b,c\n", "it has no rows"),
+        ("1,2,3\n1,x,3\n", "could not convert string 'x'"),
+        ("1,x,3\n1,2,3\n", "could not convert string 'x'"),
+        ("1,2,3\n1,2\n", "number of columns changed"),
+        ("\ufeff\x00", "it has no rows"),
+    ],
+    ids=["empty", "names alone", "word", "word in the first row", "uneven", "zero byte"],
+)
+def test_files_that_are_no_table(file: Path, text: str, reason: str) -> None:
+    """A row that is not of numbers is never taken for names, nor left out."""
+    (file.parent / "input/motor.csv").write_text(text)
+    with pytest.raises(ScenarioError, match=re.escape(reason)):
+        load_scenario(str(file), [])
+
+
+def test_numbers_of_a_file_are_checked(file: Path) -> None:
+    """What is not finite in a file is refused as in a scenario, with its row."""
+    (file.parent / "input/motor.csv").write_text("1,2,3\n1,nan,3\n1,2,3\n")
+    with pytest.raises(ScenarioError, match=re.escape("forces.table[1][1]: must be a finite number. Got nan")):
+        load_scenario(str(file), [])
+
+
+def test_rows_are_read_exactly() -> None:
+    """Every digit of a number counts; blank lines and spaces do not."""
+    rows = np.random.default_rng(0).normal(size=(5, 3)).tolist()
+    text = "\r\n\r\n".join(" , ".join(map(repr, row)) for row in rows)
+    assert rows_of(f"f1, f2, f3\r\n{text}\r\n") == rows
+
+
+@pytest.mark.parametrize("kind", BODIES)
+def test_forces_of_a_template(kind: str) -> None:
+    """The forces that stand as comments in what `nonholo new` writes act on its body."""
+    own = re.sub(r"^# (\[forces\]|gravity|friction)", r"\1", built_in()[kind], flags=re.MULTILINE)
+    Path("my.toml").write_text(own)
+    forces: Any = load_scenario("my.toml", []).scenario.system()
+    assert (forces.gravity is not None, forces.friction is not None) == (True, True)
+
+
+@pytest.mark.parametrize("option", ["run.order=4", 'run.difference="logarithmic"'])
+def test_steps_that_take_no_forces(file: Path, option: str, nonholo: Callable[..., Result]) -> None:
+    """Where there is no forced step the run is refused, with what there is."""
+    result = nonholo("simulate", file, "--set", option)
+    assert result.exit_code == 2
+    assert "must have a compiled step of order 2 inside" in result.stderr
+
+
+def test_thinned_run_under_a_table(file: Path, nonholo: Callable[..., Result]) -> None:
+    """What needs every step is left out of the table, the picture and the page, and the rest is there."""
+    result = nonholo("simulate", file, "--set", "run.save_every=3", "-o", "a.zarr", "--json")
+    assert result.exit_code == 0
+    told = json.loads(result.stdout)
+    assert (told["work"], told["energy_drift"], told["outcome"]) == (None, None, "successful")
+    assert told["constraint_residual"] < 1e-14
+    assert "no picture" not in result.stderr
+    assert nonholo("info", "a.zarr").exit_code == 0
+    assert nonholo("explore", "a.zarr", "-o", "page.html", "--no-browser").exit_code == 0
+    orbit = nh.load_orbit("a.zarr")
+    assert nh.plot.energy_error(orbit).axes.get_title("left") == "Change of energy"
+    assert "Chaplygin sleigh, under forces" in [text.get_text() for text in nh.plot.overview(orbit).findobj(Text)]
+
+
+DESIGN = '[design]\nkind = "grid"\n[design.values]\n"start.restricted_velocity_0" = [0.1, 0.3]\n'
+
+
+def test_sweep_under_forces(file: Path, nonholo: Callable[..., Result]) -> None:
+    """The members of a sweep move under the forces of its scenario, whose text says all of them."""
+    file.write_text(SLEIGH + FORCES + DESIGN)
+    result = nonholo("sweep", file, "-o", "s.zarr", "--no-plot", "-q")
+    assert result.exit_code == 0, result.output
+    swept = nh.load_sweep("s.zarr").load()
+    forced = nh.discretize(_forced(potential=GRAVITY, force=(FRICTION, np.array(TABLE))), 0.05)
+    for row, rate in enumerate([0.1, 0.3]):
+        last = nh.simulate(forced, restricted_velocity=(rate, 0.4), steps=3).restricted_momentum[-1]
+        np.testing.assert_array_equal(swept["final_momentum"].values[row], last)
+    Path("again.toml").write_text(sweep_text(load_sweep_scenario(str(file), []).scenario))
+    assert load_sweep_scenario("again.toml", [])[0] == load_sweep_scenario(str(file), [])[0]
+
+
+def test_bodies_under_forces_are_not_varied(file: Path) -> None:
+    """A sweep under forces varies starts and time steps; its body is refused with that said."""
+    file.write_text(SLEIGH + FORCES + DESIGN + '"body.a" = [0.1, 0.2]\n')
+    with pytest.raises(ScenarioError, match=r"design.values.body.a: cannot be varied"):
+        load_sweep_scenario(str(file), [])
