@@ -23,7 +23,7 @@ from nonholo.kernels.general.coordinates import (
     each_row,
     set_out_coordinates,
 )
-from nonholo.kernels.secular import SecularBody, secular_sleigh, secular_top
+from nonholo.kernels.secular import SecularBody, flat_secular_run, secular_sleigh, secular_top
 from nonholo.kernels.taylor import (
     Arrowhead,
     Quadratic,
@@ -71,6 +71,7 @@ __all__ = [
     "each_row",
     "flat_forced_run",
     "flat_run",
+    "flat_secular_run",
     "function_of",
     "increment",
     "inertia",

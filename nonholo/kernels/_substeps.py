@@ -86,7 +86,7 @@ def _secular_pushed(
     if p.slides:
         change[k] = 2 * p.mass * p.arm * tau / (1 + tau)
     if len(pose):
-        secular_run.move(p, m[-1], nu, tau, y, pose.reshape(-1, len(m) + 1))
+        secular_run.move(p, m[-1], nu, tau, y, pose)
 
 
 @njit(**COMPILED)

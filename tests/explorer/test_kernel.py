@@ -28,7 +28,7 @@ def _sleigh(rng: np.random.Generator) -> kernels.SleighBody:
 
 def _native(body: kernels.AnyBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, int, np.ndarray]:
     code, state = kernels.start(body, momentum, pose)
-    rows = np.empty((_STEPS, 2)), np.empty((_STEPS, 2)), np.empty((_STEPS, 4))
+    rows = tuple(np.empty((_STEPS, size)) for size in kernels.sizes(body))
     done = 0
     if code == 0:
         done, code = kernels.advance(body, state, _STEPS, 1, rows)
@@ -106,18 +106,54 @@ def test_same_bits_under_forces(kind: str, steps: int) -> None:
     assert steps < 1_000_000 or {(1, True), (1, False)} <= outcomes
 
 
+def _top4(rng: np.random.Generator) -> kernels.SecularBody:
+    """A top on SO(4), balanced or round, flat or eccentric ones among them."""
+    b = rng.uniform(0.5, 3, 3) if rng.random() < 0.7 else 10.0 ** rng.uniform(-3, 0, 3)
+    b[: rng.integers(1, 4)] = b[0]
+    c = rng.normal(size=3) * np.sqrt(b.min()) * rng.choice([0.0, 1e-9, 0.1, 0.5, 1.0])
+    return kernels.secular_top(b, c * rng.integers(0, 2, 3))
+
+
+def _turns(rng: np.random.Generator) -> np.ndarray:
+    """Return the rows of a random rotation, or of a turn by quarters."""
+    turn = np.linalg.qr(rng.normal(size=(4, 4)))[0] if rng.random() < 0.8 else np.eye(4)[rng.permutation(4)]
+    return turn.ravel()
+
+
+@pytest.mark.profile("routes", keep=["*5000"])
+@pytest.mark.parametrize("steps", [5_000, 1_000_000])
+def test_same_bits_in_four_dimensions(steps: int) -> None:
+    """Steps of random tops on SO(4), of which many leave the disc of certain roots, and some end or cannot start."""
+    rng, module = np.random.default_rng(22), Module("top4", _STEPS)
+    outcomes, taken = set(), 0
+    while taken < steps:
+        body = _top4(rng)
+        momentum = rng.normal(size=3) * np.sqrt(body.b) * 10.0 ** rng.uniform(-2, 0.3) * rng.integers(0, 2, 3)
+        pose = _turns(rng)
+        done, code, rows = _native(body, momentum, pose)
+        there = module.orbit((*body.b, *body.c, body.least), momentum, pose)
+        assert there[:2] == (done, code)
+        assert there[2].tobytes() == rows.tobytes()
+        outcomes.add((code, done == 0))
+        taken += done
+    assert {(0, False), (1, True)} <= outcomes
+    assert steps < 1_000_000 or {(1, False), (2, True)} <= outcomes
+
+
 @pytest.mark.parametrize("momentum", [(0.0, 0.0), (np.inf, 1.0), (np.nan, 0.0), (1e300, -1e300), (1e-320, 0.3)])
-@pytest.mark.parametrize("kind", ["top", "sleigh"])
+@pytest.mark.parametrize("kind", ["top", "sleigh", "top4"])
 def test_nasty_starts(kind: str, momentum: tuple[float, float]) -> None:
     """What is not finite, huge or denormal ends there as it does here."""
-    body = (
-        kernels.suslov_body(np.diag([1.0, 2.0]), np.array([0.3, 0.1]))
-        if kind == "top"
-        else kernels.SleighBody(1, 1, 0.5)
-    )
-    pose = np.array([1.0, 0.0, 0.0, 0.0])
-    done, code, rows = _native(body, np.array(momentum), pose)
-    there = Module(kind, _STEPS).orbit(tuple(body), np.array(momentum), pose)
+    body: kernels.AnyBody = kernels.SleighBody(1, 1, 0.5)
+    if kind == "top":
+        body = kernels.suslov_body(np.diag([1.0, 2.0]), np.array([0.3, 0.1]))
+    if kind == "top4":
+        body = kernels.secular_top(np.array([1.0, 2.0, 3.0]), np.array([0.3, 0.1, 0.0]))
+    rank, _, size = kernels.sizes(body)
+    start, pose = np.resize(momentum, rank), np.eye(4)[0] if size == 4 else np.eye(4).ravel()
+    done, code, rows = _native(body, start, pose)
+    flat = (*body.b, *body.c, body.least) if isinstance(body, kernels.SecularBody) else tuple(body)
+    there = Module(kind, _STEPS).orbit(flat, start, pose)
     assert there[:2] == (done, code)
     np.testing.assert_array_equal(there[2], rows)
 

@@ -1,6 +1,7 @@
 """The modules of the page under wasmtime, with numpy views of their memory."""
 
 import ctypes
+import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -11,16 +12,23 @@ STACK = 65536
 
 
 class Layout(NamedTuple):
-    """Room for the numbers of a body and for a state, and the places of a state."""
+    """Room for the numbers of a body and for a state, the places of a state, the numbers of a momentum and a pose.
+
+    What stands at `chart` is NaN in a state that has not begun.
+    """
 
     body: int
     state: int
     chart: int
     pose: int
     outcome: int
+    rank: int = 2
+    size: int = 4
 
 
-FREE, FORCED = Layout(8, 16, 4, 10, 14), Layout(1024, 24, 8, 4, 22)
+LAYOUTS = dict.fromkeys(["top", "sleigh"], Layout(8, 16, 4, 10, 14))
+LAYOUTS |= dict.fromkeys(["forced_top", "forced_sleigh"], Layout(1024, 24, 8, 4, 22))
+LAYOUTS["top4"] = Layout(8, 40, 6, 13, 29, 3, 16)
 
 
 class Module:
@@ -32,8 +40,8 @@ class Module:
         engine = wasmtime.Engine()
         self.module = wasmtime.Module(engine, kernel(body))
         self.store = wasmtime.Store(engine)
-        self.layout = FORCED if body.startswith("forced") else FREE
-        size = STACK + 8 * (self.layout.body + self.layout.state + 8 * steps)
+        self.layout = LAYOUTS[body]
+        size = STACK + 8 * (self.layout.body + self.layout.state + (2 * self.layout.rank + self.layout.size) * steps)
         pages = wasmtime.MemoryType(wasmtime.Limits(-(-size // 65536), None))
         memory = wasmtime.Memory(self.store, pages)
         kind = wasmtime.GlobalType(wasmtime.ValType.i32(), True)
@@ -54,11 +62,12 @@ class Module:
         self.memory[at : at + len(body)] = body
         state = self.memory[at + own.body : at + own.body + own.state]
         state[:] = 0.0
-        state[:2], state[own.chart], state[own.pose : own.pose + 4] = momentum, np.nan, pose
+        state[: own.rank], state[own.chart], state[own.pose : own.pose + own.size] = momentum, np.nan, pose
         rows = at + own.body + own.state
         first = [8 * at, 8 * (at + own.body)]
-        done = self.run(self.store, *first, steps, *(8 * (rows + k * steps) for k in (0, 2, 4)))
+        ends = np.cumsum([0, own.rank, own.rank, own.size])
+        done = self.run(self.store, *first, steps, *(8 * (rows + int(k) * steps) for k in ends[:-1]))
         parts = [
-            self.memory[rows + k * steps : rows + end * steps].reshape(steps, -1) for k, end in ((0, 2), (2, 4), (4, 8))
+            self.memory[rows + k * steps : rows + end * steps].reshape(steps, -1) for k, end in itertools.pairwise(ends)
         ]
         return done, int(state[own.outcome]), np.hstack(parts)[:done]

@@ -103,14 +103,15 @@ def unknowns_of(p: SecularBody, m0: float, chart: np.ndarray) -> tuple[float, fl
 
 
 @njit(nogil=True, **COMPILED)
-def move(p: SecularBody, m0: float, nu: float, tau: float, y: np.ndarray, rows: np.ndarray) -> None:
-    """Advance rows of a pose by the displacement, a reflection of each; keep their length."""
+def move(p: SecularBody, m0: float, nu: float, tau: float, y: np.ndarray, pose: np.ndarray) -> None:
+    """Advance the rows of a pose by the displacement, a reflection of each; keep their length."""
     k, first = len(y), 1 if p.slides else 0
-    axis = 0 if p.slides else k
+    axis, width = 0 if p.slides else k, k + 1 + first
     z0 = 1 / math.sqrt(1 + tau)
     sign = -z0 if p.slides else z0
     length = 2 * slide(p, m0, nu, tau, y) * z0 if p.slides else 0.0
-    for row in rows:
+    for begin in range(0, len(pose), width):
+        row = pose[begin : begin + width]
         along = _reflected(row, first, axis, z0, sign, y)
         if p.slides:
             row[k + 1] += length * along
@@ -195,13 +196,12 @@ def _take(
     k, size = len(p.b), len(p.b) + (1 if p.slides else 0)
     m, lost, pose, room = s[:size], s[size : 2 * size], s[2 * size + 7 :], room_for_sums()
     nu, tau, nu1, tau1, nu2, tau2, certain = s[2 * size : 2 * size + 7]
-    rows = pose.reshape(-1, size + 1)
-    y, settled, lever = np.zeros(k if len(rows) else 0), _settled(m), p.mass * p.arm * p.arm
+    y, settled, lever = np.zeros(k if len(pose) else 0), _settled(m), p.mass * p.arm * p.arm
     code, done = 0, 0
     while done < steps:
-        if len(rows):
+        if len(pose):
             coordinates(p, m, nu, tau, y)
-            move(p, m[-1], nu, tau, y, rows)
+            move(p, m[-1], nu, tau, y, pose)
         push(p, m, lost, nu, tau, settled)
         m0, guess = m[-1] if p.slides else 0.0, max(3 * (tau - tau1) + tau2, 0.0)
         good, nu3, tau3, moved = newton(p, m, m0, 1.0, 3 * (nu - nu1) + nu2, guess, False, room)
