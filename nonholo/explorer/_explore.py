@@ -99,10 +99,10 @@ class Page:
 def explore(value: Any) -> Page:
     """Return the live page of a motion: one file that runs the library's own kernel in the browser.
 
-    Tops with n = 3 and sleighs in the plane, also under `Gravity`, `Friction` and a table of forces, run there with the
-    very numbers of `nh.simulate`; sliders change the body, the forces, the start and the time step. Any other orbit is
-    replayed from its numbers, and the page says so. It fetches nothing, and its content security policy lets nothing
-    run in it but its own view.
+    Tops with n = 3 and sleighs in the plane, also under `Gravity`, `Friction` and a table of forces, and tops with
+    n = 4 run there with the very numbers of `nh.simulate`; sliders change the body, the forces, the start and the time
+    step. Any other orbit is replayed from its numbers, and the page says so. It fetches nothing, and its content
+    security policy lets nothing run in it but its own view.
 
     Args:
         value: A system, what `discretize` returned, or an orbit with poses; in coordinates with x and y among them.

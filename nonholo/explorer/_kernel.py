@@ -17,7 +17,7 @@ from numba import types
 
 from nonholo.base.compiled import kept_bytes
 from nonholo.explorer._object import module_of
-from nonholo.kernels import SleighBody, SuslovBody, flat_forced_run, flat_run, flat_secular_run
+from nonholo.kernels import SleighBody, SuslovBody, flat_arrowhead_run, flat_forced_run, flat_run, flat_secular_run
 
 KINDS = {
     "top": flat_run(SuslovBody),
@@ -25,9 +25,11 @@ KINDS = {
     "forced_top": flat_forced_run(SuslovBody),
     "forced_sleigh": flat_forced_run(SleighBody),
     "top4": flat_secular_run(3),
+    "flow4": flat_arrowhead_run(3, 1e-14 / 64),
 }
-"""The runs of the bodies that have a kernel for the page."""
+"""The runs of the bodies that have a kernel for the page; of a continuous motion where there is no closed form."""
 
+_WIDE = {"top4", "flow4"}
 _TRIPLE = "wasm32-unknown-unknown"
 _RUNTIME = Path(__file__).with_name("_runtime.ll")
 _OPTIONS: Any = {"nopython": True, "error_model": "numpy"}
@@ -36,6 +38,11 @@ _SIGNATURE = types.int64(_ADDRESS, _ADDRESS, types.int64, _ADDRESS, _ADDRESS, _A
 _OF_THIS_MACHINE = r'(?m)"(?:target-cpu|target-features|probe-stack)"="[^"]*"|^target (?:triple|datalayout) = .*$'
 _COUNTS = r"(?ms)^define [^\n]*(@NRT_(?:in|de)cref)\(.*?^}$"  # of arrays, in instructions of this machine
 _RAISES = r"(?m)^ *store ptr @\.const\.picklebuf\..*$"
+
+
+def kinds_beside(kind: str) -> list[str]:
+    """Return the kinds of one page, and of its ready motions: those in the plane and in space, or the others."""
+    return [each for each in KINDS if (each in _WIDE) == (kind in _WIDE)]
 
 
 def kernel(body: str) -> bytes:
@@ -70,6 +77,6 @@ def _object(function: Any) -> bytes:
     for item in (*code.functions, *code.global_variables):
         if not item.is_declaration and item.name != made.native_name:
             item.linkage = "internal"
-    passes = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
+    passes = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=2))
     passes.getModulePassManager().run(code, passes)
     return machine.emit_object(code)

@@ -10,6 +10,7 @@ from nonholo.base.checks import error, instance, is_integer, shown
 from nonholo.base.types import Float, Int
 from nonholo.discrete import Discretization, discretize
 from nonholo.explorer._forces import force_numbers, packed_table, table_of, under_forces
+from nonholo.explorer._kernel import KINDS
 from nonholo.groups import matrix_from_quaternion
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.simulation import simulate
@@ -21,6 +22,8 @@ MOST_STEPS = 20_000
 MOST_STATES = 4_000
 """States that a page replays."""
 
+_WIDE = ("J11", "J22", "J33", "J44", "J14", "J24", "J34")
+_KERNELS = {("scalar", True, 1): "sleigh", ("scalar", False, 2): "top", ("secular", False, 3): "top4"}
 _RECORDED = 100  # states that it replays where its kernel may not run: 17 kB
 
 _LARGEST = 1e6
@@ -56,11 +59,13 @@ def _of_discretization(where: str, discrete: Discretization) -> Shown:
     kind = _kind(discrete)
     if kind is None:
         remedy = "Run it, and pass the orbit: a page replays any."
-        raise error(where, "be a top with n = 3 or a sleigh in the plane, of order 2", shown(discrete.system), remedy)
-    lower = np.linalg.cholesky(discrete.system.canonical.constrained_inertia)
-    table, momentum = _table(discrete.system, kind, 0), lower @ np.array([0.4, -0.9]) * lower[0, 0]
-    steps = min(_STEPS, len(discrete.system.table)) if table else _STEPS  # type: ignore[union-attr]
-    state = _state(discrete, kind, momentum, np.array([1.0, 0, 0, 0]), steps, table)
+        wanted = "be a top with n = 3 or 4 or a sleigh in the plane, of order 2"
+        raise error(where, wanted, shown(discrete.system), remedy)
+    system = discrete.system
+    lower = np.linalg.cholesky(system.canonical.constrained_inertia)
+    table, momentum = _table(system, kind, 0), lower @ np.array([0.4, -0.9, 0.3])[: len(lower)] * lower[0, 0]
+    steps = min(_STEPS, len(system.table)) if table else _STEPS  # type: ignore[union-attr]
+    state = _state(discrete, kind, momentum, system.group.pose_from_matrix(system.group.identity), steps, table)
     orbit = simulated(where, state, table)
     recorded = _numbers(orbit, _spread(orbit, _RECORDED))[0] if len(orbit) else None
     data = {"kind": kind, "state": state, "recorded": recorded, "table": table}
@@ -88,20 +93,15 @@ def _live(orbit: Orbit) -> Shown | None:
 
 
 def _kind(discrete: Discretization) -> str | None:
-    """Return the kernel of a discretization that runs in the axes of the canonical frame, or None."""
-    system = discrete.system
-    form = _inside(system).normal_form
-    if (
-        form is None
-        or discrete.route_name != "scalar"
-        or discrete.order != 2
-        or form.frame is not None
-        or np.any(form.offset)
-        or _forces(system) is None
-    ):
+    """Return the kernel of a discretization, which runs in canonical axes, for n = 4 in principal ones; or None."""
+    system, form = discrete.system, _inside(discrete.system).normal_form
+    if form is None or discrete.order != 2 or form.frame is not None or np.any(form.offset) or _forces(system) is None:
         return None
-    kind = "sleigh" if form.is_sleigh else "top" if form.frame_map is None else None
-    return kind and "forced_" * system.is_forced + kind
+    if form.frame_map is not None and not form.is_sleigh:
+        return None
+    own = _KERNELS.get((discrete.route_name, form.is_sleigh, len(form.coupling)), "")
+    kind = "forced_" * system.is_forced + own
+    return kind if kind in KINDS else None
 
 
 def _forces(system: AbstractSystem) -> dict[str, float] | None:
@@ -125,6 +125,10 @@ def _parameters(system: AbstractSystem) -> dict[str, float]:
     form = cast(NormalForm, _inside(system).normal_form)
     if form.is_sleigh:
         names = {"mass": form.mass, "inertia": form.stiffness[0, 0], "a": form.arm}
+    elif not form.is_planar:
+        axes = form.principal[1]
+        across = form.across if axes is None else np.diag(axes.T @ form.across @ axes)
+        names = dict(zip(_WIDE, (*across, form.along, *form.to_principal(form.coupling)), strict=True))
     else:
         A, d, c = np.asarray(form.across), form.along, form.coupling
         names = {"J11": A[0, 0], "J12": A[0, 1], "J22": A[1, 1], "J13": c[0], "J23": c[1], "J33": d}
@@ -135,6 +139,10 @@ def _state(
     discrete: Discretization, kind: str, momentum: np.ndarray, pose: np.ndarray, steps: int, table: Any
 ) -> dict[str, Any]:
     named = {} if table is None else {"table": table["name"]}
+    form = cast(NormalForm, _inside(discrete.system).normal_form)
+    if kind == "top4" and form.principal[1] is not None:  # a matrix with rows of the pose turned, its last column stays
+        momentum, g = form.to_principal(momentum), pose.reshape(4, 4)
+        pose = np.column_stack([g[:, :3] @ form.principal[1], g[:, 3]]).ravel()
     return {
         "kind": kind,
         "parameters": _parameters(discrete.system),
@@ -151,7 +159,10 @@ def simulated(where: str, state: Any, table: dict[str, Any] | None = None) -> Or
     if not isinstance(state, dict) or state.keys() < {"kind", "parameters", "momentum", "pose", "time_step", "steps"}:
         raise error(where, "be asked of a page whose body runs in it", "a replay", "Use the orbit you passed.")
     p, (w, *xyz), steps = state["parameters"], state["pose"], state["steps"]
-    if state["kind"].endswith("top"):
+    if state["kind"] == "top4":
+        diagonal, coupling = [p[name] for name in _WIDE[:4]], [p[name] for name in _WIDE[4:]]
+        body, pose = SuslovTop.arrowhead(diagonal, coupling), np.reshape(state["pose"], (4, 4))
+    elif state["kind"].endswith("top"):
         rows = [[p[f"J{min(i, j)}{max(i, j)}"] for j in (1, 2, 3)] for i in (1, 2, 3)]
         body, pose = SuslovTop(rows), matrix_from_quaternion(np.array([w, *xyz]))
     else:
@@ -174,6 +185,10 @@ def _name(system: AbstractSystem) -> str:
 
 def _frame_note(system: AbstractSystem) -> str:
     turned = system.canonical is not system and np.any(system.frame != np.eye(len(system.frame)))
+    form = _inside(system).normal_form
+    axes = None if form is None or form.is_planar else form.principal[1]
+    if axes is not None and np.any(axes != np.eye(len(axes))):
+        return "Shown in the principal axes of the constrained inertia, with the forbidden axis as the last one."
     return "Shown in the canonical body frame: its last axis is the forbidden one, or b = 0." if turned else ""
 
 

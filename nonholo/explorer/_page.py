@@ -11,7 +11,7 @@ from typing import Any
 import jinja2
 
 from nonholo.base.results import Outcome
-from nonholo.explorer._kernel import KINDS, kernel
+from nonholo.explorer._kernel import kernel, kinds_beside
 
 _VIEW = Path(__file__).with_name("view")
 
@@ -19,9 +19,9 @@ _VIEW = Path(__file__).with_name("view")
 def page_text(data: dict[str, Any], title: str, note: str, version: str) -> str:
     """Return the text of a page, in ASCII; what it is given is escaped, and data cannot end their element."""
     outcomes = {int(outcome): (outcome.name, outcome.message) for outcome in Outcome}
-    kernels = {} if "replay" in data else {kind: _packed(kernel(kind)) for kind in KINDS}
+    kernels = {} if "replay" in data else {kind: _packed(kernel(kind)) for kind in kinds_beside(data["kind"])}
     known = {**data, "title": title, "library": version, "outcomes": outcomes, "kernels": kernels}
-    text = json.dumps(known, allow_nan=False).replace("<", "\\u003c")
+    text = json.dumps(known, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     script, style = _text("view.js"), _text("style.css")
     whole = _template().render(
         data=text,

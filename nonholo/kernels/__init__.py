@@ -27,6 +27,7 @@ from nonholo.kernels.secular import SecularBody, flat_secular_run, secular_sleig
 from nonholo.kernels.taylor import (
     Arrowhead,
     Quadratic,
+    flat_arrowhead_run,
     order_for,
     revisit_series,
     solve_arrowhead,
@@ -69,6 +70,7 @@ __all__ = [
     "correction",
     "each_root",
     "each_row",
+    "flat_arrowhead_run",
     "flat_forced_run",
     "flat_run",
     "flat_secular_run",

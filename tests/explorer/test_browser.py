@@ -27,13 +27,13 @@ DRIVEN = {
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """The pages of a top and a sleigh, free, under forces and a table; of a top in four dimensions, replayed."""
+    """The pages of a top and a sleigh, free, under forces and a table; of a top in five dimensions, replayed."""
     folder = tmp_path_factory.mktemp("pages")
     found = {name: folder / f"{name}.html" for name in (*BODIES, *FORCED, *DRIVEN, "replay")}
     for name, body in (BODIES | FORCED | DRIVEN).items():
         _sent(name, body).to_html(found[name])
-    wide = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0]) + 0.3), 0.1)
-    nh.simulate(wide, restricted_velocity=(1.0, 0.5, 0.2), steps=100).to_html(found["replay"])
+    wide = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0, 5.0]) + 0.3), 0.1)
+    nh.simulate(wide, restricted_velocity=(1.0, 0.5, 0.2, 0.1), steps=100).to_html(found["replay"])
     return found
 
 

@@ -49,6 +49,27 @@ def test_data_of_a_top() -> None:
     assert "canonical body frame" not in explore(TOP).text
 
 
+def test_data_in_four_dimensions() -> None:
+    """A top on SO(4) is shown in its principal axes; in these its page has the motion of Python to the last bit."""
+    J = np.diag([1.0, 1.5, 2.0, 0.7])
+    J[3, :3] = J[:3, 3] = 0.3, -0.2, 0.1
+    start = {"momentum": (0.4, -0.5, 0.3), "configuration": nh.SO(4).exp(np.linspace(-0.5, 0.7, 6)), "steps": 60}
+    for body in (nh.SuslovTop(J), nh.SuslovTop.arrowhead(np.diagonal(J), J[3, :3])):
+        page, orbit = explore(body), nh.simulate(nh.discretize(body, 0.1), **start)
+        assert _data(page.text)["state"]["kind"] == "top4"
+        assert _data(page.text)["kernels"].keys() == {"top4", "flow4"}
+        assert "principal axes" not in page.text.partition("<script")[0]
+        page = explore(orbit)
+        assert _data(page.text)["state"]["pose"] == orbit.canonical_pose[0].tolist()
+        for name in ("reduced_momentum", "cayley"):
+            np.testing.assert_array_equal(getattr(page.orbit(), name), getattr(orbit, name))
+    turned = nh.simulate(nh.discretize(nh.SuslovTop(J + 0.2), 0.1), **start)
+    page = explore(turned)
+    assert "principal axes" in page.text.partition("<script")[0]
+    np.testing.assert_allclose(page.orbit().energy, turned.energy, rtol=1e-14)
+    np.testing.assert_allclose(page.orbit().configuration[:, :, 3], turned.configuration[:, :, 3], atol=1e-13)
+
+
 def test_data_under_forces() -> None:
     """A page of a body under a weight and friction has their numbers, and starts from the momentum at the node."""
     body = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
@@ -121,8 +142,9 @@ def test_what_a_page_replays_where_its_kernel_may_not_run() -> None:
 
 def test_size_and_policy() -> None:
     """A page without data is small, in ASCII, fetches nothing, and names the only script and style that may run."""
-    text = explore(TOP).text
-    assert len(text) - len(json.dumps(_data(text)["recorded"])) <= LARGEST
+    for body in (nh.SuslovTop.arrowhead(np.ones(4), np.ones(3) / 4), TOP):
+        text = explore(body).text
+        assert len(text) - len(json.dumps(_data(text)["recorded"])) <= LARGEST
     assert text.isascii()
     assert "three.js authors\n\nPermission is hereby granted" in text
     script, style = (
@@ -143,7 +165,7 @@ def test_size_and_policy() -> None:
 @pytest.mark.parametrize(
     "orbit",
     [
-        lambda: nh.simulate(nh.discretize(nh.SuslovTop(np.eye(4)), 0.1), restricted_velocity=(1, 0.5, 0), steps=9),
+        lambda: nh.simulate(nh.discretize(nh.SuslovTop(np.eye(5)), 0.1), restricted_velocity=(1, 0.5, 0, 0), steps=9),
         lambda: nh.flow(SLEIGH, body_velocity=(1.0, 0.5, 0.0), times=np.linspace(0, 1, 10)),
         lambda: nh.simulate(nh.discretize(TOP, 0.1, order=4), restricted_velocity=(1.0, 0.5), steps=9),
     ],
@@ -207,7 +229,8 @@ def test_long_orbits_are_thinned() -> None:
     [
         (3.0, "explore"),
         (nh.discretize(nh.RigidBody(np.eye(3)), 0.1), "be a top with n = 3"),
-        (nh.SuslovTop(np.eye(4)), "be a top with n = 3"),
+        (nh.SuslovTop(np.eye(5)), "be a top with n = 3 or 4"),
+        (nh.Forced(nh.SuslovTop(np.eye(4)), force=nh.Friction(np.ones(6))), "be a top with n = 3 or 4"),
         (
             nh.simulate(nh.discretize(TOP, 0.1), restricted_velocity=(1.0, 0.5), steps=2, reconstruct=False),
             "have poses",
@@ -215,7 +238,7 @@ def test_long_orbits_are_thinned() -> None:
         (_in_coordinates(("x", "u")), "coordinates named x and y. Got x, u"),
         (nh.simulate(nh.discretize(TOP, 2.0), momentum=(3.0, 3.0), steps=2, throw=False), "have poses"),
     ],
-    ids=["number", "free body", "wide top", "no poses", "no place", "no state"],
+    ids=["number", "free body", "wide top", "wide top under forces", "no poses", "no place", "no state"],
 )
 def test_refusals(value: Any, message: str) -> None:
     """What cannot be shown is refused with a remedy."""

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from nonholo.explorer import kernel
+from nonholo.kernels import Arrowhead
 
 STACK = 65536
 
@@ -28,6 +29,7 @@ class Layout(NamedTuple):
 
 LAYOUTS = dict.fromkeys(["top", "sleigh"], Layout(8, 16, 4, 10, 14))
 LAYOUTS |= dict.fromkeys(["forced_top", "forced_sleigh"], Layout(1024, 24, 8, 4, 22))
+LAYOUTS["flow4"] = Layout(8, 8, 0, 0, 0)
 LAYOUTS["top4"] = Layout(8, 40, 6, 13, 29, 3, 16)
 
 
@@ -71,3 +73,13 @@ class Module:
             self.memory[rows + k * steps : rows + end * steps].reshape(steps, -1) for k, end in itertools.pairwise(ends)
         ]
         return done, int(state[own.outcome]), np.hstack(parts)[:done]
+
+    def flow(self, f: Arrowhead, node: np.ndarray, times: np.ndarray, end: float) -> np.ndarray:
+        """Return the states of `solve_arrowhead` at some times."""
+        at, count = STACK // 8, len(times)
+        state = at + self.layout.body
+        own, rows = state + self.layout.state, state + self.layout.state + count
+        self.memory[at : at + 7], self.memory[state : state + 8] = (*f.rates, *f.coupling, end), node.ravel()
+        self.memory[own:rows] = times
+        reached = self.run(self.store, 8 * at, 8 * state, count, 8 * own, 8 * rows, 0)
+        return self.memory[rows : rows + 3 * reached].reshape(-1, 3).copy()

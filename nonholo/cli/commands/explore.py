@@ -25,8 +25,8 @@ def explore(
 ) -> None:
     """Write the live page of a motion, one file, and open it in the browser.
 
-    Tops in space and sleighs in the plane run in the page itself, with the same
-    numbers; others are replayed. Without -o the page is a temporary file.
+    Tops with n = 3 or 4 and sleighs in the plane run in the page itself, with the
+    same numbers; others are replayed. Without -o the page is a temporary file.
 
     nonholo explore suslov
     nonholo explore my.toml -o top.html --no-browser

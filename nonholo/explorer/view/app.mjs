@@ -4,7 +4,7 @@ import { BODIES, takeTable } from "./bodies.mjs";
 import { EnergyBalance } from "./balance.mjs";
 import { Controls } from "./controls.mjs";
 import { levelsOf } from "./forces.mjs";
-import { kernelOf } from "./kernel.mjs";
+import { kernelOf, seriesOf } from "./kernel.mjs";
 import { colors, short } from "./look.mjs";
 import { flowOf, orbitOf } from "./orbit.mjs";
 import { EnergyError, PhasePortrait } from "./plots.mjs";
@@ -14,6 +14,7 @@ import { isSoftware, Stage } from "./stage.mjs";
 import { checked, fragmentOf, stateOf } from "./state.mjs";
 import { SurfaceView } from "./surface_view.mjs";
 import { TopView } from "./top_view.mjs";
+import { WideTopView } from "./wide_top_view.mjs";
 import { isReal, valuesOver } from "./values.mjs";
 import { WeightView } from "./weight_view.mjs";
 import { WORDS } from "./words.mjs";
@@ -21,8 +22,8 @@ import { WORDS } from "./words.mjs";
 const SECONDS = 16;
 const HOLD = 1.2;
 const RESTRICTED = ["r₁", "r₂"]; // momenta along the constraint
-const VIEWS = { top: TopView, sleigh: SleighView, replay: AxesView };
-const EYES = { top: [1.6, -2, 0.9], sleigh: [0.25, -1.1, 1.25], replay: [1.6, -2, 1.1] };
+const VIEWS = { top: TopView, sleigh: SleighView, top4: WideTopView, replay: AxesView };
+const EYES = { top: [1.6, -2, 0.9], sleigh: [0.25, -1.1, 1.25], top4: [1.6, -2, 0.9], replay: [1.6, -2, 1.1] };
 const byId = (id) => document.getElementById(id);
 
 export class App {
@@ -46,7 +47,7 @@ export class App {
     if (!this.replay) await this.compile();
     if (this.replay) this.kind = "replay";
     this.controls = new Controls(this);
-    const linked = this.kind === "replay" ? null : stateOf(location.hash);
+    const linked = this.kind === "replay" ? null : this.linked();
     if (this.kind !== "replay") this.state = linked?.state ?? checked(this.data.state).state;
     addEventListener("hashchange", () => this.follow());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.refresh());
@@ -66,7 +67,7 @@ export class App {
     const { kernels, recorded } = this.data;
     try {
       this.kernels = {};
-      for (const [kind, text] of Object.entries(kernels)) this.kernels[kind] = await kernelOf(text, BODIES[kind].isForced);
+      for (const [kind, text] of Object.entries(kernels)) this.kernels[kind] = await (kind === "flow4" ? seriesOf : kernelOf)(text, kind);
     } catch (failure) {
       if (!recorded || (globalThis.WebAssembly && !(failure instanceof WebAssembly.CompileError))) throw failure;
       this.replay = recorded;
@@ -74,10 +75,16 @@ export class App {
     }
   }
 
+  /** The state of the present link, which may be of a body that this page does not have. */
+  linked() {
+    const linked = stateOf(location.hash);
+    return linked?.state && !this.kernels[linked.state.kind] ? { problem: "It is of a body that this page has no kernel for." } : linked;
+  }
+
   /** Take the state of a link that was typed or opened in this page. */
   follow() {
     if (this.kind === "replay" || location.hash === this.fragment) return;
-    const linked = stateOf(location.hash);
+    const linked = this.linked();
     if (linked?.state) this.change(linked.state);
     if (linked?.problem) this.say(`This link could not be read. ${linked.problem}`, true);
   }
@@ -107,7 +114,7 @@ export class App {
     if (this.shown !== kind) this.enter(kind);
     this.view.set(this.state, this.orbit, look, this.flow);
     this.weight.set(this.body, this.state, this.orbit, look, this.view);
-    if (!replay) this.surface.set(this.body, this.state, this.orbit, look, this.whole, this.values ? (k) => this.allValues(k).filter(isReal) : null);
+    if (!replay) this.surface.set(this.body, this.state, this.orbit, look, this.whole, this.values ? (k) => this.allValues(k).filter(isReal) : null, this.flow.curve);
     if (this.crowd) this.crowd.set(this.body, this.state, this.flow, run);
     const counts = this.values && !replay ? this.counts() : null;
     const picture = { crowd: this.crowd, orbit: this.orbit, flow: this.flow, body: this.body, counts };
@@ -125,6 +132,7 @@ export class App {
 
   /** The continuous motion with the body axis of permanent rotation of a top: its velocity along the rows is that of c. */
   flowBeside() {
+    if (this.body.flow) return this.body.flow(this.state, this.kernels.flow4);
     const flow = flowOf(this.body, this.state), { J13: c1, J23: c2 } = this.state.parameters;
     if (this.body.isForced) return levelsOf(flow, this.orbit);
     return { ...flow, velocityAxis: c1 || c2 ? [-c2, c1, 0] : null };

@@ -1,8 +1,9 @@
-// The two bodies whose steps are known in closed form: the numbers that their kernels take, and what is drawn of them.
+// The bodies that run in the page: of the two whose steps are known in closed form the numbers that their kernels take, and what is drawn of them.
 // Formulas and rows are those of nonholo.discrete.routes and nonholo.analysis.planar.
 
 import { underForces } from "./forces.mjs";
 import { literal } from "./literal.mjs";
+import { top4 } from "./wide_top.mjs";
 import { sleighCount, sleighValues, topCount, topValues } from "./values.mjs";
 
 const cholesky = (b11, b12, b22) => {
@@ -162,7 +163,7 @@ export const sleigh = {
   configuration: ([cos, sin, x, y]) => [[cos, -sin, x], [sin, cos, y], [0, 0, 1]],
 };
 
-export const BODIES = { top, sleigh, forced_top: underForces(top), forced_sleigh: underForces(sleigh) };
+export const BODIES = { top, sleigh, forced_top: underForces(top), forced_sleigh: underForces(sleigh), top4 };
 
 /** Put a body under the table of forces that the data of a page hold. */
 export const takeTable = (given) => (BODIES[`forced_${given.body}`] = underForces(BODIES[given.body], given));

@@ -8,6 +8,7 @@ import { colors, short } from "./look.mjs";
 import { download, pageWith, pictureOf, pythonOf, tomlOf } from "./share.mjs";
 import { fragmentOf } from "./state.mjs";
 import { isReal } from "./values.mjs";
+import { WIDE_PRESETS } from "./wide_top.mjs";
 import { PRESETS } from "./words.mjs";
 
 const byId = (id) => document.getElementById(id);
@@ -31,16 +32,16 @@ export class Controls {
   }
 
   presets() {
-    const select = byId("preset");
-    PRESETS.forEach(({ name }, k) => select.append(element("option", { value: k }, name)));
+    const select = byId("preset"), all = [...PRESETS, ...WIDE_PRESETS].filter(({ kind }) => this.app.kernels[kind]);
+    all.forEach(({ name }, k) => select.append(element("option", { value: k }, name)));
     select.addEventListener("change", () => {
       const { data } = this.app;
       this.chosen = null;
-      const chosen = select.value === "own" ? data.state : { pose: [1, 0, 0, 0], table: undefined, ...PRESETS[select.value] };
+      const chosen = select.value === "own" ? data.state : { table: undefined, ...all[select.value] };
       this.app.clock = 0;
       this.app.values = Boolean(chosen.values);
       byId("values").setAttribute("aria-pressed", String(this.app.values));
-      this.app.change({ ...chosen, pose: chosen.pose ?? [1, 0, 0, 0] });
+      this.app.change({ pose: null, ...chosen });
     });
   }
 
@@ -108,12 +109,12 @@ export class Controls {
 
   /** Show the numbers of the present state. */
   now() {
-    const { app } = this, { k, orbit, body } = app, list = byId("now");
+    const { app } = this, { k, orbit, body } = app, list = byId("now"), part = (rows) => rows.subarray(orbit.rank * k, orbit.rank * (k + 1));
     const known = orbit.count ? [
-      [body.momenta[0], short(orbit.r[2 * k], 6)], [body.momenta[1], short(orbit.r[2 * k + 1], 6)],
+      ...body.momenta.map((label, i) => [label, short(part(orbit.r)[i], 6)]),
       ["energy", short(orbit.energy[k], 6)],
       ...(app.state?.table ? [["force", body.acting(app.state.parameters, k).map((f) => short(f, 3)).join(", ")]] : []),
-      ...(body.angle ? [["step angle", `${short((body.angle(orbit.y[2 * k], orbit.y[2 * k + 1]) * 180) / Math.PI, 4)}°`]] : []),
+      ...(body.angle ? [["step angle", `${short((body.angle(...part(orbit.y)) * 180) / Math.PI, 4)}°`]] : []),
     ] : [];
     if (app.values && app.kind !== "replay") known.push(["real values", this.counted(app.allValues(k))]);
     if (list.children.length !== 2 * known.length) {
@@ -226,7 +227,7 @@ export class Controls {
     const take = (event) => {
       const momentum = app.phase.momentumAt(event.offsetX, event.offsetY).map((r) => +r.toPrecision(4));
       app.clock = 0;
-      app.change({ momentum });
+      app.change({ momentum: [...momentum, ...app.state.momentum.slice(2)] });
     };
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
@@ -237,7 +238,7 @@ export class Controls {
       const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
       if (!way) return;
       event.preventDefault();
-      app.change({ momentum: app.state.momentum.map((r, i) => +(r + 0.02 * way[i] * app.phase.reach).toPrecision(6)) });
+      app.change({ momentum: app.state.momentum.map((r, i) => +(r + 0.02 * (way[i] ?? 0) * app.phase.reach).toPrecision(6)) });
     });
   }
 }

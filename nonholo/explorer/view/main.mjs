@@ -21,6 +21,9 @@ globalThis.nonholo = {
   get orbit() {
     return app.orbit;
   },
+  get flow() {
+    return app.flow;
+  },
   /** All values of the map over the present momentum along the constraint: two complex coordinates each. */
   get values() {
     return app.allValues(app.k);

@@ -4,29 +4,29 @@
 export function orbitOf(body, state, run) {
   const scale = state.time_step * body.share;
   const table = body.table(state.parameters, state.time_step);
-  const start = [scale * state.momentum[0], scale * state.momentum[1]];
+  const start = state.momentum.map((r) => scale * r), { rank, entries } = run.layout;
   const first = run(table, start, state.pose, 0);
   const { done, outcome, momenta, charts, poses } =
     first.outcome === 0 ? run(table, start, state.pose, state.steps) : { ...first, done: -1 };
   const count = done + 1;
-  const r = new Float64Array(2 * count), y = new Float64Array(2 * count), g = new Float64Array(4 * count);
+  const r = new Float64Array(rank * count), y = new Float64Array(rank * count), g = new Float64Array(entries * count);
   if (count > 0) {
     y.set(first.start);
     g.set(state.pose);
-    y.set(charts, 2);
-    g.set(poses, 4);
-    r.set([start[0] / scale, start[1] / scale]);
-    for (let k = 0; k < 2 * done; k++) r[k + 2] = momenta[k] / scale;
+    y.set(charts, rank);
+    g.set(poses, entries);
+    r.set(start.map((m) => m / scale));
+    for (let k = 0; k < rank * done; k++) r[k + rank] = momenta[k] / scale;
   }
-  return finished(body, state, { count, outcome, r, y, g, table });
+  return finished(body, state, { count, rank, outcome, r, y, g, table });
 }
 
 function finished(body, state, orbit) {
-  const { count, r } = orbit, time = (k) => k * state.time_step;
+  const { count, rank, r } = orbit, time = (k) => k * state.time_step;
   if (body.balance) return { ...orbit, ...body.balance(state, orbit), time };
   const energy = new Float64Array(count), error = new Float64Array(count);
   for (let k = 0; k < count; k++) {
-    energy[k] = body.energy(state.parameters, r[2 * k], r[2 * k + 1]);
+    energy[k] = body.energy(state.parameters, ...r.subarray(rank * k, rank * k + rank));
     error[k] = energy[0] === 0 ? 0 : Math.abs(energy[k] / energy[0] - 1);
   }
   return { ...orbit, energy, error, time };

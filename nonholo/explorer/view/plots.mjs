@@ -115,13 +115,17 @@ export class PhasePortrait extends Picture {
       curve(pen, Array.from({ length: 65 }, (_, turn) => this.place(this.level(size, turn))));
     }
     if (flow.attracting) this.equilibria(pen, flow.attracting);
-    pen.strokeStyle = flow.isForced ? look.line : look.flow;
+    pen.strokeStyle = flow.isForced || flow.isLevel ? look.line : look.flow;
     pen.lineWidth = 2.2;
     curve(pen, Array.from({ length: 65 }, (_, turn) => this.place(this.level(1, turn))));
+    if (flow.curve) {
+      pen.strokeStyle = look.flow;
+      curve(pen, flow.curve.map((r) => this.place(r)));
+    }
     const stride = Math.max(1, Math.floor(orbit.count / 600));
     for (let k = 0; k < orbit.count; k += stride) {
       const color = css(timeColor(k / Math.max(1, orbit.count - 1), look.dark));
-      this.dot(pen, ...this.place([orbit.r[2 * k], orbit.r[2 * k + 1]]), 2.3, color);
+      this.dot(pen, ...this.place(orbit.r.subarray(orbit.rank * k)), 2.3, color);
     }
     pen.fillStyle = look.muted;
     pen.textAlign = "right";
@@ -163,7 +167,7 @@ export class PhasePortrait extends Picture {
     if (this.data.crowd) this.data.crowd.draw(pen, this);
     if (!orbit.count) return;
     this.dot(pen, ...this.place(flow.at(orbit.time(k))), 7, null, look.flow);
-    this.dot(pen, ...this.place([orbit.r[2 * k], orbit.r[2 * k + 1]]), 4.2, look.accent, look.card);
+    this.dot(pen, ...this.place(orbit.r.subarray(orbit.rank * k)), 4.2, look.accent, look.card);
   }
 }
 

@@ -11,7 +11,7 @@ export function replayed(data) {
   const time = numbersOf(data.time), energy = numbersOf(data.energy), frames = numbersOf(data.frames), r = numbersOf(data.momentum);
   const count = time.length;
   const error = energy.map((e) => (energy[0] === 0 ? 0 : Math.abs(e / energy[0] - 1)));
-  return { count, outcome: data.outcome, r, energy, error, frames, time: (k) => time[k] };
+  return { count, rank: 2, outcome: data.outcome, r, energy, error, frames, time: (k) => time[k] };
 }
 
 /** Stands in for the flow in the phase portrait: there is no closed form to draw. */

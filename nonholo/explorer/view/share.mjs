@@ -8,7 +8,7 @@ const list = (values) => `[${values.map(literal).join(", ")}]`;
 /** Python that computes the same numbers. */
 export function pythonOf(state) {
   const body = BODIES[state.kind];
-  const pose = state.pose.some((x, k) => x !== (k === 0 ? 1 : 0));
+  const pose = state.pose.some((x, k) => x !== (k % 5 ? 0 : 1));
   const placed = pose ? `,\n    configuration=${JSON.stringify(body.configuration(state.pose))}` : "";
   return `import nonholo as nh
 

@@ -12,25 +12,27 @@ export class SurfaceView {
     stage.scene.add(this.group, this.marker, this.others);
   }
 
-  /** Draw a motion; with `values`, a function of the state, all real values over its momentum. */
-  set(body, state, orbit, look, whole, values) {
+  /** Draw a motion, and a curve beside it; with `values`, a function of the state, all real values over its momentum. */
+  set(body, state, orbit, look, whole, values, curve) {
     for (const group of [this.group, this.marker, this.others]) clear(group);
     const { parameters: p, time_step: h } = state, { count, y } = orbit, path = [];
-    this.point = (k) => body.onLocus(p, h, orbit.r[2 * k], orbit.r[2 * k + 1], y[2 * k], y[2 * k + 1]);
+    const { rank } = orbit, part = (rows, k) => rows.subarray(rank * k, rank * (k + 1));
+    this.point = (k) => body.onLocus(p, h, ...part(orbit.r, k), ...part(y, k));
     let most = 0;
     for (let k = 0; k < count; k++) {
       path.push(this.point(k));
-      most = Math.max(most, body.angle(y[2 * k], y[2 * k + 1]));
+      most = Math.max(most, body.angle(...part(y, k)));
     }
     const reach = whole || values ? Math.PI : Math.min(Math.PI, Math.max(1.6 * most, 1e-3));
-    const r = (k) => (count ? [orbit.r[2 * k], orbit.r[2 * k + 1]] : state.momentum);
+    const r = (k) => (count ? part(orbit.r, k) : state.momentum);
     const pointsOver = (k) => values(k).map(([y1, y2]) => body.onLocus(p, h, ...r(k), y1[0], y2[0]));
-    const mesh = body.mesh(p, values ? path.concat(pointsOver(0)) : path, reach, ...(isSoftware ? (body.kind === "top" ? [18, 48] : [40, 16]) : []));
+    const mesh = body.mesh(p, values ? path.concat(pointsOver(0)) : path, reach, ...(isSoftware ? (body.kind === "sleigh" ? [40, 16] : [18, 48]) : []));
     const fit = this.fitted(mesh.points.concat(path));
     this.surface(mesh, fit, look);
     if (values) this.over(body, mesh.points, (k) => [pointsOver(k).map(fit), (s) => fit(body.fibre(p, h, r(k))(s))], look);
     else this.move = null;
     this.path = path.map(fit);
+    mesh.marks?.forEach((point, i) => this.ball(this.others, 0.04, i ? look.ink : look.muted, fit(point)));
     if (count > 1) {
       const eye = this.stage.camera.position.toArray();
       const toward = (q, normal) => ([normal[0], normal[1], normal[2]] = [eye[0] - q[0], eye[1] - q[1], eye[2] - q[2]]);
@@ -38,12 +40,23 @@ export class SurfaceView {
       band.renderOrder = 2;
       this.group.add(band);
     }
-    const dot = new Mesh(new SphereGeometry(0.05, 20, 14), plain(look.accent, { depthTest: false }));
-    dot.renderOrder = 3;
-    this.marker.add(dot);
+    if (curve) {
+      const line = new Line(new BufferGeometry(), thin(look.flow, { depthTest: false }));
+      line.geometry.setAttribute("position", new BufferAttribute(Float32Array.from(curve.flatMap(fit)), 3));
+      line.renderOrder = 3;
+      this.group.add(line);
+    }
+    this.ball(this.marker, 0.05, look.accent, [0, 0, 0]);
     this.marker.visible = count > 0;
     const reachOf = (point) => Math.hypot(...fit(point));
     this.stage.look([0, 0, 0], 1.04 * mesh.points.reduce((most, point) => Math.max(most, reachOf(point)), 1));
+  }
+
+  ball(group, radius, color, place) {
+    const dot = new Mesh(new SphereGeometry(radius, 20, 14), plain(color, { depthTest: false }));
+    dot.renderOrder = 3;
+    dot.position.set(...place);
+    group.add(dot);
   }
 
   /** Return the map of momenta into the box, each axis in its own scale. */

@@ -59,6 +59,23 @@ export const WORDS = {
   },
 };
 
+const dot = o("(") + i("c") + o("·") + i("y") + o(")");
+WORDS.top4 = {
+  body: `<p>A rigid body about a fixed point of four-dimensional space that may turn only in planes through one of its own axes, the
+    <em class="accent">orange one</em>. Its four axes are seen along the fourth direction of space, so they lie in a ball of radius one. The ball at a tip is
+    the larger, the more its axis points along that direction. The tip of the orange axis leaves its trace, from violet to yellow. Each pose is the one before,
+    times a turn W in one plane with Cayley coordinates y:</p>
+    ${math(i("B"), i("y"), o("−"), dot, i("y"), o("+"), square, i("c"), o("="), o("("), n(1), o("+"), square, o(")"), frac(i("h"), n(2)), i("r"), o(","), sub("g", next), o("="), sub("g", i("k")), sub("W", i("k")))}
+    <p>Body axes are those in which B is diagonal, with the entries J₁₁ + J₄₄, J₂₂ + J₄₄ and J₃₃ + J₄₄; c = (J₁₄, J₂₄, J₃₄).</p>`,
+  phase: `<p>The first two of the three momenta r along the constraint. Dots are the states of the discrete map; the ring moves with the continuous motion, the <em class="flow">orange
+    curve</em>, which has no closed form here: the page computes its Taylor series. Ellipses are the outlines of the ellipsoids of equal energy. The full line is made of attracting permanent rotations, the dashed one of repelling ones. Drag anywhere to start there, with the same r₃.</p>
+    ${math(i("r"), o("′"), o("="), i("r"), o("+"), frac(n(4), i("h") + o("(") + n(1) + o("+") + square + o(")")), o("("), dot, i("y"), o("−"), square, i("c"), o(")"))}`,
+  surface: `<p>The three momenta run on the ellipsoid of their energy; each axis is in its own scale, so it is drawn as a ball. On it stand the two permanent rotations of this
+    energy, with the velocity along c: from the gray one motions come, to the dark one they go.</p>
+    ${math(transposed(i("r")), sup(i("B"), o("−") + n(1)), i("r"), o("="), n(2), i("E"))}`,
+  energy: WORDS.top.energy,
+};
+
 const KICK = math(sub("p", next), o("="), sub("K", next), o("("), `<msubsup>${i("Ad")}<mrow>${sub("W", i("k"))}</mrow>${o("∗")}</msubsup>`, sub("K", i("k")), o("("), sub("p", i("k")), o(")"), o(")"));
 const BALANCE = math(i("T"), o("+"), i("U"), o("−"), i("W"), o("="), i("const"), o(","), i("U"), o("="), o("−"), i("F"), o("·"), o("("), i("g"), i("x"), o(")"), o(","),
   i("Ẇ"), o("="), o("−"), i("ω"), o("·"), i("C"), i("ω"), o("≤"), n(0));

@@ -18,7 +18,7 @@ import numpy as np
 from nonholo.base.compiled import njit
 from nonholo.base.types import Float
 from nonholo.kernels._lanes import ONE
-from nonholo.kernels._scalar import COMPILED
+from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import assign
 from nonholo.kernels.taylor._solve import since
 from nonholo.kernels.taylor._steps import root
@@ -73,12 +73,10 @@ def solve_arrowhead(
         tolerance: Of a step.
     """
     size, taken, stride = len(f.rates), 0, 1
-    terms = max(8, math.ceil(1 - math.log(tolerance) / 2)) + 1
-    shapes = (terms, size), (2, terms), (min(_PART, size),), (2, min(_PART, size)), (size + 1,)
-    p = _Work(*f, end, tolerance, *map(np.empty, shapes))
+    p = room_for_steps(f, end, tolerance, terms_for(tolerance))
     state, nodes, rows, reached, going = node.copy(), [node], np.empty((len(times), size)), 0, True
     while going and reached < len(times):
-        reached, going = _take_step(p, state, times, reached, rows)
+        reached, going = take_step(p, state, times, reached, rows)
         taken += 1
         if going and reached < len(times) and taken % stride == 0:
             nodes.append(state.copy())
@@ -87,8 +85,21 @@ def solve_arrowhead(
     return rows[:reached], nodes
 
 
+def terms_for(tolerance: float) -> int:
+    """Return the number of terms of a series."""
+    return max(8, math.ceil(1 - math.log(tolerance) / 2)) + 1
+
+
+@scalar
+def room_for_steps(f: Arrowhead, end: float, tolerance: float, terms: int) -> _Work:
+    """Return room for steps with this many terms of the series."""
+    size, part = len(f.rates), min(_PART, len(f.rates))
+    series, sums = (np.empty((terms, size)), np.empty((2, terms))), (np.empty(part), np.empty((2, part)))
+    return _Work(f.rates, f.coupling, end, tolerance, series[0], series[1], sums[0], sums[1], np.empty(size + 1))
+
+
 @njit(nogil=True, **COMPILED)
-def _take_step(p: _Work, state: np.ndarray, times: np.ndarray, reached: int, rows: np.ndarray) -> tuple[int, bool]:
+def take_step(p: _Work, state: np.ndarray, times: np.ndarray, reached: int, rows: np.ndarray) -> tuple[int, bool]:
     """Write the rows whose times lie within a step, and take it; return how many are written, and if all went well."""
     left = p.end - state[0, -1]
     _expand(p, state[0, : len(p.rates)])
