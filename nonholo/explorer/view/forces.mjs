@@ -2,7 +2,7 @@
 // and their balance of energy. F is constant in space and acts at the point x of the body, U = -F . (g x); friction is -C w.
 
 import { literal } from "./literal.mjs";
-import { pushOf, tableOf } from "./table.mjs";
+import { tableOf } from "./table.mjs";
 
 const BODY = 8; // places before the forces
 const list = (values) => `[${values.map(literal).join(", ")}]`;
@@ -49,14 +49,10 @@ export function underForces(body, given) {
     return [(b22 * r1 - b12 * r2) / det, (b11 * r2 - b12 * r1) / det];
   };
   const power = (p, [v1, v2]) => -own.coefficients(p)[0] * v1 ** 2 - own.coefficients(p)[1] * v2 ** 2;
-  /** Half impulses of the rows in the units of the kernel, and after them nothing. */
-  const pushes = (p, h, C) => {
-    const V = C[0] || C[3] ? pushOf(own.inertia(p), C, h / 2) : [h / 2, 0, 0, h / 2], [a, b, c, d] = V.map((x) => h * body.share * x), rows = [];
-    for (let k = 0; k < acting.count; k++) {
-      const [f1, f2] = own.along(acting.at(p, k));
-      rows.push(a * f1 + b * f2, c * f1 + d * f2);
-    }
-    return [acting.count + 1, ...rows, 0, 0];
+  /** Forces of the rows along those of the kernel, and after them nothing. */
+  const rowsOf = (p) => {
+    const rows = Array.from({ length: acting.count }, (_, k) => own.along(acting.at(p, k)));
+    return [rows.length + 1, ...rows.flat(), 0, 0];
   };
   /** What acts, as Python and TOML write it: the table to the end of the run, and one row more for the last displacement. */
   const acts = ({ parameters: p, steps }) => {
@@ -86,7 +82,7 @@ export function underForces(body, given) {
       const [c1, c2] = own.coefficients(p), force = of(p, "F"), heavy = force.some(Boolean);
       const numbers = body.table(p), weight = heavy ? [...force, 0].slice(0, 3).concat(own.lever(of(p, "x"))) : new Array(9).fill(0);
       const first = [...numbers, ...new Array(BODY - numbers.length).fill(0), heavy ? own.n : 0, Number(Boolean(c1 || c2))];
-      return [...first, h / 2, h * body.share, c1, 0, 0, c2, ...weight, ...pushes(p, h, [c1, 0, 0, c2])];
+      return [...first, h / 2, h * body.share, c1, 0, 0, c2, ...weight, ...rowsOf(p)];
     },
     onLocus: own.onLocus?.(body) ?? body.onLocus.bind(body),
     /** Where the force acts, and the force, both in space. */

@@ -22,16 +22,17 @@ def flat_forced_run(kind: type[Body]) -> Callable[..., int]:
     Arguments and result are those of `flat_run` but for the numbers of the body and the state. From place FORCES on
     stand: how many numbers F has (2 or 3; 0 without a weight), whether there is friction, half the time step, the
     factor to the momenta of the kernel, C (4), F (3) and the lever (2, 3) of the kernel's rows, both zero without a
-    weight, and how many rows of half impulses follow from place TABLE on, the last one zero. The state is that of
-    `advance_two`: one whose chart is NaN, at place 8, is started first, from its momentum and its pose at place 4;
-    all else is zero. Before the steps it is then at the node after the start.
+    weight, and how many rows of a table follow from place TABLE on, forces along the rows of the kernel, the last one
+    zero: the first run makes them half impulses, and their number negative. The state is that of `advance_two`: one
+    whose chart is NaN, at place 8, is started first, from its momentum and its pose at place 4; all else is zero.
+    Before the steps it is then at the node after the start.
     """
     count = len(kind._fields)  # pyright: ignore[reportAttributeAccessIssue]
 
     def run(body: Any, state: Any, steps: int, momenta: Any, charts: Any, poses: Any) -> int:
         f = carray(body, TABLE)
         p = kind(*to_fixed_tuple(f[:count], count))  # pyright: ignore
-        n, half, scale, rows = int(f[8]), f[10], f[11], int(f[25])
+        n, half, scale, rows = int(f[8]), f[10], f[11], abs(int(f[25]))
         A, V = (1.0, 0.0, 0.0, 1.0), (half, 0.0, 0.0, half)
         if f[9] != 0:
             A, V = rubbed(p, (f[12], f[13], f[14], f[15]), half)
@@ -40,6 +41,10 @@ def flat_forced_run(kind: type[Body]) -> Callable[..., int]:
         L = a * x + b * u, a * y + b * v, a * z + b * w, c * x + d * u, c * y + d * v, c * z + d * w
         kick = Numbers(n, f[9] != 0, (f[16], f[17], f[18]), L, A)
         table = carray(body, (TABLE // 2 + rows, 2))[TABLE // 2 :]
+        for i in range(rows if f[25] > 0 else 0):
+            x, y = table[i, 0], table[i, 1]
+            table[i, 0], table[i, 1] = a * x + b * y, c * x + d * y
+        f[25] = -rows
         s = carray(state, STATE_SIZE + 1)
         done, code, first = 0, 0, 0 if math.isnan(s[8]) else 1
         s[8] = s[8] if first else 0.0
