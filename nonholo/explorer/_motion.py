@@ -158,21 +158,24 @@ def simulated(where: str, state: Any, table: dict[str, Any] | None = None) -> Or
     """Return the motion of a state, which may come from a page and be anything, under the table of that page."""
     if not isinstance(state, dict) or state.keys() < {"kind", "parameters", "momentum", "pose", "time_step", "steps"}:
         raise error(where, "be asked of a page whose body runs in it", "a replay", "Use the orbit you passed.")
-    p, (w, *xyz), steps = state["parameters"], state["pose"], state["steps"]
-    if state["kind"] == "top4":
-        diagonal, coupling = [p[name] for name in _WIDE[:4]], [p[name] for name in _WIDE[4:]]
-        body, pose = SuslovTop.arrowhead(diagonal, coupling), np.reshape(state["pose"], (4, 4))
-    elif state["kind"].endswith("top"):
-        rows = [[p[f"J{min(i, j)}{max(i, j)}"] for j in (1, 2, 3)] for i in (1, 2, 3)]
-        body, pose = SuslovTop(rows), matrix_from_quaternion(np.array([w, *xyz]))
-    else:
-        sine, *place = xyz
-        body = ChaplyginSleigh(p["mass"], p["inertia"], p["a"])
-        pose = [[w, -sine, place[0]], [sine, w, place[1]], [0.0, 0.0, 1.0]]
+    steps, (body, pose) = state["steps"], _body_and_pose(state)
     rows = table_of(table, steps if is_integer(steps) and steps <= MOST_STEPS else 0)
-    body = under_forces(body, p, rows) if state["kind"].startswith("forced") else body
+    body = under_forces(body, state["parameters"], rows) if state["kind"].startswith("forced") else body
     start = {"momentum": state["momentum"], "configuration": pose}
     return simulate(discretize(body, state["time_step"]), **start, steps=steps, throw=False)
+
+
+def _body_and_pose(state: dict[str, Any]) -> tuple[Any, Any]:
+    """Return the body of a state, and its first pose as a matrix."""
+    p, (w, *xyz) = state["parameters"], state["pose"]
+    if state["kind"] == "top4":
+        numbers = [p[name] for name in _WIDE]
+        return SuslovTop.arrowhead(numbers[:4], numbers[4:]), np.reshape(state["pose"], (4, 4))
+    if state["kind"].endswith("top"):
+        rows = [[p[f"J{min(i, j)}{max(i, j)}"] for j in (1, 2, 3)] for i in (1, 2, 3)]
+        return SuslovTop(rows), matrix_from_quaternion(np.array([w, *xyz]))
+    sine, x, y = xyz
+    return ChaplyginSleigh(p["mass"], p["inertia"], p["a"]), [[w, -sine, x], [sine, w, y], [0.0, 0.0, 1.0]]
 
 
 def _name(system: AbstractSystem) -> str:
