@@ -141,8 +141,11 @@ def test_trials_share_the_body_and_tables_may_have_any_form(tmp_path: Path) -> N
     np.testing.assert_allclose([*nh.fit(_sleigh, one_path, guess).parameters.values()], [*alone.parameters.values()])
 
 
-def test_residuals_are_drawn() -> None:
-    """A panel for each kind of number, shown in notebooks, with residuals as dots in the band for the most part."""
+def test_residuals_and_profiles_are_drawn() -> None:
+    """A panel for each kind of number, shown in notebooks, residuals in the band for the most part; a profile's curves.
+
+    Where the record is good, the profile is nearly the parabola, and its interval that of the covariance.
+    """
     found = nh.fit(_sleigh, _sleigh_record(0), GUESS)
     assert len(repr(found)) < 500  # the residuals are not in it
     figure = found.plot()
@@ -151,6 +154,31 @@ def test_residuals_are_drawn() -> None:
     dots = figure.axes[1].lines[1].get_ydata()
     np.testing.assert_array_equal(dots, found.residuals[0]["turn"][:, 0])
     assert (np.abs(dots[np.isfinite(dots)]) < 2 * found.noise["turn"]).mean() > 0.9
+    profile = found.profile("a")
+    (low, high), (left, right) = profile.interval, found.intervals["a"]
+    np.testing.assert_allclose([low, high], [left, right], atol=0.05 * (high - low))
+    assert not np.array_equal([low, high], [left, right])
+    assert [line.get_label() for line in profile.plot().axes[0].lines][1:] == ["linearized", "profile"]
+    with pytest.raises(ValueError, match="be one of 'inertia', 'a'"):
+        found.profile("mass")
+
+
+@pytest.mark.profile("problems", instead="test_profile_of_a_line_is_its_parabola")
+def test_profiles_hold_where_the_covariance_does_not() -> None:
+    """Of 100 records that know friction and inertia by their quotient, profiles of 95 % hold the inertia as often.
+
+    Intervals of the covariance hold it less often. Sides without bound come with their reason.
+    """
+    truth, guess = {"inertia": 0.7, "a": 0.4, "root": np.array([0.7, 0.6])}, {"inertia": 1.0, "a": 0.3}
+    discrete, rows = nh.discretize(_rubbed(truth), 0.05), []
+    for seed in range(100):
+        found = nh.fit(_rubbed, _sleigh_record(seed, discrete), {**guess, "root": np.array([0.5, 0.5])})
+        profile, (low, high) = found.profile("inertia"), found.intervals["inertia"]
+        assert np.isinf(profile.interval[1]) <= (profile.ends[1] == "unbounded")
+        rows.append((profile.interval[0] <= 0.7 <= profile.interval[1], low <= 0.7 <= high))
+    by_profile, by_covariance = np.sum(rows, axis=0)
+    assert by_profile >= 88  # binomial: 3.2 sigma for 100
+    assert by_covariance < by_profile
 
 
 @pytest.mark.profile("routes", instead="test_top_is_found_from_its_gyroscope")

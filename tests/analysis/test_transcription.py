@@ -66,7 +66,7 @@ def test_derivatives_are_those_of_differences(name: str) -> None:
     u, v = 0.3 * rng.normal(size=(2, program.unknowns))
     if name == "space":  # far from the group its logarithm is not smooth
         u[-len(program.first) : -SPACE.rank] = SPACE.group.random(rng)[:3].ravel()
-    weights, size = rng.normal(size=len(program.clear)), 2e-4
+    weights, size = rng.normal(size=len(program.limits[0])), 2e-4
 
     def slope(f: Any) -> np.ndarray:  # of order 4: its error is about size^4, and rounding over size
         ahead, far = (f(u + k * size * v) - f(u - k * size * v) for k in (1, 2))
@@ -95,7 +95,7 @@ def test_only_windows_of_unknowns_are_coupled() -> None:
     assert (columns >= program.width * np.minimum(step, STEPS) - len(program.first)).all()
     assert len(set(np.bincount(step[inside])[1:])) == 1
     assert ends == 3
-    assert len(rows) < 0.2 * len(program.clear) * program.unknowns
+    assert len(rows) < 0.2 * len(program.limits[0]) * program.unknowns
 
 
 @pytest.mark.profile("routes", instead="test_a_disc_is_kept_clear_of")

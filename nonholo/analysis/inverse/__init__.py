@@ -1,5 +1,6 @@
 """What body must have moved: bodies for recorded motions."""
 
 from nonholo.analysis.inverse._fit import Fit, fit
+from nonholo.analysis.inverse._profile import Profile
 
-__all__ = ["Fit", "fit"]
+__all__ = ["Fit", "Profile", "fit"]

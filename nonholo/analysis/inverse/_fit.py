@@ -11,7 +11,9 @@ from scipy.optimize import least_squares
 from scipy.special import stdtrit
 
 from nonholo.analysis.inverse._measurements import Trial, trials_of
-from nonholo.base.checks import array, error, function, needs, positive, shown
+from nonholo.analysis.inverse._problem import Problem
+from nonholo.analysis.inverse._profile import Minimum, Profile, profile_of
+from nonholo.base.checks import array, choice, error, function, needs, positive, shown
 from nonholo.base.types import Array, Float
 from nonholo.discrete import discretize
 from nonholo.groups import SO, AbstractMatrixGroup
@@ -38,6 +40,7 @@ class Fit:
             where nothing was measured. A turn in space is the vector of the rotation from the fitted pose.
         noise: Standard deviation of the residuals of each kind.
         samples: Measured numbers less fitted ones: the degrees of freedom of the residuals.
+        minimum: The sum of squares about the fitted point, parameters and then starts, for profiles.
     """
 
     parameters: dict[str, Any]
@@ -47,15 +50,47 @@ class Fit:
     residuals: tuple[dict[str, np.ndarray], ...] = dataclasses.field(repr=False)
     noise: dict[str, float]
     samples: int
+    minimum: Minimum = dataclasses.field(repr=False)
 
     @property
     def intervals(self) -> dict[str, tuple[Any, Any]]:
-        """Intervals that hold each parameter with a probability of 95 %, if the noise is normal and the model right."""
+        """Intervals that hold each parameter with a probability of 95 %, if the noise is normal and the model right.
+
+        They are those of the linearized model. `profile` has those of the likelihood itself.
+        """
         half, found, at = stdtrit(self.samples, 0.975) * np.sqrt(self.covariance.diagonal()), {}, 0
         for name, value in self.parameters.items():
             width = half[at : at + np.size(value)].reshape(np.shape(value))
             found[name], at = (value - width, value + width), at + np.size(value)
         return found
+
+    def profile(self, name: str, level: float = 0.95) -> Profile:
+        r"""Return the likelihood profile of a parameter, and the interval that it gives.
+
+        $$ \tau(\theta) = \pm\sqrt{S(\theta) - S(\hat\theta)},\qquad |\tau| \le t_\nu\bigl(\tfrac{1 + p}2\bigr), $$
+
+        where S is the least sum of squared residuals over all other numbers, in units of the noise levels of the fit,
+        and t the quantile of Student's distribution at $\nu$ = `samples` degrees of freedom: $\tau^2$ is compared with
+        $F_{1,\nu}$, which chi-squared takes the place of where the noise is known. Of a linear model this is the usual
+        interval; where the model is curved, it needs no parabola, and may be lopsided or without bound.
+
+        A profile is followed outwards, each of its points fitted from the one before: what lies beyond another minimum
+        on the way may be missed. Sources: [bates-watts-1988], [venzon-moolgavkar-1988].
+
+        Args:
+            name: Of a parameter; of an entry of an array, row by row, "c[0]".
+            level: p, the probability.
+
+        Returns:
+            The profile with its interval and a picture.
+
+        Raises:
+            ValueError: No such parameter, a level that is no probability, or a profile that finds a better minimum
+                than that of the fit.
+        """
+        names = _names(tuple((name, np.shape(value)) for name, value in self.parameters.items()))
+        choice("Fit.profile(name=...)", name, tuple(names))
+        return profile_of(self.minimum, names.index(name), name, level)
 
     def plot(self) -> Any:
         """Draw the residuals of every kind against time; return the matplotlib figure."""
@@ -108,6 +143,9 @@ def fit(
         >>> found = nh.fit(sleigh, record, {"inertia": 1.0, "a": 0.3})
         >>> abs(found.parameters["a"] - 0.4) < 0.01
         True
+        >>> low, high = found.profile("a").interval
+        >>> low < 0.4 < high
+        True
     """
     function("fit(system_of=...)", system_of)
     with needs("jax", "fit"):
@@ -119,62 +157,12 @@ def fit(
     trials, h = trials_of("fit(measurements=...)", system.group, measurements, step)
     poses, starts = map(np.array, zip(*(_first(system, trial, h) for trial in trials), strict=True))
     kinds = {kind: np.array([trial.kinds[kind] for trial in trials]) for kind in trials[0].kinds}
-    problem = _Problem(functools.partial(missed, system_of, shapes, h), poses, kinds, len(numbers), starts.shape)
+    problem = Problem(functools.partial(missed, system_of, shapes, h), poses, kinds, len(numbers), starts.shape)
     point, weights = _minimum(problem, np.concatenate([numbers, starts.ravel()]))
     return _result(problem, point, weights, (system_of, shapes, h))
 
 
-@dataclasses.dataclass(eq=False)
-class _Problem:
-    """Residuals and derivatives at a point: parameters, then the start of each trial."""
-
-    missed: Callable[..., Any]
-    poses: Float[np.ndarray, "T N N"]
-    kinds: dict[str, Float[np.ndarray, "T K _"]]
-    count: int
-    shape: tuple[int, int]
-    known: tuple[np.ndarray, Any] | None = None
-
-    @functools.cached_property
-    def there(self) -> dict[str, np.ndarray]:
-        """Which residuals belong to measured numbers."""
-        found = {kind: np.isfinite(rows) for kind, rows in self.kinds.items()}
-        return {k: x[..., :3] if k == "turn" else x for k, x in found.items()}
-
-    def at(self, point: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the residuals and both derivatives, computed once for each point."""
-        if self.known is None or not np.array_equal(self.known[0], point):
-            starts = point[self.count :].reshape(self.shape)
-            self.known = point.copy(), self.missed(point[: self.count], starts, self.poses, self.kinds)
-        return self.known[1]
-
-    def rows(self, point: np.ndarray) -> np.ndarray:
-        """Return the residuals of measured numbers."""
-        return self.at(point)[0][self.mask]
-
-    def slope(self, point: np.ndarray) -> np.ndarray:
-        """Return their derivatives: a trial depends on its own start alone."""
-        _, by_numbers, by_starts = self.at(point)
-        T, width = self.shape
-        whole = np.zeros((*by_starts.shape[:-1], self.count + T * width))
-        whole[..., : self.count] = by_numbers
-        for i in range(T):
-            whole[i, ..., self.count + i * width : self.count + (i + 1) * width] = by_starts[i]
-        return whole[self.mask]
-
-    @functools.cached_property
-    def mask(self) -> np.ndarray:
-        """The same as one array, (T, K, c)."""
-        return np.concatenate(list(self.there.values()), axis=2)
-
-    @functools.cached_property
-    def kind_of(self) -> np.ndarray:
-        """The kind of each measured number, as a position in `kinds`."""
-        sizes = [x.shape[2] for x in self.there.values()]
-        return np.broadcast_to(np.repeat(np.arange(len(sizes)), sizes), self.mask.shape)[self.mask]
-
-
-def _minimum(problem: _Problem, point: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _minimum(problem: Problem, point: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the best point, and the noise levels of the kinds, each from the other until both have settled."""
     noise = np.ones(len(problem.kinds))
     free = problem.mask.sum() - len(point)
@@ -204,7 +192,7 @@ def _minimum(problem: _Problem, point: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return point, noise
 
 
-def _result(problem: _Problem, point: np.ndarray, noise: np.ndarray, made: Any) -> Fit:
+def _result(problem: Problem, point: np.ndarray, noise: np.ndarray, made: Any) -> Fit:
     system_of, shapes, h = made
     covariance = _covariance(problem, point, noise, shapes)
     parameters = _parameters(shapes, point[: problem.count])
@@ -216,17 +204,26 @@ def _result(problem: _Problem, point: np.ndarray, noise: np.ndarray, made: Any) 
     starts = point[problem.count :].reshape(problem.shape)
     orbits = [_orbit(system, h, *row, rows.shape[1] - 1) for row in zip(starts, problem.poses, strict=True)]
     levels = {kind: float(x) for kind, x in zip(problem.kinds, noise, strict=True)}
-    free = int(problem.mask.sum()) - len(point)
-    return Fit(parameters, covariance, system, tuple(orbits) if len(orbits) > 1 else orbits[0], residuals, levels, free)
+
+    def exists(numbers: np.ndarray) -> bool:
+        try:
+            system_of(_parameters(shapes, numbers[: problem.count]))
+        except ValueError:
+            return False
+        return True
+
+    minimum = problem.minimum(point, noise, exists)
+    orbit = tuple(orbits) if len(orbits) > 1 else orbits[0]
+    return Fit(parameters, covariance, system, orbit, residuals, levels, minimum.free, minimum)
 
 
-def _covariance(problem: _Problem, point: np.ndarray, noise: np.ndarray, shapes: Any) -> np.ndarray:
+def _covariance(problem: Problem, point: np.ndarray, noise: np.ndarray, shapes: Any) -> np.ndarray:
     """Return the covariance of the parameters, refused where a combination of them changes nothing."""
     slope = problem.slope(point) / noise[problem.kind_of][:, None]
     lengths = np.linalg.norm(slope, axis=0)
     _, sizes, directions = np.linalg.svd(slope / np.where(lengths > 0, lengths, 1.0), full_matrices=False)
     if not lengths.all() or sizes[-1] < _FLAT * sizes[0]:
-        names = [f"{name}[{i}]" if shape else name for name, shape in shapes for i in range(int(np.prod(shape)))]
+        names = _names(shapes)
         flat = np.abs(directions[-1] if lengths.all() else lengths == 0)[: problem.count]
         got = ", ".join(np.array(names)[flat > 0.1 * flat.max()]) or "a start"
         remedy = "Fix one of them in system_of, such as a mass: a free motion does not know its unit."
@@ -249,6 +246,11 @@ def _vector(guess: Any) -> tuple[np.ndarray, Any]:
         raise error(where, "name the parameters", shown(guess), remedy)
     values = {name: array(where, value, (None,) * np.ndim(value), remedy) for name, value in guess.items()}
     return np.concatenate([x.ravel() for x in values.values()]), tuple((name, x.shape) for name, x in values.items())
+
+
+def _names(shapes: Any) -> list[str]:
+    """Return a name for each number of the parameters."""
+    return [f"{name}[{i}]" if shape else name for name, shape in shapes for i in range(int(np.prod(shape)))]
 
 
 def _parameters(shapes: Any, numbers: np.ndarray) -> dict[str, Any]:

@@ -29,6 +29,14 @@ class Goal(NamedTuple):
     coordinates: dict[int, float]
     velocity: Float[np.ndarray, "n"] | None
 
+    def numbers(self, n: int) -> Float[np.ndarray, "2n"]:
+        """Return velocities and coordinates, NaN where they are free."""
+        both = np.full((2, n), np.nan)
+        both[1, list(self.coordinates)] = list(self.coordinates.values())
+        if self.velocity is not None:
+            both[0] = self.velocity
+        return both.ravel()
+
 
 def checked_start(discrete: CoordinateDiscretization, start: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return place and velocity of the start."""
@@ -83,7 +91,7 @@ def coordinate_problem(
     last[list(goal.coordinates)] = list(goal.coordinates.values())
     nodes = _nodes(discrete, way, last, goal.velocity)
     first = np.append(x, in_double(equations.momentum, system, x, v))
-    program = Program(Steps(nodes, way.centers, way.radii, nodes.time_step), first, np.zeros((steps, n)))
+    program = Program(Steps(nodes, way.centers, way.radii, nodes.time_step, way.bounds), first, np.zeros((steps, n)))
     fixed: dict[int, dict[int, Any]] = {
         step: dict(zip(map(system.coordinates.index, "xy"), place, strict=True)) for step, place in way.via.items()
     }
@@ -121,6 +129,7 @@ def _missed(program: Program, goal: Goal, way: Way, orbit: CoordinateOrbit) -> f
     off += np.abs(
         program.missed(np.append(equations.place(system, q[-1], orbit.time[-1]), orbit.momentum[-1]))
     ).tolist()
+    off.append(way.outside(np.concatenate([orbit.body_velocity[:-1], q[1:]], axis=1)))
     if way.outline.shape[-1]:
         at = planar_points(system, q, np.zeros((1, 2)))[:, 0]
         off.append(way.missed(planar_points(system, q, way.outline), at))

@@ -39,7 +39,7 @@ def minimized(
 ) -> Solution:
     """Return unknowns between bounds that meet the conditions of a program with least effort, from a guess."""
     numbers, one, nothing = (casadi.Sparsity.dense(size) for size in (program.unknowns, 1, 0))
-    conditions = casadi.Sparsity.dense(len(program.clear))
+    conditions = casadi.Sparsity.dense(len(program.limits[0]))
     slopes, curvatures = map(_sparsity, (program.slope_places, program.curvature_places))
 
     def valued(u: np.ndarray, _: Any) -> tuple[Any, ...]:
@@ -58,8 +58,7 @@ def minimized(
     u = casadi.MX.sym("u", program.unknowns)
     options = {**_OPTIONS, **calls, "ipopt.max_iter": iterations}
     solver = casadi.nlpsol("steer", "ipopt", {"x": u, "f": f(u), "g": g(u)}, options)
-    most = np.where(program.clear, np.inf, 0.0)
-    found = solver(x0=guess, lbx=bounds[0], ubx=bounds[1], lbg=np.zeros(len(most)), ubg=most)
+    found = solver(x0=guess, lbx=bounds[0], ubx=bounds[1], lbg=program.limits[0], ubg=program.limits[1])
     stats = solver.stats()
     if stats["return_status"] == "NonIpopt_Exception_Thrown":  # by a call back, or by the keyboard
         raise next((call.failure for call in (f, g, *calls.values()) if call.failure), KeyboardInterrupt())

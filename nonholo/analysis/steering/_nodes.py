@@ -53,6 +53,12 @@ class GroupNodes(NamedTuple):
         """Return where the points of the outline are, (points, n)."""
         return body_points(self.state(x)[0], self.outline)
 
+    def numbers(self, z: Array, x: Array) -> Array:
+        """Return what bounds of states are about: entries of the pose, momenta."""
+        del z
+        g, momenta = self.state(x)
+        return jnp.append(g, momenta)
+
     def state(self, x: Array) -> tuple[Array, Array]:
         """Return pose and momenta."""
         group = self.free.system.group
@@ -100,6 +106,10 @@ class CoordinateNodes(NamedTuple):
     def places(self, x: Array) -> Array:
         """Return where the points of the outline are, (points, 2)."""
         return planar_points(self.system, x, self.outline)
+
+    def numbers(self, z: Array, x: Array) -> Array:
+        """Return what bounds of states are about: velocities of the step, coordinates."""
+        return jnp.append(z[: self.system.dimension], x[: self.system.dimension])
 
     def state(self, x: Array) -> tuple[Array, Array]:
         """Return place and momentum."""

@@ -10,6 +10,7 @@ from nonholo.analysis.steering._ends import driven
 from nonholo.analysis.steering._nodes import GroupNodes
 from nonholo.analysis.steering._program import Program, Steps
 from nonholo.analysis.steering._shooting import sizes
+from nonholo.analysis.steering._state_bounds import body_states
 from nonholo.analysis.steering._transcription import Problem, bounded
 from nonholo.analysis.steering._way import Way, body_points, evenly, resampled
 from nonholo.base.types import Float
@@ -28,7 +29,8 @@ def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limit
     nodes = GroupNodes(free, discrete.forces, way.outline, to_pose)
     table = np.zeros((steps, system.group.dim)) if discrete.forces is None else discrete.forces.rows(np.arange(steps))
     first = np.append(_numbers(nodes, g), system.restricted_momentum(w))
-    program = Program(Steps(nodes, way.centers, way.radii, np.float64(discrete.time_step)), first, table)
+    steps_alike = Steps(nodes, way.centers, way.radii, np.float64(discrete.time_step), way.bounds)
+    program = Program(steps_alike, first, table)
     fixed = {step: {row * n + n - 1: number for row, number in enumerate(place)} for step, place in way.via.items()}
     if to_velocity is not None:
         momenta = enumerate(system.restricted_momentum(to_velocity), len(first) - system.rank)
@@ -54,6 +56,7 @@ def _missed(discrete: Discretization, ends: tuple[Any, ...], way: Way, orbits: R
     off, (_, _, to_pose, to_velocity) = [way.missed(body_points(poses, way.outline), poses[:, :-1, -1])], ends
     if not np.isfinite(last).all():
         return np.inf
+    off.append(way.outside(body_states(poses, orbits.restricted_momentum[0])))
     if to_pose is not None:
         off.append(np.abs(system.group.log(system.group.inverse(to_pose) @ poses[-1])).max())
     if to_velocity is not None:

@@ -1,8 +1,8 @@
 r"""A motion under controls as a sparse program: the equations of all steps, with exact first and second derivatives.
 
 The unknowns of step k are $u_k = (z_k, f_k, x_{k+1})$, chart, forces and the state after it. They stand in order, so
-that equations, clearances and cost of a step are functions of one window $(x_k, u_k)$ of the unknowns: one compiled
-function for all steps, of which derivatives are taken side by side and laid into sparse matrices.
+that equations, clearances, bounds and cost of a step are functions of one window $(x_k, u_k)$ of the unknowns: one
+compiled function for all steps, of which derivatives are taken side by side and laid into sparse matrices.
 """
 
 import dataclasses
@@ -15,6 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from scipy import sparse
 
+from nonholo.analysis.steering._state_bounds import StateBounds
 from nonholo.base.types import Array, Float
 from nonholo.discrete.definition import in_double
 
@@ -29,12 +30,14 @@ class Steps(NamedTuple):
         centers: Of obstacles, (obstacles, n).
         radii: Of obstacles.
         time_step: h, the weight of the cost.
+        bounds: Of states after steps, None where they are free.
     """
 
     nodes: Any
     centers: Float[Array, "obstacles n"]
     radii: Float[Array, "obstacles"]
     time_step: Array
+    bounds: StateBounds | None = None
 
     def parts(self, window: Array) -> tuple[Array, ...]:
         """Return state, inner part, forces and the state after them."""
@@ -42,9 +45,10 @@ class Steps(NamedTuple):
         return tuple(jnp.split(window, np.cumsum([states, inner, controls])))
 
     def conditions(self, window: Array, row: Array) -> Array:
-        r"""Return the equations of a step, and the clearances after it, $(|x - c|^2 - \rho^2)/2\rho$."""
+        r"""Return equations of a step, clearances $(|x - c|^2 - \rho^2)/2\rho$ after it, and what is bounded."""
         x, z, f, after = self.parts(window)
-        return jnp.concatenate([self.nodes.residual(x, z, f, after, row), self.clearances(after)])
+        bounded = jnp.zeros(0) if self.bounds is None else self.bounds.rows @ self.nodes.numbers(z, after)
+        return jnp.concatenate([self.nodes.residual(x, z, f, after, row), self.clearances(after), bounded])
 
     def clearances(self, x: Array) -> Array:
         """Return how far points are outside of obstacles, exact in the first order where that is little."""
@@ -114,11 +118,15 @@ class Program:
         return values.shape[1], len(end)
 
     @functools.cached_property
-    def clear(self) -> np.ndarray:
-        """Which conditions are clearances, that may be positive; all others vanish."""
-        count, ends = self.shape
-        step = np.arange(count) >= count - len(self.steps.radii) * len(self.steps.nodes.outline)
-        return np.append(np.tile(step, len(self.rows)), np.zeros(ends, dtype=bool))
+    def limits(self) -> tuple[np.ndarray, np.ndarray]:
+        """The least and the largest value of each condition: zero of equations, infinity above of clearances."""
+        (count, ends), bounds = self.shape, self.steps.bounds
+        low, high = (np.zeros(0), np.zeros(0)) if bounds is None else (bounds.low, bounds.high)
+        clear = np.zeros(len(self.steps.radii) * len(self.steps.nodes.outline))
+        zeros = np.zeros(count - len(clear) - len(low))
+        steps = np.concatenate([zeros, clear, low]), np.concatenate([zeros, clear + np.inf, high])
+        least, most = (np.append(np.tile(each, len(self.rows)), np.zeros(ends)) for each in steps)
+        return least, most
 
     @property
     def unknowns(self) -> int:

@@ -8,6 +8,7 @@ from typing import Any, cast
 import numpy as np
 
 from nonholo.analysis.steering._arguments import Ends, Guess, Limits, checked_ends, checked_guess, limits_of_steps
+from nonholo.analysis.steering._state_bounds import StateBounds, bounds_of_body, coordinate_numbers
 from nonholo.analysis.steering._way import Way, body_points
 from nonholo.base.checks import choice, count, error, flag, needs, refuse_given
 from nonholo.base.progress import progress_bar
@@ -26,8 +27,8 @@ class Steering:
         start: First velocities along the constraint, and poses; in coordinates velocity and configuration.
         controls: Body covectors, (steps, dim), as `rollout` takes them; in coordinates forces on them.
         cost: Half the time integral of the squared forces along the rows of the constraint subspace.
-        missed: The largest of the numbers by which the orbit under the controls misses the goal, a place on the way, or
-            the clearance of an obstacle.
+        missed: The largest of the numbers by which the orbit under the controls misses the goal, a place on the way,
+            the clearance of an obstacle, or bounds of states.
         outcome: "converged": nothing is missed by 1e-8, and the cost is at a minimum nearby. "not least": nothing is
             missed, but there may be less cost. "infeasible": from every guess IPOPT came to where the equations and
             bounds contradict each other, which proves nothing of other ways. "not found": none of these.
@@ -78,6 +79,7 @@ def steer(
     obstacles: Any = None,
     outline: Any = None,
     via: Any = None,
+    state_bounds: Any = None,
     guess: Any = None,
     progress: bool = False,
 ) -> Steering:
@@ -113,6 +115,10 @@ def steer(
             them; between two states a track may cut into one by up to $s^2/8\rho$ on a step of length s.
         outline: Body points (points, n) that keep clear; by default the origin of the body frame.
         via: Positions of the body frame on the way, by number of steps: {40: (1.0, 0.5)}.
+        state_bounds: The least and the largest value of what a state has, by name: {"x": (0, 3), "theta": (-1, 1)}.
+            On groups "x", "y", "z"; "theta" in the plane, of the heading whatever its turns; "restricted_velocity", a
+            number or one for each row. In coordinates their names; "body_velocity" of each step, a number or one for
+            each coordinate. Infinite ones bound nothing. They hold for every state, of the goal too.
         guess: Where "ipopt" begins: positions (points, n) of a path, or a `Steering` of one member.
         progress: Show a progress bar of the members on standard error.
 
@@ -145,12 +151,14 @@ def steer(
     flag("steer(progress=...)", progress)
     n = _size_of_positions(discrete)
     way, hints = Way.of(n, steps, obstacles, outline, via), checked_guess(guess, steps, n)
-    asked = {"obstacles": obstacles, "outline": outline, "via": via, "guess": guess}
+    asked = {"obstacles": obstacles, "outline": outline, "via": via, "state_bounds": state_bounds, "guess": guess}
     method = _method(discrete, method, asked)
     if in_coordinates(discrete):
-        return _steered_in_coordinates(discrete, (start, goal), bounds, way, steps, hints)
+        return _steered_in_coordinates(discrete, (start, goal), bounds, way, steps, hints, state_bounds)
     _check(discrete, steps)
     ends, is_one = checked_ends(discrete.system, start, goal, bool(way.via))
+    if state_bounds is not None:
+        way = way._replace(bounds=bounds_of_body(state_bounds, discrete.system, ends))
     limits = limits_of_steps(bounds, steps, discrete.system.rank)
     if method == "ipopt":
         forces, gap, outcome = _by_ipopt(discrete, ends, limits, way, hints, progress)
@@ -229,7 +237,7 @@ def _by_ipopt(
 
 
 def _steered_in_coordinates(
-    discrete: Any, ends: tuple[Any, Any], bounds: Any, way: Way, steps: int, guess: Guess
+    discrete: Any, ends: tuple[Any, Any], bounds: Any, way: Way, steps: int, guess: Guess, state_bounds: Any
 ) -> Steering:
     """Return the result for a system in coordinates."""
     with needs("steer", "steer"):
@@ -238,6 +246,10 @@ def _steered_in_coordinates(
     x, v = checked_start(discrete, ends[0])
     limits = limits_of_steps(bounds, steps, discrete.system.dimension)
     goal = checked_goal(discrete, ends[1], is_free=bool(way.via))
+    if state_bounds is not None:
+        there = goal.numbers(discrete.system.dimension)
+        both = {"start": np.append(v, x[: discrete.system.dimension]), "goal": there}
+        way = way._replace(bounds=StateBounds.of(state_bounds, coordinate_numbers(discrete.system), both))
     problem = coordinate_problem(discrete, ((x, v), goal), limits, way, steps, guess)
     forces, gap, outcome = transcribed(problem)
     effort = float(discrete.time_step) * (forces**2).sum() / 2

@@ -5,24 +5,27 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from nonholo.analysis.steering._state_bounds import StateBounds
 from nonholo.base.checks import array, error, is_integer, pair, shape_of, shown
 from nonholo.base.types import Array, Float
 
 
 class Way(NamedTuple):
-    """Discs or balls to keep clear of, and places to pass.
+    """Discs or balls to keep clear of, places to pass, and bounds of all states.
 
     Attributes:
         centers: Of obstacles.
         radii: Of obstacles.
         outline: Body points that keep clear of them.
         via: Places of the body frame, by number of the step after which it is there.
+        bounds: Of states; None where they are free.
     """
 
     centers: Float[np.ndarray, "obstacles n"]
     radii: Float[np.ndarray, "obstacles"]
     outline: Float[np.ndarray, "points n"]
     via: dict[int, Float[np.ndarray, "n"]]
+    bounds: StateBounds | None = None
 
     @classmethod
     def of(cls, n: int | None, steps: int, obstacles: Any, outline: Any, via: Any) -> "Way":
@@ -48,6 +51,10 @@ class Way(NamedTuple):
         """Return how deep points of the outline lie in an obstacle; zero where all are clear."""
         apart = np.linalg.norm(points[..., None, :] - self.centers, axis=-1) - self.radii
         return max(0.0, -float(apart.min(initial=np.inf)))
+
+    def outside(self, numbers: Float[np.ndarray, "... x"]) -> float:
+        """Return by how much states are out of their bounds, at most."""
+        return 0.0 if self.bounds is None else self.bounds.outside(numbers)
 
     def missed(self, points: Float[np.ndarray, "K points n"], positions: Float[np.ndarray, "K n"]) -> float:
         """Return by how much a motion comes too near to an obstacle, or misses a place, whichever is more.
