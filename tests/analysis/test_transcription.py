@@ -10,6 +10,7 @@ import nonholo as nh
 from nonholo.analysis.steering import Steering
 from nonholo.analysis.steering._nodes import CoordinateNodes, GroupNodes
 from nonholo.analysis.steering._program import Program, Steps
+from nonholo.analysis.steering._state_bounds import StateBounds, body_numbers, body_states
 from nonholo.analysis.steering._way import Way, resampled
 from nonholo.systems import Forced
 
@@ -28,7 +29,9 @@ def _program(discrete: Any, steps: int) -> Program:
     free = nh.discretize(system.system, float(discrete.time_step)) if system.is_forced else discrete
     nodes = GroupNodes(free, discrete.forces, rng.normal(size=(1, n)), system.group.random(rng))
     centers, radii = rng.normal(size=(min(n, 1), n)), rng.uniform(0.1, 0.3, min(n, 1))
-    shared = Steps(nodes, centers, radii, np.float64(discrete.time_step))
+    size = system.group.size**2 + system.rank
+    bounds = StateBounds(rng.normal(size=(2, size)), np.zeros(2), np.ones(2))
+    shared = Steps(nodes, centers, radii, np.float64(discrete.time_step), bounds)
     return Program(shared, rng.normal(size=nodes.sizes[0]), 0.1 * rng.normal(size=(steps, system.group.dim)))
 
 
@@ -36,7 +39,8 @@ def _snakeboard() -> Program:
     rng = np.random.default_rng(3)
     system = nh.examples.snakeboard().system
     nodes = CoordinateNodes(system, np.float64(0.1), rng.normal(size=(1, 2)), rng.normal(size=(3, 5)), np.zeros(5))
-    steps = Steps(nodes, rng.normal(size=(1, 2)), np.array([0.2]), nodes.time_step)
+    bounds = StateBounds(rng.normal(size=(2, 10)), np.zeros(2), np.ones(2))
+    steps = Steps(nodes, rng.normal(size=(1, 2)), np.array([0.2]), nodes.time_step, bounds)
     return Program(steps, rng.normal(size=10), np.zeros((3, 5)))
 
 
@@ -248,6 +252,81 @@ def test_a_snakeboard_moves_by_its_rotor_and_wheels() -> None:
     assert np.linalg.norm(orbit.configuration[:, :2] - disc[0], axis=1).min() > disc[1] - 1e-8
 
 
+def test_bounds_of_states_are_linear_in_their_numbers() -> None:
+    """Rows say of random poses and momenta by how much position, heading and velocity are outside."""
+    system, rng = nh.ChaplyginSleigh(1.0, 0.6, 0.2, 0.1), np.random.default_rng(4)
+    g, w = nh.SE(2).exp(rng.normal(size=(50, 3)) * [2.0, 1.0, 1.0]), rng.normal(size=(50, 2))
+    heading, numbers = np.arctan2(g[:, 1, 0], g[:, 0, 0]), body_states(g, system.restricted_momentum(w))
+    nowhere = {"start": np.full((1, 11), np.nan)}
+
+    def outside(**given: Any) -> np.ndarray:
+        bounds = StateBounds.of(given, body_numbers(system), nowhere)
+        return np.array([bounds.outside(each) for each in numbers])
+
+    np.testing.assert_allclose(outside(y=(-0.3, 0.2)), _beyond(g[:, 1, 2], -0.3, 0.2), atol=1e-15)
+    velocity = np.maximum(_beyond(w[:, 0], -0.5, 0.5), _beyond(w[:, 1], -0.5, np.inf))
+    np.testing.assert_allclose(outside(restricted_velocity=(-0.5, (0.5, np.inf))), velocity, atol=1e-15)
+    for low, high in ((-0.4, 0.9), (-2.5, 0.1), (2.9, 4.0)):
+        middle = (low + high) / 2
+        turn = middle + np.angle(np.exp(1j * (heading - middle)))
+        np.testing.assert_array_equal(outside(theta=(low, high)) > 0, _beyond(turn, low, high) > 0)
+    near = body_states(nh.SE(2).exp(np.array([0.5 + 1e-6, 0.0, 0.0])), np.zeros(2))
+    narrow = StateBounds.of({"theta": (-0.3, 0.5)}, body_numbers(system), nowhere)
+    np.testing.assert_allclose(narrow.outside(near), 1e-6, rtol=1e-4)
+
+
+def _beyond(values: np.ndarray, low: float, high: float) -> np.ndarray:
+    return np.maximum(0.0, np.maximum(low - values, values - high))
+
+
+@pytest.mark.profile("routes", instead="test_bounds_of_states_are_linear_in_their_numbers")
+@pytest.mark.parametrize(
+    "given", [{"theta": (-0.5, 0.6)}, {"restricted_velocity": (-0.9, (1.0, 0.7)), "x": (-0.2, 2.0)}]
+)
+def test_bounds_of_states_are_kept_and_used_up(given: dict) -> None:
+    """Run again by the compiled map, states of a parking stay within bounds that it broke without, and touch them."""
+    pytest.importorskip("casadi")
+
+    def states(found: Steering) -> dict[str, np.ndarray]:
+        driven = nh.discretize(nh.Forced(SLEIGH.system, force=found.controls), 0.25)
+        orbit = nh.simulate(driven, restricted_velocity=(0.0, 0.0), steps=STEPS)
+        velocity = SLEIGH.system.restricted_velocity(orbit.restricted_momentum)
+        return {"theta": orbit.heading, "x": orbit.position[:, 0], "restricted_velocity": velocity}
+
+    free = nh.steer(SLEIGH, {}, GOAL, steps=STEPS, method="ipopt")
+    found = nh.steer(SLEIGH, {}, GOAL, steps=STEPS, state_bounds=given)
+    assert found.outcome == "converged"
+    assert found.cost > free.cost
+    broken = {name: _room(values, given[name]) for name, values in states(free).items() if name in given}
+    kept = {name: _room(values, given[name]) for name, values in states(found).items() if name in given}
+    assert all(room < -0.01 for room in broken.values())
+    assert all(-1e-8 < room < 1e-5 for room in kept.values())
+
+
+def _room(values: np.ndarray, bounds: tuple) -> float:
+    return float(min((values - bounds[0]).min(), (bounds[1] - values).min()))
+
+
+@pytest.mark.profile("routes", instead="test_bounds_of_states_are_linear_in_their_numbers")
+def test_wheels_are_kept_from_turning_over() -> None:
+    """A snakeboard whose wheels may not pass 1.2 is steered to where it is not found without; too slow, nowhere."""
+    pytest.importorskip("casadi")
+    board, motors = nh.examples.snakeboard().system, np.array([0.0, 0.0, 0.0, 1.0, 1.0])
+    goal = {"configuration": {"x": 1.0, "y": 1.0, "theta": 0.0, "phi": 0.0}, "body_velocity": np.zeros(5)}
+    arguments = {"start": {"configuration": np.zeros(5)}, "goal": goal, "steps": 80, "bounds": (-motors, motors)}
+    discrete, limit = nh.discretize(board, 0.1), {"phi": (-1.2, 1.2)}
+    assert not nh.steer(discrete, **arguments).converged
+    found = nh.steer(discrete, **arguments, state_bounds=limit)
+    assert found.outcome == "converged"
+    driven = nh.discretize(nh.Forced(board, force=found.controls), 0.1)
+    orbit = nh.simulate(driven, configuration=np.zeros(5), body_velocity=np.zeros(5), steps=80)
+    np.testing.assert_allclose(orbit.configuration[-1, [0, 1, 2, 4]], [1.0, 1.0, 0.0, 0.0], rtol=0, atol=1e-8)
+    assert -1e-8 < 1.2 - np.abs(orbit.configuration[:, 4]).max() < 1e-5
+    slow = nh.steer(discrete, **arguments, state_bounds={**limit, "body_velocity": (-0.1, 0.1)})
+    assert slow.outcome in ("infeasible", "not found")
+    assert np.abs(slow.orbit.body_velocity[:-1]).max() > 0.1 or slow.missed > 1e-3
+
+
 def test_a_leap_over_a_disc_is_missed() -> None:
     """States on both sides of a disc are clear of it, but not the line between them; a cut of its edge is let pass."""
     way = Way.of(2, 2, ([(0.0, 0.0)], 0.5), None, None)
@@ -278,6 +357,17 @@ BOARD = {"start": {"configuration": np.zeros(5)}, "goal": {"configuration": {"x"
         ({"via": {0: (1.0, 1.0)}}, "number of a step"),
         ({"via": {2: (1.0, 1.0, 1.0)}}, "shape"),
         ({"guess": [(0.0, 0.0)]}, "two positions or more"),
+        ({"state_bounds": 3}, "name what a state has"),
+        ({"state_bounds": {"phi": (0.0, 1.0)}}, "restricted_velocity, x, y, theta"),
+        ({"state_bounds": {"x": (1.0, 0.0)}}, "room between"),
+        ({"state_bounds": {"x": 1.0}}, "be a pair"),
+        ({"state_bounds": {"x": ("a", 1.0)}}, "real numbers"),
+        ({"state_bounds": {"x": (float("nan"), 1.0)}}, "be finite"),
+        ({"state_bounds": {"restricted_velocity": (-1.0, (1.0, 2.0, 3.0))}}, "shape"),
+        ({"state_bounds": {"theta": (-3.0, 4.0)}}, "less than a turn"),
+        ({"state_bounds": {"x": (0.1, 1.0)}}, r"start=...\)` must lie within state_bounds"),
+        ({"state_bounds": {"y": (-1.0, 0.9)}}, r"goal=...\)` must lie within state_bounds. Got y outside by 0.1"),
+        ({"state_bounds": {"x": (-1.0, 1.0)}, "method": "shooting"}, "left out of shooting"),
         ({"guess": "_around"}, "4 steps"),
         ({"method": "newton"}, "be one of"),
         ({"method": "shooting", "via": {1: (0.0, 0.0)}}, "left out of shooting"),
@@ -291,6 +381,8 @@ BOARD = {"start": {"configuration": np.zeros(5)}, "goal": {"configuration": {"x"
         ({"discrete": "board", "start": {"pose": 1}}, "name only"),
         ({"discrete": "board", "goal": {}}, "coordinates or a velocity"),
         ({"discrete": "board", "goal": {"configuration": {"z": 1.0}}}, "coordinates of the system"),
+        ({"discrete": "board", "state_bounds": {"phi": (0.1, 1.0)}}, "Got phi outside by 0.1"),
+        ({"discrete": "board", "state_bounds": {"x": (-1.0, 0.9)}}, "Got x outside by 0.1"),
         ({"discrete": "ball"}, "that poses do not change"),
         ({"discrete": "driven"}, "have no force yet"),
     ],

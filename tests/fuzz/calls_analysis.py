@@ -97,6 +97,7 @@ def _of_maps() -> list[Call]:
             obstacles=anything(([(2.0, 0.0)], 0.5)),
             outline=anything([(0.0, 0.1)]),
             via=anything({2: (0.1, 0.0)}),
+            state_bounds=anything({"x": (-1.0, 1.0)}),
             guess=anything([(0.0, 0.0), (0.1, 0.0)]),
             progress=flag(False),
             slow=True,
