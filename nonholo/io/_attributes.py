@@ -2,6 +2,7 @@
 
 import contextlib
 import dataclasses
+import functools
 import hashlib
 import importlib
 import json
@@ -158,6 +159,7 @@ def other_versions(stored: dict[str, Any]) -> str:
     return ", ".join(f"{name} {old} (now {now.get(name)})" for name, old in made.items() if old != now.get(name))
 
 
+@functools.cache  # each is read from a file
 def versions_text(*others: str) -> str:
     """Return the versions of what computes, as JSON: of the core, and of other packages."""
     return json.dumps(_versions("nonholo", "numpy", "numba", "zarr", *others))
