@@ -260,7 +260,7 @@ def test_bounds_of_states_are_linear_in_their_numbers() -> None:
     nowhere = {"start": np.full((1, 11), np.nan)}
 
     def outside(**given: Any) -> np.ndarray:
-        bounds = StateBounds.of(given, body_numbers(system), nowhere)
+        bounds: Any = StateBounds.of(given, body_numbers(system), nowhere)
         return np.array([bounds.outside(each) for each in numbers])
 
     np.testing.assert_allclose(outside(y=(-0.3, 0.2)), _beyond(g[:, 1, 2], -0.3, 0.2), atol=1e-15)
@@ -271,7 +271,7 @@ def test_bounds_of_states_are_linear_in_their_numbers() -> None:
         turn = middle + np.angle(np.exp(1j * (heading - middle)))
         np.testing.assert_array_equal(outside(theta=(low, high)) > 0, _beyond(turn, low, high) > 0)
     near = body_states(nh.SE(2).exp(np.array([0.5 + 1e-6, 0.0, 0.0])), np.zeros(2))
-    narrow = StateBounds.of({"theta": (-0.3, 0.5)}, body_numbers(system), nowhere)
+    narrow: Any = StateBounds.of({"theta": (-0.3, 0.5)}, body_numbers(system), nowhere)
     np.testing.assert_allclose(narrow.outside(near), 1e-6, rtol=1e-4)
 
 

@@ -29,11 +29,13 @@ class StateBounds(NamedTuple):
     high: Float[np.ndarray, "b"]
 
     @classmethod
-    def of(cls, given: Any, names: Mapping[str, np.ndarray], ends: Mapping[str, np.ndarray]) -> Self:
-        """Return checked bounds of rows by name; ends are start and goal, (..., x), NaN in what they leave free.
+    def of(cls, given: Any, names: Mapping[str, np.ndarray], ends: Mapping[str, np.ndarray]) -> Self | None:
+        """Return checked bounds of rows by name, None where there are none.
 
-        A complex row is of an angle, those of its cosine and sine.
+        Ends are start and goal, (..., x), NaN in what they leave free. A complex row is of an angle, those of its cosine and sine.
         """
+        if given is None:
+            return None
         remedy = f"Pass {{name: (least, largest)}} of {', '.join(names)}."
         if not isinstance(given, Mapping) or not set(given) <= set(names):
             raise error(_WHERE, "name what a state has", shown(given), remedy)
@@ -91,7 +93,7 @@ def body_numbers(system: System) -> dict[str, np.ndarray]:
     return names | ({"theta": entries[:1, 0] + 1j * entries[1:2, 0]} if group == SE(2) else {})
 
 
-def bounds_of_body(given: Any, system: System, ends: Ends) -> StateBounds:
+def bounds_of_body(given: Any, system: System, ends: Ends) -> StateBounds | None:
     """Return checked bounds of states on a group, in which all starts and goals lie."""
     w, g, to_pose, to_velocity = ends
     pose = np.full_like(g, np.nan) if to_pose is None else to_pose

@@ -157,8 +157,7 @@ def steer(
         return _steered_in_coordinates(discrete, (start, goal), bounds, way, steps, hints, state_bounds)
     _check(discrete, steps)
     ends, is_one = checked_ends(discrete.system, start, goal, bool(way.via))
-    if state_bounds is not None:
-        way = way._replace(bounds=bounds_of_body(state_bounds, discrete.system, ends))
+    way = way._replace(bounds=bounds_of_body(state_bounds, discrete.system, ends))
     limits = limits_of_steps(bounds, steps, discrete.system.rank)
     if method == "ipopt":
         forces, gap, outcome = _by_ipopt(discrete, ends, limits, way, hints, progress)
@@ -243,15 +242,13 @@ def _steered_in_coordinates(
     with needs("steer", "steer"):
         from nonholo.analysis.steering._in_coordinates import checked_goal, checked_start, coordinate_problem
         from nonholo.analysis.steering._transcription import transcribed
-    x, v = checked_start(discrete, ends[0])
-    limits = limits_of_steps(bounds, steps, discrete.system.dimension)
+    n, (x, v) = discrete.system.dimension, checked_start(discrete, ends[0])
+    limits = limits_of_steps(bounds, steps, n)
     goal = checked_goal(discrete, ends[1], is_free=bool(way.via))
-    if state_bounds is not None:
-        there = goal.numbers(discrete.system.dimension)
-        both = {"start": np.append(v, x[: discrete.system.dimension]), "goal": there}
-        way = way._replace(bounds=StateBounds.of(state_bounds, coordinate_numbers(discrete.system), both))
+    both = {"start": np.append(v, x[:n]), "goal": goal.numbers(n)}
+    way = way._replace(bounds=StateBounds.of(state_bounds, coordinate_numbers(discrete.system), both))
     problem = coordinate_problem(discrete, ((x, v), goal), limits, way, steps, guess)
     forces, gap, outcome = transcribed(problem)
     effort = float(discrete.time_step) * (forces**2).sum() / 2
-    start = v, x[: discrete.system.dimension]
+    start = v, x[:n]
     return Steering(discrete, start, forces, *map(np.asarray, (effort, gap, outcome)))
