@@ -72,7 +72,7 @@ class Fit:
         where S is the least sum of squared residuals over all other numbers, in units of the noise levels of the fit,
         and t the quantile of Student's distribution at $\nu$ = `samples` degrees of freedom: $\tau^2$ is compared with
         $F_{1,\nu}$, which chi-squared takes the place of where the noise is known. Of a linear model this is the usual
-        interval; where the model is curved, it needs no parabola, and may be lopsided or without bound.
+        interval, exactly; where the model is curved, it needs no parabola, and may be lopsided or without bound.
 
         A profile is followed outwards, each of its points fitted from the one before: what lies beyond another minimum
         on the way may be missed. Sources: [bates-watts-1988], [venzon-moolgavkar-1988].

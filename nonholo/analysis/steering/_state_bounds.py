@@ -32,7 +32,7 @@ class StateBounds(NamedTuple):
     def of(cls, given: Any, names: Mapping[str, np.ndarray], ends: Mapping[str, np.ndarray]) -> Self | None:
         """Return checked bounds of rows by name, None where there are none.
 
-        Ends are start and goal, (..., x), NaN in what they leave free. A complex row is of an angle, those of its cosine and sine.
+        Ends are start and goal, (..., x), NaN in what they leave free. A complex row is of an angle: cosine and sine.
         """
         if given is None:
             return None
