@@ -165,7 +165,7 @@ def test_residuals_and_profiles_are_drawn() -> None:
 
 @pytest.mark.profile("problems", instead="test_profile_of_a_line_is_its_parabola")
 def test_profiles_hold_more_often_than_the_covariance() -> None:
-    """Of 100 records that know friction and inertia by their quotient, profiles of 95 % hold the inertia about as often.
+    """Of 100 records that know friction by the inertia, profiles of 95 % hold the inertia at least 88 times.
 
     Intervals of the covariance hold it less often. Sides without bound come with their reason.
     """
