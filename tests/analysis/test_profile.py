@@ -1,5 +1,6 @@
 """Profiles of least squares whose profile is known: straight lines, models that are linear but for one number."""
 
+import pickle
 from collections.abc import Callable
 from typing import Any
 
@@ -8,6 +9,7 @@ import pytest
 from scipy import stats
 from scipy.optimize import root_scalar
 
+from nonholo.analysis.inverse import Fit
 from nonholo.analysis.inverse._profile import Minimum, profile_of
 
 TIMES = np.linspace(0.2, 3.0, 15)
@@ -83,6 +85,16 @@ def test_side_may_end_with_the_model() -> None:
     profile = profile_of(minimum, 1, "b", 0.95)
     assert profile.ends == ("model", "level")
     assert 0 < profile.interval[0] < 1e-6
+
+
+def test_fit_is_kept_without_its_functions() -> None:
+    """What is pickled, of a lambda too, has all but the profile, which says so."""
+    minimum, _ = _line(0.5)
+    found = Fit({"a": 1.0, "b": 0.5}, np.eye(2), None, None, (), {}, 13, minimum)
+    found = pickle.loads(pickle.dumps(found))  # noqa: S301
+    assert found.parameters == {"a": 1.0, "b": 0.5}
+    with pytest.raises(ValueError, match="Fit again"):
+        found.profile("b")
 
 
 def test_better_minimum_is_said() -> None:

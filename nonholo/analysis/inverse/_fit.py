@@ -40,7 +40,7 @@ class Fit:
             where nothing was measured. A turn in space is the vector of the rotation from the fitted pose.
         noise: Standard deviation of the residuals of each kind.
         samples: Measured numbers less fitted ones: the degrees of freedom of the residuals.
-        minimum: The sum of squares about the fitted point, parameters and then starts, for profiles.
+        minimum: The sum of squares about the fitted point, parameters, then starts, for profiles; None after pickling.
     """
 
     parameters: dict[str, Any]
@@ -50,7 +50,11 @@ class Fit:
     residuals: tuple[dict[str, np.ndarray], ...] = dataclasses.field(repr=False)
     noise: dict[str, float]
     samples: int
-    minimum: Minimum = dataclasses.field(repr=False)
+    minimum: Minimum | None = dataclasses.field(repr=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out what calls functions of the user's: a fit is sent and kept without it."""
+        return {**vars(self), "minimum": None}
 
     @property
     def intervals(self) -> dict[str, tuple[Any, Any]]:
@@ -90,6 +94,8 @@ class Fit:
         """
         names = _names(tuple((name, np.shape(value)) for name, value in self.parameters.items()))
         choice("Fit.profile(name=...)", name, tuple(names))
+        if self.minimum is None:
+            raise error("Fit.profile(...)", "be asked where the fit was made", "a fit from elsewhere", "Fit again.")
         return profile_of(self.minimum, names.index(name), name, level)
 
     def plot(self) -> Any:
