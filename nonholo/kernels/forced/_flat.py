@@ -4,26 +4,16 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 from numba.np.numpy_support import carray
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from nonholo.kernels._interface import Body
-from nonholo.kernels._scalar import inlined
 from nonholo.kernels.forced._kick import rubbed
 from nonholo.kernels.forced._two import Numbers, advance_numbers
 
 FORCES = 8  # where they begin: after the numbers of a body
 TABLE = 26  # where rows begin
 STATE_SIZE = 22
-
-
-@inlined
-def _push(table: np.ndarray, a: float, b: float, c: float, d: float) -> None:
-    """Make half impulses of forces, in place."""
-    for i in range(len(table)):
-        x, y = table[i, 0], table[i, 1]
-        table[i, 0], table[i, 1] = a * x + b * y, c * x + d * y
 
 
 def flat_forced_run(kind: type[Body]) -> Callable[..., int]:
@@ -51,8 +41,9 @@ def flat_forced_run(kind: type[Body]) -> Callable[..., int]:
         L = a * x + b * u, a * y + b * v, a * z + b * w, c * x + d * u, c * y + d * v, c * z + d * w
         kick = Numbers(n, f[9] != 0, (f[16], f[17], f[18]), L, A)
         table = carray(body, (TABLE // 2 + rows, 2))[TABLE // 2 :]
-        if f[25] > 0:
-            _push(table, a, b, c, d)
+        for i in range(int(f[25])):  # not once they are half impulses
+            x, y = table[i, 0], table[i, 1]
+            table[i, 0], table[i, 1] = a * x + b * y, c * x + d * y
         f[25] = -rows
         s = carray(state, STATE_SIZE + 1)
         done, code, first = 0, 0, 0 if math.isnan(s[8]) else 1
