@@ -1,6 +1,7 @@
 """Processes of others: a run that folds does not hold up a pool, JAX in a forked child says so."""
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -15,10 +16,17 @@ pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
 
 
 def lines_of(name: str) -> list[str]:
-    """Run the program, which forks, in a process without threads; fail if it hangs."""
-    command = [sys.executable, str(Path(__file__).with_name("pools.py")), name]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)  # noqa: S603
-    return done.stdout.splitlines()
+    """Run the program, which forks, in a process without threads; if it hangs, fail with where each process stood."""
+    command = [sys.executable, "-X", "faulthandler", str(Path(__file__).with_name("pools.py")), name]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, start_new_session=True, **pipes) as program:  # noqa: S603
+        try:
+            printed, said = program.communicate(timeout=120)
+        except subprocess.TimeoutExpired:
+            os.killpg(program.pid, signal.SIGABRT)  # its forked children too: they hold the pipes
+            printed, said = program.communicate()
+    assert program.returncode == 0, said
+    return printed.splitlines()
 
 
 @pytest.mark.profile("faults", keep=["executor"])
