@@ -10,7 +10,7 @@ const coupling = (p) => AXES.map((i) => p[`J${i}4`]);
 const list = (values) => `[${values.map(literal).join(", ")}]`;
 const range = (key, min, max) => ({ key, label: `J${[...key.slice(1)].map((i) => "₁₂₃₄"[i - 1]).join("")}`, name: `mass tensor ${key[1]} ${key[2]}`, min, max, step: 0.01 });
 
-const CURVE = 400; // points of the continuous motion that are drawn, or as many as there are steps
+const CURVE = 400; // times of the continuous motion at least, and parts of the energy's radius that are seen of it
 const bits = new DataView(new ArrayBuffer(8));
 
 /** The next power of two above a number. */
@@ -24,11 +24,23 @@ function continuous(p, momentum, series) {
   const b = inertia(p), root = b.map(Math.sqrt), rates = b.map((x) => 1 / x), gamma = coupling(p).map((x, i) => x / root[i]);
   const x = momentum.map((r, i) => r / root[i]), pull = gamma.reduce((sum, c, i) => sum + c * x[i], 0);
   const unit = powerAbove(Math.max(...x.map((each, i) => Math.abs(Math.sqrt(rates[i]) * each)), Math.abs(Math.max(...rates) * pull)));
-  const user = (row) => Array.from(row, (each, i) => each * unit * root[i]), first = x.map((each) => each / unit);
+  const user = (rows, at) => [rows[at] * unit * root[0], rows[at + 1] * unit * root[1], rows[at + 2] * unit * root[2]];
+  const first = x.map((each) => each / unit);
   return (times) => {
-    const own = times.slice(1).map((time) => time * unit), rows = series(rates, gamma, first, own, own.at(-1));
-    return [user(first), ...Array.from({ length: rows.length / 3 }, (_, k) => user(rows.subarray(3 * k, 3 * k + 3)))];
+    const own = times.slice(1).map((time) => time * unit), rows = series(rates, gamma, first, own, own.at(-1)), all = [user(first, 0)];
+    for (let at = 0; at < rows.length; at += 3) all.push(user(rows, at));
+    return all;
   };
+}
+
+/** The rows that are apart from the one before by what can be seen, and the last one. */
+function seen(rows, least) {
+  let [x, y, z] = rows[0];
+  return rows.filter((row, k) => {
+    const isApart = k === 0 || k === rows.length - 1 || Math.abs(row[0] - x) + Math.abs(row[1] - y) + Math.abs(row[2] - z) > least;
+    if (isApart) [x, y, z] = row;
+    return isApart;
+  });
 }
 
 /** Where the permanent rotations of an energy are: the velocity is along c; the second one attracts. */
@@ -58,7 +70,8 @@ export const top4 = {
     const b = inertia(p), energy = this.energy(p, ...momentum), ends = permanent(p, energy);
     const back = (u, v) => [Math.sqrt(b[0]) * u, Math.sqrt(b[1]) * v];
     const after = continuous(p, momentum, series), rows = after(Array.from({ length: steps + 1 }, (_, k) => k * h));
-    const curve = steps < CURVE ? after(Array.from({ length: CURVE + 1 }, (_, k) => (k / CURVE) * steps * h)) : rows;
+    const all = steps < CURVE ? after(Array.from({ length: CURVE + 1 }, (_, k) => (k / CURVE) * steps * h)) : rows;
+    const curve = seen(all, Math.sqrt(2 * energy * Math.min(...b)) / CURVE);
     const at = (time) => rows[Math.round(time / h)] ?? [NaN, NaN];
     return { size: Math.sqrt(2 * energy), back, at, attracting: ends[1] ?? null, isLevel: true, rows, curve };
   },

@@ -15,22 +15,29 @@ export class WideTopView {
 
   set(_, orbit, look) {
     clear(this.fixed);
-    clear(this.moving);
     this.orbit = orbit;
     this.globe(look);
     const { count, g } = orbit, tips = new Float32Array(3 * count);
     for (let k = 0; k < count; k++) for (let i = 0; i < 3; i++) tips[3 * k + i] = g[16 * k + 4 * i + 3];
     const eye = this.stage.camera.position.toArray();
-    const toward = (p, normal) => ([normal[0], normal[1], normal[2]] = eye.map((x, i) => x - p[i]));
+    const toward = (p, normal) => ([normal[0], normal[1], normal[2]] = [eye[0] - p[0], eye[1] - p[1], eye[2] - p[2]]);
     this.trace = count > 1 ? ribbon(tips, toward, 0.02, look.dark) : null;
     if (this.trace) this.fixed.add(this.trace);
+    this.axes(look);
+    if (!this.framed) this.stage.look([0, 0, 0], 1.16);
+    this.framed = true;
+  }
+
+  /** The rods and their balls, which stay until the colors change. */
+  axes(look) {
+    if (this.look?.body === look.body) return;
+    this.look = look;
+    clear(this.moving);
     this.rods = [look.body, look.body, look.body, look.accent].map((color) => {
       const parts = [new CapsuleGeometry(0.016, 1, 4, 12), new SphereGeometry(0.05, 20, 14)].map((shape) => new Mesh(shape, solid(color)));
       this.moving.add(...parts);
       return parts;
     });
-    if (!this.framed) this.stage.look([0, 0, 0], 1.16);
-    this.framed = true;
   }
 
   globe(look) {
