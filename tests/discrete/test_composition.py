@@ -162,6 +162,7 @@ def test_displacement_is_that_of_the_whole_step(name: str) -> None:
     assert orbit.system.group.residual(g).max() < 1e-14
 
 
+@pytest.mark.profile("routes", cases=["any d*", "veselova 4"])
 @pytest.mark.parametrize("name", BODIES)
 def test_momentum_is_that_of_the_first_substep(name: str) -> None:
     """P_k lies over r_k and is the momentum of the chart's displacement at the time step of the first substep."""
@@ -172,6 +173,7 @@ def test_momentum_is_that_of_the_first_substep(name: str) -> None:
     assert np.abs(orbit.chart[1] - alone.chart[0]).max() < 1e-14
 
 
+@pytest.mark.profile("routes", cases=["any d*"])
 @pytest.mark.parametrize("name", ["top", "suslov 4", "any d on SE(3)"])
 def test_a_run_can_stop_and_go_on(name: str) -> None:
     """Ten steps at once and in two parts have the same bits."""
