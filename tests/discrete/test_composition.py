@@ -289,6 +289,7 @@ def test_a_store_brings_a_composition_back(tmp_path: pathlib.Path) -> None:
     assert np.array_equal(again.momentum, orbit.momentum)
 
 
+@pytest.mark.profile("routes", cases=["veselova 4"])
 @pytest.mark.parametrize("name", ["top", "veselova 4"])
 def test_reversal_defect_of_whole_steps(name: str) -> None:
     """`invariants` measures one whole step forward and back, at rounding level; a wrong weight would show."""
