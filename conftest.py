@@ -15,7 +15,7 @@ compilers.use_one_thread()
 import hypothesis
 import numpy as np
 import pytest
-from profiles import COLLECTED, DEFAULT, MARKED, chosen_profiles, runs
+from profiles import COLLECTED, DEFAULT, MARKED, SOAKS, chosen_profiles, profile_of, runs
 
 import nonholo as nh
 
@@ -60,6 +60,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if others:
         config.hook.pytest_deselected(items=others)
         items[:] = [item for item in items if runs(item, chosen)]
+    for item in items:
+        if profile_of(item) in SOAKS:
+            item.add_marker(pytest.mark.timeout(0))  # half an hour is no hang there
     if hasattr(config, "workerinput"):
         items.sort(key=_turn({item.path: None for item in items}))
 
