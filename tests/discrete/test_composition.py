@@ -95,7 +95,6 @@ def reference() -> dict[str, nh.Orbit]:
     return found
 
 
-@pytest.mark.profile("routes", cases=["suslov 4-[46]-*"])
 @pytest.mark.parametrize("quantity", ["restricted_momentum", "configuration"])
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize("name", ["top", "sleigh", "suslov 4", "sleigh 3"])

@@ -134,7 +134,6 @@ def test_no_force_gives_the_bits_of_the_free_map_and_flow() -> None:
         assert np.array_equal(free.chart, same.chart)
 
 
-@pytest.mark.profile("routes", cases=["any d*", "right*"])
 @pytest.mark.parametrize("name", ["suslov 4", "sleigh 3", "any d on SE(3)", "right-invariant on SE(3)"])
 def test_constraint_and_group_are_kept_on_every_group(name: str) -> None:
     """Under weight and friction constraint and group hold to rounding, and the balance closes to order 2."""
