@@ -42,9 +42,8 @@ export class AxesView {
     for (let k = 0; k < count; k++) {
       for (let i = 0; i < 3; i++) tips[3 * k + i] = frames[12 * k + i] + far * frames[12 * k + 9 + i];
     }
-    const reach = extent + this.length, eye = this.stage.camera.position.toArray();
-    const toward = (p, normal) => ([normal[0], normal[1], normal[2]] = [eye[0] - p[0], eye[1] - p[1], eye[2] - p[2]]);
-    this.trace = count > 1 ? ribbon(tips, toward, 0.02 * reach, look.dark) : null;
+    const reach = extent + this.length;
+    this.trace = count > 1 ? ribbon(tips, this.stage.facing(), 0.02 * reach, look.dark) : null;
     if (this.trace) this.fixed.add(this.trace);
     this.rods = [look.body, look.flow, look.accent].map((color) => {
       const rod = new Mesh(new CapsuleGeometry(0.025 * this.length, 1, 4, 12), solid(color));

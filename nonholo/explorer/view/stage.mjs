@@ -52,6 +52,12 @@ export class Stage {
     this.fit();
   }
 
+  /** What turns a ribbon toward the camera, from where it is now. */
+  facing() {
+    const eye = this.camera.position.toArray();
+    return (p, normal) => ([normal[0], normal[1], normal[2]] = [eye[0] - p[0], eye[1] - p[1], eye[2] - p[2]]);
+  }
+
   fit() {
     const { camera, controls } = this;
     const half = Math.atan(Math.tan((camera.fov * Math.PI) / 360) * Math.min(1, camera.aspect));

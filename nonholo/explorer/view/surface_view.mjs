@@ -34,9 +34,7 @@ export class SurfaceView {
     this.path = path.map(fit);
     mesh.marks?.forEach((point, i) => this.ball(this.others, 0.04, i ? look.ink : look.muted, fit(point)));
     if (count > 1) {
-      const eye = this.stage.camera.position.toArray();
-      const toward = (q, normal) => ([normal[0], normal[1], normal[2]] = [eye[0] - q[0], eye[1] - q[1], eye[2] - q[2]]);
-      const band = ribbon(Float32Array.from(this.path.flat()), toward, 0.028, look.dark, { depthTest: false });
+      const band = ribbon(Float32Array.from(this.path.flat()), this.stage.facing(), 0.028, look.dark, { depthTest: false });
       band.renderOrder = 2;
       this.group.add(band);
     }

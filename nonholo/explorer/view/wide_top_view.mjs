@@ -19,9 +19,7 @@ export class WideTopView {
     this.globe(look);
     const { count, g } = orbit, tips = new Float32Array(3 * count);
     for (let k = 0; k < count; k++) for (let i = 0; i < 3; i++) tips[3 * k + i] = g[16 * k + 4 * i + 3];
-    const eye = this.stage.camera.position.toArray();
-    const toward = (p, normal) => ([normal[0], normal[1], normal[2]] = [eye[0] - p[0], eye[1] - p[1], eye[2] - p[2]]);
-    this.trace = count > 1 ? ribbon(tips, toward, 0.02, look.dark) : null;
+    this.trace = count > 1 ? ribbon(tips, this.stage.facing(), 0.02, look.dark) : null;
     if (this.trace) this.fixed.add(this.trace);
     this.axes(look);
     if (!this.framed) this.stage.look([0, 0, 0], 1.16);
