@@ -19,7 +19,7 @@ def run() -> CoordinateOrbit:
 
 
 def numbers() -> dict[str, tuple[float, float, float]]:
-    """The steering angle grows at 0.05 from -1 and is pi/2 at t = 51.4; the map ends within two steps of it."""
+    """The steering angle falls at 0.05 from 1 and is -pi/2 at t = 51.4; the map ends within two steps of it."""
     return {"time of the end": (float(run().time[-1]), (np.pi / 2 + 1) / 0.05, 0.2)}
 
 

@@ -37,7 +37,8 @@ def kinematic_car(
     So $\dot\theta = (\rho/\ell)\tan\varphi\,\dot\psi$: the constraints alone say how rolling and steering move the car.
     Without control $\dot\varphi$ and $u\sqrt{m + J_w/\rho^2 + (J/\ell^2)\tan^2\varphi}$ are constant, u the speed of
     the rear axle; with the steering at rest the car drives on a circle of radius $\ell/\tan\varphi$. Where the front
-    wheels are across, at $|\varphi| = \pi/2$, the car cannot roll.
+    wheels are across, at $|\varphi| = \pi/2$, the car cannot roll. The angle phi is that of one wheel in the middle;
+    pictures turn each front wheel across the line to the center of the circle, so that none slips.
 
     Reference: [kelly-murray-1995]; [bloch-2003].
 
@@ -105,7 +106,8 @@ def _system(m: float, J: float, ell: float, R: float, Jw: float, Js: float) -> L
     board = np.array([[-0.2, -0.22], [1.2, -0.22], [1.2, 0.22], [-0.2, 0.22]]) * ell
 
     def outline(q: Array) -> list[Array]:
-        front = [wheel((ell, side * 0.3 * ell), 2 * R, q[4]) for side in (-1, 1)]
+        cos, sin, places = np.cos(q[4]), np.sin(q[4]), ((ell, -0.3 * ell), (ell, 0.3 * ell))
+        front = [wheel(at, 2 * R, np.arctan2(at[0] * sin, at[0] * cos - at[1] * sin)) for at in places]
         return [board, *pair((0.0, 0.0), 0.3 * ell, 2 * R), *front]
 
     looks = {"coordinates": names, "heading": "theta", "outline": outline, "name": "Kinematic car"}

@@ -19,10 +19,10 @@ def snakeboard(
     half_length: float = 1.0,
     rotor_inertia: float = 0.5,
     wheel_inertia: float = 0.1,
-    configuration: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, -1.0),
+    configuration: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 1.0),
     speed: float = 1.0,
     rotor_rate: float = 0.4,
-    wheel_rate: float = 0.05,
+    wheel_rate: float = -0.05,
 ) -> Example:
     r"""A board on two steered wheel pairs with a rotor: place (x, y), heading theta, rotor angle psi, steering phi.
 
@@ -31,9 +31,9 @@ def snakeboard(
     $$ L = \tfrac m2(\dot x^2 + \dot y^2) + \tfrac12 m r^2\dot\theta^2 + \tfrac12 J_0\dot\psi^2 + J_0\dot\psi\dot\theta
          + J_1\dot\varphi^2, $$
 
-    $$ -\sin(\theta \pm \varphi)\,\dot x + \cos(\theta \pm \varphi)\,\dot y \mp r\cos\varphi\,\dot\theta = 0 . $$
+    $$ -\sin(\theta \pm \varphi)\,\dot x + \cos(\theta \pm \varphi)\,\dot y \pm r\cos\varphi\,\dot\theta = 0 . $$
 
-    So the board moves along its axis with a speed u, and $\dot\theta = -(u/r)\tan\varphi$. Without control
+    So the board moves along its axis with a speed u, and $\dot\theta = (u/r)\tan\varphi$. Without control
     $\dot\varphi$ and $J_0(\dot\theta + \dot\psi)$ are constant, and with the energy so is the momentum along the
     constraint, $u\sqrt{m + (m - J_0/r^2)\tan^2\varphi}$. The forms are dependent at $|\varphi| = \pi/2$,
     where the wheels are crossed: there the motion ends, with `branch_unverified`.
@@ -56,7 +56,7 @@ def snakeboard(
     Example:
         >>> ready = nh.examples.snakeboard()
         >>> [round(float(f(ready.configuration, ready.body_velocity)), 6) for f in ready.conserved.values()]
-        [0.05, 1.957408, 1.487535]
+        [-0.05, 1.957408, 1.487535]
     """
     where, inertias = "examples.snakeboard", {"rotor_inertia": rotor_inertia, "wheel_inertia": wheel_inertia}
     m, r, J0, J1 = positives("snakeboard", mass=mass, half_length=half_length, **inertias)
@@ -66,7 +66,7 @@ def snakeboard(
     if not abs(q[4]) < np.pi / 2:
         raise error(f"{where}(configuration=...)", "have |phi| < pi/2", f"{q[4]:g}", "The wheels must not be crossed.")
     u, rotor, wheel = numbers("snakeboard", "...", (speed, rotor_rate, wheel_rate), 3, "speed and rates as numbers")
-    v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), -u / r * np.tan(q[4]), rotor, wheel])
+    v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), u / r * np.tan(q[4]), rotor, wheel])
 
     def spin(q: Array, v: Array) -> Array:
         del q
@@ -96,7 +96,7 @@ def _system(m: float, r: float, J0: float, J1: float) -> LagrangeDAlembert:
 
         def row(side: float) -> Array:
             turned = theta + side * phi
-            return jnp.array([-jnp.sin(turned), jnp.cos(turned), -side * r * jnp.cos(phi), 0.0, 0.0])
+            return jnp.array([-jnp.sin(turned), jnp.cos(turned), side * r * jnp.cos(phi), 0.0, 0.0])
 
         return jnp.stack([row(1.0), row(-1.0)])
 

@@ -1,7 +1,7 @@
 """Local connections, gaits and brackets against closed forms, the flow and exact algebra.
 
 Closed forms are derived in docs/how-to/gaits.md: of the car omega = (rho / l) tan(phi) psi', v1 = rho psi'; of the
-snakeboard v1 = (p + (J0 / r) tan(phi) psi') cos(phi)^2 / m, omega = -v1 tan(phi) / r.
+snakeboard v1 = (p - (J0 / r) tan(phi) psi') cos(phi)^2 / m, omega = v1 tan(phi) / r.
 """
 
 import dataclasses
@@ -38,8 +38,8 @@ def board() -> LocalConnection:
 
 def rolling(phi: Any) -> np.ndarray:
     """Return the body velocity of a snakeboard without momentum, for psi' = 1."""
-    v1 = ROTOR / (MASS * HALF) * np.sin(phi) * np.cos(phi)
-    return np.array([-v1 * np.tan(phi) / HALF, v1, 0 * v1])
+    v1 = -ROTOR / (MASS * HALF) * np.sin(phi) * np.cos(phi)
+    return np.array([v1 * np.tan(phi) / HALF, v1, 0 * v1])
 
 
 def around(corners: list) -> tuple:
@@ -81,12 +81,12 @@ def test_the_snakeboard_has_the_connection_of_the_closed_form() -> None:
     np.testing.assert_allclose(board().matrix(shapes), A, rtol=0, atol=1e-13)
     F = np.zeros((20, 3, 2, 2))
     F[:, 0, 0, 1] = -ROTOR / (MASS * HALF**2) * np.sin(2 * phi)
-    F[:, 1, 0, 1] = ROTOR / (MASS * HALF) * np.cos(2 * phi)
+    F[:, 1, 0, 1] = -ROTOR / (MASS * HALF) * np.cos(2 * phi)
     np.testing.assert_allclose(board().curvature(shapes), F - np.swapaxes(F, -1, -2), rtol=0, atol=1e-12)
-    rate = np.tan(phi) * rates[:, 1] * p[:, 0] - ROTOR / HALF * rates[:, 0] * rates[:, 1]
+    rate = np.tan(phi) * rates[:, 1] * p[:, 0] + ROTOR / HALF * rates[:, 0] * rates[:, 1]
     np.testing.assert_allclose(board().momentum_rate(shapes, rates, p)[:, 0], rate, rtol=0, atol=1e-12)
     speed = p[:, 0] * np.cos(phi) ** 2 / MASS
-    wanted = np.stack([-speed * np.tan(phi) / HALF, speed, 0 * speed], -1) - np.einsum("tai,ti->ta", A, rates)
+    wanted = np.stack([speed * np.tan(phi) / HALF, speed, 0 * speed], -1) - np.einsum("tai,ti->ta", A, rates)
     np.testing.assert_allclose(board().body_velocity(shapes, rates, p), wanted, rtol=0, atol=1e-12)
     assert board().momentum_components == ("v1",)
 
@@ -277,15 +277,15 @@ def test_momenta_and_curvature_of_the_snakeboard_follow_from_its_matrices() -> N
     phi, ds, p = rng.uniform(-1.3, 1.3, 9), rng.normal(size=(9, 2)), rng.normal(size=(9, 1))
     W, dW = np.zeros((9, 2, 5)), np.zeros((9, 2, 5, 2))
     for row, side in enumerate((1.0, -1.0)):
-        W[:, row, :3] = np.stack([-side * HALF * np.cos(phi), -side * np.sin(phi), np.cos(phi)], -1)
-        dW[:, row, :3, 1] = np.stack([side * HALF * np.sin(phi), -side * np.cos(phi), -np.sin(phi)], -1)
+        W[:, row, :3] = np.stack([side * HALF * np.cos(phi), -side * np.sin(phi), np.cos(phi)], -1)
+        dW[:, row, :3, 1] = np.stack([-side * HALF * np.sin(phi), -side * np.cos(phi), -np.sin(phi)], -1)
     M = np.diag([MASS * HALF**2, MASS, MASS, ROTOR, 0.2])
     M[0, 3] = M[3, 0] = ROTOR
     at = _equations.terms((1,), W, dW, np.broadcast_to(M, (9, 5, 5)), np.zeros((9, 5, 5, 2)))
     F = _equations.curvature(nh.SE(2), at)[:, :, 0, 1]
-    wanted = ROTOR / (MASS * HALF) * np.stack([-np.sin(2 * phi) / HALF, np.cos(2 * phi), 0 * phi], -1)
+    wanted = ROTOR / (MASS * HALF) * np.stack([-np.sin(2 * phi) / HALF, -np.cos(2 * phi), 0 * phi], -1)
     np.testing.assert_allclose(F, wanted, rtol=0, atol=1e-12)
-    rate = np.tan(phi) * ds[:, 1] * p[:, 0] - ROTOR / HALF * ds[:, 0] * ds[:, 1]
+    rate = np.tan(phi) * ds[:, 1] * p[:, 0] + ROTOR / HALF * ds[:, 0] * ds[:, 1]
     np.testing.assert_allclose(_equations.motion(nh.SE(2), at, ds, p)[1][:, 0], rate, rtol=0, atol=1e-12)
 
 

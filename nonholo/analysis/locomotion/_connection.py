@@ -108,7 +108,7 @@ class LocalConnection:
         Example:
             >>> board = nh.local_connection(nh.examples.snakeboard().system)
             >>> print(board.body_velocity((0.0, 0.3), (0.0, 0.0), momentum=(3.0,))[:2].round(3))
-            [-0.847  2.738]
+            [0.847 2.738]
         """
         return self._motion("body_velocity", shape, shape_velocity, momentum)[0]
 
@@ -130,11 +130,11 @@ class LocalConnection:
             ValueError: A wrong shape of an array, a number that is not finite.
 
         Example:
-            Of the snakeboard, $\dot p = \tan\varphi\,\dot\varphi\,p - (J_0/r)\,\dot\varphi\,\dot\psi$:
+            Of the snakeboard, $\dot p = \tan\varphi\,\dot\varphi\,p + (J_0/r)\,\dot\varphi\,\dot\psi$:
 
             >>> board = nh.local_connection(nh.examples.snakeboard(rotor_inertia=0.5, half_length=1.0).system)
             >>> print(board.momentum_rate((0.0, 0.0), (2.0, 3.0)))
-            [-3.]
+            [3.]
         """
         return self._motion("momentum_rate", shape, shape_velocity, momentum)[1]
 

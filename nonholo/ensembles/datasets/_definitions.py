@@ -75,7 +75,7 @@ DEFINITIONS = {
     "rolling_disk": Definition("Rolling disk", (1.0, 1.0, 1.0, 1.0), (*_PLANE, _PI)),
     "sleigh_in_a_well": Definition("Sleigh on a spring", (1.0, 1.0), (_PI, 1.0, 1.0)),
     "snakeboard": Definition(
-        "Snakeboard", (1.0, 1.0, 1.0, 1.0, 1e-4), (*_PLANE, _PI, 0.3), center=(0.0, 0.0, 0.0, 0.0, -1.0)
+        "Snakeboard", (1.0, 1.0, 1.0, 1.0, 1e-4), (*_PLANE, _PI, 0.3), center=(0.0, 0.0, 0.0, 0.0, 1.0), version=2
     ),
     "two_wheeled_robot": Definition("Robot with two wheels", 5 * (1.0,), (*_PLANE, _PI, _PI)),
 }
