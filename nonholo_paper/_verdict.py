@@ -13,6 +13,7 @@ class Verdict(enum.StrEnum):
 
     AS_PRINTED = "right as printed"
     MISPRINT = "misprint"
+    HYPOTHESIS = "needs a hypothesis"
     EXCEPTIONS = "false with exceptions"
     FALSE = "false"
     CONTRADICTED = "contradicted by computation"
@@ -27,12 +28,13 @@ class Verdict(enum.StrEnum):
     @property
     def is_erratum(self) -> bool:
         """Tell whether the statement needs a correction; its finding then shows that the printed one fails."""
-        return self in (Verdict.MISPRINT, Verdict.EXCEPTIONS, Verdict.FALSE, Verdict.CONTRADICTED)
+        return self in {Verdict.MISPRINT, Verdict.HYPOTHESIS, Verdict.EXCEPTIONS, Verdict.FALSE, Verdict.CONTRADICTED}
 
 
 _MEANINGS = {
     Verdict.AS_PRINTED: "the statement holds as it stands",
     Verdict.MISPRINT: "a slip in a formula or a word; what was meant is right",
+    Verdict.HYPOTHESIS: "false as it stands; it holds under a condition that is left out, and is named",
     Verdict.EXCEPTIONS: "false as it stands, but only for special bodies or sets, which are named",
     Verdict.FALSE: "a counterexample or the definition shows that it does not hold",
     Verdict.CONTRADICTED: "numbers speak against it; this is evidence and no proof",

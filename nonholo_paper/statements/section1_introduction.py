@@ -4,7 +4,17 @@ from collections.abc import Callable
 
 import nonholo as nh
 from nonholo_paper import _twin as twin
-from nonholo_paper._bodies import SLEIGH, TOP, TOP_4, Body, displacements, in_double
+from nonholo_paper._bodies import (
+    BALANCED_SLEIGH,
+    BALANCED_TOP,
+    SLEIGH,
+    TOP,
+    TOP_4,
+    Body,
+    displacements,
+    in_double,
+    velocities,
+)
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper._twin import Matrix, Number, ctx
 from nonholo_paper._verdict import Verdict
@@ -90,6 +100,29 @@ def _top_velocity(s: Number, u: Number) -> list[Number]:
 def _sleigh_velocity(s: Number, u: Number) -> list[Number]:
     """Return angle and slide of the displacement with half-angle s whose chord has the signed length u."""
     return [2 * s, u * s / ctx.sin(s)]
+
+
+@finding(
+    "measure-preserving",
+    "remark",
+    "Section 1, on Sections 6 and 7",
+    "“If, for special values of parameters, the continuous-time system is momentum/measure preserving, then so is its "
+    "discrete analog.”",
+    tolerance=1e-45,
+)
+def measure_preserving() -> Measured:
+    """Evaluate rates and steps of the momenta along the constraint of balanced bodies: none of them moves."""
+    defects, facts = [], []
+    for body in (BALANCED_TOP, BALANCED_SLEIGH, TOP, SLEIGH):
+        moved = []
+        for W, w in zip(displacements(body), velocities(body), strict=True):
+            moved.append(body.restrict(body.arriving(W)) - body.restrict(body.momentum(W)))
+            moved.append(body.restrict(twin.coad(body.group, list(w), list(body.inertia * w))))
+        if body in (BALANCED_TOP, BALANCED_SLEIGH):
+            defects += moved
+        else:
+            facts.append(twin.worst(*moved) > 0.01)
+    return Measured(max(twin.worst(*defects), float(facts.count(False))), note="balanced bodies; others move")
 
 
 @finding(

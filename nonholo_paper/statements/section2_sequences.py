@@ -86,6 +86,60 @@ def _weights(points: list[Matrix], seed: int) -> list[tuple[Matrix, Number, Numb
 
 
 @finding(
+    "S54",
+    "equation",
+    "Section 2, discrete Lagrange-d'Alembert principle",
+    r"“$\sum_{k=0}^{N-1}\bigg(D_1L_d(q_k, q_{k+1}) + D_2L_d(q_{k-1}, q_k)\bigg)\,\delta q_k = 0$, $\delta q_k \in "
+    r"\mathcal{D}_{q_k}$”",
+    verdict=Verdict.MISPRINT,
+    corrected="The sum begins with $k = 1$, as in Section 3, and the variations vanish at the ends: the term $k = 0$ "
+    "contains $q_{-1}$, which there is not, and the rest of it does not vanish.",
+    errata=("S54",),
+    tolerance=1e-45,
+)
+def first_term() -> Measured:
+    """Sum the balances of a solution from k = 1; printed: what an admissible variation of the first point adds."""
+    (path, _), right = _motion(6), []
+    wrong = [abs(twin.dot(_slopes(path[0], path[1])[0], d)) for d in _admissible(path[0])]
+    for before, q, after in zip(path, path[1:], path[2:], strict=False):
+        left = general.coordinate_balance(_slopes(q, after)[0], _slopes(before, q)[1])
+        right += [twin.dot(left, d) for d in _admissible(q)]
+    return Measured(twin.worst(right), float(min(wrong)), "6 steps of a falling particle, two variations each")
+
+
+def _admissible(q: Matrix) -> list[Matrix]:
+    """Return a basis of the admissible velocities at a point."""
+    return [twin.column([1, 0, q[1]]), twin.column([0, 1, 0])]
+
+
+@finding(
+    "S55",
+    "remark",
+    "Section 2, discrete mechanical systems, (ii)",
+    r"“an $(n-s)$-dimensional distribution $\mathcal{D}$ on $TQ$;” and $\mathcal{D}_d$ “has the same dimension as "
+    r"$\mathcal{D}$”",
+    verdict=Verdict.MISPRINT,
+    corrected="On $Q$: $n - s$ is the dimension of the spaces $\\mathcal{D}_q$. The dimension that $\\mathcal{D}_d$ "
+    "shares is $2n - s$, that of $\\mathcal{D}$ as a subset of $TQ$.",
+    errata=("S55",),
+    tolerance=1e-45,
+)
+def dimensions() -> Measured:
+    """Find them from the ranks of slopes at random points; printed: the dimension of D_d less that of the spaces."""
+    right, wrong = [], []
+    for seed in range(4):
+        q, v, r = (twin.column(twin.numbers(seed + k, 3, -2, 2)) for k in (0, 20, 40))
+        moved = [(twin.column([*e[:3]]), twin.column([*e[3:]])) for e in (ctx.eye(6)[:, i] for i in range(6))]
+        pairs = [twin.rate(lambda t, d=d, q=q, r=r: _constraint(q + t * d[0], r + t * d[1])) for d in moved]
+        whole = [twin.rate(lambda t, d=d, q=q, v=v: twin.dot(_form(q + t * d[0]), v + t * d[1])) for d in moved]
+        discrete, continuous = (6 - twin.rank(ctx.matrix([slope])) for slope in (pairs, whole))
+        spaces = 3 - twin.rank(_form(q).T)
+        right += [discrete - continuous, spaces - 2, continuous - 5]
+        wrong.append(discrete - spaces)
+    return Measured(twin.worst(right), float(min(wrong)), "a particle with n = 3, s = 1 at 4 random points")
+
+
+@finding(
     "gen.constr",
     "equation",
     "Section 2, equation (gen.constr)",
@@ -104,6 +158,49 @@ def constraint_functions() -> Measured:
         at_rest = [twin.rate(lambda t, e=e, q=q: _constraint(q, q + t * e)) for e in _units()]
         defects += [_constraint(q, q), *(twin.column(at_rest) - _form(q))]
     return Measured(twin.worst(defects), note="4 random points, near and far")
+
+
+def _sheared_action(q: Matrix, q_next: Matrix) -> Number:
+    """Return a discrete Lagrangian that does not change with shifts along y."""
+    d = q_next - q
+    return twin.dot(d, d) / 2 + (q[0] + q_next[0]) / 4 * d[0] * d[1]
+
+
+def _sheared_slope(q: Matrix, q_next: Matrix, direction: Matrix, *, last: bool) -> Number:
+    """Return its derivative by one of its points, by the definition."""
+    shifts = (0, 1) if last else (1, 0)
+    return twin.rate(lambda t: _sheared_action(q + shifts[0] * t * direction, q_next + shifts[1] * t * direction))
+
+
+def _sheared_step(before: Matrix, q: Matrix) -> Matrix:
+    """Return the next point by the principle: two balances and the constraint."""
+
+    def missed(*place: Number) -> list[Number]:
+        after, arrived = twin.column(place), [_sheared_slope(before, q, d, last=True) for d in _admissible(q)]
+        left = [_sheared_slope(q, after, d, last=False) for d in _admissible(q)]
+        return [*(x + y for x, y in zip(left, arrived, strict=True)), _constraint(q, after)]
+
+    return twin.column(ctx.findroot(missed, list(2 * q - before), tol=1e-90, maxsteps=12, verify=False))
+
+
+@finding(
+    "horizontal-symmetry",
+    "remark",
+    "Section 1, on earlier work",
+    "“the discrete-time nonholonomic system conserves the spatial momentum in the case of horizontal symmetry”",
+    tolerance=1e-45,
+)
+def horizontal_symmetry() -> Measured:
+    """Move a particle by the principle: shifts along y are an admissible symmetry, those along x are not."""
+    path = [twin.column([0, 0.5, 0]), twin.column([0.25, 0.75, 0.15625])]
+    for _ in range(3):
+        path.append(_sheared_step(*path[-2:]))
+    along = [
+        [_sheared_slope(q, after, e, last=True) for q, after in itertools.pairwise(path)]
+        for e in (_units()[1], _units()[0])
+    ]
+    kept, moved = ([p - momenta[0] for p in momenta] for momenta in along)
+    return Measured(max(twin.worst(kept), float(twin.worst(moved) < 0.01)), note="a particle with z' = y x', 3 steps")
 
 
 @finding(

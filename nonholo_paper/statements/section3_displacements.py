@@ -94,7 +94,7 @@ def symmetric_pair() -> Measured:
     "Section 3, proposition (S-Cartan)",
     r"“Under the condition (cartan) the set $\mathcal{S} = \exp\mathfrak{d}$ is a smooth submanifold of $G$, which "
     r"is either homeomorphic to the symmetric space $G/H$ or is a factor of $G/H$ by a finite group action.”",
-    verdict=Verdict.FALSE,
+    verdict=Verdict.HYPOTHESIS,
     corrected=r"So it is for the pairs of the paper, where $gH \mapsto g\,\sigma(g)^{-1}$ is two to one onto "
     r"$\exp\mathfrak{d}$, and for Riemannian symmetric pairs of groups. The condition (cartan) alone is not enough: "
     r"in $SL(2, \mathbb{R})$, $\mathfrak{h}$ the diagonal matrices, $\exp\mathfrak{d}$ is no manifold at $-I$: near "

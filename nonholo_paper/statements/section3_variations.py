@@ -117,6 +117,37 @@ def _stationarity(body: Body) -> float:
 
 
 @finding(
+    "S56",
+    "remark",
+    "Section 3, theorem (discrete_EPS), (iii) and (iv)",
+    r"“$s_d : G^{N-1} \to \mathbb{R}$” and “$f_j(W_k) = 0$, $j = 1, \dots, s$, $k = 1, \dots, N - 1$.”",
+    verdict=Verdict.MISPRINT,
+    corrected="$s_d$ is a function on $G^N$, of $W_0, \\dots, W_{N-1}$, and $k = 0, \\dots, N - 1$. Otherwise $W_0$ is "
+    "free: displacements off $\\mathcal{S}$ carry the same momenta along $\\mathfrak{d}$ to the next step.",
+    errata=("S56",),
+    tolerance=1e-45,
+)
+def first_displacement() -> Measured:
+    """Solve (iv) for a first displacement off the variety; printed: how asymmetric it is where it must not be."""
+    right, wrong = [], []
+    for seed in (1, 2, 3):
+        W = TOP.displacement(TOP.velocity(twin.numbers(seed, 2)))
+        carried, aside = TOP.restrict(TOP.arriving(W)), ctx.mpf("0.125")
+
+        def turned(x: Number, y: Number, aside: Number = aside) -> Matrix:
+            return twin.exp(twin.hat(TOP.group, [x, y, aside]))
+
+        def missed(x: Number, y: Number, carried: Matrix = carried) -> list[Number]:
+            return list(TOP.restrict(TOP.arriving(turned(x, y))) - carried)
+
+        start = twin.vee(TOP.group, (W - W.T) / 2)[:2]
+        off = turned(*ctx.findroot(missed, start, tol=1e-90, verify=False))
+        right += [*(TOP.restrict(TOP.arriving(off)) - carried), W[1, 0] - W[0, 1]]
+        wrong.append(abs(off[1, 0] - off[0, 1]))
+    return Measured(twin.worst(right), float(min(wrong)), "a top, three displacements")
+
+
+@finding(
     "dis_LA_1.eqn",
     "equation",
     "Section 3, equation (dis_LA_1.eqn)",

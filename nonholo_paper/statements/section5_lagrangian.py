@@ -49,7 +49,7 @@ def center_of_mass() -> Measured:
     "equation",
     "Section 5, the words on J before equation (Caplag)",
     "“Let $m$ and $J$ denote the mass and moment of inertia of the sleigh relative to the contact point.”",
-    verdict=Verdict.FALSE,
+    verdict=Verdict.MISPRINT,
     corrected="The formulas add $m(a^2 + b^2)$, so $J$ is the moment of inertia about the center of mass.",
     errata=("C2",),
     tolerance=1e-45,

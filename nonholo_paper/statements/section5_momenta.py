@@ -196,8 +196,8 @@ def footnote_arches() -> Measured:
     "Section 5, stability of the equilibria",
     "“The equilibria located in the upper half plane are asymptotically stable ... whereas the equilibria in the "
     "lower half plane are unstable”",
-    verdict=Verdict.EXCEPTIONS,
-    corrected="For $a > 0$, as in the figure. For $a < 0$ it is the other way round: those with $ap_1 > 0$ "
+    verdict=Verdict.HYPOTHESIS,
+    corrected="It needs $a > 0$, as in the figure. For $a < 0$ it is the other way round: those with $ap_1 > 0$ "
     "attract, inside their level of energy, with the rate $-ap_1/(J + ma^2)$.",
     errata=("C8",),
     tolerance=1e-45,

@@ -169,7 +169,7 @@ def _spin(body: list[Point], xi: Matrix, about: list) -> Matrix:
     "equation",
     "Section 5, the words after equation (cont.mom.se(n))",
     "“Here $M$ is the angular momentum of the body with respect to its center of mass $C$”",
-    verdict=Verdict.FALSE,
+    verdict=Verdict.MISPRINT,
     corrected="$M$ is the angular momentum about the body origin $A$, hence its terms with $v$.",
     errata=("C13",),
     tolerance=1e-45,

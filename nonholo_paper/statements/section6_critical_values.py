@@ -117,7 +117,7 @@ def _saddles_of_a_long_body() -> int:
     "Section 6, invariant curves: condition",
     "“Assume that quadratic form $(J_{22} + J_{33})q_1^2 - 2J_{12}q_1q_2 + (J_{33} + J_{11})q_2^2$ is positive "
     "definite. Then” both critical values exist",
-    verdict=Verdict.FALSE,
+    verdict=Verdict.HYPOTHESIS,
     corrected=r"Both exist if $D > 2|c|^2$, $D = \det B$; positivity is not enough: a tilted rod has no saddle off "
     r"the equator. The condition is sufficient, not necessary: another tilted body violates it and has both.",
     errata=("S36",),

@@ -11,7 +11,7 @@ from nonholo_paper._finding import Measured, finding
 from nonholo_paper._twin import Matrix, Number, Vector, ctx
 from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import suslov_integrals as formulas
-from nonholo_paper.statements.section6_critical_values import GENERIC, critical_points
+from nonholo_paper.statements.section6_critical_values import GENERIC, critical_points, critical_roots
 
 _FLAT = [[1.645907, -0.975937, -0.176582], [-0.975937, 0.591716, 0.106159], [-0.176582, 0.106159, 0.028912]]
 
@@ -52,12 +52,17 @@ def _binomial(k: int, i: int) -> Number:
     "level-curves",
     "remark",
     "Section 6, invariant curves",
-    r"Below $h^*$ the curve has two components, one around the origin; they meet at $h^*$; at $h^{**}$ the curve "
-    r"shrinks to two opposite points, and there is none above.",
+    "“on the upper hemisphere $0 \\le q_0 \\le 1$ real invariant curves consist of two branches” “There are no real "
+    "invariant curves for $h > h^{**}$.”",
+    verdict=Verdict.EXCEPTIONS,
+    corrected=r"So it is for bodies without a third minimum: below $h^*$ two components, one around the origin, which "
+    r"meet at $h^*$; at $h^{**}$ two opposite points. With a third minimum, for instance for $c$ along $e_1$ and "
+    r"$B_{11} > 2B_{22}$, there are three components between its energy and that of the saddles on the equator.",
+    errata=("S36",),
     tolerance=1e-45,
 )
 def level_curves() -> Measured:
-    """Count components of the library's curves, and compare energies of random displacements with the largest."""
+    """Count components of the library's curves, compare energies with the largest; printed: how many too many."""
     facts = []
     for name in GENERIC:
         J, top = data.body(name), data.discrete(data.body(name))
@@ -70,7 +75,73 @@ def level_curves() -> Measured:
         inner = nh.invariant_curve(top, energies[0], 60).components[0]
         angle = np.unwrap(np.arctan2(inner[:, 2], inner[:, 1]))
         facts += [abs(np.ptp(angle) - 2 * np.pi) < 0.3, data.energy(J, center) > 0.99 * high]
-    return Measured(data.lacking(*facts), note="three bodies, four energies; 12 displacements")
+    counts = _components_of_a_long_body()
+    facts.append(counts == [2, 3, 3, 2])
+    return Measured(data.lacking(*facts), max(counts) - 2, "three bodies, four energies; 12 displacements; a long body")
+
+
+def _components_of_a_long_body() -> list[int]:
+    """Return the numbers of components below, twice above its third minimum, and above the saddles on the equator."""
+    top = nh.discretize(nh.SuslovTop([[2.2, 0.0, 0.45], [0.0, 0.25, 0.0], [0.45, 0.0, 0.35]]), 1.0)
+    known = nh.critical_energies(top)
+    third = max(p.energy for p in known.points if p.on_equator and p.kind == "minimum")
+    span = known.equatorial_saddle - third
+    energies = (0.9 * third, third + 0.1 * span, third + 0.9 * span, (known.equatorial_saddle + known.saddle) / 2)
+    return [len(nh.invariant_curve(top, E, 200).components) for E in energies]
+
+
+def _double_points(J: Matrix, angle: Number) -> list[tuple[Matrix, Matrix]]:
+    """Return pairs n, n' whose displacements have one momentum."""
+    pairs = []
+    _, vectors = ctx.eig(J * ctx.diag([1, 1, -1]))
+    unit = [ctx.matrix(data.unit([ctx.re(x) for x in vectors[:, k]])) for k in range(3)]
+    for i, k in itertools.combinations(range(3), 2):
+        _, axes = ctx.eigsy(unit[i] * unit[i].T - unit[k] * unit[k].T)
+        u, w = axes[:, 0], axes[:, 2]
+        for s in (1, -1):
+            turned = s * ctx.sin(angle)
+            pairs.append((ctx.cos(angle) * u + turned * w, turned * u + ctx.cos(angle) * w))
+    return pairs
+
+
+def _reflected(n: Matrix) -> Matrix:
+    """Return the displacement of a unit vector, two reflections: by twice its angle with e3."""
+    return (ctx.eye(3) - 2 * n * n.T) * ctx.diag([1, 1, -1])
+
+
+def _outside(J: Matrix, n: Matrix) -> Number:
+    """Return by how much the squared sine of half the angle of a displacement is beyond that of the largest energy."""
+    return n[0] ** 2 + n[1] ** 2 - formulas.ridge(J, data.unit([n[0], n[1]]))
+
+
+@finding(
+    "S57",
+    "remark",
+    "Section 6, invariant curves: two branches",
+    r"“These different branches correspond to the two connected components of the intersection of the Steiner surface "
+    r"$\mathcal{U}$ with the cylinder.”",
+    verdict=Verdict.FALSE,
+    corrected=r"The images of the two ovals in the space of momenta meet, on the double segments of $\mathcal{U}$: of "
+    r"two displacements with one momentum there one may lie on the inner oval and one on the outer. For two bodies "
+    r"there are such points below $0.1\,h^*$ and above $0.9\,h^*$, for a balanced top, $c = 0$, at every level.",
+    errata=("S57",),
+    tolerance=1e-45,
+)
+def meeting_ovals() -> Measured:
+    """Compare momenta of pairs below h*; printed: how far, at least, one is inside and one outside of the ridge."""
+    exact, apart, lowest = [], [], []
+    for name in (*data.REGULAR, "balanced"):
+        J, levels = data.body(name), []
+        low = critical_roots(J)[0] / 4
+        for pair in itertools.chain(*(_double_points(J, ctx.mpf(angle)) for angle in (0.01, 0.2, 0.5, 0.7))):
+            momenta = [data.momentum(J, _reflected(n)) for n in pair]
+            exact += data.differences(*momenta)
+            sides, level = [_outside(J, n) for n in pair], data.reduced_energy(J, momenta[0]) / low
+            if level < 1 and sides[0] * sides[1] < 0:
+                apart.append(float(min(map(abs, sides))))
+                levels.append(level)
+        lowest.append(min(levels) < (0.001 if name == "balanced" else 0.1) and max(levels) > 0.9)
+    return Measured(max(twin.worst(exact), data.lacking(*lowest)), min(apart), "three bodies, 24 double points each")
 
 
 @finding(

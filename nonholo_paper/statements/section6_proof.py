@@ -6,7 +6,7 @@ from nonholo_paper._finding import Measured, finding
 from nonholo_paper._twin import Matrix, Number, Vector, ctx
 from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import suslov_integrals as formulas
-from nonholo_paper.statements.section6_critical_values import critical_roots
+from nonholo_paper.statements.section6_critical_values import critical_points, critical_roots
 
 NOTE = "8 bodies, balanced, tilted, with J1 = J2 among them; 12 displacements, half-turns among them"
 
@@ -108,12 +108,35 @@ def growth_of_first() -> Measured:
 
 
 @finding(
+    "S58",
+    "remark",
+    "Section 6, proof of theorem (discr_sus_dyn)",
+    r"“the part $\mathcal{U}_0$ of the momentum surface $\mathcal{U}$ bounded by the condition $E = ( J_{11} + J_{33}) "
+    r"M_1^2 + 2J_{12}M_1M_2 + (J_{22} + J_{33})M_2^2 \le h^*$”",
+    verdict=Verdict.MISPRINT,
+    corrected="$E \\le 4h^*$: $h^*$ is a value of the integral (quatern_int), of which $E$ is four times.",
+    errata=("S58",),
+    tolerance=1e-45,
+)
+def bound_of_the_domain() -> Measured:
+    """Evaluate both integrals at the saddles, where (quatern_int) is h*; printed: by how much E is beyond."""
+    right, wrong = [], []
+    for name in (*data.REGULAR, "flat"):
+        J = data.body(name)
+        (_, q), _ = critical_points(J)
+        E, h = formulas.quadratic(J, data.momentum(J, data.rotation(q))), formulas.quartic(J, q)
+        right.append(E - formulas.quadratic_of_quartic(h))
+        wrong.append(float(E / formulas.printed_quadratic_of_quartic(h) - 1))
+    return Measured(twin.worst(right), min(wrong), "saddles of three bodies")
+
+
+@finding(
     "S43",
     "remark",
     "Section 6, proof of theorem (discr_sus_dyn)",
     r"“Using the properties $(J_{11} + J_{33})(J_{22} + J_{33}) - J_{12}^2 > 0$, $q_0 \ge 0$, one can show that in "
     r"the domain $\mathcal{U}_0$ the expression in square brackets in (M_1) is positive.”",
-    verdict=Verdict.FALSE,
+    verdict=Verdict.HYPOTHESIS,
     corrected=r"It is positive inside if $\mu_1 < D^2/(c\cdot Bc)$, where $\mu_1 = 4h^*$ of the reduced energy "
     r"$m\cdot B^{-1}m$, $m = M/2$; for this $D > 2|c|^2$ is sufficient.",
     errata=("S43",),

@@ -84,20 +84,32 @@ def no_other_equilibria() -> Measured:
     "balanced-top",
     "remark",
     "Section 6, stationary solutions, end",
-    r"If $J_{13} = J_{23} = 0$ all solutions are stationary.",
+    r"“for a balanced inertia tensor $J_{13} = J_{23} = 0$ all the solutions of (diff_suslov) are stationary, i.e., "
+    r"the discrete body momentum $M_k$ is preserved.”",
+    verdict=Verdict.EXCEPTIONS,
+    corrected="Except on the other branch. $M_1$ and $M_2$, of which (diff_suslov) speaks, are constant on both; the "
+    "step repeats on one, and may go to the supplementary angle about the same axis, with another $M_3$.",
+    errata=("S59",),
     tolerance=1e-45,
 )
 def balanced() -> Measured:
-    """Compare the turned momentum with the momentum, of the formulas and of an orbit of the library."""
-    right, library = [], []
+    """Compare turned momenta with the momentum, those of both branches too; printed: the change of the third."""
+    right, library, jumps = [], [], []
     for name in ("balanced", "J1 = J2"):
         J = data.body(name)
         for q, W in data.turns():
             right += data.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
             right += data.differences(suslov_momenta.arriving(J, q)[:2], suslov_momenta.momentum(J, q)[:2])
+            sine = ctx.hypot(q[1], q[2])
+            if sine > 0.01 and q[0] > 0.01:
+                other = data.rotation([sine, q[1] * q[0] / sine, q[2] * q[0] / sine])
+                changes = data.differences(data.momentum(J, other), data.turned(J, W))
+                right += changes[:2]
+                jumps.append(data.momentum(J, other)[2] - data.momentum(J, W)[2])
         orbit = nh.simulate(data.discrete(J), displacement=data.array(data.rotation(data.points()[0])), steps=20)
         library += list((orbit.momentum - orbit.momentum[0]).ravel())
-    return Measured(twin.both(twin.worst(right), twin.worst(library)), note="two bodies, 12 displacements; 20 steps")
+    note = "two bodies, 12 displacements; 20 steps"
+    return Measured(twin.both(twin.worst(right), twin.worst(library)), twin.worst(jumps), note)
 
 
 @finding(

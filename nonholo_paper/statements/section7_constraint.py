@@ -81,7 +81,7 @@ def _two_cosets(n: int, seed: int) -> tuple[Matrix, list[Matrix]]:
     "remark",
     "Section 7, before the proposition on the variety",
     r"“$\exp\mathfrak{d}$ must be a covering of the homogeneous space $SE(n)/SE(n-1)$”",
-    verdict=Verdict.FALSE,
+    verdict=Verdict.MISPRINT,
     corrected=r"The quotient covers $\exp\mathfrak{d}$ twice: with $\sigma$ the involution that reverses "
     r"$\mathfrak{d}$, $g \to g\,\sigma(g)^{-1}$ has the same value at the cosets $(q, \nu)$ and $(-q, -\nu)$, where "
     r"$q = Re_1$, $\nu = (x, q)$.",

@@ -1,5 +1,6 @@
 """Section 8, the conclusions: what is kept, whether the maps are solvable, several dimensions."""
 
+import itertools
 from collections.abc import Callable
 
 import numpy as np
@@ -199,3 +200,30 @@ def several_dimensions() -> Measured:
             wrong.append(float(abs(_energy_change(body, body.displacement(velocity)))))
     orbit = nh.simulate(nh.discretize(ANY_4.system, 1.0), restricted_velocity=(0.5, -0.25), steps=10)
     return Measured(twin.both(max(right), np.ptp(orbit.energy)), min(wrong), "6 random subspaces; one orbit on SO(4)")
+
+
+@finding(
+    "right-invariant",
+    "remark",
+    "Section 8, last paragraph",
+    "“by modifying our approach, one can also consider discretizations of nonholonomic LR systems on Lie groups.” “The "
+    "discrete dynamics of such systems, as well as the existence of their invariant measure, is currently being "
+    "developed”",
+    verdict=Verdict.REMARK,
+    corrected=r"One can: $g_{k+1}g_k^{-1} \in \exp\mathfrak{d}$, and the momentum in space is constant along "
+    r"$\mathfrak{d}$. Whether a measure is kept is not decided here.",
+    tolerance=1e-45,
+)
+def right_invariant() -> Measured:
+    """Follow a top whose constraint is fixed in space: momenta by definition, displacements as seen from space."""
+    tensor = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+    orbit = nh.simulate(nh.discretize(nh.VeselovaTop(tensor), 1.0), restricted_velocity=(0.5, -0.25), steps=10)
+    poses, momenta, seen = [ctx.matrix(g.tolist()) for g in orbit.configuration], [], []
+    for g, after in itertools.pairwise(poses):
+        W, U = g**-1 * after, after * g**-1
+        P = twin.column(twin.vee(SO(3), W * ctx.matrix(tensor.tolist()) - ctx.matrix(tensor.tolist()) * W.T))
+        momenta.append(g * P)
+        seen.append(U[1, 0] - U[0, 1])
+    kept = [p[:2, 0] - momenta[0][:2, 0] for p in momenta]
+    moves = twin.worst(*(p[2] - momenta[0][2] for p in momenta)) > 0.01
+    return Measured(max(twin.both(0, twin.worst(*kept, seen)), float(not moves)), note="a top, 10 steps")

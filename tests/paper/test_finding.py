@@ -23,7 +23,7 @@ def _finding(verdict: Verdict, claim: str = "\u201cclaim\u201d", **changed: obje
 
 def test_verdicts() -> None:
     """Four words say that something is to be corrected; each word has a meaning of its own."""
-    names = {"MISPRINT", "EXCEPTIONS", "FALSE", "CONTRADICTED"}
+    names = {"MISPRINT", "HYPOTHESIS", "EXCEPTIONS", "FALSE", "CONTRADICTED"}
     assert {verdict.name for verdict in ERRATA} == names
     assert len({verdict.meaning for verdict in Verdict}) == len(Verdict)
 

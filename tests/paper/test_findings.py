@@ -7,7 +7,7 @@ from nonholo_paper._registry import Entry, entries
 SLOW = [
     *("footnote-6_1", "footnote-3", "*.fig", "suslov-space-axes", "det.delta.phi", "surface[12]", "ell", "quartic"),
     *("bi-asymptotic", "regularity", "discrete_EPS", "small-value", "between-the-separatrices", "Suslov_eq"),
-    *("C9", "asymptotic-angle", "C35", "half-plane", "S6", "S36_0", "S43", "top-solvability"),
+    *("elementary-heading", "asymptotic-angle", "C35", "half-plane", "S6", "S36_0", "S43", "top-solvability"),
 ]
 
 
