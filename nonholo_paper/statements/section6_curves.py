@@ -83,10 +83,10 @@ def level_curves() -> Measured:
 def _components_of_a_long_body() -> list[int]:
     """Return the numbers of components below, twice above its third minimum, and above the saddles on the equator."""
     top = nh.discretize(nh.SuslovTop([[2.2, 0.0, 0.45], [0.0, 0.25, 0.0], [0.45, 0.0, 0.35]]), 1.0)
-    known = nh.critical_energies(top)
-    third = max(p.energy for p in known.points if p.on_equator and p.kind == "minimum")
-    span = known.equatorial_saddle - third
-    energies = (0.9 * third, third + 0.1 * span, third + 0.9 * span, (known.equatorial_saddle + known.saddle) / 2)
+    points = nh.critical_energies(top).points
+    third = max(p.energy for p in points if p.kind == "minimum")
+    side, saddle = sorted({round(p.energy, 9) for p in points if p.kind == "saddle"})
+    energies = (0.9 * third, 0.9 * third + 0.1 * side, 0.1 * third + 0.9 * side, (side + saddle) / 2)
     return [len(nh.invariant_curve(top, E, 200).components) for E in energies]
 
 
