@@ -31,7 +31,6 @@ from ._lock import owner_of as owner_of
 from ._metadata import TAKEN as TAKEN
 from ._metadata import SweepMetadata as SweepMetadata
 from ._metadata import checksum as checksum
-from ._metadata import is_array_name as is_array_name
 from ._metadata import require_identity as require_identity
 from ._plan import Checkpoint as Checkpoint
 from ._plan import Plan as Plan

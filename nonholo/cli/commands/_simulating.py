@@ -69,6 +69,7 @@ def _report(loaded: Loaded, ran: Ran, orbit: Orbit, paths: dict[str, str | None]
     length = f"{measured['steps']} of {loaded.scenario.run.steps}, time step {loaded.scenario.run.time_step:g}"
     title = loaded.scenario.title or loaded.name
     heading = {"title": title, "steps": length, "time per step": f"{duration(each)}, once compiled"}
+    heading |= loaded.scenario.forces.about(orbit.system)
     if is_part:
         heading["shown"] = f"the last {len(orbit):,} states; the store has all"
     show(measured, heading)

@@ -54,7 +54,8 @@ def sweep_and_keep(
     if quiet and not json:
         typer.echo(store)
     else:
-        show_sweep(store, figures, {"title": loaded.scenario.title or loaded.name}, {"picture": picture}, json=json)
+        heading = {"title": loaded.scenario.title or loaded.name} | loaded.scenario.forces.about(task.discrete.system)
+        show_sweep(store, figures, heading, {"picture": picture}, json=json)
     leave_if_all_raised(figures)
 
 
