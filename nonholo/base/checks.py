@@ -324,7 +324,7 @@ def is_name(value: Any) -> bool:
 def name(where: str, value: Any, taken: Collection[str] = ()) -> str:
     """Return a name (`is_name`), refused if it is one of those with a meaning of their own."""
     if not is_name(value) or value in taken:
-        remedy = f"Rename it; {', '.join(sorted(taken))} have a meaning of their own." if taken else "Rename it."
+        remedy = f"Rename it; taken: {', '.join(sorted(taken))}." if taken else "Rename it."
         raise error(where, "be a name: a letter, then letters, digits and underscores, all ASCII", shown(value), remedy)
     return value
 

@@ -30,7 +30,6 @@ from nonholo.io._attributes import attributes_of_text
 _MOST, _MOST_CHUNKS = 2**53, 2**26
 TAKEN = frozenset({"run"})
 """Names in a store that no array has."""
-_UNNAMED = re.compile(r"event (?=\d+$)")  # one whose function has no name
 _COMPONENT = re.compile(r"(\[\d+\])+")  # as older sweeps wrote them
 
 Positive = Annotated[int, Field(gt=0, le=_MOST, strict=True)]
@@ -42,10 +41,6 @@ def _name(text: str) -> str:
     if not is_name(plain) or plain in TAKEN:
         raise ValueError(f"{shown(text)} is no name: a letter, then letters, digits and underscores, all ASCII")
     return text
-
-
-def _event_name(text: str) -> str:
-    return _name(_UNNAMED.sub("event_", text))
 
 
 Name = Annotated[str, AfterValidator(_name)]
@@ -73,10 +68,6 @@ class _Run(_Data):
     lead: Literal[0, 1] = 1
 
 
-class _Event(_Data):
-    name: Annotated[str, AfterValidator(_event_name)]
-
-
 class OrbitMetadata(_About):
     """The attributes of the store of an orbit."""
 
@@ -90,7 +81,7 @@ class OrbitMetadata(_About):
     conventions: str = ""
     outcome: Literal[tuple(Outcome.__members__)] | None = None  # type: ignore[valid-type]
     run: Json[_Run] | None = None
-    events: Json[list[_Event]] | None = None
+    events: Json[list[dict[str, Any]]] | None = None
     crossings: Json[list[NonNegativeInt]] | None = None
     stopped_by: str | None = None
     seal: NonNegativeInt | None = None
@@ -189,7 +180,7 @@ def require_identity(path: Path, made: str | None) -> None:
 
 
 def check_array(where: str, name: str, array: zarr.Array) -> None:
-    """Refuse an array that is not cut as ours are, whose chunks do not fit into memory, or with bytes in another order."""
+    """Refuse an array that is not cut as ours are, with chunks too large for memory, or with bytes in another order."""
     remedy, (sizes, chunks) = f"The array {name} is damaged or was edited.", (array.shape, array.chunks)
     is_ours = (len(sizes) == 2 and sizes[1] >= 2) if name.startswith("run/") else len(sizes) > 0
     if not is_ours or min(chunks) < 1 or math.prod(array.cdata_shape) > _MOST_CHUNKS:

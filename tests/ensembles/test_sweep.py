@@ -211,7 +211,7 @@ def test_changing_results_are_refused(later: Callable[[nh.MemberBlock], Any], ma
         (lambda block: block["x"][:1], r"leading member axis. Got shape \(1,\) for 2 members"),
         (lambda block: np.ones((block.count, 0)), "hold numbers"),
         (lambda block: (("one", "two"), block.random(2)), "name each axis but the first"),
-        (lambda block: {"run": block["x"]}, "not run or zarr.json"),
+        (lambda block: {"run": block["x"]}, "taken: run"),
         (lambda block: {"a/b": block["x"]}, "be a name: a letter"),
         (lambda block: {1: block["x"]}, "be a name: a letter"),
         (lambda block: {"outcome": block["x"]}, "a number from -127 to 127"),
