@@ -11,6 +11,7 @@ from ._beside import check_file as check_file
 from ._beside import complete_file as complete_file
 from ._beside import new_beside as new_beside
 from ._beside import new_file as new_file
+from ._beside import remove_store as remove_store
 from ._chunks import DamagedError as DamagedError
 from ._chunks import chunk_name as chunk_name
 from ._chunks import chunk_path as chunk_path

@@ -38,10 +38,8 @@ class _Recorded(BaseModel):
     @model_validator(mode="after")
     def _fit(self) -> "_Recorded":
         wanted = self.shapes[0] if self.orbits == "CoordinateOrbit" else (0,)
-        if (len(self.coordinates),) != wanted:
-            raise ValueError(f"coordinates: must be {wanted[0]} names")
-        if self.heading is not None and self.heading not in self.coordinates:
-            raise ValueError("heading: must be a coordinate")
+        if (len(self.coordinates),) != wanted or self.heading not in (None, *self.coordinates):
+            raise ValueError(f"coordinates: must be {wanted[0]} names, the heading among them")
         return self
 
 

@@ -66,6 +66,7 @@ class _Run(_Data):
     rows: Positive
     reconstruct: bool
     lead: Literal[0, 1] = 1
+    added: Positive | None = None
 
 
 class OrbitMetadata(_About):
@@ -177,6 +178,13 @@ def require_identity(path: Path, made: str | None) -> None:
     if found != made:
         reason = "Another store has taken the place of the one that was being written; nothing of it was changed"
         raise OSError(errno.ESTALE, reason, str(path))
+
+
+def check_assertions(where: str) -> None:
+    """Refuse to read or write a store where Python leaves assertions out: zarr works in some of its own."""
+    if not __debug__:
+        got = "python -O or PYTHONOPTIMIZE, which leaves out assertions in which zarr does a part of its work"
+        raise error(where, "be asked of Python with assertions", got, "Run it without -O, and unset PYTHONOPTIMIZE.")
 
 
 def check_array(where: str, name: str, array: zarr.Array) -> None:

@@ -1,5 +1,6 @@
 """What a process that was killed while it made a store leaves, and who removes it."""
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -7,12 +8,12 @@ from pathlib import Path
 import pytest
 
 import nonholo as nh
-from nonholo.io import new_beside
+from nonholo.io import check_target, complete_file, new_beside, remove_store
 
 MAKER = """
 import sys
 from pathlib import Path
-from nonholo.io import new_beside
+from nonholo.io import check_target, complete_file, new_beside, remove_store
 with new_beside(Path(sys.argv[1])) as part:
     part.mkdir()
     print("making", flush=True)
@@ -52,3 +53,77 @@ def test_nothing_is_left_of_what_fails(tmp_path: Path) -> None:
         part.write_text("half")
         raise OSError(28, "No space left on device")
     assert hidden(tmp_path) == []
+
+
+def _orbit() -> nh.Orbit:
+    return nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), restricted_velocity=(0.3, 0.2), steps=3)
+
+
+@pytest.mark.parametrize("is_replaced", [False, True])
+def test_store_that_was_being_replaced(is_replaced: bool, tmp_path: Path) -> None:
+    """Whoever is killed between the two renames has the older store put back; after both it is gone for good."""
+    path = tmp_path / "run.zarr"
+    nh.save_orbit(_orbit(), path)
+    path.rename(tmp_path / ".run.zarr.0123.old")
+    (tmp_path / ".run.zarr.0123.lock").touch()
+    nh.save_orbit(_orbit()[:2], path) if is_replaced else check_target(path, overwrite=True)
+    if is_replaced:
+        assert hidden(tmp_path) == []
+    assert len(nh.load_orbit(path)) == (2 if is_replaced else 4)
+    assert hidden(tmp_path) == []
+
+
+def test_store_is_removed_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A kill while its files are removed leaves nothing at the path: half a store would be no store to replace."""
+
+    def stopped(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    path = tmp_path / "run.zarr"
+    nh.save_orbit(_orbit(), path)
+    monkeypatch.setattr(shutil, "rmtree", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        remove_store(path)
+    assert not path.exists()
+    assert hidden(tmp_path) != []
+
+
+def test_picture_of_a_killed_one(tmp_path: Path) -> None:
+    """What was drawn half is removed by whoever draws there next, and the file has the suffix that was asked for."""
+    path, part = tmp_path / "run.png", tmp_path / ".run.png.0123.partial"
+    part.mkdir()
+    (part / "run.png").write_text("half")
+    part.with_suffix(".lock").touch()
+    with complete_file(path) as drawn:
+        assert Path(drawn).suffix == ".png"
+        Path(drawn).write_text("whole")
+    assert path.read_text() == "whole"
+    assert hidden(tmp_path) == []
+
+
+OPTIMIZED = """
+import sys
+import nonholo as nh
+orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), restricted_velocity=(0.3, 0.2), steps=3)
+doors = [
+    lambda: nh.load_orbit(sys.argv[1]),
+    lambda: nh.resume(sys.argv[1]),
+    lambda: nh.save_orbit(orbit, "new.zarr"),
+    lambda: nh.simulate(orbit.motion, restricted_velocity=(0.3, 0.2), steps=3, store="new.zarr"),
+    lambda: nh.sweep(print, nh.Grid({"x": [1.0]}), "new.zarr"),
+]
+for door in doors:
+    try:
+        door()
+    except ValueError as refusal:
+        print(refusal)
+"""
+
+
+def test_python_without_assertions(tmp_path: Path) -> None:
+    """Under `python -O`, where zarr does not work, every door of stores says so; runs without one go on."""
+    nh.save_orbit(_orbit(), tmp_path / "run.zarr")
+    command = [sys.executable, "-OO", "-c", OPTIMIZED, str(tmp_path / "run.zarr")]
+    told = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path)  # noqa: S603
+    assert told.stdout.count("must be asked of Python with assertions. Got python -O or PYTHONOPTIMIZE") == 5
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["run.zarr"]

@@ -11,6 +11,7 @@ from nonholo.base.checks import shown
 from nonholo.cli.scenario.bodies import BODIES
 from nonholo.cli.scenario.sections import Matrix, Section, Vector
 from nonholo.cli.scenario.toml import read_text
+from nonholo.groups import components_of
 
 if TYPE_CHECKING:
     from nonholo.systems import System
@@ -72,11 +73,8 @@ class Forces(Section):
 
     def about(self, system: "System") -> dict[str, str]:
         """Return what a report says of a table, if there is one: how long it is, and what its columns are."""
-        from nonholo.groups import components_of
-
-        if self.table is None:
-            return {}
-        return {"table of forces": f"{len(self.table)} rows, columns {', '.join(components_of(system.group))}"}
+        names, rows = ", ".join(components_of(system.group)), self.table
+        return {} if rows is None else {"table of forces": f"{len(rows)} rows, columns {names}"}
 
     def _part(self, name: str, make: "Callable[[System, Any], Any]", system: "System") -> Any:
         try:
@@ -116,8 +114,6 @@ def read_table(document: dict[str, Any], folder: Path) -> None:
 
 def _directions(document: dict[str, Any]) -> tuple[str, ...] | None:
     """Return the names of the directions of the body of a document; None if it is no body, which is reported later."""
-    from nonholo.groups import components_of
-
     try:
         return components_of(BODIES[document["body"]["kind"]].model_validate(document["body"]).system().group)
     except (KeyError, TypeError, ValueError):
