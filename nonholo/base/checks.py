@@ -311,7 +311,7 @@ def text(where: str, value: Any) -> str:
 def is_name(value: Any) -> bool:
     """Tell whether a text can name a column, a dimension, a file or a variable, wherever it comes from.
 
-    It begins with a letter, goes on with letters, digits and underscores, all ASCII, and is not long.
+    It begins with a letter, continues with letters, digits and underscores, all ASCII, and is not long.
 
     Example:
         >>> is_name("theta_1"), is_name("=1+1"), is_name("a,b"), is_name("_x")

@@ -109,7 +109,9 @@ def _of_discretization(where: str, discrete: Discretization) -> Shown:
     steps = min(_STEPS, len(system.table)) if table else _STEPS  # type: ignore[union-attr]
     state = _state(discrete, kind, momentum, system.group.pose_from_matrix(system.group.identity), steps, table)
     orbit = _run(state, table)
-    if _problem(state) and len(orbit):
+    if problem := _problem(state):
+        if not len(orbit):
+            raise error(where, "be a motion that the page can show", problem, "Run it, and pass the orbit.")
         return _replay(orbit, _BEYOND)
     recorded = _numbers(orbit, _spread(orbit, _RECORDED))[0] if len(orbit) else None
     data = {"kind": kind, "state": state, "recorded": recorded, "table": table}

@@ -77,7 +77,7 @@ def test_extend_that_is_refused_changes_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("short_blocks")
 def test_simulate_that_was_stopped_is_asked_again(nonholo: Command) -> None:
-    """The same command goes on where it was stopped, draws what it lacks, and then refuses as always."""
+    """The same command continues where it was stopped, draws what it lacks, and then refuses as always."""
     command = ("simulate", "sleigh", "--steps", 60, "-o", "run.zarr")
     with failing_at(3):
         assert nonholo(*command).exit_code == 1

@@ -108,9 +108,14 @@ def test_states_with_gaps_are_refused(missing: str) -> None:
 EXTREME = {
     "heavy": nh.ChaplyginSleigh(1e8, 1.0, 0.5),
     "hasty": nh.discretize(SLEIGH, 1e-7),
-    "slow": nh.discretize(SLEIGH, 1e3),
     "heavy top": nh.SuslovTop(1e7 * np.eye(3)),
 }
+
+
+def test_page_that_can_show_nothing_is_refused() -> None:
+    """A time step beyond those of the page, at which no step is left to replay, has no page."""
+    with pytest.raises(ValueError, match="must be a motion that the page can show. Got time_step"):
+        nh.explore(nh.discretize(SLEIGH, 1e3))
 
 
 @pytest.mark.parametrize("body", EXTREME)

@@ -78,8 +78,9 @@ def is_stopped(store: Path, text: str, pictures: list[str], read: Callable[[Path
 
 def continued(store: Path, *, progress: bool) -> Ran:
     """Do what a run that was stopped lacks; of one that came to its end the orbit is read."""
-    again = load_orbit if "outcome" in read_attributes(store) else functools.partial(resume_run, progress=progress)
-    return _ran(functools.partial(again, store))
+    if "outcome" in read_attributes(store):
+        return _ran(functools.partial(load_orbit, store))
+    return _ran(functools.partial(resume_run, store, discrete=None, events=None, throw=True, progress=progress))
 
 
 def _tried(loaded: Loaded) -> tuple[Discretization, bool]:
