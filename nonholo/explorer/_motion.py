@@ -201,17 +201,16 @@ def _state(
 
 def simulated(where: str, state: Any, table: dict[str, Any] | None = None) -> Orbit:
     """Return the motion of a state, which may come from a page and be anything, under the table of that page."""
-    if state is None:
-        raise error(where, "be asked of a page whose body runs in it", "a replay", "Use the orbit you passed.")
-    if problem := _problem(state):
-        raise error(where, "be asked of a state that the page can show", problem, "Move its sliders, or make it again.")
-    if state.get("table") not in (None, table and table["name"]):
-        got = "a motion under another table of forces"
-        raise error(where, "be asked of a state of this page", got, "Make the page again, with that table.")
+    problem = "a replay" if state is None else _problem(state)
+    if problem is None and state.get("table") not in (None, table and table["name"]):
+        problem = "a motion under another table of forces"
+    if problem:
+        remedy = "Use the orbit you passed, or make the page again."
+        raise error(where, "be asked of a state that the page can show", problem, remedy)
     return _run(state, table)
 
 
-def _run(state: dict[str, Any], table: dict[str, Any] | None) -> Orbit:
+def _run(state: Any, table: dict[str, Any] | None) -> Orbit:
     """Return the motion of a state."""
     steps, (body, pose) = state["steps"], _body_and_pose(state)
     rows = table_of(table, steps)

@@ -47,10 +47,11 @@ def _stopped(loaded: Loaded, output: Path | None, *, overwrite: bool) -> Path | 
     """Return the store at a path if this very command began it and was stopped; refuse what else is in the way."""
     suffixes = ["png"] * loaded.scenario.output.plot + ["gif"] * loaded.scenario.output.gif
     with store_errors(USAGE), scenario_errors(), reporting_warnings():
-        is_there = output is not None and not overwrite and output.exists()
-        again = output if is_there and is_stopped(output, scenario_text(loaded), suffixes, read_attributes) else None
-        check_output(output, overwrite=overwrite or again is not None)
-    return again
+        again = False
+        if output is not None and not overwrite and output.exists():
+            again = is_stopped(output, scenario_text(loaded), suffixes, read_attributes)
+        check_output(output, overwrite=overwrite or again)
+    return output if again else None
 
 
 def _run_and_keep(
