@@ -202,7 +202,7 @@ def _state(
 def simulated(where: str, state: Any, table: dict[str, Any] | None = None) -> Orbit:
     """Return the motion of a state, which may come from a page and be anything, under the table of that page."""
     problem = "a replay" if state is None else _problem(state)
-    if problem is None and state.get("table") not in (None, table and table["name"]):
+    if problem is None and (state or {}).get("table") not in (None, table and table["name"]):
         problem = "a motion under another table of forces"
     if problem:
         remedy = "Use the orbit you passed, or make the page again."
