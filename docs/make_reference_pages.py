@@ -140,7 +140,8 @@ the command line.
 
 Forces are those of `nh.Forced`, for every kind of body. Components of friction and of a table are those of
 `body_velocity`. A table stops acting after its last row, so it has one for each step at least; a first line of its file
-may name the columns, and stores keep its rows. Ready: [scenarios/hanging_top.toml](../../scenarios/hanging_top.toml),
+may name the columns, in the plane `omega,v1,v2`, in space `omega1` to `v3`, and no other words; stores keep its rows.
+Ready: [scenarios/hanging_top.toml](../../scenarios/hanging_top.toml),
 [scenarios/twisted_sleigh.toml](../../scenarios/twisted_sleigh.toml). Sweeps under forces vary starts and time steps.
 
 ## Bodies

@@ -9,7 +9,7 @@ import math
 import numbers
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -29,6 +29,9 @@ _OTHER_REMEDIES = {  # of a list with a tracer in it
 }
 _FEW = 1 << 12  # numbers that are looked at by one sum; one that is repeated without end has no sum
 _LONGEST_NAME = 255  # bytes; more is more than any file system has
+_LONGEST_WORD = 100  # letters of a name, to which suffixes are added
+COLUMNS = frozenset({"constraint_residual", "energy", "t", "time"})
+"""Columns of tables of orbits, beside which those of coordinates stand under their own names."""
 
 
 def error(where: str, requirement: str, got: str, remedy: str) -> ValueError:
@@ -303,6 +306,38 @@ def text(where: str, value: Any) -> str:
     except UnicodeEncodeError:
         raise error(where, "be a text that files can hold", shown(value), "Leave lone surrogates out.") from None
     return value
+
+
+def is_name(value: Any) -> bool:
+    """Tell whether a text can name a column, a dimension, a file or a variable, wherever it comes from.
+
+    It begins with a letter, continues with letters, digits and underscores, all ASCII, and is not long.
+
+    Example:
+        >>> is_name("theta_1"), is_name("=1+1"), is_name("a,b"), is_name("_x")
+        (True, False, False, False)
+    """
+    fits = isinstance(value, str) and len(value) <= _LONGEST_WORD and value.isascii()
+    return fits and value.isidentifier() and not value.startswith("_")
+
+
+def name(where: str, value: Any, taken: Collection[str] = ()) -> str:
+    """Return a name (`is_name`), refused if it is one of those with a meaning of their own."""
+    if not is_name(value) or value in taken:
+        remedy = f"Rename it; taken: {', '.join(sorted(taken))}." if taken else "Rename it."
+        raise error(where, "be a name: a letter, then letters, digits and underscores, all ASCII", shown(value), remedy)
+    return value
+
+
+def names(where: str, values: Any, count: int | None = None, taken: Collection[str] = COLUMNS) -> tuple[str, ...]:
+    """Return different names as a tuple: as many as asked for, or at least one."""
+    given = values if isinstance(values, tuple | list) else ()
+    words = {value for value in given if is_name(value) and value not in taken}
+    if not given or len(words) < len(given) or len(given) != (count or len(given)):
+        requirement = f"be {'' if count is None else f'{count} '}different names"
+        remedy = f'Pass words such as ("x", "y", "theta"), none of them {", ".join(sorted(taken))}.'
+        raise error(where, requirement, shown(values), remedy)
+    return tuple(given)
 
 
 def pair(where: str, value: Any) -> tuple[Any, Any]:

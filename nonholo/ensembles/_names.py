@@ -5,7 +5,8 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from nonholo.base.checks import error, shown
-from nonholo.io import TAKEN, is_array_name
+from nonholo.base.checks import name as checked_name
+from nonholo.io import TAKEN
 
 OUTCOME = "outcome"
 STARTS = ("body_velocity", "restricted_velocity", "momentum")
@@ -59,11 +60,8 @@ def stream_name(name: str) -> str:
 
 
 def array_name(where: str, name: Any) -> str:
-    """Return the name of an array, refused if no file or no attribute can be called so."""
-    if not isinstance(name, str) or not is_array_name(name):
-        requirement = f"have names without slashes that begin with a letter, and not {' or '.join(TAKEN)}"
-        raise error(where, requirement, shown(name), "Rename it.")
-    return name
+    """Return the name of an array, refused if no column, no file or no variable can be called so."""
+    return checked_name(where, name, TAKEN)
 
 
 def check_dimensions(arrays: Mapping[str, Axes], coordinates: Mapping[str, Axes]) -> None:
@@ -71,6 +69,8 @@ def check_dimensions(arrays: Mapping[str, Axes], coordinates: Mapping[str, Axes]
     lengths: dict[str, int] = {}
     for name, (dimensions, shape) in [*coordinates.items(), *arrays.items()]:
         where = f"task(...)[{name!r}]"
+        for dimension in dimensions:
+            array_name(where, dimension)
         if len(set(dimensions)) < len(dimensions):
             raise error(where, "name each axis otherwise", shown(dimensions), "Name them apart.")
         for dimension, length in zip(dimensions, shape, strict=True):

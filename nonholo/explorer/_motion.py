@@ -2,11 +2,12 @@
 
 import base64
 import re
-from typing import Any, NamedTuple, cast
+from typing import Annotated, Any, Literal, NamedTuple, cast
 
 import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from nonholo.base.checks import error, instance, is_integer, shown
+from nonholo.base.checks import error, instance, printable, shown
 from nonholo.base.types import Float, Int
 from nonholo.discrete import Discretization, discretize
 from nonholo.explorer._forces import force_numbers, packed_table, table_of, under_forces
@@ -24,11 +25,52 @@ MOST_STATES = 4_000
 
 _WIDE = ("J11", "J22", "J33", "J44", "J14", "J24", "J34")
 _KERNELS = {("scalar", True, 1): "sleigh", ("scalar", False, 2): "top", ("secular", False, 3): "top4"}
+_BEYOND = "the page takes no numbers beyond a million, and time steps from 0.000001 to 100"
 _RECORDED = 100  # states that it replays where its kernel may not run: 17 kB
 
-_LARGEST = 1e6
-_TIME_STEPS = (1e-6, 100.0)
 _TIME_STEP, _STEPS = 0.1, 400
+_BODIES = {  # its numbers, those of forces, how many a momentum and a pose have, and how many of a pose have norm 1
+    "top": ("J11 J12 J13 J22 J23 J33", "F1 F2 F3 x1 x2 x3 c1 c2", 2, 4, 4),
+    "sleigh": ("mass inertia a", "F1 F2 x1 x2 c1 c2", 2, 4, 2),
+    "top4": (" ".join(_WIDE), "", 3, 16, 0),
+}
+_Number = Annotated[float, Field(ge=-1e6, le=1e6)]
+
+
+class _State(BaseModel):
+    """What a page may say that it shows, by the rules of `view/state.mjs`."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+    kind: Literal["top", "sleigh", "forced_top", "forced_sleigh", "top4"]
+    parameters: dict[str, _Number]
+    momentum: list[_Number]
+    pose: list[_Number]
+    time_step: Annotated[float, Field(ge=1e-6, le=100.0)]
+    steps: Annotated[int, Field(ge=1, le=MOST_STEPS)]
+    table: str | None = None
+
+    @model_validator(mode="after")
+    def _is_one(self) -> "_State":
+        own = self.kind.removeprefix("forced_")
+        names, forces, numbers, entries, unit = _BODIES[own]
+        wanted, scale = (f"{names} {forces}", {"s"}) if own != self.kind else (names, set())
+        if self.parameters.keys() - scale != {*wanted.split()}:
+            raise ValueError(f"parameters: must be {wanted}")
+        is_pose = len(self.pose) == entries and (not unit or abs(np.linalg.norm(self.pose[:unit]) - 1) <= 1e-9)
+        if len(self.momentum) != numbers or not is_pose:
+            raise ValueError(f"momentum must have {numbers} numbers, pose the {entries} of a pose")
+        return self
+
+
+def _problem(state: Any) -> str | None:
+    """Say what is wrong with a state; None if a page could show it."""
+    try:
+        _State.model_validate(state)
+    except ValidationError as failure:
+        first = failure.errors()[0]
+        place = "".join(f"{part}: " for part in first["loc"])
+        return printable(f"{place}{first['msg'].removeprefix('Value error, ')}")
+    return None
 
 
 class Shown(NamedTuple):
@@ -66,7 +108,11 @@ def _of_discretization(where: str, discrete: Discretization) -> Shown:
     table, momentum = _table(system, kind, 0), lower @ np.array([0.4, -0.9, 0.3])[: len(lower)] * lower[0, 0]
     steps = min(_STEPS, len(system.table)) if table else _STEPS  # type: ignore[union-attr]
     state = _state(discrete, kind, momentum, system.group.pose_from_matrix(system.group.identity), steps, table)
-    orbit = simulated(where, state, table)
+    orbit = _run(state, table)
+    if problem := _problem(state):
+        if not len(orbit):
+            raise error(where, "be a motion that the page can show", problem, "Run it, and pass the orbit.")
+        return _replay(orbit, _BEYOND)
     recorded = _numbers(orbit, _spread(orbit, _RECORDED))[0] if len(orbit) else None
     data = {"kind": kind, "state": state, "recorded": recorded, "table": table}
     return Shown(data, _name(discrete.system), _frame_note(discrete.system))
@@ -83,9 +129,8 @@ def _live(orbit: Orbit) -> Shown | None:
     steps = min(wanted, MOST_STEPS)
     table = _table(orbit.system, kind, round(float(orbit.time[0]) / float(discrete.time_step)))
     state = _state(discrete, kind, orbit.reduced_momentum[0], orbit.canonical_pose[0], steps, table)
-    numbers = [*state["parameters"].values(), *state["momentum"], *state["pose"]]
-    if not (np.max(np.abs(numbers)) <= _LARGEST and _TIME_STEPS[0] <= state["time_step"] <= _TIME_STEPS[1]):
-        return None
+    if _problem(state):
+        return _replay(orbit, _BEYOND)
     cut = f" The first {steps:,} of {wanted:,} steps." if steps < wanted else ""
     recorded = _numbers(orbit, _spread(orbit, _RECORDED))[0]
     data = {"kind": kind, "state": state, "recorded": recorded, "table": table}
@@ -156,10 +201,19 @@ def _state(
 
 def simulated(where: str, state: Any, table: dict[str, Any] | None = None) -> Orbit:
     """Return the motion of a state, which may come from a page and be anything, under the table of that page."""
-    if not isinstance(state, dict) or state.keys() < {"kind", "parameters", "momentum", "pose", "time_step", "steps"}:
-        raise error(where, "be asked of a page whose body runs in it", "a replay", "Use the orbit you passed.")
+    problem = "a replay" if state is None else _problem(state)
+    if problem is None and (state or {}).get("table") not in (None, table and table["name"]):
+        problem = "a motion under another table of forces"
+    if problem:
+        remedy = "Use the orbit you passed, or make the page again."
+        raise error(where, "be asked of a state that the page can show", problem, remedy)
+    return _run(state, table)
+
+
+def _run(state: Any, table: dict[str, Any] | None) -> Orbit:
+    """Return the motion of a state."""
     steps, (body, pose) = state["steps"], _body_and_pose(state)
-    rows = table_of(table, steps if is_integer(steps) and steps <= MOST_STEPS else 0)
+    rows = table_of(table, steps)
     body = under_forces(body, state["parameters"], rows) if state["kind"].startswith("forced") else body
     start = {"momentum": state["momentum"], "configuration": pose}
     return simulate(discretize(body, state["time_step"]), **start, steps=steps, throw=False)
@@ -195,13 +249,13 @@ def _frame_note(system: AbstractSystem) -> str:
     return "Shown in the canonical body frame: its last axis is the forbidden one, or b = 0." if turned else ""
 
 
-def _replay(orbit: AbstractOrbit) -> Shown:
+def _replay(orbit: AbstractOrbit, why: str = "there is no kernel in the page for this motion") -> Shown:
     chosen = _spread(orbit, MOST_STATES)
     replay, forces = _numbers(orbit, chosen)
     names = [f"p({name})" for name in orbit.coordinates[:2]] or ["r\u2081", "r\u2082"]
     data = {"kind": "replay", "replay": replay, "momenta": names}
     thinned = f" {len(chosen):,} of {len(orbit):,} saved states." if len(chosen) < len(orbit) else ""
-    note = f"A replay of numbers from Python: there is no kernel in the page for this motion.{thinned}{forces}"
+    note = f"A replay of numbers from Python: {why}.{thinned}{forces}"
     title = _name(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name
     return Shown(data, title, note)
 

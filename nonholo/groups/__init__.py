@@ -1,7 +1,7 @@
 """Matrix Lie groups: pure functions of plain arrays, written once for NumPy and JAX."""
 
 from nonholo.groups._base import AbstractMatrixGroup
-from nonholo.groups._families import SE, SO
+from nonholo.groups._families import SE, SO, components_of
 from nonholo.groups._matrix_group import MatrixGroup
 from nonholo.groups._product import ProductGroup
 from nonholo.groups._quaternion import matrix_from_quaternion, quaternion_from_matrix
@@ -14,6 +14,7 @@ __all__ = [
     "MatrixGroup",
     "ProductGroup",
     "Translations",
+    "components_of",
     "matrix_from_quaternion",
     "quaternion_from_matrix",
 ]

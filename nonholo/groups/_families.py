@@ -50,3 +50,18 @@ def SE(n: int) -> AbstractMatrixGroup:
     """
     n = dimension("SE(n=...)", n)
     return SpecialEuclidean2() if n == 2 else SpecialEuclideanN(n)
+
+
+def components_of(group: AbstractMatrixGroup) -> tuple[str, ...]:
+    """Return names of the coordinates of an algebra.
+
+    Example:
+        >>> components_of(SE(2)), components_of(SO(3))
+        (('omega', 'v1', 'v2'), ('omega1', 'omega2', 'omega3'))
+    """
+    turns, shifts = group.dim, 0
+    if group == SE(2):
+        return "omega", "v1", "v2"
+    if group == SE(3):
+        turns = shifts = 3
+    return (*(f"omega{i + 1}" for i in range(turns)), *(f"v{i + 1}" for i in range(shifts)))

@@ -11,6 +11,7 @@ from ._beside import check_file as check_file
 from ._beside import complete_file as complete_file
 from ._beside import new_beside as new_beside
 from ._beside import new_file as new_file
+from ._beside import remove_store as remove_store
 from ._chunks import DamagedError as DamagedError
 from ._chunks import chunk_name as chunk_name
 from ._chunks import chunk_path as chunk_path
@@ -31,7 +32,6 @@ from ._lock import owner_of as owner_of
 from ._metadata import TAKEN as TAKEN
 from ._metadata import SweepMetadata as SweepMetadata
 from ._metadata import checksum as checksum
-from ._metadata import is_array_name as is_array_name
 from ._metadata import require_identity as require_identity
 from ._plan import Checkpoint as Checkpoint
 from ._plan import Plan as Plan

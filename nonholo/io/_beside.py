@@ -29,13 +29,17 @@ def new_beside(path: Path) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def complete_file(path: Path) -> Iterator[str]:
-    """Give a hidden name of the same suffix to write to, which takes the place of the path when it is complete."""
-    part = path.with_name(f".{uuid.uuid4().hex[:12]}.{path.name}")
-    try:
-        yield str(part)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
+    """Give a file of the same name elsewhere to write to, which takes the place of the path when it is complete."""
+    with new_beside(path) as part:
+        part.mkdir()
+        yield str(part / path.name)
+        (part / path.name).replace(path)
+
+
+def remove_store(path: Path) -> None:
+    """Remove a store at once: whoever is killed leaves nothing of it at the path."""
+    with new_beside(path) as part:
+        path.rename(part)
 
 
 def sibling(target: Path, purpose: str) -> Path:

@@ -1,5 +1,7 @@
 """Poses as CSV, of an orbit or of a store of any length: all rows or no file, in bounded memory."""
 
+import csv
+import io
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, TextIO
@@ -113,7 +115,9 @@ def _lines(system: Any, stretches: Iterable[Stretch], every: int) -> Iterator[st
 
 def table_lines(names: list[str], pieces: Iterable[Float[np.ndarray, "R c"]]) -> Iterator[str]:
     """Return a header, then many lines at a time: one template for all of them is faster than a writer of rows."""
-    yield ",".join(names) + "\n"
+    header = io.StringIO()
+    csv.writer(header, lineterminator="\n").writerow(names)
+    yield header.getvalue()
     line = ",".join(["%r"] * len(names)) + "\n"
     for rows in pieces:
         yield line * len(rows) % tuple(rows.ravel().tolist())

@@ -1,11 +1,11 @@
 """Systems in coordinates from data: those of the literature whole, of others what was recorded beside the functions."""
 
 import importlib
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, NonNegativeInt, ValidationError
+from pydantic import AfterValidator, BaseModel, NonNegativeInt, ValidationError, model_validator
 
-from nonholo.base.checks import error, needs
+from nonholo.base.checks import error, names, needs
 
 READY = "examples."
 """How stores call ready systems, before their names."""
@@ -28,12 +28,19 @@ class _Recorded(BaseModel):
     """What a store knows of a system whose functions it does not hold."""
 
     name: str
-    coordinates: tuple[str, ...]
+    coordinates: Annotated[tuple[str, ...], AfterValidator(lambda several: several and names("coordinates", several))]
     orbits: Literal["CoordinateOrbit", "GroupOrbit"]
     shapes: tuple[tuple[NonNegativeInt, ...], tuple[NonNegativeInt]]
     constraints: NonNegativeInt
     is_driven: bool
     heading: str | None = None
+
+    @model_validator(mode="after")
+    def _fit(self) -> "_Recorded":
+        wanted = self.shapes[0] if self.orbits == "CoordinateOrbit" else (0,)
+        if (len(self.coordinates),) != wanted or self.heading not in (None, *self.coordinates):
+            raise ValueError(f"coordinates: must be {wanted[0]} names, the heading among them")
+        return self
 
 
 def recorded_system(kind: str, parameters: dict[str, Any], group: Any) -> Any:
@@ -42,7 +49,7 @@ def recorded_system(kind: str, parameters: dict[str, Any], group: Any) -> Any:
         known = _Recorded.model_validate(parameters).model_dump()
     except ValidationError as failure:
         problem = failure.errors()[0]
-        got = f"{'.'.join(map(str, problem['loc']))}: {problem['msg']}"
+        got = f"{'.'.join(map(str, problem['loc']))}: {problem['msg'].removeprefix('Value error, ').rstrip('.')}"
         raise error(_WHERE, "hold what its system is", got, "It was edited: run it again.") from None
     with needs("jax", "load_orbit(...) of an orbit in coordinates"):
         room = importlib.import_module("nonholo.lagrange_dalembert")

@@ -15,7 +15,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.io._attributes import FORMAT, READABLE, SWEEP_FORMAT, restore_motion
 from nonholo.io._chunks import AGAIN, WHERE, DamagedError, checked_array, checked_block, opened_array
-from nonholo.io._metadata import OrbitMetadata, SweepMetadata, check_metadata
+from nonholo.io._metadata import OrbitMetadata, SweepMetadata, check_assertions, check_metadata
 from nonholo.io._plan import Plan
 from nonholo.io._seals import CHECKPOINTS, Blocks, seal_of_whole
 from nonholo.io._stored_events import EVENTS, known, log_of
@@ -128,6 +128,7 @@ def _begin_of_last(stored: dict[str, Any], states: int) -> int:
 def read_attributes(path: str | Path, expected: str = FORMAT, readable: tuple[int, ...] = READABLE) -> dict[str, Any]:
     """Return the attributes of a store, after checking that it is one of that format and that its schema is known."""
     where = WHERE if expected == FORMAT else "load_sweep(store=...)"
+    check_assertions(where)
     kind = f"be a store of {_KINDS[expected]}"
     if not Path(path).exists():
         raise FileNotFoundError(f"`{where}` must exist. Got '{path}'. Check the path; runs are kept under 'runs/'.")

@@ -69,6 +69,9 @@ def remove_remains(target: Path) -> None:
     """Remove what processes that were killed have left beside a path, which they were making."""
     for file in target.parent.glob(f".{glob.escape(target.name)}.*.lock"):
         with contextlib.suppress(OSError, Timeout), FileLock(file, timeout=0, fallback_to_soft=False):
+            if (old := file.with_suffix(".old")).exists() and not target.exists():
+                old.rename(target)  # the store whose place the new one was about to take
+            _remove(old)
             _remove(file.with_suffix(".partial"))
             file.unlink()
 

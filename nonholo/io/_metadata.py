@@ -4,7 +4,9 @@ import errno
 import hashlib
 import json
 import math
+import re
 import unicodedata
+from itertools import chain
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -20,31 +22,29 @@ from pydantic import (
     model_validator,
 )
 
-from nonholo.base.checks import error, printable
+from nonholo.base.checks import error, is_name, printable, shown
 from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome
 from nonholo.io._attributes import attributes_of_text
 
-_MOST = 2**53
-TAKEN = ("run", "zarr.json")
+_MOST, _MOST_CHUNKS = 2**53, 2**26
+TAKEN = frozenset({"run"})
 """Names in a store that no array has."""
+_COMPONENT = re.compile(r"(\[\d+\])+")  # as older sweeps wrote them
 
 Positive = Annotated[int, Field(gt=0, le=_MOST, strict=True)]
 
 
-def is_array_name(name: str) -> bool:
-    """Tell whether an array of a store can be called so: by a file in it, and by none that has another use."""
-    return bool(name) and not set("/\\\0") & set(name) and not name.startswith((".", "_")) and name not in TAKEN
-
-
 def _name(text: str) -> str:
-    """Return the name of an array: one that no file outside the store has."""
-    if not is_array_name(text.removeprefix("canonical/")):
-        raise ValueError(f"{text!r} is no name of an array")
+    """Return what is a name, also of an array within a group of ours, or of a component."""
+    plain = _COMPONENT.sub("", text.removeprefix("canonical/"))
+    if not is_name(plain) or plain in TAKEN:
+        raise ValueError(f"{shown(text)} is no name: a letter, then letters, digits and underscores, all ASCII")
     return text
 
 
 Name = Annotated[str, AfterValidator(_name)]
+"""What becomes a column, a dimension, a file or a variable; the classes ask `is_name` too."""
 Shape = list[Annotated[NonNegativeInt, Field(le=_MOST)]]
 
 
@@ -66,6 +66,7 @@ class _Run(_Data):
     rows: Positive
     reconstruct: bool
     lead: Literal[0, 1] = 1
+    added: Positive | None = None
 
 
 class OrbitMetadata(_About):
@@ -99,7 +100,7 @@ class _Sweep(_Data):
     task: dict[str, Any]
     design: dict[str, Any]
     layout: tuple[list[Positive], list[Positive]]
-    outputs: dict[Name, tuple[list[str], Shape, Annotated[str, Field(pattern=r"^[a-z]+[0-9]*$")], dict[str, Any]]]
+    outputs: dict[Name, tuple[list[Name], Shape, Annotated[str, Field(pattern=r"^[a-z]+[0-9]*$")], dict[str, Any]]]
 
     @model_validator(mode="after")
     def _is_cut_in_blocks(self) -> "_Sweep":
@@ -109,7 +110,8 @@ class _Sweep(_Data):
         members = self.design.get("members", math.prod(sizes))
         if members != math.prod(sizes):
             raise ValueError(f"design.members: must be {math.prod(sizes)}, as in the layout")
-        for name in (*self.design.get("axes", ()), *self.design.get("distributions", ())):
+        components = (attributes.get("components", ()) for *_, attributes in self.outputs.values())
+        for name in (*self.design.get("axes", ()), *self.design.get("distributions", ()), *chain(*components)):
             _name(name)
         return self
 
@@ -178,9 +180,19 @@ def require_identity(path: Path, made: str | None) -> None:
         raise OSError(errno.ESTALE, reason, str(path))
 
 
+def check_assertions(where: str) -> None:
+    """Refuse to read or write a store where Python leaves assertions out: zarr works in some of its own."""
+    if not __debug__:
+        got = "python -O or PYTHONOPTIMIZE, which leaves out assertions in which zarr does a part of its work"
+        raise error(where, "be asked of Python with assertions", got, "Run it without -O, and unset PYTHONOPTIMIZE.")
+
+
 def check_array(where: str, name: str, array: zarr.Array) -> None:
-    """Refuse an array of which a chunk does not fit into memory, or whose bytes have another order than ours."""
-    remedy = f"The array {name} is damaged or was edited."
+    """Refuse an array that is not cut as ours are, with chunks too large for memory, or with bytes in another order."""
+    remedy, (sizes, chunks) = f"The array {name} is damaged or was edited.", (array.shape, array.chunks)
+    is_ours = (len(sizes) == 2 and sizes[1] >= 2) if name.startswith("run/") else len(sizes) > 0
+    if not is_ours or min(chunks) < 1 or math.prod(array.cdata_shape) > _MOST_CHUNKS:
+        raise error(where, f"hold the array {name} in chunks", f"shape {sizes} in chunks of {chunks}", remedy)
     within_memory(where, 8.0 * min(math.prod(array.chunks), _MOST), remedy)
     orders = {getattr(codec, "endian", None) for codec in array.metadata.codecs}  # type: ignore[union-attr]
     if {getattr(order, "value", order) for order in orders} - {None, "little"}:  # an enumeration before zarr 3.4

@@ -23,8 +23,8 @@ from nonholo.base.checks import path as checked_path
 from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
 from nonholo.io._beside import new_beside, sibling
 from nonholo.io._load import format_of
-from nonholo.io._lock import owner_of
-from nonholo.io._metadata import OrbitMetadata, check_metadata, checksum
+from nonholo.io._lock import owner_of, remove_remains
+from nonholo.io._metadata import OrbitMetadata, check_assertions, check_metadata, checksum
 from nonholo.io._seals import seal_of_whole
 from nonholo.io.datasets import CANONICAL, stored_variables
 from nonholo.orbit import AbstractOrbit
@@ -91,7 +91,8 @@ def reporting_how_to_resume(store: Path, what: str, standing: Callable[[], objec
 
 
 def check_suffix(path: str | Path, where: str = "save_orbit(path=...)") -> None:
-    """Refuse, in the name of `where`, a path with the suffix of another format, which programs would take it for."""
+    """Refuse, in the name of `where`, a path with the suffix of another format, and any where zarr does not work."""
+    check_assertions(where)
     suffix = Path(path).suffix.lower()
     if suffix in _OTHER_FORMATS:
         store, how = f"Write a store: '{Path(path).with_suffix('.zarr')}'", _OTHER_FORMATS[suffix]
@@ -108,6 +109,8 @@ def check_target(path: str | Path, *, overwrite: bool = False, new: str | None =
         new: In whose name, if it has no such argument.
     """
     check_suffix(path)
+    if not Path(path).exists():
+        remove_remains(Path(path).resolve())  # which may put back what a killed process was about to replace
     if not Path(path).exists():
         return
     if new:
@@ -251,7 +254,7 @@ def put_in_place(part: Path, target: Path, *, overwrite: bool) -> None:
             raise
         return
     check_target(target, overwrite=True)  # once more, after the time that writing took
-    old = sibling(target, "old")
+    old = part.with_suffix(".old")  # which remove_remains knows
     target.rename(old)
     try:
         part.rename(target)

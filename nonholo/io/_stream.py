@@ -173,11 +173,15 @@ class Stream:
 
     def lengthened(self, steps: int) -> "Stream":
         """Return the stream with this many more steps to go; a last block that was not full is computed again."""
-        plan = self.plan._replace(steps=self.plan.steps + steps)
-        longer = dataclasses.replace(self, plan=plan)
-        run = json.loads(read_attributes(self.path)["run"]) | {"steps": plan.steps}
+        run = json.loads(read_attributes(self.path)["run"])
+        if not self.is_finished and run.get("added") == steps:  # the same call again, which was stopped
+            return self
+        return dataclasses.replace(self, plan=self.plan._replace(steps=self.plan.steps + steps))
+
+    def announce(self, added: int) -> None:
+        """Say in the store how long the run is now, and how many steps were asked for."""
+        run = json.loads(read_attributes(self.path)["run"]) | {"steps": self.plan.steps, "added": added}
         edit_attributes(self.path, {"run": json.dumps(run), "outcome": None, "crossings": None})
-        return longer
 
     def prepare(self) -> None:
         """Remove what a killed writer left and give the arrays their length; nothing here loses data."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import jax
 import numpy as np
 
-from nonholo.base.checks import array, choice, count, error, shown, text
+from nonholo.base.checks import array, choice, count, error, names, shown, text
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._outline import as_parts, check_heading, checked_outline
@@ -22,8 +22,6 @@ from nonholo.lagrange_dalembert._tracing import (
     with_time_step,
 )
 from nonholo.systems import AbstractCoordinateSystem, joined, parts_of
-
-_TAKEN = {"constraint_residual", "energy", "t", "time"}  # columns of their own
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
@@ -334,16 +332,8 @@ def _named(argument: str) -> str:
     return f"LagrangeDAlembert({argument}=...)"
 
 
-def _names(names: Any, n: int) -> tuple[str, ...]:
+def _names(given: Any, n: int) -> tuple[str, ...]:
     """Return the names of the coordinates: by default q1 and so on."""
-    if isinstance(names, tuple) and not names:
+    if isinstance(given, tuple) and not given:
         return tuple(f"q{i}" for i in range(1, n + 1))
-    words = set(filter(_is_word, names)) if isinstance(names, tuple | list) else set()
-    if len(words) != n or len(names) != n:
-        remedy = 'Pass words such as ("x", "y", "theta"), none of them ' + ", ".join(sorted(_TAKEN)) + "."
-        raise error(_named("coordinates"), f"be {n} different words", shown(names), remedy)
-    return tuple(names)
-
-
-def _is_word(name: Any) -> bool:
-    return isinstance(name, str) and name.isascii() and name.isidentifier() and name not in _TAKEN
+    return names(_named("coordinates"), given, n)

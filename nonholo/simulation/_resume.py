@@ -35,7 +35,8 @@ def extend(
 ) -> Any:
     """Run past the end of the run of a store, with the bits of one that had been that long from the start.
 
-    A last block that was not full is computed again with what follows it.
+    A last block that was not full is computed again with what follows it. The same call again, after one that was
+    stopped, adds nothing twice: it does what is left.
 
     Args:
         store: A store that `simulate(..., store=...)` made.
@@ -70,6 +71,7 @@ def extend(
         _refuse_ended(io.read_attributes(stream.path))
         longer = io.open_stream(stream.path).lengthened(steps)
         check_forces("extend", run.discrete, longer.plan.steps)
+        longer.announce(steps)
         return continue_run(run, longer, watch, throw=throw, progress=progress)
 
 

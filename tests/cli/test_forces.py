@@ -42,7 +42,7 @@ def file() -> Path:
     path = Path("study/my.toml")
     (path.parent / "input").mkdir(parents=True)
     path.write_text(SLEIGH + FORCES)
-    np.savetxt(path.parent / "input/motor.csv", TABLE, delimiter=",", header="torque,along,across", comments="")
+    np.savetxt(path.parent / "input/motor.csv", TABLE, delimiter=",", header="omega,v1,v2", comments="")
     return path
 
 
@@ -145,13 +145,29 @@ def test_refusals(file: Path, setting: str, text: str) -> None:
     ("text", "reason"),
     [
         ("", "it has no rows"),
-        ("a,b,c\n", "it has no rows"),
+        ("omega,v1,v2\n", "it has no rows"),
+        (
+            "O.1,O.2,O.3\n1,2,3\n",
+            "motor.csv': line 1 is 'O.1,O.2,O.3', neither numbers nor the names omega,v1,v2",
+        ),
+        ("\n# by hand\n1,2,3\n", "line 2 is '# by hand', neither numbers nor the names"),
+        ("v1,v2,omega\n1,2,3\n", "line 1 is 'v1,v2,omega', neither"),
         ("1,2,3\n1,x,3\n", "could not convert string 'x'"),
         ("1,x,3\n1,2,3\n", "could not convert string 'x'"),
         ("1,2,3\n1,2\n", "number of columns changed"),
-        ("\ufeff\x00", "it has no rows"),
+        ("\ufeff\x00", "line 1 is"),
     ],
-    ids=["empty", "names alone", "word", "word in the first row", "uneven", "zero byte"],
+    ids=[
+        "empty",
+        "names alone",
+        "letters O",
+        "comment",
+        "other order",
+        "word",
+        "word in the first row",
+        "uneven",
+        "zero byte",
+    ],
 )
 def test_files_that_are_no_table(file: Path, text: str, reason: str) -> None:
     """A row that is not of numbers is never taken for names, nor left out."""
@@ -171,7 +187,15 @@ def test_rows_are_read_exactly() -> None:
     """Every digit of a number counts; blank lines and spaces do not."""
     rows = np.random.default_rng(0).normal(size=(5, 3)).tolist()
     text = "\r\n\r\n".join(" , ".join(map(repr, row)) for row in rows)
-    assert rows_of(f"f1, f2, f3\r\n{text}\r\n") == rows
+    names = ("f1", "f2", "f3")
+    assert rows_of(f"f1, f2, f3\r\n{text}\r\n", names) == rows_of(text, names) == rows
+
+
+@pytest.mark.parametrize("table", ["[[1,2,3],[1,2,3],[1,2,3]]", '"study/input/motor.csv"'])
+def test_report_says_what_was_read(table: str, file: Path, nonholo: Callable[..., Result]) -> None:
+    """Rows and columns of a table stand in the report of a run, so that a row that was lost is seen."""
+    result = nonholo("simulate", file, "--no-plot", "--set", f"forces.table={table}")
+    assert re.search(r"table of forces +3 rows, columns omega, v1, v2", result.output), result.output
 
 
 @pytest.mark.parametrize("kind", BODIES)

@@ -55,6 +55,52 @@ def test_extend_goes_past_the_end(stopped: Path, nonholo: Command) -> None:
     assert np.array_equal(nh.load_orbit(stopped).pose, nh.simulate(SLEIGH, steps=600, **START).pose)
 
 
+def test_extend_that_was_stopped_is_asked_again(stopped: Path, nonholo: Command) -> None:
+    """The same call after one that was stopped does what is left; after one that came to its end it adds steps anew."""
+    nh.resume(stopped)
+    command = ("extend", stopped, "--steps", 100)
+    with failing_at(13):
+        assert nonholo(*command).exit_code == 1
+    for steps in (600, 700):
+        assert nonholo(*command).exit_code == 0
+        assert len(nh.load_orbit(stopped)) == steps + 1
+
+
+def test_extend_that_is_refused_changes_nothing(tmp_path: Path) -> None:
+    """A table of forces that ends too early is noticed before the store says that it has more to do."""
+    forced = nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.5), force=np.ones((20, 3)))
+    nh.simulate(nh.discretize(forced, 0.1), steps=20, store=tmp_path / "run.zarr", **START)
+    with pytest.raises(ValueError, match="25"):
+        nh.extend(tmp_path / "run.zarr", 5, discrete=nh.discretize(forced, 0.1))
+    assert len(nh.load_orbit(tmp_path / "run.zarr")) == 21
+
+
+@pytest.mark.usefixtures("short_blocks")
+def test_simulate_that_was_stopped_is_asked_again(nonholo: Command) -> None:
+    """The same command continues where it was stopped, draws what it lacks, and then refuses as always."""
+    command = ("simulate", "sleigh", "--steps", 60, "-o", "run.zarr")
+    with failing_at(3):
+        assert nonholo(*command).exit_code == 1
+    assert "Choose another path" in nonholo(*command, "--time-step", 0.05).stderr
+    again = nonholo(*command)
+    assert again.exit_code == 0, again.output
+    assert Path("run.png").exists()
+    whole = json.loads(nonholo("simulate", "sleigh", "--steps", 60, "--no-plot", "--json").stdout)["store"]
+    assert np.array_equal(nh.load_orbit("run.zarr").pose, nh.load_orbit(whole).pose)
+    assert nonholo(*command).exit_code == 2
+
+
+def test_picture_that_a_kill_has_cost_is_drawn(nonholo: Command) -> None:
+    """A run that was killed between its store and its picture is not run again: its picture is drawn."""
+    command = ("simulate", "sleigh", "--steps", 20, "-o", "run.zarr")
+    assert nonholo(*command).exit_code == 0
+    Path("run.png").unlink()
+    made = Path("run.zarr/zarr.json").stat().st_mtime_ns
+    assert nonholo(*command).exit_code == 0
+    assert Path("run.png").exists()
+    assert Path("run.zarr/zarr.json").stat().st_mtime_ns == made
+
+
 def test_damage_is_told_on_standard_error(stopped: Path, nonholo: Command) -> None:
     """A damaged chunk is named in a warning, and the run is whole again."""
     nh.resume(stopped)

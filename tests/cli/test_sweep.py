@@ -130,6 +130,27 @@ def test_existing_store_is_refused(nonholo: Command) -> None:
     assert not list(Path("there.zarr").iterdir())
 
 
+def test_sweep_that_was_stopped_is_asked_again(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same command does what a sweep lacks and draws it, and `resume` of one that is drawn has nothing to say."""
+
+    def full(*_: Any) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    command = ("sweep", _written(GRID), "-o", "s.zarr", "--scheduler", "synchronous")
+    with monkeypatch.context() as patch:
+        patch.setattr(SweepStore, "write", full)
+        assert nonholo(*command).exit_code == 1
+    assert nonholo(*command, "--set", "run.steps=30").exit_code == 2
+    for missing in (None, "s.png"):
+        if missing:
+            Path(missing).unlink()
+        again = nonholo(*command)
+        assert again.exit_code == 0, again.output
+        assert Path("s.png").exists()
+    assert nonholo("resume", "s.zarr", "--scheduler", "synchronous").exit_code == 0
+    assert nonholo(*command).exit_code == 2
+
+
 @pytest.mark.parametrize("form", ['"body.a" = [0.1, 0.2]', "body.a = [0.1, 0.2]", "body = {a = [0.1, 0.2]}"])
 def test_key_paths_with_and_without_quotes(form: str) -> None:
     """A key path of a design may be quoted, dotted or a table."""

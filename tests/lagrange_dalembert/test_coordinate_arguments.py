@@ -70,7 +70,7 @@ def test_coordinates_have_names() -> None:
 )
 def test_what_cannot_name_columns_is_refused(names: object) -> None:
     """Too few, twice the same, a name of another column, no word, one text, numbers."""
-    with pytest.raises(ValueError, match=r"LagrangeDAlembert\(coordinates=...\)` must be 3 different words"):
+    with pytest.raises(ValueError, match=r"LagrangeDAlembert\(coordinates=...\)` must be 3 different names"):
         nh.LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=names)
 
 

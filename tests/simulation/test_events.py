@@ -155,20 +155,20 @@ def test_the_first_of_two_stops_in_one_step_counts() -> None:
     run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 100}
     turn = float(np.arcsin(0.4))
     events = [
-        nh.Event(lambda orbit, at=at: orbit.heading - (20 + at) * turn, stop=stop, name=f"{at}")
-        for at, stop in ((0.9, True), (0.2, False), (0.7, True), (0.5, False))
+        nh.Event(lambda orbit, at=at: orbit.heading - (20 + at / 10) * turn, stop=stop, name=f"at_{at}")
+        for at, stop in ((9, True), (2, False), (7, True), (5, False))
     ]
     found = nh.simulate(ROUND, **run, events=events).events
-    assert [len(found[name]) for name in ("0.2", "0.5", "0.7", "0.9")] == [1, 1, 1, 0]
-    assert found.stopped_by == "0.7"
-    assert found["0.2"].time < found["0.5"].time < found["0.7"].time
+    assert [len(found[name]) for name in ("at_2", "at_5", "at_7", "at_9")] == [1, 1, 1, 0]
+    assert found.stopped_by == "at_7"
+    assert found["at_2"].time < found["at_5"].time < found["at_7"].time
 
 
 def test_zero_at_a_state_counts_once() -> None:
     """A function that is exactly zero at a saved state has one crossing, that state, also if it only touches zero."""
     run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 20}
     plain = nh.simulate(ROUND, **run)
-    through, touch = (nh.Event(lambda orbit, n=n: (orbit.time - plain.time[9]) ** n, name=f"{n}") for n in (1, 2))
+    through, touch = (nh.Event(lambda orbit, n=n: (orbit.time - plain.time[9]) ** n, name=f"power_{n}") for n in (1, 2))
     found = nh.simulate(ROUND, **run, events=[through, touch]).events
     for crossings in found.found:
         assert (crossings.step.tolist(), crossings.fraction.tolist()) == ([9], [0.0])

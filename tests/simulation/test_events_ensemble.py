@@ -79,7 +79,7 @@ def test_later_crossings_of_the_last_step_are_left_out() -> None:
     """Of crossings in the step in which a member ends those after its end do not count, whatever their order."""
     turn = np.arctan(0.2)
     events = [
-        nh.Event(lambda orbit, at=at: orbit.time - (2.0 + at), stop=stop, name=f"{at}")
+        nh.Event(lambda orbit, at=at: orbit.time - (2.0 + at), stop=stop, name=f"at_{1000 * at:.0f}")
         for at, stop in ((0.09, True), (0.02, False), (0.07, True), (0.08, False))
     ]
     batch = nh.ensemble(SLEIGH, restricted_velocity=[[turn, 1.0]], steps=50, events=events)

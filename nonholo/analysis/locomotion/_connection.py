@@ -10,7 +10,7 @@ import numpy as np
 from nonholo.analysis.locomotion import _equations
 from nonholo.base.checks import choice, error, instance, needs, shown, trailing
 from nonholo.base.types import Array, Float
-from nonholo.groups import SE, AbstractMatrixGroup
+from nonholo.groups import AbstractMatrixGroup, components_of
 from nonholo.systems import AbstractCoordinateSystem
 
 _SAMPLES = 8  # shapes and poses at which the symmetry is checked
@@ -212,16 +212,6 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
         raise error(where, "have a shape beside its pose", shown(names), "A rigid body has no connection.")
     x, y, theta = (names.index(name) for name in pose)
     return _connection(_door().Planar(system, (x, y, theta), shape), system, tuple(names[i] for i in shape))
-
-
-def components_of(group: AbstractMatrixGroup) -> tuple[str, ...]:
-    """Return names of the coordinates of an algebra."""
-    turns, shifts = group.dim, 0
-    if group == SE(2):
-        return "omega", "v1", "v2"
-    if group == SE(3):
-        turns = shifts = 3
-    return (*(f"omega{i + 1}" for i in range(turns)), *(f"v{i + 1}" for i in range(shifts)))
 
 
 def _connection(reduction: Any, system: Any, shape: tuple[str, ...]) -> LocalConnection:

@@ -4,11 +4,11 @@ import dataclasses
 from collections.abc import Callable
 from typing import Any
 
-from nonholo.base.checks import error, instance, needs, shown, text
+from nonholo.base.checks import error, instance, names, needs
 from nonholo.base.types import Array
 from nonholo.systems import checked_group
 
-_NAMES, _TUPLE = "ShapedBody(shape_coordinates=...)", "Pass a tuple of strings."
+_NAMES = "ShapedBody(shape_coordinates=...)"
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -52,9 +52,7 @@ class ShapedBody:
 
     def __post_init__(self) -> None:
         checked_group("ShapedBody(group=...)", self.group)
-        names = instance(_NAMES, self.shape_coordinates, tuple, "be names", _TUPLE)
-        if not names or len({text(_NAMES, name) for name in names}) < len(names):
-            raise error(_NAMES, "be different names, at least one", shown(names), _TUPLE)
+        names(_NAMES, instance(_NAMES, self.shape_coordinates, tuple, "be names", "Pass a tuple of strings."))
         if self.lagrangian is None and self.constraint_forms is None:
             remedy = "Pass lagrangian=, constraint_forms= or both."
             raise error("ShapedBody(...)", "have a Lagrangian or constraints", "neither", remedy)

@@ -5,7 +5,6 @@ import functools
 import itertools
 import os
 import re
-import shutil
 import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -13,15 +12,15 @@ from typing import Any, NamedTuple, TypeVar
 
 from nonholo.base.limits import within_disk
 from nonholo.base.progress import waiting
-from nonholo.base.results import OutcomeError
+from nonholo.base.results import Outcome, OutcomeError
 from nonholo.cli.scenario.files import Loaded, effective_text
 from nonholo.cli.scenario.problems import ScenarioError, problem_of_value
 from nonholo.cli.screen.errors import USAGE, store_errors
 from nonholo.cli.screen.pictures import beside
 from nonholo.discrete import Discretization
-from nonholo.io import check_target, save_orbit
+from nonholo.io import check_target, load_orbit, read_attributes, remove_store, save_orbit
 from nonholo.orbit import Orbit
-from nonholo.simulation import simulate, size_in_blocks
+from nonholo.simulation import resume_run, simulate, size_in_blocks
 
 RUNS = Path("runs")
 Made = TypeVar("Made")
@@ -43,16 +42,16 @@ def run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progres
     with waiting("compiling", progress):
         scenario, (discrete, starts) = loaded.scenario, _tried(loaded)
     task = functools.partial(simulate, discrete, steps=scenario.run.steps, progress=progress, **scenario.options())
-    text = effective_text(scenario.in_force(discrete) if isinstance(discrete, Discretization) else scenario)
+    text = scenario_text(loaded)
     size = size_in_blocks(discrete, scenario.run.branch, scenario.run.steps, scenario.run.save_every)
     if size and starts:
         with store_errors(USAGE):
             within_disk(
                 "run.save_every", size, RUNS if store is None else store.parent, "Raise it to keep fewer states."
             )
-        if overwrite and store is not None:
+        if overwrite and store is not None and store.exists():
             check_target(store, overwrite=True)
-            shutil.rmtree(store, ignore_errors=True)
+            remove_store(store)
         return at_free_path(loaded.name, store, lambda path: _ran(task, store=path, scenario=text))
     ran = _ran(task)
     if ran.orbit is None:
@@ -60,6 +59,28 @@ def run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progres
     orbit, replace = ran.orbit, overwrite and store is not None  # what has a number is never replaced
     path, _ = at_free_path(loaded.name, store, lambda at: save_orbit(orbit, at, overwrite=replace, scenario=text))
     return path, ran
+
+
+def scenario_text(loaded: Loaded) -> str:
+    """Return the scenario that a store of its run keeps."""
+    scenario, discrete = loaded.scenario, _discretized(loaded)
+    return effective_text(scenario.in_force(discrete) if isinstance(discrete, Discretization) else scenario)
+
+
+def is_stopped(store: Path, text: str, pictures: list[str], read: Callable[[Path], dict[str, Any]]) -> bool:
+    """Tell whether a store holds what this scenario began, and lacks a part of it or a picture: it was stopped."""
+    with contextlib.suppress(OSError, ValueError):
+        stored = read(store)
+        is_whole = "outcome" in stored or stored.get("finished", False)
+        return stored.get("scenario") == text and not (is_whole and all(beside(store, p).exists() for p in pictures))
+    return False
+
+
+def continued(store: Path, *, progress: bool) -> Ran:
+    """Do what a run that was stopped lacks; of one that came to its end the orbit is read."""
+    if "outcome" in read_attributes(store):
+        return _ran(functools.partial(load_orbit, store))
+    return _ran(functools.partial(resume_run, store, discrete=None, events=None, throw=True, progress=progress))
 
 
 def _tried(loaded: Loaded) -> tuple[Discretization, bool]:
@@ -82,7 +103,8 @@ def _ran(task: Callable[..., Orbit], **kept: Any) -> Ran:
     except OutcomeError as failure:
         good = failure.orbit if isinstance(failure.orbit, Orbit) and len(failure.orbit) else None
         return Ran(good, time.perf_counter() - begun, str(failure))
-    return Ran(orbit, time.perf_counter() - begun, None)
+    stopped = None if orbit.outcome == Outcome.successful else orbit.outcome.message
+    return Ran(orbit, time.perf_counter() - begun, stopped)
 
 
 def _discretized(loaded: Loaded) -> Discretization:
@@ -98,12 +120,10 @@ def check_output(store: Path | None, *, overwrite: bool) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     if not os.access(folder, os.W_OK | os.X_OK):
         raise PermissionError(f"The results cannot be kept in '{folder}': not writable. Choose another place with -o.")
-    if store is None:
-        return
-    check_target(store, overwrite=overwrite)
-    for picture in (beside(store, "png"), beside(store, "gif")):
-        if picture.exists() and not overwrite:
-            raise FileExistsError(f"A picture '{picture}' exists. Choose another name, or pass --overwrite.")
+    check_target(RUNS / "new.zarr" if store is None else store, overwrite=overwrite)
+    for picture in () if store is None or overwrite else (beside(store, "png"), beside(store, "gif")):
+        if picture.exists():
+            raise FileExistsError(f"A picture '{picture}' exists. Choose another name, or remove it (--overwrite).")
 
 
 def at_free_path(name: str, store: Path | None, make: Callable[[Path], Made]) -> tuple[Path, Made]:

@@ -7,11 +7,12 @@ from typing import Any
 import typer
 
 from nonholo.base.progress import waiting
-from nonholo.cli.commands._running import Ran, check_output, run_and_keep
+from nonholo.cli.commands._running import Ran, check_output, continued, is_stopped, run_and_keep, scenario_text
 from nonholo.cli.scenario.files import Loaded, given_settings, load_scenario
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, scenario_errors, store_errors
 from nonholo.cli.screen.pictures import beside, draw, warn_of_older
 from nonholo.cli.screen.report import as_json, duration, figures, show
+from nonholo.io import read_attributes
 from nonholo.orbit import Orbit
 
 
@@ -28,10 +29,9 @@ def simulate_and_keep(
     """Load, run, save, draw, report; options of the command line come before the settings of `--set`."""
     with scenario_errors(), reporting_warnings():
         loaded = load_scenario(name, given_settings(chosen, settings))
-    with store_errors(USAGE):
-        check_output(output, overwrite=overwrite)
+    stopped = _stopped(loaded, output, overwrite=overwrite)
     shown = sys.stderr.isatty() and not quiet
-    store, ran = _run_and_keep(loaded, output, overwrite=overwrite, progress=shown)
+    store, ran = _run_and_keep(loaded, output, stopped, overwrite=overwrite, progress=shown)
     if store is None or ran.orbit is None:
         leave(f"Nothing to keep. {ran.stopped}", FAILED)
     wanted = loaded.scenario.output
@@ -43,9 +43,24 @@ def simulate_and_keep(
         leave(f"Stopped early; the good steps are kept. {ran.stopped}", FAILED)
 
 
-def _run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progress: bool) -> tuple[Path | None, Ran]:
+def _stopped(loaded: Loaded, output: Path | None, *, overwrite: bool) -> Path | None:
+    """Return the store at a path if this very command began it and was stopped; refuse what else is in the way."""
+    suffixes = ["png"] * loaded.scenario.output.plot + ["gif"] * loaded.scenario.output.gif
+    with store_errors(USAGE), scenario_errors(), reporting_warnings():
+        again = False
+        if output is not None and not overwrite and output.exists():
+            again = is_stopped(output, scenario_text(loaded), suffixes, read_attributes)
+        check_output(output, overwrite=overwrite or again)
+    return output if again else None
+
+
+def _run_and_keep(
+    loaded: Loaded, store: Path | None, stopped: Path | None, *, overwrite: bool, progress: bool
+) -> tuple[Path | None, Ran]:
     try:
         with store_errors(FAILED), scenario_errors(), reporting_warnings():
+            if stopped:
+                return stopped, continued(stopped, progress=progress)
             return run_and_keep(loaded, store, overwrite=overwrite, progress=progress)
     except KeyboardInterrupt as stop:
         leave(str(stop) or "Stopped. A run this short is not kept.", FAILED)
@@ -69,6 +84,7 @@ def _report(loaded: Loaded, ran: Ran, orbit: Orbit, paths: dict[str, str | None]
     length = f"{measured['steps']} of {loaded.scenario.run.steps}, time step {loaded.scenario.run.time_step:g}"
     title = loaded.scenario.title or loaded.name
     heading = {"title": title, "steps": length, "time per step": f"{duration(each)}, once compiled"}
+    heading |= loaded.scenario.forces.about(orbit.system)
     if is_part:
         heading["shown"] = f"the last {len(orbit):,} states; the store has all"
     show(measured, heading)

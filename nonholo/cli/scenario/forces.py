@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 from pydantic import Discriminator, Tag, model_validator
 
 import nonholo
+from nonholo.base.checks import shown
+from nonholo.cli.scenario.bodies import BODIES
 from nonholo.cli.scenario.sections import Matrix, Section, Vector
 from nonholo.cli.scenario.toml import read_text
+from nonholo.groups import components_of
 
 if TYPE_CHECKING:
     from nonholo.systems import System
@@ -68,6 +71,11 @@ class Forces(Section):
             got = f"{len(self.table)}. Add rows, or take fewer steps"
             raise ValueError(f"`Forces(table=...)` must have a row for each of {steps} steps. Got {got}")
 
+    def about(self, system: "System") -> dict[str, str]:
+        """Return what a report says of a table, if there is one: how long it is, and what its columns are."""
+        names, rows = ", ".join(components_of(system.group)), self.table
+        return {} if rows is None else {"table of forces": f"{len(rows)} rows, columns {names}"}
+
     def _part(self, name: str, make: "Callable[[System, Any], Any]", system: "System") -> Any:
         try:
             return make(system, getattr(self, name))
@@ -98,26 +106,37 @@ def read_table(document: dict[str, Any], folder: Path) -> None:
     match document:
         case {"forces": {"table": str(name)} as forces}:
             try:
-                forces["table"] = rows_of(read_text(folder / name))
+                forces["table"] = rows_of(read_text(folder / name), _directions(document))
             except (OSError, ValueError) as failure:
                 fault = f"Got {name!r}: {failure}"
                 raise ValueError(f"must be rows, or the path of a CSV file of numbers. {fault}") from None
 
 
-def rows_of(text: str) -> list[list[float]]:
-    r"""Return the rows of a table with commas; a first line without any number names its columns.
+def _directions(document: dict[str, Any]) -> tuple[str, ...] | None:
+    """Return the names of the directions of the body of a document; None if it is no body, which is reported later."""
+    try:
+        return components_of(BODIES[document["body"]["kind"]].model_validate(document["body"]).system().group)
+    except (KeyError, TypeError, ValueError):
+        return None
+
+
+def rows_of(text: str, names: tuple[str, ...] | None) -> list[list[float]]:
+    r"""Return the rows of a table with commas; its first line may hold the names of the columns, and no other words.
 
     Example:
-        >>> rows_of("turn,push\n0.1,2\n0.2,3\n")
-        [[0.1, 2.0], [0.2, 3.0]]
+        >>> rows_of("omega, v1, v2\n0.1,2,0\n0.2,3,0\n", ("omega", "v1", "v2"))
+        [[0.1, 2.0, 0.0], [0.2, 3.0, 0.0]]
     """
     import numpy as np
 
-    lines = [line for line in text.splitlines() if line.strip()]
-    named = bool(lines) and not any(map(_is_number, lines[0].split(",")))
+    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
+    number, first = lines[0] if lines else (0, "")
+    named = bool(lines) and not any(map(_is_number, first.split(",")))
+    if named and names is not None and tuple(word.strip() for word in first.split(",")) != names:
+        raise ValueError(f"line {number} is {shown(first)}, neither numbers nor the names {','.join(names)}")
     if len(lines) <= named:
         raise ValueError("it has no rows")
-    return np.loadtxt(lines[named:], delimiter=",", ndmin=2, comments=None).tolist()
+    return np.loadtxt([line for _, line in lines[named:]], delimiter=",", ndmin=2, comments=None).tolist()
 
 
 def _is_number(text: str) -> bool:

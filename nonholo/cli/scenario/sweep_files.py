@@ -22,8 +22,8 @@ def load_sweep_scenario(name: str, settings: list[Setting]) -> Loaded[SweepScena
     for setting in settings:
         assign(document, setting)
     _by_table(document)
-    take_table(document, name, source, settings)
     _complete(document)
+    take_table(document, name, source, settings)
     loaded = checked(document, SweepScenario, Path(name).stem, source, settings)
     refused = [problem(*found, source, loaded.options) for found in _refusals(loaded.scenario)]
     if refused:

@@ -13,10 +13,13 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from nonholo.base.checks import count, error, natural, shown
+from nonholo.base.checks import name as checked_name
 from nonholo.base.types import Float
-from nonholo.ensembles._names import OUTCOME, array_name, component_name, stream_name
+from nonholo.ensembles._names import OUTCOME, component_name, stream_name
 from nonholo.ensembles.designs._distributions import AbstractDistribution, listed
+from nonholo.io import TAKEN
 
+_COLUMNS = TAKEN | {"member", OUTCOME, "t", "time"}  # which tables of results have of their own
 _WORDS = 4  # numbers for each value of Philox's counter
 
 
@@ -202,9 +205,8 @@ def axis_dimensions(name: str, values: Float[np.ndarray, "count ..."]) -> tuple[
 
 def _named(where: str, given: Mapping[Any, Any]) -> dict[str, str]:
     """Return the given names by those of the result, refused if two are one."""
-    named = {component_name(array_name(where, name)): name for name in given}
-    if OUTCOME in named:
-        raise error(where, f"leave the name {OUTCOME} to the result", shown(OUTCOME), "Rename it.")
+    plain = {name: component_name(name) if isinstance(name, str) else name for name in given}
+    named = {checked_name(where, own, _COLUMNS): name for name, own in plain.items()}
     if len(named) < len(given):
         raise error(where, "name each value once", ", ".join(given), "Leave one out.")
     return named

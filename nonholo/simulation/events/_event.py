@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import choice, error, natural, shown
+from nonholo.base.checks import choice, error, is_name, natural, shown
+from nonholo.base.checks import name as checked_name
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit
 
@@ -26,7 +27,8 @@ class Event:
             each, which may depend on that state alone.
         direction: 1 for crossings from below, -1 for those from above, 0 for both.
         stop: Whether the motion ends at the first crossing, or at which one: stop=10 ends it at the tenth.
-        name: What to call it; the name of the function by default, or "event 2" for a lambda at position 2.
+        name: What to call it; a letter, then letters, digits and underscores, all ASCII. By default that of the
+            function, or "event 2" for a lambda at position 2.
 
     Raises:
         ValueError: A function that is none, another direction, or a stop that is no count.
@@ -48,8 +50,8 @@ class Event:
         if not callable(self.function):
             raise error("Event(function=...)", "be a function of an orbit", shown(self.function), "Pass a function.")
         choice("Event(direction=...)", self.direction, (-1, 0, 1), "1 is from below, -1 from above, 0 both.")
-        if self.name is not None and not isinstance(self.name, str):
-            raise error("Event(name=...)", "be a text", f"a {type(self.name).__name__}", "Pass a name, or None.")
+        if self.name is not None:
+            checked_name("Event(name=...)", self.name)
         if not isinstance(self.stop, bool):
             natural("Event(stop=...)", self.stop, "Pass True for the first crossing, or which one.")
 
@@ -75,8 +77,8 @@ def checked_events(owner: str, events: Any) -> dict[str, Event]:
 
 
 def _name_of(function: Callable[..., Any], position: int) -> str:
-    name = getattr(function, "__name__", "<lambda>")
-    return f"event {position}" if name == "<lambda>" else name
+    name = getattr(function, "__name__", None)
+    return str(name) if is_name(name) else f"event {position}"
 
 
 def values_at(name: str, event: Event, states: AbstractOrbit) -> Float[np.ndarray, "K"]:
