@@ -24,7 +24,7 @@ from nonholo.orbit import Orbit
 from nonholo.systems import Forced
 
 _LEAST_RTOL, _SHARE = 1e-13, 1e-3  # SciPy allows no less; absolute errors are that part of the relative ones
-_FIRST, _FEW, _MOST = 1000, 10_000, 10_000_000  # steps tried before any judgement, and in total
+_FIRST, _FEW, _MOST = 1000, 10_000, 10_000_000  # steps tried before any judgment, and in total
 _STABLE = 3.0  # half of h |lambda| at the bound of stability; smooth motions have less than 1
 _PARTS = 1000  # of the time, for progress
 
@@ -51,7 +51,6 @@ def by_runge_kutta(
         return _states(forced, whole(times).T)
 
     reached = elapsed[np.abs(elapsed) <= abs(nodes[-1])]
-    outcome = Outcome.nonfinite if said and outcome == Outcome.not_converged else outcome
     why = " ".join(said.values()) if outcome == Outcome.nonfinite else ""
     return Solved(at(reached), outcome, at, lambda: np.array(nodes[:-1]), why)
 
@@ -74,9 +73,7 @@ def _steps(
             solver.step()
             needed = (solver.nfev - asked) // solver.n_stages
             if solver.status == "failed":
-                ahead = np.nextafter(solver.t, end) - solver.t
-                is_defined = np.isfinite(field(solver.t + ahead, solver.y + ahead * solver.f)).all()
-                return nodes, pieces, Outcome.not_converged if is_defined else Outcome.nonfinite
+                return nodes, pieces, Outcome.not_converged if np.isfinite(solver.K).all() else Outcome.nonfinite
             tries, vain = tries + needed, vain + needed - 1 + _is_stiff(solver)
             nodes.append(solver.t)
             pieces.append(solver.dense_output())

@@ -118,13 +118,12 @@ def _chart(system: System, g: Float[np.ndarray, "K N N"], h: Float[np.ndarray, "
 
 
 def _warn_of_aliasing(D: Float[np.ndarray, "K N N"]) -> None:
-    """Warn of the widest turn, if it is wider than 90 degrees: an eigenvalue of its matrix says so."""
+    """Warn of the first turn that is wider than 90 degrees: an eigenvalue of its matrix says so."""
     turns = np.degrees(np.abs(np.angle(np.linalg.eigvals(D))).max(axis=1))
-    if (widest := turns.max()) > _WIDE:
-        row = int(turns.argmax())
-        message = (
-            f"`Orbit.from_poses(configuration=...)` turns by {widest:.3g} degrees from row {row} to row {row + 1}."
-        )
+    if (wide := turns > _WIDE).any():
+        row = int(wide.argmax())
+        where = "`Orbit.from_poses(configuration=...)`"
+        message = f"{where} turns by {turns[row]:.3g} degrees from row {row} to row {row + 1}."
         remedy = (
             "Velocities are those of the shorter turn, which may not be the one taken. Pass poses in shorter steps."
         )

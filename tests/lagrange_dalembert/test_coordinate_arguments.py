@@ -1,5 +1,7 @@
 """Systems in coordinates at the public doors: the same runs, and each bad argument refused by name."""
 
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -188,10 +190,12 @@ def test_what_has_no_derivative_in_jax_is_refused_at_the_door(argument: str) -> 
         "prescribed": {2: halved},
         "potential": lambda q: halved(q @ q),
     }[argument]
-    with pytest.raises(ValueError, match=rf"{argument}=...\)` must be traceable by JAX .* while_loop"):
+    free: dict[str, Any] = {"lagrangian": lagrangian, "constraint_forms": None, "dimension": 3}
+
+    def made(given: Any) -> Any:
         if argument == "potential":
-            nh.Forced(nh.LagrangeDAlembert(lagrangian, None, dimension=3), given)
-        else:
-            nh.LagrangeDAlembert(
-                **{"lagrangian": lagrangian, "constraint_forms": None, "dimension": 3, argument: given}
-            )
+            return nh.Forced(nh.LagrangeDAlembert(**free), given)
+        return nh.LagrangeDAlembert(**{**free, argument: given})
+
+    with pytest.raises(ValueError, match=rf"{argument}=...\)` must be traceable by JAX .* while_loop"):
+        made(given)

@@ -171,7 +171,7 @@ def test_a_compiled_function_of_another_size_is_refused() -> None:
 
 
 def _drag(time: float, g: np.ndarray, w: np.ndarray) -> Any:
-    return 0.0 * g[0, 0], -0.5 * w[1] * abs(w[1]), 0.0
+    return 0.0 * time * g[0, 0], -0.5 * w[1] * abs(w[1]), 0.0
 
 
 def _gust(time: float, g: np.ndarray, w: np.ndarray) -> Any:

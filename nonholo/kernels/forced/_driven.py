@@ -247,6 +247,8 @@ def driven(drive: Drive, room: Room, node: int, row: int, m: np.ndarray, out: np
         same = same and first[i] == second[i]
     if same or midpoint(drive, room, when, m, out, False) == 0:
         return 0
+    assign(out, m)
+    pushed_by_function(drive, room, when, m, out, second)
     return midpoint(drive, room, when, m, out, True)
 
 
@@ -269,14 +271,11 @@ def see_slopes(drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray,
 def midpoint(drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, out: np.ndarray, renewed: bool) -> int:
     """Solve m' = A m + j((m + m') / 2) by Newton's method; return the outcome.
 
-    It has one slope, from the explicit momenta and their impulse; or new slopes, from no impulse at all, and halves
+    It has one slope, from the explicit momenta and their impulse; or new slopes, from what stands there, and halves
     corrections until less is missed than before. Those lead to the root that a half impulse over a growing time comes
     to, unless it has met another one.
     """
     second, begun, change, used = room.momenta[1], room.momenta[3], room.momenta[4], room.slopes[1]
-    if renewed:
-        assign(out, m)
-        pushed_by_function(drive, room, when, m, out, second)
     left = gap(drive, room, m, out)
     for step in range(_MOST if renewed else _ITERATIONS):
         if step == 0 or renewed:
@@ -287,22 +286,33 @@ def midpoint(drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, o
         small = left <= _ROUNDING * largest(m, out)
         if eliminate(used, room.missed) == 0:
             return 7
-        part, before = 1.0, left
-        for i in range(len(m)):
-            begun[i], change[i] = out[i], room.missed[i, 0]
-            out[i] += change[i]
+        assign(begun, out)
+        assign(change, room.missed[:, 0])
+        corrected(out, begun, 1.0, change)
         if small:
             return 0
+        before = left
         pushed_by_function(drive, room, when, m, out, second)
         left = gap(drive, room, m, out)
-        while renewed and not left < before:
-            part /= 2
-            corrected(out, begun, part, change)
-            pushed_by_function(drive, room, when, m, out, second)
-            left = gap(drive, room, m, out)
-            if part < _SHORTEST:
+        if renewed:
+            left = shortened(drive, room, when, m, out, left, before)
+            if not left < before:
                 return 7
     return 7
+
+
+@inlined
+def shortened(
+    drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, out: np.ndarray, left: float, before: float
+) -> float:
+    """Halve the correction in the room until less is missed than before it; return the largest of it."""
+    part = 1.0
+    while not left < before and part > _SHORTEST:
+        part /= 2
+        corrected(out, room.momenta[3], part, room.momenta[4])
+        pushed_by_function(drive, room, when, m, out, room.momenta[1])
+        left = gap(drive, room, m, out)
+    return left
 
 
 @inlined
