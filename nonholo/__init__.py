@@ -52,6 +52,7 @@ One motion:
     flow: Solve the Euler-Poincare-Suslov equations.
     iterate: Run the discrete map as `simulate` does, and give its orbit block by block, in bounded memory.
     Orbit: A motion at K saved states, from `simulate` or `flow`.
+    AliasingWarning: Given poses of which one is turned by more than 90 degrees from the one before.
     Outcome: The end of a step or a run.
     OutcomeError: A run that cannot continue; `outcome` says why and `orbit`, where there is one, holds every good step.
     vector_field: Return the equations of motion as a function (time, state) -> derivative, for your own solver.
@@ -208,6 +209,7 @@ if TYPE_CHECKING:
     from nonholo.lagrange_dalembert import GroupLagrangeDAlembert as GroupLagrangeDAlembert
     from nonholo.lagrange_dalembert import LagrangeDAlembert as LagrangeDAlembert
     from nonholo.lagrange_dalembert import mass_tensor_lagrangian as mass_tensor_lagrangian
+    from nonholo.orbit import AliasingWarning as AliasingWarning
     from nonholo.orbit import Orbit as Orbit
     from nonholo.simulation import CoordinateEnsemble as CoordinateEnsemble
     from nonholo.simulation import Crossings as Crossings
@@ -241,6 +243,7 @@ if TYPE_CHECKING:
     from nonholo.systems import trace_constraints as trace_constraints
 
 _HOMES = {
+    "AliasingWarning": "orbit",
     "ChaplyginSleigh": "systems",
     "Choice": "ensembles",
     "CoordinateEnsemble": "simulation",

@@ -67,13 +67,13 @@ def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "
         if not _fits(value.shape, shape):
             raise error(where, f"have shape {_shown(shape)}", f"shape {value.shape}", remedy)
         return value
-    raw = _numbers(where, value, remedy)
+    raw = real_or_complex(where, value, remedy)
     if raw.dtype.kind == "c":
         raise error(where, "be real", "complex numbers", remedy)
     if not _fits(raw.shape, shape):
         raise error(where, f"have shape {_shown(shape)}", f"shape {raw.shape}", remedy)
     try:
-        result = np.array(as_floats(raw), dtype=np.float64)
+        result = np.array(_as_floats(raw), dtype=np.float64)
         _check_size(where, result, remedy)
     except MemoryError:
         raise _too_large(where, raw, remedy) from None
@@ -81,7 +81,7 @@ def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "
     return result
 
 
-def _numbers(where: str, value: Any, remedy: str) -> np.ndarray:
+def real_or_complex(where: str, value: Any, remedy: str) -> np.ndarray:
     """Return an array of integers, floats or complex numbers; refuse all else that NumPy would turn into some.
 
     Texts, dates, truth values, structures, None, and masked arrays, whose hidden numbers NumPy would use.
@@ -113,6 +113,11 @@ def shown(value: Any) -> str:
 def _too_large(where: str, value: np.ndarray, remedy: str) -> ValueError:
     """Return the error of numbers of which there are too many to look at, such as one that is repeated without end."""
     return error(where, "fit into memory", f"shape {value.shape}", remedy)
+
+
+def is_moderate(value: np.ndarray, most: float) -> bool:
+    """Tell whether every number is finite and at most as large."""
+    return _is_moderate(value) or bool((np.isfinite(value) & (np.abs(value) <= most)).all())
 
 
 def _is_moderate(value: np.ndarray) -> bool:
@@ -152,9 +157,8 @@ def number(where: str, value: Any, remedy: str = "Pass one real number.") -> Arr
     return result if is_traced(result) else np.float64(result)
 
 
-def as_floats(value: Any) -> Array:
-    """Return an array as it is (integers and longer floats as float64), a sequence as a float64 array."""
-    result = value if hasattr(value, "__array_namespace__") else np.asarray(value, dtype=np.float64)
+def _as_floats(result: Array) -> Array:
+    """Return an array as it is, integers and longer floats as float64."""
     if result.dtype.kind not in "biu" and result.dtype.char not in "egG":  # half and long floats, long complex ones
         return result
     with np.errstate(over="ignore"):
@@ -168,15 +172,15 @@ def trailing(where: str, value: Any, shape: tuple[int, ...], remedy: str, *, rea
     """
     if _is_as_wanted(value, shape):
         return value
-    raw = value if is_traced(value) else _numbers(where, value, remedy)
+    raw = value if is_traced(value) else real_or_complex(where, value, remedy)
     if raw.shape[max(0, raw.ndim - len(shape)) :] != shape:
         raise error(where, f"end in shape {_shown(shape)}", f"shape {raw.shape}", remedy)
     if is_traced(raw):
-        return as_floats(raw)
+        return _as_floats(raw)
     if real and raw.dtype.kind == "c":
         raise error(where, "be real", "complex numbers", remedy)
     try:
-        found = as_floats(raw)
+        found = _as_floats(raw)
         if not _is_moderate(found):
             _check_finite(where, found if found.ndim == len(shape) else np.where(np.isnan(found), 0, found), remedy)
     except MemoryError:

@@ -2,12 +2,16 @@
 
 import contextlib
 import contextvars
+import sys
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
 
 from rich.console import Console
 from rich.progress import Progress, ProgressColumn, Task, TimeElapsedColumn
 from rich.text import Text
+
+_LATE = 2.0  # seconds
 
 _over: contextvars.ContextVar[Callable[[], bool]] = contextvars.ContextVar("over", default=lambda: False)
 
@@ -63,6 +67,27 @@ def _shown_bar(title: str) -> Iterator[Callable[[int, int], None]]:
         def report(done: int, total: int) -> None:
             _go_on()
             bar.update(task, completed=done, total=total)
+
+        yield report
+
+
+@contextlib.contextmanager
+def late_bar(title: str) -> Iterator[Callable[[int, int], None]]:
+    """Give a function that reports how much is done, which a terminal shows of what takes longer than two seconds.
+
+    Example:
+        >>> with late_bar("flow") as report:
+        ...     report(3, 10)
+    """
+    with contextlib.ExitStack() as opened:
+        begun, bars = time.monotonic(), []
+
+        def report(done: int, total: int) -> None:
+            _go_on()
+            if not bars and time.monotonic() - begun > _LATE and sys.stderr.isatty():
+                bars.append(opened.enter_context(_shown_bar(title)))
+            for show in bars:
+                show(done, total)
 
         yield report
 

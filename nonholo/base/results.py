@@ -23,6 +23,8 @@ class Outcome(enum.IntEnum):
     not_converged = 3
     off_momentum_locus = 4
     nonfinite = 5
+    too_stiff = 6
+    no_half_impulse = 7
 
     def __str__(self) -> str:
         return self.name
@@ -52,31 +54,48 @@ _MESSAGES = {
         "The momentum is not the discrete momentum of any displacement on the principal branch. "
         "Pass its components along the constraint subspace instead, or a momentum made by discrete_legendre."
     ),
-    Outcome.nonfinite: "A number overflowed or became undefined. Try a smaller time_step or other units.",
+    Outcome.nonfinite: (
+        "A number overflowed or became undefined, or a force or potential returned one that is. "
+        "Try a smaller time_step or other units."
+    ),
+    Outcome.no_half_impulse: (
+        "No half impulse of the force was found: at the velocity in the middle of it the force has to give that same "
+        "impulse. A force that grows faster than the velocity, or jumps, may have none over half a step. "
+        "Try a smaller time_step, or a force that is continuous."
+    ),
+    Outcome.too_stiff: (
+        "The steps of the solver became too short to come to an end: the force changes much faster than the motion, as "
+        "strong friction does, or it jumps again and again. Try `simulate`, for which `Friction` is exact at any "
+        "time_step, a smoother force, a shorter time or a larger rtol."
+    ),
 }
 
 
 class OutcomeError(RuntimeError):
     """A run that cannot continue; `outcome` says why and `orbit`, where there is one, holds every good step.
 
+    What a function of the user did, where that ended the run, is `said`.
+
     Example:
         >>> str(OutcomeError(Outcome.nonfinite, "Step 7"))
-        'Step 7: nonfinite. A number overflowed or became undefined. Try a smaller time_step or other units.'
+        'Step 7: nonfinite. A number overflowed or became undefined, or a force ...'
     """
 
-    def __init__(self, outcome: Outcome, where: str, orbit: object | None = None) -> None:
-        super().__init__(f"{where}: {outcome.name}. {outcome.message}")
+    def __init__(self, outcome: Outcome, where: str, orbit: object | None = None, said: str = "") -> None:
+        super().__init__(f"{where}: {outcome.name}. {said or outcome.message}")
         self.outcome = outcome
         self.where = where
         self.orbit = orbit
+        self.said = said
 
     def __reduce__(self) -> Any:
-        return type(self), (self.outcome, self.where, self.orbit)
+        return type(self), (self.outcome, self.where, self.orbit, self.said)
 
 
 def finished(orbit: Any, time_step: float, done: int, steps: int, throw: bool) -> Any:
     """Return the orbit of a run; with `throw`, raise if it ended early, naming the step."""
     if throw and orbit.outcome != Outcome.successful:
         where = f"Step {done + 1} of {steps}" if len(orbit) else "Start of the run"
-        raise OutcomeError(orbit.outcome, f"{where} (time_step {time_step:g})", orbit)
+        said = getattr(getattr(orbit.motion, "route", None), "said", {}) if orbit.outcome == Outcome.nonfinite else {}
+        raise OutcomeError(orbit.outcome, f"{where} (time_step {time_step:g})", orbit, " ".join(said.values()))
     return orbit

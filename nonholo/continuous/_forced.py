@@ -7,12 +7,16 @@ $$ \dot r = S\,\mathrm{ad}^*_\omega p + E^Tf \quad\text{(left)}, \qquad \dot r =
    \dot g = g\hat\omega, \quad \omega = E(E^T\mathbb{I}E)^{-1}r. $$
 """
 
+import contextlib
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import scipy  # its parts load on first use
 
+from nonholo.base.calls import noted
 from nonholo.base.checks import error, number, trailing
+from nonholo.base.progress import late_bar
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
@@ -20,6 +24,9 @@ from nonholo.orbit import Orbit
 from nonholo.systems import Forced
 
 _LEAST_RTOL, _SHARE = 1e-13, 1e-3  # SciPy allows no less; absolute errors are that part of the relative ones
+_FIRST, _FEW, _MOST = 1000, 10_000, 10_000_000  # steps tried before any judgment, and in total
+_STABLE = 3.0  # half of h |lambda| at the bound of stability; smooth motions have less than 1
+_PARTS = 1000  # of the time, for progress
 
 
 def by_runge_kutta(
@@ -35,23 +42,60 @@ def by_runge_kutta(
     group, k = forced.group, forced.rank
     r, g = forced.from_canonical(reduced_momentum), group.matrix_from_pose(pose) @ group.inverse(forced.frame)
     start = np.concatenate([r, g.ravel(), first_heading(group, pose)])
-    field, rtol = _field(forced, begins, k), max(_LEAST_RTOL, tolerances[0])
-    if len(elapsed) == 1:
-        states = _states(forced, start[None])
-        return Solved(states, Outcome.successful, lambda times: states.chosen(np.zeros(len(times), dtype=int)))
-    found = scipy.integrate.solve_ivp(
-        field, (0.0, elapsed[-1]), start, "DOP853", elapsed, True, rtol=rtol, atol=_SHARE * rtol
-    )
-    outcome = Outcome.successful if found.status == 0 else Outcome.not_converged
-    steps, states = found.sol.ts[:-1], _states(forced, found.y.T)
-    return Solved(states, outcome, lambda t: _states(forced, found.sol(t).T), lambda: steps)
+    said: dict[str, str] = {}
+    field, rtol = _field(forced, begins, k, said), max(_LEAST_RTOL, tolerances[0])
+    nodes, pieces, outcome = _steps(field, start, float(elapsed[-1]), rtol)
+
+    def at(times: Float[np.ndarray, "K"]) -> States:
+        whole = scipy.integrate.OdeSolution(nodes, pieces) if pieces else lambda t: np.tile(start[:, None], len(t))
+        return _states(forced, whole(times).T)
+
+    reached = elapsed[np.abs(elapsed) <= abs(nodes[-1])]
+    why = " ".join(said.values()) if outcome == Outcome.nonfinite else ""
+    return Solved(at(reached), outcome, at, lambda: np.array(nodes[:-1]), why)
+
+
+def _steps(
+    field: Callable[[float, np.ndarray], np.ndarray], start: np.ndarray, end: float, rtol: float
+) -> tuple[list[float], list[Any], Outcome]:
+    """Return the ends of the steps from time zero, what interpolates within them, and the outcome.
+
+    Steps are too many where the whole time needs more than `_MOST` at the rate so far, or `_FEW` if many of them are as
+    short as they are for stability alone, or follow others that were too long, as over jumps.
+    """
+    nodes, pieces, tries, vain, first = [0.0], [], 0, 0, field(0.0, start)
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"), late_bar("flow under forces") as report:
+        if not np.isfinite(np.linalg.norm(first / (_SHARE + np.abs(start)) / rtol)):
+            return nodes, pieces, Outcome.nonfinite
+        solver = scipy.integrate.DOP853(field, 0.0, start, end, rtol=rtol, atol=_SHARE * rtol) if end else None
+        while solver is not None and solver.status == "running":
+            asked = solver.nfev
+            solver.step()
+            needed = (solver.nfev - asked) // solver.n_stages
+            if solver.status == "failed":
+                return nodes, pieces, Outcome.not_converged if np.isfinite(solver.K).all() else Outcome.nonfinite
+            tries, vain = tries + needed, vain + needed - 1 + _is_stiff(solver)
+            nodes.append(solver.t)
+            pieces.append(solver.dense_output())
+            report(int(_PARTS * solver.t / end), _PARTS)
+            if tries > _FIRST and tries * end / solver.t > (_FEW if vain > tries / 3 else _MOST):
+                return nodes, pieces, Outcome.too_stiff
+    return nodes, pieces, Outcome.successful
+
+
+def _is_stiff(solver: Any) -> bool:
+    """Tell whether a step is about as long as is stable, by two derivatives at its end, as Hairer's DOP853 does."""
+    last = solver.n_stages - 1
+    other = solver.y_old + solver.step_size * (solver.K[:last].T @ solver.A[last, :last])
+    slope, gap = np.linalg.norm(solver.K[-1] - solver.K[last]), np.linalg.norm(solver.y - other)
+    return bool(solver.step_size * slope > _STABLE * gap)
 
 
 def forced_field(forced: Forced) -> Callable[[float, np.ndarray], np.ndarray]:
     """Return the equations of motion as a function of time and states, as `vector_field` does."""
     _refuse_table("vector_field", forced)
     size = forced.rank + forced.group.size**2
-    field = _field(forced, 0.0, forced.rank)
+    field = _field(forced, 0.0, forced.rank, None)
 
     def derivative(time: float, state: np.ndarray) -> np.ndarray:
         now = number("vector_field(...)(time=...)", time)
@@ -69,15 +113,24 @@ def _refuse_table(owner: str, forced: Forced) -> None:
         raise error(f"{owner}(system=Forced(...))", "have forces at times", "one force for each step", remedy)
 
 
-def _field(forced: Forced, begins: float, k: int) -> Callable[[float, np.ndarray], np.ndarray]:
-    """Return the right-hand side: momenta along the rows of the user, the pose row by row, the heading in the plane."""
+def _field(
+    forced: Forced, begins: float, k: int, said: dict[str, str] | None
+) -> Callable[[float, np.ndarray], np.ndarray]:
+    """Return the right-hand side: momenta along the rows of the user, the pose row by row, the heading in the plane.
+
+    Given a place to note it, what is not finite is NaN, so that the solver comes as near to it as it can.
+    """
     group, inertia, N = forced.group, np.asarray(forced.inertia_operator), forced.group.size
 
     def derivative(time: float, state: np.ndarray) -> np.ndarray:
+        if said is not None and not np.isfinite(state).all():
+            return np.full_like(state, np.nan)
         g = state[k : k + N * N].reshape(N, N)
         E = forced.directions(g)
         velocity = E @ np.linalg.solve(E.T @ inertia @ E, state[:k])
-        force = forced.potential_force(g) + forced.applied_force(begins + time, g, velocity)
+        force = np.full(group.dim, np.nan)
+        with contextlib.nullcontext() if said is None else noted(said, "force"):
+            force = forced.potential_force(g) + forced.applied_force(begins + time, g, velocity)
         if not forced.is_spatial:
             force = force + group.coad(velocity, inertia @ velocity)
         moved = g @ group.hat(velocity)

@@ -5,6 +5,7 @@ pose before, over a negative time: its momentum is that at which the last step a
 """
 
 import dataclasses
+import warnings
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,10 +15,11 @@ from nonholo.base.types import Float
 from nonholo.discrete._discretization import discretize
 from nonholo.discrete._legendre import legendre
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.orbit import AbstractMotion, Orbit, configurations
+from nonholo.orbit import AbstractMotion, AliasingWarning, Orbit, configurations
 from nonholo.systems import AbstractSystem, System
 
 _NEAR = 1e-5  # relative distance from the group of poses in single precision, or written with six digits
+_WIDE = 90.0  # degrees of a turn; half a turn is the most that poses can tell
 _SAME_STEP = 1e-9  # relative difference of time steps that are equal
 
 
@@ -111,7 +113,21 @@ def _chart(system: System, g: Float[np.ndarray, "K N N"], h: Float[np.ndarray, "
     group = system.group
     ahead = np.concatenate([g[1:], g[-2:-1]])
     D = ahead @ group.inverse(g) if system.is_spatial else group.inverse(g) @ ahead
+    _warn_of_aliasing(D[:-1])
     return np.concatenate([group.log(D), h[:, None]], axis=1)
+
+
+def _warn_of_aliasing(D: Float[np.ndarray, "K N N"]) -> None:
+    """Warn of the first turn that is wider than 90 degrees: an eigenvalue of its matrix says so."""
+    turns = np.degrees(np.abs(np.angle(np.linalg.eigvals(D))).max(axis=1))
+    if (wide := turns > _WIDE).any():
+        row = int(wide.argmax())
+        where = "`Orbit.from_poses(configuration=...)`"
+        message = f"{where} turns by {turns[row]:.3g} degrees from row {row} to row {row + 1}."
+        remedy = (
+            "Velocities are those of the shorter turn, which may not be the one taken. Pass poses in shorter steps."
+        )
+        warnings.warn(f"{message} {remedy}", AliasingWarning, stacklevel=5)
 
 
 def _times(time: Any) -> Float[np.ndarray, "K"]:

@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from nonholo import io
+from nonholo.base.calls import called
 from nonholo.base.checks import array, count, error, flag, shown
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization
@@ -115,7 +116,11 @@ class EnsembleTask:
             raise ValueError(message) from failure
         found: dict[str, Any] = {OUTCOME: batch.outcome}
         for reduction in self.reductions:
-            more = REDUCTIONS[reduction].function(batch) if isinstance(reduction, str) else reduction(batch)
+            more = (
+                REDUCTIONS[reduction].function(batch)
+                if isinstance(reduction, str)
+                else called("EnsembleTask(reductions=...)", reduction, batch)
+            )
             _add(found, more)
         return found
 

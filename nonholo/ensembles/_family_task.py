@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from nonholo.base.calls import called
 from nonholo.base.checks import count, error, function, instance, scale, shown
 from nonholo.base.limits import within_a_year
 from nonholo.discrete import discretize
@@ -147,7 +148,9 @@ class FamilyTask:
         """Return dimensions, rows and labels of what is kept of members, by name."""
         found: dict[str, Any] = {OUTCOME: batch.outcome}
         for reduction in self.reductions:
-            found |= _final_state(batch) if reduction == _FINAL else reduction(batch)
+            found |= (
+                _final_state(batch) if reduction == _FINAL else called("FamilyTask(reductions=...)", reduction, batch)
+            )
         return {name: _labeled(name, entry) for name, entry in found.items()}
 
     def describe(self) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import jax
 import numpy as np
 
+from nonholo.base.calls import called
 from nonholo.base.checks import array, choice, count, error, names, shown, text
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
@@ -154,7 +155,9 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
 
     def parts(self, q: Any) -> tuple[Float[np.ndarray, "P 2"], ...]:
         """Return the parts of the outline at a configuration, in body axes."""
-        return as_parts(_named("outline"), self.outline(q) if callable(self.outline) else self.outline)
+        return as_parts(
+            _named("outline"), called(_named("outline"), self.outline, q) if callable(self.outline) else self.outline
+        )
 
     def takes_time(self, function: str) -> bool:
         """Return whether the Lagrangian or the constraint forms are called with the time."""

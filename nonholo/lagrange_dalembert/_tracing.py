@@ -20,14 +20,7 @@ def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str)
     """Return the shape of a function's value; `of` says in words what it is called with."""
     if not callable(function):
         raise error(where, "be a function", shown(function), "Pass a function of jax.numpy arrays.")
-    try:
-        traced = jax.make_jaxpr(lambda *x: _array(function(*x)))(*arguments)
-    except Exception as failure:
-        words = " ".join(str(failure).split()).rstrip(".")
-        said = words if len(words) <= 2 * _END else f"{words[:_END]} ... {words[-_END:]}"
-        got, columns = f"{type(failure).__name__}: {said}", "`.to_numpy()` of columns of pandas"
-        remedy = f"Write it with jax.numpy, for arrays of {of}; use jnp.where, not `if`, and {columns}."
-        raise error(where, f"be traceable by JAX on {of}", got, remedy) from failure
+    traced = _traced(where, lambda *x: _array(function(*x)), arguments, of)
     if any(getattr(constant, "dtype", None) == jnp.float32 for constant in traced.consts):
         remedy = "Keep parameters as Python numbers or NumPy arrays, not as jax.numpy arrays made outside."
         raise error(where, "use 64-bit numbers", "a captured 32-bit array", remedy)
@@ -38,14 +31,31 @@ def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str)
     return shape
 
 
+def _traced(where: str, function: Callable[..., Any], arguments: tuple[Any, ...], of: str) -> Any:
+    """Return the program of a function, refused where JAX cannot trace it."""
+    try:
+        return jax.make_jaxpr(function)(*arguments)
+    except Exception as failure:
+        words = " ".join(str(failure).split()).rstrip(".")
+        said = words if len(words) <= 2 * _END else f"{words[:_END]} ... {words[-_END:]}"
+        got, columns = f"{type(failure).__name__}: {said}", "`.to_numpy()` of columns of pandas"
+        remedy = f"Write it with jax.numpy, for arrays of {of}; use jnp.where, not `if`, and {columns}."
+        raise error(where, f"be traceable by JAX on {of}", got, remedy) from failure
+
+
 def check_value(
     where: str, function: Any, shape: tuple[int, ...], arguments: tuple[Any, ...], of: str, called: str
 ) -> None:
-    """Refuse a function whose value has another shape; `called` says what arrays it is called with."""
+    """Refuse a function whose value has another shape, or that is to be differentiated, as a scalar is, and cannot be.
+
+    `called` says what arrays it is called with.
+    """
     found = traced_shape(where, function, arguments, of)
     if found != shape:
         wanted = "a scalar" if shape == () else f"an array of shape {shape}"
         raise error(where, f"return {wanted}", f"shape {found}", f"It is called with arrays of {called}.")
+    if shape == ():
+        _traced(where, jax.grad(lambda *x: _array(function(*x)), tuple(range(len(arguments)))), arguments, of)
 
 
 def check_forms(where: str, forms: Any, n: int, arguments: tuple[Any, ...], of: str, remedy: str) -> None:

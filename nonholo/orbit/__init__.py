@@ -3,13 +3,14 @@
 from nonholo.orbit._base import AbstractOrbit
 from nonholo.orbit._crossings import AbstractEventLog, Crossings, EventLog, joined_crossings
 from nonholo.orbit._orbit import STATES, AbstractMotion, Orbit, as_orbit
-from nonholo.orbit._poses import configurations, poses, unwrapped
+from nonholo.orbit._poses import AliasingWarning, configurations, poses, unwrapped
 
 __all__ = [
     "STATES",
     "AbstractEventLog",
     "AbstractMotion",
     "AbstractOrbit",
+    "AliasingWarning",
     "Crossings",
     "EventLog",
     "Orbit",

@@ -1,15 +1,26 @@
 """The interface of all orbits: what a motion tells, on a group or in coordinates. Nothing is decoded here."""
 
 import abc
+import dataclasses
 import importlib
 from collections.abc import Sequence
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
+from nonholo.base.checks import LARGEST, is_moderate
 from nonholo.base.html import table
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
+
+_COLUMNS = {
+    "time",
+    "configuration",
+    "body_velocity",
+    "momentum",
+    "energy",
+}  # in coordinates; multipliers may be unknown
+_COLUMNS |= {"reduced_momentum", "cayley", "canonical_pose"}  # compact
 
 OrbitT = TypeVar("OrbitT", bound="AbstractOrbit")
 
@@ -66,6 +77,14 @@ class AbstractOrbit(abc.ABC):
     conserves_energy: bool | None
     events: Any
     turned: Float[np.ndarray, "K"] | None = None
+
+    def __post_init__(self) -> None:
+        """Let no orbit be successful with a number that is not finite, or with a momentum whose square overflows."""
+        if self.outcome == Outcome.successful:
+            names = {field.name for field in dataclasses.fields(cast(Any, self))} & _COLUMNS
+            columns = {name: rows for name in names if (rows := getattr(self, name)) is not None}
+            if not all(is_moderate(rows, LARGEST if "momentum" in name else np.inf) for name, rows in columns.items()):
+                object.__setattr__(self, "outcome", Outcome.nonfinite)
 
     @property
     @abc.abstractmethod

@@ -149,6 +149,10 @@ class Orbit(AbstractOrbit):
             ValueError: No system on a group, fewer than two rows, times that do not increase, a matrix that is far
                 from the group (the message names its row).
 
+        Warns:
+            AliasingWarning: From one row to the next it turns by more than 90 degrees: velocities are those of the
+                shorter turn, which a body that turns fast did not take.
+
         Example:
             >>> t = np.linspace(0.0, 6.0, 61)
             >>> g = nh.SE(2).exp(np.stack([0.5 * t, t, 0 * t], axis=1))  # a circle, its tangent along the blade

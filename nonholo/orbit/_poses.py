@@ -8,6 +8,23 @@ from nonholo.systems import System
 _TURN = 2 * np.pi
 
 
+class AliasingWarning(UserWarning):
+    """Given poses of which one is turned by more than 90 degrees from the one before.
+
+    Its velocity is that of the shorter turn. Of a body that turns faster than half a turn a row nothing tells which
+    turn it took.
+
+    Example:
+        >>> import warnings
+        >>> poses = nh.SE(2).exp([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0]])
+        >>> with warnings.catch_warnings(record=True) as caught:
+        ...     warnings.simplefilter("always")
+        ...     fast = nh.Orbit.from_poses(nh.ChaplyginSleigh(1.0, 1.0, 0.5), [0, 1], poses)
+        >>> caught[0].category.__name__, fast.body_velocity[0, 0].round(3)
+        ('AliasingWarning', np.float64(-0.757))
+    """
+
+
 def configurations(system: System, pose: Float[np.ndarray, "K size"]) -> Float[np.ndarray, "K N N"]:
     """Return the matrices, in the user's body frame, of compact poses in the canonical one."""
     return system.group.matrix_from_pose(pose) @ system.group.inverse(system.frame)

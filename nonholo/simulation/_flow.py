@@ -100,7 +100,8 @@ def flow(
 
     Raises:
         ValueError: A bad argument, before any work.
-        OutcomeError: The solver could not meet the tolerances; its `orbit` holds every good state.
+        OutcomeError: The solver could not meet the tolerances, or would need too many steps under forces (`too_stiff`);
+            its `orbit` holds every good state.
 
     Example:
         The sleigh ends up gliding straight ahead, turned by pi sqrt(1 + J/(m a^2)) in total:
@@ -170,8 +171,9 @@ def _flowed(
         orbit = flow_with_events(events, orbit, time[0] + solved.steps())
     if orbit.outcome != Outcome.successful:
         rtol, atol = tolerances
-        where = f"Flow from time {time[reached - 1]:g} to {time[reached]:g} (rtol {rtol:g}, atol {atol:g})"
-        raise OutcomeError(outcome, where, orbit)
+        acting = "" if system.forces is None else f" under {system.forces.names}"
+        where = f"Flow from time {time[reached - 1]:g} to {time[reached]:g}{acting} (rtol {rtol:g}, atol {atol:g})"
+        raise OutcomeError(orbit.outcome, where, orbit, solved.said)
     return orbit
 
 

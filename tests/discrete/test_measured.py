@@ -152,3 +152,25 @@ def test_what_poses_cannot_tell_is_refused() -> None:
         orbit.at(0.05)
     with pytest.raises(ValueError, match="every single step of a discrete run"):
         nh.crossings(orbit, nh.cusp)
+
+
+def _turning(angle: float) -> nh.Orbit:
+    """Return the orbit of poses that are turned by an angle a row."""
+    return nh.Orbit.from_poses(
+        SLEIGH, 0.1 * np.arange(5), nh.SE(2).exp(np.outer(angle * np.arange(5), [1.0, 0.0, 0.0]))
+    )
+
+
+@pytest.mark.parametrize("degrees", [92.0, 180.0, 230.0])
+def test_turns_beyond_a_quarter_are_warned_of(degrees: float) -> None:
+    """Beyond half a turn the velocity is another one, and nothing in the poses tells."""
+    with pytest.warns(
+        nh.AliasingWarning, match=r"from row 0 to row 1. Velocities are those of the shorter turn"
+    ) as seen:
+        _turning(np.radians(degrees))
+    assert seen[0].filename == __file__
+
+
+def test_turns_within_a_quarter_are_not_warned_of() -> None:
+    """Their discrete velocity has the sign of the turn that was taken: sin(angle) / h, here of W - W^-1 over 2 h."""
+    assert np.abs(_turning(1.5).body_velocity[1:-1, 0] - np.sin(1.5) / 0.1).max() < 1e-12

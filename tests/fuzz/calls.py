@@ -62,6 +62,7 @@ NOT_CALLED = {
     "Discretization": "made by `discretize`, which checks; a pytree, whose leaves may be anything",
     "MemberBlock": "made by sweeps; its methods are called",
     "OutcomeError": "raised by runs",
+    "AliasingWarning": "a warning of `Orbit.from_poses`",
     "ImpossibleBodyWarning": "a warning of `from_inertia`, which is called",
     "CoordinateEnsemble": "made by `ensemble` in coordinates, which is called",
     "Crossings": "made by runs; its methods are called",

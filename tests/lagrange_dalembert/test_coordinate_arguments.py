@@ -1,5 +1,7 @@
 """Systems in coordinates at the public doors: the same runs, and each bad argument refused by name."""
 
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -173,3 +175,27 @@ def test_long_compiling_is_said_once(capsys, monkeypatch) -> None:  # noqa: ANN0
     assert capsys.readouterr().err.startswith("compiling a system in coordinates, once")
     system.regularity([0.0], [2.0])
     assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize("argument", ["lagrangian", "discrete_lagrangian", "prescribed", "potential"])
+def test_what_has_no_derivative_in_jax_is_refused_at_the_door(argument: str) -> None:
+    """JAX differentiates no `while_loop` backwards: that is said when the system is made, not at its first step."""
+
+    def halved(x: jax.Array) -> jax.Array:
+        return jax.lax.while_loop(lambda c: c[0] < 3.0, lambda c: (c[0] + 1.0, c[1] / 2), (jnp.zeros(()), x))[1]
+
+    given = {
+        "lagrangian": lambda q, v: halved(v @ v),  # noqa: ARG005
+        "discrete_lagrangian": lambda q, p, h: halved((p - q) @ (p - q)) / h,
+        "prescribed": {2: halved},
+        "potential": lambda q: halved(q @ q),
+    }[argument]
+    free: dict[str, Any] = {"lagrangian": lagrangian, "constraint_forms": None, "dimension": 3}
+
+    def made(given: Any) -> Any:
+        if argument == "potential":
+            return nh.Forced(nh.LagrangeDAlembert(**free), given)
+        return nh.LagrangeDAlembert(**{**free, argument: given})
+
+    with pytest.raises(ValueError, match=rf"{argument}=...\)` must be traceable by JAX .*while_loop"):
+        made(given)

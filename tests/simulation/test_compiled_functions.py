@@ -149,7 +149,7 @@ def _raising(time: float, g: np.ndarray, w: np.ndarray) -> Any:
     return g[2] * w
 
 
-FAILING = {"nonfinite": _ending, "not_converged": _jumping, "raises": _raising}
+FAILING = {"nonfinite": _ending, "no_half_impulse": _jumping, "raises": _raising}
 
 
 @pytest.mark.profile("routes", keep=["raises"])
@@ -168,3 +168,52 @@ def test_a_compiled_function_of_another_size_is_refused() -> None:
     """It is asked before the run, since compiled code does not see how many numbers it returns."""
     with pytest.raises(ValueError, match="return 3 real numbers"):
         nh.simulate(nh.discretize(nh.Forced(TOP, force=_short), 0.1), restricted_velocity=START[:2], steps=9)
+
+
+def _drag(time: float, g: np.ndarray, w: np.ndarray) -> Any:
+    return 0.0 * time * g[0, 0], -0.5 * w[1] * abs(w[1]), 0.0
+
+
+def _gust(time: float, g: np.ndarray, w: np.ndarray) -> Any:
+    return 0.0 * g[0, 0], (0.96 if time == 0 else 0.0) * w[1] * w[1], 0.0
+
+
+@pytest.mark.parametrize("compiled", [True, False], ids=["numba", "python"])
+@pytest.mark.parametrize("fixed", ["in the body", "in space"])
+def test_half_impulses_that_exist_are_found(fixed: str, compiled: bool) -> None:
+    """Half an impulse of drag turns u into x with u - x = a (u + x)^2, a = h/16 here, whatever the step.
+
+    A step without a constraint that acts is two of them from node to node: the positive root of
+    a x^2 + (1 + 2 a u) x + a u^2 - u = 0, twice. The explicit impulse reverses the velocity.
+    """
+    straight = nh.ChaplyginSleigh(1.0, 1.0, 0.0)
+    system = (
+        straight if fixed == "in the body" else nh.LRSystem(nh.SE(2), straight.homogeneous_mass_tensor, np.eye(3)[:2])
+    )
+    if fixed == "in space" and compiled:
+        pytest.skip("constraints that are fixed in space have a route in Python")
+    force, h, known = numba.njit(_drag) if compiled else _drag, 0.8, [8.0]
+    a = 0.5 * h / 2 / 4
+    for _ in range(2):
+        u = known[-1]
+        for _ in range(2):
+            b = 1 + 2 * a * u
+            u = (math.sqrt(b * b - 4 * a * (a * u * u - u)) - b) / (2 * a)
+        known.append(u)
+    orbit = nh.simulate(nh.discretize(nh.Forced(system, force=force), h), body_velocity=(0.0, 8.0, 0.0), steps=2)
+    assert np.abs(orbit.body_velocity[:, 1] - known).max() < 1e-12
+    assert np.allclose(known, [8.0, 1.6396, 0.9837], atol=1e-4)
+
+
+@pytest.mark.parametrize("strength", [1.0, 1.05])
+def test_half_impulses_near_their_limit(strength: float) -> None:
+    """A push 0.96 w^2 over half a unit of time from w: x = w + 0.48 ((w + x) / 2)^2 has roots up to w = 25 / 24."""
+    sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.0)
+    run: dict[str, Any] = {"body_velocity": (0.0, strength, 0.0), "steps": 1, "throw": False}
+    orbit = nh.simulate(nh.discretize(nh.Forced(sleigh, force=_gust), 1.0), **run)
+    if strength > 25 / 24:
+        assert orbit.outcome == nh.Outcome.no_half_impulse
+        assert "tolerances" not in orbit.outcome.message
+    else:
+        middle = (1 - math.sqrt(1 - 2 * 0.48 * strength)) / 0.48
+        assert abs(orbit.body_velocity[1, 1] - (2 * middle - strength)) < 1e-11  # slopes near a fold: 1e-12 / 0.2

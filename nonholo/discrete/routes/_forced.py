@@ -9,6 +9,7 @@ from typing import Any, ClassVar, NoReturn
 import numpy as np
 
 from nonholo import kernels
+from nonholo.base.calls import FunctionError, UndefinedError, noted
 from nonholo.base.checks import error
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome, OutcomeError
@@ -36,9 +37,13 @@ def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:
 
 
 class AbstractForcedRoute(AbstractRoute):
-    """A route whose steps depend on their numbers: there is none from a state alone."""
+    """A route whose steps depend on their numbers: there is none from a state alone.
+
+    What functions of the user said of the end of the last run is `said`.
+    """
 
     free: AbstractCompiledRoute
+    said: Any
     order: ClassVar[int] = 2
     is_scalar: ClassVar[bool] = False
 
@@ -69,6 +74,7 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
 
     free: AbstractCompiledRoute
     forced: Forced
+    said: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
 
     @property
     def single(self) -> AbstractCompiledRoute:
@@ -83,8 +89,9 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
     @functools.cached_property
     def body(self) -> kernels.ForcedBody:
         """The body and its half impulse."""
-        half = half_drive if self.forced.needs_function else half_kick
-        return kernels.ForcedBody(self.free.body, half(self.free, self.forced))
+        free, forced = self.free, self.forced
+        half = half_drive(free, forced, self.said) if forced.needs_function else half_kick(free, forced)
+        return kernels.ForcedBody(free.body, half)
 
     def parts_of_steps(self, momenta: np.ndarray, poses: np.ndarray, fraction: float = 1.0) -> Rows:
         """Take a step of a part of the length from each row; the forces must not depend on time."""
@@ -111,11 +118,17 @@ class PythonRoute(AbstractForcedRoute):
         """The route of the free step."""
         return self.loop.free
 
+    @property
+    def said(self) -> dict[str, str]:  # type: ignore[override]
+        """What functions said of the end of the last run."""
+        return self.loop.said
+
     def run(
         self, reduced: np.ndarray, pose: np.ndarray, steps: int, every: int, progress: bool
     ) -> tuple[Rows, Outcome, int]:
         """Run from canonical momenta and pose; return canonical rows, the outcome and the last good step."""
         free, done = self.free, 0
+        self.said.clear()
         first = free.encode(reduced), free.encode_poses(pose)
         code, state = self.loop.start(*first)
         found = tuple(np.empty((1 + steps // every, width)) for width in free.sizes)
@@ -144,6 +157,7 @@ class FunctionRoute(AbstractForcedRoute):
 
     free: AbstractCompiledRoute
     forced: Forced
+    said: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
     needs_pose: ClassVar[bool] = True
     compiled: ClassVar[None] = None
 
@@ -151,7 +165,7 @@ class FunctionRoute(AbstractForcedRoute):
         """Return what half the impulse of a step at a node adds to the kernel's momenta."""
         half = float(self.free.time_step) / 2
         time, steps = np.array([2 * half * node]), np.array([step])
-        return kick_of(self.free, self.forced, half, time, m[None], pose[None], steps)[0]
+        return kick_of(self.free, self.forced, half, time, m[None], pose[None], steps, self.said)[0]
 
     def run(
         self, reduced: np.ndarray, pose: np.ndarray, steps: int, every: int, progress: bool
@@ -162,9 +176,10 @@ class FunctionRoute(AbstractForcedRoute):
         room = np.empty((1, n)), np.empty((1, width)), np.empty((1, size))
         none = kernels.Kick(np.zeros((0, 0)), np.zeros(0), np.zeros((n, 0)), np.zeros((1, n)))
         body = kernels.ForcedBody(free.body, none)
+        self.said.clear()
         with progress_bar("steps", progress) as show, contextlib.suppress(OutcomeError):
             while done < steps:
-                code = Outcome.not_converged  # the midpoint rule of a half impulse may say so
+                code = Outcome.no_half_impulse  # the midpoint rule of a half impulse may say so
                 pushed = m + self.impulse(done + 1, done + 1, m, place)
                 if done < 0:
                     code, state = kernels.start(body, pushed, place)
@@ -178,7 +193,7 @@ class FunctionRoute(AbstractForcedRoute):
                 show(done, steps)
                 saved += [(m, room[1][0].copy(), place)] * (done % every == 0)
                 if done < steps:
-                    code, place = Outcome.not_converged, state[2 * n : 2 * n + size].copy()
+                    code, place = Outcome.no_half_impulse, state[2 * n : 2 * n + size].copy()
                     m = state[:n] + self.impulse(done + 1, done, state[:n], place)
         momenta, charts, poses = (np.array([row[j] for row in saved]).reshape(-1, w) for j, w in enumerate(free.sizes))
         return (free.decode(momenta), free.from_kernel(charts), free.decode_poses(poses)), Outcome(code), max(0, done)
@@ -192,11 +207,14 @@ def kick_of(
     momenta: np.ndarray,
     poses: np.ndarray,
     steps: np.ndarray | None = None,
+    said: dict[str, str] | None = None,
 ) -> np.ndarray:
     """Return what the impulses of a time add to momenta of a kernel; NaN where they are not finite."""
     group, steps = forced.group, np.full(len(momenta), -1) if steps is None else steps
     g = group.matrix_from_pose(free.decode_poses(poses)) @ group.inverse(forced.frame)
-    j = forced.impulses(forced.from_canonical(free.decode(momenta.copy())), g, time, steps, half)
+    j, said = np.array(np.nan), {} if said is None else said
+    with noted(said, "potential"):
+        j = forced.impulses(forced.from_canonical(free.decode(momenta.copy())), g, time, steps, half, said)
     if not np.isfinite(j).all():
         return np.full_like(momenta, np.nan)
     return free.encode(forced.to_canonical(forced.restrict_at(j, g)))
@@ -213,8 +231,8 @@ def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
     return kick._replace(weight=_plain(weight), arms=_plain(arms))
 
 
-def half_drive(free: AbstractCompiledRoute, forced: Forced) -> kernels.Drive:
-    """Return half the impulse of functions; those that numba compiled are asked once before a run."""
+def half_drive(free: AbstractCompiledRoute, forced: Forced, said: dict[str, str]) -> kernels.Drive:
+    """Return half the impulse of functions; those that numba compiled are asked before a run."""
     kick, along = _linear_part(free, forced)
     group, S, has = (
         forced.group,
@@ -224,11 +242,10 @@ def half_drive(free: AbstractCompiledRoute, forced: Forced) -> kernels.Drive:
     momenta = forced.from_canonical(free.decode(np.eye(forced.rank)))
     velocity = S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
     moves, weights = forced.differences
-    force, potential = _in_python(forced)
+    force, potential = _in_python(forced, said)
     if forced.is_jitted:
-        shape, asked = (group.size, group.dim), np.zeros(group.dim)
-        for write in (force,) * has[0] + (potential,) * has[1]:
-            write(0.0, group.identity, np.zeros(group.dim), asked)
+        shape = (group.size, group.dim)
+        _check_compiled(forced)
         force = kernels.function_of(forced.function, shape, 3) if has[0] else 0
         potential = kernels.function_of(forced.potential, shape, 1) if has[1] else 0
     return kernels.Drive(
@@ -246,17 +263,39 @@ def half_drive(free: AbstractCompiledRoute, forced: Forced) -> kernels.Drive:
     )
 
 
-def _in_python(forced: Forced) -> tuple[Callable[..., None], Callable[..., None]]:
-    """Return what writes force and potential by the definition; a function may keep the arrays that it gets."""
+def _in_python(forced: Forced, said: dict[str, str]) -> tuple[Callable[..., None], Callable[..., None]]:
+    """Return what writes force and potential by the definition: NaN where they are not finite, which is noted."""
 
     def force(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
-        out[:] = forced.driving_force(time, g.copy(), velocity.copy())
+        out[:] = np.nan
+        with noted(said, "force"):
+            out[:] = forced.driving_force(time, g, velocity)
 
     def potential(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
         del time, velocity
-        out[0] = forced.potential_energy(g.copy())
+        out[0] = np.nan
+        with noted(said, "potential"):
+            out[0] = forced.potential_energy(g)
 
     return force, potential
+
+
+def _check_compiled(forced: Forced) -> None:
+    """Ask functions that numba compiled once: for their numbers, and whether they write to what they get.
+
+    What they say at a place that is no place of a run does not count.
+    """
+    group, moving = forced.group, np.linspace(0.5, 1.0, forced.group.dim)
+    for g, velocity, ignored in (
+        (group.identity, 0 * moving, UndefinedError),
+        (group.exp(moving / 8), moving, Exception),
+    ):
+        try:
+            forced.driving_force(0.0, g, velocity)
+            forced.potential_energy(g)
+        except ignored as failure:
+            if isinstance(failure, FunctionError) and not isinstance(failure, UndefinedError):
+                raise
 
 
 def _linear_part(free: AbstractCompiledRoute, forced: Forced) -> tuple[kernels.Kick, Float[np.ndarray, "dim k"]]:

@@ -27,6 +27,7 @@ from nonholo.kernels._small import assign, eliminate, multiply
 from nonholo.kernels.forced._kick import Kick, kept, linear, pulled_by_weight, seen
 
 _ITERATIONS = 30  # of Newton's method with one slope
+_MOST, _SHORTEST = 100, 1e-12  # with new slopes; part of a correction
 _ROUNDING = 1e-12  # relative, before the last correction
 _DIFFERENCE = 1e-7  # relative, of a momentum
 _ROW = types.CPointer(types.float64)
@@ -72,7 +73,7 @@ class Room(NamedTuple):
         poses: The user's pose and another matrix, (2, N, N).
         rows: The same numbers, (2, N N).
         covectors: A body velocity, what a function writes, and -dU, (3, dim).
-        momenta: Momenta on the way, (3, k).
+        momenta: Momenta on the way, (5, k).
         missed: What they lack, a column, (k, 1).
         slopes: The slope of the midpoint rule, and one to be destroyed, (2, k, k).
     """
@@ -92,7 +93,7 @@ def room_for_drive(drive: Drive) -> Room:
     (k, dim), n = drive.along.shape, len(drive.turn)
     poses = np.zeros((2, n, n))
     rows = poses.reshape(2, n * n)
-    return Room(np.zeros(k), poses, rows, np.zeros((3, dim)), np.zeros((3, k)), np.zeros((k, 1)), np.zeros((2, k, k)))
+    return Room(np.zeros(k), poses, rows, np.zeros((3, dim)), np.zeros((5, k)), np.zeros((k, 1)), np.zeros((2, k, k)))
 
 
 def function_at(address: Callable[..., None], time: float, g: np.ndarray, w: np.ndarray, out: np.ndarray) -> None:
@@ -227,7 +228,7 @@ def largest(a: np.ndarray, b: np.ndarray) -> float:
 
 @inlined
 def driven(drive: Drive, room: Room, node: int, row: int, m: np.ndarray, out: np.ndarray) -> int:
-    """Write the momenta after half an impulse; return the outcome: 3 if it is not found, 5 if it is not finite.
+    """Write the momenta after half an impulse; return the outcome: 7 if it is not found, 5 if it is not finite.
 
     A force that does not depend on the velocity is asked twice: then the momenta are explicit.
     """
@@ -244,7 +245,11 @@ def driven(drive: Drive, room: Room, node: int, row: int, m: np.ndarray, out: np
     same = True
     for i in range(len(m)):
         same = same and first[i] == second[i]
-    return 0 if same else midpoint(drive, room, when, m, out)
+    if same or midpoint(drive, room, when, m, out, False) == 0:
+        return 0
+    assign(out, m)
+    pushed_by_function(drive, room, when, m, out, second)
+    return midpoint(drive, room, when, m, out, True)
 
 
 @inlined
@@ -263,24 +268,63 @@ def see_slopes(drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray,
 
 
 @inlined
-def midpoint(drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, out: np.ndarray) -> int:
-    """Solve m' = A m + j((m + m') / 2) by Newton's method, from the explicit momenta and their impulse."""
-    second, missed, slopes, used = room.momenta[1], room.missed, room.slopes[0], room.slopes[1]
-    see_slopes(drive, room, when, m, out)
-    for _ in range(_ITERATIONS):
-        for i in range(len(m)):
-            missed[i, 0] = kept(drive.kick, m, i) + second[i] - out[i]
-            for j in range(len(m)):
-                used[i, j] = slopes[i, j]
-        left = largest(missed[:, 0], missed[:, 0])
+def midpoint(drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, out: np.ndarray, renewed: bool) -> int:
+    """Solve m' = A m + j((m + m') / 2) by Newton's method; return the outcome.
+
+    It has one slope, from the explicit momenta and their impulse; or new slopes, from what stands there, and halves
+    corrections until less is missed than before. Those lead to the root that a half impulse over a growing time comes
+    to, unless it has met another one.
+    """
+    second, begun, change, used = room.momenta[1], room.momenta[3], room.momenta[4], room.slopes[1]
+    left = gap(drive, room, m, out)
+    for step in range(_MOST if renewed else _ITERATIONS):
+        if step == 0 or renewed:
+            see_slopes(drive, room, when, m, out)
         if not left < math.inf:
             return 5
+        assign(used.reshape(-1), room.slopes[0].reshape(-1))
         small = left <= _ROUNDING * largest(m, out)
-        if eliminate(used, missed) == 0:
-            return 3
-        for i in range(len(m)):
-            out[i] += missed[i, 0]
+        if eliminate(used, room.missed) == 0:
+            return 7
+        assign(begun, out)
+        assign(change, room.missed[:, 0])
+        corrected(out, begun, 1.0, change)
         if small:
             return 0
+        before = left
         pushed_by_function(drive, room, when, m, out, second)
-    return 3
+        left = gap(drive, room, m, out)
+        if renewed:
+            left = shortened(drive, room, when, m, out, left, before)
+            if not left < before:
+                return 7
+    return 7
+
+
+@inlined
+def shortened(
+    drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, out: np.ndarray, left: float, before: float
+) -> float:
+    """Halve the correction in the room until less is missed than before it; return the largest of it."""
+    part = 1.0
+    while not left < before and part > _SHORTEST:
+        part /= 2
+        corrected(out, room.momenta[3], part, room.momenta[4])
+        pushed_by_function(drive, room, when, m, out, room.momenta[1])
+        left = gap(drive, room, m, out)
+    return left
+
+
+@inlined
+def corrected(out: np.ndarray, begun: np.ndarray, part: float, change: np.ndarray) -> None:
+    """Write momenta with a part of a correction."""
+    for i in range(len(out)):
+        out[i] = begun[i] + part * change[i]
+
+
+@inlined
+def gap(drive: Drive, room: Room, m: np.ndarray, out: np.ndarray) -> float:
+    """Write what momenta miss whose impulse stands in the room; return the largest of it."""
+    for i in range(len(m)):
+        room.missed[i, 0] = kept(drive.kick, m, i) + room.momenta[1, i] - out[i]
+    return largest(room.missed[:, 0], room.missed[:, 0])

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 
+from nonholo.base.calls import called, checked
 from nonholo.base.checks import error, function, pair, shown, text
 from nonholo.base.types import Float
 from nonholo.orbit import Orbit
@@ -92,8 +93,9 @@ def _name_of(quantity: Quantity, otherwise: str) -> str:
 
 
 def _values(name: str, quantity: Quantity, crossings: Crossings) -> Float[np.ndarray, "C"]:
-    values = np.asarray(quantity(crossings.states), dtype=np.float64)
-    if values.shape != (len(crossings),):
-        remedy = "It gets an `Orbit`: return an array with one number for each of its states."
-        raise error(f"section({name}=...)", "return one number for each crossing", f"shape {values.shape}", remedy)
-    return values
+    where, remedy = (
+        f"section({name}=...)",
+        "It gets an `Orbit`: return an array with one number for each of its states.",
+    )
+    found, words = called(where, quantity, crossings.states), ("one number for each crossing", remedy)
+    return checked(where, quantity, found, (len(crossings),), words, lambda at: f"time {crossings.time[at]:.17g}")

@@ -23,6 +23,8 @@ _ENDED = {
     "branch_unverified": "#8a8f98",
     "not_converged": "#cc79a7",
     "off_momentum_locus": "#e69f00",
+    "no_half_impulse": "#009e73",
+    "too_stiff": "#f0e442",
     "raised": "#d55e00",
 }
 _OTHER = "#a0522d"

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from nonholo.base.calls import called, checked
 from nonholo.base.checks import choice, error, is_name, natural, shown
 from nonholo.base.checks import name as checked_name
 from nonholo.base.types import Float
@@ -86,16 +87,9 @@ def values_at(name: str, event: Event, states: AbstractOrbit) -> Float[np.ndarra
     where, count = f"Event(function=...) of {name!r}", len(states)
     remedy = "It gets an `Orbit`: return an array with one number for each of its states."
     try:
-        found = event.function(states)
+        found = called(where, event.function, states)
     except Exception as failure:
         got = f"{type(failure).__name__}: {failure}"
         raise error(where, f"take an orbit of {count} states", got, remedy) from failure
-    values = np.asarray(found)
-    if values.dtype.kind not in "iuf" or values.shape != (count,):
-        got = f"{values.dtype} of shape {values.shape}"
-        raise error(where, f"return one real number for each of {count} states", got, remedy)
-    if not np.isfinite(values).all():
-        at = int(np.argmin(np.isfinite(values)))
-        got = f"{values[at]} at time {states.time[at]:.17g}"
-        raise error(where, "be finite", got, "Choose a function that is defined at every state.")
-    return values.astype(np.float64)
+    words = f"one real number for each of {count} states", remedy
+    return checked(where, event.function, found, (count,), words, lambda at: f"time {states.time[at]:.17g}")

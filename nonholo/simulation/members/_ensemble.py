@@ -1,11 +1,13 @@
 """`ensemble`: many motions at once, from checked starts and parameters to decoded results or a user's reduction."""
 
+import functools
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo.base.checks import choice, count, error, flags, refuse_given, shown
+from nonholo.base.calls import called
+from nonholo.base.checks import choice, count, error, flags, function, refuse_given, shown
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome
 from nonholo.discrete import PRINCIPAL, Discretization, as_discretization
@@ -109,8 +111,9 @@ def ensemble(
         array([1., 1., 1.])
     """
     flags("ensemble", reconstruct=reconstruct, progress=progress)
-    if reduce is not None and not callable(reduce):
-        raise error("ensemble(reduce=...)", "be a function", f"a {type(reduce).__name__}", "Pass a function, or None.")
+    if reduce is not None:
+        function("ensemble(reduce=...)", reduce)
+        reduce = functools.partial(called, "ensemble(reduce=...)", reduce)
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
     run = {"parameters": parameters, "reduce": reduce, "progress": progress}
     of_steps = {"steps": steps, "save_every": save_every, "events": events}

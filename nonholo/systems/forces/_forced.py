@@ -11,7 +11,8 @@ from typing import Any, ClassVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import array, as_floats, error, shape_of, shown, trailing
+from nonholo.base.calls import name_of, noted, number_of, numbers_of
+from nonholo.base.checks import array, error, shown, trailing
 from nonholo.base.numerics import exponential_increment, inverted
 from nonholo.base.types import Array, Float
 from nonholo.systems._base import AbstractSystem
@@ -150,6 +151,12 @@ class Forced(AbstractSystem):
         return None if self.potential is None and self.force is None else self
 
     @property
+    def names(self) -> str:
+        """What acts, as errors call it."""
+        given = [each for each in (self.potential, *self.parts.values()) if each is not None]
+        return " and ".join(map(name_of, given))
+
+    @property
     def needs_function(self) -> bool:
         """Whether a function has to be called, which no store holds."""
         return callable(self.potential) or callable(self.function)
@@ -199,11 +206,8 @@ class Forced(AbstractSystem):
         """Return the body covector of the function alone; zero without one."""
         if self.function is None:
             return np.zeros(self.group.dim)
-        found = as_floats(self.function(float(time), configuration, body_velocity))
-        if found.shape != (self.group.dim,) or found.dtype.kind != "f":
-            got = f"{found.dtype} numbers of shape {found.shape}"
-            raise error("Forced(force=...)", f"return {self.group.dim} real numbers", got, "Return a body covector.")
-        return found
+        where, remedy = "Forced(force=...)", "Return a body covector."
+        return numbers_of(where, self.function, (self.group.dim,), remedy, float(time), configuration, body_velocity)
 
     def rows(self, steps: np.ndarray) -> Float[Array, "K dim"]:
         """Return the rows of the table for numbers of steps from -1; zero before it, after its end, and without one."""
@@ -248,6 +252,7 @@ class Forced(AbstractSystem):
         time: Float[np.ndarray, "K"],
         steps: np.ndarray,
         tau: float,
+        said: dict[str, str] | None = None,
     ) -> Float[np.ndarray, "K dim"]:
         r"""Return the impulses j of kicks over a time $\tau$, body covectors; a kick takes r to $r + E^Tj$.
 
@@ -262,8 +267,9 @@ class Forced(AbstractSystem):
             time: Times of the nodes.
             steps: Numbers of the steps, whose row of a table acts.
             tau: Half a time step, or its negative.
+            said: Gets what a force says that is not finite: its impulse is NaN then.
         """
-        constant = self.potential_force(g) + self.rows(steps)
+        constant, said = self.potential_force(g) + self.rows(steps), {} if said is None else said
         if self.function is None:
             return self.impulse(r, g, constant, tau)
         E = self.directions(g)
@@ -273,7 +279,10 @@ class Forced(AbstractSystem):
         for k in range(len(r)):
 
             def impulse(velocity: np.ndarray, k: int = k) -> np.ndarray:
-                return self.impulse(r[k], g[k], constant[k] + self.driving_force(time[k], g[k], velocity), tau)
+                force = np.full(self.group.dim, np.nan)
+                with noted(said, "force"):
+                    force = self.driving_force(time[k], g[k], velocity)
+                return self.impulse(r[k], g[k], constant[k] + force, tau)
 
             found[k] = midpoint_impulse(impulse, r[k], E[k], to_velocity[k])
         return found
@@ -297,10 +306,7 @@ class Forced(AbstractSystem):
         return trailing(where, configuration, shape, "Pass the matrix of a pose.", real=True)
 
     def _value(self, g: np.ndarray) -> np.float64:
-        found = self.potential(g)  # type: ignore[misc]
-        if shape_of(found) != () or as_floats(found).dtype.kind != "f":
-            raise error("Forced(potential=...)", "return one real number", shown(found), "Return U of a configuration.")
-        return np.float64(found)
+        return number_of("Forced(potential=...)", cast(Any, self.potential), "Return U of a configuration.", g)
 
     def _slope(self, g: np.ndarray) -> np.ndarray:
         moves, weights = self.differences

@@ -8,8 +8,11 @@ from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 
 _ITERATIONS = 30  # of Newton's method with one slope
+_MOST, _PARTS = 100, 0.5 ** np.arange(40)  # corrections with new slopes, and parts of one
 _ROUNDING = 1e-12  # relative, before the last correction
 _DIFFERENCE = 1e-7  # relative, of a momentum
+
+Function = Callable[[np.ndarray], np.ndarray]
 
 
 def midpoint_impulse(
@@ -21,22 +24,44 @@ def midpoint_impulse(
     """Return the impulse at the velocity of the mean of the momenta before and after it; NaN where there is none.
 
     Raises:
-        OutcomeError: The iteration does not converge.
+        OutcomeError: There is no such impulse nearby.
     """
 
     def impulse(after: np.ndarray) -> np.ndarray:
         return impulse_at(to_velocity @ ((r + after) / 2))
 
+    def missed(after: np.ndarray) -> np.ndarray:
+        return r + E.T @ impulse(after) - after
+
+    def slope_at(after: np.ndarray) -> np.ndarray:
+        slopes = [E.T @ (impulse(after + x) - impulse(after - x)) / (2 * x.max()) for x in offsets]
+        return np.eye(len(r)) - np.nan_to_num(np.transpose(slopes))
+
     first = E.T @ impulse(r)
     offsets = _DIFFERENCE * (np.abs(np.append(r, first)).max() or 1.0) * np.eye(len(r))
-    slopes = [E.T @ (impulse(r + x) - impulse(r - x)) / (2 * x.max()) for x in offsets]
-    slope, after = np.eye(len(r)) - np.nan_to_num(np.transpose(slopes)), r + np.nan_to_num(first)
-    for _ in range(_ITERATIONS):
-        missed = r + E.T @ impulse(after) - after
-        if not np.all(np.isfinite(missed)):
-            return np.full(len(E), np.nan)
-        small = np.abs(missed).max() <= _ROUNDING * np.abs(np.append(r, after)).max()
-        after = after + np.linalg.lstsq(slope, missed)[0]
-        if small:
-            return impulse(after)
-    raise OutcomeError(Outcome.not_converged, "Half impulse of a force that depends on the velocity")
+    slope = slope_at(r)
+    after = _root(missed, lambda _: slope, r, r + np.nan_to_num(first), _ITERATIONS, shortens=False)
+    if after is None:
+        after = _root(missed, slope_at, r, r, _MOST, shortens=True)
+    if after is None:
+        raise OutcomeError(Outcome.no_half_impulse, "Half impulse of a force that depends on the velocity")
+    return impulse(after)
+
+
+def _root(
+    missed: Function, slope_at: Function, r: np.ndarray, after: np.ndarray, most: int, *, shortens: bool
+) -> np.ndarray | None:
+    """Return the momenta after the impulse by Newton's method, which may halve corrections that miss more; or None."""
+    for _ in range(most):
+        gap = missed(after)
+        left = np.abs(gap).max()
+        if not left < np.inf:
+            return np.full_like(r, np.nan) if shortens else None
+        change, parts = np.linalg.lstsq(slope_at(after), gap)[0], _PARTS if shortens else _PARTS[:1]
+        if left <= _ROUNDING * np.abs(np.append(r, after)).max():
+            return after + change
+        better = (part for part in parts if not shortens or np.abs(missed(after + part * change)).max() < left)
+        if (part := next(better, None)) is None:
+            return None
+        after = after + part * change
+    return None

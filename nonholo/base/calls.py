@@ -1,0 +1,149 @@
+"""The one door to functions of users: read-only copies go in, checked numbers come out, errors name the function.
+
+What JAX traces cannot write to its arguments. What numba compiled is given arrays of its own, compared afterwards.
+"""
+
+import contextlib
+import copy
+import dataclasses
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from nonholo.base.checks import error, real_or_complex, shown
+from nonholo.base.types import Array
+
+_FEW = 8  # numbers that are shown together
+
+
+class FunctionError(ValueError):
+    """A function of a user does what it must not."""
+
+
+class UndefinedError(FunctionError):
+    """It has returned a number that is not finite."""
+
+
+class KindError(TypeError, FunctionError):
+    """It has returned something else than real numbers."""
+
+
+@contextlib.contextmanager
+def noted(said: dict[str, str], part: str) -> Iterator[None]:
+    """Note what a part says whose numbers are not finite, where a run ends by itself then; forget it where they are."""
+    said.pop(part, None)
+    try:
+        yield
+    except UndefinedError as failure:
+        said[part] = str(failure)
+
+
+def name_of(function: Any) -> str:
+    """Return how errors call a function."""
+    return f"`{getattr(function, '__name__', None) or type(function).__name__}`"
+
+
+def called(where: str, function: Callable[..., Any], *arguments: Any) -> Any:
+    """Return what a function of a user returns, of arguments that it may keep but not change.
+
+    Example:
+        >>> def half(v):
+        ...     v *= 0.5
+        ...     return v
+        >>> called("Forced(force=...)", half, np.ones(3))
+        Traceback (most recent call last):
+        ...
+        nonholo.base.calls.FunctionError: `Forced(force=...)` must not write to its arguments. Got `half`...
+    """
+    compiled = hasattr(function, "py_func")  # by numba, which would compile it once more for arrays that are read-only
+    given = [_protected(argument, compiled) for argument in arguments]
+    try:
+        found = function(*given)
+    except ValueError as failure:
+        if "read-only" in str(failure):
+            raise _written(where, function) from failure
+        raise
+    if compiled and any(_bytes(new) != _bytes(old) for new, old in zip(given, arguments, strict=True)):
+        raise _written(where, function)
+    return found
+
+
+def number_of(where: str, function: Callable[..., Any], remedy: str, *arguments: Any) -> np.float64:
+    """Return the finite real number that a function of a user returns."""
+    return np.float64(numbers_of(where, function, (), remedy, *arguments))
+
+
+def numbers_of(where: str, function: Callable[..., Any], shape: tuple[int, ...], remedy: str, *arguments: Any) -> Array:
+    """Return the finite real numbers that a function of a user returns, in float64.
+
+    Raises:
+        KindError: What it returns is not made of real numbers.
+        UndefinedError: A number is not finite.
+        FunctionError: They have another shape, or it writes to its arguments.
+    """
+    found, what = called(where, function, *arguments), f"{shape[0]} real numbers" if shape else "one real number"
+    return checked(where, function, found, shape, (what, remedy), lambda _: _place(arguments[0]))
+
+
+def _place(first: Any) -> str:
+    return f"time {first:.17g}" if isinstance(first, float) else shown(np.asarray(first).tolist())
+
+
+def checked(
+    where: str,
+    function: Callable[..., Any],
+    found: Any,
+    shape: tuple[int, ...],
+    words: tuple[str, str],
+    place: Callable[[int], str],
+) -> Array:
+    """Return what a function has returned as finite numbers of a shape; words say what it has to return, and a remedy.
+
+    The place of the first number that is not finite is asked for by its index.
+    """
+    (what, remedy), name = words, name_of(function)
+    try:
+        plain = type(found) is np.ndarray and found.dtype.char == "d"
+        raw = found if plain else real_or_complex(where, found, remedy)
+    except ValueError:
+        raw = np.array(None)
+    if raw.dtype.kind not in "iuf":
+        is_array = isinstance(found, np.ndarray) and not np.ma.is_masked(found)
+        got = f"{found.dtype} of shape {found.shape}" if is_array else shown(found)
+        raise KindError(*error(where, f"return {what}", f"{got} from {name}", remedy).args)
+    if raw.shape != shape:
+        got = f"{raw.dtype} of shape {raw.shape} from {name}"
+        raise FunctionError(*error(where, f"return {what}", got, remedy).args)
+    values = raw.astype(np.float64)
+    if not np.isfinite(values).all():
+        at = int(np.argmin(np.isfinite(values)))
+        got = f"{shown(values.tolist() if values.size <= _FEW else values[at])} from {name} at {place(at)}"
+        raise UndefinedError(*error(where, "be finite", got, remedy).args)
+    return values
+
+
+def _protected(argument: Any, compiled: bool) -> Any:
+    """Return a copy of an array, or what looks at the arrays of an object, such as an orbit, without changing them."""
+    if isinstance(argument, np.ndarray):
+        argument = argument.copy()
+        argument.flags.writeable = compiled
+        return argument
+    if not dataclasses.is_dataclass(argument) or isinstance(argument, type):
+        return argument
+    argument = copy.copy(argument)
+    for field in dataclasses.fields(argument):
+        if isinstance(rows := getattr(argument, field.name), np.ndarray):
+            rows = rows.view()
+            rows.flags.writeable = False
+            object.__setattr__(argument, field.name, rows)
+    return argument
+
+
+def _bytes(argument: Any) -> Any:
+    return argument.tobytes() if isinstance(argument, np.ndarray) else None
+
+
+def _written(where: str, function: Any) -> FunctionError:
+    got = f"{name_of(function)}, which does"
+    return FunctionError(*error(where, "not write to its arguments", got, "Let it work on copies.").args)

@@ -1,0 +1,173 @@
+"""The door to functions of users: nothing of theirs changes a motion or becomes a number that it is not."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numba
+import numpy as np
+import pytest
+
+import nonholo as nh
+
+SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
+TIMES = np.linspace(0.0, 3.0, 7)
+START: dict[str, Any] = {"restricted_velocity": (0.3, -0.7)}
+
+
+def velocity_set(time: float, g: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Write to the velocity."""
+    v[:] = 5 + 0 * time * g[0, 0]
+    return np.zeros(3)
+
+
+def pose_set(time: float, g: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Write to the pose."""
+    g[:] = 0 * time * v[0]
+    return np.zeros(3)
+
+
+def damped(time: float, g: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Write to the velocity by accident."""
+    v *= 0.5
+    return 0 * time * g[0]
+
+
+def pose_cut(g: np.ndarray) -> float:
+    """Write to the pose, in a potential."""
+    g[0, 2] = 0.0
+    return 0.0
+
+
+def _flow(potential: Any, force: Any) -> Any:
+    return nh.flow(nh.Forced(SLEIGH, potential, force), times=TIMES, **START)
+
+
+def _run(potential: Any, force: Any) -> Any:
+    return nh.simulate(nh.discretize(nh.Forced(SLEIGH, potential, force), 0.1), **START, steps=5)
+
+
+def _rate(potential: Any, force: Any) -> Any:
+    field = nh.vector_field(nh.Forced(SLEIGH, potential, force))
+    return field(0.0, np.concatenate([START["restricted_velocity"], np.eye(3).ravel()]))
+
+
+def _work(potential: Any, force: Any) -> Any:
+    rows = np.arange(2.0), np.stack([np.eye(3)] * 2), np.ones((2, 3))
+    orbit = nh.Orbit.from_poses(SLEIGH, rows[0], rows[1])
+    system = nh.Forced(SLEIGH, potential, force)
+    return system.applied_force(0.0, *(x[0] for x in rows[1:])), system.potential_energy(orbit.configuration)
+
+
+USES = {"flow": _flow, "simulate": _run, "vector_field": _rate, "by itself": _work}
+
+
+@pytest.mark.parametrize("use", USES)
+@pytest.mark.parametrize("function", [velocity_set, pose_set, damped, pose_cut])
+def test_functions_that_write_to_what_they_get_are_named(function: Callable[..., Any], use: str) -> None:
+    """They get copies that cannot be written: a motion is never changed by them, and the error says which one it is."""
+    given = (function, None) if function is pose_cut else (None, function)
+    where = "potential" if function is pose_cut else "force"
+    named = rf"`Forced\({where}=...\)` must not write to its arguments. Got `{function.__name__}`"
+    with pytest.raises(ValueError, match=named):
+        USES[use](*given)
+
+
+def test_compiled_functions_that_write_are_found_before_a_run() -> None:
+    """Numba does not see arrays that are read-only as such: what they were is compared with what they are."""
+    halved = numba.njit(damped)
+    with pytest.raises(ValueError, match=r"must not write to its arguments. Got `damped`"):
+        _run(None, halved)
+
+
+def _late(*state: Any) -> np.ndarray:
+    return np.array([np.nan if state[0] > 0.25 else 0.0, 0.0, 0.0])
+
+
+def test_a_force_that_is_not_finite_is_named_with_its_time_by_a_run() -> None:
+    """The run ends at the first node after, keeps the states before, and says which function gave what, and when."""
+    with pytest.raises(nh.OutcomeError, match=r"\[nan, 0.0, 0.0\] from `_late` at time 0.3") as ended:
+        _run(None, _late)
+    assert ended.value.outcome == nh.Outcome.nonfinite
+    assert len(ended.value.orbit) == 3
+
+
+def test_a_force_that_is_not_finite_is_named_with_its_time_by_a_flow() -> None:
+    """The flow comes as near to that time as its steps can be short, and keeps the states before."""
+    with pytest.raises(nh.OutcomeError, match=r"\[nan, 0.0, 0.0\] from `_late` at time 0.2") as ended:
+        _flow(None, _late)
+    assert ended.value.outcome == nh.Outcome.nonfinite
+    assert ended.value.orbit.time.tolist() == [0.0]
+
+
+def test_a_potential_that_is_not_finite_is_named_by_a_run() -> None:
+    """Its slope by differences would be NaN without a word on where it came from."""
+
+    def well(g: np.ndarray) -> float:
+        return np.nan * g[0, 0]
+
+    with pytest.raises(nh.OutcomeError, match=r"`Forced\(potential=...\)` must be finite. Got nan from `well`"):
+        _run(well, None)
+
+
+NOT_NUMBERS: dict[str, Any] = {
+    "complex": np.zeros(3) * 1j,
+    "text": "abc",
+    "texts": ("1", "2", "3"),
+    "generator": (x for x in range(3)),
+    "truths": (True, False, True),
+    "masked": np.ma.masked_array(np.zeros(3), [1, 0, 0]),
+    "nothing": None,
+}
+
+
+@pytest.mark.parametrize("kind", NOT_NUMBERS)
+def test_forces_that_are_no_real_numbers_are_refused(kind: str) -> None:
+    """Whatever NumPy would turn into numbers, or half of them, is a TypeError that names the function."""
+
+    def push(*_: Any) -> Any:
+        return NOT_NUMBERS[kind]
+
+    for use in (_run, _flow):
+        with pytest.raises(
+            TypeError, match=r"(?s)`Forced\(force=...\)` must return 3 real numbers. Got .* from `push`"
+        ):
+            use(None, push)
+
+
+@pytest.mark.parametrize("value", [1j, "1.0", True])
+def test_potentials_that_are_no_real_number_are_refused(value: Any) -> None:
+    """The same of a potential."""
+    with pytest.raises(TypeError, match=r"must return one real number. Got .* from `<lambda>`"):
+        _run(lambda _: value, None)
+
+
+def test_events_and_rules_cannot_change_a_run() -> None:
+    """An event sees the states of the run through views that are read-only."""
+
+    def reset(states: Any) -> np.ndarray:
+        states.reduced_momentum[:] = 0
+        return states.time + 1
+
+    with pytest.raises(ValueError, match=r"must not write to its arguments. Got `reset`"):
+        nh.simulate(nh.discretize(SLEIGH, 0.1), **START, steps=5, events=[reset])
+
+
+def test_reductions_cannot_change_an_ensemble() -> None:
+    """What a reduction writes would be seen by the next one."""
+    with pytest.raises(ValueError, match=r"`ensemble\(reduce=...\)` must not write to its arguments"):
+        nh.ensemble(
+            nh.discretize(SLEIGH, 0.1),
+            restricted_velocity=np.ones((2, 2)),
+            steps=2,
+            reduce=lambda batch: batch.reduced_momentum.fill(0),
+        )
+
+
+def test_an_orbit_that_is_not_finite_is_not_successful() -> None:
+    """Whatever made it: momenta whose square overflows, and NaN."""
+    g = nh.SE(2).exp(np.linspace(0, 1, 5)[:, None] * [1.0, 1.0, 0.0])
+    assert nh.Orbit.from_poses(SLEIGH, np.arange(5) * 1e-300, g).outcome == nh.Outcome.nonfinite
+    orbit = nh.simulate(nh.discretize(SLEIGH, 0.1), **START, steps=5)
+    momenta = np.where(np.arange(6)[:, None] == 3, np.nan, orbit.reduced_momentum)
+    rows = {"time": orbit.time, "cayley": orbit.cayley, "canonical_pose": orbit.canonical_pose}
+    assert orbit.motion.orbit(**rows, reduced_momentum=momenta).outcome == nh.Outcome.nonfinite
