@@ -90,7 +90,7 @@ class AbstractSystem(abc.ABC):
     def frame_map(self) -> Float[Array, "k k"]:
         """C with r_canonical = C r for momenta along the constraint subspace (and y = y_canonical C for charts)."""
         if self.canonical is self:
-            within_memory(f"The frame map of {self!r}", 8.0 * self.rank**2, "Take a smaller n.")
+            within_memory("The frame map of a body", 8.0 * self.rank**2, "Take a smaller n.")
             return np.eye(self.rank)
         images = self.canonical.constraint_subspace @ self.group.adjoint(self.frame).T
         return images @ np.linalg.pinv(self.constraint_subspace)
