@@ -17,7 +17,7 @@ from _inside import continuation
 
 import nonholo as nh
 
-FAMILIES, Problems = continuation.FAMILIES, continuation.Problems
+FAMILIES, Problems = list(continuation.FAMILIES)[: small(None, 1)], continuation.Problems
 fold_factors, followed = continuation.fold_factors, continuation.followed
 random_problems = continuation.random_problems
 SAME = 1e-8  # relative distance of displacements

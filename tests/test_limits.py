@@ -40,8 +40,8 @@ def _many(*shape: int) -> np.ndarray:
 
 
 def _wide_orbit() -> nh.Orbit:
-    wide = nh.discretize(nh.SuslovTop.arrowhead(np.arange(1.0, 2001.0), np.full(1999, 1e-4)), 0.1)
-    return nh.simulate(wide, restricted_velocity=np.full(1999, 1e-4), steps=1, reconstruct=False)
+    wide = nh.discretize(nh.SuslovTop.arrowhead(np.arange(1.0, 10**5 + 1.0), np.full(10**5 - 1, 1e-4)), 0.1)
+    return nh.simulate(wide, restricted_velocity=np.full(10**5 - 1, 1e-4), steps=1, reconstruct=False)
 
 
 def _peak() -> float:
