@@ -248,7 +248,7 @@ def test_states_between_are_those_that_had_been_requested(
 
 
 def test_what_a_long_flow_keeps_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Beginnings of steps fill no more than their room, also where more steps lie between two than are taken at once."""
+    """Beginnings of steps fill no more than their room, also where more steps lie between two than one block takes."""
     monkeypatch.setattr(_solve, "_NUMBERS", 1000)
     orbit = nh.flow(SYSTEMS["balanced top"], restricted_velocity=(1.0, 0.5), times=(0.0, 20_000.0))
     assert orbit.motion.solution.nodes.size <= 1000

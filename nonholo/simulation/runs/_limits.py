@@ -23,6 +23,6 @@ def refuse_too_large(owner: str, discrete: Discretization, states: int, reconstr
 def refuse_many_matrices(
     where: str, discrete: Discretization, states: int, remedy: str, *, derivatives: int = 0
 ) -> None:
-    """Refuse more states in matrices, with so many derivatives of each, than memory holds."""
+    """Refuse more states in matrices, with derivatives of each, than memory holds."""
     numbers = 2 + discrete.system.rank + discrete.system.group.dim + 2 * discrete.system.group.size**2
     within_memory(where, 8.0 * states * numbers * (1 + derivatives), remedy)
