@@ -47,7 +47,8 @@ def solve_series(
         if kept * state.size > max(_NUMBERS, 2 * state.size):
             nodes, stride = [np.concatenate(nodes)[::2].copy()], 2 * stride
             kept = len(nodes[0])
-        tell(abs(state[0, -1] - times[0]), abs(times[-1] - times[0]))
+        come = max(abs(state[0, -1] - times[0]), abs(times[reached - 1] - times[0]))
+        tell(come, abs(times[-1] - times[0]))
     return rows[:reached], np.concatenate(nodes) if nodes else state[None]
 
 
