@@ -5,7 +5,7 @@ to contract a product and a sum to one operation (FMA), and strict, with the ari
 every step with its pose; a call is the whole `simulate`, the decoding of the orbit included. "kept rows" are there
 before the run; "new rows" are asked for in each run, as a call that returns an orbit has to.
 
-    python benchmarks/against_c.py
+    python benchmarks/against_c.py [--smoke]
 """
 
 import ctypes
@@ -19,11 +19,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from _command import leave_out, options, small
+from _inside import kernels
 
 import nonholo as nh
-from nonholo import kernels
 
-STEPS, ROUNDS, MANY = 1_000_000, 15, 1_000_000
+STEPS, ROUNDS, MANY = small((1_000_000, 15, 1_000_000), (2_000, 1, 1_000))
 FLAGS = ["-O3", "-march=native", "-fno-math-errno", "-fopenmp-simd", "-shared", "-fPIC"]
 HEADER = f"{'case':36} {'library':>11} {'C':>11}  ratio {'strict C':>11}  ratio"
 
@@ -34,7 +35,7 @@ def built(
     """Compile a reference, with contracted operations or strictly."""
     compiler = shutil.which("cc") or shutil.which("gcc")
     if compiler is None:
-        raise SystemExit("against_c needs a C compiler. Install gcc.")
+        leave_out("no C compiler. Install gcc.")
     library = Path(tempfile.mkdtemp()) / "reference.so"
     source = Path(__file__).parent / "c" / name
     contract = f"-ffp-contract={'off' if strict else 'fast'}"
@@ -133,7 +134,7 @@ def many_dimensions(both: tuple, n: int, slides: bool) -> None:
     discrete = nh.discretize(body, 0.1)
     step = discrete.route
     first = step.encode(body.restricted_momentum(velocity))
-    steps = max(30, 2_000_000 // n)
+    steps = max(30, 2 * STEPS // n)
     b, c = step.body.b, step.body.c
     empty = np.empty((0, k + slides)), np.empty((0, k + slides)), np.empty((0, 0))
     ends = {}
@@ -162,12 +163,13 @@ def many_dimensions(both: tuple, n: int, slides: bool) -> None:
 
 def main() -> None:
     """Print the table."""
+    options(__doc__).parse_args()
     both = built(), built(strict=True)
     print(HEADER)
     one_orbit(both, "suslov", nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), (0.9, -0.4))
     one_orbit(both, "sleigh", nh.ChaplyginSleigh(1.0, 1.0, 0.5), (1.0, -0.3))
     for slides in (False, True):
-        for n in (4, 10, 30, 100, 1_000, 10_000, 100_000, MANY):
+        for n in (n for n in (4, 10, 30, 100, 1_000, 10_000, 100_000, 1_000_000) if n <= MANY):
             many_dimensions(both, n, slides)
 
 

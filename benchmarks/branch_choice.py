@@ -4,19 +4,22 @@
 displacements, before and after the step, are compared with a continuation from momentum zero in equal steps. Then
 10,000 momenta are grown past the fold of their ray, by a millionth to three times: no such step may succeed.
 
-    PYTHONPATH=tests python benchmarks/branch_choice.py [problems per family, 2000 by default]
+    python benchmarks/branch_choice.py [problems per family, 2000 by default] [--smoke]
 """
 
-import sys
 import time
 from collections import Counter
 from collections.abc import Callable
 
 import numpy as np
-from continuation import FAMILIES, Problems, fold_factors, followed, random_problems
+from _command import options, small
+from _inside import continuation
 
 import nonholo as nh
 
+FAMILIES, Problems = list(continuation.FAMILIES)[: small(None, 1)], continuation.Problems
+fold_factors, followed = continuation.fold_factors, continuation.followed
+random_problems = continuation.random_problems
 SAME = 1e-8  # relative distance of displacements
 Step = Callable[[nh.Discretization, np.ndarray], tuple[nh.Outcome, np.ndarray]]
 
@@ -89,4 +92,6 @@ def main(count: int) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 2000)
+    parser = options(__doc__)
+    parser.add_argument("problems", type=int, nargs="?", default=small(2000, 5))
+    main(parser.parse_args().problems)

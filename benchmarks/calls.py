@@ -3,10 +3,9 @@
 Every call returns what its tests check; here they are only timed. With the folder of another commit the warm calls of
 both are timed in turns, process after process.
 
-    python benchmarks/calls.py [--rounds 11] [--against FOLDER]
+    python benchmarks/calls.py [--rounds 11] [--against FOLDER] [--smoke]
 """
 
-import argparse
 import json
 import os
 import statistics
@@ -19,10 +18,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from _command import options, small
 
 import nonholo as nh
 
-CALLS = 30  # in one round
+CALLS = small(30, 1)  # in one round
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 SLEIGH = nh.ChaplyginSleigh(1.0, 0.75, 0.5)
 VELOCITY = (0.4, 0.9, 0.0)
@@ -102,8 +102,8 @@ def compared(other: str, rounds: int) -> None:
 
 def main() -> None:
     """Print both tables."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=11)
+    parser = options(__doc__)
+    parser.add_argument("--rounds", type=int, default=small(11, 1))
     parser.add_argument("--against", default=None, help="folder of another commit")
     parser.add_argument("--json", action="store_true", help="print the figures of warm calls alone")
     arguments = parser.parse_args()

@@ -1,6 +1,6 @@
 """Certified and numerical branches of random problems: how often they differ, and what a certificate costs.
 
-    python benchmarks/certified_branches.py [problems] [seed]
+    python benchmarks/certified_branches.py [problems] [seed] [--smoke]
 
 Momenta lie from well inside to beyond the fold. One problem in four lies on a fold to within a relative distance of
 1e-4 to 1e-16: there rounding merges or splits numerical roots, and the certificate decides. Certified counts are
@@ -14,23 +14,20 @@ rounds of five.
 
 import collections
 import gc
-import sys
 import time
 from collections.abc import Callable
 
 import numpy as np
+from _command import options, small
+from _inside import Branches, Located, enclosures, frame_of, located, problem_of
 
 import nonholo as nh
-from nonholo.discrete import Branches, Discretization
-from nonholo.discrete.branching._equations import frame_of
-from nonholo.discrete.certificate._certificate import Located, enclosures, located
-from nonholo.discrete.certificate._problem import problem_of
 
 KINDS = ("top 3", "sleigh", "top 4", "top 6", "sleigh SE(3)")
 LIMIT = 1e-3  # seconds
 
 
-def random_body(rng: np.random.Generator, kind: str) -> Discretization:
+def random_body(rng: np.random.Generator, kind: str) -> nh.Discretization:
     """Return a random body with a random time step."""
     h = float(rng.uniform(0.05, 1.0))
     if kind == "sleigh":
@@ -43,7 +40,7 @@ def random_body(rng: np.random.Generator, kind: str) -> Discretization:
     return nh.discretize(nh.SuslovTop(J), h)
 
 
-def random_momentum(rng: np.random.Generator, discrete: Discretization) -> tuple[np.ndarray, float]:
+def random_momentum(rng: np.random.Generator, discrete: nh.Discretization) -> tuple[np.ndarray, float]:
     """Return restricted momenta from inside to beyond the fold, and their distance from it where it is known."""
     frame = frame_of("random_momentum", discrete)
     direction, length = rng.normal(size=len(frame.stiffness)), rng.normal()
@@ -89,7 +86,7 @@ def disagreement(certified: Branches, found: Branches) -> str:
     return ""
 
 
-def count(discrete: Discretization, canonical: np.ndarray) -> list[Located]:
+def count(discrete: nh.Discretization, canonical: np.ndarray) -> list[Located]:
     """Count the values over canonical restricted momenta."""
     return located(problem_of(discrete.system.canonical.normal_form, float(discrete.time_step), canonical))
 
@@ -173,4 +170,8 @@ def main(problems: int = 10_000, seed: int = 0) -> None:
 
 
 if __name__ == "__main__":
-    main(*(int(argument) for argument in sys.argv[1:]))
+    parser = options(__doc__)
+    parser.add_argument("problems", type=int, nargs="?", default=small(10_000, 20))
+    parser.add_argument("seed", type=int, nargs="?", default=0)
+    given = parser.parse_args()
+    main(given.problems, given.seed)

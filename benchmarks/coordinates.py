@@ -3,21 +3,19 @@
 Both must end at the same place. The first call is that of a process: it traces and compiles, for each system anew; the
 kernels are loaded. "Equations" is one evaluation of the scaled equations, of which a step takes two or three.
 
-    python benchmarks/coordinates.py [--steps 20000] [--rounds 7]
+    python benchmarks/coordinates.py [--steps 20000] [--rounds 7] [--smoke]
 """
 
-import argparse
 import statistics
 import time
 from typing import Any
 
 import numpy as np
+from _command import options as command
+from _command import small
+from _inside import advance, each_row, in_double_precision, loop_in_jax, programs
 
 import nonholo as nh
-from nonholo.kernels import each_row
-from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert.compiled import _programs, advance
-from nonholo.lagrange_dalembert.runs import _simulate
 
 NAMES = ("particle", "rolling_disk", "knife_edge_on_incline", "snakeboard", "two_wheeled_robot", "non_reversible")
 NAMES += ("roller_racer", "driven_sleigh", "chaotic_quartic_oscillator")
@@ -26,7 +24,7 @@ STEP = 0.002
 
 def equations_time(system: Any, place: int) -> float:
     """Return the microseconds of one evaluation of the equations."""
-    code = _programs.programs(system, (place,), system.dimension)
+    code = programs(system, (place,), system.dimension)
     assert code is not None
     size = system.dimension + system.constraints
     inputs = np.ones((20000, code.settled + size))
@@ -39,13 +37,13 @@ def equations_time(system: Any, place: int) -> float:
 
 def main() -> None:
     """Print a table."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--steps", type=int, default=20000)
-    parser.add_argument("--rounds", type=int, default=7)
+    parser = command(__doc__)
+    parser.add_argument("--steps", type=int, default=small(20000, 20))
+    parser.add_argument("--rounds", type=int, default=small(7, 1))
     options = parser.parse_args()
     print("| system | n | JAX, us a step | compiled | ratio | equations | first call, s |")
     print("| --- | ---: | ---: | ---: | ---: | ---: | ---: |")
-    for name in NAMES:
+    for name in small(NAMES, NAMES[:2]):
         ready = getattr(nh.examples, name)()
         system, h, counts = ready.system, np.float64(STEP), (np.int64(1), np.int64(options.steps))
         begin = time.process_time()
@@ -56,7 +54,7 @@ def main() -> None:
         state, sign = (q, orbit.body_velocity[0], orbit.body_velocity[0]), np.float64(1)
 
         def by_jax(*arguments: Any, system: Any = system, h: Any = h) -> Any:
-            return in_double(_simulate._advance, system, h, *arguments)
+            return in_double_precision(loop_in_jax, system, h, *arguments)
 
         def compiled(*arguments: Any, system: Any = system, h: Any = h, by_jax: Any = by_jax) -> Any:
             return advance(by_jax, system, h, *arguments)

@@ -1,12 +1,11 @@
 """Derivatives of orbits: a gradient beside the compiled orbit in JAX, a first gradient, memory of long ones.
 
-    python benchmarks/derivatives.py [--rounds 15] [--long 1000000]
+    python benchmarks/derivatives.py [--rounds 15] [--long 1000000] [--smoke]
 
 Orbit and gradient are timed in turns, medians are printed. Memory is the highest of a fresh process, most of it that
 of libraries and of the compiler; beside the default compiler the one without fusion emitters, where JAX has the option.
 """
 
-import argparse
 import resource
 import statistics
 import subprocess
@@ -17,6 +16,7 @@ from collections.abc import Callable
 import jax
 import jax.numpy as jnp
 import numpy as np
+from _command import options, small
 
 import nonholo as nh
 
@@ -76,19 +76,19 @@ def long_gradient(steps: int, options: dict[str, bool]) -> None:
 
 def main() -> None:
     """Print all figures."""
-    options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--rounds", type=int, default=15)
-    options.add_argument("--long", type=int, default=1_000_000)
-    options.add_argument("--only", type=int)
-    options.add_argument("--lean", action="store_true")
-    chosen = options.parse_args()
+    parser = options(__doc__)
+    parser.add_argument("--rounds", type=int, default=small(15, 1))
+    parser.add_argument("--long", type=int, default=small(1_000_000, 2000))
+    parser.add_argument("--only", type=int)
+    parser.add_argument("--lean", action="store_true")
+    chosen = parser.parse_args()
     with jax.enable_x64(True):
         if chosen.only:
             long_gradient(chosen.only, LEAN if chosen.lean else {})
             return
-        for name in BODIES:
+        for name in small(list(BODIES), ["top"]):
             compare(name, chosen.rounds)
-    for lean in ([], ["--lean"]):
+    for lean in small(([], ["--lean"]), ([],)):
         for steps in (1000, chosen.long):
             command = [sys.executable, __file__, "--only", str(steps), *lean]
             seconds, peak, size = map(float, subprocess.check_output(command, text=True).split())  # noqa: S603

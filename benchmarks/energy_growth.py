@@ -12,16 +12,16 @@ grows. So it says little about the law of growth.
 
     python benchmarks/energy_growth.py            # up to 1e7 steps, about a minute; 1e8 takes ten
     python benchmarks/energy_growth.py --steps 1e8 --time-step 0.05
+    python benchmarks/energy_growth.py --smoke
 """
 
-import argparse
-
 import numpy as np
+from _command import options, small
+from _inside import kernels
 
 import nonholo as nh
-from nonholo import kernels
 
-STARTS = 8
+STARTS = small(8, 1)
 BLOCK = 50  # steps between two looks at where the orbit is
 NEAR = 1 - 1e-6  # cosine of the angle to the attracting motion, in the metric of the energy, at which a crossing ends
 BODIES = {
@@ -113,8 +113,10 @@ def measure(name: str, counts: list[int], time_step: float, order: int, *, rever
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--steps", type=float, default=1e7, help="largest number of steps, a power of ten from 1e5 on")
+    parser = options(__doc__)
+    parser.add_argument(
+        "--steps", type=float, default=small(1e7, 1e5), help="largest number of steps, a power of ten from 1e5 on"
+    )
     parser.add_argument("--time-step", type=float, default=0.1)
     parser.add_argument("--body", choices=[*BODIES], action="append")
     parser.add_argument("--order", type=int, choices=(2, 4, 6, 8), default=2)
@@ -122,6 +124,6 @@ if __name__ == "__main__":
     chosen = parser.parse_args()
     if chosen.reverse and chosen.order > 2:
         parser.error("--reverse needs order 2")
-    wanted = [10**k for k in range(5, round(np.log10(chosen.steps)) + 1)]
+    wanted = [10**k for k in range(small(5, 4), round(np.log10(chosen.steps)) + 1)]
     for body in chosen.body or BODIES:
         measure(body, wanted, chosen.time_step, chosen.order, reverse=chosen.reverse)

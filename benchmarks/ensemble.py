@@ -6,10 +6,9 @@ of the members. C is built with contracted operations (FMA) and strictly, as in 
 are reduced block by block, and the peak of the memory is shown beside that of their starts; last comes the cost of the
 reduction "lyapunov", beside the plain run of the same members.
 
-    python benchmarks/ensemble.py
+    python benchmarks/ensemble.py [--smoke]
 """
 
-import argparse
 import ctypes
 import functools
 import itertools
@@ -20,15 +19,15 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numba
 import numpy as np
+from _command import options, small
+from _inside import REDUCTIONS, kernels
 from against_c import HEADER, built, paired, pointer
 from against_c import compare as beside
 
 import nonholo as nh
-from nonholo import kernels
-from nonholo.ensembles import REDUCTIONS
 
 THREADS = numba.config.NUMBA_NUM_THREADS
-MEMBERS, STEPS, TIME_STEP = 100_000 - 100_000 % 32, 200, 0.05
+MEMBERS, STEPS, TIME_STEP = small(100_000 - 100_000 % 32, 64), small(200, 10), 0.05
 UNIT = MEMBERS * STEPS
 SYSTEMS = {
     "top": nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]),
@@ -94,7 +93,7 @@ def largest_exponent(block: nh.Ensemble) -> np.ndarray:
     return REDUCTIONS["lyapunov"].function(block)["lyapunov"][1]
 
 
-def tangents(name: str, members: int = 400, steps: int = 1000) -> None:
+def tangents(name: str, members: int = small(400, 2), steps: int = small(1000, 10)) -> None:
     """Print what "lyapunov" takes beside the plain run of the same members, which keeps their last states."""
     discrete, rng = nh.discretize(SYSTEMS[name], TIME_STEP), np.random.default_rng(2)
     given = {"restricted_velocity": rng.normal(size=(members, 2)), "steps": steps}
@@ -147,8 +146,8 @@ def peak() -> float:
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--members", type=int, default=10_000_000, help="of the reduced ensemble")
+    parser = options(__doc__)
+    parser.add_argument("--members", type=int, default=small(10_000_000, 1000), help="of the reduced ensemble")
     chosen = parser.parse_args()
     both = tuple(built("ensemble.c", ("top", "sleigh"), strict=strict) for strict in (False, True))
     print(HEADER)

@@ -5,33 +5,23 @@ tolerance of the row, or `propagate_grid` where samples are stored. Ends are che
 before anything is timed; runs are taken in turns. First come momenta alone beside momenta and poses, and members with
 parameters beside members without.
 
-    python benchmarks/flow.py [--rounds 31]
+    python benchmarks/flow.py [--rounds 31] [--smoke]
 """
 
-import argparse
 import statistics
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from _command import leave_out, options, small
+from _inside import in_one_thread, integration
 from peers.problems import PROBLEMS, Problem, error, in_turns, last, median_ratio, reference
 from peers.solvers import decoded, heyoka_taylor, missing, rates, start
 
 import nonholo as nh
-from nonholo.continuous import solver_of
-from nonholo.simulation import in_one_thread
 
-ENDS, TOLERANCES, SAMPLES = (20.0, 100.0, 1000.0), (1e-6, 1e-10, 1e-13, 1e-14), 1_000_000
-MEMBERS, MODERATE = 20_000, 100
-
-
-def _integration(problem: Problem, times: np.ndarray, tolerance: float) -> Callable[[], Any]:
-    """Return the integration without the checks and the orbit of `nh.flow`."""
-    first = nh.flow(problem.system, body_velocity=problem.velocity, times=times[:1])
-    solve = solver_of(None)
-    return lambda: solve(
-        problem.system.canonical, first.reduced_momentum[0], first.canonical_pose[0], times, (tolerance, 1e-12)
-    )
+ENDS, TOLERANCES = small((20.0, 100.0, 1000.0), (20.0,)), small((1e-6, 1e-10, 1e-13, 1e-14), (1e-10, 1e-14))
+SAMPLES, MEMBERS, MODERATE = small((1_000_000, 20_000, 100), (1000, 16, 10))
 
 
 def rows(problem: Problem, end: float, rounds: int) -> list[tuple[str, ...]]:
@@ -43,7 +33,7 @@ def rows(problem: Problem, end: float, rounds: int) -> list[tuple[str, ...]]:
         taylor = heyoka_taylor(problem)
         runs: dict[str, Callable[[], Any]] = {
             "heyoka": lambda solve=taylor, tolerance=tolerance: solve(tolerance),
-            "integration": _integration(problem, times, tolerance),
+            "integration": integration(problem.system, times, tolerance, body_velocity=problem.velocity),
             "call": lambda given=start_of: nh.flow(problem.system, **given),
         }
         errors = error(problem, runs["heyoka"](), wanted), error(problem, last(runs["call"]()), wanted)
@@ -143,26 +133,26 @@ def parameters(system: nh.SuslovTop | nh.ChaplyginSleigh, name: str, rounds: int
 
 def main() -> None:
     """Print the tables."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=31)
+    parser = options(__doc__)
+    parser.add_argument("--rounds", type=int, default=small(31, 1))
     rounds = parser.parse_args().rounds
-    for n in (10, 30, MODERATE, 1000, 100_000):
-        print("|", " | ".join(momenta(n, max(3, rounds // 10))), "|", flush=True)
+    for n in small((10, 30, MODERATE, 1000, 100_000), (10, 30)):
+        print("|", " | ".join(momenta(n, max(small(3, 1), rounds // 10))), "|", flush=True)
     for body, name in (
         (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), "mass_tensor"),
         (nh.ChaplyginSleigh(1, 1, 0.5), "mass"),
     ):
-        print("|", " | ".join(parameters(body, name, max(3, rounds // 10))), "|", flush=True)
+        print("|", " | ".join(parameters(body, name, max(small(3, 1), rounds // 10))), "|", flush=True)
     if reason := missing("heyoka"):
-        raise SystemExit(f"heyoka: {reason}")
+        leave_out(reason)
     print("| body | T | rtol | heyoka us | integration us | call us | ratio | ratio of call | error heyoka | error |")
     for problem in PROBLEMS:
         for end in ENDS if problem.system.group == nh.SO(3) else ENDS[:1]:
             for row in rows(problem, end, rounds):
                 print("|", " | ".join(row), "|", flush=True)
     for problem in PROBLEMS:
-        print("|", " | ".join(samples(problem, max(3, rounds // 10))), "|", flush=True)
-        print("|", " | ".join(ensembles(problem, max(3, rounds // 10))), "|", flush=True)
+        print("|", " | ".join(samples(problem, max(small(3, 1), rounds // 10))), "|", flush=True)
+        print("|", " | ".join(ensembles(problem, max(small(3, 1), rounds // 10))), "|", flush=True)
 
 
 if __name__ == "__main__":

@@ -11,13 +11,13 @@ last column is the power of time with which the energy error grows: 1/2 is a ran
     python benchmarks/flow_accuracy.py [--end 1e5] [--only NAME ...]
 """
 
-import argparse
 import operator
 from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
+from _command import leave_out, options, small
 from flow_bodies import heyoka_taylor
 from peers.bodies import Body, bodies, first_of, rates_of, state_of
 from peers.problems import State, last
@@ -26,7 +26,7 @@ from peers.solvers import missing
 import nonholo as nh
 
 BITS, ORDER, LONG_STEP = 220, 72, 2  # digits, terms, and the step 2^-2
-END, LOOKS = 20, 20_000
+END, LOOKS = 20, small(20_000, 200)
 
 
 class Series:
@@ -129,12 +129,12 @@ def kept(body: Body, end: float) -> list[str]:
 
 def main() -> None:
     """Print both tables."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--end", type=float, default=1e5)
-    parser.add_argument("--only", nargs="+", default=list(bodies()))
+    parser = options(__doc__)
+    parser.add_argument("--end", type=float, default=small(1e5, 100.0))
+    parser.add_argument("--only", nargs="+", default=list(bodies())[: small(None, 1)])
     given = parser.parse_args()
     if reason := missing("heyoka"):
-        raise SystemExit(f"heyoka: {reason}")
+        leave_out(reason)
     print("| body | error of heyoka | error | ratio |\n| --- | ---: | ---: | ---: |", flush=True)
     for name in given.only:
         print("|", " | ".join(errors(bodies()[name])), "|", flush=True)

@@ -6,20 +6,21 @@ of the peers are those of `peers/bodies.py`. Ends agree to 1e-12 of their size (
 anything is timed; runs are taken in turns, ratios are medians of those of pairs.
 
     python benchmarks/flow_bodies.py [--rounds 31] [--tolerances 2.2e-16 1e-14] [--only NAME ...] [--ends 20 100]
+    python benchmarks/flow_bodies.py --smoke
 """
 
-import argparse
 import statistics
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from _command import leave_out, options, small
+from _inside import integration
 from peers.bodies import Body, bodies, first_of, rates_of, state_of
 from peers.problems import State, in_turns, last, median_ratio
 from peers.solvers import missing
 
 import nonholo as nh
-from nonholo.continuous import solver_of
 
 Solve = Callable[[float], Any]
 
@@ -65,13 +66,6 @@ def diffrax_dopri8(body: Body) -> Solve:
     return solve
 
 
-def integration(body: Body, end: float) -> Callable[[], Any]:
-    """Return the integration without the checks and the orbit of `nh.flow`."""
-    first = nh.flow(body.system, restricted_velocity=body.velocity, times=(0.0,))
-    solve, times, start = solver_of(None), np.array([0.0, end]), (first.reduced_momentum[0], first.canonical_pose[0])
-    return lambda: solve(body.system.canonical, *start, times, (1e-14, 1e-12))
-
-
 def refuse_unless_equal(found: State, wanted: State, tolerance: float) -> None:
     """Refuse what integrates another motion."""
     for one, other in zip(found, wanted, strict=True):
@@ -87,7 +81,10 @@ def rows(body: Body, end: float, tolerances: list[float], dopri: Solve | None, r
     for solve in taylor.values():
         refuse_unless_equal(state_of(body, solve(end), body.is_rotation), wanted, 1e-12)
     runs: dict[str, Callable[[], Any]] = {f"heyoka {tol:g}": lambda s=solve: s(end) for tol, solve in taylor.items()}
-    runs |= {"integration": integration(body, end), "call": lambda: nh.flow(body.system, **call)}
+    runs |= {
+        "integration": integration(body.system, np.array([0.0, end]), 1e-14, restricted_velocity=body.velocity),
+        "call": lambda: nh.flow(body.system, **call),
+    }
     taken = in_turns(runs, rounds)
     found = [f"{statistics.median(seconds) * 1e6:.0f}" for seconds in taken.values()]
     for ours in ("integration", "call"):
@@ -104,14 +101,14 @@ def rows(body: Body, end: float, tolerances: list[float], dopri: Solve | None, r
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rounds", type=int, default=31)
+    parser = options(__doc__)
+    parser.add_argument("--rounds", type=int, default=small(31, 1))
     parser.add_argument("--tolerances", type=float, nargs="+", default=[2.2e-16, 1e-14])
-    parser.add_argument("--ends", type=float, nargs="+", default=[20.0, 100.0])
-    parser.add_argument("--only", nargs="+", default=list(bodies()))
+    parser.add_argument("--ends", type=float, nargs="+", default=small([20.0, 100.0], [20.0]))
+    parser.add_argument("--only", nargs="+", default=list(bodies())[: small(None, 2)])
     given = parser.parse_args()
     if reason := missing("heyoka"):
-        raise SystemExit(f"heyoka: {reason}")
+        leave_out(reason)
     tolerances, has_diffrax = given.tolerances, not missing("diffrax")
     head = ["body", "T", *(f"heyoka {tol:g}" for tol in tolerances), "integration us", "call us"]
     head += [f"{ours} / heyoka {tol:g}" for ours in ("integration", "call") for tol in tolerances]

@@ -8,10 +8,9 @@ one correction solves a step; what moves on under a weight may need two, so ther
 
 With --drift, not speed: how the error of T + U grows under weights in a million steps.
 
-    python benchmarks/forces.py [--steps 400000] [--rounds 15] [--drift]
+    python benchmarks/forces.py [--steps 400000] [--rounds 15] [--drift] [--smoke]
 """
 
-import argparse
 import math
 import statistics
 import time
@@ -19,9 +18,10 @@ from typing import Any
 
 import numba
 import numpy as np
+from _command import options, small
+from _inside import kernels
 
 import nonholo as nh
-from nonholo import kernels
 
 BODIES = {
     "top": nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]),
@@ -85,13 +85,13 @@ def drift(steps: int) -> None:
 
 def main() -> None:
     """Print nanoseconds per step and the ratios to the free step, medians of pairs."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--steps", type=int, default=400_000)
-    parser.add_argument("--rounds", type=int, default=15)
+    parser = options(__doc__)
+    parser.add_argument("--steps", type=int, default=small(400_000, 400))
+    parser.add_argument("--rounds", type=int, default=small(15, 1))
     parser.add_argument("--drift", action="store_true")
     given = parser.parse_args()
     if given.drift:
-        drift(1_000_000)
+        drift(small(1_000_000, 1000))
         return
     for name, system in BODIES.items():
         for h in (0.1, 0.005):

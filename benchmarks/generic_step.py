@@ -5,7 +5,7 @@ The naive version is what one writes first: W = expm(x), the momentum equations,
 Newton update compiled and called from a Python loop, and with the whole run compiled into one program. All three are
 checked to end at the same displacement before anything is timed.
 
-    python benchmarks/generic_step.py
+    python benchmarks/generic_step.py [--smoke]
 """
 
 import statistics
@@ -15,10 +15,11 @@ from collections.abc import Callable
 import jax
 import jax.numpy as jnp
 import numpy as np
+from _command import options, small
 
 import nonholo as nh
 
-STEPS, ROUNDS, TIME_STEP = 5000, 9, 0.1
+STEPS, ROUNDS, TIME_STEP = small(5000, 20), small(9, 1), 0.1
 CONVERGED = 1e-9  # length of the last Newton update, whose error is its square
 
 
@@ -121,6 +122,7 @@ def compare(name: str, system: nh.LLSystem | nh.SuslovTop, unknowns: int) -> Non
 
 
 if __name__ == "__main__":
+    options(__doc__).parse_args()
     with jax.enable_x64(True):
         for name, (system, unknowns) in systems().items():
             compare(name, system, unknowns)

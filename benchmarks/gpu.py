@@ -5,12 +5,11 @@ root has a residual above rounding, and a few members are compared with `simulat
 that are measured in the same run: copying memory, and multiply-adds in 64 bits. `--unroll` steps are one device loop
 turn: one reads and writes the whole state for each step, more let the compiler keep it in registers.
 
-    python benchmarks/gpu.py [--members 1000000] [--steps 256] [--unroll 1 8 32] [--cpu]
+    python benchmarks/gpu.py [--members 1000000] [--steps 256] [--unroll 1 8 32] [--cpu] [--smoke]
 
-Without a GPU it says so and ends; with `--cpu` it runs on the processor, to check the script.
+Without a GPU it says so and ends; with `--cpu` or `--smoke` it runs on the processor, to check the script.
 """
 
-import argparse
 import functools
 import statistics
 import time
@@ -20,13 +19,13 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
+from _command import SMOKE, leave_out, options, small
+from _inside import correction, kernels
 
 import nonholo as nh
-from nonholo import kernels
-from nonholo.kernels._interface import correction
 
 CORRECTIONS = 3
-ROUNDS = 7
+ROUNDS = small(7, 1)
 State = tuple[jax.Array, ...]  # momenta, their compensations, three charts, pose: 14 numbers, as in the compiled loop
 
 
@@ -125,16 +124,15 @@ def check(discrete: nh.Discretization, body: kernels.Body, momenta: np.ndarray, 
 
 def main() -> None:
     """Print the figures."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--members", type=int, default=1_000_000)
-    parser.add_argument("--steps", type=int, default=256)
-    parser.add_argument("--unroll", type=int, nargs="+", default=[1, 8, 32])
+    parser = options(__doc__)
+    parser.add_argument("--members", type=int, default=small(1_000_000, 64))
+    parser.add_argument("--steps", type=int, default=small(256, 8))
+    parser.add_argument("--unroll", type=int, nargs="+", default=small([1, 8, 32], [1, 2]))
     parser.add_argument("--cpu", action="store_true")
     asked = parser.parse_args()
     device = jax.devices()[0]
-    if device.platform == "cpu" and not asked.cpu:
-        print("no GPU here: not run")
-        return
+    if device.platform == "cpu" and not (asked.cpu or SMOKE):
+        leave_out("no GPU here. With --cpu or --smoke it runs on the processor.")
     top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
     discrete = nh.discretize(top, 0.05)
     closed = discrete.route

@@ -1,4 +1,4 @@
-"""How fast the live page is in Chromium without a graphics card: python benchmarks/live_page.py [CHROMIUM].
+"""How fast the live page is in Chromium without a graphics card: python benchmarks/live_page.py [CHROMIUM] [--smoke].
 
 Prints the size of a page, and for 2,000 steps medians, in milliseconds, of 60 changes of a slider:
 
@@ -10,12 +10,12 @@ Then frames a second while a motion plays, and milliseconds of a step of ten tho
 """
 
 import shutil
-import sys
 import tempfile
 import time
 from pathlib import Path
 
-from playwright.sync_api import sync_playwright
+from _command import leave_out, options, small
+from peers.solvers import missing
 
 import nonholo as nh
 
@@ -96,13 +96,21 @@ _CROWD = f"""() => {{ {_COMMON}
 
 def main() -> None:
     """Measure and print."""
-    program = sys.argv[1] if len(sys.argv) > 1 else shutil.which("chromium")
+    parser = options(__doc__)
+    parser.add_argument("chromium", nargs="?", default=shutil.which("chromium"))
+    program = parser.parse_args().chromium
+    if reason := missing("playwright"):
+        leave_out(reason)
+    if program is None:
+        leave_out("no chromium")
+    from playwright.sync_api import sync_playwright
+
     top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
     wide = nh.SuslovTop.arrowhead(diagonal=[1.4, 1.0, 0.7, 0.9], coupling=[0.25, -0.15, 0.1])
     bodies = {"top": (top, "J13"), "sleigh": (nh.ChaplyginSleigh(1.0, 1.0, 0.5), "a"), "top on SO(4)": (wide, "J14")}
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=_FLAGS)
-        for name, (body, key) in bodies.items():
+        for name, (body, key) in list(bodies.items())[: small(None, 1)]:
             path = Path(folder) / f"{name}.html"
             began = time.process_time()
             nh.explore(body).save(path)

@@ -5,9 +5,9 @@ the orbits. The second runs 1e8 steps, one in a hundred kept, and reports the la
 
     python benchmarks/long_run.py
     python benchmarks/long_run.py --steps 1e6 --thinned-steps 1e7
+    python benchmarks/long_run.py --smoke
 """
 
-import argparse
 import random
 import resource
 import subprocess
@@ -17,6 +17,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+from _command import options, small
 
 import nonholo as nh
 
@@ -25,7 +26,7 @@ BODIES = {
     "sleigh": nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5),
 }
 VELOCITIES = {"top": (0.4, 0.9, 0.0), "sleigh": (1.0, 0.3, 0.0)}
-KILLS = 10
+KILLS = small(10, 1)
 KEPT_OF_LONG = 10
 KEPT_OF_THINNED = 100
 NAMES = ("time", "reduced_momentum", "cayley", "canonical_pose")
@@ -42,7 +43,7 @@ def killed_and_resumed(body: str, steps: int, store: Path) -> int:
     chance, kills = random.Random(0), 0  # noqa: S311
     while True:
         what = ["resume", str(store)] if store.exists() else ["begin", body, str(steps), str(KEPT_OF_LONG), str(store)]
-        process = subprocess.Popen([sys.executable, __file__, "--child", *what])  # noqa: S603
+        process = subprocess.Popen([sys.executable, __file__, "--child", *what, *small([], ["--smoke"])])  # noqa: S603
         while kills < KILLS and process.poll() is None and not is_held(store, process.pid):
             time.sleep(0.01)
         try:
@@ -75,9 +76,9 @@ def child(what: str, *arguments: str) -> None:
 
 def main() -> None:
     """Run both parts for both bodies."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--steps", type=float, default=1e7)
-    parser.add_argument("--thinned-steps", type=float, default=1e8)
+    parser = options(__doc__)
+    parser.add_argument("--steps", type=float, default=small(1e7, 1e5))
+    parser.add_argument("--thinned-steps", type=float, default=small(1e8, 1e5))
     parser.add_argument("--child", nargs="+")
     given = parser.parse_args()
     if given.child:
@@ -91,6 +92,7 @@ def main() -> None:
             again = nh.load_orbit(part.with_suffix(".killed.zarr"))
             equal = all(np.array_equal(getattr(whole, name), getattr(again, name)) for name in NAMES)
             print(f"{body}: {given.steps:g} steps, {kills} kills, resumed == undisturbed: {equal}", flush=True)
+            assert equal
             started, store = time.perf_counter(), part.with_suffix(".thinned.zarr")
             what = ["begin", body, str(int(given.thinned_steps)), str(KEPT_OF_THINNED), str(store)]
             subprocess.run([sys.executable, __file__, "--child", *what], check=True)  # noqa: S603

@@ -1,6 +1,6 @@
 """Many sleighs are parked at once: time per member, how many arrive, and with how much effort.
 
-    python benchmarks/steering.py [--members 1000] [--rounds 3] [--compare] [--obstacles]
+    python benchmarks/steering.py [--members 1000] [--rounds 3] [--compare] [--obstacles] [--smoke]
 
 Starts are random poses (angles, and places within some units of length) and velocities, goals the pose at the origin,
 at rest; 40 steps over 4 units of time, with torque and thrust along the blade. The first call compiles. Seconds of the
@@ -14,7 +14,6 @@ With --obstacles, a robot on two wheels among ten discs by IPOPT, from a straigh
 steps over ten units of time: seconds, iterations, effort.
 """
 
-import argparse
 import functools
 import statistics
 import time
@@ -24,14 +23,14 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
+from _command import SMOKE, small
+from _command import options as command
+from _inside import Missed, best, in_double
 from scipy.integrate import solve_ivp
 
 import nonholo as nh
-from nonholo.analysis.steering._least_effort import Missed
-from nonholo.analysis.steering._shooting import best
-from nonholo.discrete.definition import in_double
 
-DURATION, STEPS = 4.0, 40
+DURATION, STEPS = 4.0, small(40, 20)
 SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.2)
 MASS, A = float(SLEIGH.mass), float(SLEIGH.a)
 INERTIA = float(SLEIGH.inertia) + MASS * A**2  # about the point of contact
@@ -197,7 +196,7 @@ def speed(count: int, rounds: int) -> None:
 
 def among_obstacles(rounds: int) -> None:
     """Print how long IPOPT takes for a robot among discs; its extra is needed for this alone."""
-    from nonholo.analysis.steering import _transcription as transcription
+    from _inside import transcription
 
     wheels, counts = [[2.5, 0.5, 0.0], [-2.5, 0.5, 0.0]], []
     body = nh.LLSystem.from_inertia(1.0, 0.05, (0.05, 0.0), nh.SE(2), constraint_subspace=wheels)
@@ -212,7 +211,7 @@ def among_obstacles(rounds: int) -> None:
         return solution
 
     transcription.minimized = counted
-    for steps in (100, 200, 400, 800):
+    for steps in small((100, 200, 400, 800), (50,)):
         robot = nh.discretize(body, 10.0 / steps)
         for name, guess in {"straight": None, "path": [(0.0, 0.0), (1.6, 1.6), (3.0, 1.2), (5.0, 3.0)]}.items():
             times = []
@@ -231,16 +230,18 @@ def among_obstacles(rounds: int) -> None:
 
 def main() -> None:
     """Print all figures."""
-    options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--members", type=int, default=1000)
-    options.add_argument("--rounds", type=int, default=3)
+    options = command(__doc__)
+    options.add_argument("--members", type=int, default=small(1000, 10))
+    options.add_argument("--rounds", type=int, default=small(3, 1))
     options.add_argument("--compare", action="store_true")
     options.add_argument("--obstacles", action="store_true")
     chosen = options.parse_args()
-    if chosen.obstacles:
+    if chosen.obstacles or SMOKE:
         among_obstacles(chosen.rounds)
-    else:
-        compare(chosen.members) if chosen.compare else speed(chosen.members, chosen.rounds)
+    if chosen.compare or SMOKE:
+        compare(chosen.members)
+    if not (chosen.obstacles or chosen.compare):
+        speed(chosen.members, chosen.rounds)
 
 
 if __name__ == "__main__":

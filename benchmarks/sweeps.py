@@ -7,9 +7,9 @@ who use the machine disturb least. "CPU" is the time of all cores that the proce
 
     python benchmarks/sweeps.py                                          # all, a few minutes
     python benchmarks/sweeps.py --parts overhead --members 10000000      # one part
+    python benchmarks/sweeps.py --smoke
 """
 
-import argparse
 import contextlib
 import functools
 import json
@@ -26,11 +26,16 @@ from typing import Any
 
 import numba
 import numpy as np
+from _command import options, small
+from _inside import REDUCTIONS
 
 import nonholo as nh
-from nonholo.ensembles import REDUCTIONS
 
-STEPS, KEPT, PARTS = 1000, ["final_state", "energy_drift"], ("overhead", "scaling", "store", "tiny", "memory")
+STEPS, KEPT, PARTS = (
+    small(1000, 10),
+    ["final_state", "energy_drift"],
+    ("overhead", "scaling", "store", "tiny", "memory"),
+)
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.05)
 TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.1)
 VELOCITY = {"restricted_velocity": nh.Direction(2)}
@@ -80,7 +85,7 @@ def overhead(names: list[str], members: int, rounds: int, threads: int) -> None:
         def bare(discrete: Any = discrete, run: Any = run) -> None:
             nh.ensemble(discrete, reduce=reduced, **run)
 
-        first = timed(lambda name=name: swept(name, 1000))[0]
+        first = timed(lambda name=name: swept(name, small(1000, 10)))[0]
         timed(lambda name=name: swept(name, members // 100, workers=threads))
         sweep = functools.partial(swept, name, members, workers=threads)
         pairs = [(timed(sweep), timed(bare)) for _ in range(rounds)]
@@ -150,7 +155,16 @@ def memory(names: list[str], members: int, steps: int) -> None:
     print(f"\nlargest memory, {members:,} members x {steps} steps")
     for name in names:
         for what in ("import", "sweep", "rows", "bare"):
-            command = [sys.executable, __file__, "--child", name, what, str(members), str(steps)]
+            command = [
+                sys.executable,
+                __file__,
+                "--child",
+                name,
+                what,
+                str(members),
+                str(steps),
+                *small([], ["--smoke"]),
+            ]
             print(subprocess.run(command, check=True, capture_output=True, text=True).stdout, end="", flush=True)  # noqa: S603
 
 
@@ -166,7 +180,7 @@ def drawn(name: str, members: int) -> dict[str, Any]:
 
 def child(name: str, what: str, members: int, steps: int) -> None:
     """Do one thing, and print the largest memory of this process."""
-    swept(name, 1000, steps)
+    swept(name, small(1000, 10), steps)
     if what == "sweep":
         swept(name, members, steps)
     elif what != "import":
@@ -202,13 +216,17 @@ def cluster(workers: int) -> Iterator[str]:
 
 def main() -> None:
     """Print the parts that are asked for."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = options(__doc__)
     parser.add_argument("--parts", nargs="+", choices=PARTS, default=PARTS)
-    parser.add_argument("--members", type=int, default=1_000_000, help="of overhead; half as many of scaling")
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--cases", nargs="+", choices=CASES, default=list(CASES), help="of overhead and memory")
+    parser.add_argument(
+        "--members", type=int, default=small(1_000_000, 200), help="of overhead; half as many of scaling"
+    )
+    parser.add_argument("--rounds", type=int, default=small(5, 1))
+    parser.add_argument(
+        "--cases", nargs="+", choices=CASES, default=list(CASES)[: small(None, 1)], help="of overhead and memory"
+    )
     parser.add_argument("--threads", type=int, default=os.cpu_count(), help="of overhead")
-    parser.add_argument("--blocks", type=int, default=10_000, help="of tiny")
+    parser.add_argument("--blocks", type=int, default=small(10_000, 4), help="of tiny")
     parser.add_argument("--child", nargs=4)
     given = parser.parse_args()
     if given.child:
@@ -217,9 +235,9 @@ def main() -> None:
     calls: dict[str, Callable[[], None]] = {
         "overhead": lambda: overhead(given.cases, given.members, given.rounds, given.threads),
         "scaling": lambda: scaling(given.members // 2, given.rounds),
-        "store": lambda: store(1 << 16),
+        "store": lambda: store(small(1 << 16, 64)),
         "tiny": lambda: tiny(given.blocks),
-        "memory": lambda: memory(given.cases, 10_000_000, 10),
+        "memory": lambda: memory(given.cases, small(10_000_000, 200), 10),
     }
     for part in given.parts:
         calls[part]()

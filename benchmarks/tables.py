@@ -1,11 +1,11 @@
 """The library beside everything else a user could pick: prints the tables of docs/benchmarks.md as Markdown.
 
     python benchmarks/tables.py [--tables equal precision stored] [--skip exudyn heyoka diffrax pydy scipy] [--rounds 9]
+    python benchmarks/tables.py --smoke
 
 Peers that are not installed are skipped with a line that says so. `pip install -e '.[bench]'` installs them.
 """
 
-import argparse
 import datetime
 import importlib.metadata
 import os
@@ -14,6 +14,7 @@ import warnings
 from collections.abc import Iterable
 from pathlib import Path
 
+from _command import options, small
 from peers import equal_step, stored, work_precision
 from peers.problems import PROBLEMS
 
@@ -57,10 +58,10 @@ def _line(cells: Iterable[str]) -> str:
 
 def main() -> None:
     """Print the tables."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = options(__doc__)
     parser.add_argument("--tables", nargs="+", choices=TABLES, default=list(TABLES))
     parser.add_argument("--skip", nargs="+", default=(), help="peers to leave out")
-    parser.add_argument("--rounds", type=int, default=9, help="repetitions, of which medians are taken")
+    parser.add_argument("--rounds", type=int, default=small(9, 1), help="repetitions, of which medians are taken")
     asked = parser.parse_args()
     warnings.simplefilter("ignore")  # solvers complain at tolerances near rounding; their errors are measured
     print(machine(), end="\n\n", flush=True)

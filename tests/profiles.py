@@ -73,6 +73,10 @@ PROFILES = {
         "the live page in Chromium, its bundle, made anew by npm; films by ffmpeg; the site: links, and its requests",
         ("explorer", "kernels", "plotting"),
     ),
+    "benchmarks": Profile(
+        "every script of `benchmarks/` on small numbers, which compiles what it compares with",
+        (*_MECHANICS[1:], *_RUNS[1:], *_QUESTIONS[:1], "lagrange_dalembert", "explorer", "benchmarks"),
+    ),
     "site": Profile(
         "the pages and the docstrings of public names as a site; broken links and unknown names are errors",
         (*_MECHANICS[2:], *_RUNS[1:], *_QUESTIONS, "lagrange_dalembert", "base", "docs"),
@@ -189,7 +193,7 @@ def room_of(file: str) -> str | None:
     if parts[0] in ("nonholo", "tests") and len(parts) > 1:
         return parts[1].removesuffix(".py") if len(parts) > 2 or parts[1].startswith("_") else None
     if parts[0] in ("benchmarks", "scenarios"):
-        return ""
+        return "benchmarks" if parts[0] == "benchmarks" else ""
     return "docs" if parts[0] == "docs" or file.endswith(".md") else None
 
 

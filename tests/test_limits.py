@@ -1,6 +1,8 @@
 """What is too much is refused before work, and nothing is left behind."""
 
 import re
+import shutil
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -13,6 +15,7 @@ import nonholo as nh
 TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.1)
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
 WIDE = nh.discretize(nh.SuslovTop.arrowhead(np.arange(1.0, 101.0), np.full(99, 0.1)), 0.1)
+_MOST = 3e8  # bytes of a call that is refused; modules that it is the first to import are among them
 START: dict[str, Any] = {"restricted_velocity": (0.1, 0.2)}
 
 
@@ -24,64 +27,276 @@ def _random(members: int) -> nh.RandomDesign:
     return nh.RandomDesign(members, {"x": nh.Uniform(0.0, 1.0)})
 
 
+WIDEST = nh.SuslovTop.arrowhead(np.arange(1.0, 10**6 + 1.0), np.full(10**6 - 1, 1e-4))
+BROAD = nh.discretize(WIDEST, 0.1)
+ALONG = np.full(10**6 - 1, 1e-4)
+MATRICES = nh.SO(400), np.eye(400), np.eye(1, 400 * 399 // 2)
+ASIDE = {"configuration": np.array([[1.0, 0, 0], [0, 1, 1], [0, 0, 1]])}
+
+
+def _many(*shape: int) -> np.ndarray:
+    """Return one number that is repeated: an array that takes no memory, and whose copy takes all."""
+    return np.broadcast_to(0.1, shape)
+
+
+def _wide_orbit() -> nh.Orbit:
+    wide = nh.discretize(nh.SuslovTop.arrowhead(np.arange(1.0, 10**5 + 1.0), np.full(10**5 - 1, 1e-4)), 0.1)
+    return nh.simulate(wide, restricted_velocity=np.full(10**5 - 1, 1e-4), steps=1, reconstruct=False)
+
+
+def _peak() -> float:
+    """Return the most memory that this process has had so far, in bytes; zero where that is not known."""
+    if sys.platform == "win32":
+        return 0.0
+    import resource
+
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1.0 if sys.platform == "darwin" else 1024.0)
+
+
+def _by_family(steps: int) -> nh.FamilyTask:
+    return nh.FamilyTask(lambda a: nh.ChaplyginSleigh(1.0, 1.0, a), 0.1, steps)
+
+
+def _kinetic(_: Any, v: Any) -> Any:
+    return v @ v / 2
+
+
+def _extended() -> Any:
+    nh.simulate(TOP, steps=5, store="a.zarr", **START)
+    try:
+        nh.extend("a.zarr", 10**15)
+    finally:
+        shutil.rmtree("a.zarr")
+
+
 TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
-    "states": (lambda: nh.simulate(TOP, steps=10**12, **START), "fit into memory. Got about 72 TB of"),
-    "steps": (lambda: nh.simulate(TOP, steps=10**30, **START), "be at most 9007199254740992"),
-    "years": (lambda: nh.simulate(TOP, steps=10**13, save_every=10**12, branch="nearest", **START), "within a year"),
-    "disk": (
+    "simulate": (lambda: nh.simulate(TOP, steps=10**12, **START), "fit into memory. Got about 72 TB of"),
+    "simulate, steps": (lambda: nh.simulate(TOP, steps=10**30, **START), "be at most 9007199254740992"),
+    "simulate, years": (
+        lambda: nh.simulate(TOP, steps=10**13, save_every=10**12, branch="nearest", **START),
+        "within a year",
+    ),
+    "simulate, disk": (
         lambda: nh.simulate(TOP, steps=10**15, store="a.zarr", **START),
         "fit on the disk. Got about 72 PB",
     ),
-    "members of a sweep": (lambda: nh.sweep(_sums, _random(10**15), "a.zarr"), "fit on the disk. Got about 21 PB"),
-    "members of a sweep, years": (
-        lambda: nh.sweep(_sums, _random(9 * 10**15), "a.zarr"),
-        "sweep(design=...)` must be done within a year",
-    ),
-    "steps of a sweep": (
-        lambda: nh.sweep(nh.EnsembleTask(SLEIGH, steps=10**13, **START), nh.Grid({"a": np.ones(10**5)}), "a.zarr"),
-        "EnsembleTask(steps=...)` must be done within a year",
-    ),
-    "block of a sweep": (
-        lambda: nh.sweep(_sums, _random(10**12), "a.zarr", block=10**12),
-        "sweep(block=...)` must fit into memory",
-    ),
-    "files of a sweep": (lambda: nh.sweep(_sums, _random(10**11), "a.zarr", block=1), "fit on the disk"),
-    "poses": (
+    "simulate, poses": (
         lambda: nh.simulate(WIDE, steps=10**7, restricted_velocity=np.full(99, 0.01)),
         "simulate(reconstruct=...)` must fit into memory",
     ),
-    "poses of members that are reduced": (
+    "simulate, checkpoint": (
+        lambda: nh.simulate(TOP, steps=10**6, store="a.zarr", checkpoint_every=10**14, **START),
+        "checkpoint_every=...)` must fit into memory",
+    ),
+    "extend": (_extended, "fit on the disk"),
+    "iterate": (lambda: nh.iterate(TOP, steps=10**13, block_steps=10**12, **START), "fit into memory"),
+    "rollout": (lambda: nh.rollout(SLEIGH, steps=10**12, **START), "rollout(steps=...)` must fit into memory"),
+    "flow": (lambda: nh.flow(SLEIGH.system, times=_many(10**12), **START), "flow(times=...)` must fit into memory"),
+    "ensemble": (
+        lambda: nh.ensemble(TOP, steps=10**8, save_every=1, restricted_velocity=np.full((1000, 2), 0.1)),
+        "ensemble(steps=...)` must fit into memory",
+    ),
+    "ensemble, reduced poses": (
         lambda: nh.ensemble(
             WIDE, steps=10**9, save_every=1, restricted_velocity=np.full((2, 99), 0.01), reduce=lambda _: {}
         ),
         "ensemble(reconstruct=...)` must fit into memory",
     ),
-    "direction": (lambda: nh.Direction(10**14), "Direction(size=...)` must fit into memory"),
-    "mass tensor": (lambda: nh.MassTensor(10**7, 1.0, 2.0), "MassTensor(n=...)` must fit into memory"),
-    "plane": (
+    "ensemble, flows": (
+        lambda: nh.ensemble(SLEIGH.system, times=np.arange(1e5), restricted_velocity=np.full((10**5, 2), 0.1)),
+        "ensemble(times=...)` must fit into memory",
+    ),
+    "sweep": (lambda: nh.sweep(_sums, _random(10**15), "a.zarr"), "fit on the disk. Got about 21 PB"),
+    "sweep, years": (
+        lambda: nh.sweep(_sums, _random(9 * 10**15), "a.zarr"),
+        "(design=...)` must be done within a year",
+    ),
+    "sweep, block": (
+        lambda: nh.sweep(_sums, _random(10**12), "a.zarr", block=10**12),
+        "sweep(block=...)` must fit into memory",
+    ),
+    "sweep, files": (lambda: nh.sweep(_sums, _random(10**11), "a.zarr", block=1), "fit on the disk"),
+    "EnsembleTask": (
+        lambda: nh.sweep(nh.EnsembleTask(SLEIGH, steps=10**13, **START), nh.Grid({"a": np.ones(10**5)}), "a.zarr"),
+        "EnsembleTask(steps=...)` must be done within a year",
+    ),
+    "FamilyTask": (
+        lambda: nh.sweep(_by_family(10**13), nh.Grid({"a": np.ones(10**5)}), "a.zarr"),
+        "FamilyTask(steps=...)` must be done within a year",
+    ),
+    "Grid": (
+        lambda: nh.sweep(_sums, nh.Grid({name: np.ones(10**4) for name in "xabc"}), "a.zarr"),
+        "sweep(design=...)` must be done within a year",
+    ),
+    "RandomDesign": (lambda: nh.sweep(_sums, _random(10**15), "b.zarr"), "fit on the disk"),
+    "dataset": (lambda: nh.dataset("top", "a", orbits=10**12), "dataset(orbits=...)` must be done within a year"),
+    "Direction": (lambda: nh.Direction(10**14), "Direction(size=...)` must fit into memory"),
+    "Normal": (lambda: nh.Normal(size=10**14), "Normal(size=...)` must fit into memory"),
+    "Uniform": (lambda: nh.Uniform(_many(10**12), 1.0), "Uniform(low=...)` must fit into memory"),
+    "LogUniform": (lambda: nh.LogUniform(_many(10**12), 1.0), "LogUniform(low=...)` must fit into memory"),
+    "Choice": (lambda: nh.Choice(_many(10**12)), "Choice(values=...)` must fit into memory"),
+    "MassTensor": (lambda: nh.MassTensor(10**7, 1.0, 2.0), "MassTensor(n=...)` must fit into memory"),
+    "SO": (lambda: nh.SO(10**6).identity, "SO(1000000).identity` must fit into memory. Got about 8 TB"),
+    "SO, basis": (lambda: nh.SO(1000).basis, "SO(1000).basis` must fit into memory"),
+    "SE": (lambda: nh.SE(10**6).identity, "identity` must fit into memory"),
+    "Translations": (lambda: nh.Translations(10**6).identity, "identity` must fit into memory"),
+    "ProductGroup": (lambda: nh.ProductGroup(nh.SO(10**6), nh.SO(3)).identity, "identity` must fit into memory"),
+    "MatrixGroup": (lambda: nh.MatrixGroup(_many(10**4, 10**4, 10**4)), "(basis=...)` must fit into memory"),
+    "SuslovTop": (lambda: nh.SuslovTop(np.eye(400)).inertia_operator, "fit into memory"),
+    "VeselovaTop": (lambda: nh.VeselovaTop(np.eye(400)).inertia_operator, "fit into memory"),
+    "RigidBody": (lambda: nh.RigidBody(np.eye(400)).inertia_operator, "fit into memory"),
+    "MultidimensionalSleigh": (
+        lambda: nh.MultidimensionalSleigh(1.0, np.ones(400), np.eye(400)).inertia_operator,
+        "fit into memory",
+    ),
+    "LLSystem": (lambda: nh.LLSystem(*MATRICES), "complement of a subspace in 79800 dimensions` must fit into memory"),
+    "LRSystem": (lambda: nh.LRSystem(*MATRICES), "complement of a subspace in 79800 dimensions` must fit into memory"),
+    "LagrangeDAlembert": (
+        lambda: nh.LagrangeDAlembert(_kinetic, None, dimension=10**9),
+        "LagrangeDAlembert(dimension=...)` must fit into memory",
+    ),
+    "mass_tensor_lagrangian": (
+        lambda: nh.mass_tensor_lagrangian(nh.SO(10**6), _many(10**6, 10**6)),
+        "fit into memory",
+    ),
+    "Friction": (lambda: nh.Friction(np.ones(10**6)), "Friction(coefficients=...)` must fit into memory"),
+    "Forced": (lambda: nh.Forced(SLEIGH.system, None, _many(10**12, 3)), "Forced(force=...)` must fit into memory"),
+    "Gravity": (lambda: nh.Gravity(_many(10**12), _many(10**12)), "Gravity(point=...)` must fit into memory"),
+    "reference_point_subspace": (
         lambda: nh.reference_point_subspace(10**3, np.eye(10**3)[:1]),
         "reference_point_subspace(n=...)` must fit into memory",
     ),
-    "depth": (lambda: nh.branch_tree(SLEIGH, np.eye(3), 10**12), "branch_tree(depth=...)"),
-    "checkpoint": (
-        lambda: nh.simulate(TOP, steps=10**6, store="a.zarr", checkpoint_every=10**14, **START),
-        "checkpoint_every=...)` must fit into memory",
+    "is_symmetric_pair": (
+        lambda: nh.is_symmetric_pair(nh.SO(400), MATRICES[2]),
+        "is_symmetric_pair(group=...)` must fit into memory",
     ),
-    "block": (lambda: nh.iterate(TOP, steps=10**13, block_steps=10**12, **START), "fit into memory"),
-    "members": (
-        lambda: nh.ensemble(TOP, steps=10**8, save_every=1, restricted_velocity=np.full((1000, 2), 0.1)),
-        "ensemble(steps=...)` must fit into memory",
+    "branches": (lambda: nh.branches(BROAD, momentum=ALONG), "fit into memory"),
+    "displacements_over": (lambda: nh.displacements_over(BROAD, ALONG), "fit into memory"),
+    "branch_tree": (lambda: nh.branch_tree(SLEIGH, np.eye(3), 10**12), "branch_tree(depth=...)"),
+    "fold_distance": (lambda: nh.fold_distance(BROAD, np.eye(3)), "fit into memory"),
+    "discrete_legendre": (
+        lambda: nh.discrete_legendre(TOP, _many(10**11, 3, 3)),
+        "discrete_legendre(displacement=...)` must fit into memory",
     ),
-    "identity": (lambda: nh.SO(10**6).identity, "SO(1000000).identity` must fit into memory. Got about 8 TB"),
-    "basis": (lambda: nh.SuslovTop(np.eye(400)).inertia_operator, "fit into memory"),
-    "mesh": (lambda: nh.momentum_locus(TOP, 10**6), "resolution=...)` must fit into memory"),
-    "curve": (lambda: nh.invariant_curve(TOP, 0.01, 10**12), "resolution=...)` must fit into memory"),
-    "samples": (lambda: nh.flow_obstruction(SLEIGH, 0.1, samples=10**11), "samples=...)` must fit into memory"),
+    "inverse_discrete_legendre": (lambda: nh.inverse_discrete_legendre(BROAD, ALONG), "fit into memory"),
+    "moser_veselov_displacement": (
+        lambda: nh.moser_veselov_displacement(_many(10**6, 10**6), np.ones(3), 0.1),
+        "(mass_tensor=...)` must fit into memory",
+    ),
+    "in_exp_d": (lambda: nh.in_exp_d(_many(10**11, 3, 3)), "in_exp_d(displacement=...)` must fit into memory"),
+    "trace_constraints": (
+        lambda: nh.trace_constraints(_many(10**11, 3, 3), np.eye(3)),
+        "trace_constraints(configuration=...)` must fit into memory",
+    ),
+    "euler_angle_discrete_lagrangian": (
+        lambda: nh.euler_angle_discrete_lagrangian((1.0, 1.0, 1.0), _many(10**11, 3), np.zeros(3)),
+        "(angles=...)` must fit into memory",
+    ),
+    "step": (lambda: nh.step(BROAD, ALONG), "A dense mass tensor of SuslovTop.arrowhead` must have at most 100000"),
+    "vector_field": (lambda: nh.vector_field(WIDEST), "A dense mass tensor of SuslovTop.arrowhead` must have at most"),
+    "conserved_momenta": (lambda: nh.conserved_momenta(WIDEST), "A dense mass tensor of SuslovTop.arrowhead` must"),
+    "consistency_defect": (lambda: nh.consistency_defect(BROAD), "A dense mass tensor of SuslovTop.arrowhead` must"),
+    "lyapunov_exponents": (
+        lambda: nh.lyapunov_exponents(_wide_orbit()),
+        "A dense mass tensor of SuslovTop.arrowhead` must have at most",
+    ),
+    "lyapunov_function": (lambda: nh.lyapunov_function(WIDEST), "fit into memory"),
+    "invariant_measure": (lambda: nh.invariant_measure(WIDEST), "fit into memory"),
+    "equilibria": (lambda: nh.equilibria(WIDEST), "fit into memory"),
+    "asymptotics": (lambda: nh.asymptotics(WIDEST), "fit into memory"),
+    "heteroclinic": (lambda: nh.heteroclinic(SLEIGH, energy=1e-20), "must settle within 1000000 steps"),
+    "momentum_locus": (lambda: nh.momentum_locus(TOP, 10**6), "resolution=...)` must fit into memory"),
+    "invariant_curve": (lambda: nh.invariant_curve(TOP, 0.01, 10**12), "resolution=...)` must fit into memory"),
+    "flow_obstruction": (
+        lambda: nh.flow_obstruction(SLEIGH, 0.1, samples=10**11),
+        "samples=...)` must fit into memory",
+    ),
+    "accessibility": (
+        lambda: nh.accessibility(nh.examples.two_wheeled_robot().system, np.zeros(5), depth=10**9),
+        "accessibility(depth=...)` must be at most",
+    ),
+    "steer": (lambda: nh.steer(SLEIGH, {}, ASIDE, steps=10**12), "steer(steps=...)` must fit into memory"),
+    "steer, ipopt": (
+        lambda: nh.steer(SLEIGH, {}, ASIDE, steps=10**12, method="ipopt"),
+        "steer(steps=...)` must fit into memory",
+    ),
+    "tracking_feedback": (
+        lambda: nh.tracking_feedback(SLEIGH, {}, _many(10**12, 3)),
+        "tracking_feedback(controls=...)` must fit into memory",
+    ),
+    "testing.check_group": (
+        lambda: nh.testing.check_group(nh.SO(1000)),
+        "check_group(group=...)` must fit into memory",
+    ),
+    "testing.check_system": (
+        lambda: nh.testing.check_system(WIDEST),
+        "A dense mass tensor of SuslovTop.arrowhead` must",
+    ),
+    "testing.check_discretization": (
+        lambda: nh.testing.check_discretization(SLEIGH, steps=10**12),
+        "check_discretization(steps=...)` must fit into memory",
+    ),
+    "testing.check_order": (
+        lambda: nh.testing.check_order(SLEIGH, (1.0, 0.5, 0.0), halvings=10**6),
+        "check_order(steps=..., halvings=...)` must fit into memory",
+    ),
+    "examples.chaotic_quartic_oscillator": (
+        lambda: nh.examples.chaotic_quartic_oscillator(pairs=10**12),
+        "(pairs=...)` must fit into memory",
+    ),
+}
+RESULT = "a result, of what was asked of the function that makes it"
+A_FEW = "takes a few numbers"
+GIVEN = "reads what it is given, in room of the same order"
+FEW = {
+    **dict.fromkeys(
+        (
+            "CoordinateEnsemble",
+            "Crossings",
+            "Discretization",
+            "Ensemble",
+            "EventLog",
+            "FlowEnsemble",
+            "MemberBlock",
+            "Orbit",
+            "Outcome",
+            "OutcomeError",
+            "ImpossibleBodyWarning",
+            "testing.Report",
+            "testing.Result",
+            "examples.Example",
+        ),
+        RESULT,
+    ),
+    **dict.fromkeys(("ChaplyginSleigh", "Event", "cusp", "allow_float32", "discretize", "single_valued_region"), A_FEW),
+    **dict.fromkeys(
+        ("critical_energies", "half_planes"), "is of tops with n = 3 and of sleighs, and refuses all others"
+    ),
+    **dict.fromkeys(("compare", "crossings", "invariants", "save_orbit"), GIVEN),
+    **dict.fromkeys(("load_orbit", "load_sweep", "resume"), "reads a store; the fuzzer of stores edits their figures"),
+    **dict.fromkeys(("GroupLagrangeDAlembert", "ShapedBody", "local_connection"), "keeps functions, and calls none"),
+    "geometric_phase": "takes steps as the accuracy needs them",
+    "explore": "shows at most some thousand states",
+    "fit": "has tests of its own, tests/analysis/test_fit.py",
+    "plot.animate": "below, with a small limit: it has at most as many frames as states",
+    "plot.Look": "the names of choices",
+    **dict.fromkeys(("examples", "plot", "testing"), "a module"),
 }
 
 
-def _kinetic(_: Any, v: Any) -> Any:
-    return v @ v / 2
+def _public_names() -> set[str]:
+    """Return the names of the package and, with a prefix, of its three modules."""
+    parts = {"plot": nh.plot, "testing": nh.testing, "examples": nh.examples}
+    return set(dir(nh)) | {f"{part}.{name}" for part, module in parts.items() for name in module.__all__}
+
+
+def test_every_public_name_is_asked_for_too_much() -> None:
+    """A new name comes with a call that asks for too much, or with the reason why none can."""
+    asked = {name.split(",")[0] for name in TOO_MUCH}
+    drawn = {name for name in _public_names() if name.startswith("plot.")} - set(FEW)
+    named = {name for name in _public_names() if name.startswith("examples.")} - asked - set(FEW)  # numbers of a body
+    assert asked | set(FEW) | drawn | named == _public_names()
+    assert not asked & set(FEW)
 
 
 PARTICLES = {
@@ -105,11 +320,13 @@ def test_runs_by_the_discrete_principle_are_bounded(name: str, steps: int, every
 
 @pytest.mark.parametrize("name", TOO_MUCH)
 def test_too_much_is_refused(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The refusal names the figure and the limit, and there is nothing at the path."""
+    """The refusal names the figure and the limit, comes before any memory is taken, and nothing is at the path."""
     monkeypatch.chdir(tmp_path)
     call, told = TOO_MUCH[name]
+    before = _peak()
     with pytest.raises(ValueError, match=re.escape(told)):
         call()
+    assert _peak() - before < _MOST
     assert not list(tmp_path.iterdir())
 
 

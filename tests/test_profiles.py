@@ -31,7 +31,7 @@ def test_every_profile_has_its_command() -> None:
 def test_every_room_is_guarded() -> None:
     """The rooms of the profiles exist, and each room of the library belongs to one at least."""
     rooms = {path.name.removesuffix(".py") for path in (ROOT / "nonholo").iterdir() if path.name[:2] != "__"}
-    rooms |= {"paper", "docs"}
+    rooms |= {"paper", "docs", "benchmarks"}
     listed = {room for profile in PROFILES.values() for room in profile.rooms}
     assert listed <= rooms
     assert rooms - listed <= {"py.typed"}
@@ -84,11 +84,11 @@ def _complete(request: pytest.FixtureRequest) -> bool:
     ("files", "expected"),
     [
         ([], set()),
-        (["benchmarks/gpu.py", "scenarios/sleigh.toml"], set()),
-        (["docs/house.md", "README.md", "benchmarks/gpu.py"], {"site"}),
+        (["benchmarks/gpu.py", "scenarios/sleigh.toml"], {"benchmarks"}),
+        (["docs/house.md", "README.md", "benchmarks/gpu.py"], {"site", "benchmarks"}),
         (["nonholo/cli/commands/plot.py"], {"faults"}),
         (["tests/plotting/test_section.py", "docs/paper.md"], {"paper", "site", "browser"}),
-        (["nonholo/kernels/_sleigh.py"], {"routes", "faults", "problems", "shapes", "bounds", "browser"}),
+        (["nonholo/kernels/_sleigh.py"], {"routes", "faults", "problems", "shapes", "bounds", "browser", "benchmarks"}),
         (["nonholo/base/checks.py"], {"routes", "problems", "shapes", "bounds", "site"}),
         (["pyproject.toml"], set(PROFILES) - {"fuzz", "long", "mutants"}),
         (["tests/bodies.py"], set(PROFILES) - {"fuzz", "long", "mutants"}),

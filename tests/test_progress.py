@@ -64,13 +64,17 @@ def _obstruction(_: Path, **options: Any) -> object:
     return nh.flow_obstruction(nh.discretize(nh.ChaplyginSleigh(1.0, 0.2, 1.0), 1.0), 1.125, samples=2, **options)
 
 
+def _flow(_: Path, **options: Any) -> object:
+    return nh.flow(SLEIGH.system, times=(0.0, 5.0), restricted_velocity=(0.3, -1.0), **options)
+
+
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
 
 
 @pytest.mark.parametrize(
     ("run", "told"),
-    [(_sweep, ("trying a member", "members", "100%")), (_obstruction, ("orbits", "100%"))],
-    ids=["sweep", "flow_obstruction"],
+    [(_sweep, ("trying a member", "members", "100%")), (_obstruction, ("orbits", "100%")), (_flow, ("time", "100%"))],
+    ids=["sweep", "flow_obstruction", "flow"],
 )
 def test_long_work_shows_what_it_does(
     run: Callable[..., object], told: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]

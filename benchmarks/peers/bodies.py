@@ -12,9 +12,9 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
+from _inside import AbstractSystem
 
 import nonholo as nh
-from nonholo.systems import AbstractSystem
 from peers.problems import State, quaternion_matrix
 
 Rates = Callable[[Sequence[Any]], list[Any]]

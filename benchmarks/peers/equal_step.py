@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from _command import small
 
 from peers.compiled import compiled_midpoint
 from peers.exudyn_sleigh import ExudynSleigh
@@ -23,7 +24,7 @@ from peers.problems import (
 from peers.schemes import SCHEMES
 from peers.solvers import missing
 
-END, STEPS, LONG = 20.0, 400, 1_000_000
+END, STEPS, LONG = 20.0, 400, small(1_000_000, 2_000)
 HEADER = ("scheme", "us/step", "steps/s", "times slower", "times slower, 400 steps", "error", "energy error", "order")
 SAME_MAP = 1e-9  # largest difference of two routes to the same map
 

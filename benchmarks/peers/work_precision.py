@@ -4,13 +4,15 @@ import statistics
 from collections.abc import Callable
 from typing import NamedTuple
 
+from _command import small
+
 import nonholo as nh
 from peers.problems import Problem, State, by_library, error, last, reference, seconds
 from peers.solvers import SOLVERS, missing
 
 TARGETS = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 TOLERANCES = [10.0**-k for k in range(3, 15)]
-LARGEST = 1 << 21  # steps of the discrete map
+LARGEST = 1 << small(21, 12)  # steps of the discrete map
 HEADER = ("method", *(f"{target:.0e}" for target in TARGETS), "first call")
 
 

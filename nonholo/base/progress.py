@@ -3,17 +3,21 @@
 import contextlib
 import contextvars
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, ThreadPoolExecutor, wait
+from typing import Any, TypeVar
 
 from rich.console import Console
 from rich.progress import Progress, ProgressColumn, Task, TimeElapsedColumn
 from rich.text import Text
 
 _LATE = 2.0  # seconds
-
+Result = TypeVar("Result")
 _over: contextvars.ContextVar[Callable[[], bool]] = contextvars.ContextVar("over", default=lambda: False)
+_told: contextvars.ContextVar[Any] = contextvars.ContextVar("told", default=lambda *_: go_on())
+_LOOK = 0.2  # seconds between two looks at the keyboard, where a signal does not end the waiting
 
 
 @contextlib.contextmanager
@@ -35,9 +39,38 @@ def until(over: Callable[[], bool]) -> Iterator[None]:
         _over.reset(token)
 
 
-def _go_on() -> None:
-    if _over.get()():
+def is_over() -> bool:
+    """Tell whether the work is over: see `until`."""
+    return _over.get()()
+
+
+def go_on() -> None:
+    """Raise `CancelledError` where the work is over."""
+    if is_over():
         raise CancelledError
+
+
+def interruptibly(work: Callable[[], Result], is_long: bool = True) -> Result:
+    """Return what a function returns; if it is long, Ctrl-C is answered at once, also while compiled code is at work.
+
+    The function runs in another thread. After Ctrl-C it is left alone, and ends where it next asks whether to `go_on`.
+
+    Example:
+        >>> interruptibly(lambda: 6 * 7)
+        42
+    """
+    if not is_long or threading.current_thread() is not threading.main_thread():
+        return work()
+    pool, left, context = ThreadPoolExecutor(1), threading.Event(), contextvars.copy_context()
+    context.run(_over.set, left.is_set)
+    found = pool.submit(context.run, work)
+    try:
+        while not found.done():
+            wait([found], _LOOK)
+    finally:
+        left.set()
+        pool.shutdown(wait=False)
+    return found.result()
 
 
 class _Rate(ProgressColumn):
@@ -48,24 +81,45 @@ class _Rate(ProgressColumn):
         return Text("" if speed is None else f"{speed:,.0f}/s", style="progress.data.speed")
 
 
-def progress_bar(title: str, wanted: bool) -> contextlib.AbstractContextManager[Callable[[int, int], None]]:
+def progress_bar(title: str, wanted: bool) -> contextlib.AbstractContextManager[Callable[[float, float], None]]:
     """Give a function that reports how much is done, and of how much.
 
     Example:
         >>> with progress_bar("steps", wanted=False) as report:
         ...     report(3, 10)
     """
-    return _shown_bar(title) if wanted else contextlib.nullcontext(lambda *_: _go_on())
+    return _shown_bar(title) if wanted else contextlib.nullcontext(lambda *_: go_on())
 
 
 @contextlib.contextmanager
-def _shown_bar(title: str) -> Iterator[Callable[[int, int], None]]:
+def telling(title: str, wanted: bool) -> Iterator[None]:
+    """Show what the work inside tells.
+
+    Example:
+        >>> with telling("time", wanted=False):
+        ...     tell(3.0, 10.0)
+    """
+    with progress_bar(title, wanted) as report:
+        token = _told.set(report)
+        try:
+            yield
+        finally:
+            _told.reset(token)
+
+
+def tell(done: float, total: float) -> None:
+    """Report how much is done, and of how much, to whoever is `telling`."""
+    _told.get()(done, total)
+
+
+@contextlib.contextmanager
+def _shown_bar(title: str) -> Iterator[Callable[[float, float], None]]:
     columns = (*Progress.get_default_columns(), TimeElapsedColumn(), _Rate())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(title, total=None)  # the bar pulses until it is known of how much
 
-        def report(done: int, total: int) -> None:
-            _go_on()
+        def report(done: float, total: float) -> None:
+            go_on()
             bar.update(task, completed=done, total=total)
 
         yield report
@@ -83,7 +137,7 @@ def late_bar(title: str) -> Iterator[Callable[[int, int], None]]:
         begun, bars = time.monotonic(), []
 
         def report(done: int, total: int) -> None:
-            _go_on()
+            go_on()
             if not bars and time.monotonic() - begun > _LATE and sys.stderr.isatty():
                 bars.append(opened.enter_context(_shown_bar(title)))
             for show in bars:

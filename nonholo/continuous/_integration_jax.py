@@ -9,6 +9,7 @@ import numpy as np
 
 from nonholo.base.numerics import double_precision
 from nonholo.base.numerics.time_sweep import State, padded, reached, sweep
+from nonholo.base.progress import interruptibly
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.continuous._equations import Body, body_of, momentum_rate, spatial_velocity
@@ -73,9 +74,11 @@ def _solve(
     elapsed: np.ndarray,
     tolerances: tuple[float, float],
 ) -> tuple[list[np.ndarray], Outcome]:
-    with double_precision():
-        found, good = _sweep(rate, group, state, known, padded(elapsed), tolerances)
-    rows = reached(state, found, good, len(elapsed))
+    def solved() -> list[np.ndarray]:
+        with double_precision():
+            return reached(state, *_sweep(rate, group, state, known, padded(elapsed), tolerances), len(elapsed))
+
+    rows = interruptibly(solved)
     return rows, Outcome.successful if len(rows[0]) == len(elapsed) else Outcome.not_converged
 
 

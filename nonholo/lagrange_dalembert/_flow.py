@@ -12,6 +12,7 @@ import numpy as np
 
 from nonholo.base.checks import flow_times, flow_tolerances
 from nonholo.base.numerics.time_sweep import padded, reached, sweep
+from nonholo.base.progress import interruptibly
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._acceleration import acceleration, bordered_solution
@@ -36,7 +37,7 @@ def flow(
     """Check the arguments, solve the equations and return the orbit of a kind, whose start is checked by a function."""
     time, errors = flow_times(times), flow_tolerances(rtol, atol)
     first = start(system, configuration, starts, time[0])
-    rest, good = in_double(_sweep, system, first, padded(time), errors)
+    rest, good = interruptibly(lambda: in_double(_sweep, system, first, padded(time), errors))
     rows = reached(first, rest, good, len(time))
     count = len(rows[0])
     outcome = Outcome.successful if count == len(time) else Outcome.not_converged

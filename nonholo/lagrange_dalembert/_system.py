@@ -10,6 +10,7 @@ import numpy as np
 
 from nonholo.base.calls import called
 from nonholo.base.checks import array, choice, count, error, names, shown, text
+from nonholo.base.limits import within_memory
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._outline import as_parts, check_heading, checked_outline
@@ -109,6 +110,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
 
     def __post_init__(self) -> None:
         dimension = count(_named("dimension"), self.dimension, "Pass the number of coordinates.")
+        within_memory(_named("dimension"), 8.0 * dimension**2, "Pass the number of coordinates.")  # the mass matrix
         object.__setattr__(self, "dimension", dimension)
         object.__setattr__(self, "coordinates", _names(self.coordinates, dimension))
         text(_named("name"), self.name)

@@ -8,6 +8,7 @@ import numpy as np
 
 from nonholo.base.checks import error, flags, flow_times, flow_tolerances
 from nonholo.base.limits import within_memory
+from nonholo.base.progress import telling
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, Solved, solver_of
 from nonholo.orbit import Orbit
@@ -31,6 +32,7 @@ def flow(
     method: str | None = None,
     reconstruct: bool = True,
     events: Any = None,
+    progress: bool = False,
 ) -> Orbit: ...
 @overload
 def flow(
@@ -42,6 +44,7 @@ def flow(
     momentum: Any = None,
     rtol: float | None = None,
     atol: float = 1e-12,
+    progress: bool = False,
 ) -> OrbitT: ...
 def flow(
     system: System | AbstractCoordinateSystem,
@@ -56,6 +59,7 @@ def flow(
     method: str | None = None,
     reconstruct: bool = True,
     events: Any = None,
+    progress: bool = False,
 ) -> Any:
     r"""Solve the Euler-Poincare-Suslov equations.
 
@@ -93,6 +97,7 @@ def flow(
             to the next are found, and located on the solution; see `Orbit.events`. Two of them between two such times
             are not seen: ask for more times. A stopping event ends the orbit with the last requested time before it. In
             coordinates only the requested times are compared, and each guess is another solve from the one before.
+        progress: Show on standard error how far the time has come.
 
     Returns:
         The orbit. It has no displacements, and its multipliers are the forces at its times. Of a system in coordinates
@@ -111,15 +116,16 @@ def flow(
         >>> print(orbit.body_velocity[:, 1].round(6), (np.ptp(orbit.heading) / np.pi).round(6))
         [-2.  2.] 2.0
     """
+    flags("flow", reconstruct=reconstruct, progress=progress)
     starts = {"body_velocity": body_velocity, "momentum": momentum}
     if isinstance(system, AbstractCoordinateSystem):
         refused = {"restricted_velocity": restricted_velocity, "method": method}
         no_pose = {"reconstruct": (reconstruct, True)}
         refuse_in_coordinates("flow", **{name: (value, None) for name, value in refused.items()}, **no_pose)
         errors = {"rtol": 1e-10 if rtol is None else rtol, "atol": atol}
-        return flow_in_coordinates(system, events, configuration=configuration, times=times, **starts, **errors)
+        with telling("time", progress):
+            return flow_in_coordinates(system, events, configuration=configuration, times=times, **starts, **errors)
     as_system("flow(system=...)", system)
-    flags("flow", reconstruct=reconstruct)
     time = flow_times(times)
     solver, posed = solver_of(system, method, float(time[0]), reconstruct=reconstruct)
     tolerances = flow_tolerances((1e-10 if method == "diffrax" else 1e-14) if rtol is None else rtol, atol)
@@ -127,7 +133,8 @@ def flow(
     start = Start.of("flow", configuration, restricted_velocity=restricted_velocity, **starts)
     first = _first_state(system, time, start, posed=posed)
     found = None if events is None else checked_events("flow", events)
-    return _flowed(system, first, time, tolerances, solve, found, reconstruct)
+    with telling("time", progress):
+        return _flowed(system, first, time, tolerances, solve, found, reconstruct)
 
 
 def _first_state(

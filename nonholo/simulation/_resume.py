@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from nonholo import io
 from nonholo.base.checks import count, error, flags, path, shown
+from nonholo.base.limits import within_disk
 from nonholo.base.results import Outcome
 from nonholo.simulation._simulate import refuse_what_bodies_have
 from nonholo.simulation.events import Watch
@@ -69,6 +70,8 @@ def extend(
     stream, run, watch = _opened("extend", store, discrete, events)
     with io.locked(stream.path):
         _refuse_ended(io.read_attributes(stream.path))
+        size, remedy = 8.0 * (steps // run.every) * (1 + sum(run.sizes)), "Pass fewer steps."
+        within_disk("extend(steps=...)", size, stream.path, remedy)
         longer = io.open_stream(stream.path).lengthened(steps)
         check_forces("extend", run.discrete, longer.plan.steps)
         longer.announce(steps)

@@ -14,6 +14,7 @@ import numpy as np
 from nonholo.base.checks import error, instance, is_traced, shape_of, trailing
 from nonholo.base.html import table
 from nonholo.base.kept import kept
+from nonholo.base.limits import within_memory
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._equilibria import Equilibria, equilibria_of, transverse_rates
@@ -89,6 +90,7 @@ class AbstractSystem(abc.ABC):
     def frame_map(self) -> Float[Array, "k k"]:
         """C with r_canonical = C r for momenta along the constraint subspace (and y = y_canonical C for charts)."""
         if self.canonical is self:
+            within_memory("The frame map of a body", 8.0 * self.rank**2, "Take a smaller n.")
             return np.eye(self.rank)
         images = self.canonical.constraint_subspace @ self.group.adjoint(self.frame).T
         return images @ np.linalg.pinv(self.constraint_subspace)

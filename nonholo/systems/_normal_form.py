@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nonholo.base.checks import is_traced
+from nonholo.base.limits import within_memory
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, SO
 from nonholo.systems._subspace import sleigh_rows, top_rows
@@ -88,6 +89,7 @@ class NormalForm:
     @property
     def stiffness_matrix(self) -> Float[np.ndarray, "k k"]:
         """The matrix B, whether it is given by its diagonal or not."""
+        within_memory("The matrix B of a body", 8.0 * len(self.stiffness) ** 2, "Take a smaller n.")
         return np.diag(self.stiffness) if self.is_diagonal else np.asarray(self.stiffness)
 
     @property

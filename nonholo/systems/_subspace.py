@@ -24,6 +24,7 @@ def null_space(rows: Float[np.ndarray, "m dim"], tolerance: float = _ROUNDING) -
         tolerance: Singular values below it, times the larger side and the largest singular value, count as zero.
     """
     count, dim = rows.shape
+    _refuse_too_wide(dim)
     if count == 0:
         return np.eye(dim)
     _, values, right = np.linalg.svd(np.linalg.qr(rows, mode="r") if count > dim else rows)
@@ -34,8 +35,13 @@ def null_space(rows: Float[np.ndarray, "m dim"], tolerance: float = _ROUNDING) -
 def complement(rows: Float[np.ndarray, "k dim"]) -> Float[np.ndarray, "s dim"]:
     """Return rows that span the vectors orthogonal to independent rows: coordinate rows for coordinate rows."""
     if np.all(np.count_nonzero(rows, axis=1) == 1):
+        _refuse_too_wide(rows.shape[1])
         return np.eye(rows.shape[1])[~rows.any(axis=0)]
     return null_space(rows)
+
+
+def _refuse_too_wide(dim: int) -> None:
+    within_memory(f"The complement of a subspace in {dim} dimensions", 8.0 * dim**2, "Use a smaller group.")
 
 
 def spanned(rows: Float[np.ndarray, "m dim"], tolerance: float = _ROUNDING) -> Float[np.ndarray, "k dim"]:

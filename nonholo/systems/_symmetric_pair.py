@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from nonholo.base.limits import within_memory
 from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._mass import checked_group
@@ -64,6 +65,7 @@ def symmetric_complement(group: AbstractMatrixGroup, constraint_subspace: Any) -
         array([[0., 0., 1.]])
     """
     checked_group("is_symmetric_pair(group=...)", group)
+    within_memory("is_symmetric_pair(group=...)", 8.0 * group.dim**3, "Use a smaller group.")
     where = "is_symmetric_pair(constraint_subspace=...)"
     d = spanned(independent_rows(where, constraint_subspace, group.dim))
     constants, everything = _structure_constants(group), np.eye(group.dim)

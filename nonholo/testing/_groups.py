@@ -7,6 +7,7 @@ import numpy as np
 import scipy.linalg
 
 from nonholo.base.checks import error, flags
+from nonholo.base.limits import within_memory
 from nonholo.base.numerics import double_precision
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.testing._group_samples import GroupSamples
@@ -55,6 +56,7 @@ def check_group(
         remedy = "Pass SO(n), a MatrixGroup or your own class that implements AbstractMatrixGroup."
         raise error("check_group(group=...)", "be a group", type(group).__name__, remedy)
     flags("check_group", compiled=compiled, throw=throw)
+    within_memory("check_group(group=...)", 8.0 * group.dim**2 * group.size**2, "Check a smaller group of its kind.")
     samples = GroupSamples(group, seeded(rng))
     checks = (*ALGEBRA, *MAPS, *((COMPILED,) if compiled else ()))
     return run_checks(f"check_group({group!r})", checks, samples, tolerance_factor, throw)

@@ -9,6 +9,9 @@ from nonholo.base.checks import count, flags, instance, positive
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.simulation import flow, simulate
+from nonholo.simulation.runs import refuse_many_matrices
+
+_MANY = 1000  # halvings; more than any memory holds
 
 
 def check_order(
@@ -55,6 +58,8 @@ def check_order(
     finer = count("check_order(halvings=...)", halvings, "Pass 1 or more.")
     allowed = float(positive("check_order(tolerance=...)", tolerance, "Pass a positive number."))
     flags("check_order", throw=throw)
+    where, all_steps = "check_order(steps=..., halvings=...)", number * 2 ** (min(finer, _MANY) + 1)
+    refuse_many_matrices(where, discrete, all_steps, "Pass fewer of them.")
     h = float(discrete.time_step)
     exact = flow(discrete.system, body_velocity=body_velocity, times=(0.0, number * h))
     made = [dataclasses.replace(discrete, time_step=h / 2**k) for k in range(finer + 1)]

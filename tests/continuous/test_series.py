@@ -247,6 +247,13 @@ def test_states_between_are_those_that_had_been_requested(
         assert np.array_equal(one.configuration[0], wanted.configuration[7])
 
 
+def test_what_a_long_flow_keeps_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beginnings of steps fill no more than their room, also where more steps lie between two than one block takes."""
+    monkeypatch.setattr(_solve, "_NUMBERS", 1000)
+    orbit = nh.flow(SYSTEMS["balanced top"], restricted_velocity=(1.0, 0.5), times=(0.0, 20_000.0))
+    assert orbit.motion.solution.nodes.size <= 1000
+
+
 @pytest.mark.parametrize("method", ["closed_form", "diffrax"])
 def test_states_between_by_other_methods(method: str) -> None:
     """Closed forms are evaluated, diffrax solves again; times may repeat."""

@@ -58,6 +58,19 @@ CALLS = {
         "times = lambda n: np.linspace(0.0, 0.1 * n, n)\n"
         "begin(*(lambda n=n: nh.flow(top, times=times(n), restricted_velocity=(0.3, 0.2)) for n in (3, 10**7)))"
     ),
+    "flow, long": (
+        "top = nh.VeselovaTop(np.diag([1.0, 2.0, 3.0]))\n"
+        "begin(*(lambda end=end: nh.flow(top, times=(0.0, end), restricted_velocity=(0.3, 0.2)) for end in (1.0, 1e9)))"
+    ),
+    "rollout": "begin(*(lambda n=n: nh.rollout(sleigh, steps=n, save_every=n, **start) for n in (10, 10**9)))",
+    "steer": (
+        "aside = {'configuration': np.array([[1.0, 0, 0], [0, 1, 1], [0, 0, 1]])}\n"
+        "begin(*(lambda n=n: nh.steer(sleigh, {}, aside, steps=n) for n in (4, 10**5)))"
+    ),
+    "steer, ipopt": (
+        "aside = {'configuration': np.array([[1.0, 0, 0], [0, 1, 1], [0, 0, 1]])}\n"
+        "begin(*(lambda n=n: nh.steer(sleigh, {}, aside, steps=n, method='ipopt') for n in (4, 3000)))"
+    ),
 }
 
 

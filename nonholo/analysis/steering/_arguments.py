@@ -11,6 +11,7 @@ from nonholo.systems import System, in_group
 
 Ends = tuple[np.ndarray, np.ndarray, np.ndarray | None, np.ndarray | None]
 """First velocities and poses of members, and the poses and velocities that they are to have, None where free."""
+BLOCK = 32  # members in one call; of more JAX shares single operations among threads, which takes longer
 Limits = tuple[np.ndarray, np.ndarray]
 """The least and the largest force, of each row or of each step and row."""
 

@@ -9,8 +9,10 @@ import numpy as np
 
 from nonholo.analysis.steering._arguments import check_names, checked_limits
 from nonholo.base.checks import array, error, needs, positive_definite, shape_of, symmetric
+from nonholo.base.progress import interruptibly
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization
+from nonholo.simulation.runs import refuse_many_matrices
 from nonholo.systems import in_group
 
 
@@ -165,6 +167,7 @@ def tracking_feedback(
     positive_definite(f"{where}(control_weight=...)", R, "the weight", "Pass a positive number, or one for each row.")
     table = array(f"{where}(controls=...)", controls, (None, dim), "Pass a body covector for each step.")
     limits = checked_limits(f"{where}(bounds=...)", bounds, k)
+    refuse_many_matrices(f"{where}(controls=...)", discrete, len(table), "Pass fewer.", derivatives=dim + 2 * k)
     with needs("jax", where):
         from nonholo.analysis.steering._closed_loop import linearized
         from nonholo.simulation.traced import rollout
@@ -172,7 +175,7 @@ def tracking_feedback(
     reference = rollout(discrete, **first, controls=table, steps=len(table))
     if reference.outcome != 0:
         raise error(f"{where}(controls=...)", "give a motion to the end", "one that ends early", "Take shorter steps.")
-    A, B = linearized(discrete, _states(discrete, reference), table)
+    A, B = interruptibly(lambda: linearized(discrete, _states(discrete, reference), table))
     h = float(discrete.time_step)
     return Feedback(discrete, table, reference, riccati_gains(A, B, (h * Q, h * R, F)), (A, B), limits)
 

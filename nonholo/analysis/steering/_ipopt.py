@@ -7,6 +7,7 @@ import casadi
 import numpy as np
 
 from nonholo.analysis.steering._program import Program
+from nonholo.base.progress import go_on, is_over
 from nonholo.base.types import Float
 
 _OPTIONS = {
@@ -55,11 +56,14 @@ def minimized(
         "jac_g": _Call("jac_g", (numbers, nothing), (conditions, slopes), valued),
         "hess_lag": _Call("hess_lag", (numbers, nothing, one, conditions), (curvatures,), curved),
     }
+    state = numbers, one, conditions, numbers, conditions, nothing
+    calls["iteration_callback"] = _Call("stop", state, (one,), lambda *_: (float(is_over()),))
     u = casadi.MX.sym("u", program.unknowns)
     options = {**_OPTIONS, **calls, "ipopt.max_iter": iterations}
     solver = casadi.nlpsol("steer", "ipopt", {"x": u, "f": f(u), "g": g(u)}, options)
     found = solver(x0=guess, lbx=bounds[0], ubx=bounds[1], lbg=program.limits[0], ubg=program.limits[1])
     stats = solver.stats()
+    go_on()
     if stats["return_status"] == "NonIpopt_Exception_Thrown":  # by a call back, or by the keyboard
         raise next((call.failure for call in (f, g, *calls.values()) if call.failure), KeyboardInterrupt())
     return Solution(np.array(found["x"]).ravel(), stats["return_status"], stats["iter_count"])

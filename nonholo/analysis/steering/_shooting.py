@@ -4,23 +4,24 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.analysis.steering._arguments import Ends, Limits
+from nonholo.analysis.steering._arguments import BLOCK, Ends, Limits
 from nonholo.analysis.steering._ends import missed_goals
 from nonholo.analysis.steering._least_effort import Missed, least_effort
+from nonholo.base.progress import go_on
 from nonholo.discrete import Discretization
 
 SPREAD = (1.0, 2.0, 0.5, 4.0, 1.0, 2.0, 0.5, 4.0)  # of the random controls from which a goal is looked for, in turn
 TOLERANCE = 1e-8  # of the goal
-_BLOCK = 32  # members in one call; of more JAX shares single operations among threads, which takes longer
 _LEVEL = 1e-4  # of the gradient at a minimum
 
 
 def shot(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the forces of members, (members, steps k), what they miss, and whether they are of least effort."""
-    k, block = discrete.system.rank, min(_BLOCK, len(ends[0]))
+    k, block = discrete.system.rank, min(BLOCK, len(ends[0]))
     steps = len(limits[0]) // k
 
     def missed(forces: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        go_on()
         return missed_goals(discrete, forces.reshape(-1, steps, k), chosen(ends, at), block)
 
     return best(missed, sizes(discrete, steps), len(ends[0]), limits)

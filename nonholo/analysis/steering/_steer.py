@@ -2,20 +2,31 @@
 
 import dataclasses
 import functools
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, cast
 
 import numpy as np
 
-from nonholo.analysis.steering._arguments import Ends, Guess, Limits, checked_ends, checked_guess, limits_of_steps
+from nonholo.analysis.steering._arguments import (
+    BLOCK,
+    Ends,
+    Guess,
+    Limits,
+    checked_ends,
+    checked_guess,
+    limits_of_steps,
+)
 from nonholo.analysis.steering._state_bounds import StateBounds, bounds_of_body, coordinate_numbers
 from nonholo.analysis.steering._way import Way, body_points
 from nonholo.base.checks import choice, count, error, flag, needs, refuse_given
-from nonholo.base.progress import progress_bar
+from nonholo.base.limits import within_memory
+from nonholo.base.progress import interruptibly, progress_bar
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, as_discretization
-from nonholo.simulation.runs import check_forces
+from nonholo.simulation.runs import check_forces, refuse_many_matrices
 from nonholo.systems import in_coordinates
+
+_PER_ENTRY = 24.0  # bytes of a second derivative: its value, and where it stands
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -157,12 +168,12 @@ def steer(
         return _steered_in_coordinates(discrete, (start, goal), bounds, way, steps, hints, state_bounds)
     _check(discrete, steps)
     ends, is_one = checked_ends(discrete.system, start, goal, bool(way.via))
+    _refuse_too_many(discrete, steps, method, min(len(ends[0]), BLOCK))
     way = way._replace(bounds=bounds_of_body(state_bounds, discrete.system, ends))
     limits = limits_of_steps(bounds, steps, discrete.system.rank)
-    if method == "ipopt":
-        forces, gap, outcome = _by_ipopt(discrete, ends, limits, way, hints, progress)
-    else:
-        forces, gap, outcome = _by_shooting(discrete, ends, limits)
+    with progress_bar("members", progress) as report:
+        by = functools.partial(_by_ipopt, way=way, guess=hints, report=report) if method == "ipopt" else _by_shooting
+        forces, gap, outcome = interruptibly(lambda: by(discrete, ends, limits))
     controls = forces @ np.linalg.pinv(discrete.system.constraint_subspace).T
     effort = float(discrete.time_step) * (forces**2).sum(axis=(-2, -1)) / 2
     found = *ends[:2], controls, effort, gap, outcome
@@ -185,16 +196,22 @@ def _method(discrete: Any, method: Any, asked: dict[str, Any]) -> str:
 
 def _check(discrete: Discretization, steps: int) -> None:
     """Refuse what `rollout` refuses, and constraints that are fixed in space."""
-    where, system, forces = "steer(discrete=...)", discrete.system, discrete.forces
+    where, system = "steer(discrete=...)", discrete.system
     if system.is_spatial:
         got = type(system).__name__
         raise error(where, "have a left-invariant constraint", got, "Steer it by `nh.rollout`.")
     if system.is_wide:
         raise error(where, "have matrices", "a system without", "Discretize `system.dense`.")
-    check_forces("steer", discrete, steps)
-    if forces is not None and forces.needs_function:
-        remedy = "Use Gravity, Friction or a table: what a function does is not traced."
-        raise error(where, "have forces that are numbers", "a Python function", remedy)
+    check_forces("steer", discrete, steps, traced=True)
+
+
+def _refuse_too_many(discrete: Discretization, steps: int, method: str, members: int) -> None:
+    """Refuse more steps than memory holds: derivatives of all of a block of members, or windows of unknowns of one."""
+    where, remedy, system = "steer(steps=...)", "Pass fewer steps.", discrete.system
+    if method == "shooting":
+        return refuse_many_matrices(where, discrete, members * steps, remedy, derivatives=system.rank)
+    window = 2 * system.group.size**2 + 4 * system.rank
+    return within_memory(where, _PER_ENTRY * steps * window**2, remedy)
 
 
 def _size_of_positions(discrete: Any) -> int | None:
@@ -217,7 +234,7 @@ def _by_shooting(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[
 
 
 def _by_ipopt(
-    discrete: Discretization, ends: Ends, limits: Limits, way: Way, guess: Guess, progress: bool
+    discrete: Discretization, ends: Ends, limits: Limits, way: Way, guess: Guess, report: Callable[[int, int], None]
 ) -> tuple[Any, ...]:
     """Return forces along the rows, what is missed, and outcomes of members, one after the other."""
     with needs("steer", "steer(method='ipopt')"):
@@ -226,11 +243,10 @@ def _by_ipopt(
     for name, poses in (("start", ends[1]), ("goal", ends[2])):
         way.check(name, poses if poses is None else body_points(poses, way.outline))
     found = []
-    with progress_bar("members", progress) as report:
-        for member in range(len(ends[0])):
-            one = tuple(each if each is None else each[member] for each in ends)
-            found.append(transcribed(group_problem(discrete, one, limits, way, guess)))
-            report(member + 1, len(ends[0]))
+    for member in range(len(ends[0])):
+        one = tuple(each if each is None else each[member] for each in ends)
+        found.append(transcribed(group_problem(discrete, one, limits, way, guess)))
+        report(member + 1, len(ends[0]))
     forces, gap, outcome = (np.array(part) for part in zip(*found, strict=True))
     return forces, gap, outcome
 
@@ -243,12 +259,13 @@ def _steered_in_coordinates(
         from nonholo.analysis.steering._in_coordinates import checked_goal, checked_start, coordinate_problem
         from nonholo.analysis.steering._transcription import transcribed
     n, (x, v) = discrete.system.dimension, checked_start(discrete, ends[0])
+    within_memory("steer(steps=...)", _PER_ENTRY * steps * (7.0 * n) ** 2, "Pass fewer steps.")
     limits = limits_of_steps(bounds, steps, n)
     goal = checked_goal(discrete, ends[1], is_free=bool(way.via))
     both = {"start": np.append(v, x[:n]), "goal": goal.numbers(n)}
     way = way._replace(bounds=StateBounds.of(state_bounds, coordinate_numbers(discrete.system), both))
     problem = coordinate_problem(discrete, ((x, v), goal), limits, way, steps, guess)
-    forces, gap, outcome = transcribed(problem)
+    forces, gap, outcome = interruptibly(lambda: transcribed(problem))
     effort = float(discrete.time_step) * (forces**2).sum() / 2
     start = v, x[:n]
     return Steering(discrete, start, forces, *map(np.asarray, (effort, gap, outcome)))

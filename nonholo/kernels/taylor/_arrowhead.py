@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from nonholo.base.compiled import njit
+from nonholo.base.progress import tell
 from nonholo.base.types import Float
 from nonholo.kernels._lanes import ONE
 from nonholo.kernels._scalar import COMPILED, scalar
@@ -25,6 +26,8 @@ from nonholo.kernels.taylor._steps import root
 
 _PART = 128  # components whose coefficients are made together, and sums that run side by side
 _NUMBERS = 1 << 24  # in the nodes of a solve, 128 MiB
+_OWN = 32  # numbers that an array takes besides its own
+_LOOK = 256  # steps between two reports
 _SMALLEST_STEP = 1e-13  # of what is left to the next requested time; below it a solve is given up
 
 
@@ -78,9 +81,11 @@ def solve_arrowhead(
     while going and reached < len(times):
         reached, going = take_step(p, state, times, reached, rows)
         taken += 1
+        if taken % _LOOK == 0:
+            tell(abs(state[0, -1] - node[0, -1]), abs(end - node[0, -1]))
         if going and reached < len(times) and taken % stride == 0:
             nodes.append(state.copy())
-        if len(nodes) * state.size > max(_NUMBERS, 4 * state.size):
+        if len(nodes) * (state.size + _OWN) > max(_NUMBERS, 4 * state.size):
             nodes, stride = nodes[::2], 2 * stride
     return rows[:reached], nodes
 

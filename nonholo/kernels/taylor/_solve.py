@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.compiled import njit
+from nonholo.base.progress import tell
 from nonholo.base.types import Float
 from nonholo.kernels._lanes import EIGHT, ONE, load, spread, store
 from nonholo.kernels._scalar import COMPILED, scalar
@@ -36,14 +37,18 @@ def solve_series(
     state[0, :-1], state[0, -1] = start[f.order], times[0]
     block = max(16, min(_STEPS, _NUMBERS // (8 * state.size)))
     nodes: list[np.ndarray] = []
-    reached, going, stride = 1, True, 1
+    reached, going, stride, taken, kept = 1, True, 1, 0, 0
     room = kept_room(f, order_for(tolerance))
     while going and reached < len(times):
         passed = np.empty((block, *state.shape))
         reached, steps, going = advance(f, times, tolerance, reached, state, rows, passed, room)
-        nodes.append(passed[:steps:stride].copy())
-        if len(nodes) * block * state.size > stride * _NUMBERS:
-            nodes, stride = [part[::2].copy() for part in nodes], 2 * stride
+        nodes.append(passed[-taken % stride : steps : stride].copy())
+        taken, kept = taken + steps, kept + len(nodes[-1])
+        if kept * state.size > max(_NUMBERS, 2 * state.size):
+            nodes, stride = [np.concatenate(nodes)[::2].copy()], 2 * stride
+            kept = len(nodes[0])
+        come = max(abs(state[0, -1] - times[0]), abs(times[reached - 1] - times[0]))
+        tell(come, abs(times[-1] - times[0]))
     return rows[:reached], np.concatenate(nodes) if nodes else state[None]
 
 

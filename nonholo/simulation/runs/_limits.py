@@ -18,3 +18,11 @@ def refuse_too_large(owner: str, discrete: Discretization, states: int, reconstr
     what, remedy = ("reconstruct", "Pass reconstruct=False, raise") if pose > size else ("steps", "Raise")
     remedy += " save_every, or pass store=... (`simulate`) or reduce=... (`ensemble`)."
     within_memory(f"{owner}({what}=...)", 8.0 * members * states * (size + pose), remedy)
+
+
+def refuse_many_matrices(
+    where: str, discrete: Discretization, states: int, remedy: str, *, derivatives: int = 0
+) -> None:
+    """Refuse more states in matrices, with derivatives of each, than memory holds."""
+    numbers = 2 + discrete.system.rank + discrete.system.group.dim + 2 * discrete.system.group.size**2
+    within_memory(where, 8.0 * states * numbers * (1 + derivatives), remedy)

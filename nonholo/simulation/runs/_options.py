@@ -13,8 +13,11 @@ from nonholo.discrete import (
 )
 
 
-def check_forces(owner: str, discrete: Any, steps: int, *, free: str | None = None) -> None:
-    """Refuse what runs with forces do not have, which `free` names, and more steps than their table has rows."""
+def check_forces(owner: str, discrete: Any, steps: int, *, free: str | None = None, traced: bool = False) -> None:
+    """Refuse what runs with forces do not have, which `free` names, and more steps than their table has rows.
+
+    Traced are numbers alone.
+    """
     if (forced := discrete.forces) is None:
         return
     if free is not None:
@@ -22,6 +25,9 @@ def check_forces(owner: str, discrete: Any, steps: int, *, free: str | None = No
     if forced.table is not None and steps > len(forced.table):
         remedy = "Pass fewer steps, or a force for each step."
         raise error(f"{owner}(steps=...)", "be at most one for each row of the forces", f"{steps}", remedy)
+    if traced and forced.needs_function:
+        remedy = "Use Gravity, Friction or a table: what a function does is not traced."
+        raise error(f"{owner}(discrete=...)", "have forces that are numbers", "a Python function", remedy)
 
 
 class RunOptions(NamedTuple):

@@ -7,13 +7,15 @@ import equinox
 import jax
 
 from nonholo.base.checks import array, count, error, is_traced, shape_of
+from nonholo.base.progress import interruptibly
 from nonholo.base.types import Array
 from nonholo.discrete import Discretization, ScalarRoute, as_discretization
 from nonholo.discrete.definition import Rollout, in_double, rolled, traceable
-from nonholo.simulation.runs import check_forces
+from nonholo.simulation.runs import check_forces, refuse_many_matrices
 from nonholo.systems import Forced, Start
 
 _rolled = equinox.filter_jit(rolled)
+_MANY = 10_000  # steps, which may take longer than a user waits for an answer to Ctrl-C
 
 
 def rollout(
@@ -85,6 +87,7 @@ def rollout(
     start = Start.of("rollout", configuration, **starts)
     if discrete.system.is_wide:
         raise error("rollout(discrete=...)", "have matrices", "a system without", "Discretize `system.dense`.")
+    refuse_many_matrices("rollout(steps=...)", discrete, 1 + sizes[0] // sizes[1], "Raise save_every.")
     value, g = _checked_start(discrete, start)
     if controls is not None:
         shape = (sizes[0], discrete.system.group.dim)
@@ -92,17 +95,15 @@ def rollout(
         if discrete.order > 2:
             got = f"order {discrete.order}"
             raise error("rollout(controls=...)", "have a step of order 2", got, "Use discretize(..., order=2).")
-    check_forces("rollout", discrete, sizes[0])
-    forced = discrete.forces
-    if forced is not None and forced.needs_function:
-        remedy = "Use Gravity, Friction or a table: what a function does is not traced."
-        raise error("rollout(discrete=...)", "have forces that are numbers", "a Python function", remedy)
-    free = discrete
+    check_forces("rollout", discrete, sizes[0], traced=True)
+    free, forced = discrete, discrete.forces
     if discrete.system.is_forced:
         free = dataclasses.replace(discrete, system=cast(Forced, discrete.system).system)
     route = dataclasses.replace(free, order=2).route
     closed = jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None
-    return in_double(_rolled, free, closed, (start.name, value, g), controls, sizes, forced)
+    arguments = free, closed, (start.name, value, g), controls, sizes, forced
+    is_long = sizes[0] >= _MANY and not any(map(is_traced, jax.tree.leaves(arguments)))
+    return interruptibly(lambda: in_double(_rolled, *arguments), is_long)
 
 
 def _checked_start(discrete: Discretization, start: Start) -> tuple[Array, Array]:

@@ -6,6 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo.base.checks import array, error, is_traced, shape_of
+from nonholo.base.limits import within_memory
 from nonholo.base.types import Array, Float
 
 _ROUNDING = 1e-13  # relative, of an eigenvalue
@@ -51,6 +52,7 @@ class Friction:
     def matrix(self) -> Float[Array, "dim dim"]:
         """C as a matrix."""
         C = self.coefficients
+        within_memory("Friction(coefficients=...)", 8.0 * len(C) ** 2, "Pass one for each direction of the group.")
         return C[:, None] * np.eye(len(C)) if C.ndim == 1 else C
 
     def check(self, dim: int) -> None:
