@@ -11,6 +11,7 @@ from nonholo.analysis.steering._arguments import Ends, Guess, Limits, checked_en
 from nonholo.analysis.steering._state_bounds import StateBounds, bounds_of_body, coordinate_numbers
 from nonholo.analysis.steering._way import Way, body_points
 from nonholo.base.checks import choice, count, error, flag, needs, refuse_given
+from nonholo.base.kept import Keeper
 from nonholo.base.progress import progress_bar
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, as_discretization
@@ -19,7 +20,7 @@ from nonholo.systems import in_coordinates
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Steering:
+class Steering(Keeper):
     """Controls that lead to a goal; of many members at once every array has an axis of them in front.
 
     Attributes:
