@@ -18,12 +18,9 @@ class Keeper:
         return vars(self).get("recipe") or object.__reduce_ex__(self, protocol)
 
     def __getstate__(self) -> dict[str, Any]:
-        kind = type(self)
-        return {
-            name: value
-            for name, value in vars(self).items()
-            if "." not in name and not isinstance(getattr(kind, name, None), functools.cached_property)
-        }
+        kind, own = type(self), vars(self)
+        computed = {x for x in own if "." in x or isinstance(getattr(kind, x, None), functools.cached_property)}
+        return {name: own[name] for name in own if name not in computed}
 
 
 if TYPE_CHECKING:

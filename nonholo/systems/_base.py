@@ -120,7 +120,7 @@ class AbstractSystem(Keeper, abc.ABC):
     @kept
     def inverse_inertia(self) -> Float[np.ndarray, "k k"]:
         """The inverse of a matrix `inertia_along`, which takes momenta to velocities."""
-        return np.linalg.inv(self.inertia_along)
+        return np.linalg.inv(self.constrained_inertia)
 
     @functools.cached_property
     def normal_form(self) -> NormalForm | None:
@@ -430,7 +430,7 @@ class AbstractLRSystem(AbstractSystem):
     ) -> Float[Array, "... k"]:
         """Return the spatial momenta along the constraint subspace of spatial velocities in its rows."""
         velocity = self._along("restricted_velocity", restricted_velocity)
-        inertia = self.inertia_along if configuration is None else self.spatial_inertia(configuration)
+        inertia = self.constrained_inertia if configuration is None else self.spatial_inertia(configuration)
         return applied(inertia.swapaxes(-1, -2), velocity)
 
 

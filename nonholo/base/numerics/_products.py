@@ -21,8 +21,7 @@ def applied(matrix: Inexact[Array, "... i j"], vectors: Inexact[Array, "... j"])
     """
     if isinstance(matrix, np.ndarray) and isinstance(vectors, np.ndarray):
         kind = np.result_type(matrix, vectors)
-        rows = np.ascontiguousarray(matrix, kind), np.ascontiguousarray(vectors, kind)
-        return np.einsum("...ij,...j->...i", *rows)
+        return np.einsum("...ij,...j->...i", *(np.ascontiguousarray(each, kind) for each in (matrix, vectors)))
     return vectors @ matrix.T if matrix.ndim == 2 else (matrix @ vectors[..., None])[..., 0]
 
 

@@ -65,8 +65,7 @@ def _momenta_of_part(members: Members, name: str, rows: np.ndarray) -> tuple[np.
 
 def energies(scalar: ScalarMembers, momenta: Float[np.ndarray, "M ... 2"]) -> Float[np.ndarray, "M ..."]:
     """Return the reduced constrained energies of canonical momenta."""
-    inverses = np.linalg.inv(scalar.inertia)
-    inverses = inverses.reshape(-1, *(1,) * (momenta.ndim - 2), 2, 2)
+    inverses = np.linalg.inv(scalar.inertia).reshape(-1, *(1,) * (momenta.ndim - 2), 2, 2)
     return (momenta * applied(inverses, momenta)).sum(axis=-1) / 2
 
 
