@@ -15,9 +15,9 @@ from nonholo.base.numerics import _double_precision
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
 
 
-def lines_of(name: str) -> list[str]:
+def lines_of(name: str, body: str = "sleigh") -> list[str]:
     """Run the program, which forks, in a process without threads; if it hangs, fail with where each process stood."""
-    command = [sys.executable, "-X", "faulthandler", str(Path(__file__).with_name("pools.py")), name]
+    command = [sys.executable, "-X", "faulthandler", str(Path(__file__).with_name("pools.py")), name, body]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     with subprocess.Popen(command, start_new_session=True, **pipes) as program:  # noqa: S603
         try:
@@ -29,11 +29,12 @@ def lines_of(name: str) -> list[str]:
     return printed.splitlines()
 
 
-@pytest.mark.profile("faults", keep=["executor"])
+@pytest.mark.profile("faults", keep=["executor-top"])
+@pytest.mark.parametrize("body", ["sleigh", "top"])
 @pytest.mark.parametrize("pool", ["executor", "pool"])
-def test_a_fold_does_not_hang_a_pool(pool: str) -> None:
-    """The run that folds comes back as an `OutcomeError`, the others as what they are."""
-    lines = lines_of(pool)
+def test_a_fold_does_not_hang_a_pool(pool: str, body: str) -> None:
+    """The run that folds comes back as an `OutcomeError` with its orbit, the others as orbits."""
+    lines = lines_of(pool, body)
     failures = [line for line in lines if line.startswith("OutcomeError")]
     energies = [line for line in lines if line not in failures]
     assert len(failures) == 1

@@ -1,5 +1,6 @@
-"""Properties that are computed once."""
+"""Properties that are computed once, and are no part of what is copied or pickled."""
 
+import functools
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -7,6 +8,20 @@ import numpy as np
 from nonholo.base.checks import is_traced
 
 _SMALL = 1 << 15  # bytes; larger arrays take longer to compute than anyone saves by keeping them
+
+
+class Keeper:
+    """An object that keeps what it computes; its copies and pickles have what it was made of, nothing else."""
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        """Return the call that made it, where it was made by one that has a name; otherwise its fields."""
+        return vars(self).get("recipe") or object.__reduce_ex__(self, protocol)
+
+    def __getstate__(self) -> dict[str, Any]:
+        kind, own = type(self), vars(self)
+        computed = {x for x in own if "." in x or isinstance(getattr(kind, x, None), functools.cached_property)}
+        return {name: own[name] for name in own if name not in computed}
+
 
 if TYPE_CHECKING:
     kept = property
@@ -22,7 +37,7 @@ else:
             """Return the value."""
             if owner is None:
                 return self
-            name = self.fget.__qualname__
+            name = self.fget.__qualname__  # has a dot, which no name of a field has
             value = owner.__dict__.get(name)
             if value is None:
                 value = self.fget(owner)

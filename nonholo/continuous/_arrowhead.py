@@ -9,6 +9,7 @@ from typing import cast
 
 import numpy as np
 
+from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.continuous._series import GUARD, looked_at, power_of_two
@@ -68,8 +69,8 @@ def encoded(form: NormalForm, momentum: Float[np.ndarray, "k"]) -> Float[np.ndar
 
 
 def decoded(form: NormalForm, rows: Float[np.ndarray, "K k"]) -> Float[np.ndarray, "K k"]:
-    """Return canonical momenta from the numbers of the kernel, row by row: BLAS may add otherwise in company."""
-    momenta = form.from_principal((rows * equations(form)[1])[:, None])
+    """Return canonical momenta from the numbers of the kernel."""
+    momenta = form.from_principal(rows * equations(form)[1])
     if form.is_sleigh:
         momenta[..., :-1] += momenta[..., -1:] * form.offset
-    return (momenta if form.frame_map is None else momenta @ np.linalg.inv(form.frame_map).T)[:, 0]
+    return momenta if form.frame_map is None else applied(np.linalg.inv(form.frame_map), momenta)

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from nonholo.base.checks import array, error, number, shape_of, trailing
+from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.continuous._forced import forced_field, forced_reaction
 from nonholo.continuous._solution import States
@@ -35,9 +36,9 @@ def momentum_rate(
 ) -> tuple[Float[Array, "... k"], Float[Array, "... dim"], Float[Array, "... dim"]]:
     r"""Return $r' = S\,\mathrm{ad}^*_\omega p$, the body velocity $\omega$ and the torque $\mathrm{ad}^*_\omega p$."""
     S, inertia, to_velocity = body
-    velocity = restricted_momentum @ to_velocity
-    torque = group.coad(velocity, velocity @ inertia.T)
-    return torque @ S.T, velocity, torque
+    velocity = applied(to_velocity.T, restricted_momentum)
+    torque = group.coad(velocity, applied(inertia, velocity))
+    return applied(S, torque), velocity, torque
 
 
 def reaction(
@@ -49,7 +50,7 @@ def reaction(
     """
     _, inertia, to_velocity = body
     rate, _, torque = momentum_rate(group, body, restricted_momentum)
-    return rate @ to_velocity @ inertia.T - torque
+    return applied(inertia, applied(to_velocity.T, rate)) - torque
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -89,7 +90,7 @@ class ContinuousFlow(AbstractMotion):
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         r"""Return the momenta $p = \mathbb{I}\omega$."""
-        return states.body_velocity @ self.system.inertia_operator.T
+        return applied(self.system.inertia_operator, states.body_velocity)
 
     def multipliers(self, states: Orbit) -> Float[np.ndarray, "K s"]:
         r"""Return the forces $\lambda$ in $p' = \mathrm{ad}^*_\omega p + \sum_j \lambda_j a^j$ at the states.
@@ -103,14 +104,14 @@ class ContinuousFlow(AbstractMotion):
             force = spatial_reaction(system, states.configuration, states.body_velocity)
         else:
             force = reaction(system.group, body_of(system), states.restricted_momentum)
-        return force @ np.linalg.pinv(system.annihilator)
+        return applied(np.linalg.pinv(system.annihilator).T, force)
 
     def constraint_residual(self, states: Orbit) -> Float[np.ndarray, "K s"]:
         """Return the forbidden velocities."""
         velocity, system = states.body_velocity, self.system
         if system.is_spatial:
-            velocity = (system.carried(states.configuration) @ velocity[..., None])[..., 0]
-        return velocity @ system.annihilator.T
+            velocity = applied(system.carried(states.configuration), velocity)
+        return applied(system.annihilator, velocity)
 
     def displacements(self, states: Orbit) -> Float[np.ndarray, "K N N"]:
         """Refuse: a continuous motion has no displacements."""
@@ -129,7 +130,8 @@ def spatial_velocity(
     xp = g.__array_namespace__()
     rows = xp.asarray(S, dtype=g.dtype)
     inertia = inertia_form(group, group.hat(rows), g @ tensor @ xp.swapaxes(g, -1, -2))
-    return xp.linalg.solve(inertia, xp.broadcast_to(r, inertia.shape[:-1])[..., None])[..., 0] @ rows
+    w = xp.linalg.solve(inertia, xp.broadcast_to(r, inertia.shape[:-1])[..., None])[..., 0]
+    return applied(rows.T, w)
 
 
 def spatial_reaction(
@@ -142,10 +144,10 @@ def spatial_reaction(
     """
     group, S, inertia = system.group, system.constraint_subspace, system.inertia_operator
     back = group.inverse(g)
-    torque = group.coadjoint(back, group.coad(velocity, velocity @ inertia.T))
-    rate = system.restricted_velocity(torque @ S.T, g) @ S
-    acceleration = (group.adjoint(back) @ rate[..., None])[..., 0]
-    return group.coadjoint(back, acceleration @ inertia.T) - torque
+    torque = group.coadjoint(back, group.coad(velocity, applied(inertia, velocity)))
+    rate = applied(S.T, system.restricted_velocity(applied(S, torque), g))
+    acceleration = applied(group.adjoint(back), rate)
+    return group.coadjoint(back, applied(inertia, acceleration)) - torque
 
 
 def vector_field(system: AbstractSystem) -> Callable[[Array, Float[Array, "size"]], Float[Array, "size"]]:

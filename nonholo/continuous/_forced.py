@@ -16,6 +16,7 @@ import scipy  # its parts load on first use
 
 from nonholo.base.calls import noted
 from nonholo.base.checks import error, number, trailing
+from nonholo.base.numerics import applied
 from nonholo.base.progress import late_bar
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
@@ -154,8 +155,9 @@ def forced_reaction(forced: Forced, states: Orbit) -> Float[np.ndarray, "K dim"]
     """
     group, inertia = forced.group, np.asarray(forced.inertia_operator)
     g, velocity = states.configuration, states.body_velocity
-    applied = [forced.applied_force(*row) for row in zip(states.time, g, velocity, strict=True)]
-    force = group.coad(velocity, velocity @ inertia.T) + forced.potential_force(g) + np.reshape(applied, velocity.shape)
+    acting = [forced.applied_force(*row) for row in zip(states.time, g, velocity, strict=True)]
+    force = group.coad(velocity, applied(inertia, velocity)) + forced.potential_force(g)
+    force = force + np.reshape(acting, velocity.shape)
     E = forced.directions(g)
     along = np.swapaxes(E, -1, -2)
     acceleration = E @ np.linalg.solve(along @ inertia @ E, along @ force[..., None])

@@ -8,6 +8,7 @@ from typing import Any, ClassVar, cast, overload
 import numpy as np
 
 from nonholo.base.checks import choice, error, needs, scale, shown, trailing
+from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.discrete._composition import checked_order, refuse_composition, weights
 from nonholo.discrete._legendre import legendre, legendre_of_chart
@@ -122,8 +123,9 @@ class Discretization(Scheme, AbstractMotion):
         D = self.variety.displaced(states.canonical_chart)
         if not self.variety.exact:
             return equations_of(self.variety, D)
-        group, forbidden = self.system.group, self.variety.annihilator.T
-        return (group.log(D) if self.variety.exponential else group.vee(D - group.inverse(D)) / 2) @ forbidden
+        group = self.system.group
+        moved = group.log(D) if self.variety.exponential else group.vee(D - group.inverse(D)) / 2
+        return applied(self.variety.annihilator, moved)
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         """Return the discrete momenta at the displacements, of a composition at those of first substeps."""
@@ -148,13 +150,12 @@ class Discretization(Scheme, AbstractMotion):
         arriving = self._momentum(before, before.canonical_chart, "right")
         if self.forces is not None:
             arriving = arriving + self._impulses(states[1:], 0) + self._impulses(states[1:], -1)
+        group, to_multipliers = self.system.group, np.linalg.pinv(self.system.annihilator).T
         if not self.system.is_spatial:
-            jump = legendre_of_chart(self, charts, "left") - arriving
-            return jump @ np.linalg.pinv(self.system.annihilator)
-        group = self.system.group
+            return applied(to_multipliers, legendre_of_chart(self, charts, "left") - arriving)
         g = self.displaced(before.canonical_chart) @ before.configuration
         jump = _in_body(self, charts, g, "left") - arriving
-        return group.coadjoint(group.inverse(g), jump) @ np.linalg.pinv(self.system.annihilator)
+        return applied(to_multipliers, group.coadjoint(group.inverse(g), jump))
 
     def _impulses(self, states: Orbit, shift: int) -> Float[np.ndarray, "K dim"]:
         """Return the half impulses at nodes of the steps that begin there, or with shift -1 of those that end there."""

@@ -5,6 +5,7 @@ for every other discrete Lagrangian they are derivatives taken by JAX (`_functio
 """
 
 from nonholo.base.checks import needs
+from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.discrete._scheme import Scheme
 from nonholo.groups import AbstractMatrixGroup
@@ -30,7 +31,7 @@ def logarithmic_legendre(discrete: Scheme, W: Float[Array, "... N N"], side: str
     x = group.log(W)
     xp = x.__array_namespace__()
     transport = group.dexp_inverse(x if side == "left" else -x)
-    p = x @ xp.asarray(discrete.system.inertia_operator).T / discrete.time_step
+    p = applied(xp.asarray(discrete.system.inertia_operator), x) / discrete.time_step
     return (p[..., None, :] @ transport)[..., 0, :]
 
 
@@ -41,7 +42,7 @@ def matrix_legendre(
     xp = X.__array_namespace__()
     arm = xp.asarray(tensor, dtype=X.dtype) @ group.form_adjoint(X)
     carried = arm + X @ arm if side == "left" else arm + arm @ X
-    return xp.einsum("iab,...ba->...i", xp.asarray(group.basis, dtype=X.dtype), carried)
+    return group.coordinates.dual_vector(xp.swapaxes(carried, -1, -2))
 
 
 def legendre_of_chart(discrete: Scheme, cayley: Float[Array, "... k"], side: str) -> Float[Array, "... dim"]:

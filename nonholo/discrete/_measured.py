@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from nonholo.base.checks import array, error, instance
+from nonholo.base.numerics import applied
 from nonholo.base.types import Float
 from nonholo.discrete._discretization import discretize
 from nonholo.discrete._legendre import legendre
@@ -69,7 +70,7 @@ class MeasuredMotion(AbstractMotion):
         system, chart = self.system, states.canonical_chart
         group, D = system.group, self.displaced(chart)
         moved = group.vee(D - group.inverse(D)) / 2 if group.has_skew_part else group.log(D)
-        return moved @ system.annihilator.T / chart[:, -1:]
+        return applied(system.annihilator, moved) / chart[:, -1:]
 
     def _increments(self, chart: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Return displacements less the identity, without cancellation."""

@@ -13,6 +13,7 @@ from collections.abc import Callable
 import numpy as np
 
 from nonholo.base.checks import choice, error, needs
+from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractSystem
@@ -51,19 +52,19 @@ class Variety:
 
     def displaced(self, y: Float[Array, "... m"]) -> Float[Array, "... N N"]:
         """Return the displacement with chart coordinates y, tangent to 2 y."""
-        x = 2 * y @ y.__array_namespace__().asarray(self.chart, dtype=y.dtype)
+        x = applied(y.__array_namespace__().asarray(self.chart, dtype=y.dtype).T, 2 * y)
         return self.group.exp(x) if self.exponential else self.group.retract(x)
 
     def increment(self, y: Float[Array, "... m"]) -> Float[Array, "... N N"]:
         """Return the displacement minus the identity, without cancellation."""
-        x = 2 * y @ y.__array_namespace__().asarray(self.chart, dtype=y.dtype)
+        x = applied(y.__array_namespace__().asarray(self.chart, dtype=y.dtype).T, 2 * y)
         return self.group.exp_increment(x) if self.exponential else self.group.retract_increment(x)
 
     def angle(self, y: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "..."]:
         """Return the angles through which displacements turn; Cayley's map of a body takes t to 2 arctan(t / 2)."""
         if self.exponential or not self.group.is_rigid:
             return self.group.angle(self.group.log(self.displaced(y)))
-        return 2 * np.arctan(self.group.angle(2 * y @ self.chart) / 2)
+        return 2 * np.arctan(self.group.angle(applied(self.chart.T, 2 * y)) / 2)
 
     def coordinates(self, W: Float[np.ndarray, "N N"]) -> Float[np.ndarray, "m"]:
         """Return the chart coordinates of a displacement of less than half a turn."""
@@ -80,11 +81,11 @@ class Variety:
             return xp.zeros((*W.shape[:-2], 0), dtype=W.dtype)
         annihilator = xp.asarray(self.annihilator, dtype=W.dtype)
         if self.frame is None:
-            return self.group.vee((W - self.group.inverse(W)) / 2) @ annihilator.T
+            return applied(annihilator, self.group.vee((W - self.group.inverse(W)) / 2))
         back, frame = (xp.asarray(g, dtype=W.dtype) for g in (self.group.inverse(self.frame), self.frame))
         W = frame @ W @ back
         if isinstance(self.constraint, str):
-            return self.group.vee(W - xp.asarray(self.group.identity, dtype=W.dtype)) @ annihilator.T
+            return applied(annihilator, self.group.vee(W - xp.asarray(self.group.identity, dtype=W.dtype)))
         return xp.stack([f(W) for f in self.constraint], axis=-1)
 
 

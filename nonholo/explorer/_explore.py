@@ -11,6 +11,7 @@ from typing import Any
 
 from nonholo.base.checks import MissingExtraError, flags
 from nonholo.base.checks import path as checked_path
+from nonholo.base.kept import Keeper
 from nonholo.explorer._motion import shown_motion, simulated
 from nonholo.explorer._page import page_text
 from nonholo.io import check_file, new_file
@@ -20,7 +21,7 @@ _HEIGHT = 760  # pixels in a notebook
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
-class Page:
+class Page(Keeper):
     """A live page; in a notebook it shows itself, and with anywidget its sliders are heard in Python.
 
     Attributes:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.checks import generator, trailing
+from nonholo.base.kept import Keeper
 from nonholo.base.limits import within_memory
 from nonholo.base.numerics import identity_like, integrated_exponential, inverted
 from nonholo.base.types import Array, Float, Inexact
@@ -18,7 +19,7 @@ from nonholo.groups._coordinates import AbstractCoordinates
 _WIDE = 1000  # from this size on it is asked whether a matrix fits into memory
 
 
-class AbstractMatrixGroup(abc.ABC):
+class AbstractMatrixGroup(Keeper, abc.ABC):
     """A group of (N, N) matrices with a chosen basis of its Lie algebra.
 
     A new group states the attributes and the abstract methods; the rest is shared.

@@ -8,6 +8,7 @@ import abc
 
 import numpy as np
 
+from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float, Inexact, Int
 
 
@@ -118,10 +119,10 @@ def coordinates_of(basis: Float[np.ndarray, "dim N N"]) -> AbstractCoordinates:
 
 
 def _combined(x: Array, matrices: np.ndarray) -> Array:
-    xp = x.__array_namespace__()
-    return xp.tensordot(x, xp.asarray(matrices, dtype=x.dtype), axes=1)
+    flat = x.__array_namespace__().asarray(matrices.reshape(len(matrices), -1), dtype=x.dtype)
+    return applied(flat.T, x).reshape(*x.shape[:-1], *matrices.shape[1:])
 
 
 def _paired(X: Array, matrices: np.ndarray) -> Array:
-    xp = X.__array_namespace__()
-    return xp.tensordot(X, xp.asarray(matrices, dtype=X.dtype), axes=((-2, -1), (1, 2)))
+    flat = X.__array_namespace__().asarray(matrices.reshape(len(matrices), -1), dtype=X.dtype)
+    return applied(flat, X.reshape(*X.shape[:-2], flat.shape[1]))

@@ -11,13 +11,14 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.checks import array, scale
+from nonholo.base.kept import Keeper
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert
 from nonholo.systems import AbstractSystem
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
-class Example:
+class Example(Keeper):
     """A system of the literature with a start and with known facts.
 
     Attributes:
@@ -65,7 +66,9 @@ def ready(*start: str) -> Callable[[Callable[..., Example]], Callable[..., Examp
                 return example  # which no data describes
             body = {name: _plain(given.get(name, default), default) for name, default in defaults.items()}
             kept = {name: value for name, value in body.items() if name not in start}
-            return dataclasses.replace(example, system=_named(example.system, make.__name__, json.dumps(kept)))
+            example = dataclasses.replace(example, system=_named(example.system, made, json.dumps(kept)))
+            object.__setattr__(example, "recipe", (functools.partial(made, **given), ()))
+            return example
 
         return made
 
@@ -78,11 +81,17 @@ def _plain(value: Any, default: Any) -> Any:
 
 
 @functools.lru_cache(maxsize=64)  # one with a new function each time is another one
-def _named(system: Any, name: str, parameters: str) -> Any:
+def _named(system: Any, make: Callable[..., Example], parameters: str) -> Any:
     """Return a system that can be described; changes of it, by `Forced` or `dataclasses.replace`, are not."""
     named = copy.copy(system)
-    object.__setattr__(named, "described", (f"examples.{name}", json.loads(parameters)))
+    given = json.loads(parameters)
+    object.__setattr__(named, "described", (f"examples.{make.__name__}", given))
+    object.__setattr__(named, "recipe", (_system_of, (make, given)))
     return named
+
+
+def _system_of(make: Callable[..., Example], given: dict[str, Any]) -> Any:
+    return make(**given).system
 
 
 def rate(index: int) -> Callable[[Array, Array], Array]:

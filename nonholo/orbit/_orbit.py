@@ -14,6 +14,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from nonholo.base.checks import error, instance, selection, shown
+from nonholo.base.kept import Keeper
+from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.groups import SE, AbstractMatrixGroup
@@ -31,7 +33,7 @@ def as_orbit(where: str, value: Any, coordinates: str) -> "Orbit":
     return instance(where, value, Orbit, "be an orbit of a system on a group", remedy)
 
 
-class AbstractMotion(abc.ABC):
+class AbstractMotion(Keeper, abc.ABC):
     """A rule of motion of a system: a discretization or the continuous flow."""
 
     system: System
@@ -279,9 +281,10 @@ class Orbit(AbstractOrbit):
         """
         y, system = self.canonical_chart, self.system
         if y.shape[1] == system.rank:
-            return y if system.canonical is system else y @ system.frame_map
+            return y if system.canonical is system else applied(system.frame_map.T, y)
         D = self.motion.displaced(y)
-        return system.group.vee((D - system.group.inverse(D)) / 2) @ np.linalg.pinv(system.constraint_subspace)
+        back = np.linalg.pinv(system.constraint_subspace)
+        return applied(back.T, system.group.vee((D - system.group.inverse(D)) / 2))
 
     @property
     def momentum(self) -> Float[np.ndarray, "K dim"]:
@@ -331,10 +334,11 @@ class Orbit(AbstractOrbit):
         system = self.system
         if system.is_spatial:
             g = self.configuration
-            spatial = system.restricted_velocity(self.reduced_momentum, g) @ system.constraint_subspace
-            return (system.group.adjoint(system.group.inverse(g)) @ spatial[..., None])[..., 0]
-        velocity = system.canonical.restricted_velocity(self.reduced_momentum) @ system.canonical.constraint_subspace
-        return velocity @ system.group.adjoint(system.frame).T
+            spatial = applied(system.constraint_subspace.T, system.restricted_velocity(self.reduced_momentum, g))
+            return applied(system.group.adjoint(system.group.inverse(g)), spatial)
+        body = system.canonical
+        velocity = applied(body.constraint_subspace.T, body.restricted_velocity(self.reduced_momentum))
+        return velocity if body is system else applied(system.group.adjoint(system.frame), velocity)
 
     @property
     def spatial_momentum(self) -> Float[np.ndarray, "K dim"]:

@@ -27,7 +27,10 @@ class AliasingWarning(UserWarning):
 
 def configurations(system: System, pose: Float[np.ndarray, "K size"]) -> Float[np.ndarray, "K N N"]:
     """Return the matrices, in the user's body frame, of compact poses in the canonical one."""
-    return system.group.matrix_from_pose(pose) @ system.group.inverse(system.frame)
+    g = system.group.matrix_from_pose(pose)
+    if system.canonical is system:
+        return g.copy() if np.may_share_memory(g, pose) else g
+    return g @ system.group.inverse(system.frame)
 
 
 def poses(system: System, canonical_pose: Float[np.ndarray, "K size"]) -> Float[np.ndarray, "K size"]:
@@ -38,10 +41,9 @@ def poses(system: System, canonical_pose: Float[np.ndarray, "K size"]) -> Float[
         >>> poses(ChaplyginSleigh(1.0, 1.0, 0.5, b=0.25), np.array([[1.0, 0.0, 3.0, 0.25]]))
         array([[1., 0., 3., 0.]])
     """
-    group = system.group
-    if np.array_equal(np.asarray(system.frame), group.identity):
+    if system.canonical is system:
         return canonical_pose
-    return group.pose_from_matrix(configurations(system, canonical_pose))
+    return system.group.pose_from_matrix(configurations(system, canonical_pose))
 
 
 def unwrapped(pose: Float[np.ndarray, "K 4"], before: float | None = None) -> Float[np.ndarray, "K"]:

@@ -13,8 +13,9 @@ import numpy as np
 
 from nonholo.base.checks import error, instance, is_traced, shape_of, trailing
 from nonholo.base.html import table
-from nonholo.base.kept import kept
+from nonholo.base.kept import Keeper, kept
 from nonholo.base.limits import within_memory
+from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._equilibria import Equilibria, equilibria_of, transverse_rates
@@ -26,7 +27,7 @@ from nonholo.systems._wide import WideInertia
 SystemT = TypeVar("SystemT", bound="AbstractSystem")
 
 
-class AbstractSystem(abc.ABC):
+class AbstractSystem(Keeper, abc.ABC):
     """A kinetic energy that is invariant under left translations, with a linear constraint on velocities.
 
     A system states its group, mass tensor, constraint subspace and annihilator in the user's body frame. Kernels work
@@ -95,17 +96,20 @@ class AbstractSystem(abc.ABC):
         images = self.canonical.constraint_subspace @ self.group.adjoint(self.frame).T
         return images @ np.linalg.pinv(self.constraint_subspace)
 
+    @kept
+    def inverse_frame_map(self) -> Float[Array, "k k"]:
+        """The inverse of `frame_map`."""
+        return np.linalg.inv(self.frame_map)
+
     def to_canonical(self, restricted_momentum: Inexact[Array, "... k"]) -> Inexact[Array, "... k"]:
         """Return momenta along the canonical rows from those along the rows of the constraint subspace."""
         restricted = self._along("restricted_momentum", restricted_momentum)
-        return restricted if self.canonical is self else restricted @ self.frame_map.T
+        return restricted if self.canonical is self else applied(self.frame_map, restricted)
 
     def from_canonical(self, reduced_momentum: Float[Array, "... k"]) -> Float[Array, "... k"]:
         """Return momenta along the rows of the constraint subspace from those along the canonical ones."""
         reduced = self._along("reduced_momentum", reduced_momentum)
-        if self.canonical is self:
-            return reduced
-        return np.linalg.solve(self.frame_map, reduced[..., None])[..., 0]
+        return reduced if self.canonical is self else applied(self.inverse_frame_map, reduced)
 
     @kept
     def inertia_along(self) -> Float[Array, "k k"] | WideInertia:
@@ -114,6 +118,11 @@ class AbstractSystem(abc.ABC):
         if mass_tensor is None:
             return rows @ self.inertia_operator @ rows.T
         return inertia_form(self.group, self.group.hat(rows), mass_tensor)
+
+    @kept
+    def inverse_inertia(self) -> Float[np.ndarray, "k k"]:
+        """The inverse of a matrix `inertia_along`, which takes momenta to velocities."""
+        return np.linalg.inv(self.constrained_inertia)
 
     @functools.cached_property
     def normal_form(self) -> NormalForm | None:
@@ -249,7 +258,7 @@ class AbstractSystem(abc.ABC):
     def restrict(self, momentum: Inexact[Array, "... dim"]) -> Inexact[Array, "... k"]:
         """Return the components of a momentum along the rows of the constraint subspace."""
         where, remedy = f"{type(self).__name__}.restrict(momentum=...)", "Pass a full momentum."
-        return trailing(where, momentum, (self.group.dim,), remedy) @ self.constraint_subspace.T
+        return applied(self.constraint_subspace, trailing(where, momentum, (self.group.dim,), remedy))
 
     def _along(self, name: str, value: Array) -> Array:
         remedy = "Pass one number for each row of the constraint subspace."
@@ -333,7 +342,10 @@ class AbstractLLSystem(AbstractSystem):
     ) -> Float[Array, "... k"]:
         """Return the velocity, in rows of the constraint subspace, that has these momenta along it."""
         del configuration
-        return _solve(self.inertia_along, self._along("restricted_momentum", restricted_momentum))
+        momentum, inertia = self._along("restricted_momentum", restricted_momentum), self.inertia_along
+        if isinstance(inertia, np.ndarray) and isinstance(momentum, np.ndarray):
+            return applied(self.inverse_inertia, momentum)
+        return inertia.velocities(momentum) if isinstance(inertia, WideInertia) else _solve(inertia, momentum)
 
     def restricted_momentum(
         self, restricted_velocity: Float[Array, "... k"], configuration: Float[Array, "... N N"] | None = None
@@ -341,7 +353,8 @@ class AbstractLLSystem(AbstractSystem):
         """Return the momenta along the constraint subspace of velocities in its rows."""
         del configuration
         velocity, inertia = self._along("restricted_velocity", restricted_velocity), self.inertia_along
-        return inertia.momenta(velocity) if isinstance(inertia, WideInertia) else velocity @ inertia
+        is_wide = isinstance(inertia, WideInertia)
+        return inertia.momenta(velocity) if is_wide else applied(inertia.swapaxes(-1, -2), velocity)
 
 
 class AbstractLRSystem(AbstractSystem):
@@ -419,10 +432,8 @@ class AbstractLRSystem(AbstractSystem):
     ) -> Float[Array, "... k"]:
         """Return the spatial momenta along the constraint subspace of spatial velocities in its rows."""
         velocity = self._along("restricted_velocity", restricted_velocity)
-        if configuration is None:
-            return velocity @ self.inertia_along
-        inertia = self.spatial_inertia(configuration)
-        return velocity @ inertia if inertia.ndim == 2 else (velocity[..., None, :] @ inertia)[..., 0, :]
+        inertia = self.constrained_inertia if configuration is None else self.spatial_inertia(configuration)
+        return applied(inertia.swapaxes(-1, -2), velocity)
 
 
 System = AbstractSystem
@@ -442,8 +453,6 @@ def refuse_forces(where: str, system: Any) -> None:
         raise error(where, "be a system without forces", "Forced", remedy)
 
 
-def _solve(matrix: Float[Array, "... k k"] | WideInertia, vector: Float[Array, "... k"]) -> Float[Array, "... k"]:
-    if isinstance(matrix, WideInertia):
-        return matrix.velocities(vector)
+def _solve(matrix: Float[Array, "... k k"], vector: Float[Array, "... k"]) -> Float[Array, "... k"]:
     xp = (vector if is_traced(vector) else matrix).__array_namespace__()
     return xp.linalg.solve(xp.asarray(matrix), xp.asarray(vector)[..., None])[..., 0]

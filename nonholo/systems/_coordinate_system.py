@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 import numpy as np
 
 from nonholo.base.checks import error, refuse_given
+from nonholo.base.kept import Keeper
 from nonholo.base.types import Float
 
 if TYPE_CHECKING:
@@ -73,7 +74,7 @@ class AbstractCoordinateDiscretization(abc.ABC, Generic[OrbitT]):
         """Return what is reached from states after parts of the steps that begin there."""
 
 
-class AbstractCoordinateSystem(abc.ABC, Generic[DiscretizationT, OrbitT]):
+class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]):
     """A system in coordinates: `nonholo.discretize`, `flow` and `Forced` hand their arguments on to it.
 
     Attributes:

@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nonholo.base.checks import is_traced
+from nonholo.base.kept import Keeper
 from nonholo.base.limits import within_memory
+from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, SO
 from nonholo.systems._subspace import sleigh_rows, top_rows
@@ -26,7 +28,7 @@ _ROUNDING = 1e-13  # relative; what is left of a subspace that is spanned by pla
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class NormalForm:
+class NormalForm(Keeper):
     r"""A top or a sleigh in the axes of its constraint.
 
     The rows of the form are $e_i\wedge e_n$ for a top, $e_1\wedge e_j$ and then the velocity along $e_1$ for a sleigh.
@@ -126,7 +128,7 @@ class NormalForm:
 
 def _first_turned(vectors: np.ndarray, axes: np.ndarray) -> np.ndarray:
     k = len(axes)
-    return np.concatenate([vectors[..., :k] @ axes, vectors[..., k:]], axis=-1)
+    return np.concatenate([applied(axes.T, vectors[..., :k]), vectors[..., k:]], axis=-1)
 
 
 def top_form(mass_tensor: Float[Array, "n n"]) -> NormalForm:

@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 
 from nonholo.base.checks import error
+from nonholo.base.numerics import applied
 from nonholo.base.types import Float
 
 LARGEST = 100_000
@@ -48,7 +49,7 @@ class WideInertia:
         if self.mass is None:
             return velocity * self.turning
         w, v = velocity[..., :-1], velocity[..., -1:]
-        along = self.mass * (v + (w @ self.offset)[..., None])
+        along = self.mass * (v + applied(self.offset[None], w))
         return np.concatenate([w * self.turning + along * self.offset, along], axis=-1)
 
     def velocities(self, momenta: Float[np.ndarray, "... k"]) -> Float[np.ndarray, "... k"]:
@@ -57,4 +58,4 @@ class WideInertia:
             return momenta / self.turning
         along = momenta[..., -1:]
         w = (momenta[..., :-1] - along * self.offset) / self.turning
-        return np.concatenate([w, along / self.mass - (w @ self.offset)[..., None]], axis=-1)
+        return np.concatenate([w, along / self.mass - applied(self.offset[None], w)], axis=-1)

@@ -19,6 +19,7 @@ from nonholo.analysis.steering._arguments import (
 from nonholo.analysis.steering._state_bounds import StateBounds, bounds_of_body, coordinate_numbers
 from nonholo.analysis.steering._way import Way, body_points
 from nonholo.base.checks import choice, count, error, flag, needs, refuse_given
+from nonholo.base.kept import Keeper
 from nonholo.base.limits import within_memory
 from nonholo.base.progress import interruptibly, progress_bar
 from nonholo.base.types import Array, Float
@@ -30,7 +31,7 @@ _PER_ENTRY = 24.0  # bytes of a second derivative: its value, and where it stand
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Steering:
+class Steering(Keeper):
     """Controls that lead to a goal; of many members at once every array has an axis of them in front.
 
     Attributes:

@@ -16,9 +16,10 @@ from nonholo.base.numerics._matrix_functions import (
     of_skew,
     principal_logarithm,
 )
-from nonholo.base.numerics._products import product_and_remainder
+from nonholo.base.numerics._products import applied, product_and_remainder
 
 __all__ = [
+    "applied",
     "block_diagonal",
     "cayley_increment",
     "cotangent_deficit",

@@ -1,10 +1,28 @@
-"""Products of matrices with twice the digits: the rounded product and what rounding took off."""
+"""Products of a matrix with many vectors, and with twice the digits: what rounding took off beside the product."""
 
 import numpy as np
 
-from nonholo.base.types import Float
+from nonholo.base.types import Array, Float, Inexact
 
 _SPLIT = 2.0**27 + 1  # halves the digits of a 64-bit number
+
+
+def applied(matrix: Inexact[Array, "... i j"], vectors: Inexact[Array, "... j"]) -> Inexact[Array, "... i"]:
+    """Return the products of a matrix, or of one for each vector, with vectors: the same bits in any company.
+
+    BLAS adds in another order where there are more vectors, and einsum where they lie otherwise in memory than row by
+    row. What JAX holds has the bits of XLA.
+
+    Example:
+        >>> from nonholo.base.numerics import applied
+        >>> applied(np.array([[1.0, 2.0], [0.0, 1.0]]), np.array([[1.0, 1.0], [0.0, 3.0]]))
+        array([[3., 1.],
+               [6., 3.]])
+    """
+    if isinstance(matrix, np.ndarray) and isinstance(vectors, np.ndarray):
+        kind = np.result_type(matrix, vectors)
+        return np.einsum("...ij,...j->...i", *(np.ascontiguousarray(each, kind) for each in (matrix, vectors)))
+    return vectors @ matrix.T if matrix.ndim == 2 else (matrix @ vectors[..., None])[..., 0]
 
 
 def product_and_remainder(

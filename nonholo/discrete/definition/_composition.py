@@ -8,6 +8,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from nonholo.base.numerics import applied
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
@@ -51,10 +52,10 @@ def whole_steps_by_definition(
     discrete: Scheme, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Take one step from each row of canonical momenta and poses; return both after it, and the outcomes."""
-    C = discrete.system.frame_map
-    (after, moved), _, codes = in_double(_swept_each, discrete, np.linalg.solve(C, momenta.T).T, np.array(g))
-    bad = codes != Outcome.successful
-    return np.where(bad[:, None], np.nan, after @ C.T), np.where(bad[:, None, None], np.nan, moved), codes
+    system = discrete.system
+    (after, moved), _, codes = in_double(_swept_each, discrete, applied(system.inverse_frame_map, momenta), np.array(g))
+    bad, after = codes != Outcome.successful, applied(system.frame_map, after)
+    return np.where(bad[:, None], np.nan, after), np.where(bad[:, None, None], np.nan, moved), codes
 
 
 def run_composed_by_definition(
@@ -80,4 +81,4 @@ def run_composed_by_definition(
         none = np.empty((0, len(discrete.variety.chart)))
         return (np.empty((0, reduced.size)), none, np.empty((0, pose.size))), Outcome(int(code)), 0
     momenta, charts, poses = (np.array(column) for column in zip(*rows, strict=True))
-    return (momenta @ C.T, charts, group.pose_from_matrix(poses @ frame)), Outcome(int(code)), done
+    return (applied(C, momenta), charts, group.pose_from_matrix(poses @ frame)), Outcome(int(code)), done

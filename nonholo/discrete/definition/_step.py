@@ -12,6 +12,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from nonholo.base.numerics import applied
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
@@ -172,7 +173,7 @@ def run_by_definition(
     if not saved:
         return (np.empty((0, r.size)), np.empty((0, y.size)), np.empty((0, pose.size))), Outcome(int(code)), done
     momenta, charts, poses = (np.array(column) for column in zip(*saved, strict=True))
-    return (momenta @ C.T, charts, group.pose_from_matrix(poses @ frame)), Outcome(int(code)), done
+    return (applied(C, momenta), charts, group.pose_from_matrix(poses @ frame)), Outcome(int(code)), done
 
 
 @equinox.filter_jit

@@ -5,6 +5,7 @@ import functools
 
 import numpy as np
 
+from nonholo.base.numerics import applied
 from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup
 
@@ -25,19 +26,19 @@ class Axes:
 
     def momenta(self, canonical: np.ndarray) -> np.ndarray:
         """Return momenta along the kernel's rows."""
-        return canonical if self.rows is None else canonical @ self.rows.T
+        return canonical if self.rows is None else applied(self.rows, canonical)
 
     def canonical_momenta(self, momenta: np.ndarray) -> np.ndarray:
         """Return momenta along the canonical rows."""
-        return momenta if self.rows is None else momenta @ self._inverse.T
+        return momenta if self.rows is None else applied(self._inverse, momenta)
 
     def charts(self, canonical: np.ndarray) -> np.ndarray:
         """Return charts along the kernel's rows."""
-        return canonical if self.rows is None else canonical @ self._inverse
+        return canonical if self.rows is None else applied(self._inverse.T, canonical)
 
     def canonical_charts(self, charts: np.ndarray) -> np.ndarray:
         """Return charts along the canonical rows."""
-        return charts if self.rows is None else charts @ self.rows
+        return charts if self.rows is None else applied(self.rows.T, charts)
 
     def turned(self, g: np.ndarray) -> np.ndarray:
         """Return matrices of poses of the kernel's axes."""

@@ -37,11 +37,18 @@ def _sleigh(form: NormalForm) -> kernels.SleighBody:
     return kernels.SleighBody(*(x if is_traced(x) else float(x) for x in numbers))
 
 
+def _turns(form: NormalForm) -> bool:
+    """What does not slide is a top."""
+    return not form.is_sleigh
+
+
+def _top(form: NormalForm) -> kernels.SuslovBody:
+    return kernels.suslov_body(form.stiffness, form.coupling)
+
+
 _CLOSED_FORMS = (
     ClosedForm(_slides_with_inertia, _sleigh, 1.0, np.diag([-1.0, 1.0])),  # by omega, against e1 ^ e2 of the form
-    ClosedForm(
-        lambda form: not form.is_sleigh, lambda form: kernels.suslov_body(form.stiffness, form.coupling), 0.5, None
-    ),
+    ClosedForm(_turns, _top, 0.5, None),
 )
 """Looked through from the first to the last: one that is for fewer bodies comes first."""
 

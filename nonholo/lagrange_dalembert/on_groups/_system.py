@@ -1,6 +1,7 @@
 """A system on a group whose Lagrangian is left-invariant and whose constraints need not be."""
 
 import dataclasses
+import functools
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -201,9 +202,9 @@ def mass_tensor_lagrangian(
     checked_group("mass_tensor_lagrangian(group=...)", group)
     where, instead = "mass_tensor_lagrangian(mass_tensor=...)", "Write your own discrete Lagrangian."
     tensor = group_mass_tensor(where, group, mass_tensor, instead)
+    return functools.partial(_mass_tensor_action, group, tensor)
 
-    def discrete_lagrangian(W: Array, time_step: Array) -> Array:
-        X = W - group.identity
-        return inertia_form(group, X[None], X.__array_namespace__().asarray(tensor))[0, 0] / (2 * time_step)
 
-    return discrete_lagrangian
+def _mass_tensor_action(group: AbstractMatrixGroup, tensor: np.ndarray, W: Array, time_step: Array) -> Array:
+    X = W - group.identity
+    return inertia_form(group, X[None], X.__array_namespace__().asarray(tensor))[0, 0] / (2 * time_step)

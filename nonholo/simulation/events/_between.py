@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.checks import needs
+from nonholo.base.numerics import applied
 from nonholo.base.types import Float
 from nonholo.discrete import AbstractCompiledRoute, Discretization
 from nonholo.orbit import Orbit
@@ -86,7 +87,7 @@ def _by_definition(discrete: Discretization, states: Orbit, fractions: np.ndarra
 
     group, frame, C = discrete.system.group, discrete.system.frame, discrete.system.frame_map
     g = group.matrix_from_pose(_poses(True, states)) @ group.inverse(frame)
-    r = np.linalg.solve(C, states.reduced_momentum.T).T
+    r = applied(discrete.system.inverse_frame_map, states.reduced_momentum)
     found = [partial_step(discrete, *row) for row in zip(fractions, r, g, strict=True)]
     momenta, charts, moved = (np.array(column) for column in zip(*found, strict=True))
-    return momenta @ C.T, charts, group.pose_from_matrix(moved @ frame)
+    return applied(C, momenta), charts, group.pose_from_matrix(moved @ frame)

@@ -7,14 +7,12 @@ from nonholo.simulation.members._in_coordinates import CoordinateEnsemble
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._result import Ensemble
 from nonholo.simulation.members._run import in_one_thread
-from nonholo.simulation.members._start import applied
 
 __all__ = [
     "CoordinateEnsemble",
     "Ensemble",
     "FlowEnsemble",
     "Members",
-    "applied",
     "ensemble",
     "have_kernel",
     "in_one_thread",

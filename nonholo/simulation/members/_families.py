@@ -58,7 +58,8 @@ class Family(NamedTuple):
 def _sleighs(members: Members) -> ScalarMembers:
     m, J, a, b = np.broadcast_arrays(*map(members.values, ("mass", "inertia", "a", "b")))
     zero, one = np.zeros_like(m), np.ones_like(m)
-    inertia = np.moveaxis(np.array([[J + m * a * a, zero], [zero, m]]), -1, 0)
+    turning = J / 2 + m * a * a + J / 2  # as the mass tensor of one body adds it
+    inertia = np.moveaxis(np.array([[turning, zero], [zero, m]]), -1, 0)
     frame_map = np.moveaxis(np.array([[one, b], [zero, one]]), -1, 0)
     pose = np.stack([one, zero, zero, b], axis=-1)
     return ScalarMembers(lambda: np.stack([m, J, a]), members.time_step, inertia, frame_map, pose)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.checks import error, natural
+from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
 from nonholo.discrete import Discretization
@@ -15,7 +16,7 @@ from nonholo.orbit import Orbit
 from nonholo.simulation.members._event_log import MemberEvents
 from nonholo.simulation.members._families import family_of, have_kernel, scalar_members
 from nonholo.simulation.members._members import Members
-from nonholo.simulation.members._start import applied, energies
+from nonholo.simulation.members._start import energies
 from nonholo.systems import System
 
 _OF_FRAME = ("configuration", "pose", "position", "displacement")
@@ -100,7 +101,7 @@ class Ensemble:
         """Momenta along the rows of the constraint subspace; spatial ones for a right-invariant constraint."""
         if not have_kernel(self.members):
             return self._decoded("restricted_momentum")
-        return applied(np.linalg.inv(scalar_members(self.members).frame_map), self.reduced_momentum)
+        return applied(np.linalg.inv(scalar_members(self.members).frame_map)[:, None], self.reduced_momentum)
 
     @property
     def energy(self) -> Float[np.ndarray, "M K"]:
@@ -140,7 +141,7 @@ class Ensemble:
     @property
     def pose(self) -> Float[np.ndarray, "M K size"] | None:
         """Compact poses of the group in the user's body frame; None if not reconstructed."""
-        if self.canonical_pose is None or not have_kernel(self.members):
+        if self.canonical_pose is None or not have_kernel(self.members) or self._is_shared("pose"):
             return None if self.canonical_pose is None else self._decoded("pose")
         group = self.members.discrete.system.group
         frames = group.matrix_from_pose(scalar_members(self.members).pose)[:, None]

@@ -3,6 +3,7 @@
 import numpy as np
 
 from nonholo.base.checks import array, error, shape_of
+from nonholo.base.numerics import applied
 from nonholo.base.types import Bool, Float
 from nonholo.simulation.members._families import ScalarMembers, have_kernel, scalar_members
 from nonholo.simulation.members._members import Members, refused
@@ -53,31 +54,19 @@ def _momenta_of_part(members: Members, name: str, rows: np.ndarray) -> tuple[np.
     S, bad = system.constraint_subspace, np.zeros(len(members), dtype=bool)
     with np.errstate(over="ignore", invalid="ignore"):
         if name == "momentum":
-            momenta = applied(scalar.frame_map, rows if rows.shape[1] == system.rank else applied(S[None], rows))
+            momenta = applied(scalar.frame_map, rows if rows.shape[1] == system.rank else applied(S, rows))
         else:
             if name == "body_velocity":
                 bad = np.abs(rows @ system.annihilator.T).max(axis=1) > _TOLERANCE * np.abs(rows).max(axis=1)
-                rows = applied(np.linalg.pinv(S).T[None], rows)
+                rows = applied(np.linalg.pinv(S).T, rows)
             momenta = applied(scalar.inertia @ np.linalg.inv(scalar.frame_map.swapaxes(1, 2)), rows)
         return momenta, bad | ~np.isfinite(energies(scalar, momenta))
 
 
 def energies(scalar: ScalarMembers, momenta: Float[np.ndarray, "M ... 2"]) -> Float[np.ndarray, "M ..."]:
-    """Return the reduced constrained energies of canonical momenta, by the cofactors of the inertias."""
-    A, B, C = (scalar.inertia[:, i, j].reshape(-1, *(1,) * (momenta.ndim - 2)) for i, j in ((0, 0), (0, 1), (1, 1)))
-    x, y = momenta[..., 0], momenta[..., 1]
-    return (C * x * x - 2 * B * x * y + A * y * y) / (2 * (A * C - B * B))
-
-
-def applied(
-    matrices: Float[np.ndarray, "m i j"], vectors: Float[np.ndarray, "M ... j"]
-) -> Float[np.ndarray, "M ... i"]:
-    """Return products of matrices, by member or one for all, with vectors; their bits are the same in any company.
-
-    BLAS is not used: it may add in another order when there are more members.
-    """
-    A = matrices.reshape(len(matrices), *(1,) * (vectors.ndim - 2), *matrices.shape[1:])
-    return sum((A[..., j] * vectors[..., j, None] for j in range(1, A.shape[-1])), A[..., 0] * vectors[..., 0, None])
+    """Return the reduced constrained energies of canonical momenta."""
+    inverses = np.linalg.inv(scalar.inertia).reshape(-1, *(1,) * (momenta.ndim - 2), 2, 2)
+    return (momenta * applied(inverses, momenta)).sum(axis=-1) / 2
 
 
 def are_others(given: Float[np.ndarray, "M dim"], full: Float[np.ndarray, "M dim"]) -> Bool[np.ndarray, "M"]:

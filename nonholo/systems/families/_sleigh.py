@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import number, scale
+from nonholo.base.checks import is_traced, number, scale
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
@@ -89,7 +89,8 @@ class ChaplyginSleigh(AbstractLLSystem):
     @functools.cached_property
     def canonical(self) -> "ChaplyginSleigh":
         """The same sleigh with b = 0: the offset across the blade does not enter the reduced motion."""
-        return unchecked(self, b=np.zeros(np.shape(self.b))[()])
+        is_canonical = not is_traced(self.b) and not np.any(self.b)
+        return self if is_canonical else unchecked(self, b=np.zeros(np.shape(self.b))[()])
 
     @functools.cached_property
     def normal_form(self) -> NormalForm:

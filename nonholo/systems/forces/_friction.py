@@ -7,6 +7,7 @@ import numpy as np
 
 from nonholo.base.checks import array, error, is_traced, shape_of
 from nonholo.base.limits import within_memory
+from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 
 _ROUNDING = 1e-13  # relative, of an eigenvalue
@@ -64,4 +65,4 @@ class Friction:
 
     def covector(self, body_velocity: Float[Array, "... dim"]) -> Float[Array, "... dim"]:
         """Return the force at body velocities."""
-        return -body_velocity @ self.matrix.T
+        return applied(self.matrix, -body_velocity)

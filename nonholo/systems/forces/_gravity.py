@@ -6,6 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo.base.checks import array, error
+from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 
@@ -54,12 +55,12 @@ class Gravity:
     def energy(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "..."]:
         """Return U at configurations."""
         weight, place = self._homogeneous(group)
-        return -(configuration @ place) @ weight
+        return -applied(weight[None], configuration @ place)[..., 0]
 
     def covector(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
         """Return -dU along the body directions at configurations."""
         force, levers = self.levers(group)
-        return (force @ configuration) @ levers.T
+        return applied(levers, force @ configuration)
 
     def levers(self, group: AbstractMatrixGroup) -> tuple[Float[Array, "N"], Float[Array, "dim N"]]:
         """Return F and L for matrices of the group, homogeneous on SE(n): -dU is L g^T F."""

@@ -1,0 +1,191 @@
+"""What a user holds can be pickled, copied and sent to another process, before and after it has computed things."""
+
+import concurrent.futures
+import contextlib
+import copy
+import dataclasses
+import doctest
+import functools
+import inspect
+import io
+import multiprocessing
+import operator
+import pickle
+import types
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+
+TENSOR = [[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]
+WITH_A_FUNCTION = {  # of the user's, which the examples define where they stand
+    "Event: east",
+    "GroupLagrangeDAlembert: orbit",
+    "GroupLagrangeDAlembert: sleigh",
+    "LagrangeDAlembert: discrete",
+    "LagrangeDAlembert: orbit",
+    "LagrangeDAlembert: particle",
+    "LagrangeDAlembert.flow: orbit",
+    "LagrangeDAlembert.flow: spring",
+    "LagrangeDAlembert.regularity: free",
+    "ShapedBody: body",
+    "plot.section: level",
+}
+
+
+def same(one: Any, other: Any, seen: frozenset[int] = frozenset()) -> bool:
+    """Tell whether two objects have the same fields, arrays to the last bit; what is computed is no field."""
+    if id(one) in seen or one is other:
+        return True
+    if type(one) is not type(other):
+        return False
+    seen |= {id(one)}
+    if isinstance(one, dict):
+        return one.keys() == other.keys() and all(same(value, other[name], seen) for name, value in one.items())
+    if isinstance(one, list | tuple):
+        return len(one) == len(other) and all(map(functools.partial(same, seen=seen), one, other))
+    if dataclasses.is_dataclass(one):
+        return all(same(getattr(one, x.name), getattr(other, x.name), seen) for x in dataclasses.fields(one))
+    if isinstance(one, functools.partial):
+        return same([one.func, one.args, one.keywords], [other.func, other.args, other.keywords], seen)
+    if hasattr(one, "identical"):  # a dataset
+        return bool(one.identical(other))
+    if hasattr(one, "__array__"):
+        ours, theirs = np.asarray(one), np.asarray(other)
+        return ours.dtype == theirs.dtype and ours.tobytes() == theirs.tobytes()
+    if type(one).__eq__ is not object.__eq__:
+        return bool(one == other)
+    return same(getattr(one, "__dict__", {}), getattr(other, "__dict__", {}), seen)
+
+
+def computed(thing: Any, seen: set[int]) -> list[str]:
+    """Return what an object and its fields hold beside their own fields: what was computed and kept."""
+    if id(thing) in seen or isinstance(thing, type) or not type(thing).__module__.startswith("nonholo"):
+        return []
+    seen.add(id(thing))
+    kind, own = type(thing), dict(getattr(thing, "__dict__", {}))
+    if "recipe" in own:
+        return []  # made once, by a function of the library that remembers it
+    bad = [name for name in own if "." in name or isinstance(getattr(kind, name, None), functools.cached_property)]
+    return bad + [name for value in own.values() for name in computed(value, seen)]
+
+
+def sent_back(things: list[Any]) -> list[Any]:
+    """Send objects to one new process and return what it sends back."""
+    context = multiprocessing.get_context("spawn")
+    with concurrent.futures.ProcessPoolExecutor(1, mp_context=context) as pool:
+        return list(pool.map(operator.itemgetter(0), [(thing,) for thing in things]))
+
+
+def used() -> dict[str, Any]:
+    """Return objects of every kind that is cheap, each after a run, so that routes and numbers are kept."""
+    top, sleigh = nh.SuslovTop(TENSOR), nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.2)
+    discrete, wide = nh.discretize(top, 0.5), nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])), 0.1)
+    heavy = nh.Forced(top, nh.Gravity([0.0, 0.0, -1.0], point=[0.1, 0.2, 0.3]))
+    found = {
+        "top": nh.simulate(discrete, restricted_velocity=(0.1, 0.2), steps=5),
+        "sleigh": nh.simulate(nh.discretize(sleigh, 0.1), restricted_velocity=(0.1, 0.2), steps=5),
+        "SO(4)": nh.simulate(wide, restricted_velocity=(0.1, 0.2, 0.3), steps=5),
+        "ensemble": nh.ensemble(discrete, restricted_velocity=[[0.1, 0.2], [0.2, 0.1]], steps=5),
+        "flow": nh.flow(sleigh, restricted_velocity=(0.1, 0.2), times=(0.0, 1.0)),
+        "forced": nh.simulate(nh.discretize(heavy, 0.1), restricted_velocity=(0.1, 0.2), steps=5),
+    }
+    for orbit in found.values():
+        assert orbit.momentum.size  # decoding keeps numbers too
+    return found | {"discretization": discrete, "example": nh.examples.snakeboard()}
+
+
+def test_what_was_used_is_pickled_without_what_it_keeps() -> None:
+    """Pickles, deep copies and what another process sends back have the fields of the object, and nothing else."""
+    things = used()
+    for name, back in zip(things, sent_back(list(things.values())), strict=True):
+        for other in (back, copy.deepcopy(things[name]), pickle.loads(pickle.dumps(things[name]))):  # noqa: S301
+            assert computed(other, set()) == [], name
+            assert same(things[name], other), name
+    assert computed(things["top"], set()) != []
+
+
+def test_what_calls_a_function_of_a_script_names_it() -> None:
+    """The error of what cannot be pickled says which function has no module."""
+    heavy = nh.Forced(nh.SuslovTop(TENSOR), lambda g: g[2, 2])
+    with pytest.raises((pickle.PicklingError, AttributeError), match="<lambda>"):
+        pickle.dumps(nh.discretize(heavy, 0.1))
+
+
+def examples() -> Iterator[doctest.DocTest]:
+    """Yield the examples of every public name, its methods too."""
+    finder, names = doctest.DocTestFinder(), {name: getattr(nh, name) for name in dir(nh)}
+    rooms = {name: thing for name, thing in names.items() if inspect.ismodule(thing)}
+    public = {f"{room}.{name}": getattr(rooms[room], name) for room in rooms for name in rooms[room].__all__}
+    met = set()
+    for name, thing in (names | public).items():
+        if not inspect.isclass(thing) and not inspect.isfunction(thing):
+            continue
+        module = inspect.getmodule(thing)
+        for test in finder.find(thing, name, globs={**vars(module), **names, "np": np, "nh": nh}):
+            if test.examples and test.docstring not in met:
+                met.add(test.docstring)
+                yield test
+
+
+def results(test: doctest.DocTest, request: pytest.FixtureRequest) -> dict[str, Any]:
+    """Run an example and return the values of its expressions and names."""
+    test.globs["getfixture"] = request.getfixturevalue
+    before, found = dict(test.globs), {}
+    for example in test.examples:
+        if example.options.get(doctest.SKIP):
+            continue
+        refused = contextlib.suppress(Exception) if example.exc_msg else contextlib.nullcontext()
+        with refused, contextlib.redirect_stdout(io.StringIO()):
+            try:
+                code = compile(example.source.strip(), test.name, "eval")
+            except SyntaxError:
+                exec(example.source, test.globs)  # noqa: S102
+            else:
+                found[example.source.strip()] = eval(code, test.globs)  # noqa: S307
+    return found | {name: value for name, value in test.globs.items() if before.get(name, found) is not value}
+
+
+def plain(thing: Any) -> bool:
+    """Tell whether nothing of the library, and nothing but functions and pictures of others, is in an object."""
+    if isinstance(thing, list | tuple):
+        return all(map(plain, thing))
+    return isinstance(thing, type | types.FunctionType | types.ModuleType | types.BuiltinFunctionType) or not any(
+        kind.__module__.startswith(("nonholo", "numpy", "xarray")) for kind in type(thing).__mro__
+    )
+
+
+@pytest.mark.profile("faults", instead="test_what_was_used_is_pickled_without_what_it_keeps")
+def test_every_result_of_every_example(
+    request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Results of all examples of public names are pickled, copied and sent by "spawn"; those with functions say so."""
+    monkeypatch.chdir(tmp_path)
+    named = {f"{test.name}: {what}": value for test in examples() for what, value in results(test, request).items()}
+    things = {name: value for name, value in named.items() if not plain(value)}
+    refused = {name for name in things if name in WITH_A_FUNCTION}
+    for name in refused:
+        with pytest.raises((pickle.PicklingError, AttributeError), match=r"<lambda>|forms|lagrangian|action"):
+            pickle.dumps(things[name])
+    kept = {name: value for name, value in things.items() if name not in refused}
+    failures = {}
+    for name, value in list(kept.items()):
+        try:
+            back = pickle.loads(pickle.dumps(value))  # noqa: S301
+        except Exception as failure:
+            failures[name] = repr(failure)
+            del kept[name]
+            continue
+        for other in (back, copy.deepcopy(value)):
+            if computed(other, set()) or not same(value, other):
+                failures[name] = "another"
+    others = sent_back(list(kept.values()))
+    failures |= {name: "sent" for name, other in zip(kept, others, strict=True) if not same(kept[name], other)}
+    print(f"{len(kept)} results, {len(refused)} with functions")  # noqa: T201
+    assert not failures, "; ".join(f"{name} ({why})" for name, why in failures.items())
+    assert refused == WITH_A_FUNCTION
+    assert len(kept) > 200
