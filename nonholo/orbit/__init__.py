@@ -3,7 +3,7 @@
 from nonholo.orbit._base import AbstractOrbit
 from nonholo.orbit._crossings import AbstractEventLog, Crossings, EventLog, joined_crossings
 from nonholo.orbit._orbit import STATES, AbstractMotion, Orbit, as_orbit
-from nonholo.orbit._poses import configurations, poses, unwrapped
+from nonholo.orbit._poses import configurations, poses, turned_near, unwrapped
 
 __all__ = [
     "STATES",
@@ -17,5 +17,6 @@ __all__ = [
     "configurations",
     "joined_crossings",
     "poses",
+    "turned_near",
     "unwrapped",
 ]

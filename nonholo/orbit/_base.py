@@ -7,9 +7,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from nonholo.base.checks import error
 from nonholo.base.html import table
+from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome
-from nonholo.base.types import Float
+from nonholo.base.types import Float, Int
 
 OrbitT = TypeVar("OrbitT", bound="AbstractOrbit")
 
@@ -20,6 +22,8 @@ class AbstractOrbit(abc.ABC):
     Attributes:
         system: What moves.
         time: Times of the saved states, shape (K,).
+        step: The number of the step of each state, from 0 at the start of the run, whatever rows are taken; of a state
+            within a step that of its beginning. Of a flow and of given poses: numbers of times and rows. Shape (K,).
         configuration: Matrices (K, N, N) on a group, (K, n) in coordinates.
         body_velocity: Velocities.
         momentum: Momenta.
@@ -45,6 +49,7 @@ class AbstractOrbit(abc.ABC):
 
     system: Any
     time: Float[np.ndarray, "K"]
+    step: Int[np.ndarray, "K"]
     configuration: Float[np.ndarray, "K ..."]
     body_velocity: Float[np.ndarray, "K n"]
     momentum: Float[np.ndarray, "K n"]
@@ -94,10 +99,42 @@ class AbstractOrbit(abc.ABC):
         """Return the orbit as a labeled `xarray.Dataset`."""
 
     @property
+    def has_every_step(self) -> bool:
+        """Whether each state but the first is one step after the one before."""
+        h = self.time_step
+        return bool((np.diff(self.step) == 1).all()) and (h is None or np.allclose(np.diff(self.time), h))
+
+    @property
+    @abc.abstractmethod
+    def lacks_forces(self) -> bool:
+        """Whether a table has forces of steps between the states."""
+
+    def with_every_step(self: OrbitT) -> OrbitT:
+        """Return the motion at every step from the first state to the last; those left out are computed again.
+
+        Raises:
+            ValueError: States between two steps or not in their order, a motion whose steps cannot be repeated, or more
+                steps than memory holds.
+        """
+        where, gaps, remedy = "Orbit.work", np.diff(self.step), "Take states of the run in their order."
+        if (gaps < 0).any() or not np.allclose(np.diff(self.time), gaps * (self.time_step or np.nan)):
+            got = "others, under a force for each step"
+            raise error(where, "have states at steps of one run, in their order", got, remedy)
+        size = sum(each.nbytes for each in vars(self).values() if isinstance(each, np.ndarray)) / len(self)
+        within_memory(where, 2.0 * size * gaps.sum(), "Ask it of a part of the orbit.")
+        last, parts = self.chosen(slice(0, -1)), []
+        for taken in range(1, gaps.max(initial=1)):
+            last, gaps = last.chosen(gaps > taken), gaps[gaps > taken]
+            last = self.motion.after_parts(last, np.ones(len(last)))
+            parts.append(last)
+        whole = self.joined(parts)
+        return whole.chosen(np.unique(whole.step, return_index=True)[1])
+
+    @property
     def known_work(self) -> Float[np.ndarray, "K"]:
-        """The work; NaN of a thinned run under a table of forces, whose steps between the states are not known."""
+        """The work; NaN where it is not known without computing steps again, or without poses."""
         try:
-            return self.work
+            return np.full(len(self), np.nan) if self.lacks_forces else self.work
         except ValueError:
             return np.full(len(self), np.nan)
 
