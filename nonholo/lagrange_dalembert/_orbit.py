@@ -3,7 +3,7 @@
 import abc
 import dataclasses
 from collections.abc import Sequence
-from typing import Any, ClassVar, Self, cast
+from typing import Any, ClassVar, Self
 
 import jax
 import numpy as np
@@ -44,7 +44,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     time_step: float | None = None
     save_every: int = 1
     events: Any = None
-    step: Int[np.ndarray, "K"] = cast(Any, None)
+    step: Int[np.ndarray, "K"] = None  # type: ignore[assignment]
     branch: ClassVar[str] = "nearest"
     span: ClassVar[None] = None
     has_poses: ClassVar[bool] = True

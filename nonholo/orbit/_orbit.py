@@ -9,7 +9,7 @@ import abc
 import dataclasses
 import importlib
 from collections.abc import Sequence
-from typing import Any, ClassVar, cast
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -139,7 +139,7 @@ class Orbit(AbstractOrbit):
     turned: Float[np.ndarray, "K"] | None = None
     branch: str = "principal"
     events: Any = None
-    step: Int[np.ndarray, "K"] = cast(Any, None)
+    step: Int[np.ndarray, "K"] = None  # type: ignore[assignment]
     is_compact: ClassVar[bool] = True
 
     def __post_init__(self) -> None:

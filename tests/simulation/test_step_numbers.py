@@ -42,8 +42,8 @@ STEPPED: dict[str, Callable[..., Any]] = {
     "branch rule": lambda **run: _run(SLEIGH, branch="nearest", **run),
     "table": lambda **run: _run(FORCED["table on a top"], **run),
     "function in Python": lambda **run: _run(FORCED["function on a top"], **run),
-    "coordinates": lambda **run: nh.examples.particle().simulate(time_step=H, **run),
-    "group": lambda **run: nh.examples.chaplygin_ball().simulate(time_step=H, **run),
+    "coordinates": lambda **run: _example(nh.examples.particle(), **run),
+    "group": lambda **run: _example(nh.examples.chaplygin_ball(), **run),
 }
 
 
@@ -53,6 +53,14 @@ def _start(system: Any) -> dict[str, np.ndarray]:
 
 def _run(system: Any, *, order: int = 2, **run: Any) -> nh.Orbit:
     return nh.simulate(nh.discretize(system, H, order=order), **_start(system), **run)
+
+
+def _here(example: Any) -> dict[str, Any]:
+    return {"configuration": example.configuration, "body_velocity": example.body_velocity}
+
+
+def _example(example: Any, **run: Any) -> Any:
+    return nh.simulate(nh.discretize(example.system, H), **_here(example), **run)
 
 
 @functools.cache
@@ -93,8 +101,7 @@ def test_stores_keep_the_steps(kind: str, tmp_path: Path) -> None:
 def test_blocks_of_iterators_keep_the_steps() -> None:
     """Blocks count on from those before them, in bodies and in coordinates."""
     particle = nh.examples.particle()
-    start = {"configuration": particle.configuration, "body_velocity": particle.body_velocity}
-    runs = (nh.discretize(TOP, H), _start(TOP)), (nh.discretize(particle.system, H), start)
+    runs = (nh.discretize(TOP, H), _start(TOP)), (nh.discretize(particle.system, H), _here(particle))
     for discrete, at in runs:
         blocks = list(nh.iterate(discrete, **at, steps=20, save_every=2, block_steps=6))
         assert len(blocks) > 2
@@ -120,7 +127,7 @@ def test_motions_without_steps_number_their_rows() -> None:
     run, particle = _run(TOP, steps=10), nh.examples.particle()
     flows = (
         nh.flow(TOP, **_start(TOP), times=np.linspace(0, 1, 11)),
-        particle.flow(times=np.linspace(0, 1, 11)),
+        nh.flow(particle.system, **_here(particle), times=np.linspace(0, 1, 11)),
         nh.Orbit.from_poses(TOP, run.time, run.configuration),
         nh.ensemble(TOP, restricted_velocity=np.ones((2, 2)), times=np.linspace(0, 1, 11)).orbit(1),
     )

@@ -53,8 +53,8 @@ _SPATIAL = {  # of a right-invariant constraint
 def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
     r"""Return an orbit as a labeled dataset in the user's body frame; attributes say how it was made.
 
-    Variables along `step`, the number of the step, with the coordinate `time`: `energy`, `restricted_momentum`, `body_velocity`, `momentum` and
-    the pose.
+    Variables along `step`, whose coordinate is the number of the step, with the coordinate `time`: `energy`,
+    `restricted_momentum`, `body_velocity`, `momentum` and the pose.
 
     | group | the pose |
     |---|---|
