@@ -63,6 +63,11 @@ def _example(example: Any, **run: Any) -> Any:
     return nh.simulate(nh.discretize(example.system, H), **_here(example), **run)
 
 
+def _level(states: nh.Orbit) -> np.ndarray:
+    """What changes sign in every run here."""
+    return 0.05 * states.restricted_momentum[:, 1] + np.sin(3 * states.time)
+
+
 @functools.cache
 def _whole(name: str) -> nh.Orbit:
     return _run(FORCED[name], steps=100)
@@ -153,7 +158,7 @@ def test_work_of_rows_that_are_no_run_is_refused() -> None:
     whole = _whole("table on a top")
     poses = nh.Orbit.from_poses(whole.system, whole.time, whole.configuration)
     assert len(poses.work) == 101
-    event = nh.crossings(whole, lambda states: states.body_velocity[:, 0])
+    event = nh.crossings(whole, lambda states: np.sin(9 * states.time))
     for part in (whole.chosen(np.array([7, 3])), event.states, poses.chosen(np.arange(0, 101, 7))):
         with pytest.raises(ValueError, match=r"`Orbit.work` must"):
             _ = part.work
@@ -174,14 +179,14 @@ def test_the_whole_part_of_a_step_under_forces_is_the_step(name: str) -> None:
     ahead, after = whole.motion.after_parts(whole[:-1], np.ones(100)), whole[1:]
     for quantity in ("time", "step", "reduced_momentum", "cayley", "canonical_pose", "momentum"):
         mine, theirs = getattr(ahead, quantity), getattr(after, quantity)
-        assert np.abs(mine - theirs).max() <= 8e-16 * max(1.0, np.abs(theirs).max()), quantity
+        assert np.abs(mine - theirs).max() <= 4e-15 * max(1.0, np.abs(theirs).max()), quantity  # 4 x 4 products
 
 
 @pytest.mark.parametrize("name", FORCED)
 def test_events_under_forces_are_where_bisection_finds_them(name: str) -> None:
     """A crossing is where a map with another time step, from the state before and under the forces then, arrives."""
     forced = FORCED[name]
-    event = nh.Event(lambda states: states.restricted_momentum[:, 1] + 0.2 * states.time - 0.3, name="level")
+    event = nh.Event(_level, name="level")
     found = nh.simulate(nh.discretize(forced, H), **_start(forced), steps=100, events=[event]).events[0]
     whole = _whole(name)
     assert len(found) > 0
@@ -191,26 +196,26 @@ def test_events_under_forces_are_where_bisection_finds_them(name: str) -> None:
     parts += [] if forced.friction is None else [forced.friction]
     if forced.function is not None:
         parts.append(lambda time, g, w: waving(begin + time, g, w))
-    moved = nh.Forced(forced.system, forced.potential, tuple(parts))
+    moved = nh.Forced(forced.system, forced.potential, tuple(parts) if len(parts) > 1 else parts[0])
     start = {"momentum": whole.restricted_momentum[k], "configuration": whole.configuration[k]}
 
     def value(s: float) -> float:
         states = nh.simulate(nh.discretize(moved, s * H), **start, steps=1, throw=False)
-        return float(states.restricted_momentum[1, 1] + 0.2 * (begin + s * H) - 0.3)
+        return float(0.05 * states.restricted_momentum[1, 1] + np.sin(3 * (begin + s * H)))
 
-    low, high, sign = 2.0**-30, 1.0, np.sign(event.function(whole[k : k + 1])[0])
+    low, high, sign = 2.0**-30, 1.0, np.sign(_level(whole[k : k + 1])[0])
     for _ in range(44):
         middle = (low + high) / 2
         low, high = (middle, high) if np.sign(value(middle)) == sign else (low, middle)
     slope = abs(value(high) - value(low - 1e-3)) / 1e-3
     assert abs(fraction - low) < 2**-43 + 4e-15 / slope
-    assert np.abs(event.function(found.states)).max() < 4e-16
+    assert np.abs(_level(found.states)).max() < 4e-16
 
 
 def test_thinned_runs_stores_blocks_and_members_have_the_same_crossings(tmp_path: Path) -> None:
     """Under a table: to the last bit those of the run in memory that keeps every step."""
     discrete = nh.discretize(FORCED["table and weight on a top"], H)
-    start, steps = _start(TOP), {"steps": 100, "events": [nh.Event(lambda o: o.momentum[:, 0], name="level")]}
+    start, steps = _start(TOP), {"steps": 100, "events": [nh.Event(_level, name="level")]}
     whole = nh.simulate(discrete, **start, **steps).events[0]
     assert len(whole) > 1
     blocks = list(nh.iterate(discrete, **start, **steps, save_every=5, block_steps=20))
@@ -244,7 +249,7 @@ def test_events_without_poses_are_refused_where_forces_depend_on_them() -> None:
     with pytest.raises(ValueError, match=r"must have poses. Got reconstruct=False with a step that depends on"):
         nh.simulate(heavy, **_start(TOP), steps=5, reconstruct=False, events=[lambda o: o.restricted_momentum[:, 0]])
     rubbed = nh.discretize(nh.Forced(TOP, force=(TABLE, nh.Friction([0.1, 0.2, 0.3]))), H)
-    level = nh.Event(lambda o: o.restricted_momentum[:, 1] + 0.2 * o.time - 0.3, name="level")
+    level = nh.Event(_level, name="level")
     with_poses, without = (
         nh.simulate(rubbed, **_start(TOP), steps=100, reconstruct=posed, events=[level]).events[0]
         for posed in (True, False)
