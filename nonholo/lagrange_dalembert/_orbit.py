@@ -52,11 +52,6 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     is_measured: ClassVar[bool] = False
     _labels: ClassVar[Labels]
 
-    def __post_init__(self) -> None:
-        """Number the rows of a whole run."""
-        if self.step is None:
-            object.__setattr__(self, "step", self.save_every * np.arange(len(self.time)))
-
     @abc.abstractmethod
     def _configurations(self) -> str:
         """Say what configurations are."""

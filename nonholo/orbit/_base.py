@@ -72,6 +72,11 @@ class AbstractOrbit(abc.ABC):
     events: Any
     turned: Float[np.ndarray, "K"] | None = None
 
+    def __post_init__(self) -> None:
+        """Number the rows of a whole run."""
+        if self.step is None:
+            object.__setattr__(self, "step", self.save_every * np.arange(len(self.time)))
+
     @property
     @abc.abstractmethod
     def space(self) -> Any:

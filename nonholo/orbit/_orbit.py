@@ -142,11 +142,6 @@ class Orbit(AbstractOrbit):
     step: Int[np.ndarray, "K"] = None  # type: ignore[assignment]
     is_compact: ClassVar[bool] = True
 
-    def __post_init__(self) -> None:
-        """Number the rows of a whole run."""
-        if self.step is None:
-            object.__setattr__(self, "step", self.save_every * np.arange(len(self.time)))
-
     @staticmethod
     def from_poses(system: System, time: Any, configuration: Any) -> "Orbit":
         r"""Return the orbit of given poses, of a camera or another integrator: it has pictures, invariants and tables.

@@ -4,6 +4,7 @@ import contextlib
 import dataclasses
 import functools
 from collections.abc import Callable
+from operator import attrgetter
 from typing import Any, ClassVar, NoReturn
 
 import numpy as np
@@ -123,16 +124,8 @@ class PythonRoute(AbstractForcedRoute):
     loop: ForcedRoute
     needs_pose: ClassVar[bool] = True
     compiled: ClassVar[None] = None
-
-    @property
-    def free(self) -> AbstractCompiledRoute:  # type: ignore[override]
-        """The route of the free step."""
-        return self.loop.free
-
-    @property
-    def forced(self) -> Forced:  # type: ignore[override]
-        """The system with its forces."""
-        return self.loop.forced
+    free = property(attrgetter("loop.free"))  # type: ignore[assignment]
+    forced = property(attrgetter("loop.forced"))  # type: ignore[assignment]
 
     def run(
         self, reduced: np.ndarray, pose: np.ndarray, steps: int, every: int, progress: bool
