@@ -72,6 +72,7 @@ def _whole(name: str) -> nh.Orbit:
     return _run(FORCED[name], steps=100)
 
 
+@pytest.mark.profile("routes", cases=["group"])
 @pytest.mark.parametrize("kind", STEPPED)
 def test_each_way_to_take_rows_keeps_the_steps(kind: str) -> None:
     """Of orbits of all maps: rows have the numbers of their steps, which the times of a run tell."""
