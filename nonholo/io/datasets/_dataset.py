@@ -84,7 +84,8 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
         rows = orbit.multipliers
         missing = np.full((len(orbit) - len(rows), rows.shape[1]), np.nan)
         found["multipliers"] = _variable(orbit, "multipliers", np.concatenate([rows, missing]))
-    return xarray.Dataset(found, {"step": orbit.step}, attributes(orbit)).set_coords("time")
+    number = ("step", orbit.step, {"long_name": "number of the step", "units": "1"})
+    return xarray.Dataset(found, {"step": number}, attributes(orbit)).set_coords("time")
 
 
 def stored_variables(
