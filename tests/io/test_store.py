@@ -146,6 +146,7 @@ def test_units_of_every_array() -> None:
     variables = [part for orbit in (_orbit(), flow) for part in (_known(orbit), stored_variables(orbit))]
     assert {str(name): rows.attrs["units"] for found in variables for name, rows in found.items()} == {
         "time": "time unit",
+        "step": "1",
         "restricted_momentum": "momentum unit",
         "x": "length unit",
         "y": "length unit",
