@@ -16,7 +16,7 @@ from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Difference, Scheme
 from nonholo.discrete._variety import Constraint, checked_constraint, equations_of
 from nonholo.discrete.routes import AbstractRoute, make_route
-from nonholo.orbit import AbstractMotion, Orbit
+from nonholo.orbit import AbstractMotion, Orbit, turned_near
 from nonholo.systems import (
     AbstractCoordinateSystem,
     AbstractSystem,
@@ -68,6 +68,14 @@ class Discretization(Scheme, AbstractMotion):
         return self.system.forces
 
     @property
+    def step_needs_pose(self) -> bool:
+        """Whether momenta after a step depend on the pose: with right-invariant constraints, and under some forces."""
+        forced = self.forces
+        return self.system.is_spatial or any(
+            each is not None for each in (forced and forced.potential, forced and forced.function)
+        )
+
+    @property
     def route_name(self) -> str:
         """How stores call the route."""
         return self.route.name
@@ -116,6 +124,38 @@ class Discretization(Scheme, AbstractMotion):
         after = self.route.whole_steps(states.reduced_momentum, g)[1]
         return after @ group.inverse(g) if moves else after
 
+    def after_parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Orbit:
+        r"""Return what is reached from states after parts of the steps that begin there.
+
+        With momentum r and pose g at the beginning of a step W(s) is the principal root of $P(W)|_d = s\,r$; the pose
+        is $g\,W(s)$, the momentum $(\mathrm{Ad}^*_{W(s)}P(W(s)))|_d/s$. For a discrete Lagrangian $h\,l(\cdot)$,
+        "matrix" or "logarithmic", that is the step of length $s\,h$ from the same state; under forces with half its
+        impulse at each end, of a table the row of the step. The roots W(s) are the very path that defines the principal
+        branch, from the identity to the displacement of the whole step: at s = 1 the next state is reached.
+
+        Args:
+            states: States of an orbit of this map, on the principal branch.
+            fractions: Numbers s in (0, 1], one for each.
+
+        Returns:
+            An orbit; momenta and displacements are NaN where there is no such part, or no whole step from its end.
+
+        Example:
+            >>> sleigh = discretize(ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+            >>> orbit = nh.simulate(sleigh, body_velocity=(1.0, 0.5, 0.0), steps=3)
+            >>> half = sleigh.after_parts(orbit[1:2], np.array([0.5]))
+            >>> half.time.round(3), half.step
+            (array([0.15]), array([1]))
+        """
+        if not len(states):
+            return states
+        momenta, charts, pose = self.route.parts(states, fractions)
+        pose = None if states.canonical_pose is None else pose
+        turned = None if states.turned is None or pose is None else turned_near(states.turned, pose)
+        rows = {"reduced_momentum": momenta, "cayley": charts, "canonical_pose": pose, "turned": turned}
+        step, time = states.step + fractions.astype(np.int64), states.time + fractions * self.time_step
+        return dataclasses.replace(states, time=time, step=step, **rows)
+
     def constraint_residual(self, states: Orbit) -> Float[np.ndarray, "K j"]:
         """Return the forbidden parts of (W - W^-1)/2, of log W where the chart is exp, or the variety's equations."""
         if self.system.is_wide:
@@ -142,14 +182,17 @@ class Discretization(Scheme, AbstractMotion):
         """
         remedy = "Impulses of substeps at different poses do not add up to one of the step: run with order=2."
         refuse_composition("Orbit.multipliers", self, remedy)
-        if states.save_every > 1 and states.branch != "principal":
-            got = f"branch {states.branch!r} and save_every {states.save_every}: the steps between are not known"
+        if not states.has_every_step and states.branch != "principal":
+            got = f"branch {states.branch!r} and {len(states)} states with others between, which are not known"
             raise error("Orbit.multipliers", "have every step, or the principal branch", got, "Run with save_every=1.")
-        before = states.chosen(slice(None, -1))
-        charts = states.canonical_chart[1:] if states.save_every == 1 else self.route.next_charts(before)
+        before, after = states.chosen(slice(None, -1)), states.chosen(slice(1, None))
+        if not states.has_every_step and self.forces is not None:
+            after = self.after_parts(before, np.ones(len(before)))
+        known = states.has_every_step or self.forces is not None
+        charts = after.canonical_chart if known else self.route.next_charts(before)
         arriving = self._momentum(before, before.canonical_chart, "right")
         if self.forces is not None:
-            arriving = arriving + self._impulses(states[1:], 0) + self._impulses(states[1:], -1)
+            arriving = arriving + self._impulses(after, 0) + self._impulses(after, -1)
         group, to_multipliers = self.system.group, np.linalg.pinv(self.system.annihilator).T
         if not self.system.is_spatial:
             return applied(to_multipliers, legendre_of_chart(self, charts, "left") - arriving)
@@ -160,8 +203,8 @@ class Discretization(Scheme, AbstractMotion):
     def _impulses(self, states: Orbit, shift: int) -> Float[np.ndarray, "K dim"]:
         """Return the half impulses at nodes of the steps that begin there, or with shift -1 of those that end there."""
         forced, half = cast(Forced, self.forces), float(self.time_step) * (0.5 + shift)
-        steps = np.rint(states.time / self.time_step).astype(int) + shift
-        found = forced.impulses(states.restricted_momentum, states.configuration, states.time, steps, half)
+        steps, momenta = states.step + shift, states.restricted_momentum
+        found = forced.impulses(momenta, states.configuration, states.time, steps, half)
         return found if shift == 0 else -found
 
     def _momentum(self, states: Orbit, cayley: np.ndarray, side: str) -> np.ndarray:

@@ -123,11 +123,11 @@ def _live(orbit: Orbit) -> Shown | None:
     discrete = orbit.motion
     if not isinstance(discrete, Discretization) or orbit.branch != "principal" or orbit.canonical_pose is None:
         return None
-    kind, wanted = _kind(discrete), round(float(orbit.time[-1] - orbit.time[0]) / float(discrete.time_step))
+    kind, wanted = _kind(discrete), int(orbit.step[-1] - orbit.step[0])
     if kind is None or wanted < 1:
         return None
     steps = min(wanted, MOST_STEPS)
-    table = _table(orbit.system, kind, round(float(orbit.time[0]) / float(discrete.time_step)))
+    table = _table(orbit.system, kind, orbit.step[0])
     state = _state(discrete, kind, orbit.reduced_momentum[0], orbit.canonical_pose[0], steps, table)
     if _problem(state):
         return _replay(orbit, _BEYOND)

@@ -19,7 +19,7 @@ from nonholo.io._metadata import OrbitMetadata, SweepMetadata, check_assertions,
 from nonholo.io._plan import Plan
 from nonholo.io._seals import CHECKPOINTS, Blocks, seal_of_whole
 from nonholo.io._stored_events import EVENTS, known, log_of
-from nonholo.io.datasets import CANONICAL
+from nonholo.io.datasets import CANONICAL, STEP
 from nonholo.orbit import STATES, EventLog, Orbit
 
 _KINDS = {FORMAT: "an orbit", SWEEP_FORMAT: "a sweep", "nonholo.ensemble": "an ensemble"}
@@ -71,7 +71,9 @@ def _loaded(root: Path, discrete: Any, *, last: bool) -> Any:
         check_seals(root, stored)
     rows = {name: arrays.get(array) for name, array in stored_names(shapes, motion.columns).items()}
     branch = stored.get("branch", "principal")  # stores of before branch rules have none
-    orbit = motion.orbit(outcome=outcome, save_every=every, branch=branch, **rows)
+    total, kept = shapes["time"][0], len(arrays["time"])
+    step = arrays[STEP].astype(np.int64) if STEP in arrays else every * np.arange(total - kept, total)
+    orbit = motion.orbit(outcome=outcome, save_every=every, branch=branch, step=step, **rows)
     if "events" not in stored:
         return orbit
     begin = _begin_of_last(stored, shapes["time"][0]) if last else 0

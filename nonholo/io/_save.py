@@ -26,7 +26,7 @@ from nonholo.io._load import format_of
 from nonholo.io._lock import owner_of, remove_remains
 from nonholo.io._metadata import OrbitMetadata, check_assertions, check_metadata, checksum
 from nonholo.io._seals import seal_of_whole
-from nonholo.io.datasets import CANONICAL, stored_variables
+from nonholo.io.datasets import CANONICAL, steps_apart, stored_variables
 from nonholo.orbit import AbstractOrbit
 
 _ROWS = 100_000  # states in one chunk
@@ -72,7 +72,7 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
     check_target(target, overwrite=overwrite)
     with new_beside(path) as part:
         metadata = attributes(orbit) | ({} if scenario is None else attributes_of_text(scenario))
-        _write(stored_variables(orbit), metadata, part)
+        _write(stored_variables(orbit) | steps_apart(orbit), metadata, part)
         put_in_place(part, target, overwrite=overwrite)
 
 

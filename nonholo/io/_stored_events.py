@@ -84,8 +84,8 @@ def _found(rows: np.ndarray, orbit: Orbit) -> Crossings:
     place, *states, turned = map(np.ascontiguousarray, columns)
     kept = {name: None if getattr(orbit, name) is None else part for name, part in zip(STATES, states, strict=False)}
     kept |= {"time": states[0][:, 0], "turned": turned[:, 0] if turned.shape[1] else None}
-    reached = dataclasses.replace(orbit, outcome=Outcome.successful, save_every=1, events=None, **kept)
     step, direction = (place[:, entry].astype(np.int64) for entry in (1, 3))
+    reached = dataclasses.replace(orbit, outcome=Outcome.successful, save_every=1, events=None, step=step, **kept)
     return Crossings(step, np.ascontiguousarray(place[:, 2]), direction, reached)
 
 

@@ -45,10 +45,10 @@ def work(orbit: Any) -> Float[np.ndarray, "K"]:
     system, time, h = orbit.system, orbit.time, np.diff(orbit.time)
     x, p = places(system, orbit.configuration, time), orbit.momentum
     if system.table is not None:
-        if not np.allclose(h, orbit.time_step):
-            got = f"save_every {round(h[0] / orbit.time_step)} with a force for each step"
+        if orbit.lacks_forces:
+            got = f"steps {orbit.step[:3].tolist()} ... with a force for each step"
             raise error("Orbit.work", "know every step", got, "Run with save_every=1.")
-        rows = system.table.acting(np.rint(time / orbit.time_step).astype(int))
+        rows = system.table.acting(orbit.step)
         before, after = _powers(system, x, p, rows), _powers(system, x, p, np.roll(rows, 1, axis=0))
     else:
         before = after = _powers(system, x, p, np.zeros_like(p))

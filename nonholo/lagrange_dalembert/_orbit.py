@@ -10,7 +10,7 @@ import numpy as np
 
 from nonholo.base.checks import error, selection, shown
 from nonholo.base.results import Outcome
-from nonholo.base.types import Array, Float
+from nonholo.base.types import Array, Float, Int
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert._precision import in_double
 from nonholo.lagrange_dalembert._room import equations_of, places, room
@@ -24,7 +24,7 @@ _SHARED: Labels = {
     "energy": ((), "energy"),
     "constraint_residual": ((), "largest residual of the constraint"),
 }
-_ROWS = ("time", "configuration", "displacement", "body_velocity", "momentum", "energy", "constraint_residual")
+_ROWS = ("step", "time", "configuration", "displacement", "body_velocity", "momentum", "energy", "constraint_residual")
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -44,6 +44,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     time_step: float | None = None
     save_every: int = 1
     events: Any = None
+    step: Int[np.ndarray, "K"] = None  # type: ignore[assignment]
     branch: ClassVar[str] = "nearest"
     span: ClassVar[None] = None
     has_poses: ClassVar[bool] = True
@@ -113,6 +114,12 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         return room("_acceleration").work(self) if self.system.is_driven else np.zeros(len(self))
 
     @property
+    def lacks_forces(self) -> bool:
+        """Whether a table has forces of steps between the states."""
+        system = self.system
+        return bool(system.is_driven and system.has_functions and system.table is not None and not self.has_every_step)
+
+    @property
     def restricted_momentum(self) -> Float[np.ndarray, "K n"]:
         r"""Momenta less their parts $A^T\mu$ across the constraint: those along admissible directions."""
         A = in_double(_forms_at, self.system, places(self.system, self.configuration, self.time))
@@ -137,7 +144,11 @@ class AbstractCoordinateOrbit(AbstractOrbit):
             for name, (dimensions, meaning) in labels.items()
             if name in rows
         }
-        coords: dict[str, Any] = {"time": ("step", self.time, {"long_name": "time"}), **self._names()}
+        coords: dict[str, Any] = {
+            "step": self.step,
+            "time": ("step", self.time, {"long_name": "time"}),
+            **self._names(),
+        }
         step = {} if self.time_step is None else {"time_step": self.time_step}
         return xarray.Dataset(variables, coords=coords, attrs={"outcome": self.outcome.name, **step})
 
@@ -165,6 +176,8 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
         time_step: h; None for a flow.
         save_every: Steps between saved states.
         events: What `events=` of the run found, an `EventLog`; None without.
+        step: The number of the step of each state, from 0 at the start of the run, whatever rows are taken, shape (K,);
+            of a state within a step that of its beginning. Of a flow it is the number of the requested time.
 
     Example:
         >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -216,6 +229,8 @@ class GroupOrbit(AbstractCoordinateOrbit):
         time_step: h; None for a flow.
         save_every: Steps between saved states.
         events: What `events=` of the run found, an `EventLog`; None without.
+        step: The number of the step of each state, from 0 at the start of the run, whatever rows are taken, shape (K,);
+            of a state within a step that of its beginning. Of a flow it is the number of the requested time.
 
     Example:
         >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian

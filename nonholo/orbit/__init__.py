@@ -3,7 +3,7 @@
 from nonholo.orbit._base import AbstractOrbit
 from nonholo.orbit._crossings import AbstractEventLog, Crossings, EventLog, joined_crossings
 from nonholo.orbit._orbit import STATES, AbstractMotion, Orbit, as_orbit
-from nonholo.orbit._poses import AliasingWarning, configurations, poses, unwrapped
+from nonholo.orbit._poses import AliasingWarning, configurations, poses, turned_near, unwrapped
 
 __all__ = [
     "STATES",
@@ -18,5 +18,6 @@ __all__ = [
     "configurations",
     "joined_crossings",
     "poses",
+    "turned_near",
     "unwrapped",
 ]

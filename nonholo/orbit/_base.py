@@ -8,10 +8,11 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import LARGEST, is_moderate
+from nonholo.base.checks import LARGEST, error, is_moderate
 from nonholo.base.html import table
+from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome
-from nonholo.base.types import Float
+from nonholo.base.types import Float, Int
 
 _COLUMNS = {
     "time",
@@ -31,6 +32,8 @@ class AbstractOrbit(abc.ABC):
     Attributes:
         system: What moves.
         time: Times of the saved states, shape (K,).
+        step: The number of the step of each state, from 0 at the start of the run, whatever rows are taken; of a state
+            within a step that of its beginning. Of a flow and of given poses: numbers of times and rows. Shape (K,).
         configuration: Matrices (K, N, N) on a group, (K, n) in coordinates.
         body_velocity: Velocities.
         momentum: Momenta.
@@ -56,6 +59,7 @@ class AbstractOrbit(abc.ABC):
 
     system: Any
     time: Float[np.ndarray, "K"]
+    step: Int[np.ndarray, "K"]
     configuration: Float[np.ndarray, "K ..."]
     body_velocity: Float[np.ndarray, "K n"]
     momentum: Float[np.ndarray, "K n"]
@@ -79,12 +83,17 @@ class AbstractOrbit(abc.ABC):
     turned: Float[np.ndarray, "K"] | None = None
 
     def __post_init__(self) -> None:
-        """Let no orbit be successful with a number that is not finite, or with a momentum whose square overflows."""
+        """Number the rows of a whole run; let no orbit be successful with a number that is not finite.
+
+        Nor with a momentum whose square overflows.
+        """
         if self.outcome == Outcome.successful:
             names = {field.name for field in dataclasses.fields(cast(Any, self))} & _COLUMNS
             columns = {name: rows for name in names if (rows := getattr(self, name)) is not None}
             if not all(is_moderate(rows, LARGEST if "momentum" in name else np.inf) for name, rows in columns.items()):
                 object.__setattr__(self, "outcome", Outcome.nonfinite)
+        if self.step is None:
+            object.__setattr__(self, "step", self.save_every * np.arange(len(self.time)))
 
     @property
     @abc.abstractmethod
@@ -113,10 +122,42 @@ class AbstractOrbit(abc.ABC):
         """Return the orbit as a labeled `xarray.Dataset`."""
 
     @property
+    def has_every_step(self) -> bool:
+        """Whether each state but the first is one step after the one before."""
+        h = self.time_step
+        return bool((np.diff(self.step) == 1).all()) and (h is None or np.allclose(np.diff(self.time), h))
+
+    @property
+    @abc.abstractmethod
+    def lacks_forces(self) -> bool:
+        """Whether a table has forces of steps between the states."""
+
+    def with_every_step(self: OrbitT) -> OrbitT:
+        """Return the motion at every step from the first state to the last; those left out are computed again.
+
+        Raises:
+            ValueError: States between two steps or not in their order, a motion whose steps cannot be repeated, or more
+                steps than memory holds.
+        """
+        where, gaps, remedy = "Orbit.work", np.diff(self.step), "Take states of the run in their order."
+        if (gaps < 0).any() or not np.allclose(np.diff(self.time), gaps * (self.time_step or np.nan)):
+            got = "others, under a force for each step"
+            raise error(where, "have states at steps of one run, in their order", got, remedy)
+        size = sum(each.nbytes for each in vars(self).values() if isinstance(each, np.ndarray)) / len(self)
+        within_memory(where, 2.0 * size * gaps.sum(), "Ask it of a part of the orbit.")
+        last, parts = self.chosen(slice(0, -1)), []
+        for taken in range(1, gaps.max(initial=1)):
+            last, gaps = last.chosen(gaps > taken), gaps[gaps > taken]
+            last = self.motion.after_parts(last, np.ones(len(last)))
+            parts.append(last)
+        whole = self.joined(parts)
+        return whole.chosen(np.unique(whole.step, return_index=True)[1])
+
+    @property
     def known_work(self) -> Float[np.ndarray, "K"]:
-        """The work; NaN of a thinned run under a table of forces, whose steps between the states are not known."""
+        """The work; NaN where it is not known without computing steps again, or without poses."""
         try:
-            return self.work
+            return np.full(len(self), np.nan) if self.lacks_forces else self.work
         except ValueError:
             return np.full(len(self), np.nan)
 

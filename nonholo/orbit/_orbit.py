@@ -17,14 +17,16 @@ from nonholo.base.checks import error, instance, selection, shown
 from nonholo.base.kept import Keeper
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
-from nonholo.base.types import Float
+from nonholo.base.types import Float, Int
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.orbit._base import AbstractOrbit
 from nonholo.orbit._poses import configurations, poses, unwrapped
 from nonholo.systems import System
 
 STATES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
-"""The arrays of an orbit, a row for each state."""
+"""The arrays of an orbit as stores keep them, a row for each state; `step` follows from their place."""
+
+_ROWS = ("step", *STATES)
 
 
 def as_orbit(where: str, value: Any, coordinates: str) -> "Orbit":
@@ -64,6 +66,12 @@ class AbstractMotion(Keeper, abc.ABC):
         """Return the states at any times in between, where they are known."""
         got = f"a discrete orbit with {len(states)} states; not {shown(times)}"
         raise error("Orbit.at(...)", "be asked of a flow", got, "Slice the orbit, or run with another time step.")
+
+    def after_parts(self, states: Any, fractions: Float[np.ndarray, "K"]) -> Any:
+        """Return what is reached from states after parts of the steps that begin there; refused where none do."""
+        del fractions
+        got = f"{len(states)} states of a motion that is no map"
+        raise error("Orbit.work", "have every step", got, "Take all states.")
 
     @abc.abstractmethod
     def full_momentum(self, states: "Orbit") -> Float[np.ndarray, "K dim"]:
@@ -110,12 +118,17 @@ class Orbit(AbstractOrbit):
         events: What `events=` of the run found, an `EventLog`: by name or position `Crossings` with their times and
             states. None without `events=`. It stays whole in slices of the orbit. `save_orbit` does not
             keep it; the store of a run does.
+        step: The number of the step of each state, from 0 at the start of the run, whatever rows are taken, shape (K,);
+            of a state within a step that of its beginning. Of a flow it is the number of the requested time, of
+            given poses that of the row.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
         >>> orbit = nh.simulate(sleigh, body_velocity=(1, 0, 0), steps=3)
         >>> orbit.configuration.shape, orbit.multipliers.shape, str(orbit.outcome)
         ((4, 3, 3), (3, 1), 'successful')
+        >>> orbit[1::2].step
+        array([1, 3])
     """
 
     motion: AbstractMotion
@@ -128,6 +141,7 @@ class Orbit(AbstractOrbit):
     turned: Float[np.ndarray, "K"] | None = None
     branch: str = "principal"
     events: Any = None
+    step: Int[np.ndarray, "K"] = None  # type: ignore[assignment]
     is_compact: ClassVar[bool] = True
 
     @staticmethod
@@ -180,12 +194,12 @@ class Orbit(AbstractOrbit):
     def chosen(self, states: slice | np.ndarray) -> "Orbit":
         """Return some of the states, by a slice or a mask, each with the same `save_every` as before."""
         states = selection("Orbit.chosen(states=...)", states)
-        kept = {name: None if (rows := getattr(self, name)) is None else rows[states] for name in STATES}
+        kept = {name: None if (rows := getattr(self, name)) is None else rows[states] for name in _ROWS}
         return dataclasses.replace(self, **kept)
 
     def joined(self, others: Sequence["Orbit"]) -> "Orbit":
         """Return the states with those of other parts of the same motion after them."""
-        columns = {name: [getattr(part, name) for part in (self, *others)] for name in STATES}
+        columns = {name: [getattr(part, name) for part in (self, *others)] for name in _ROWS}
         kept = {name: None if rows[0] is None else np.concatenate(rows) for name, rows in columns.items()}
         return dataclasses.replace(self, **kept)
 
@@ -380,12 +394,24 @@ class Orbit(AbstractOrbit):
         r"""Work of the force on the motion since the first state, by the trapezoidal rule; zero without one.
 
         Of friction it is minus the dissipated energy. The energy less this work is constant up to an error of order 2
-        in the time between states.
+        in the time between states. Under a table it is that of every step, also of those between the states.
+
+        Raises:
+            ValueError: Poses that are not reconstructed; under a table given poses with some left out, or states that
+                are not at steps of one run, in their order.
         """
         forced = self.system.forces
         if forced is None or forced.force is None:
             return np.zeros(len(self))
-        return forced.work(self.time, self.configuration, self.body_velocity, self.save_every)
+        if self.lacks_forces:
+            return self.with_every_step().work[self.step - self.step[0]]
+        return forced.work(self.time, self.configuration, self.body_velocity, self.step)
+
+    @property
+    def lacks_forces(self) -> bool:
+        """Whether a table has forces of steps between the states."""
+        forced = self.system.forces
+        return forced is not None and forced.table is not None and not self.has_every_step
 
     @property
     def tangent(self) -> Float[np.ndarray, "L k k"]:

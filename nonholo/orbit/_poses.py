@@ -59,3 +59,14 @@ def unwrapped(pose: Float[np.ndarray, "K 4"], before: float | None = None) -> Fl
     angle = np.arctan2(pose[:, 1], pose[:, 0])
     passed = np.rint(np.diff(angle, prepend=angle[:1] if before is None else before) / _TURN)
     return angle - _TURN * np.cumsum(passed)
+
+
+def turned_near(headings: Float[np.ndarray, "K"], pose: Float[np.ndarray, "K 4"]) -> Float[np.ndarray, "K"]:
+    """Return the headings at compact poses on SE(2) that are less than half a turn from given ones.
+
+    Example:
+        >>> turned_near(np.array([6.3]), np.array([[1.0, 0.0, 0.0, 0.0]])).round(2)
+        array([6.28])
+    """
+    angle = np.arctan2(pose[:, 1], pose[:, 0])
+    return angle + _TURN * np.rint((headings - angle) / _TURN)

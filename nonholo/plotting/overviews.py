@@ -132,7 +132,7 @@ def _facts(orbit: AbstractOrbit) -> list[str]:
     elif step is None:
         run = f"continuous flow {run}"
     else:
-        steps = round(abs(orbit.time[-1] - orbit.time[0]) / step)
+        steps = int(orbit.step[-1] - orbit.step[0])
         run = f"{steps:,} step{'s' * (steps != 1)} of $h$ = {step:g}".replace(",", "\u2009")
     stopped = [] if orbit.outcome == Outcome.successful else [f"stopped: {orbit.outcome}"]
     return [_parameters(_inside(orbit.system)) if isinstance(orbit, Orbit) else _form(orbit), run, *stopped]

@@ -110,7 +110,7 @@ def test_store_is_readable_by_xarray(store: Path) -> None:
     """A store is opened by xarray without a warning, with the labels of `to_dataset`."""
     with xarray.open_zarr(store, chunks=None) as dataset:
         expected = _orbit().to_dataset()
-        xarray.testing.assert_equal(dataset.load(), expected.drop_vars(["momentum", "body_velocity"]))
+        xarray.testing.assert_equal(dataset.load(), expected.drop_vars(["momentum", "body_velocity", "step"]))
     assert dataset["time"].attrs["units"] == "time unit"
     with xarray.open_zarr(store, group="canonical", chunks=None) as compact:
         assert compact["cayley"].dims == ("step", "chart")
@@ -146,6 +146,7 @@ def test_units_of_every_array() -> None:
     variables = [part for orbit in (_orbit(), flow) for part in (_known(orbit), stored_variables(orbit))]
     assert {str(name): rows.attrs["units"] for found in variables for name, rows in found.items()} == {
         "time": "time unit",
+        "step": "1",
         "restricted_momentum": "momentum unit",
         "x": "length unit",
         "y": "length unit",

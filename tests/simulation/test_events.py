@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.simulation.events._between import between_states
 
 # A sleigh with a = 0 keeps its momenta: P_theta = J sin(theta)/h, so a step of length tau turns it by arcsin(tau w).
 ROUND = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
@@ -60,7 +59,7 @@ def test_crossing_of_the_uniform_circle_is_the_known_one() -> None:
 def test_parts_of_steps_join_the_states(name: str) -> None:
     """A part of a step is the next state at s = 1, to rounding, and tends to the state itself, and is continuous."""
     orbit = nh.simulate(MOTIONS[name], restricted_velocity=start(MOTIONS[name]), steps=8)
-    between = between_states(MOTIONS[name])
+    between = MOTIONS[name].after_parts
     for fraction, limit, error in ((1.0, orbit[1:], 2e-14), (1e-10, orbit[:-1], 1e-9)):
         reached = between(orbit[:-1], np.full(8, fraction))
         for quantity in ("momentum", "configuration", "displacement", "body_velocity"):
@@ -87,7 +86,7 @@ def test_events_leave_the_orbit_alone(name: str) -> None:
 def test_a_part_of_a_step_is_a_shorter_step() -> None:
     """Half a step of a top is the step of half the length from the same momentum along the constraint."""
     orbit = nh.simulate(TOP, restricted_velocity=(0.7, -0.3), steps=5)
-    half = between_states(TOP)(orbit[4:5], np.array([0.5]))
+    half = TOP.after_parts(orbit[4:5], np.array([0.5]))
     shorter = nh.discretize(TOP.system, TOP.time_step / 2)
     step = nh.simulate(shorter, momentum=orbit.restricted_momentum[4], configuration=orbit.configuration[4], steps=1)
     assert np.abs(half.restricted_momentum[0] - step.restricted_momentum[1]).max() < 1e-15
@@ -323,8 +322,10 @@ def test_bad_events_are_refused(options: dict[str, float]) -> None:
 
 def test_crossings_of_thinned_orbits_are_refused() -> None:
     """Between thinned states crossings could be missed."""
-    with pytest.raises(ValueError, match="save_every 2"):
-        nh.crossings(nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=20, save_every=2), east)
+    whole = nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=20)
+    for thinned in (whole[::2], whole.chosen(np.arange(21) != 5)):
+        with pytest.raises(ValueError, match="one with steps left out"):
+            nh.crossings(thinned, east)
 
 
 def test_wide_tops_need_no_poses() -> None:
@@ -373,8 +374,8 @@ def test_seen_from_its_end_a_step_has_other_parts_to_third_order() -> None:
         top = nh.discretize(TOP.system, h)
         there = nh.simulate(top, restricted_velocity=(0.7, -0.3), steps=1)
         end = {"momentum": -there.restricted_momentum[1], "configuration": there.configuration[1]}
-        half = between_states(top)(there[:1], np.array([0.5]))
-        back = between_states(top)(nh.simulate(top, **end, steps=1)[:1], np.array([0.5]))
+        half = top.after_parts(there[:1], np.array([0.5]))
+        back = top.after_parts(nh.simulate(top, **end, steps=1)[:1], np.array([0.5]))
         gaps.append(np.abs(half.configuration - back.configuration).max())
     assert np.abs(np.log2(np.divide(gaps[:-1], gaps[1:])) - 3).max() < 0.15
 

@@ -7,16 +7,11 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.orbit import Orbit
 
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 HEAVY = nh.Gravity(force=[0.2, -0.3, -1.0], point=[0.1, 0.2, 0.3])
 SLOPE = nh.Gravity(force=[0.4, -1.0], point=[0.5, 0.3])
 RUB = nh.Friction([0.1, 0.2, 0.3])
-
-
-def _late(states: Orbit) -> np.ndarray:
-    return states.time - 0.2
 
 
 _FORCED = nh.Forced(TOP, HEAVY, RUB)
@@ -49,8 +44,6 @@ _REFUSED: dict[str, Callable[[], Any]] = {
     "sweep of longer runs": lambda: nh.EnsembleTask(_PUSHED, steps=9),
     "reduction of free motions": lambda: nh.EnsembleTask(_MAP, steps=3, reductions=["final_state", "energy_drift"]),
     "phase_portrait": lambda: nh.plot.phase_portrait(_FORCED),
-    "events": lambda: nh.simulate(_PUSHED, restricted_velocity=[0.5, -0.3], steps=5, events=[_late]),
-    "crossings": lambda: nh.crossings(nh.simulate(_PUSHED, restricted_velocity=[0.5, -0.3], steps=5), _late),
     "branch": lambda: nh.simulate(_MAP, restricted_velocity=[0.5, -0.3], steps=5, branch="nearest"),
     "backend": lambda: nh.simulate(_MAP, restricted_velocity=[0.5, -0.3], steps=5, backend="jax"),
     "displacement": lambda: nh.simulate(_MAP, displacement=np.eye(3), steps=5),

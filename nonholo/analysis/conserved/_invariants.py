@@ -72,12 +72,11 @@ def invariants(orbit: AbstractOrbit) -> Invariants:
 
 
 def _in_coordinates(orbit: Any) -> Invariants:
-    h, duration = orbit.time_step, abs(orbit.time[-1] - orbit.time[0])
     work, driven = orbit.known_work, orbit.system.is_driven
     on_group = None if orbit.coordinates else float(np.max(orbit.space.residual(orbit.configuration)))
     return Invariants(
         states=len(orbit),
-        steps=0 if h is None else round(duration / h),
+        steps=int(np.ptp(orbit.step)) if orbit.is_discrete else 0,
         energy_drift=_energy_drift(orbit.energy, work, forced=driven),
         constraint_residual=float(orbit.constraint_residual.max()),
         group_residual=on_group,
@@ -96,7 +95,7 @@ def _of_body(orbit: Orbit) -> Invariants:
     work, forced = orbit.known_work, orbit.system.forces is not None
     return Invariants(
         states=len(orbit),
-        steps=0 if orbit.cayley is None else (len(orbit) - 1) * orbit.save_every,
+        steps=int(np.ptp(orbit.step)) if orbit.is_discrete else 0,
         energy_drift=_energy_drift(orbit.energy, work, forced=forced),
         constraint_residual=float(np.abs(orbit.motion.constraint_residual(sample)).max(initial=0.0)),
         group_residual=None if orbit.canonical_pose is None else _group_residual(sample),

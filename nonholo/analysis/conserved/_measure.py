@@ -108,8 +108,8 @@ class InvariantMeasure:
         if not isinstance(orbit, Orbit) or orbit.motion is not discrete:
             remedy = "Pass an orbit of the same discretization to the measure of `orbit.motion`."
             raise error(where, "be an orbit of the measure's motion", shown(orbit), remedy)
-        if orbit.save_every != 1:
-            got = f"save_every={orbit.save_every}"
+        if not orbit.has_every_step:
+            got = f"{len(orbit)} states with others between"
             raise error(where, "hold every step", got, "Run it with save_every=1.")
         steps = np.log(np.abs(step_determinants(discrete, orbit.displacement[:-1])))
         return np.concatenate([np.zeros(min(1, len(orbit))), np.cumsum(steps)])

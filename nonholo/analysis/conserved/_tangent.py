@@ -43,8 +43,8 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
     if not isinstance(discrete, Discretization) or not discrete.conserves_energy or discrete.order > 2:
         remedy = "Differentiate `nh.rollout` by JAX, or run with the default difference and constraint."
         raise error(_WHERE, "be asked of a map with closed derivatives", shown(discrete), remedy)
-    if orbit.save_every > 1:
-        raise error(_WHERE, "have every step", f"save_every {orbit.save_every}", "Run with save_every=1.")
+    if not orbit.has_every_step:
+        raise error(_WHERE, "have every step", f"{len(orbit)} states with others between", "Run with save_every=1.")
     return step_jacobians(discrete, orbit.displacement[:-1])
 
 

@@ -184,9 +184,9 @@ def _ends(orbit: Orbit, found: Approach) -> Ends | None:
 
 def _is_start_of(principal: Orbit, orbit: Orbit) -> bool:
     """Tell whether two discrete orbits with one first momentum have the same displacements as far as both go."""
-    again, mine = principal.displacement[:: orbit.save_every], orbit.displacement
-    both = min(len(again), len(mine))
-    return bool(np.abs(again[:both] - mine[:both]).max() <= _SAME * np.abs(mine).max())
+    both = orbit.chosen(orbit.step < orbit.step[0] + len(principal))
+    again, mine = principal.displacement[both.step - orbit.step[0]], both.displacement
+    return bool(np.abs(again - mine).max() <= _SAME * np.abs(orbit.displacement).max())
 
 
 def _heading_turn(form: NormalForm, orbit: Orbit, found: Approach) -> float | None:

@@ -74,8 +74,8 @@ def _report(loaded: Loaded, ran: Ran, orbit: Orbit, paths: dict[str, str | None]
         return
     with waiting("measuring", sys.stderr.isatty()):
         measured = figures(orbit)
-    if is_part := orbit.time[0] > 0:  # only the last block of so large a run was loaded
-        measured["steps"] = round(orbit.time[-1] / loaded.scenario.run.time_step)
+    if is_part := bool(orbit.step[0] > 0):  # only the last block of so large a run was loaded
+        measured["steps"] = int(orbit.step[-1])
     each = ran.seconds / max(1, measured["steps"])
     if json:
         times = {"seconds": ran.seconds, "seconds_per_step": each}

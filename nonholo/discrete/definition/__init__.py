@@ -3,6 +3,7 @@
 from nonholo.discrete.definition._composition import run_composed_by_definition, whole_steps_by_definition
 from nonholo.discrete.definition._functions import is_even, map_each, momenta_by_derivative, value_and_slope
 from nonholo.discrete.definition._nodes import free_rows, step_residual
+from nonholo.discrete.definition._partial_step import parts_by_definition
 from nonholo.discrete.definition._precision import allow_float32, in_double
 from nonholo.discrete.definition._principal import ON_LOCUS, principal_of, traceable
 from nonholo.discrete.definition._rollout import Rollout, rolled

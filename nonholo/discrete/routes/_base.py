@@ -1,6 +1,7 @@
 """The interface of every route, and what compiled ones share: units and axes of a kernel, runs, single steps."""
 
 import abc
+from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
@@ -49,6 +50,10 @@ class AbstractRoute(abc.ABC):
 
         Rows that cannot continue are NaN.
         """
+
+    @abc.abstractmethod
+    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Rows:
+        """Return momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
 
 
 class AbstractCompiledRoute(AbstractRoute):
@@ -153,10 +158,57 @@ class AbstractCompiledRoute(AbstractRoute):
         ahead = group.matrix_from_pose(self.decode_poses(moved)) @ group.inverse(frame)
         return self.decode(after), ahead, codes
 
+    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Rows:
+        """Return momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
+        return parts_by(self, self._part, posed(states, needed=self.needs_pose), states, fractions)
+
+    def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Rows | None:
+        """Return the kernel's momenta, chart and pose after a fraction of a step; None where there is no such step."""
+        del time, step  # a free step is the same at all times
+        (after,), (moved,), (code,) = self.parts_of_steps(m[None], pose[None], fraction)
+        return self.ahead(after, moved) if code == 0 else None
+
+    def ahead(self, m: np.ndarray, pose: np.ndarray, pushed: np.ndarray | None = None) -> Rows:
+        """Return the kernel's momenta, the chart of the step from them, or from pushed ones, and the pose."""
+        code, state = self.start(m if pushed is None else pushed, pose)
+        chart = self.chart_of(state)
+        return m, chart if code == 0 else np.full(len(chart), np.nan), pose
+
     def parts_of_steps(self, momenta: np.ndarray, poses: np.ndarray, fraction: float = 1.0) -> Rows:
         """Take a fraction of a step from each of the kernel's momenta and poses; return both, and the outcomes."""
         parts = kernels.ComposedBody(self.single.body, fraction * weights(self.order))
         return kernels.whole_steps(parts, momenta, poses)
+
+
+def parts_by(
+    route: AbstractCompiledRoute,
+    part: Callable[[np.ndarray, np.ndarray, float, int, float], Rows | None],
+    poses: np.ndarray,
+    states: Orbit,
+    fractions: Float[np.ndarray, "K"],
+) -> Rows:
+    """Return canonical momenta, charts and poses after parts of steps, taken one by one with the numbers of a kernel.
+
+    So the bits of each do not depend on the others.
+    """
+    poses = route.encode_poses(poses) if poses.size else poses
+    given = route.encode(states.reduced_momentum), poses, states.time, states.step, fractions
+    nowhere = tuple(np.full(size, np.nan) for size in (*route.sizes[:2], poses.shape[1]))
+    found = (part(*row) or nowhere for row in zip(*given, strict=True))
+    momenta, charts, moved = (np.array(column) for column in zip(*found, strict=True))
+    return route.decode(momenta), route.from_kernel(charts), route.decode_poses(moved) if moved.size else moved
+
+
+def posed(states: Orbit, *, needed: bool) -> np.ndarray:
+    """Return the compact poses of states; where they are not kept, any that the step can carry along, if it needs one.
+
+    So it must not depend on which.
+    """
+    if states.canonical_pose is not None:
+        return states.canonical_pose
+    if not needed:
+        return np.empty((len(states), 0))
+    return np.broadcast_to(states.system.frame_pose, (len(states), states.system.group.pose_size))
 
 
 def matrices_of(states: Orbit) -> Float[np.ndarray, "K size"] | None:

@@ -4,6 +4,7 @@ import contextlib
 import dataclasses
 import functools
 from collections.abc import Callable
+from operator import attrgetter
 from typing import Any, ClassVar, NoReturn
 
 import numpy as np
@@ -14,7 +15,7 @@ from nonholo.base.checks import error
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
-from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Rows
+from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Rows, parts_by, posed
 from nonholo.discrete.routes._outer import AbstractOuterRoute
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
@@ -44,6 +45,7 @@ class AbstractForcedRoute(AbstractRoute):
 
     free: AbstractCompiledRoute
     said: Any
+    forced: Forced
     order: ClassVar[int] = 2
     is_scalar: ClassVar[bool] = False
 
@@ -52,13 +54,37 @@ class AbstractForcedRoute(AbstractRoute):
         """The name of the route inside."""
         return self.free.name
 
-    def next_charts(self, states: Orbit) -> NoReturn:
-        """Refuse: what follows a state depends on the number of its step."""
-        got = f"save_every {states.save_every}"
-        raise error("Orbit.multipliers", "have every step of a run with forces", got, "Run with save_every=1.")
+    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Rows:
+        r"""Return momenta, charts and poses after fractions s of the steps from states; NaN where none starts.
+
+        Half the impulse of the part acts at each of its ends, at times t and t + s h, both of the row of the step. So
+        at s = 1 it is the step itself.
+        """
+        return parts_by(self.free, self._part, posed(states, needed=True), states, fractions)
+
+    def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Rows | None:
+        half, free = float(self.free.time_step) / 2, self.free
+        end = time + fraction * 2 * half
+
+        def kicked(m: np.ndarray, pose: np.ndarray, time: float, step: int, tau: float) -> np.ndarray:
+            return m + kick_of(free, self.forced, tau, np.array([time]), m, pose, np.array([step]))
+
+        with contextlib.suppress(OutcomeError):  # the midpoint rule of a half impulse may fail
+            after, moved, (code,) = free.parts_of_steps(
+                kicked(m[None], pose[None], time, step, fraction * half), pose[None], fraction
+            )
+            if code == 0:
+                after = kicked(after, moved, end, step, fraction * half)
+                pushed = kicked(after, moved, end, step + int(fraction), half)
+                return free.ahead(after[0], moved[0], pushed[0])
+        return None
+
+    def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
+        """Return the displacements that follow, one step from each state."""
+        return self.parts(states, np.ones(len(states)))[1]
 
     def whole_steps(self, momenta: Any, g: Any) -> NoReturn:
-        """Refuse, as `next_charts` does."""
+        """Refuse: what follows a momentum and a pose depends on the number of the step."""
         del momenta, g
         raise error("A step from states alone", "be of a system without forces", "Forced", "Use simulate.")
 
@@ -93,13 +119,6 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
         half = half_drive(free, forced, self.said) if forced.needs_function else half_kick(free, forced)
         return kernels.ForcedBody(free.body, half)
 
-    def parts_of_steps(self, momenta: np.ndarray, poses: np.ndarray, fraction: float = 1.0) -> Rows:
-        """Take a step of a part of the length from each row; the forces must not depend on time."""
-        half = fraction * float(self.time_step) / 2
-        kick = functools.partial(kick_of, self.free, self.forced, half, np.zeros(len(momenta)))
-        after, moved, codes = self.free.parts_of_steps(momenta + kick(momenta, poses), poses, fraction)
-        return after + kick(after, moved), moved, codes
-
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class PythonRoute(AbstractForcedRoute):
@@ -112,11 +131,8 @@ class PythonRoute(AbstractForcedRoute):
     loop: ForcedRoute
     needs_pose: ClassVar[bool] = True
     compiled: ClassVar[None] = None
-
-    @property
-    def free(self) -> AbstractCompiledRoute:  # type: ignore[override]
-        """The route of the free step."""
-        return self.loop.free
+    free = property(attrgetter("loop.free"))  # type: ignore[assignment]
+    forced = property(attrgetter("loop.forced"))  # type: ignore[assignment]
 
     @property
     def said(self) -> dict[str, str]:  # type: ignore[override]
@@ -206,11 +222,11 @@ def kick_of(
     time: np.ndarray,
     momenta: np.ndarray,
     poses: np.ndarray,
-    steps: np.ndarray | None = None,
+    steps: np.ndarray,
     said: dict[str, str] | None = None,
 ) -> np.ndarray:
     """Return what the impulses of a time add to momenta of a kernel; NaN where they are not finite."""
-    group, steps = forced.group, np.full(len(momenta), -1) if steps is None else steps
+    group = forced.group
     g = group.matrix_from_pose(free.decode_poses(poses)) @ group.inverse(forced.frame)
     j, said = np.array(np.nan), {} if said is None else said
     with noted(said, "potential"):

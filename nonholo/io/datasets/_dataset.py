@@ -14,6 +14,8 @@ from nonholo.systems import System
 
 CANONICAL = "canonical/"
 """The group of a store that holds compact states."""
+STEP = CANONICAL + "step"
+"""The numbers of steps in a store, where they do not follow from the places of its rows."""
 _MOST = 1000  # components of a momentum, or numbers of a pose, that are reported
 HEADED = ("heading", "quaternion")  # whose rows continue from the row before
 
@@ -51,8 +53,8 @@ _SPATIAL = {  # of a right-invariant constraint
 def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
     r"""Return an orbit as a labeled dataset in the user's body frame; attributes say how it was made.
 
-    Variables along `step`, with the coordinate `time`: `energy`, `restricted_momentum`, `body_velocity`, `momentum` and
-    the pose.
+    Variables along `step`, whose coordinate is the number of the step, with the coordinate `time`: `energy`,
+    `restricted_momentum`, `body_velocity`, `momentum` and the pose.
 
     | group | the pose |
     |---|---|
@@ -82,7 +84,8 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
         rows = orbit.multipliers
         missing = np.full((len(orbit) - len(rows), rows.shape[1]), np.nan)
         found["multipliers"] = _variable(orbit, "multipliers", np.concatenate([rows, missing]))
-    return xarray.Dataset(found, attrs=attributes(orbit)).set_coords("time")
+    number = ("step", orbit.step, {"long_name": "number of the step", "units": "1"})
+    return xarray.Dataset(found, {"step": number}, attributes(orbit)).set_coords("time")
 
 
 def stored_variables(
@@ -107,6 +110,13 @@ def stored_variables(
     for variable in known.values():
         variable.attrs["coordinates"] = "time"  # those of the group canonical need none
     return {"time": _variable(orbit, "time")} | known | compact
+
+
+def steps_apart(orbit: Any) -> dict[str, xarray.Variable]:
+    """Return the array of the steps of an orbit that is not a whole run; empty of one that is."""
+    if np.array_equal(orbit.step, orbit.save_every * np.arange(len(orbit))):
+        return {}
+    return {STEP: xarray.Variable(("step",), orbit.step, {"long_name": "number of the step"})}
 
 
 def _told(orbit: Any) -> dict[str, xarray.Variable]:
@@ -150,7 +160,7 @@ def _posed(orbit: Orbit, before: np.ndarray | None) -> dict[str, xarray.Variable
 def _has_multipliers(orbit: Orbit) -> bool:
     """Tell whether an orbit has multipliers that need no other steps than those of its states."""
     motion = orbit.motion
-    single = not isinstance(motion, Discretization) or (motion.order == 2 and orbit.save_every == 1)
+    single = not isinstance(motion, Discretization) or (motion.order == 2 and orbit.has_every_step)
     return single and not motion.is_measured and len(orbit) > 0 and _is_known(orbit, "momentum")
 
 

@@ -32,7 +32,8 @@ def after_parts(discrete: Any, states: Any, fractions: Float[np.ndarray, "K"]) -
     ends, ahead = (np.concatenate(column)[:count] for column in zip(*parts, strict=True)) if parts else (x, v)
     impulses = np.empty((0, system.constraints))
     reached = orbit_of(system, h, [ends, ahead, impulses], 0, 1, Outcome.successful)
-    return dataclasses.replace(reached, time=states.time + fractions * h)
+    step = states.step + fractions.astype(np.int64)
+    return dataclasses.replace(reached, time=states.time + fractions * h, step=step)
 
 
 def _padded(rows: np.ndarray) -> np.ndarray:

@@ -87,9 +87,9 @@ def orbit_of(system: Any, h: Any, columns: list[np.ndarray], first: int, every: 
     """Return states that were reached, of which the first has a number, as an orbit."""
     q, v, impulses = columns
     *displaced, momentum, energy, residual = _decoded(system, h, q, v)
-    displacement, time = displaced[0] if displaced else h * v, h * (every * np.arange(first, first + len(q)))
-    arrays = time, configurations(system, q), displacement, v, momentum, impulses, energy, residual
-    return ORBITS[system.orbits](*arrays, Outcome(int(code)), system, float(h), every)
+    displacement, step = displaced[0] if displaced else h * v, every * np.arange(first, first + len(q))
+    arrays = h * step, configurations(system, q), displacement, v, momentum, impulses, energy, residual
+    return ORBITS[system.orbits](*arrays, Outcome(int(code)), system, float(h), every, step=step)
 
 
 def first_state(system: Any, h: Any, q: Any, v: Any, p: Any) -> Start:

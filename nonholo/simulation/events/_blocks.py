@@ -20,7 +20,7 @@ def searched_first(watch: Watch | None, first: Any) -> tuple[Any, Watch | None]:
     """Return the first state of a run with what was found there if there is a watch, and what is known then."""
     if watch is None:
         return first, None
-    found, _ = search(watch, first, 0)
+    found, _ = search(watch, first)
     return dataclasses.replace(first, events=found.log()), found
 
 
@@ -48,11 +48,11 @@ def _searched_block(
 ) -> Block:
     begun, stop, opening, fine = plan.begin(block), plan.stop(block), block == 0, dataclasses.replace(run, every=1)
     kernel, last = state.kernel.copy(), _each(lambda row: row[None], state.row)
-    watch, _ = search(dataclasses.replace(watch, parts=()), fine.orbit(last, begun, True, Outcome.successful), begun)
+    watch, _ = search(dataclasses.replace(watch, parts=()), fine.orbit(last, begun, True, Outcome.successful))
     kept, code, done = [_each(operator.itemgetter(slice(0, int(opening))), last)], 0, begun
     while code == 0 and done < stop and watch.stopped_by is None:
         code, seen = _advanced(run, kernel, last, min(stop - done, max(done, _SHORT)))
-        watch, count = search(watch, fine.orbit(seen, done, True, Outcome.successful), done)
+        watch, count = search(watch, fine.orbit(seen, done, True, Outcome.successful))
         saved = slice(run.every - done % run.every, count, run.every)
         kept.append(_each(lambda rows, saved=saved: rows[saved].copy(), seen))  # a view would hold every state
         last, done = _each(operator.itemgetter(slice(count - 1, count)), seen), done + count - 1

@@ -20,7 +20,7 @@ def crossings(orbit: Orbit, event: Any) -> Crossings:
     crossing between two of them is located by parts of the step from the first one.
 
     Args:
-        orbit: A discrete orbit on the principal branch with `save_every=1`.
+        orbit: A discrete orbit on the principal branch, of which no step is left out.
         event: An `Event` or a function of an orbit. If it stops, crossings after that are left out.
 
     Returns:
@@ -37,8 +37,8 @@ def crossings(orbit: Orbit, event: Any) -> Crossings:
         (6, True)
     """
     orbit = as_orbit("crossings(orbit=...)", orbit, "pass states and your own functions otherwise.")
-    if not isinstance(orbit.motion, Discretization) or orbit.save_every != 1:
-        got = f"save_every {orbit.save_every}" if isinstance(orbit.motion, Discretization) else "a flow or given poses"
+    if not isinstance(orbit.motion, Discretization) or not orbit.has_every_step:
+        got = "one with steps left out" if isinstance(orbit.motion, Discretization) else "a flow or given poses"
         raise error("crossings(orbit=...)", "have every single step of a discrete run", got, "Pass events= to the run.")
     watch = watched("crossings", orbit.motion, [event], orbit.branch, orbit.canonical_pose is not None)
     return searched(watch, dataclasses.replace(orbit, events=None))[0].log()[0]

@@ -8,9 +8,8 @@ import numpy as np
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit, Crossings, EventLog, Orbit
-from nonholo.simulation.events._between import Between
 from nonholo.simulation.events._event import Event, checked_events, values_at
-from nonholo.simulation.events._search import Watch, search
+from nonholo.simulation.events._search import Between, Watch, search
 
 
 def flow_in_coordinates(system: Any, events: Any, **flow: Any) -> Any:
@@ -60,7 +59,7 @@ def _searched(orbit: Any, seen: Any, watch: Watch) -> Any:
     """Return the orbit up to the event that ends it, with what is found between the states that are looked at."""
     forward = _direction(orbit)
     requested, times = forward * orbit.time, forward * seen.time
-    watch, kept = search(watch, seen, 0)
+    watch, kept = search(watch, seen)
     outcome = Outcome.successful if watch.stopped_by else orbit.outcome
     count = int(np.searchsorted(requested, times[kept - 1], "right"))
     log = watch.log()
@@ -94,4 +93,5 @@ def _of_requested(crossings: Crossings, requested: np.ndarray, forward: float) -
     times = forward * crossings.time
     step = np.searchsorted(requested, times, "right") - 1
     gaps = np.append(np.diff(requested), np.inf)
-    return dataclasses.replace(crossings, step=step, fraction=(times - requested[step]) / gaps[step])
+    states = dataclasses.replace(crossings.states, step=step)
+    return dataclasses.replace(crossings, step=step, fraction=(times - requested[step]) / gaps[step], states=states)

@@ -80,7 +80,7 @@ def _searched(watch: Watch, single: Iterator[Any], steps: int, every: int, piece
     last, done = None, 0
     for number, piece in enumerate(single, 1):
         seen = piece if last is None else last.joined([piece])
-        watch, count = search(watch, seen, done)
+        watch, count = search(watch, seen)
         new = 0 if last is None else 1  # where states begin that were not seen before
         outcome = Outcome.successful if watch.stopped_by else piece.outcome
         kept = seen.chosen(slice(new + -(done + new) % every, count, every))

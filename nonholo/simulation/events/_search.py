@@ -3,13 +3,17 @@
 import dataclasses
 import math
 import operator
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from nonholo.base.types import Bool, Float, Int
 from nonholo.orbit import AbstractOrbit, Crossings, EventLog, joined_crossings
-from nonholo.simulation.events._between import Between
 from nonholo.simulation.events._event import Event, values_at
+
+Between = Callable[[Any, Float[np.ndarray, "K"]], Any]
+"""A function of states and fractions that gives what is reached after these parts of the steps."""
 
 _ROUNDING = 2.0**-54  # of a step, beside its end
 
@@ -56,8 +60,8 @@ class Watch:
         return EventLog(tuple(self.events), found, self.stopped_by)
 
 
-def search(watch: Watch, stretch: AbstractOrbit, begun: int) -> tuple[Watch, int]:
-    """Search a stretch of consecutive states, which begins with the last one that was seen, at step `begun`.
+def search(watch: Watch, stretch: AbstractOrbit) -> tuple[Watch, int]:
+    """Search a stretch of consecutive states, which begins with the last one that was seen.
 
     Returns:
         What is known now, and how many states of the stretch belong to the motion: all, unless an event ended it.
@@ -76,7 +80,7 @@ def search(watch: Watch, stretch: AbstractOrbit, begun: int) -> tuple[Watch, int
     stopped, kept = None, len(stretch)
     if last < math.inf:
         stopped, found, kept = _cut(watch, found, [event for event, end in enumerate(ends) if end == last])
-    found = tuple(dataclasses.replace(part, step=part.step + begun) for part in found)
+        kept -= int(stretch.step[0])
     heading = float(stretch.turned[-1]) if stretch.turned is not None else None
     return watch.after_stretch(found, values[:, -1:] if len(stretch) else watch.values, heading, stopped), kept
 
@@ -95,7 +99,7 @@ def _values(watch: Watch, stretch: AbstractOrbit) -> Float[np.ndarray, "E K"]:
 def _cut(watch: Watch, found: tuple[Crossings, ...], ending: list[int]) -> tuple[str, tuple[Crossings, ...], int]:
     """End a motion at the first of the crossings of events that may end it; return what is left of a stretch.
 
-    That is the name of the event, the crossings up to then, and the number of states.
+    That is the name of the event, the crossings up to then, and the number of the step after them.
     """
     lasts = [(found[event], int(watch.left[event]) - 1, event) for event in ending]
     step, fraction, event = min((int(part.step[at]), float(part.fraction[at]), event) for part, at, event in lasts)
@@ -124,7 +128,7 @@ def located(
     """Return the crossings in the steps from given states of a stretch; a zero at a state is that state."""
     exact = values[at + 1] == 0
     inside = at[~exact]
-    fraction, step = np.zeros(len(at)), at + exact
+    fraction, step = np.zeros(len(at)), stretch.step[at] + exact
     base = stretch.chosen(inside)
     fraction[~exact] = _roots(name, event, base, (values[inside], values[inside + 1]), between)
     states = stretch.chosen(at[exact] + 1).joined([between(base, fraction[~exact])])

@@ -9,7 +9,6 @@ from nonholo.base.results import Outcome, finished
 from nonholo.discrete import PRINCIPAL, Discretization
 from nonholo.io import Plan
 from nonholo.orbit import Orbit
-from nonholo.simulation.events._between import between_states
 from nonholo.simulation.events._blocks import NUMBERS, PIECE, computed_block, searched_first
 from nonholo.simulation.events._event import Event, checked_events
 from nonholo.simulation.events._search import Watch, search
@@ -20,7 +19,7 @@ _FIRST, _GROWTH = 16, 4  # steps of the first attempt of a run that cannot be re
 
 def watched(owner: str, discrete: Discretization, events: Any, branch: str, reconstruct: bool) -> Watch:
     """Return what a run looks for, after checking that it can."""
-    return Watch(watched_events(owner, discrete, events, branch, reconstruct), between_states(discrete))
+    return Watch(watched_events(owner, discrete, events, branch, reconstruct), discrete.after_parts)
 
 
 def watched_events(
@@ -28,16 +27,11 @@ def watched_events(
 ) -> dict[str, Event]:
     """Return events by name, refused where parts of a step are not defined or cannot be computed."""
     named, where = checked_events(owner, events), f"{owner}(events=...)"
-    if (forced := discrete.forces) is not None and (
-        forced.parts.keys() - {"friction"} or discrete.route.compiled is None
-    ):
-        remedy = "Look for changes of sign in the states yourself."
-        raise error(where, "be looked for under forces that do not depend on time", "a table or a function", remedy)
     if branch != PRINCIPAL.name:
         remedy = "Run with branch='principal', or look for changes of sign in the states yourself."
         raise error(where, "have the principal branch, where parts of a step are defined", f"branch {branch!r}", remedy)
-    if discrete.system.is_spatial and not reconstruct:
-        got = "reconstruct=False with a right-invariant constraint, whose step depends on the pose"
+    if discrete.step_needs_pose and not reconstruct:
+        got = "reconstruct=False with a step that depends on the pose"
         raise error(where, "have poses", got, "Run with reconstruct=True.")
     return named
 
@@ -77,7 +71,7 @@ def searched(watch: Watch, orbit: Orbit) -> tuple[Watch, int]:
     """Search an orbit of single steps; return what is known after it, and how many states belong to the motion."""
     kept, piece = 0, max(1, min(PIECE, NUMBERS // orbit.system.group.pose_size))
     for begun in range(0, max(1, len(orbit) - 1), piece):
-        watch, count = search(watch, orbit.chosen(slice(begun, begun + piece + 1)), begun)
+        watch, count = search(watch, orbit.chosen(slice(begun, begun + piece + 1)))
         kept = begun + count
         if watch.stopped_by:
             break

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import numpy as np
 import xarray
 
 from nonholo import io
@@ -33,7 +34,8 @@ def ensemble_to_dataset(ensemble: Ensemble) -> xarray.Dataset:
     for name, values in members.parameters.items():
         axes = _AXES[: values.ndim - 1] if values.ndim != 2 else (f"{name}_component",)
         variables[name] = ("member", *axes), values, {"long_name": "parameter of the member"}
-    return xarray.Dataset(variables, attrs=_attributes(ensemble)).set_coords("time")
+    numbered = {} if ensemble.save_every is None else {"step": ensemble.save_every * np.arange(ensemble.time.shape[1])}
+    return xarray.Dataset(variables, numbered, _attributes(ensemble)).set_coords("time")
 
 
 def _attributes(ensemble: Ensemble) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
 from nonholo.groups import SE
 from nonholo.orbit import Crossings, Orbit
-from nonholo.simulation.events import Between, Event, between_states, changes, located, values_at
+from nonholo.simulation.events import Between, Event, changes, located, values_at
 from nonholo.simulation.members._event_log import MemberCrossings, MemberEvents
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._result import Ensemble
@@ -69,7 +69,7 @@ def _flats(events: dict[str, Event], block: Ensemble) -> Iterator[Flat]:
         joined = member[1:] == member[:-1]
         at = [np.flatnonzero(changes(event, row) & joined) for event, row in zip(events.values(), values, strict=True)]
         rows = np.array(values).reshape(len(events), len(states))
-        yield Flat(states, member, number, rows, at, between_states(block.members.of(int(chosen[0]))))
+        yield Flat(states, member, number, rows, at, block.members.of(int(chosen[0])).after_parts)
 
 
 def _flat_states(
@@ -82,7 +82,7 @@ def _flat_states(
     turned = None if headings is None else headings[member, number]
     momenta, charts = block.reduced_momentum[member, number], block.cayley[member, number]
     time = discrete.time_step * number
-    return Orbit(discrete, time, momenta, charts, pose, turned=turned), member, number
+    return Orbit(discrete, time, momenta, charts, pose, turned=turned, step=number), member, number
 
 
 def _stopped(events: dict[str, Event], flat: Flat, end: np.ndarray, stopped: np.ndarray) -> Flat:
@@ -94,7 +94,7 @@ def _stopped(events: dict[str, Event], flat: Flat, end: np.ndarray, stopped: np.
     kept, moment = [at[at <= limit[flat.member[at]]] for at in flat.at], np.full(len(end), np.inf)
     within = [at[at == limit[flat.member[at]]] for at in kept]  # in the steps in which members end
     parts = [_located(events, flat, event, at) for event, at in enumerate(within)]
-    gone = [part.step - at + part.fraction for part, at in zip(parts, within, strict=True)]
+    gone = [part.step - flat.number[at] + part.fraction for part, at in zip(parts, within, strict=True)]
     for event, (at, part) in enumerate(zip(within, gone, strict=True)):
         ends = np.isin(at, ending[event]) & (part < moment[flat.member[at]])
         who = flat.member[at[ends]]
@@ -134,7 +134,7 @@ def _fill(states: Ensemble, flat: Flat, found: Crossings, at: np.ndarray) -> Non
     states.reduced_momentum[who, 0], states.cayley[who, 0] = found.states.reduced_momentum, found.states.canonical_chart
     if states.canonical_pose is not None and found.states.canonical_pose is not None:
         states.canonical_pose[who, 0] = found.states.canonical_pose
-    states.steps_done[who] = flat.number[at] + (found.step - at) + found.fraction
+    states.steps_done[who] = found.step + found.fraction
 
 
 def _thinned(block: Ensemble, every: int | None, end: np.ndarray, stopped: np.ndarray) -> Ensemble:

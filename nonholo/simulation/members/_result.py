@@ -80,8 +80,10 @@ class Ensemble:
 
     def _orbit(self, member: int, kept: slice | np.ndarray) -> Orbit:
         states = self._states(self.members.of(member), self.time[member, kept], (member, kept))
-        every = self.save_every or self.steps or 1
-        return dataclasses.replace(states, outcome=Outcome(int(self.outcome[member])), save_every=every)
+        every, width = self.save_every or self.steps or 1, self.cayley.shape[1]
+        done = np.array(self.steps_done[member : member + 1] if self.save_every is None else every * np.arange(width))
+        step = np.nan_to_num(done)[kept].astype(np.int64)
+        return dataclasses.replace(states, outcome=Outcome(int(self.outcome[member])), save_every=every, step=step)
 
     def _states(self, discrete: Discretization, time: np.ndarray, rows: Any) -> Orbit:
         """Return some rows of the states as an orbit."""

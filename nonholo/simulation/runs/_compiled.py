@@ -97,10 +97,11 @@ class CompiledRun:
         """Return rows of the kernel as an orbit."""
         momenta, charts, poses = rows
         number = begun // self.every + (0 if opening else 1)
-        time = self.discrete.time_step * (self.every * np.arange(number, number + len(momenta)))
+        step = self.every * np.arange(number, number + len(momenta))
         pose = self.route.decode_poses(poses) if self.reconstruct else None
         momenta, charts = self.route.decode(momenta), self.route.from_kernel(charts)
-        return Orbit(self.discrete, time, momenta, charts, pose, outcome, self.every)
+        time = self.discrete.time_step * step
+        return Orbit(self.discrete, time, momenta, charts, pose, outcome, self.every, step=step)
 
 
 def _paced(pace: int, seconds: float) -> int:

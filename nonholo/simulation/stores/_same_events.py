@@ -44,7 +44,7 @@ def _refuse_other_functions(where: str, stream: "Stream", run: CompiledRun, watc
         return  # whoever needs it to continue says so
     if first.seen is None:
         return
-    found, _ = search(watch, run.first(RunState.of(first.vector, run.sizes)), 0)
+    found, _ = search(watch, run.first(RunState.of(first.vector, run.sizes)))
     for name, now, then in zip(watch.events, seen_by(found, 0).values, first.seen.values, strict=True):
         if abs(now - then) > _SAME * (1 + abs(then)):
             got = f"another one of {name!r}: {now:.17g} instead of {then:.17g} at the first state"

@@ -287,15 +287,11 @@ class Forced(AbstractSystem):
             found[k] = midpoint_impulse(impulse, r[k], E[k], to_velocity[k])
         return found
 
-    def work(self, time: np.ndarray, g: np.ndarray, velocity: np.ndarray, every: int) -> Float[np.ndarray, "K"]:
-        """Return the work of the force along states since the first, by the trapezoidal rule."""
+    def work(self, time: np.ndarray, g: np.ndarray, velocity: np.ndarray, step: np.ndarray) -> Float[np.ndarray, "K"]:
+        """Return the work of the force along states of steps since the first, by the trapezoidal rule."""
         power = np.zeros(max(0, len(time) - 1))
         if self.table is not None:
-            if every > 1:
-                got = f"save_every {every} with a force for each step"
-                raise error("Orbit.work", "know every step", got, "Run with save_every=1.")
-            acting = self.rows(np.rint(time[:-1] / np.diff(time)).astype(int))
-            power += ((velocity[:-1] + velocity[1:]) * acting).sum(axis=1) / 2
+            power += ((velocity[:-1] + velocity[1:]) * self.rows(step[:-1])).sum(axis=1) / 2
         if self.parts.keys() - {"table"}:
             now = np.array([self.applied_force(*row) @ row[2] for row in zip(time, g, velocity, strict=True)])
             power += (now[:-1] + now[1:]) / 2

@@ -1,0 +1,258 @@
+"""The numbers of steps that an orbit knows, and what reads them: work, multipliers and events under forces."""
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.io import load_last_block
+
+H = 0.05
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
+VESELOVA = nh.VeselovaTop(TOP.mass_tensor)
+FOUR = nh.SuslovTop(np.diag([1.0, 1.3, 0.8, 1.1]) + 0.1)
+TABLE = np.random.default_rng(3).normal(size=(100, 3))
+HEAVY = nh.Gravity(force=[0.2, -0.3, -1.0], point=[0.1, 0.2, 0.3])
+
+
+def waving(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """A force that depends on everything."""
+    return np.sin(7 * time) * g[0] - 0.1 * time * w
+
+
+FORCED = {
+    "table on a top": nh.Forced(TOP, force=TABLE),
+    "table and weight on a top": nh.Forced(TOP, HEAVY, (TABLE, nh.Friction([0.1, 0.2, 0.3]))),
+    "table on a sleigh": nh.Forced(SLEIGH, force=TABLE),
+    "table and function on a sleigh": nh.Forced(SLEIGH, force=(TABLE, waving)),
+    "function on a top": nh.Forced(TOP, force=waving),
+    "table fixed in space": nh.Forced(VESELOVA, force=(TABLE, waving)),
+}
+STEPPED: dict[str, Callable[..., Any]] = {
+    "scalar": lambda **run: _run(TOP, **run),
+    "order 4": lambda **run: _run(TOP, order=4, **run),
+    "four dimensions": lambda **run: _run(FOUR, **run),
+    "right-invariant": lambda **run: _run(VESELOVA, **run),
+    "branch rule": lambda **run: _run(SLEIGH, branch="nearest", **run),
+    "table": lambda **run: _run(FORCED["table on a top"], **run),
+    "function in Python": lambda **run: _run(FORCED["function on a top"], **run),
+    "coordinates": lambda **run: _example(nh.examples.particle(), **run),
+    "group": lambda **run: _example(nh.examples.chaplygin_ball(), **run),
+}
+
+
+def _start(system: Any) -> dict[str, np.ndarray]:
+    return {"restricted_velocity": np.linspace(0.8, -0.5, system.rank)}
+
+
+def _run(system: Any, *, order: int = 2, **run: Any) -> nh.Orbit:
+    return nh.simulate(nh.discretize(system, H, order=order), **_start(system), **run)
+
+
+def _here(example: Any) -> dict[str, Any]:
+    return {"configuration": example.configuration, "body_velocity": example.body_velocity}
+
+
+def _example(example: Any, **run: Any) -> Any:
+    return nh.simulate(nh.discretize(example.system, H), **_here(example), **run)
+
+
+def _level(states: nh.Orbit) -> np.ndarray:
+    """What changes sign in every run here."""
+    return 0.05 * states.restricted_momentum[:, 1] + np.sin(3 * states.time)
+
+
+@functools.cache
+def _whole(name: str) -> nh.Orbit:
+    return _run(FORCED[name], steps=100)
+
+
+@pytest.mark.profile("routes", cases=["group"])
+@pytest.mark.parametrize("kind", STEPPED)
+def test_each_way_to_take_rows_keeps_the_steps(kind: str) -> None:
+    """Of orbits of all maps: rows have the numbers of their steps, which the times of a run tell."""
+    orbit = STEPPED[kind](steps=24, save_every=2)
+    assert orbit.step.dtype == np.int64
+    assert orbit.step.tolist() == list(range(0, 25, 2))
+    parts = orbit.chosen(slice(3, None, 4)), orbit.chosen(orbit.step % 3 == 0), orbit.chosen(np.array([5, 2, 2]))
+    joined = parts[0].joined(parts[1:])
+    for part in (*parts, joined):
+        assert np.abs(part.time - H * part.step).max() < 1e-14
+    assert joined.step.tolist() == [6, 14, 22, 0, 6, 12, 18, 24, 10, 4, 4]
+    assert orbit.to_dataset()["step"].values.tolist() == orbit.step.tolist()
+    assert joined.chosen(slice(0, 0)).step.tolist() == []
+
+
+@pytest.mark.parametrize("kind", ["scalar", "table", "coordinates"])
+def test_stores_keep_the_steps(kind: str, tmp_path: Path) -> None:
+    """Of whole runs, of parts that were saved, of the last block, and of what `extend` adds."""
+    whole = STEPPED[kind](steps=20, save_every=2)
+    for number, part in enumerate((whole, whole.chosen(slice(2, None, 3)), whole.chosen(np.array([1, 7, 9])))):
+        nh.save_orbit(part, tmp_path / f"{number}.zarr")
+        loaded = nh.load_orbit(tmp_path / f"{number}.zarr", discrete=whole.motion)
+        assert loaded.step.dtype == np.int64
+        assert np.array_equal(loaded.step, part.step)
+    path = tmp_path / "run.zarr"
+    STEPPED[kind](steps=14, save_every=2, store=path, checkpoint_every=6)
+    assert np.array_equal(nh.extend(path, 6, discrete=whole.motion).step, whole.step)
+    assert load_last_block(path, whole.motion).step.tolist() == [18, 20]
+
+
+def test_blocks_of_iterators_keep_the_steps() -> None:
+    """Blocks count on from those before them, in bodies and in coordinates."""
+    particle = nh.examples.particle()
+    runs = (nh.discretize(TOP, H), _start(TOP)), (nh.discretize(particle.system, H), _here(particle))
+    for discrete, at in runs:
+        blocks = list(nh.iterate(discrete, **at, steps=20, save_every=2, block_steps=6))
+        assert len(blocks) > 2
+        assert np.concatenate([block.step for block in blocks]).tolist() == list(range(0, 21, 2))
+
+
+@pytest.mark.parametrize(("every", "steps"), [(None, [9]), (3, [0, 3, 6, 9])])
+def test_members_of_ensembles_know_their_steps(every: int | None, steps: list[int]) -> None:
+    """Of bodies side by side and one by one, and in coordinates."""
+    particle = nh.examples.particle()
+    here = {"configuration": particle.configuration, "body_velocity": np.array([particle.body_velocity] * 2)}
+    cases = (
+        (nh.discretize(TOP, H), {"restricted_velocity": np.ones((2, 2))}),
+        (nh.discretize(FORCED["table on a top"], H), {"restricted_velocity": np.ones((2, 2))}),
+        (nh.discretize(particle.system, H), here),
+    )
+    for discrete, start in cases:
+        assert nh.ensemble(discrete, **start, steps=9, save_every=every).orbit(1).step.tolist() == steps
+
+
+def test_motions_without_steps_number_their_rows() -> None:
+    """Flows the requested times, also of `at` and in coordinates, and given poses their rows."""
+    run, particle = _run(TOP, steps=10), nh.examples.particle()
+    flows = (
+        nh.flow(TOP, **_start(TOP), times=np.linspace(0, 1, 11)),
+        nh.flow(particle.system, **_here(particle), times=np.linspace(0, 1, 11)),
+        nh.Orbit.from_poses(TOP, run.time, run.configuration),
+        nh.ensemble(TOP, restricted_velocity=np.ones((2, 2)), times=np.linspace(0, 1, 11)).orbit(1),
+    )
+    for flow in flows:
+        assert flow.step.tolist() == list(range(11))
+        assert flow.chosen(np.array([2, 7])).step.tolist() == [2, 7]
+    assert flows[0].at([0.3, 0.1]).step.tolist() == [0, 1]
+
+
+@pytest.mark.parametrize("name", [name for name in FORCED if "table" in name])
+def test_work_under_a_table_is_that_of_every_step(name: str) -> None:
+    """However rows are taken: that of the whole run at these rows, less that before the first, to rounding."""
+    whole = _whole(name)
+    work = whole.work
+    thinned = _run(FORCED[name], steps=100, save_every=7)
+    rows = np.arange(0, 101, 7), np.flatnonzero(np.random.default_rng(5).random(101) < 0.2), np.array([40, 41, 41, 60])
+    for part, at in ((thinned, rows[0]), (whole[::7], rows[0]), *((whole.chosen(at), at) for at in rows)):
+        assert np.abs(part.work - (work[at] - work[at[0]])).max() < 1e-13  # 100 steps, each to some 1e-15
+
+
+def test_work_of_rows_that_are_no_run_is_refused() -> None:
+    """Under a table: rows backwards, states within steps, and given poses of which some are left out."""
+    whole = _whole("table on a top")
+    poses = nh.Orbit.from_poses(whole.system, whole.time, whole.configuration)
+    assert len(poses.work) == 101
+    event = nh.crossings(whole, lambda states: np.sin(9 * states.time))
+    for part in (whole.chosen(np.array([7, 3])), event.states, poses.chosen(np.arange(0, 101, 7))):
+        with pytest.raises(ValueError, match=r"`Orbit.work` must"):
+            _ = part.work
+        assert np.isnan(part.known_work).all()
+
+
+@pytest.mark.parametrize("system", [TOP, SLEIGH, VESELOVA, *FORCED.values()])
+def test_multipliers_of_some_rows_are_those_of_their_steps(system: Any) -> None:
+    """Of rows that were taken by their numbers: the impulses of the single steps from them, to rounding."""
+    whole, rows = _run(system, steps=100), np.array([0, 7, 14, 50, 99])
+    assert np.abs(whole.chosen(rows).multipliers - whole.multipliers[rows[:-1]]).max() < 1e-14
+
+
+@pytest.mark.parametrize("name", FORCED)
+def test_the_whole_part_of_a_step_under_forces_is_the_step(name: str) -> None:
+    """At s = 1 a part is the next state: momenta, poses, displacements and node momenta, to a few units of rounding."""
+    whole = _whole(name)
+    ahead, after = whole.motion.after_parts(whole[:-1], np.ones(100)), whole[1:]
+    for quantity in ("time", "step", "reduced_momentum", "cayley", "canonical_pose", "momentum"):
+        mine, theirs = getattr(ahead, quantity), getattr(after, quantity)
+        assert np.abs(mine - theirs).max() <= 4e-15 * max(1.0, np.abs(theirs).max()), quantity  # 4 x 4 products
+
+
+@pytest.mark.parametrize("name", FORCED)
+def test_events_under_forces_are_where_bisection_finds_them(name: str) -> None:
+    """A crossing is where a map with another time step, from the state before and under the forces then, arrives."""
+    forced = FORCED[name]
+    event = nh.Event(_level, name="level")
+    found = nh.simulate(nh.discretize(forced, H), **_start(forced), steps=100, events=[event]).events[0]
+    whole = _whole(name)
+    assert len(found) > 0
+    k, fraction = int(found.step[-1]), float(found.fraction[-1])
+    begin, row = whole.time[k], None if forced.table is None else np.asarray(forced.table)[k : k + 1]
+    parts = [] if row is None else [row]
+    parts += [] if forced.friction is None else [forced.friction]
+    if forced.function is not None:
+        parts.append(lambda time, g, w: waving(begin + time, g, w))
+    moved = nh.Forced(forced.system, forced.potential, tuple(parts) if len(parts) > 1 else parts[0])
+    start = {"momentum": whole.restricted_momentum[k], "configuration": whole.configuration[k]}
+
+    def value(s: float) -> float:
+        states = nh.simulate(nh.discretize(moved, s * H), **start, steps=1, throw=False)
+        return float(0.05 * states.restricted_momentum[1, 1] + np.sin(3 * (begin + s * H)))
+
+    low, high, sign = 2.0**-30, 1.0, np.sign(_level(whole[k : k + 1])[0])
+    for _ in range(44):
+        middle = (low + high) / 2
+        low, high = (middle, high) if np.sign(value(middle)) == sign else (low, middle)
+    slope = abs(value(high) - value(low - 1e-3)) / 1e-3
+    assert abs(fraction - low) < 2**-43 + 4e-15 / slope
+    assert np.abs(_level(found.states)).max() < 4e-15  # ulps of 3 t = 15
+
+
+def test_thinned_runs_stores_blocks_and_members_have_the_same_crossings(tmp_path: Path) -> None:
+    """Under a table: to the last bit those of the run in memory that keeps every step."""
+    discrete = nh.discretize(FORCED["table and weight on a top"], H)
+    start, steps = _start(TOP), {"steps": 100, "events": [nh.Event(_level, name="level")]}
+    whole = nh.simulate(discrete, **start, **steps).events[0]
+    assert len(whole) > 1
+    blocks = list(nh.iterate(discrete, **start, **steps, save_every=5, block_steps=20))
+    logs = [
+        nh.simulate(discrete, **start, **steps, save_every=7).events[0],
+        nh.simulate(discrete, **start, **steps, store=tmp_path / "run.zarr", checkpoint_every=10).events[0],
+        nh.crossings(_whole("table and weight on a top"), steps["events"][0]),
+    ]
+    log = blocks[0].events[0].states.joined([block.events[0].states for block in blocks[1:]])
+    for states in (log, *(each.states for each in logs)):
+        for quantity in ("time", "step", "reduced_momentum", "cayley", "canonical_pose"):
+            assert np.array_equal(getattr(states, quantity), getattr(whole.states, quantity))
+    member = nh.ensemble(discrete, restricted_velocity=[start["restricted_velocity"]], **steps).events[0]
+    assert member.count.tolist() == [len(whole)]
+    assert np.abs(member.last.time[0, 0] - whole.time[-1]) < 1e-14
+
+
+def test_crossings_of_a_part_of_an_orbit_count_from_its_run() -> None:
+    """The numbers of steps of crossings are those of the run, whatever rows are searched."""
+    whole = _whole("table on a sleigh")
+    found = nh.crossings(whole, nh.cusp)
+    later = nh.crossings(whole[20:], nh.cusp)
+    assert later.step.tolist() == found.step[found.step >= 20].tolist()
+    assert np.array_equal(later.states.step, later.step)
+    assert len(later)
+
+
+def test_events_without_poses_are_refused_where_forces_depend_on_them() -> None:
+    """A weight acts by the pose: without poses its parts of steps would be those of another pose."""
+    heavy = nh.discretize(nh.Forced(TOP, HEAVY), H)
+    with pytest.raises(ValueError, match=r"must have poses. Got reconstruct=False with a step that depends on"):
+        nh.simulate(heavy, **_start(TOP), steps=5, reconstruct=False, events=[lambda o: o.restricted_momentum[:, 0]])
+    rubbed = nh.discretize(nh.Forced(TOP, force=(TABLE, nh.Friction([0.1, 0.2, 0.3]))), H)
+    level = nh.Event(_level, name="level")
+    with_poses, without = (
+        nh.simulate(rubbed, **_start(TOP), steps=100, reconstruct=posed, events=[level]).events[0]
+        for posed in (True, False)
+    )
+    assert len(without)
+    assert np.array_equal(with_poses.time, without.time)
