@@ -126,6 +126,36 @@ def test_exact_record_is_fitted_exactly() -> None:
     np.testing.assert_allclose(found.orbit.configuration, orbit.configuration, atol=1e-10)
 
 
+def _mixed_record(seed: int, every: dict[str, int], noise: dict[str, float]) -> dict[str, np.ndarray]:
+    """Return a record of the sleigh with kinds at rates of their own: one number in `every` of each kind is there."""
+    orbit, rng = nh.simulate(SLEIGH, restricted_velocity=(1.0, 0.5), steps=60), np.random.default_rng(seed)
+    columns = {"x": orbit.position[:, 0], "y": orbit.position[:, 1]}
+    columns |= {"theta": orbit.heading, "omega": orbit.body_velocity[:, 0]}
+    kinds = dict(zip(columns, ("position", "position", "turn", "rate"), strict=True))
+    record = {"t": orbit.time}
+    for name, column in columns.items():
+        measured = np.arange(61) % every[kinds[name]] == 0
+        record[name] = np.where(measured, column + noise[kinds[name]] * rng.normal(size=61), np.nan)
+    return record
+
+
+def test_residuals_and_noise_are_those_of_their_kind() -> None:
+    """Poses at every tenth sample beside a gyroscope: residuals are measured minus fitted numbers of their own column.
+
+    Where a column has gaps, its residuals have them, and the noise of each kind lies near the true one.
+    """
+    noise = {"position": 0.01, "turn": 0.002, "rate": 0.05}
+    record = _mixed_record(1, {"position": 10, "turn": 5, "rate": 1}, noise)
+    found = nh.fit(_sleigh, record, GUESS)
+    (residuals,), orbit = found.residuals, found.orbit
+    np.testing.assert_allclose(residuals["turn"][:, 0], record["theta"] - orbit.heading, atol=1e-12)
+    np.testing.assert_allclose(residuals["rate"][:, 0], record["omega"] - orbit.body_velocity[:, 0], atol=1e-12)
+    places = np.stack([record["x"], record["y"]], axis=1)
+    np.testing.assert_allclose(residuals["position"], places - orbit.position, atol=1e-12)
+    for kind, level in found.noise.items():
+        assert noise[kind] / 3 < level < 3 * noise[kind]
+
+
 @pytest.mark.profile("routes", instead="test_top_is_found_from_its_gyroscope")
 def test_trials_share_the_body_and_tables_may_have_any_form(tmp_path: Path) -> None:
     """Two trials tell more than one; a CSV file, a table of pandas and a dictionary are read alike."""

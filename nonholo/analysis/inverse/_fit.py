@@ -171,9 +171,9 @@ def fit(
 def _minimum(problem: Problem, point: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the best point, and the noise levels of the kinds, each from the other until both have settled."""
     noise = np.ones(len(problem.kinds))
-    free = problem.mask.sum() - len(point)
+    free = len(problem.kind_of) - len(point)
     if free < 1:
-        got = f"{problem.mask.sum()} numbers for {len(point)} unknowns"
+        got = f"{len(problem.kind_of)} numbers for {len(point)} unknowns"
         raise error("fit(measurements=...)", "be more than the unknowns", got, "Measure longer.")
     if not np.isfinite(problem.rows(point)).all():
         remedy = "Begin nearer to the body, or with a smaller time step."
@@ -190,7 +190,7 @@ def _minimum(problem: Problem, point: np.ndarray) -> tuple[np.ndarray, np.ndarra
             gtol=1e-12,
         )
         point, rows, before = found.x, problem.rows(found.x), noise
-        part = free / problem.mask.sum()
+        part = free / len(problem.kind_of)
         noise = np.array([np.sqrt(np.mean(rows[problem.kind_of == i] ** 2) / part) for i in range(len(noise))])
         noise = np.maximum(noise, np.finfo(np.float64).tiny)
         if np.abs(noise / before - 1).max() < _SETTLED:
@@ -203,12 +203,10 @@ def _result(problem: Problem, point: np.ndarray, noise: np.ndarray, made: Any) -
     covariance = _covariance(problem, point, noise, shapes)
     parameters = _parameters(shapes, point[: problem.count])
     system = system_of(parameters)
-    rows = np.where(problem.mask, problem.at(point)[0], np.nan)
-    cuts = np.cumsum([x.shape[2] for x in problem.there.values()])[:-1]
-    parts = dict(zip(problem.kinds, np.split(rows, cuts, axis=2), strict=True))
-    residuals = tuple({kind: part[i] for kind, part in parts.items()} for i in range(len(rows)))
-    starts = point[problem.count :].reshape(problem.shape)
-    orbits = [_orbit(system, h, *row, rows.shape[1] - 1) for row in zip(starts, problem.poses, strict=True)]
+    rows = {kind: np.where(there, problem.at(point)[kind][0], np.nan) for kind, there in problem.there.items()}
+    residuals = tuple({kind: part[i] for kind, part in rows.items()} for i in range(len(problem.poses)))
+    starts, steps = point[problem.count :].reshape(problem.shape), next(iter(problem.kinds.values())).shape[1] - 1
+    orbits = [_orbit(system, h, *row, steps) for row in zip(starts, problem.poses, strict=True)]
     levels = {kind: float(x) for kind, x in zip(problem.kinds, noise, strict=True)}
 
     def exists(numbers: np.ndarray) -> bool:
