@@ -7,13 +7,29 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.analysis.inverse._profile import Minimum
-from nonholo.base.types import Float
+from nonholo.base.types import Array, Float
+
+Shapes = tuple[tuple[str, tuple[int, ...]], ...]
+
+
+def named(shapes: Shapes, numbers: Array) -> dict[str, Array]:
+    """Return the parameters in a vector by name, traced ones too."""
+    cuts = np.cumsum([0, *(int(np.prod(shape)) for _, shape in shapes)])
+    return {name: numbers[i:j].reshape(shape)[()] for (name, shape), i, j in zip(shapes, cuts, cuts[1:], strict=False)}
 
 
 @dataclasses.dataclass(eq=False)
 class Problem:
-    """Residuals and derivatives at a point: parameters, then the start of each trial."""
+    """Residuals and derivatives at a point: parameters, then the start of each trial.
+
+    Attributes:
+        missed: Residuals with derivatives, of parameters, starts, poses and kinds.
+        poses: Where the changes of pose in the starts begin.
+        kinds: What was measured.
+        count: How many parameters there are.
+        shape: Of the starts: trials, numbers of each.
+        known: The last point with what is missed there.
+    """
 
     missed: Callable[..., Any]
     poses: Float[np.ndarray, "T N N"]
@@ -24,9 +40,9 @@ class Problem:
 
     @functools.cached_property
     def there(self) -> dict[str, np.ndarray]:
-        """Which residuals belong to measured numbers."""
+        """Which residuals belong to measured numbers, of the kinds that have some."""
         found = {kind: np.isfinite(rows) for kind, rows in self.kinds.items()}
-        return {k: x[..., :3] if k == "turn" else x for k, x in found.items()}
+        return {k: x[..., :3] if k == "turn" else x for k, x in found.items() if x.any()}
 
     def at(self, point: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
         """Return by kind the residuals and both derivatives, computed once for each point."""
@@ -54,10 +70,5 @@ class Problem:
 
     @functools.cached_property
     def kind_of(self) -> np.ndarray:
-        """The kind of each measured number, as a position in `kinds`."""
+        """The kind of each measured number, as a position in `there`."""
         return np.repeat(np.arange(len(self.there)), [np.count_nonzero(x) for x in self.there.values()])
-
-    def minimum(self, point: np.ndarray, noise: np.ndarray, exists: Callable[[np.ndarray], bool]) -> Minimum:
-        """Return what profiles need of the best point under noise levels of the kinds."""
-        scale, free = noise[self.kind_of], len(self.kind_of) - len(point)
-        return Minimum(lambda x: self.rows(x) / scale, lambda x: self.slope(x) / scale[:, None], exists, point, free)

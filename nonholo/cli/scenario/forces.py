@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 from pydantic import Discriminator, Tag, model_validator
 
 import nonholo
+from nonholo.base.limits import read_text
 from nonholo.cli.scenario.sections import Matrix, Section, Vector
-from nonholo.cli.scenario.toml import read_text
 
 if TYPE_CHECKING:
     from nonholo.systems import System
