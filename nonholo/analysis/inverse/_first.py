@@ -18,27 +18,25 @@ def first(system: System, h: float, kinds: dict[str, np.ndarray], *, is_robust: 
     if they are to be borne.
     """
     group, S = system.group, system.constraint_subspace
-    seen = {kind: rows for kind, rows in kinds.items() if np.isfinite(rows).any()}
-    poses = {kind: _whole(kind, seen[kind]) for kind in ("position", "turn") if kind in seen}
+    is_seen = {kind: bool(np.isfinite(rows).any()) for kind, rows in kinds.items()}
+    poses = {kind: _whole(kind, kinds[kind], is_robust) for kind in ("position", "turn") if is_seen.get(kind)}
     if not poses:
-        rate = seen["rate"]
+        rate = kinds["rate"]
         whole = rate[np.isfinite(rate).all(axis=1)][:1].ravel()
         return group.identity, np.linalg.lstsq(S[:, : len(whole)].T, whole)[0]
     if "turn" not in poses and group != SE(2):
         raise error(WHERE, "have turns beside positions in space", "positions", "Measure turns, such as quaternions.")
-    if is_robust:
-        poses = {kind: (nodes, _straight(nodes, rows)) for kind, (nodes, rows) in poses.items()}
     begin = max(int(nodes[0]) for nodes, _ in poses.values())
     after = max(int(nodes[nodes > begin][:1].sum()) for nodes, _ in poses.values())
     ends = begin, max(after, begin + _NEAR)
     g = _matrices(system, {kind: _at(ends, *rows) for kind, rows in poses.items()}, poses, ends)
     velocity = group.log(group.inverse(g[0]) @ g[1]) / ((ends[1] - begin) * h)
-    fitted = group.dim if "position" in poses else group.dim - (group.size - 1 if "position" in kinds else 0)
-    start = np.concatenate([np.linalg.lstsq(S.T, velocity)[0], np.zeros(fitted)])
+    unseen = 0 if "position" in poses else kinds.get("position", np.zeros((0, 0))).shape[1]
+    start = np.concatenate([np.linalg.lstsq(S.T, velocity)[0], np.zeros(group.dim - unseen)])
     return g[0] @ group.exp(-velocity * begin * h), start
 
 
-def _whole(kind: str, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _whole(kind: str, rows: np.ndarray, is_robust: bool) -> tuple[np.ndarray, np.ndarray]:
     """Return the nodes where a kind is measured whole, and what was measured without jumps of angles and signs."""
     nodes = np.flatnonzero(np.isfinite(rows).all(axis=1))
     if len(nodes) < 2:
@@ -47,13 +45,12 @@ def _whole(kind: str, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     found = rows[nodes]
     if found.shape[1] == 4:  # a quaternion, up to its sign
         found[1:] *= np.cumprod(np.where(np.sum(found[1:] * found[:-1], axis=1) < 0, -1.0, 1.0))[:, None]
-    return nodes, np.unwrap(found, axis=0) if found.shape[1] == 1 else found
+    found = np.unwrap(found, axis=0) if found.shape[1] == 1 else found
+    return nodes, _straight(nodes, found) if is_robust and len(found) >= _ENOUGH else found
 
 
 def _straight(nodes: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Return rows of which the first lie on straight lines by Theil and Sen, which bear a quarter of outliers."""
-    if len(rows) < _ENOUGH:
-        return rows
+    """Return rows of which the first dozen lie on straight lines by Theil and Sen, which bear a quarter of outliers."""
     times, some, (i, j) = nodes[:_ENOUGH], rows[:_ENOUGH], np.triu_indices(_ENOUGH, 1)
     if rows.shape[1] == 1:  # headings, which an outlier of half a turn may have shifted by a whole one
         middle = np.angle(np.exp(1j * some).sum())

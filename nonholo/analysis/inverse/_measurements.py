@@ -46,16 +46,25 @@ def kinds_of(group: AbstractMatrixGroup, given: Any, time_step: float | None, ea
     h = min(float(np.diff(time).min()) for time in times) if time_step is None else time_step
     most = 1 + min(max(float(time[-1] - time[0]) for time in times) / h, _HUGE)
     within_memory(WHERE, len(tables) * most * each, f"Pass a time_step larger than {h:g}, or other times.")
-    nodes = [_nodes(time, h) for time in times]
-    size = 1 + max(int(node[-1]) for node in nodes)
-    found = [_trial(group, *row, size) for row in zip(tables, nodes, strict=True)]
-    kinds = {kind: np.array([trial[kind] for trial in found]) for kind in _NAMES[group]}
+    kinds = _on_nodes(group, tables, [_nodes(time, h) for time in times])
     seen = np.array([np.isfinite(rows).any(axis=(1, 2)) for rows in kinds.values()])
     if not (seen.any() and (seen == seen[:, :1]).all()):
         remedy = f"Name them {'; '.join(', '.join(choices[0]) for choices in _NAMES[group].values())}."
         got = "different ones" if seen.any() else ", ".join(tables[0])
         raise error(WHERE, f"have the same columns of a motion in {group} in every trial", got, remedy)
     return kinds, h
+
+
+def _on_nodes(group: AbstractMatrixGroup, tables: list[dict[str, Any]], nodes: list[np.ndarray]) -> Kinds:
+    """Return the numbers of tables on the nodes, by kind."""
+    size, kinds = 1 + max(int(each[-1]) for each in nodes), {}
+    for kind, choices in _NAMES[group].items():
+        kinds[kind] = np.full((len(tables), size, len(choices[0])), np.nan)
+        for target, table, at in zip(kinds[kind], tables, nodes, strict=True):
+            names = next((names for names in choices if all(name in table for name in names)), ())
+            if names:
+                target[at] = _rows(kind, table, names, (len(at), len(choices[0])))
+    return kinds
 
 
 def _columns(table: Any) -> dict[str, Any]:
@@ -106,17 +115,6 @@ def _nodes(time: np.ndarray, h: float) -> np.ndarray:
         got = f"{time[:-1][twice][0]:.12g} and {time[1:][twice][0]:.12g} at one step"
         raise error(WHERE, "have one row at a time step", got, "Pass a smaller time_step, or put rows together.")
     return nodes
-
-
-def _trial(group: AbstractMatrixGroup, table: dict[str, Any], nodes: np.ndarray, size: int) -> dict[str, np.ndarray]:
-    """Return the numbers of a table on the nodes, by kind."""
-    found = {}
-    for kind, choices in _NAMES[group].items():
-        found[kind] = np.full((size, len(choices[0])), np.nan)
-        names = next((names for names in choices if all(name in table for name in names)), ())
-        if names:
-            found[kind][nodes] = _rows(kind, table, names, (len(nodes), len(choices[0])))
-    return found
 
 
 def _rows(kind: str, table: dict[str, Any], names: tuple[str, ...], shape: tuple[int, int]) -> np.ndarray:
