@@ -11,7 +11,7 @@ from nonholo.analysis.inverse._problem import Problem
 from nonholo.analysis.inverse._profile import Minimum
 
 _ROUNDS = 60  # of noise levels that follow from residuals, and residuals from noise levels
-_MOST = 100  # places that are looked at in a round
+_MOST = 100  # places that are looked at in a round before the levels have settled
 _COARSE, _FINE = 1e-6, 1e-12  # relative tolerances of the search, before the levels have settled and then
 _SETTLED = 1e-4  # relative change of noise levels
 _FAR = 10.0  # times its guess, where a parameter that the record does not tell has gone to infinity
@@ -103,7 +103,7 @@ class Search(NamedTuple):
                 xtol=tolerance,
                 ftol=tolerance,
                 gtol=tolerance,
-                max_nfev=_MOST,
+                max_nfev=_MOST if tolerance == _COARSE else None,
             )
             return np.where(is_log, np.exp(found.x), found.x)
 
