@@ -12,6 +12,7 @@ from nonholo.base.checks import count, error
 _YEAR = 365.25 * 24 * 3600.0
 _UNITS = ("B", "kB", "MB", "GB", "TB", "PB", "EB")
 _UNLIMITED = ("max", "")
+_LARGEST_TEXT = 1 << 22  # bytes of a file: a mass tensor of some hundred dimensions fits
 
 
 def within_memory(where: str, wanted: float, remedy: str) -> None:
@@ -25,6 +26,17 @@ def within_memory(where: str, wanted: float, remedy: str) -> None:
     """
     if wanted > (limit := memory_limit()):
         raise error(where, "fit into memory", f"about {size_text(wanted)} of {size_text(limit)}", remedy)
+
+
+def read_text(path: Path, largest: int = _LARGEST_TEXT) -> str:
+    """Return the text of a file, refused with an OSError if it is none or too large; pipes and devices may not end."""
+    if path.exists() and not path.is_file():  # to open a pipe may take forever
+        raise OSError("it is a folder, a device or a pipe")
+    with path.open("rb") as file:
+        found = file.read(largest + 1)
+    if len(found) > largest:
+        raise OSError(f"it has more than {size_text(largest)}")
+    return found.decode("utf-8-sig")
 
 
 def within_disk(where: str, wanted: float, folder: Path, remedy: str) -> None:

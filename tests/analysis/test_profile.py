@@ -90,7 +90,7 @@ def test_side_may_end_with_the_model() -> None:
 def test_fit_is_kept_without_its_functions() -> None:
     """What is pickled, of a lambda too, has all but the profile, which says so."""
     minimum, _ = _line(0.5)
-    found = Fit({"a": 1.0, "b": 0.5}, np.eye(2), None, None, (), {}, 13, minimum)
+    found = Fit({"a": 1.0, "b": 0.5}, np.eye(2), None, None, (), {}, "converged", np.full(2, 13.0), 13, minimum)
     found = pickle.loads(pickle.dumps(found))  # noqa: S301
     assert found.parameters == {"a": 1.0, "b": 0.5}
     with pytest.raises(ValueError, match="Fit again"):

@@ -61,6 +61,9 @@ def _of_maps() -> list[Call]:
             measurements=anything(_RECORD),
             guess=anything({"a": 0.4}),
             time_step=positive(0.1),
+            noise=anything(0.01),
+            bounds=anything({"a": (0.1, 1.0)}),
+            loss=text("linear"),
             slow=True,
         ),
         call(

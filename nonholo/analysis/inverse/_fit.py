@@ -7,24 +7,24 @@ from collections.abc import Callable, Mapping
 from typing import Any, cast
 
 import numpy as np
-from scipy.optimize import least_squares
 from scipy.special import stdtrit
 
-from nonholo.analysis.inverse._measurements import Trial, trials_of
-from nonholo.analysis.inverse._problem import Problem
+from nonholo.analysis.inverse._first import first
+from nonholo.analysis.inverse._likelihood import LOSSES, Estimate
+from nonholo.analysis.inverse._measurements import WHERE, kinds_of
+from nonholo.analysis.inverse._problem import Problem, Shapes, named
 from nonholo.analysis.inverse._profile import Minimum, Profile, profile_of
-from nonholo.base.checks import array, choice, error, function, needs, positive, shown
+from nonholo.analysis.inverse._search import Found, Ranges, Search, outcome_of
+from nonholo.base.checks import array, choice, error, function, instance, needs, number, pair, scale, shown
 from nonholo.base.types import Array, Float
 from nonholo.discrete import discretize
-from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
 from nonholo.systems import AbstractSystem, System
 
-_ROUNDS = 6  # of noise levels that follow from residuals, and residuals from noise levels
-_SETTLED = 1e-3  # relative change of noise levels
 _FLAT = 1e-10  # least singular value of scaled derivatives, relative to the largest
-_NEAR = 5  # nodes between the poses that a first velocity is taken from
+_LEAST_FREE = 0.1  # numbers of a kind that tell its noise
+_COPIES = 8  # of matrices at a node, and their derivatives
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -33,13 +33,20 @@ class Fit:
 
     Attributes:
         parameters: The fitted numbers by name.
-        covariance: Of all of them, in the order of the guess, arrays row by row; the starts are marginalized.
+        covariance: Of all of them, in the order of the guess, arrays row by row; the starts are marginalized. It is
+            somewhat wider than that of known noise, by Kenward and Roger, where noise levels are estimated.
         system: `system_of(parameters)`.
         orbit: The fitted motion, a discrete orbit; of several trials a tuple of them. Time 0 is the first sample's.
         residuals: Measured minus fitted numbers of each trial by kind, "position", "turn" and "rate", (K, ...); NaN
             where nothing was measured. A turn in space is the vector of the rotation from the fitted pose.
-        noise: Standard deviation of the residuals of each kind.
-        samples: Measured numbers less fitted ones: the degrees of freedom of the residuals.
+        noise: Standard deviation of the noise of each kind, estimated or given.
+        outcome: "converged": the loss is least nearby, and the noise levels have settled. "lost": residuals are many
+            times the noise, which is given or that from sample to sample, turns are off by a radian and more, or a
+            parameter went to infinity; begin nearer, or look for outliers, wrong units and what the model lacks.
+            "not_converged": neither, such as a parameter at the end of its bounds. Only intervals of a fit that has
+            converged mean something.
+        degrees: Degrees of freedom of each parameter's error, by Satterthwaite; infinite where noise is given.
+        samples: Measured numbers less fitted ones.
         minimum: The sum of squares about the fitted point, parameters, then starts, for profiles; None after pickling.
     """
 
@@ -49,6 +56,8 @@ class Fit:
     orbit: Orbit | tuple[Orbit, ...]
     residuals: tuple[dict[str, np.ndarray], ...] = dataclasses.field(repr=False)
     noise: dict[str, float]
+    outcome: str
+    degrees: Float[np.ndarray, "P"]
     samples: int
     minimum: Minimum | None = dataclasses.field(repr=False)
 
@@ -60,9 +69,10 @@ class Fit:
     def intervals(self) -> dict[str, tuple[Any, Any]]:
         """Intervals that hold each parameter with a probability of 95 %, if the noise is normal and the model right.
 
-        They are those of the linearized model. `profile` has those of the likelihood itself.
+        They are those of the linearized model, with Student's quantile at the `degrees` of each parameter. `profile`
+        has those of the likelihood itself.
         """
-        half, found, at = stdtrit(self.samples, 0.975) * np.sqrt(self.covariance.diagonal()), {}, 0
+        half, found, at = stdtrit(self.degrees, 0.975) * np.sqrt(self.covariance.diagonal()), {}, 0
         for name, value in self.parameters.items():
             width = half[at : at + np.size(value)].reshape(np.shape(value))
             found[name], at = (value - width, value + width), at + np.size(value)
@@ -74,9 +84,10 @@ class Fit:
         $$ \tau(\theta) = \pm\sqrt{S(\theta) - S(\hat\theta)},\qquad |\tau| \le t_\nu\bigl(\tfrac{1 + p}2\bigr), $$
 
         where S is the least sum of squared residuals over all other numbers, in units of the noise levels of the fit,
-        and t the quantile of Student's distribution at $\nu$ = `samples` degrees of freedom: $\tau^2$ is compared with
-        $F_{1,\nu}$, which chi-squared takes the place of where the noise is known. Of a linear model this is the usual
-        interval, exactly; where the model is curved, it needs no parabola, and may be lopsided or without bound.
+        or the robust loss in units in which it grows alike, and t the quantile of Student's distribution at the
+        `degrees` $\nu$ of the parameter: $\tau^2$ is compared with $F_{1,\nu}$, which chi-squared takes the place of
+        where the noise is known. Of a linear model this is the usual interval, exactly; where the model is curved, it
+        needs no parabola, and may be lopsided or without bound.
 
         A profile is followed outwards, each of its points fitted from the one before: what lies beyond another minimum
         on the way may be missed. Sources: [bates-watts-1988], [venzon-moolgavkar-1988].
@@ -109,16 +120,24 @@ def fit(
     guess: Mapping[str, Any],
     *,
     time_step: Any = None,
+    noise: Any = None,
+    bounds: Any = None,
+    loss: str = "linear",
 ) -> Fit:
     r"""Fit the numbers of a body to recorded motion, and the start of each trial with them.
 
-    $$ \min \sum_i \sum_k \Bigl|\frac{z_{ik} - \hat z_k(\theta, g_i, w_i)}{\sigma}\Bigr|^2 $$
+    $$ \min \sum_i \sum_k \rho\Bigl(\frac{z_{ik} - \hat z_k(\theta, g_i, w_i)}{\sigma}\Bigr),\qquad
+       \sigma_a^2 = \frac{\sum_a r^2}{n_a - \mathrm{tr}_a H} $$
 
     over parameters $\theta$, first poses $g_i$ and first velocities $w_i$; $\hat z_k$ is the discrete orbit, z are
-    poses or angular velocities. Derivatives are exact (`rollout`). Each kind of number (position, turn, rate) has a
-    noise level of its own, estimated from its residuals; the covariance is that of Gauss and Newton. The model is the
-    discrete map, which misses the continuous motion by $O(h^2)$: a time step that is a part of that of the samples
-    makes this small.
+    poses or angular velocities. Derivatives are exact (`rollout`). Each kind a of number (position, turn, rate) has a
+    noise level of its own by restricted likelihood, from its residuals r, their number, and the trace of the hat
+    matrix H over them. The model is the discrete map, which misses the continuous motion by $O(h^2)$: a time step that
+    is a part of that of the samples makes this small.
+
+    What the fit takes from a kind with few numbers, seven headings, and how uncertain its level is, is counted: by
+    Kenward and Roger in the covariance, by Satterthwaite in the `degrees` of freedom of the intervals. The search stays
+    among parameters of which `system_of` makes a body, and says in `Fit.outcome` where it ended.
 
     A free motion does not know its unit of mass: fix one mass, or the fit is refused as undetermined.
 
@@ -128,16 +147,26 @@ def fit(
         measurements: A pandas DataFrame, an xarray Dataset, a dictionary of columns, the path of a CSV file with a
             header, or a list of such trials. Columns: `t`; `x`, `y`, (`z`); `theta` or `heading` in the plane, `qw`,
             `qx`, `qy`, `qz` or `quaternion` in space; angular velocities in the body `omega`, or `omega_x`, `omega_y`,
-            `omega_z`. NaN marks what was not measured. Without poses, trials start at the identity.
+            `omega_z`. NaN marks what was not measured, and kinds may have rates of their own. Positions alone tell the
+            pose of a body in the plane that moves forward; without poses, trials start at the identity. A CSV file has
+            at most 256 MB.
         guess: The parameters to begin with, numbers or arrays.
         time_step: h; by default the smallest time between two samples. Samples lie on multiples of it.
+        noise: Standard deviations that are known, by kind ("position", "turn", "rate"), or one for all; the levels of
+            other kinds are estimated.
+        bounds: Least and largest value of parameters by name, for an array of all its entries. A parameter between 0
+            and infinity is searched by its logarithm, which finds it from guesses that are far off.
+        loss: "linear", $\rho(z) = z^2$, or "soft_l1", $2\sqrt{1 + z^2} - 2$, under which outliers count little. With
+            it levels and covariance are those of Huber, for normal noise with outliers.
 
     Returns:
         The fitted body with its uncertainty.
 
     Raises:
-        ValueError: Measurements that are none or do not lie on steps, a guess without a motion, parameters that the
-            measurements do not determine.
+        ValueError: Measurements that are none, do not lie on steps or need more memory than there is, a guess without
+            a motion or beyond its bounds, parameters, or noise of a kind, that the measurements do not determine.
+
+    Sources: [patterson-thompson-1971], [kenward-roger-1997], [satterthwaite-1946], [huber-1981].
 
     Example:
         >>> truth = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=0.7, a=0.4), 0.05)
@@ -154,94 +183,107 @@ def fit(
         True
     """
     function("fit(system_of=...)", system_of)
+    choice("fit(loss=...)", loss, LOSSES)
     with needs("jax", "fit"):
         from nonholo.analysis.inverse._residuals import missed
 
     numbers, shapes = _vector(guess)
+    ranges = _ranges(bounds, shapes, numbers)
     system = _system(system_of, numbers, shapes)
-    step = None if time_step is None else float(positive("fit(time_step=...)", time_step, "Pass the time step."))
-    trials, h = trials_of("fit(measurements=...)", system.group, measurements, step)
-    poses, starts = map(np.array, zip(*(_first(system, trial, h) for trial in trials), strict=True))
-    kinds = {kind: np.array([trial.kinds[kind] for trial in trials]) for kind in trials[0].kinds}
+    step = None if time_step is None else float(scale("fit(time_step=...)", time_step, "Pass the time step."))
+    group = system.group
+    each = _COPIES * 8.0 * (1 + len(numbers) + system.rank + group.dim) * group.size**2
+    kinds, h = kinds_of(group, measurements, step, each)
+    trials = [{kind: rows[i] for kind, rows in kinds.items()} for i in range(len(kinds["turn"]))]
+    starting = functools.partial(first, system, h, is_robust=loss != LOSSES[0])
+    poses, starts = map(np.array, zip(*map(starting, trials), strict=True))
     problem = Problem(functools.partial(missed, system_of, shapes, h), poses, kinds, len(numbers), starts.shape)
-    point, weights = _minimum(problem, np.concatenate([numbers, starts.ravel()]))
-    return _result(problem, point, weights, (system_of, shapes, h))
+    search = Search(
+        problem, ranges, lambda point: system_of(named(shapes, point[: len(numbers)])), loss, _known(noise, problem)
+    )
+    begin = np.concatenate([numbers, starts.ravel()])
+    _check_begin(problem, begin)
+    return _result(search, search.run(begin), begin, shapes, h)
 
 
-def _minimum(problem: Problem, point: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the best point, and the noise levels of the kinds, each from the other until both have settled."""
-    noise = np.ones(len(problem.kinds))
-    free = problem.mask.sum() - len(point)
-    if free < 1:
-        got = f"{problem.mask.sum()} numbers for {len(point)} unknowns"
-        raise error("fit(measurements=...)", "be more than the unknowns", got, "Measure longer.")
+def _check_begin(problem: Problem, point: np.ndarray) -> None:
+    """Refuse fewer numbers than there are unknowns, and a guess without a motion."""
+    if len(problem.kind_of) <= len(point):
+        got = f"{len(problem.kind_of)} numbers for {len(point)} unknowns"
+        raise error(WHERE, "be more than the unknowns", got, "Measure longer.")
     if not np.isfinite(problem.rows(point)).all():
         remedy = "Begin nearer to the body, or with a smaller time step."
         raise error("fit(guess=...)", "have a motion through the measurements", "an orbit that ends", remedy)
-    for _ in range(_ROUNDS):
-        scale = noise[problem.kind_of]
-        found = least_squares(
-            lambda x, s=scale: problem.rows(x) / s,
-            point,
-            cast(Any, lambda x, s=scale: problem.slope(x) / s[:, None]),
-            x_scale="jac",
-            xtol=1e-12,
-            ftol=1e-12,
-            gtol=1e-12,
-        )
-        point, rows, before = found.x, problem.rows(found.x), noise
-        part = free / problem.mask.sum()
-        noise = np.array([np.sqrt(np.mean(rows[problem.kind_of == i] ** 2) / part) for i in range(len(noise))])
-        noise = np.maximum(noise, np.finfo(np.float64).tiny)
-        if np.abs(noise / before - 1).max() < _SETTLED:
-            break
-    return point, noise
 
 
-def _result(problem: Problem, point: np.ndarray, noise: np.ndarray, made: Any) -> Fit:
-    system_of, shapes, h = made
-    covariance = _covariance(problem, point, noise, shapes)
-    parameters = _parameters(shapes, point[: problem.count])
-    system = system_of(parameters)
-    rows = np.where(problem.mask, problem.at(point)[0], np.nan)
-    cuts = np.cumsum([x.shape[2] for x in problem.there.values()])[:-1]
-    parts = dict(zip(problem.kinds, np.split(rows, cuts, axis=2), strict=True))
-    residuals = tuple({kind: part[i] for kind, part in parts.items()} for i in range(len(rows)))
-    starts = point[problem.count :].reshape(problem.shape)
-    orbits = [_orbit(system, h, *row, rows.shape[1] - 1) for row in zip(starts, problem.poses, strict=True)]
-    levels = {kind: float(x) for kind, x in zip(problem.kinds, noise, strict=True)}
+def _known(noise: Any, problem: Problem) -> np.ndarray:
+    """Return the noise levels that are given by kind, NaN for those to be estimated."""
+    where, remedy, kinds = "fit(noise=...)", "Pass a number, or numbers by kind.", list(problem.there)
+    if noise is None:
+        return np.full(len(kinds), np.nan)
+    given = noise if isinstance(noise, Mapping) else dict.fromkeys(kinds, noise)
+    for kind in given:
+        choice(where, kind, tuple(kinds), "Name kinds that are measured.")
+    return np.array([float(scale(where, given[kind], remedy)) if kind in given else np.nan for kind in kinds])
 
-    def exists(numbers: np.ndarray) -> bool:
-        try:
-            system_of(_parameters(shapes, numbers[: problem.count]))
-        except ValueError:
-            return False
-        return True
 
-    minimum = problem.minimum(point, noise, exists)
+def _ranges(bounds: Any, shapes: Shapes, numbers: np.ndarray) -> Ranges:
+    """Return the bounds of the parameters, refused where the guess is not between them."""
+    where, remedy = "fit(bounds=...)", "Pass {name: (low, high)} around the guess; an end may be infinite."
+    names = np.array([name for name, shape in shapes for _ in range(int(np.prod(shape)))])
+    low, high = np.full((2, len(names)), [[-np.inf], [np.inf]])
+    for name, ends in instance(where, bounds or {}, Mapping, "be a dictionary", remedy).items():
+        at = names == choice(where, name, tuple(dict(shapes)), "Name parameters of the guess.")
+        infinite = [isinstance(x, float) and np.isinf(x) for x in pair(where, ends)]
+        low[at], high[at] = (x if free else number(where, x) for x, free in zip(ends, infinite, strict=True))
+        if not ((low < numbers) & (numbers < high))[at].all():
+            raise error(where, "have the guess between them", f"{name} = {numbers[at]} of {ends}", remedy)
+    return Ranges(low, high)
+
+
+def _result(search: Search, found: Found, begin: np.ndarray, shapes: Shapes, h: float) -> Fit:
+    problem, point, P = search.problem, found.point, search.problem.count
+    _check_determined(found.estimate, shapes, P)
+    _check_levels(search, found)
+    covariance, plain, degrees = (x[..., :P] for x in found.estimate.covariance(~np.isfinite(search.known)))
+    covariance, plain = covariance[:P], plain[:P].diagonal()
+    system, parameters = search.system_at(point), named(shapes, point[:P])
+    parameters = {name: x if np.ndim(x) else float(x) for name, x in parameters.items()}
+    rows = {kind: np.where(there, problem.at(point)[kind][0], np.nan) for kind, there in problem.there.items()}
+    residuals = tuple({kind: part[i] for kind, part in rows.items()} for i in range(len(problem.poses)))
+    starts, steps = point[P:].reshape(problem.shape), problem.kinds["turn"].shape[1] - 1
+    orbits = [_orbit(system, h, *row, steps) for row in zip(starts, problem.poses, strict=True)]
+    levels = {kind: float(x) for kind, x in zip(rows, found.noise, strict=True)}
+    minimum = search.minimum(found, degrees, np.sqrt(plain), np.sqrt(covariance.diagonal() / plain))
+    outcome = outcome_of(search, found, begin[:P], np.sqrt(covariance.diagonal()))
     orbit = tuple(orbits) if len(orbits) > 1 else orbits[0]
-    return Fit(parameters, covariance, system, orbit, residuals, levels, minimum.free, minimum)
+    free = len(problem.kind_of) - len(point)
+    return Fit(parameters, covariance, system, orbit, residuals, levels, outcome, degrees, free, minimum)
 
 
-def _covariance(problem: Problem, point: np.ndarray, noise: np.ndarray, shapes: Any) -> np.ndarray:
-    """Return the covariance of the parameters, refused where a combination of them changes nothing."""
-    slope = problem.slope(point) / noise[problem.kind_of][:, None]
-    lengths = np.linalg.norm(slope, axis=0)
-    _, sizes, directions = np.linalg.svd(slope / np.where(lengths > 0, lengths, 1.0), full_matrices=False)
-    if not lengths.all() or sizes[-1] < _FLAT * sizes[0]:
-        names = _names(shapes)
-        flat = np.abs(directions[-1] if lengths.all() else lengths == 0)[: problem.count]
-        got = ", ".join(np.array(names)[flat > 0.1 * flat.max()]) or "a start"
+def _check_determined(found: Estimate, shapes: Any, count: int) -> None:
+    """Refuse a record where a combination of numbers changes nothing."""
+    _, sizes, directions = np.linalg.svd(found.triangle)
+    if not found.lengths.all() or sizes[-1] < _FLAT * sizes[0]:
+        flat = np.abs(directions[-1] if found.lengths.all() else found.lengths == 0)[:count]
+        got = ", ".join(np.array(_names(shapes))[flat > 0.1 * flat.max()]) or "a start"
         remedy = "Fix one of them in system_of, such as a mass: a free motion does not know its unit."
-        raise error("fit(measurements=...)", "determine all parameters", f"none of {got} alone", remedy)
-    root = directions / sizes[:, None] / lengths
-    return (root.T @ root)[: problem.count, : problem.count]
+        raise error(WHERE, "determine all parameters", f"none of {got} alone", remedy)
+
+
+def _check_levels(search: Search, found: Found) -> None:
+    """Refuse a kind of which all numbers are used up by the fit: its noise cannot be seen."""
+    free = np.where(np.isfinite(search.known), np.inf, found.estimate.free)
+    if free.min() < _LEAST_FREE:
+        kind = list(search.problem.there)[int(free.argmin())]
+        got = f"{found.estimate.counts[free.argmin()]} numbers of {kind}, of which {free.min():.2g} are left by the fit"
+        raise error(WHERE, "tell the noise of each kind", got, f"Pass noise={{{kind!r}: ...}}, or measure longer.")
 
 
 def _orbit(system: System, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Orbit:
     """Return the motion of a trial."""
     k = system.rank
-    g = pose @ system.group.exp(start[k:]) if len(start) > k else pose
+    g = pose @ system.group.exp(np.pad(start[k:], (0, k + system.group.dim - len(start)))) if len(start) > k else pose
     return simulate(discretize(system, h), restricted_velocity=start[:k], configuration=g, steps=steps)
 
 
@@ -259,51 +301,9 @@ def _names(shapes: Any) -> list[str]:
     return [f"{name}[{i}]" if shape else name for name, shape in shapes for i in range(int(np.prod(shape)))]
 
 
-def _parameters(shapes: Any, numbers: np.ndarray) -> dict[str, Any]:
-    found, at = {}, 0
-    for name, shape in shapes:
-        size = int(np.prod(shape))
-        found[name], at = numbers[at : at + size].reshape(shape) if shape else float(numbers[at]), at + size
-    return found
-
-
 def _system(system_of: Callable[..., Any], numbers: np.ndarray, shapes: Any) -> System:
-    system = system_of(_parameters(shapes, numbers))
+    system = system_of(named(shapes, numbers))
     if not isinstance(system, AbstractSystem) or system.is_spatial:
         remedy = "Return a SuslovTop, a sleigh or an LLSystem."
         raise error("fit(system_of=...)", "return a system with a left-invariant constraint", shown(system), remedy)
     return cast(System, system)
-
-
-def _first(system: System, trial: Trial, h: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return a first pose and a first start: velocity along the constraint and, with poses, a change of the pose."""
-    group, S = system.group, system.constraint_subspace
-    turn, rate = trial.kinds.get("turn"), trial.kinds.get("rate")
-    if turn is None:
-        seen = rate[np.isfinite(rate).all(axis=1)][:1].ravel() if rate is not None else np.zeros(0)
-        return group.identity, np.linalg.lstsq(S[:, : len(seen)].T, seen)[0] if len(seen) else np.zeros(system.rank)
-    poses, nodes = _poses(group, trial)
-    far = min(len(nodes) - 1, max(1, int(np.searchsorted(nodes, nodes[0] + _NEAR, side="right")) - 1))
-    span = (nodes[far] - nodes[0]) * h
-    velocity = group.log(group.inverse(poses[0]) @ poses[far]) / span
-    first = poses[0] @ group.exp(-velocity * nodes[0] * h)
-    return first, np.concatenate([np.linalg.lstsq(S.T, velocity)[0], np.zeros(group.dim)])
-
-
-def _poses(group: AbstractMatrixGroup, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
-    """Return the poses that are measured whole, with the numbers of their nodes."""
-    turn, position = trial.kinds["turn"], trial.kinds.get("position", np.zeros((len(trial.kinds["turn"]), 0)))
-    rows = np.concatenate([position, turn], axis=1)
-    nodes = np.flatnonzero(np.isfinite(rows).all(axis=1))
-    if len(nodes) < 2:
-        remedy = "Leave the columns out that hold so little."
-        raise error("fit(measurements=...)", "have two whole poses in each trial", f"{len(nodes)}", remedy)
-    g = np.broadcast_to(group.identity, (len(nodes), group.size, group.size)).copy()
-    n = position.shape[1]
-    g[:, :n, n:] = position[nodes][:, :, None]
-    if turn.shape[1] == 1:
-        cos, sin = np.cos(turn[nodes, 0]), np.sin(turn[nodes, 0])
-        g[:, :2, :2] = np.moveaxis(np.array([[cos, -sin], [sin, cos]]), -1, 0)
-    else:
-        g[:, :3, :3] = SO(3).matrix_from_pose(SO(3).normalize_pose(turn[nodes]))
-    return g, nodes

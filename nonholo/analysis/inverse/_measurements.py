@@ -2,17 +2,25 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import array, error, printable, shown, trailing
 from nonholo.base.checks import path as checked_path
+from nonholo.base.limits import read_text, within_memory
 from nonholo.base.types import Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 
-Columns = dict[str, np.ndarray]
+Kinds = dict[str, Float[np.ndarray, "T K _"]]
+"""Measured numbers of all trials by kind, "position", "turn" and "rate"; NaN where nothing was measured."""
+
+WHERE = "fit(measurements=...)"
 _OFF = 1e-3  # of a time step, by which times of samples may miss a node
+_LARGEST = 1 << 28  # bytes of a CSV file
+_HUGE = 1e300  # nodes
+_TABLES = "Pass a DataFrame, a Dataset, a dictionary of columns, the path of a CSV file, or a list of them."
+_COLUMN = "Pass real numbers, times in the unit of the velocities; NaN marks what was not measured."
 
 _NAMES: dict[AbstractMatrixGroup, dict[str, tuple[tuple[str, ...], ...]]] = {
     SE(2): {"position": (("x", "y"),), "turn": (("theta",), ("heading",)), "rate": (("omega",),)},
@@ -24,84 +32,102 @@ _NAMES: dict[AbstractMatrixGroup, dict[str, tuple[tuple[str, ...], ...]]] = {
 _NAMES[SE(3)] = {"position": (("x", "y", "z"),), **_NAMES[SO(3)]}
 
 
-class Trial(NamedTuple):
-    """A recorded motion on the nodes; NaN where nothing was measured.
+def kinds_of(group: AbstractMatrixGroup, given: Any, time_step: float | None, each: float) -> tuple[Kinds, float]:
+    """Return what all trials measured, with as many nodes as the longest one has, and the time step.
 
-    Attributes:
-        first: Time of node 0.
-        kinds: Measured numbers by kind, "position", "turn" and "rate", (K, ...).
+    A node takes `each` bytes.
     """
-
-    first: float
-    kinds: dict[str, Float[np.ndarray, "K _"]]
-
-
-def trials_of(where: str, group: AbstractMatrixGroup, given: Any, time_step: Any) -> tuple[list[Trial], float]:
-    """Return the trials, all with as many nodes as the longest one, and the time step."""
     if group not in _NAMES:
-        raise error(where, "be of a motion in SE(2), SO(3) or SE(3)", repr(group), "Fit its numbers by `nh.rollout`.")
-    tables = [_columns(where, one) for one in (given if isinstance(given, list | tuple) else [given])]
+        raise error(WHERE, "be of a motion in SE(2), SO(3) or SE(3)", repr(group), "Fit its numbers by `nh.rollout`.")
+    tables = [_columns(one) for one in (given if isinstance(given, list | tuple) else [given])]
     if not tables:
-        raise error(where, "hold at least one trial", "none", "Pass a table, or a list of them.")
-    times = [_times(where, table) for table in tables]
-    gaps = np.concatenate([np.diff(time) for time in times])
-    h = float(gaps.min() if time_step is None else time_step)
-    nodes = [_nodes(where, time, h) for time in times]
-    size = 1 + max(int(node[-1]) for node in nodes)
-    found = [_trial(where, group, *row, size) for row in zip(tables, times, nodes, strict=True)]
-    if len({tuple(trial.kinds) for trial in found}) > 1:
-        raise error(
-            where, "have the same columns in every trial", str([list(t.kinds) for t in found]), "Fill with NaN."
-        )
-    return found, h
+        raise error(WHERE, "hold at least one trial", "none", "Pass a table, or a list of them.")
+    times = [_times(table) for table in tables]
+    h = min(float(np.diff(time).min()) for time in times) if time_step is None else time_step
+    most = 1 + min(max(float(time[-1] - time[0]) for time in times) / h, _HUGE)
+    within_memory(WHERE, len(tables) * most * each, f"Pass a time_step larger than {h:g}, or other times.")
+    kinds = _on_nodes(group, tables, [_nodes(time, h) for time in times])
+    seen = np.array([np.isfinite(rows).any(axis=(1, 2)) for rows in kinds.values()])
+    if not (seen.any() and (seen == seen[:, :1]).all()):
+        remedy = f"Name them {'; '.join(', '.join(choices[0]) for choices in _NAMES[group].values())}."
+        got = "different ones" if seen.any() else ", ".join(tables[0])
+        raise error(WHERE, f"have the same columns of a motion in {group} in every trial", got, remedy)
+    return kinds, h
 
 
-def _columns(where: str, table: Any) -> Columns:
-    """Return the columns of a file, a table or a dataset by name."""
+def _on_nodes(group: AbstractMatrixGroup, tables: list[dict[str, Any]], nodes: list[np.ndarray]) -> Kinds:
+    """Return the numbers of tables on the nodes, by kind."""
+    size, kinds = 1 + max(int(each[-1]) for each in nodes), {}
+    for kind, choices in _NAMES[group].items():
+        kinds[kind] = np.full((len(tables), size, len(choices[0])), np.nan)
+        for target, table, at in zip(kinds[kind], tables, nodes, strict=True):
+            names = next((names for names in choices if all(name in table for name in names)), ())
+            if names:
+                target[at] = _rows(kind, table, names, (len(at), len(choices[0])))
+    return kinds
+
+
+def _columns(table: Any) -> dict[str, Any]:
+    """Return the columns of a file, a table or a dataset by name, not yet looked at."""
     if isinstance(table, str | Path):
-        rows: Any = np.genfromtxt(checked_path(where, table), delimiter=",", names=True, dtype=np.float64)
-        return {name: np.atleast_1d(rows[name]) for name in rows.dtype.names or ()}
+        return _of_file(checked_path(WHERE, table))
     try:
         names = list(table) if isinstance(table, Mapping) or not hasattr(table, "variables") else list(table.variables)
-        found = {str(name): np.asarray(table[name], dtype=np.float64) for name in names}
-    except (TypeError, ValueError, KeyError):
-        remedy = "Pass a DataFrame, a Dataset, a dictionary of columns, the path of a CSV file, or a list of them."
-        raise error(where, "be tables of numbers", shown(table), remedy) from None
+        found = {str(name): table[name] for name in names}
+    except (TypeError, ValueError, KeyError, IndexError):
+        raise error(WHERE, "be tables of numbers", shown(table), _TABLES) from None
     index = getattr(table, "index", None)
     return {**found, "t": np.asarray(index)} if getattr(index, "name", None) in ("t", "time") else found
 
 
-def _times(where: str, table: Columns) -> np.ndarray:
-    time = next((table[name] for name in ("t", "time") if name in table), None)
-    if time is None:
-        raise error(where, "have a column `t` of times", ", ".join(table) or "no columns", "Name it.")
-    if time.ndim != 1 or len(time) < 2 or not (np.diff(time) > 0).all():
-        raise error(where, "have two times and more, each after the one before", shown(time), "Sort the rows by time.")
+def _of_file(path: Path) -> dict[str, np.ndarray]:
+    """Return the columns of a CSV file with a header; an empty place is no measurement."""
+    try:
+        header, *lines = read_text(path, _LARGEST).splitlines() or [""]
+        names = [name.strip('# "') for name in header.split(",")]
+        if not any(lines):
+            raise ValueError("no rows below a header")
+        rows = np.loadtxt(lines, delimiter=",", ndmin=2, converters=lambda x: float(x.strip() or "nan"))
+        return dict(zip(names, rows.T, strict=True))
+    except (OSError, ValueError) as failure:
+        got = f"{str(path)!r}: {printable(str(failure))}"
+        raise error(WHERE, "be the path of a CSV file of numbers with a header", got, _TABLES) from None
+
+
+def _times(table: dict[str, Any]) -> np.ndarray:
+    name = next((name for name in ("t", "time") if name in table), None)
+    if name is None:
+        raise error(WHERE, "have a column `t` of times", ", ".join(table) or "no columns", "Name it.")
+    time = array(f"fit(measurements={{{name!r}: ...}})", table[name], (None,), _COLUMN)
+    if len(time) < 2 or not (np.diff(time) > 0).all():
+        raise error(WHERE, "have two times and more, each after the one before", shown(time), "Sort the rows by time.")
     return time
 
 
-def _nodes(where: str, time: np.ndarray, h: float) -> np.ndarray:
+def _nodes(time: np.ndarray, h: float) -> np.ndarray:
     exact = (time - time[0]) / h
     nodes = np.rint(exact).astype(int)
     worst = int(np.abs(exact - nodes).argmax())
     if abs(exact[worst] - nodes[worst]) > _OFF:
         got = f"{time[worst]:g}, {exact[worst]:.6g} steps of {h:g} after the first"
-        raise error(where, "have times a whole number of time steps apart", got, "Pass a time_step that divides them.")
+        raise error(WHERE, "have times a whole number of time steps apart", got, "Pass a time_step that divides them.")
+    if (twice := np.diff(nodes) == 0).any():
+        got = f"{time[:-1][twice][0]:.12g} and {time[1:][twice][0]:.12g} at one step"
+        raise error(WHERE, "have one row at a time step", got, "Pass a smaller time_step, or put rows together.")
     return nodes
 
 
-def _trial(
-    where: str, group: AbstractMatrixGroup, table: Columns, time: np.ndarray, nodes: np.ndarray, size: int
-) -> Trial:
-    kinds = {}
-    for kind, choices in _NAMES[group].items():
-        names = next((names for names in choices if all(name in table for name in names)), None)
-        if names is not None:
-            rows = np.column_stack([table[name] for name in names])
-            kinds[kind] = np.full((size, rows.shape[1]), np.nan)
-            whole = np.isfinite(rows).all(axis=1, keepdims=True) if kind == "turn" else np.isfinite(rows)
-            kinds[kind][nodes] = np.where(whole, rows, np.nan)
-    if not kinds:
-        wanted = "; ".join(", ".join(choices[0]) for choices in _NAMES[group].values())
-        raise error(where, f"have columns of a motion in {group}", ", ".join(table), f"Name them: {wanted}.")
-    return Trial(float(time[0]), kinds)
+def _rows(kind: str, table: dict[str, Any], names: tuple[str, ...], shape: tuple[int, int]) -> np.ndarray:
+    """Return columns side by side, each with as many rows as there are times; turns are measured whole or not."""
+    found = []
+    for name in names:
+        where = f"fit(measurements={{{name!r}: ...}})"
+        wide = shape[:1] if len(names) == shape[1] else shape
+        rows = trailing(where, table[name], (), _COLUMN, real=True)
+        found.append(array(where, np.where(np.isnan(rows), 0.0, rows), wide, _COLUMN) + 0.0 * rows)
+    rows = np.column_stack(found)
+    if kind == "turn":
+        rows[~np.isfinite(rows).all(axis=1)] = np.nan
+        if shape[1] == 4 and (np.sum(rows**2, axis=1) < 0.25).any():
+            raise error(WHERE, "have quaternions of length 1", "shorter ones", "NaN marks what was not measured.")
+    return rows

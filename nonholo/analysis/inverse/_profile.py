@@ -28,14 +28,18 @@ class Minimum(NamedTuple):
         slope: Their derivatives, (rows, numbers).
         exists: Whether there is a model at a point.
         point: Where the sum is least.
-        free: Rows less numbers.
+        free: Degrees of freedom of the noise, one number or one for each.
+        errors: Standard deviations of the numbers for known noise; None for those of the slope.
+        wider: The factor by which they grow as the noise is not known.
     """
 
     rows: Callable[[np.ndarray], np.ndarray]
     slope: Callable[[np.ndarray], np.ndarray]
     exists: Callable[[np.ndarray], bool]
     point: Float[np.ndarray, "P"]
-    free: int
+    free: Any
+    errors: Any = None
+    wider: Any = 1.0
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -93,7 +97,8 @@ def profile_of(minimum: Minimum, at: int, name: str, level: Any) -> Profile:
     level = float(number("Fit.profile(level=...)", level, "Pass a probability."))
     if not 0 < level < 1:
         raise error("Fit.profile(level=...)", "be between 0 and 1", f"{level:g}", "Pass a probability.")
-    cut, value = float(stdtrit(minimum.free, (1 + level) / 2)), float(minimum.point[at])
+    quantile = stdtrit(minimum.free, (1 + level) / 2) * minimum.wider
+    cut, value = float(quantile[at] if np.ndim(quantile) else quantile), float(minimum.point[at])
     rate = float(np.linalg.norm(_along(minimum.slope(minimum.point), at)[0]))
     begin = _Place(value, minimum.point, 0.0, rate)
     search = _Search(minimum, at, name)
@@ -101,7 +106,8 @@ def profile_of(minimum: Minimum, at: int, name: str, level: Any) -> Profile:
     places = [*low.places[::-1], begin, *high.places]
     values, tau = np.array([(x.value, x.tau) for x in places]).T
     tau[: len(low.places)] *= -1
-    return Profile(name, value, 1 / rate, level, cut, (low.end, high.end), (low.reason, high.reason), values, tau)
+    width = 1 / rate if minimum.errors is None else float(minimum.errors[at])
+    return Profile(name, value, width, level, cut, (low.end, high.end), (low.reason, high.reason), values, tau)
 
 
 class _Search(NamedTuple):

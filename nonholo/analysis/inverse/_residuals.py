@@ -8,49 +8,41 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from nonholo.analysis.inverse._problem import Shapes, named
 from nonholo.base.types import Array
 from nonholo.discrete import discretize
 from nonholo.discrete.definition import in_double
 from nonholo.groups import SE
 from nonholo.simulation.traced import rollout
 
-Shapes = tuple[tuple[str, tuple[int, ...]], ...]
-
 
 def missed(
     system_of: Callable[..., Any], shapes: Shapes, time_step: float, numbers: Array, starts: Array, *data: Any
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return residuals (T, K, c), measured minus computed, and their derivatives by numbers and by starts."""
-    return in_double(_compiled(system_of, shapes, time_step), numbers, starts, *data)
+) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Return by kind residuals (T, K, c), measured minus computed, and their derivatives by numbers and by starts."""
+    return in_double(_compiled(system_of, shapes), time_step, numbers, starts, *data)
 
 
 @functools.lru_cache(maxsize=8)
-def _compiled(system_of: Callable[..., Any], shapes: Shapes, time_step: float) -> Callable[..., Any]:
-    def one(numbers: Array, start: Array, g: Array, kinds: dict[str, Array]) -> tuple[Array, Array]:
+def _compiled(system_of: Callable[..., Any], shapes: Shapes) -> Callable[..., Any]:
+    def one(time_step: Array, numbers: Array, start: Array, g: Array, kinds: dict[str, Array]) -> tuple[Any, Any]:
         system = system_of(named(shapes, numbers))
         group, k = system.group, system.rank
-        pose = g @ group.exp(start[k:]) if len(start) > k else g
-        steps = len(next(iter(kinds.values()))) - 1
+        pose = g @ group.exp(jnp.pad(start[k:], (0, k + group.dim - len(start)))) if len(start) > k else g
+        steps = len(kinds["turn"]) - 1
         orbit = rollout(discretize(system, time_step), restricted_velocity=start[:k], configuration=pose, steps=steps)
         inertia = jnp.asarray(system.constrained_inertia)
         velocity = jnp.linalg.solve(inertia, orbit.restricted_momentum.T).T @ system.constraint_subspace
-        rows = jnp.concatenate([_gap(group, kind, kinds[kind], orbit, velocity) for kind in kinds], axis=1)
+        rows = {kind: _gap(group, kind, measured, orbit, velocity) for kind, measured in kinds.items()}
         return rows, rows
 
-    each = jax.vmap(jax.jacfwd(one, argnums=(0, 1), has_aux=True), in_axes=(None, 0, 0, 0))
+    each = jax.vmap(jax.jacfwd(one, argnums=(1, 2), has_aux=True), in_axes=(None, None, 0, 0, 0))
 
-    def both(*arguments: Any) -> tuple[Array, Array, Array]:
-        (by_numbers, by_starts), rows = each(*arguments)
-        return rows, by_numbers, by_starts
+    def by_kind(*arguments: Any) -> dict[str, tuple[Array, Array, Array]]:
+        slopes, rows = each(*arguments)
+        return {kind: (rows[kind], *slopes[kind]) for kind in rows}  # JAX sorts a dictionary: only names are kept
 
-    return jax.jit(both)
-
-
-def named(shapes: Shapes, numbers: Array) -> dict[str, Array]:
-    """Return the parameters in a vector by name."""
-    sizes = [int(np.prod(shape)) for _, shape in shapes]
-    parts = jnp.split(numbers, np.cumsum(sizes)[:-1]) if sizes else []
-    return {name: part.reshape(shape) for (name, shape), part in zip(shapes, parts, strict=True)}
+    return jax.jit(by_kind)
 
 
 def _gap(group: Any, kind: str, measured: Array, orbit: Any, velocity: Array) -> Array:

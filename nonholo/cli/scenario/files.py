@@ -9,11 +9,12 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 from pydantic import ValidationError
 
+from nonholo.base.limits import read_text
 from nonholo.cli.scenario.forces import read_table
 from nonholo.cli.scenario.motion import Scenario
 from nonholo.cli.scenario.problems import Problem, ScenarioError, problem, problems_of, suggestion
 from nonholo.cli.scenario.sections import Section
-from nonholo.cli.scenario.toml import parsed, read_text
+from nonholo.cli.scenario.toml import parsed
 
 Model = TypeVar("Model", bound=Section)
 

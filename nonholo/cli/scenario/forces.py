@@ -8,9 +8,9 @@ from pydantic import Discriminator, Tag, model_validator
 
 import nonholo
 from nonholo.base.checks import shown
+from nonholo.base.limits import read_text
 from nonholo.cli.scenario.bodies import BODIES
 from nonholo.cli.scenario.sections import Matrix, Section, Vector
-from nonholo.cli.scenario.toml import read_text
 from nonholo.groups import components_of
 
 if TYPE_CHECKING:

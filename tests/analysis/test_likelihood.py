@@ -1,0 +1,112 @@
+"""Noise levels, errors and degrees of freedom of lines through two kinds of numbers, beside their definitions."""
+
+import numpy as np
+import pytest
+from scipy import stats
+from scipy.optimize import minimize
+
+from nonholo.analysis.inverse._likelihood import bent
+from nonholo.analysis.inverse._problem import Problem
+from nonholo.analysis.inverse._search import Found, Ranges, Search
+
+FREE = Ranges(np.full(2, -np.inf), np.full(2, np.inf))
+
+
+def _search(y: np.ndarray, few: int, known: tuple[float, ...], loss: str = "linear") -> tuple[Search, np.ndarray]:
+    """Return the fit of a + b t to numbers of which the first few are turns, the rest rates, and its columns."""
+    columns = np.stack([np.ones(len(y)), np.linspace(0.0, 1.0, len(y))], axis=1)
+    parts = {"turn": slice(0, few), "rate": slice(few, len(y))}
+    parts = {kind: part for kind, part in parts.items() if len(y[part])}
+    rows = len(y)
+
+    def missed(numbers: np.ndarray, _starts: object, _poses: object, kinds: dict) -> dict:
+        none = np.zeros((1, rows, 1, 0))
+        found = {
+            kind: (kinds[kind] - (columns @ numbers)[None, :, None], -columns[None, :, None], none) for kind in kinds
+        }
+        return dict(sorted(found.items()))  # as JAX does
+
+    kinds = {kind: np.full((1, rows, 1), np.nan) for kind in parts}
+    for kind, part in parts.items():
+        kinds[kind][0, part, 0] = y[part]
+    problem = Problem(missed, np.zeros((1, 3, 3)), kinds, 2, (1, 0))
+    return Search(problem, FREE, lambda _: None, loss, np.array(known)), columns
+
+
+def _run(y: np.ndarray, few: int, known: tuple[float, ...]) -> tuple[Found, np.ndarray]:
+    search, columns = _search(y, few, known)
+    return search.run(np.zeros(2)), columns
+
+
+def test_levels_have_the_largest_restricted_likelihood() -> None:
+    """Seven numbers of one kind and forty of another: levels are where the restricted likelihood is largest."""
+    rng, few = np.random.default_rng(5), 7
+    y = 1.0 + rng.normal(size=47) * np.where(np.arange(47) < few, 0.02, 0.3)
+    found, columns = _run(y, few, (np.nan, np.nan))
+
+    def lack(logarithms: np.ndarray) -> float:
+        w = np.repeat(np.exp(-2 * logarithms), [few, 47 - few])
+        information = columns.T @ (w[:, None] * columns)
+        rest = y - columns @ np.linalg.solve(information, columns.T @ (w * y))
+        return float(-np.log(w).sum() + np.linalg.slogdet(information)[1] + w @ rest**2) / 2
+
+    best = minimize(lack, np.log([0.02, 0.3]), method="Nelder-Mead", options={"xatol": 1e-7, "fatol": 1e-12})
+    np.testing.assert_allclose(found.noise, np.exp(best.x), rtol=1e-3)  # levels settle to 1e-4
+    assert found.is_settled
+
+
+def test_errors_of_one_kind_are_those_of_the_usual_line() -> None:
+    """Of one kind covariance and degrees of freedom are those of linregress of scipy: nothing is added twice."""
+    y = 0.5 * np.linspace(0.0, 1.0, 12) + np.random.default_rng(2).normal(size=12)
+    found, columns = _run(y, 0, (np.nan,))
+    covariance, plain, degrees = found.estimate.covariance(np.array([True]))
+    line = stats.linregress(columns[:, 1], y)
+    np.testing.assert_allclose(np.sqrt(covariance.diagonal()), [line.intercept_stderr, line.stderr], rtol=1e-6)
+    np.testing.assert_allclose(covariance, plain, rtol=1e-9)
+    np.testing.assert_allclose(degrees, 10.0)
+
+
+def test_known_noise_is_as_sure_as_normal() -> None:
+    """With all levels given errors are those of weighted squares, with infinite degrees of freedom."""
+    y = np.random.default_rng(3).normal(size=20)
+    found, columns = _run(y, 7, (0.1, 2.0))
+    covariance, _, degrees = found.estimate.covariance(np.array([False, False]))
+    w = np.repeat([100.0, 0.25], [7, 13])
+    np.testing.assert_allclose(covariance, np.linalg.inv(columns.T @ (w[:, None] * columns)), rtol=1e-9)
+    assert (degrees == np.inf).all()
+
+
+@pytest.mark.profile("problems", instead="test_levels_have_the_largest_restricted_likelihood")
+def test_few_numbers_of_a_kind_have_few_degrees() -> None:
+    """Of 2,000 lines with five numbers of the sure kind Student's intervals hold 95 %, normal ones fewer.
+
+    The standard deviation of the share is 0.5 %: 1.6 % are three.
+    """
+    rng, truth = np.random.default_rng(11), np.array([1.0, 0.5])
+    held = []
+    for _ in range(2000):
+        noise = np.where(np.arange(25) < 5, 0.05, 0.3) * rng.normal(size=25)
+        search, columns = _search(np.zeros(25), 5, (np.nan, np.nan))
+        search.problem.kinds["turn"][0, :5, 0] = (columns @ truth + noise)[:5]
+        search.problem.kinds["rate"][0, 5:, 0] = (columns @ truth + noise)[5:]
+        found = search.run(truth)
+        covariance, _, degrees = found.estimate.covariance(np.array([True, True]))
+        off = np.abs(found.point - truth) / np.sqrt(covariance.diagonal())
+        held.append([off < stats.t.ppf(0.975, degrees), off < stats.norm.ppf(0.975)])
+    by_student, by_normal = np.mean(held, axis=0)
+    np.testing.assert_allclose(by_student, 0.95, atol=0.016)
+    assert (by_normal < by_student).all()
+    assert by_normal[0] < 0.93
+
+
+@pytest.mark.parametrize("loss", ["linear", "soft_l1"])
+def test_bent_rows_have_the_loss_and_its_derivatives(loss: str) -> None:
+    """Squares of bent rows are the loss as scipy has it; all three derivatives are those of differences."""
+    z = np.linspace(-5.0, 5.0, 21) + 0.01
+    value = z**2 if loss == "linear" else 2 * (np.sqrt(1 + z**2) - 1)
+    at, step = bent(z, loss), 1e-5
+    np.testing.assert_allclose(at.rows**2, value, rtol=1e-9)
+    after, before = bent(z + step, loss), bent(z - step, loss)
+    np.testing.assert_allclose(at.slope, (after.rows - before.rows) / (2 * step), rtol=1e-8)
+    np.testing.assert_allclose(at.first, (after.rows**2 - before.rows**2) / (4 * step), rtol=1e-7)
+    np.testing.assert_allclose(at.second, (after.first - before.first) / (2 * step), rtol=1e-7)
