@@ -76,7 +76,8 @@ def _solve(
 ) -> tuple[list[np.ndarray], Outcome]:
     def solved() -> list[np.ndarray]:
         with double_precision():
-            return reached(state, *_sweep(rate, group, state, known, padded(elapsed), tolerances), len(elapsed))
+            rest, good = _sweep(rate, group, state, known, padded(elapsed), tolerances)
+        return reached(state, rest, good, len(elapsed))
 
     rows = interruptibly(solved)
     return rows, Outcome.successful if len(rows[0]) == len(elapsed) else Outcome.not_converged
