@@ -56,8 +56,11 @@ def main() -> None:
         def by_jax(*arguments: Any, system: Any = system, h: Any = h) -> Any:
             return in_double_precision(loop_in_jax, system, h, *arguments)
 
-        def compiled(*arguments: Any, system: Any = system, h: Any = h, by_jax: Any = by_jax) -> Any:
-            return advance(by_jax, system, h, *arguments)
+        def compiled(
+            state: Any, sign: Any, rows: Any, every: Any, system: Any = system, h: Any = h, by_jax: Any = by_jax
+        ) -> Any:
+            widths = len(state[0]), len(state[1]), system.constraints
+            return advance(by_jax, system, h, state, sign, int(every), tuple(np.empty((rows, w)) for w in widths))
 
         times: list[list[float]] = [[], []]
         ends = [run(state, sign, *counts)[1][0] for run in (by_jax, compiled)]

@@ -81,7 +81,7 @@ hostile files, with figures; SUNDIALS tells its users by return codes what went 
 | durability | what a checkpoint says is on the disk as far as the operating system tells; a power cut may cost the last checkpoints, see [Run for days](how-to/run-for-days.md) | profile `faults` |
 | one writer | a store has one writer, by a lock of the operating system that ends with its process, also across containers | `tests/io/test_stream.py`, restarts in process namespaces |
 | signals | Ctrl-C stops a run or a sweep that is stored at a block and says how to resume; in the command SIGTERM and SIGHUP do the same | `tests/ensembles/test_faults.py`, `tests/cli` |
-| limits | what cannot fit into memory, on the disk or into a year is refused before any work, with the figure and the remedy | `tests/test_limits.py` |
+| limits | what cannot fit into memory or on the disk is refused before any work, with the figure and the remedy; a run may take as long as it takes | `tests/test_limits.py` |
 | arguments | what is no number, not finite or out of range is refused by name | the fuzzer of the public API |
 | range of scales | numbers whose squares overflow or underflow are refused ([conventions](conventions.md)) or end in an `Outcome`. Bodies with general subspaces may say `not_converged` in units far from 1 | the fuzzer of steps, units from 1e-100 to 1e100 |
 | files of strangers | nothing runs that the caller did not name, nothing outside of the store is written, memory is bounded ([Open a store from elsewhere](how-to/open-a-store-from-elsewhere.md)) | the fuzzer of stores |

@@ -118,7 +118,7 @@ def checked(
     values = raw.astype(np.float64)
     if not np.isfinite(values).all():
         at = int(np.argmin(np.isfinite(values)))
-        got = f"{shown(values.tolist() if values.size <= _FEW else values[at])} from {name} at {place(at)}"
+        got = f"{shown(values.tolist() if values.size <= _FEW else values[at].tolist())} from {name} at {place(at)}"
         raise UndefinedError(*error(where, "be finite", got, remedy).args)
     return values
 

@@ -1,4 +1,4 @@
-"""Limits, refused before any work: more memory, disk or time than there is."""
+"""Limits, refused before any work: more memory or disk than there is."""
 
 import functools
 import math
@@ -9,7 +9,6 @@ from typing import Any
 
 from nonholo.base.checks import count, error
 
-_YEAR = 365.25 * 24 * 3600.0
 _UNITS = ("B", "kB", "MB", "GB", "TB", "PB", "EB")
 _UNLIMITED = ("max", "")
 _LARGEST_TEXT = 1 << 22  # bytes of a file: a mass tensor of some hundred dimensions fits
@@ -45,12 +44,6 @@ def within_disk(where: str, wanted: float, folder: Path, remedy: str) -> None:
     if wanted > (free := shutil.disk_usage(there).free):
         got = f"about {size_text(wanted)} before compression, of which {size_text(free)} are free in '{there}'"
         raise error(where, "fit on the disk", got, remedy)
-
-
-def within_a_year(where: str, seconds: float, remedy: str) -> None:
-    """Refuse what would take more than a year by itself."""
-    if seconds > _YEAR:
-        raise error(where, "be done within a year", f"about {seconds / _YEAR:.3g} years of computing", remedy)
 
 
 def bounded_count(where: str, value: Any, each: float, remedy: str) -> int:

@@ -17,6 +17,7 @@ from nonholo.discrete.branching import (
     Frame,
     Landscape,
     Place,
+    RuleStepper,
     branch_tree,
     branches,
     checked_rule,
@@ -27,9 +28,8 @@ from nonholo.discrete.branching import (
     has_frame,
     inverse_discrete_legendre,
     landscape,
-    next_places,
 )
-from nonholo.discrete.routes import AbstractCompiledRoute, ScalarRoute, reversal_defects
+from nonholo.discrete.routes import AbstractCompiledRoute, ScalarRoute, keep_row, reversal_defects
 
 __all__ = [
     "PRINCIPAL",
@@ -43,6 +43,7 @@ __all__ = [
     "Landscape",
     "MeasuredMotion",
     "Place",
+    "RuleStepper",
     "ScalarRoute",
     "as_discretization",
     "branch_tree",
@@ -59,10 +60,10 @@ __all__ = [
     "has_frame",
     "initial_state",
     "inverse_discrete_legendre",
+    "keep_row",
     "landscape",
     "legendre",
     "moser_veselov_displacement",
-    "next_places",
     "orbit_of_poses",
     "refuse_composition",
     "reversal_defects",

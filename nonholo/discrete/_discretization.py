@@ -14,14 +14,16 @@ from nonholo.discrete._composition import checked_order, refuse_composition, wei
 from nonholo.discrete._legendre import legendre, legendre_of_chart
 from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Difference, Scheme
+from nonholo.discrete._start import first_of_run
 from nonholo.discrete._variety import Constraint, checked_constraint, equations_of
-from nonholo.discrete.routes import AbstractRoute, make_route
-from nonholo.orbit import AbstractMotion, Orbit, turned_near
+from nonholo.discrete.routes import AbstractBodyStepper, AbstractRoute, make_route
+from nonholo.orbit import AbstractMotion, First, Orbit, turned_near
 from nonholo.systems import (
     AbstractCoordinateSystem,
     AbstractSystem,
     DiscretizationT,
     Forced,
+    Start,
     System,
     as_system,
     refuse_forces,
@@ -54,6 +56,7 @@ class Discretization(Scheme, AbstractMotion):
     order: int = 2
     wanted_route: str | None = dataclasses.field(default=None, repr=False, kw_only=True, metadata={"stored": False})
     """The route of a store that was begun by another one than the best; see `make_route`."""
+    starts: ClassVar[tuple[str, ...]] = ("body_velocity", "displacement", "momentum", "restricted_velocity")
     leaves: ClassVar[tuple[str, ...]] = ("system", "time_step")
     structure: ClassVar[tuple[str, ...]] = ("difference", "constraint", "order", "wanted_route")
 
@@ -61,6 +64,14 @@ class Discretization(Scheme, AbstractMotion):
     def route(self) -> AbstractRoute:
         """The way in which steps are computed; chosen on first use and kept."""
         return make_route(self, self.wanted_route)
+
+    def stepper(self, *, posed: bool) -> AbstractBodyStepper:
+        """Return what takes the steps of the principal branch, and saves poses or not."""
+        return self.route.stepper(self, posed=posed)
+
+    def first(self, start: Start, *, posed: bool) -> First:
+        """Return the checked start of a run whose rows have poses or not."""
+        return first_of_run(self, start, posed=posed)
 
     @property
     def forces(self) -> Forced | None:

@@ -8,16 +8,26 @@ from nonholo.base.checks import error, shape_of
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.discrete._composition import refuse_composition
-from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._legendre import legendre
+from nonholo.discrete._scheme import Scheme
 from nonholo.discrete._variety import equations_of
+from nonholo.orbit import First
 from nonholo.systems import Start, in_group, of_finite_energy, refuse_forces
 
 _TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in floating point
 
 
+def first_of_run(discrete: Any, start: Start, *, posed: bool) -> First:
+    """Return the checked start of a run, with a pose or without: it may be large."""
+    group = discrete.system.group
+    g = start.pose(group) if posed or start.configuration is not None else None
+    g = g if posed else None
+    reduced, demanded = initial_state(discrete, start, g)
+    return First((reduced, np.empty(0) if g is None else start.canonical_pose(discrete.system, g)), demanded)
+
+
 def initial_state(
-    discrete: Discretization, start: Start, g: Float[np.ndarray, "N N"] | None
+    discrete: Scheme, start: Start, g: Float[np.ndarray, "N N"] | None
 ) -> tuple[Float[np.ndarray, "k"], Float[np.ndarray, "N N"] | Float[np.ndarray, "dim"] | None]:
     """Return the canonical restricted momentum of a start, and what the first state must reproduce, if anything.
 
@@ -44,7 +54,7 @@ def check_first_state(demanded: np.ndarray, displacement: np.ndarray, momentum: 
         raise OutcomeError(outcome, "Start of the run")
 
 
-def on_variety(where: str, discrete: Discretization, g: np.ndarray | None, displacement: Any) -> np.ndarray:
+def on_variety(where: str, discrete: Scheme, g: np.ndarray | None, displacement: Any) -> np.ndarray:
     """Return a displacement whose place on the variety is checked, refused with its forbidden part."""
     system, group = discrete.system, discrete.system.group
     W = in_group(where, group, displacement)

@@ -9,7 +9,7 @@ import numpy as np
 
 from nonholo import io
 from nonholo.base.checks import count, error, shown
-from nonholo.base.limits import within_a_year, within_disk, within_memory
+from nonholo.base.limits import within_disk, within_memory
 from nonholo.base.progress import waiting
 from nonholo.ensembles._block import block_of
 from nonholo.ensembles._describe import (
@@ -31,7 +31,6 @@ from nonholo.simulation import in_one_thread
 
 _BLOCK = 4096  # most members of a block of a task that does not say how many
 _PIECES = 32  # blocks of a small sweep, so that all cores have work to the end
-_LEAST = 1e-8  # seconds of a member of any task
 _FILE = 4096  # bytes that a file takes at least, on most file systems
 _LANES = 32  # members that a compiled loop takes at once
 DESCRIBED = (DatasetTask, EnsembleTask, FamilyTask)
@@ -54,7 +53,6 @@ def begun(task: Task, design: Design, path: Path, block: Any, scenario: str | No
     """Make the store of a sweep, after its task has been tried."""
     io.check_suffix(path, "sweep(store=...)")
     size = _block(task, design.members) if block is None else count("sweep(block=...)", block, "Pass how many members.")
-    _refuse_too_long(task, design.members)
     with in_one_thread(), waiting("compiling and trying a member", progress):
         returned = probed(task, lambda first, some: block_of(design, first, some), design.members)
     drawn = {name: _drawn(name, shape) for name, shape in design.drawn.items()}
@@ -68,13 +66,6 @@ def begun(task: Task, design: Design, path: Path, block: Any, scenario: str | No
 def _block(task: Task, members: int) -> int:
     most, least = (task.block, _LANES) if isinstance(task, DESCRIBED) else (_BLOCK, 1)
     return min(most, max(least, -(-members // _PIECES)))
-
-
-def _refuse_too_long(task: Task, members: int) -> None:
-    """Refuse more members than a year has time for, however fast the machine is."""
-    if isinstance(task, DESCRIBED):
-        task.refuse_too_long(members)
-    within_a_year("sweep(design=...)", _LEAST * members, "Ask for fewer members.")
 
 
 def _refuse_too_large(layout: Layout, outputs: dict[str, Output], path: Path) -> None:

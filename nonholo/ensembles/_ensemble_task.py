@@ -19,8 +19,7 @@ from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._names import OUTCOME, STARTS, start_component
 from nonholo.ensembles._reductions import REDUCTIONS, final_state_of_schema_1
 from nonholo.io import unstored
-from nonholo.simulation import Ensemble, Members, closed_step, ensemble, refuse_too_long, run_in_lanes
-from nonholo.simulation.runs import check_forces
+from nonholo.simulation import Ensemble, Members, check_forces, ensemble, run_in_lanes
 from nonholo.systems import one_start, refuse_forces
 
 _MEMBER = re.compile(r"This is member (\d+)\.")
@@ -133,11 +132,6 @@ class EnsembleTask:
         state = 2 * self.discrete.system.rank + self.discrete.system.group.pose_size
         members = min(_BLOCK, _NUMBERS // (states * state), steps // self.steps)
         return max(1, members // lanes) * lanes
-
-    def refuse_too_long(self, members: int) -> None:
-        """Refuse more steps than a year has time for."""
-        compiled = closed_step(self.discrete) is not None
-        refuse_too_long("EnsembleTask", self.discrete, self.steps, compiled=compiled, members=members)
 
     @property
     def _every(self) -> int | None:

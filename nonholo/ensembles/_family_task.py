@@ -11,7 +11,6 @@ import numpy as np
 
 from nonholo.base.calls import called
 from nonholo.base.checks import count, error, function, instance, scale, shown
-from nonholo.base.limits import within_a_year
 from nonholo.discrete import discretize
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
@@ -23,7 +22,7 @@ _LITERATURE, _READY, _FINAL = "nonholo.literature", "examples.", "final_state"
 _MEMBER = re.compile(r"This is member (\d+)\.")
 _STEP, _STARTS = "time_step", ("configuration", "body_velocity")
 _OWN = (*_STARTS, _STEP)
-_SECONDS, _STEPS, _MEMBERS = 1e-6, 1 << 20, 1 << 12  # of a step, at least; most of both in a block
+_STEPS, _MEMBERS = 1 << 20, 1 << 12  # at most in a block
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -104,10 +103,6 @@ class FamilyTask:
     def block(self) -> int:
         """Members of a block that make a good piece of work."""
         return max(1, min(_MEMBERS, _STEPS // self.steps))
-
-    def refuse_too_long(self, members: int) -> None:
-        """Refuse more steps than a year has time for."""
-        within_a_year("FamilyTask(steps=...)", _SECONDS * self.steps * members, "Pass fewer steps or members.")
 
     def __call__(self, block: MemberBlock) -> dict[str, Any]:
         """Run a block of members, those with one system together, and reduce it."""

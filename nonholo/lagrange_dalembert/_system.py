@@ -13,7 +13,6 @@ from nonholo.base.checks import array, choice, count, error, names, shown, text
 from nonholo.base.limits import within_memory
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._outline import as_parts, check_heading, checked_outline
 from nonholo.lagrange_dalembert._room import room
 from nonholo.lagrange_dalembert._tracing import (
     ForceTable,
@@ -28,6 +27,9 @@ from nonholo.systems import AbstractCoordinateSystem, joined, parts_of
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
     from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
+
+Parts = tuple[Float[np.ndarray, "P 2"], ...]
+_REMEDY = "Pass the corners of each part in body axes: [[(-0.1, -0.1), (0.2, 0.0), (-0.1, 0.1)], ...]."
 
 
 @dataclasses.dataclass(frozen=True)
@@ -114,8 +116,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         object.__setattr__(self, "dimension", dimension)
         object.__setattr__(self, "coordinates", _names(self.coordinates, dimension))
         text(_named("name"), self.name)
-        check_heading(_named("heading"), self.heading, self.coordinates)
-        object.__setattr__(self, "outline", checked_outline(_named("outline"), self.outline))
+        _check_heading(_named("heading"), self.heading, self.coordinates)
+        object.__setattr__(self, "outline", _checked_outline(_named("outline"), self.outline))
         choice(_named("rule"), self.rule, ("midpoint", "trapezoidal"))
         object.__setattr__(self, "discrete_lagrangian", with_time_step(self.discrete_lagrangian))
         object.__setattr__(self, "discrete_constraints", with_time_step(self.discrete_constraints))
@@ -157,7 +159,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
 
     def parts(self, q: Any) -> tuple[Float[np.ndarray, "P 2"], ...]:
         """Return the parts of the outline at a configuration, in body axes."""
-        return as_parts(
+        return _as_parts(
             _named("outline"), called(_named("outline"), self.outline, q) if callable(self.outline) else self.outline
         )
 
@@ -342,3 +344,27 @@ def _names(given: Any, n: int) -> tuple[str, ...]:
     if isinstance(given, tuple) and not given:
         return tuple(f"q{i}" for i in range(1, n + 1))
     return names(_named("coordinates"), given, n)
+
+
+def _check_heading(where: str, heading: Any, coordinates: tuple[str, ...]) -> None:
+    """Refuse a heading that is no coordinate of a body with a place in the plane."""
+    if heading is not None and not {"x", "y", heading} <= set(coordinates) - ({heading} & {"x", "y"}):
+        remedy = 'Name the coordinates: coordinates=("x", "y", "theta"), heading="theta".'
+        raise error(where, f"be a coordinate beside x and y of {', '.join(coordinates)}", shown(heading), remedy)
+
+
+def _checked_outline(where: str, given: Any) -> Any:
+    """Return an outline: a function as it is, parts as arrays."""
+    return given if callable(given) else _as_parts(where, given)
+
+
+def _as_parts(where: str, given: Any) -> Parts:
+    """Return the parts of an outline, at least two points each."""
+    try:
+        rows = tuple(given)
+    except TypeError:
+        raise error(where, "be a list of parts", shown(given), _REMEDY) from None
+    parts = tuple(array(where, part, (None, 2), _REMEDY) for part in rows)
+    if any(len(part) < 2 for part in parts):
+        raise error(where, "have parts of at least two points", "one point", _REMEDY)
+    return parts

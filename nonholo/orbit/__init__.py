@@ -1,19 +1,26 @@
 """The orbit: compact states of a motion and their decoding by the group. Nothing is simulated here."""
 
-from nonholo.orbit._base import AbstractOrbit
+from nonholo.orbit._base import AbstractOrbit, OrbitT
 from nonholo.orbit._crossings import AbstractEventLog, Crossings, EventLog, joined_crossings
 from nonholo.orbit._orbit import STATES, AbstractMotion, Orbit, as_orbit
 from nonholo.orbit._poses import AliasingWarning, configurations, poses, turned_near, unwrapped
+from nonholo.orbit._stepper import AbstractStepper, DiscreteMotion, First, Rows, State
 
 __all__ = [
     "STATES",
     "AbstractEventLog",
     "AbstractMotion",
     "AbstractOrbit",
+    "AbstractStepper",
     "AliasingWarning",
     "Crossings",
+    "DiscreteMotion",
     "EventLog",
+    "First",
     "Orbit",
+    "OrbitT",
+    "Rows",
+    "State",
     "as_orbit",
     "configurations",
     "joined_crossings",

@@ -92,7 +92,7 @@ class AbstractOrbit(abc.ABC):
             columns = {name: rows for name in names if (rows := getattr(self, name)) is not None}
             if not all(is_moderate(rows, LARGEST if "momentum" in name else np.inf) for name, rows in columns.items()):
                 object.__setattr__(self, "outcome", Outcome.nonfinite)
-        if self.step is None:
+        if self.step is None or len(self.step) != len(self.time):
             object.__setattr__(self, "step", self.save_every * np.arange(len(self.time)))
 
     @property

@@ -45,8 +45,6 @@ class AbstractMotion(Keeper, abc.ABC):
     """Whether poses were given, and everything else follows from them."""
     columns: ClassVar[tuple[str, ...]] = STATES
     """The arrays of its orbits, as stores keep them."""
-    runs_itself: ClassVar[bool] = False
-    """Whether it has a run of its own, or one by a route."""
 
     @property
     @abc.abstractmethod

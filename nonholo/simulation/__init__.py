@@ -3,8 +3,10 @@
 from nonholo.orbit import Crossings, EventLog
 from nonholo.simulation._flow import flow
 from nonholo.simulation._iterate import iterate
+from nonholo.simulation._options import check_forces, refuse_many_matrices
 from nonholo.simulation._resume import extend, resume_run
 from nonholo.simulation._simulate import simulate
+from nonholo.simulation._stored import size_in_blocks
 from nonholo.simulation.events import Event, crossings, cusp
 from nonholo.simulation.members import (
     CoordinateEnsemble,
@@ -18,8 +20,6 @@ from nonholo.simulation.members import (
     scalar_members,
     tangents,
 )
-from nonholo.simulation.runs import closed_step, refuse_too_long
-from nonholo.simulation.stores import size_in_blocks
 
 __all__ = [
     "CoordinateEnsemble",
@@ -29,7 +29,7 @@ __all__ = [
     "EventLog",
     "FlowEnsemble",
     "Members",
-    "closed_step",
+    "check_forces",
     "crossings",
     "cusp",
     "ensemble",
@@ -38,7 +38,7 @@ __all__ = [
     "have_kernel",
     "in_one_thread",
     "iterate",
-    "refuse_too_long",
+    "refuse_many_matrices",
     "resume_run",
     "run_in_lanes",
     "scalar_members",

@@ -7,10 +7,10 @@ from nonholo import io
 from nonholo.base.checks import count, error, flags, path, shown
 from nonholo.base.limits import within_disk
 from nonholo.base.results import Outcome
-from nonholo.simulation._simulate import refuse_what_bodies_have
-from nonholo.simulation.events import Watch
-from nonholo.simulation.runs import check_forces, closed_step, compiled_run
-from nonholo.simulation.stores import continue_run, refuse_other_functions, watch_of_store
+from nonholo.simulation._options import check_forces, stepper_of
+from nonholo.simulation._run import Run
+from nonholo.simulation._same import refuse_other_functions, watch_of_store
+from nonholo.simulation._stored import continued
 
 if TYPE_CHECKING:
     from nonholo.io import Stream
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 def resume_run(store: str | Path, *, discrete: Any, events: Any, throw: bool, progress: bool) -> Any:
     """Resume the run of a store: what `resume` does once it has asked the store, and found no sweep."""
-    stream, run, watch = _opened("resume", store, discrete, events)
+    stream, run = _opened("resume", store, discrete, events, throw=throw, progress=progress)
     with io.locked(stream.path):
-        return continue_run(run, io.open_stream(stream.path), watch, throw=throw, progress=progress)
+        return continued(run, io.open_stream(stream.path))
 
 
 def extend(
@@ -67,15 +67,16 @@ def extend(
     if task is not None:
         raise error("extend(task=...)", "come with the store of a sweep", shown(task), "Leave it out for an orbit.")
     steps = count("extend(steps=...)", steps, "Pass how many steps more.")
-    stream, run, watch = _opened("extend", store, discrete, events)
+    stream, run = _opened("extend", store, discrete, events, throw=throw, progress=progress)
     with io.locked(stream.path):
         _refuse_ended(io.read_attributes(stream.path))
-        size, remedy = 8.0 * (steps // run.every) * (1 + sum(run.sizes)), "Pass fewer steps."
+        numbers, remedy = 1 + sum(run.stepper.columns.values()), "Pass fewer steps."
+        size = 8.0 * (steps // run.every) * numbers
         within_disk("extend(steps=...)", size, stream.path, remedy)
         longer = io.open_stream(stream.path).lengthened(steps)
-        check_forces("extend", run.discrete, longer.plan.steps)
+        check_forces("extend", run.stepper.motion, longer.plan.steps)
         longer.announce(steps)
-        return continue_run(run, longer, watch, throw=throw, progress=progress)
+        return continued(run._replace(steps=longer.plan.steps), longer)
 
 
 def _refuse_ended(stored: dict[str, Any]) -> None:
@@ -89,14 +90,15 @@ def _refuse_ended(stored: dict[str, Any]) -> None:
         raise error("extend(store=...)", "be a run that can continue", f"outcome {outcome}", remedy)
 
 
-def _opened(owner: str, store: str | Path, discrete: Any, events: Any) -> tuple["Stream", Any, Watch | None]:
-    stream = io.open_stream(store)
-    motion, every = io.restore_motion(io.read_attributes(store), discrete), stream.plan.every
-    if not motion.runs_itself:
-        run = compiled_run("resume(store=...)", motion, closed_step(motion), every, stream.reconstruct)
-        return stream, run, watch_of_store(owner, stream, run, events)
-    refuse_what_bodies_have(owner, events=events)
-    run = motion.run(every)
+def _opened(
+    owner: str, store: str | Path, discrete: Any, events: Any, *, throw: bool, progress: bool
+) -> tuple["Stream", Run]:
+    stream, stored = io.open_stream(store), io.read_attributes(store)
+    motion = io.restore_motion(stored, discrete)
+    backend = "jax" if motion.route_name == "definition" else "auto"
+    stepper = stepper_of(motion, stored.get("branch", "principal"), backend, posed=stream.reconstruct)
+    watch = watch_of_store(owner, stream, stepper, events)
+    run = Run(stepper, stream.plan.steps, stream.plan.every, watch, throw, progress)
     if discrete is not None:
         refuse_other_functions(owner, stream, run)
-    return stream, run, None
+    return stream, run

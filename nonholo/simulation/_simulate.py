@@ -1,39 +1,20 @@
 """`simulate`: an orbit of the discrete map, from a checked start to a decoded result."""
 
-import functools
 from pathlib import Path
-from typing import Any, overload
+from typing import Any
 
-from nonholo.base.checks import flags, path, refuse_given, step_counts
-from nonholo.base.results import finished
-from nonholo.discrete import BranchRule, Discretization
-from nonholo.orbit import Orbit
-from nonholo.simulation.events import Watch, run_compiled, run_with_events, simulated, watched
-from nonholo.simulation.runs import (
-    CompiledRun,
-    RunOptions,
-    closed_step,
-    compiled_run,
-    first_state,
-    opened,
-    refuse_too_large,
-    refuse_too_long,
-    uncompiled_run,
-)
-from nonholo.simulation.stores import refuse_without_store, run_into_store
-from nonholo.systems import AbstractCoordinateDiscretization, OrbitT, Start, in_coordinates, refuse_in_coordinates
-
-_DEFAULTS = {"branch": "principal", "reconstruct": True, "backend": "auto"}  # of what a system in coordinates lacks
+from nonholo.base.checks import error, flags, path, shown
+from nonholo.discrete import BranchRule
+from nonholo.orbit import DiscreteMotion, OrbitT
+from nonholo.simulation._options import RunOptions
+from nonholo.simulation._run import Run, in_memory
+from nonholo.simulation._stored import into_store
+from nonholo.simulation.events import watched
+from nonholo.systems import Start
 
 
-def refuse_what_bodies_have(owner: str, **given: Any) -> None:
-    """Refuse what runs of systems in coordinates do not have, unless it is the default."""
-    refuse_in_coordinates(owner, **{name: (value, _DEFAULTS.get(name)) for name, value in given.items()})
-
-
-@overload
 def simulate(
-    discrete: Discretization,
+    discrete: DiscreteMotion[OrbitT],
     *,
     steps: int,
     body_velocity: Any = None,
@@ -51,44 +32,7 @@ def simulate(
     store: str | Path | None = None,
     checkpoint_every: int | None = None,
     scenario: str | None = None,
-) -> Orbit: ...
-@overload
-def simulate(
-    discrete: AbstractCoordinateDiscretization[OrbitT],
-    *,
-    steps: int,
-    configuration: Any,
-    body_velocity: Any = None,
-    displacement: Any = None,
-    momentum: Any = None,
-    save_every: int = 1,
-    events: Any = None,
-    throw: bool = True,
-    progress: bool = False,
-    store: str | Path | None = None,
-    checkpoint_every: int | None = None,
-    scenario: str | None = None,
-) -> OrbitT: ...
-def simulate(
-    discrete: Discretization | AbstractCoordinateDiscretization,
-    *,
-    steps: int,
-    body_velocity: Any = None,
-    restricted_velocity: Any = None,
-    displacement: Any = None,
-    momentum: Any = None,
-    configuration: Any = None,
-    save_every: int = 1,
-    branch: BranchRule = "principal",
-    reconstruct: bool = True,
-    backend: str = "auto",
-    events: Any = None,
-    throw: bool = True,
-    progress: bool = False,
-    store: str | Path | None = None,
-    checkpoint_every: int | None = None,
-    scenario: str | None = None,
-) -> Any:
+) -> OrbitT:
     r"""Run the discrete Euler-Poincare-Suslov map.
 
     $$ P(W_{k+1})|_{\mathfrak{d}} = (\mathrm{Ad}^*_{W_k} P(W_k))|_{\mathfrak{d}}, \qquad g_{k+1} = g_k W_k. $$
@@ -127,9 +71,9 @@ def simulate(
             to rounding; see `Orbit.events`. A stopping event ends the run with the last saved state before it.
         throw: Raise if the run cannot continue; otherwise return the good steps and the outcome.
         progress: Show a progress bar on standard error.
-        store: A new path. The saved states of a run that is compiled or in coordinates, and the crossings of its
-            events, go there block by block, in bounded memory; `resume` and `extend` continue it. An orbit that would
-            fill 1 GiB is not returned whole but as its last block.
+        store: A new path. The saved states of the run and the crossings of its events go there block by block, in
+            bounded memory; `resume` and `extend` continue it. An orbit that would fill 1 GiB is not returned whole but
+            as its last block.
         checkpoint_every: Steps between two checkpoints of the store, a multiple of `save_every`; by default blocks of a
             few megabytes. A run that is stopped loses at most this many steps.
         scenario: A text that says how the orbit is made, kept in the store.
@@ -151,65 +95,26 @@ def simulate(
         True
     """
     flags("simulate", reconstruct=reconstruct, throw=throw, progress=progress)
-    starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
-    common = {"steps": steps, "save_every": save_every, "throw": throw, "progress": progress}
     how = {"branch": branch, "reconstruct": reconstruct, "backend": backend}
-    kept = {"store": store, "checkpoint_every": checkpoint_every, "scenario": scenario}
-    if in_coordinates(discrete):
-        refuse_what_bodies_have("simulate", restricted_velocity=restricted_velocity, **how)
-        return _run_in_coordinates(discrete, {"configuration": configuration, **starts}, common, events, kept)
-    options = RunOptions.of(discrete, **common, **how)
-    start = Start.of("simulate", configuration, **starts, restricted_velocity=restricted_velocity)
-    closed = closed_step(discrete, options.rule, options.backend)
-    refuse_too_long("simulate", discrete, options.steps, compiled=closed is not None)
-    watch = None if events is None else watched("simulate", discrete, events, options.rule.name, options.reconstruct)
-    return (_run_in_memory if store is None else _run_into_store)(discrete, start, options, watch, **kept)
+    options = RunOptions.of("simulate", discrete, steps=steps, save_every=save_every, **how)
+    starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity}
+    starts |= {"displacement": displacement, "momentum": momentum}
+    start = Start.of("simulate", configuration, allowed=discrete.starts, **starts)
+    watch = watched("simulate", options.stepper, events)
+    if store is None:
+        _refuse_without_store(checkpoint_every=checkpoint_every, scenario=scenario)
+    if store is not None or watch is None:  # an event may stop a run in memory long before
+        options.refuse_too_large("simulate", 1 if store is not None else 1 + options.steps // options.every)
+    run = Run(*options, watch, throw, progress)
+    first = discrete.first(start, posed=options.stepper.has_poses)
+    if store is None:
+        return in_memory(run, first)
+    return into_store(run, first, path("simulate(store=...)", store), checkpoint_every, scenario)
 
 
-def _run_in_coordinates(
-    discrete: AbstractCoordinateDiscretization,
-    start: dict[str, Any],
-    common: dict[str, Any],
-    events: Any,
-    kept: dict[str, Any],
-) -> Any:
-    if kept["store"] is None:
-        refuse_without_store(**kept)
-        return simulated(discrete, events, **start, **common)
-    remedy = "Run in memory with events, or into a store without."
-    refuse_given("simulate", "be left out of a stored run in coordinates", remedy, events=(events, None))
-    steps, every = step_counts(common["steps"], common["save_every"])
-    store, throw = path("simulate(store=...)", kept.pop("store")), common["throw"]
-    run = discrete.run(every)
-    how = {"throw": throw, "progress": common["progress"], **kept}
-    return run_into_store(run, lambda: run.opened(discrete.start(**start), steps, throw), steps, store, None, **how)
-
-
-def _run_into_store(
-    discrete: Discretization, start: Start, options: RunOptions, watch: Watch | None, store: Any, **kept: Any
-) -> Orbit:
-    store, posed = path("simulate(store=...)", store), options.reconstruct
-    closed = closed_step(discrete, options.rule, options.backend)
-    run = compiled_run("simulate(store=...)", discrete, closed, options.every, posed)
-    refuse_too_large("simulate", discrete, 1, posed)
-    first = first_state(discrete, start, posed=posed, compiled=True)
-    begin = functools.partial(opened, run, first, options.steps, options.throw)
-    how = {"throw": options.throw, "progress": options.progress, **kept}
-    return run_into_store(run, begin, options.steps, store, watch, **how)
-
-
-def _run_in_memory(
-    discrete: Discretization, start: Start, options: RunOptions, watch: Watch | None, **kept: Any
-) -> Orbit:
-    refuse_without_store(**kept)
-    closed = closed_step(discrete, options.rule, options.backend)
-    steps, every, posed, throw = options.steps, options.every, options.reconstruct, options.throw
-    if watch is None:  # an event may stop it long before
-        refuse_too_large("simulate", discrete, 1 + steps // every, posed)
-    first = first_state(discrete, start, posed=posed, compiled=closed is not None)
-    if closed is not None:
-        run = CompiledRun(discrete, closed, every, posed)
-        return run_compiled(run, first, watch, steps, throw=throw, progress=options.progress)
-    slow, counts = uncompiled_run(discrete, first, options), (steps, every, options.progress)
-    orbit, done = slow(*counts) if watch is None else run_with_events(slow, watch, *counts)
-    return finished(orbit, float(discrete.time_step), done, steps, throw)
+def _refuse_without_store(**given: Any) -> None:
+    """Refuse what only a store can keep."""
+    for name, value in given.items():
+        if value is not None:
+            got, remedy = f"{shown(value)} without a store", "Pass store='run.zarr' too, or leave it out."
+            raise error(f"simulate({name}=...)", "come with a store", got, remedy)

@@ -15,7 +15,7 @@ from nonholo.base.checks import error, instance, is_traced, shape_of, trailing
 from nonholo.base.html import table
 from nonholo.base.kept import Keeper, kept
 from nonholo.base.limits import within_memory
-from nonholo.base.numerics import applied
+from nonholo.base.numerics import applied, solved
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._equilibria import Equilibria, equilibria_of, transverse_rates
@@ -118,11 +118,6 @@ class AbstractSystem(Keeper, abc.ABC):
         if mass_tensor is None:
             return rows @ self.inertia_operator @ rows.T
         return inertia_form(self.group, self.group.hat(rows), mass_tensor)
-
-    @kept
-    def inverse_inertia(self) -> Float[np.ndarray, "k k"]:
-        """The inverse of a matrix `inertia_along`, which takes momenta to velocities."""
-        return np.linalg.inv(self.constrained_inertia)
 
     @functools.cached_property
     def normal_form(self) -> NormalForm | None:
@@ -344,7 +339,7 @@ class AbstractLLSystem(AbstractSystem):
         del configuration
         momentum, inertia = self._along("restricted_momentum", restricted_momentum), self.inertia_along
         if isinstance(inertia, np.ndarray) and isinstance(momentum, np.ndarray):
-            return applied(self.inverse_inertia, momentum)
+            return solved(inertia, momentum)
         return inertia.velocities(momentum) if isinstance(inertia, WideInertia) else _solve(inertia, momentum)
 
     def restricted_momentum(

@@ -1,14 +1,10 @@
-"""The interface of systems in coordinates, which discretize, run and flow by themselves."""
+"""The interface of systems in coordinates, which discretize and flow by themselves."""
 
 import abc
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
-
-import numpy as np
 
 from nonholo.base.checks import error, refuse_given
 from nonholo.base.kept import Keeper
-from nonholo.base.types import Float
 
 if TYPE_CHECKING:
     from typing_extensions import TypeIs
@@ -18,60 +14,21 @@ DiscretizationT = TypeVar("DiscretizationT")
 
 
 class AbstractCoordinateDiscretization(abc.ABC, Generic[OrbitT]):
-    """A discretized system in coordinates: `nonholo.simulate` hands its arguments on to it."""
+    """A discretized system in coordinates."""
 
     system: Any
     time_step: float
     route_name: ClassVar[None] = None
     forces: ClassVar[None] = None
-    runs_itself: ClassVar[bool] = True
+    starts: ClassVar[tuple[str, ...]] = ("body_velocity", "displacement", "momentum")
 
     @abc.abstractmethod
-    def start(self, configuration: Any, **starts: Any) -> Any:
-        """Return the checked state at the start of a run, the orientation to keep and the outcome so far."""
+    def first(self, start: Any, *, posed: bool) -> Any:
+        """Return a checked start in the numbers of the motion."""
 
     @abc.abstractmethod
-    def run(self, every: int) -> Any:
-        """Return what computes blocks of a run that keeps one in `every` states."""
-
-    @abc.abstractmethod
-    def simulate(
-        self,
-        *,
-        configuration: Any,
-        steps: int,
-        body_velocity: Any = None,
-        displacement: Any = None,
-        momentum: Any = None,
-        save_every: int = 1,
-        throw: bool = True,
-        progress: bool = False,
-    ) -> OrbitT:
-        """Run the discrete map."""
-
-    @abc.abstractmethod
-    def iterate(
-        self,
-        *,
-        configuration: Any,
-        steps: int,
-        block_steps: int | None = None,
-        body_velocity: Any = None,
-        displacement: Any = None,
-        momentum: Any = None,
-        save_every: int = 1,
-        throw: bool = True,
-        progress: bool = False,
-    ) -> Iterator[OrbitT]:
-        """Run the discrete map block by block."""
-
-    @abc.abstractmethod
-    def rows_of_block(self, block_steps: Any, save_every: int) -> int:
-        """Return the saved states of a block, refused where memory cannot hold them."""
-
-    @abc.abstractmethod
-    def after_parts(self, states: OrbitT, fractions: Float[np.ndarray, "K"]) -> OrbitT:
-        """Return what is reached from states after parts of the steps that begin there."""
+    def stepper(self, *, posed: bool) -> Any:
+        """Return what takes its steps."""
 
 
 class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]):

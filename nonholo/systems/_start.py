@@ -9,6 +9,7 @@ from nonholo.base.checks import array, error, shape_of
 from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._base import System
+from nonholo.systems._coordinate_system import refuse_in_coordinates
 
 _TOLERANCE = 1e-9  # relative, for matrices and velocities that a user computed in floating point
 
@@ -36,8 +37,12 @@ class Start:
     configuration: Any = None
 
     @classmethod
-    def of(cls, owner: str, configuration: Any = None, **starts: Any) -> "Start":
-        """Return the start of a call, refused if it names none or several."""
+    def of(
+        cls, owner: str, configuration: Any = None, allowed: tuple[str, ...] | None = None, **starts: Any
+    ) -> "Start":
+        """Return the start of a call, refused if it names none or several, or one that the motion does not have."""
+        for other in [name for name in starts if allowed is not None and name not in allowed]:
+            refuse_in_coordinates(owner, **{other: (starts.pop(other), None)})
         name = one_start(owner, **starts)
         return cls(owner, name, starts[name], configuration)
 

@@ -8,8 +8,7 @@ import numpy as np
 from nonholo.analysis import invariants
 from nonholo.base.checks import count, error, flags, refuse_given
 from nonholo.discrete import Discretization, discrete_legendre, refuse_composition
-from nonholo.simulation import simulate
-from nonholo.simulation.runs import refuse_many_matrices
+from nonholo.simulation import refuse_many_matrices, simulate
 from nonholo.systems import AbstractCoordinateDiscretization, Forced
 from nonholo.testing._coordinates import MAP, CoordinateSamples
 from nonholo.testing._measures import derivative, gap, largest, relative, seeded

@@ -8,8 +8,7 @@ from nonholo.analysis import Convergence, compare
 from nonholo.base.checks import count, flags, instance, positive
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
-from nonholo.simulation import flow, simulate
-from nonholo.simulation.runs import refuse_many_matrices
+from nonholo.simulation import flow, refuse_many_matrices, simulate
 
 _MANY = 1000  # halvings; more than any memory holds
 

@@ -18,7 +18,7 @@ import nonholo as nh
 from nonholo.cli import _app
 from nonholo.cli.commands import _running
 from nonholo.cli.scenario.files import load_scenario
-from nonholo.simulation.stores import _stored_run
+from nonholo.simulation import _run
 
 Command = Callable[..., Result]
 Figures = Callable[..., dict[str, Any]]
@@ -75,7 +75,7 @@ def test_numbers_go_on_after_the_largest(nonholo: Command) -> None:
 @pytest.mark.parametrize("rows", [100, 10_000], ids=["several blocks", "one block"])
 def test_runs_at_the_same_time_get_different_stores(rows: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs that begin and end together all keep their orbit."""
-    monkeypatch.setattr(_stored_run, "_ROWS", rows)
+    monkeypatch.setattr(_run, "_ROWS", rows)
     loaded = load_scenario("sleigh", [])
     _running.check_output(None, overwrite=False)
     with ThreadPoolExecutor(4) as pool:

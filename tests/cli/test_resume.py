@@ -12,7 +12,7 @@ from typer.testing import Result
 
 import nonholo as nh
 from nonholo.io import Stream, locked
-from nonholo.simulation.stores import _stored_run
+from nonholo.simulation import _run, _stored
 
 Command = Callable[..., Result]
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
@@ -150,7 +150,7 @@ def test_locked_and_foreign_stores_are_refused(stopped: Path, nonholo: Command) 
 @pytest.fixture
 def short_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Blocks of 16 states, so that small runs take several."""
-    monkeypatch.setattr(_stored_run, "_ROWS", 16)
+    monkeypatch.setattr(_run, "_ROWS", 16)
 
 
 @pytest.mark.usefixtures("short_blocks")
@@ -162,7 +162,7 @@ def test_long_run_is_gone_on_with(nonholo: Command, monkeypatch: pytest.MonkeyPa
     assert stopped.exit_code == 1
     assert "Stopped at step 47 of 100. Resume with nonholo.resume(" in stopped.stderr
     assert nonholo("resume", "runs/sleigh-001.zarr").exit_code == 0
-    monkeypatch.setattr(_stored_run, "_ROWS", 1000)
+    monkeypatch.setattr(_run, "_ROWS", 1000)
     assert nonholo(*command, "-o", "whole.zarr").exit_code == 0
     resumed, whole = (nh.load_orbit(path) for path in ("runs/sleigh-001.zarr", "whole.zarr"))
     assert resumed.pose.tobytes() == whole.pose.tobytes()
@@ -197,7 +197,7 @@ def test_older_store_stays_where_nothing_replaces_it(nonholo: Command) -> None:
 
 def test_long_run_that_cannot_go_on_is_kept(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     """The good steps of a run of several blocks are in its store, with the outcome."""
-    monkeypatch.setattr(_stored_run, "_ROWS", 4)
+    monkeypatch.setattr(_run, "_ROWS", 4)
     given = ("--set", "run.time_step=1.0", "--set", "start={momentum=[1.93257157, -0.68979744]}")
     result = nonholo("simulate", "suslov", "--steps", 500, "--no-plot", *given)
     assert result.exit_code == 1
@@ -210,7 +210,7 @@ def test_long_run_that_cannot_go_on_is_kept(nonholo: Command, monkeypatch: pytes
 @pytest.mark.usefixtures("short_blocks")
 def test_figures_of_the_last_block_say_so(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where an orbit is too large to be loaded the steps are all of them, and the figures say what they are of."""
-    monkeypatch.setattr(_stored_run, "_LOADED", 100)
+    monkeypatch.setattr(_stored, "_LOADED", 100)
     command = ("simulate", "sleigh", "--steps", 100, "--no-plot")
     shown = nonholo(*command)
     assert "100 of 100" in shown.stdout

@@ -142,11 +142,11 @@ def test_one_good_member_is_enough_to_begin(tmp_path: Path) -> None:
 
 def test_own_outcomes_are_kept(tmp_path: Path) -> None:
     """A task may say how its members ended; the codes are counted by name where they have one."""
-    codes = np.array([0, 1, 5, 7, -1, 0, 0, 0, 0, 0, 0, 0])
+    codes = np.array([0, 1, 5, 77, -1, 0, 0, 0, 0, 0, 0, 0])
     found = _swept(lambda block: {"outcome": codes[block.index]}, tmp_path)
     assert np.array_equal(found["outcome"].values.ravel(), codes)
     outcomes = standing_of(tmp_path / "run.zarr").outcomes
-    assert outcomes == {"successful": 8, "no_real_branch": 1, "nonfinite": 1, "7": 1, "-1": 1}
+    assert outcomes == {"successful": 8, "no_real_branch": 1, "nonfinite": 1, "77": 1, "-1": 1}
 
 
 def test_outcomes_are_explained(tmp_path: Path) -> None:

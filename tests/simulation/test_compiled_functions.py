@@ -13,6 +13,7 @@ from bodies import GENERAL
 
 import nonholo as nh
 from nonholo.discrete.routes import FunctionRoute
+from nonholo.orbit import First
 from nonholo.systems import AbstractSystem
 
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -93,8 +94,12 @@ def test_compiled_functions_have_the_bits_of_python(name: str, kind: str) -> Non
             assert np.array_equal(every[:12:3], some)
     assert discrete.route.compiled is not None
     route = FunctionRoute(discrete.route.compiled.single, forced)
-    by_definition, _, _ = route.run(found[0].reduced_momentum[0], found[0].canonical_pose[0], 12, 1, False)
-    for in_python, compiled, defined in zip(*map(_rows, found), by_definition, strict=True):
+    stepper = route.stepper(discrete, posed=True)
+    state, _ = stepper.start(First((found[0].reduced_momentum[0], found[0].canonical_pose[0])))
+    rows = tuple(np.empty((13, width)) for width in stepper.columns.values())
+    assert stepper.advance(state, 12, 1, rows) == (12, 0)
+    by_definition = stepper.orbit(rows, 0, 1, nh.Outcome.successful)
+    for in_python, compiled, defined in zip(*map(_rows, (*found, by_definition)), strict=True):
         assert np.array_equal(in_python, compiled)
         assert np.abs(compiled - defined).max() < 3e-13
 
@@ -116,15 +121,13 @@ def test_compiled_functions_run_in_blocks_stores_and_ensembles(tmp_path: Path) -
 
 
 def test_events_are_found_under_a_compiled_potential() -> None:
-    """A potential does not depend on time, so a part of a step is the step of that length; a force may."""
+    """A part of a step is the step of that length, under a potential and under a force of the time."""
     event = nh.Event(lambda states: states.configuration[:, 0, 0] - 0.95)
     run: dict[str, Any] = {"restricted_velocity": START[:2], "steps": 60, "events": [event]}
-    orbit = nh.simulate(nh.discretize(nh.Forced(TOP, WELL), 0.05), **run)
-    found = orbit.events[0]
-    assert len(found) > 0
-    assert np.abs(found.states.configuration[:, 0, 0] - 0.95).max() < 1e-14
-    with pytest.raises(ValueError, match="do not depend on time"):
-        nh.simulate(nh.discretize(nh.Forced(TOP, WELL, PUSH), 0.05), **run)
+    for forced in (nh.Forced(TOP, WELL), nh.Forced(TOP, WELL, PUSH)):
+        found = nh.simulate(nh.discretize(forced, 0.05), **run).events[0]
+        assert len(found) > 0
+        assert np.abs(found.states.configuration[:, 0, 0] - 0.95).max() < 1e-14
 
 
 @numba.njit

@@ -285,7 +285,7 @@ def test_cusp_of_the_discrete_sleigh_tends_to_the_continuous_one() -> None:
         (lambda orbit: orbit.body_velocity, "one real number for each of 1 states. Got float64 of shape (1, 3)"),
         (lambda _: 1.0, "of shape ()"),
         (lambda orbit: orbit.time > 1, "bool of shape"),
-        (lambda orbit: np.where(orbit.time > 1.05, np.nan, 1.0), "nan at time 1.1"),
+        (lambda orbit: np.where(orbit.time > 1.05, np.nan, 1.0), "nan from `<lambda>` at time 1.1"),
         (lambda orbit: orbit.altitude, "AttributeError"),
     ],
     ids=["shape", "one number", "truth", "nan", "raises"],

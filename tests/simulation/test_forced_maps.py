@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 import nonholo as nh
 from nonholo.discrete.routes import FunctionRoute
-from nonholo.orbit import Orbit
+from nonholo.orbit import First, Orbit
 from nonholo.systems import AbstractSystem
 
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -165,9 +165,13 @@ def test_functions_give_the_impulses_of_what_is_compiled() -> None:
             discrete, g = nh.discretize(forced, 0.05), system.group.random(rng)
             orbit = nh.simulate(discrete, restricted_velocity=rng.normal(size=system.rank), configuration=g, steps=16)
             route = FunctionRoute(discrete.route.compiled.single, forced)  # type: ignore[union-attr]
-            rows, _, _ = route.run(orbit.reduced_momentum[0], orbit.canonical_pose[0], 16, 1, False)
-            for mine, theirs in zip(rows, (orbit.reduced_momentum, orbit.cayley, orbit.canonical_pose), strict=True):
-                assert np.abs(mine - theirs).max() < 1e-13
+            stepper = route.stepper(discrete, posed=True)
+            state, _ = stepper.start(First((orbit.reduced_momentum[0], orbit.canonical_pose[0])))
+            rows = tuple(np.empty((17, width)) for width in stepper.columns.values())
+            assert stepper.advance(state, 16, 1, rows) == (16, 0)
+            mine = stepper.orbit(rows, 0, 1, nh.Outcome.successful)
+            for name in ("reduced_momentum", "cayley", "canonical_pose"):
+                assert np.abs(getattr(mine, name) - getattr(orbit, name)).max() < 1e-13
 
 
 def test_a_differentiated_potential_is_the_weight() -> None:
@@ -370,7 +374,7 @@ def test_outcomes_stay_apart() -> None:
     assert (str(ended.outcome), len(ended)) == ("no_real_branch", 4)
     drives = {
         "nonfinite": lambda time, _, w: 0.0 * w + (np.nan if time > 0.25 else 0.0),
-        "not_converged": lambda time, _, w: 1e4 * np.sign(w - 0.01) * -1.0 if time > 0.25 else 0.0 * w,
+        "no_half_impulse": lambda time, _, w: 1e4 * np.sign(w - 0.01) * -1.0 if time > 0.25 else 0.0 * w,
     }
     for name, drive in drives.items():
         discrete = nh.discretize(nh.Forced(SLEIGH, force=drive), 0.1)

@@ -67,8 +67,11 @@ def test_a_stored_function_is_not_run(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="force is a callable"):
         nh.load_orbit(path)
     assert _same(nh.load_orbit(path, discrete=discrete), orbit)
-    with pytest.raises(ValueError, match="have a compiled run"):
-        nh.simulate(discrete, **START, steps=3, store=tmp_path / "run.zarr")
+    run = tmp_path / "run.zarr"
+    assert _same(nh.simulate(discrete, **START, steps=3, store=run), orbit)
+    with pytest.raises(ValueError, match="force is a callable"):
+        nh.extend(run, 2)
+    assert _same(nh.extend(run, 2, discrete=discrete), nh.simulate(discrete, **START, steps=5))
     nh.save_orbit(nh.simulate(nh.discretize(FORCED["table"], 0.05), **START, steps=3), tmp_path / "table.zarr")
     described = json.loads(zarr.open_group(tmp_path / "table.zarr", mode="r").attrs["parameters"])  # type: ignore[arg-type]
     assert described["system"] == {

@@ -246,7 +246,7 @@ def test_large_orbit_comes_with_the_crossings_of_its_last_block(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where only the last block of states is returned, its crossings are; the store holds all."""
-    monkeypatch.setattr("nonholo.simulation.stores._stored_run._LOADED", 100)
+    monkeypatch.setattr("nonholo.simulation._stored._LOADED", 100)
     tail, whole = begun(tmp_path / "run.zarr", [TURNS]), begun(None, [TURNS])
     found, known = tail.events["east"], whole.events["east"]
     begin = tail.time[0] - 7 * ROUND.time_step
@@ -312,7 +312,7 @@ def test_a_function_that_fails_on_the_way_leaves_a_valid_store(tmp_path: Path) -
         return np.where(orbit.time > 30, np.nan, east(orbit))
 
     path, sound = tmp_path / "run.zarr", [nh.Event(east, name="brittle")]
-    with pytest.raises(ValueError, match=r"be finite. Got nan at time 30"):
+    with pytest.raises(ValueError, match=r"be finite. Got nan from `brittle` at time 30"):
         begun(path, [brittle])
     now = standing(path)
     assert now is not None

@@ -80,7 +80,7 @@ def test_errors_of_groups(error: str) -> None:
 def bare(system: Any) -> Any:
     """Return a copy of a system without what it has computed and kept."""
     other = copy.copy(system)
-    for name in vars(system).keys() - {field.name for field in dataclasses.fields(system)}:
+    for name in vars(other).keys() - {field.name for field in dataclasses.fields(system)}:
         del vars(other)[name]
     return other
 

@@ -13,7 +13,7 @@ from nonholo.base.kept import Keeper
 from nonholo.base.progress import interruptibly
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization
-from nonholo.simulation.runs import refuse_many_matrices
+from nonholo.simulation import refuse_many_matrices
 from nonholo.systems import in_group
 
 

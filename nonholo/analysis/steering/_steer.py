@@ -24,7 +24,7 @@ from nonholo.base.limits import within_memory
 from nonholo.base.progress import interruptibly, progress_bar
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, as_discretization
-from nonholo.simulation.runs import check_forces, refuse_many_matrices
+from nonholo.simulation import check_forces, refuse_many_matrices
 from nonholo.systems import in_coordinates
 
 _PER_ENTRY = 24.0  # bytes of a second derivative: its value, and where it stands

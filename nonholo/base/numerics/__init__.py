@@ -16,7 +16,7 @@ from nonholo.base.numerics._matrix_functions import (
     of_skew,
     principal_logarithm,
 )
-from nonholo.base.numerics._products import applied, product_and_remainder
+from nonholo.base.numerics._products import applied, product_and_remainder, solved
 
 __all__ = [
     "applied",
@@ -36,5 +36,6 @@ __all__ = [
     "real_cubic_roots",
     "real_eigenspaces",
     "sinc",
+    "solved",
     "versine",
 ]

@@ -25,6 +25,30 @@ def applied(matrix: Inexact[Array, "... i j"], vectors: Inexact[Array, "... j"])
     return vectors @ matrix.T if matrix.ndim == 2 else (matrix @ vectors[..., None])[..., 0]
 
 
+def solved(matrix: Float[np.ndarray, "... k k"], vectors: Float[np.ndarray, "... k"]) -> Float[np.ndarray, "... k"]:
+    """Return the solutions x of A x = v, of a positive definite A or of one for each: the same bits in any company.
+
+    By Cholesky's factors and substitution, which loses less than a product with the inverse where A is uneven.
+
+    Example:
+        >>> from nonholo.base.numerics import solved
+        >>> solved(np.array([[4.0, 2.0], [2.0, 2.0]]), np.array([[6.0, 4.0], [2.0, 0.0]]))
+        array([[ 1.,  1.],
+               [ 1., -1.]])
+    """
+    try:
+        L = np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
+        return np.linalg.solve(matrix, vectors[..., None])[..., 0]
+    k, x = L.shape[-1], np.array(np.broadcast_to(vectors, np.broadcast_shapes(L.shape[:-1], vectors.shape)))
+    for factor, forward in ((L, True), (np.ascontiguousarray(L.swapaxes(-1, -2)), False)):
+        for i in range(k) if forward else reversed(range(k)):
+            known = slice(0, i) if forward else slice(i + 1, k)
+            row, before = (np.ascontiguousarray(each) for each in (factor[..., i, known], x[..., known]))
+            x[..., i] = (x[..., i] - np.einsum("...j,...j->...", row, before)) / factor[..., i, i]
+    return x
+
+
 def product_and_remainder(
     A: Float[np.ndarray, "... n m"], B: Float[np.ndarray, "m p"]
 ) -> tuple[Float[np.ndarray, "... n p"], Float[np.ndarray, "... n p"]]:

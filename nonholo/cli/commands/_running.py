@@ -41,7 +41,7 @@ def run_and_keep(loaded: Loaded, store: Path | None, *, overwrite: bool, progres
     """
     with waiting("compiling", progress):
         scenario, (discrete, starts) = loaded.scenario, _tried(loaded)
-    task = functools.partial(simulate, discrete, steps=scenario.run.steps, progress=progress, **scenario.options())
+    task: Any = functools.partial(simulate, discrete, steps=scenario.run.steps, progress=progress, **scenario.options())
     text = scenario_text(loaded)
     size = size_in_blocks(discrete, scenario.run.branch, scenario.run.steps, scenario.run.save_every)
     if size and starts:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from nonholo.base.checks import error
+from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.systems import NormalForm
 
@@ -149,7 +150,7 @@ class Frame:
 
     def momentum(self, target: Inexact[Array, "... k"], push: Array) -> Inexact[Array, "... m"]:
         """Return the momenta, multiplied by the time step, that `equations` brings to targets and pushes."""
-        turning = 2 * self.inertia * (target @ self.axes.T)
+        turning = 2 * self.inertia * applied(self.axes, target)
         if self.length is not None:
             along = np.asarray(push)[..., None] * self.inertia / self.length
             turning = np.concatenate([turning + self.offset * along, along], axis=-1)
@@ -159,11 +160,11 @@ class Frame:
         """Return the canonical Cayley coordinates of displacements; huge at angle pi."""
         k = len(self.stiffness)
         z0 = np.where(x[..., :1] != 0, x[..., :1], _AT_PI)
-        y = (x[..., 1 : k + 1] @ self.axes.T) / z0
+        y = applied(self.axes, x[..., 1 : k + 1]) / z0
         if self.length is not None:
-            nu = self.length * x[..., -1:] - 2 * ((y * z0) @ self.offset)[..., None]
+            nu = self.length * x[..., -1:] - 2 * applied(self.offset[None], y * z0)
             y = np.concatenate([y, nu / (2 * z0)], axis=-1)
-        return y if self.rows is None else y @ self.rows
+        return y if self.rows is None else applied(self.rows.T, y)
 
     def increment(self, x: Inexact[Array, "... m"]) -> Inexact[Array, "... N N"]:
         """Return the canonical displacements minus the identity, without cancellation."""
@@ -172,7 +173,7 @@ class Frame:
 
     def _own_increment(self, x: Inexact[Array, "... m"]) -> Inexact[Array, "... N N"]:
         k = len(self.stiffness)
-        z0, z = x[..., :1], x[..., 1 : k + 1] @ self.axes.T
+        z0, z = x[..., :1], applied(self.axes, x[..., 1 : k + 1])
         if self.length is None:
             q, sign = np.concatenate([z, z0], axis=-1), np.append(-np.ones(k), 1.0)
             X = 2 * (q[..., :, None] * q[..., None, :]) * sign
@@ -182,7 +183,7 @@ class Frame:
         X = np.zeros((*x.shape[:-1], k + 2, k + 2), dtype=x.dtype)
         X[..., :-1, :-1] = 2 * (q[..., :, None] * q[..., None, :]) * sign
         X[..., 0, 0] = -2 * (z * z).sum(axis=-1)
-        X[..., :-1, -1] = (self.length * x[..., -1:] - 2 * (z @ self.offset)[..., None]) * q
+        X[..., :-1, -1] = (self.length * x[..., -1:] - 2 * applied(self.offset[None], z)) * q
         return X
 
     def point(self, W: Inexact[np.ndarray, "N N"]) -> Inexact[np.ndarray, "m"]:

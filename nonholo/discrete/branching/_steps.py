@@ -62,27 +62,27 @@ def next_place(discrete: Discretization, frame: Frame, rule: AbstractBranchRule,
     return code, Place(x, momentum) if code == 0 else place
 
 
-def next_places(
-    discrete: Discretization, frame: Frame, rule: AbstractBranchRule, place: Place, count: int
-) -> tuple[Outcome, Place]:
-    """Return some states that follow by a rule, up to `count`, as rows; the outcome tells why there are none.
+def goal_of(discrete: Discretization, frame: Frame, momentum: Float[np.ndarray, "k"]) -> Float[np.ndarray, "g"]:
+    """Return what the kernel of clear steps makes of a canonical momentum."""
+    now = frame.equations(float(discrete.time_step) * momentum)
+    return now.target if now.lever is None else np.append(now.target, now.push)
 
-    The kernel takes the clear steps to the nearest value, `next_place` all others, one at a time.
+
+def clear_places(
+    discrete: Discretization,
+    frame: Frame,
+    begin: Float[np.ndarray, "k"],
+    goal: Float[np.ndarray, "g"],
+    point: Float[np.ndarray, "m"],
+    count: int,
+) -> tuple[Place, Float[np.ndarray, "C g"]]:
+    """Return the states that follow by clear steps to the nearest value, up to `count` of them, and their goals.
+
+    Momenta are summed from the one at which the goals began, so that they do not depend on how steps are cut.
     """
-    places = _clear_places(discrete, frame, place, count) if rule.is_nearest else None
-    if places is not None and len(places.point):
-        return Outcome.successful, places
-    code, following = next_place(discrete, frame, rule, place)
-    rows = slice(0, int(code == 0))
-    return code, Place(following.point[None][rows], following.momentum[None][rows])
-
-
-def _clear_places(discrete: Discretization, frame: Frame, place: Place, count: int) -> Place:
-    """Return the states of the steps to the nearest value that are clear."""
     h, k = float(discrete.time_step), len(frame.stiffness)
-    now = frame.equations(h * place.momentum)
-    goal = now.target if now.lever is None else np.append(now.target, now.push)
-    goals, points = np.empty((count, len(goal))), np.empty((count, len(place.point)))
-    done = kernels.advance_to_nearest(nearest_body(now), goal, place.point, goals, points)
-    moved = goals[:done] - goal
-    return Place(points[:done], place.momentum + frame.momentum(moved[:, :k], moved[:, -1]) / h)
+    first, now = goal_of(discrete, frame, begin), frame.equations(h * begin)
+    goals, points = np.empty((count, len(goal))), np.empty((count, len(point)))
+    done = kernels.advance_to_nearest(nearest_body(now), goal, point, goals, points)
+    moved = goals[:done] - first
+    return Place(points[:done], begin + frame.momentum(moved[:, :k], moved[:, -1]) / h), goals[:done]

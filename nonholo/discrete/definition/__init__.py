@@ -1,6 +1,6 @@
 """The map by its definition, in JAX: derivatives of the discrete Lagrangian, roots, runs. Imported on first use."""
 
-from nonholo.discrete.definition._composition import run_composed_by_definition, whole_steps_by_definition
+from nonholo.discrete.definition._composition import whole_steps_by_definition
 from nonholo.discrete.definition._functions import is_even, map_each, momenta_by_derivative, value_and_slope
 from nonholo.discrete.definition._nodes import free_rows, step_residual
 from nonholo.discrete.definition._partial_step import parts_by_definition
@@ -14,6 +14,6 @@ from nonholo.discrete.definition._step import (
     next_charts_by_definition,
     principal_displacement,
     restricted,
-    run_by_definition,
     sample_displacements,
 )
+from nonholo.discrete.definition._stepper import DefinitionStepper

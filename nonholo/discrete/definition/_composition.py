@@ -9,7 +9,6 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.numerics import applied
-from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.discrete._composition import weights
@@ -44,7 +43,7 @@ def _sweep(discrete: Scheme, r: Array, g: Array) -> tuple[State, Array, Array]:
     return (state[0], state[1]), charts[0], code
 
 
-_swept = equinox.filter_jit(_sweep)
+swept = equinox.filter_jit(_sweep)
 _swept_each = equinox.filter_jit(jax.vmap(_sweep, in_axes=(None, 0, 0)))
 
 
@@ -56,29 +55,3 @@ def whole_steps_by_definition(
     (after, moved), _, codes = in_double(_swept_each, discrete, applied(system.inverse_frame_map, momenta), np.array(g))
     bad, after = codes != Outcome.successful, applied(system.frame_map, after)
     return np.where(bad[:, None], np.nan, after), np.where(bad[:, None, None], np.nan, moved), codes
-
-
-def run_composed_by_definition(
-    discrete: Scheme, reduced: np.ndarray, pose: np.ndarray, steps: int, every: int, progress: bool
-) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], Outcome, int]:
-    """Run whole steps; return the saved canonical states, the outcome and the number of good steps.
-
-    A state is good if the whole step that starts there could be taken.
-    """
-    group, C, frame = discrete.system.group, discrete.system.frame_map, discrete.system.frame
-    now = np.linalg.solve(C, reduced), group.matrix_from_pose(pose) @ group.inverse(frame)
-    rows, done, code = [], -1, 0
-    with progress_bar("steps", progress) as report:
-        while code == 0 and done < steps:
-            ahead, y, code = in_double(_swept, discrete, *now)
-            if code == 0:
-                done += 1
-                if done % every == 0:
-                    rows.append((now[0], y, now[1]))
-                now = ahead[0], group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(ahead[1])))
-                report(done, steps)
-    if not rows:
-        none = np.empty((0, len(discrete.variety.chart)))
-        return (np.empty((0, reduced.size)), none, np.empty((0, pose.size))), Outcome(int(code)), 0
-    momenta, charts, poses = (np.array(column) for column in zip(*rows, strict=True))
-    return (applied(C, momenta), charts, group.pose_from_matrix(poses @ frame)), Outcome(int(code)), done

@@ -7,14 +7,15 @@ import equinox
 import numpy as np
 
 from nonholo.base.numerics import applied
-from nonholo.base.types import Array, Float
+from nonholo.base.types import Float
 from nonholo.discrete._composition import weights
 from nonholo.discrete._scheme import Scheme
 from nonholo.discrete.definition._precision import in_double
-from nonholo.discrete.definition._step import displaced, momentum_of, principal_displacement, restricted
+from nonholo.discrete.definition._step import principal_displacement, pushed
 from nonholo.orbit import Orbit
 
 _root = equinox.filter_jit(principal_displacement)
+_moved = equinox.filter_jit(pushed)
 
 
 def parts_by_definition(
@@ -41,11 +42,3 @@ def _partial_step(
         r, g = (np.where(code == 0, x, np.nan) for x in (r / part, g))
     y, code = in_double(_root, one, parts[0] * r, g)
     return r, np.where(code == 0, y, np.nan), g
-
-
-@equinox.filter_jit
-def _moved(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
-    """Return the momentum along the constraint and the pose after a displacement."""
-    W = displaced(discrete, y)
-    after = discrete.system.moved(g, W)
-    return restricted(discrete, momentum_of(discrete, y, g, "right"), after), after

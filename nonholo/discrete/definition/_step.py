@@ -12,8 +12,6 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.numerics import applied
-from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.discrete._legendre import legendre
@@ -127,12 +125,12 @@ def _identities(states: Orbit) -> np.ndarray:
 
 def step_from(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array, Array, Array]:
     """Return restricted momentum, chart and pose after one step to the principal value, and the outcome."""
-    r, after = _pushed(discrete, y, g)
+    r, after = pushed(discrete, y, g)
     following, code = principal_displacement(discrete, r, after)
     return r, following, after, code
 
 
-def _pushed(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
+def pushed(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
     """Return restricted momentum and pose after a displacement."""
     W = displaced(discrete, y)
     after = discrete.system.moved(g, W)
@@ -140,61 +138,3 @@ def _pushed(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
 
 
 _steps_from = equinox.filter_jit(jax.vmap(step_from, in_axes=(None, 0, 0)))
-
-
-def run_by_definition(
-    discrete: Scheme,
-    reduced: np.ndarray,
-    pose: np.ndarray,
-    steps: int,
-    every: int,
-    progress: bool,
-    nearest: bool = False,
-    chart: Float[np.ndarray, "m"] | None = None,
-) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], Outcome, int]:
-    """Run the step; return the saved canonical states, the outcome and the number of good steps.
-
-    The first displacement is the principal one, or the one with the given chart coordinates.
-    """
-    group, C, frame = discrete.system.group, discrete.system.frame_map, discrete.system.frame
-    r, g = np.linalg.solve(C, reduced), group.matrix_from_pose(pose) @ group.inverse(frame)
-    y, begun = (np.zeros(len(discrete.variety.chart)), -1) if chart is None else (chart, 0)
-    _, code, r, y, g = in_double(_advance, discrete, nearest, np.int64(begun), np.int64(0), r, y, g)
-    saved = [(r, y, g)] if code == 0 else []
-    done = 0
-    with progress_bar("steps", progress) as report:
-        while code == 0 and done < steps:
-            batch = min(every, steps - done)
-            good, code, r, y, g = in_double(_advance, discrete, nearest, np.int64(0), np.int64(batch), r, y, g)
-            done += int(good)
-            if code == 0 and batch == every:
-                saved.append((r, y, g))
-            report(done, steps)
-    if not saved:
-        return (np.empty((0, r.size)), np.empty((0, y.size)), np.empty((0, pose.size))), Outcome(int(code)), done
-    momenta, charts, poses = (np.array(column) for column in zip(*saved, strict=True))
-    return (applied(C, momenta), charts, group.pose_from_matrix(poses @ frame)), Outcome(int(code)), done
-
-
-@equinox.filter_jit
-def _advance(
-    discrete: Scheme, nearest: bool, begun: Array, steps: Array, r: Array, y: Array, g: Array
-) -> tuple[Array, ...]:
-    """Take steps; before the first one, if `begun` is -1 and y zero, find the displacement with momenta r at g.
-
-    From zero the nearest value is the principal one, and the root is compiled once for both.
-    """
-    group = discrete.system.group
-
-    def body(carry: tuple[Array, ...]) -> tuple[Array, ...]:
-        done, _, *now = carry
-        r, g = _pushed(discrete, now[1], now[2])
-        g = group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(g)))
-        r, g = (jnp.where(done < 0, old, new) for new, old in ((r, now[0]), (g, now[2])))
-        y, code = nearest_displacement(discrete, now[1], r) if nearest else principal_displacement(discrete, r, g)
-        code = jnp.where(jnp.all(jnp.isfinite(g)), code, int(Outcome.nonfinite))
-        good = code == 0
-        return done + good, code, *(jnp.where(good, new, old) for new, old in zip((r, y, g), now, strict=True))
-
-    start = (jnp.asarray(begun), jnp.asarray(0), jnp.asarray(r), jnp.asarray(y), jnp.asarray(g))
-    return jax.lax.while_loop(lambda c: (c[0] < steps) & (c[1] == 0), body, start)

@@ -7,8 +7,8 @@
 | `MatrixRoute` | any constraint with difference "matrix", by the matrix equations |
 | `DefinitionRoute` | everything, by derivatives of the discrete Lagrangian in JAX |
 | `ComposedRoute` | compositions of one of the first three |
-| `ForcedRoute` | one of the first three, with half an impulse at each end of its steps |
-| `PythonRoute` | its loop in plain Python; `FunctionRoute` the definition, for constraints fixed in space |
+| `ForcedRoute` | one of the first three, with half an impulse at each end of its steps, compiled or in plain Python |
+| `FunctionRoute` | the definition of the impulses, for constraints fixed in space |
 """
 
 from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute
@@ -20,10 +20,14 @@ from nonholo.discrete.routes._matrix import MatrixRoute
 from nonholo.discrete.routes._reversal import reversal_defects
 from nonholo.discrete.routes._scalar import ScalarRoute, ScalarStep
 from nonholo.discrete.routes._secular import SecularRoute
+from nonholo.discrete.routes._stepper import AbstractBodyStepper, Compact, CompiledStepper, keep_row, write_first
 
 __all__ = [
+    "AbstractBodyStepper",
     "AbstractCompiledRoute",
     "AbstractRoute",
+    "Compact",
+    "CompiledStepper",
     "ComposedRoute",
     "DefinitionRoute",
     "ForcedRoute",
@@ -32,6 +36,8 @@ __all__ = [
     "ScalarRoute",
     "ScalarStep",
     "SecularRoute",
+    "keep_row",
     "make_route",
     "reversal_defects",
+    "write_first",
 ]

@@ -10,6 +10,7 @@ from nonholo import kernels
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.discrete._composition import weights
+from nonholo.discrete.routes._stepper import AbstractBodyStepper, CompiledStepper
 from nonholo.orbit import Orbit
 from nonholo.systems import System
 
@@ -39,6 +40,10 @@ class AbstractRoute(abc.ABC):
     @abc.abstractmethod
     def compiled(self) -> "AbstractCompiledRoute | None":
         """The route itself if its runs are compiled; None if there is only the definition."""
+
+    @abc.abstractmethod
+    def stepper(self, motion: Any, *, posed: bool, branch: str = "principal") -> AbstractBodyStepper:
+        """Return what takes the steps of a discretization, and saves poses or not."""
 
     @abc.abstractmethod
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
@@ -139,6 +144,11 @@ class AbstractCompiledRoute(AbstractRoute):
         one = self.single
         code, state = one.start(one.encode(momenta), one.encode_poses(self.system.frame_pose))
         return Outcome(code), one.from_kernel(one.chart_of(state))
+
+    def stepper(self, motion: Any, *, posed: bool, branch: str = "principal") -> CompiledStepper:
+        """Return what takes the steps with the kernel, to the principal value."""
+        del branch
+        return CompiledStepper(motion, self, posed)
 
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
         """Return the displacements that follow, one step of order 2 from each state."""

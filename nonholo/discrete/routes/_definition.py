@@ -1,7 +1,7 @@
 """The route by the definition, for every discrete Lagrangian and variety; its JAX files load on first use."""
 
 import dataclasses
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Difference, Scheme
 from nonholo.discrete._variety import Constraint
 from nonholo.discrete.routes._base import AbstractRoute, Rows, posed
+from nonholo.discrete.routes._stepper import AbstractBodyStepper
 from nonholo.orbit import Orbit
 from nonholo.systems import System
 
@@ -31,6 +32,13 @@ class DefinitionRoute(Scheme, AbstractRoute):
     is_scalar: ClassVar[bool] = False
     needs_pose: ClassVar[bool] = True
     compiled: ClassVar[None] = None
+
+    def stepper(self, motion: Any, *, posed: bool, branch: str = "principal") -> AbstractBodyStepper:
+        """Return what takes the steps by the definition."""
+        with needs("jax", "simulate(...) of a step that is not compiled"):
+            from nonholo.discrete.definition import DefinitionStepper
+
+        return DefinitionStepper(motion, posed, branch)
 
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
         """Return the displacements that follow, one step of order 2 from each state."""

@@ -4,7 +4,6 @@ import contextlib
 import dataclasses
 import functools
 from collections.abc import Callable
-from operator import attrgetter
 from typing import Any, ClassVar, NoReturn
 
 import numpy as np
@@ -12,7 +11,6 @@ import numpy as np
 from nonholo import kernels
 from nonholo.base.calls import FunctionError, UndefinedError, noted
 from nonholo.base.checks import error
-from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Rows, parts_by, posed
@@ -33,8 +31,7 @@ def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:
         raise error("discretize(system=Forced(...))", "have a compiled step of order 2 inside", got, remedy)
     if forced.is_spatial:
         return FunctionRoute(inside, forced)
-    route = ForcedRoute(inside, forced)
-    return route if forced.is_jitted else PythonRoute(route)
+    return ForcedRoute(inside, forced)
 
 
 class AbstractForcedRoute(AbstractRoute):
@@ -91,7 +88,7 @@ class AbstractForcedRoute(AbstractRoute):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
-    """The loop of the kernel, for left-invariant constraints; it calls functions that numba compiled.
+    """The loop of the kernel, for left-invariant constraints; in plain Python if it calls functions of Python.
 
     Attributes:
         free: The route of the free step.
@@ -112,6 +109,11 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
         """Whether it carries a pose along even where none is kept."""
         return self.free.needs_pose or self.forced.potential is not None or self.forced.function is not None
 
+    @property
+    def compiled(self) -> "ForcedRoute | None":  # type: ignore[override]
+        """The route itself, if numba compiled all functions that it calls."""
+        return self if self.forced.is_jitted else None
+
     @functools.cached_property
     def body(self) -> kernels.ForcedBody:
         """The body and its half impulse."""
@@ -121,50 +123,10 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class PythonRoute(AbstractForcedRoute):
-    """The same loop in plain Python, for functions that are not compiled.
-
-    Attributes:
-        loop: The route of the kernel.
-    """
-
-    loop: ForcedRoute
-    needs_pose: ClassVar[bool] = True
-    compiled: ClassVar[None] = None
-    free = property(attrgetter("loop.free"))  # type: ignore[assignment]
-    forced = property(attrgetter("loop.forced"))  # type: ignore[assignment]
-
-    @property
-    def said(self) -> dict[str, str]:  # type: ignore[override]
-        """What functions said of the end of the last run."""
-        return self.loop.said
-
-    def run(
-        self, reduced: np.ndarray, pose: np.ndarray, steps: int, every: int, progress: bool
-    ) -> tuple[Rows, Outcome, int]:
-        """Run from canonical momenta and pose; return canonical rows, the outcome and the last good step."""
-        free, done = self.free, 0
-        self.said.clear()
-        first = free.encode(reduced), free.encode_poses(pose)
-        code, state = self.loop.start(*first)
-        found = tuple(np.empty((1 + steps // every, width)) for width in free.sizes)
-        for rows, row in zip(found, (first[0], self.loop.chart_of(state), first[1]), strict=True):
-            rows[0] = row
-        kept = int(code == 0)
-        with progress_bar("steps", progress) as show:
-            while code == 0 and done < steps:
-                room = (found[0][kept:], found[1][kept:], found[2][kept:])
-                good, code = self.loop.advance(state, min(every, steps - done), every, room)
-                done += good
-                kept += good // every
-                show(done, steps)
-        momenta, charts, poses = (rows[:kept] for rows in found)
-        return (free.decode(momenta), free.from_kernel(charts), free.decode_poses(poses)), Outcome(code), done
-
-
-@dataclasses.dataclass(frozen=True, eq=False)
-class FunctionRoute(AbstractForcedRoute):
+class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
     """In Python, by the definition of the impulses: for constraints that are fixed in space.
+
+    Its state is that of the free kernel, one step ahead, and the number of the step.
 
     Attributes:
         free: The route of the free step.
@@ -177,42 +139,55 @@ class FunctionRoute(AbstractForcedRoute):
     needs_pose: ClassVar[bool] = True
     compiled: ClassVar[None] = None
 
-    def impulse(self, node: int, step: int, m: np.ndarray, pose: np.ndarray) -> np.ndarray:
+    @property
+    def single(self) -> AbstractCompiledRoute:
+        """The route of the free step."""
+        return self.free
+
+    @functools.cached_property
+    def body(self) -> kernels.ForcedBody:
+        """The body, with no half impulse: those are added here."""
+        n = self.free.sizes[0]
+        return kernels.ForcedBody(
+            self.free.body, kernels.Kick(np.zeros((0, 0)), np.zeros(0), np.zeros((n, 0)), np.zeros((1, n)))
+        )
+
+    def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
+        """Return the outcome of the first root and the state of a run."""
+        with contextlib.suppress(OutcomeError):  # the midpoint rule of a half impulse may say so
+            code, state = kernels.start(self.body, momenta + self._impulse(0, 0, momenta, pose), pose)
+            return code, np.append(state, 0.0)
+        return Outcome.no_half_impulse, np.append(kernels.start(self.body, momenta, pose)[1], 0.0)
+
+    def chart_of(self, state: np.ndarray) -> np.ndarray:
+        """Return the kernel's chart coordinates of the first displacement."""
+        return kernels.chart_of(self.body, state[:-1])
+
+    def advance(self, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
+        """Take steps one by one, into rows of the kernel."""
+        n, width, size = self.free.sizes
+        room = np.empty((1, n)), np.empty((1, width)), np.empty((1, size))
+        with contextlib.suppress(OutcomeError):
+            for done in range(steps):
+                ahead, number = state[:-1].copy(), int(state[-1])
+                place = ahead[2 * n : 2 * n + size].copy()
+                m = ahead[:n] + self._impulse(number + 1, number, ahead[:n], place)
+                ahead[:n] = m + self._impulse(number + 1, number + 1, m, place)
+                _, code = kernels.advance(self.body, ahead, 1, 1, room)
+                if code != 0:
+                    return done, code
+                state[:] = np.append(ahead, number + 1)
+                if (done + 1) % every == 0:
+                    for column, entries in zip(rows, (m, room[1][0], place), strict=True):
+                        column[done // every] = entries
+            return steps, 0
+        return done, Outcome.no_half_impulse
+
+    def _impulse(self, node: int, step: int, m: np.ndarray, pose: np.ndarray) -> np.ndarray:
         """Return what half the impulse of a step at a node adds to the kernel's momenta."""
         half = float(self.free.time_step) / 2
         time, steps = np.array([2 * half * node]), np.array([step])
         return kick_of(self.free, self.forced, half, time, m[None], pose[None], steps, self.said)[0]
-
-    def run(
-        self, reduced: np.ndarray, pose: np.ndarray, steps: int, every: int, progress: bool
-    ) -> tuple[Rows, Outcome, int]:
-        """Run from canonical momenta and pose; return canonical rows, the outcome and the last good step."""
-        free, (n, width, size), code, done, saved = self.free, self.free.sizes, 0, -1, []
-        m, place, state = free.encode(reduced), free.encode_poses(pose), np.empty(0)
-        room = np.empty((1, n)), np.empty((1, width)), np.empty((1, size))
-        none = kernels.Kick(np.zeros((0, 0)), np.zeros(0), np.zeros((n, 0)), np.zeros((1, n)))
-        body = kernels.ForcedBody(free.body, none)
-        self.said.clear()
-        with progress_bar("steps", progress) as show, contextlib.suppress(OutcomeError):
-            while done < steps:
-                code = Outcome.no_half_impulse  # the midpoint rule of a half impulse may say so
-                pushed = m + self.impulse(done + 1, done + 1, m, place)
-                if done < 0:
-                    code, state = kernels.start(body, pushed, place)
-                    room[1][0] = kernels.chart_of(body, state)
-                else:
-                    state[:n] = pushed
-                    _, code = kernels.advance(body, state, 1, 1, room)
-                if code != 0:
-                    break
-                done += 1
-                show(done, steps)
-                saved += [(m, room[1][0].copy(), place)] * (done % every == 0)
-                if done < steps:
-                    code, place = Outcome.no_half_impulse, state[2 * n : 2 * n + size].copy()
-                    m = state[:n] + self.impulse(done + 1, done, state[:n], place)
-        momenta, charts, poses = (np.array([row[j] for row in saved]).reshape(-1, w) for j, w in enumerate(free.sizes))
-        return (free.decode(momenta), free.from_kernel(charts), free.decode_poses(poses)), Outcome(code), max(0, done)
 
 
 def kick_of(

@@ -7,7 +7,6 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from nonholo import io
-from nonholo.base.limits import within_a_year
 from nonholo.discrete import discretize
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._names import OUTCOME
@@ -18,7 +17,7 @@ from nonholo.simulation import flow, simulate
 SPLITS = ("train", "validation", "test")
 _LEFT_OUT = {"displacement", "constraint_residual"}
 _EXACT = {"time", "energy", "momentum", "restricted_momentum", "multipliers"}  # what no one observes
-_SECONDS, _NUMBERS, _MEMBERS = 1e-6, 1 << 21, 256  # of a step, at least; most of both in a block
+_NUMBERS, _MEMBERS = 1 << 21, 256  # at most in a block
 
 _FLAGS = {
     "long_name": "part of the data set",
@@ -101,10 +100,6 @@ class DatasetTask:
 
     def check_design(self, names: list[str]) -> None:
         """Take the design of the definition."""
-
-    def refuse_too_long(self, members: int) -> None:
-        """Refuse more steps than a year has time for."""
-        within_a_year("dataset(orbits=...)", _SECONDS * self.steps * members, "Ask for fewer orbits or steps.")
 
     def describe(self) -> dict[str, Any]:
         """Return the task as plain data."""

@@ -18,6 +18,8 @@ from nonholo.lagrange_dalembert._precision import compiling
 from nonholo.lagrange_dalembert.compiled._programs import programs, values
 
 State = tuple[Any, Any, Any]
+ROWS = 1024
+"""Saved states of one call of JAX: one size of table, one compilation."""
 
 
 def _body(system: Any, h: Any, q: Any, v: Any, *, at_node: bool = False) -> CoordinateBody | None:
@@ -43,34 +45,41 @@ def set_out(definition: Callable[..., Any], system: Any, h: Any, q: Any, v: Any,
 
 
 def advance(
-    definition: Callable[..., Any], system: Any, h: Any, state: State, sign: Any, rows: Any, every: Any
-) -> tuple[Any, State, Any, tuple[np.ndarray, ...]]:
-    """Run `rows` times `every` steps; return the good ones, the end, its outcome, and the table of rows.
+    definition: Callable[..., Any], system: Any, h: Any, state: State, sign: Any, every: int, table: tuple[Any, ...]
+) -> tuple[int, State, Any]:
+    """Run `every` steps for each row of a table, into flat places, velocities and impulses.
 
     `definition(state, sign, rows, every)` does it by JAX. A step that is not trusted here it takes alone, so that the
     bits of an orbit do not depend on the rows that are kept.
+
+    Returns:
+        The good steps, those of the first `ROWS` rows at most, the state there and the outcome.
     """
-    body = _body(system, h, *state[:2])
+    rows, body = len(table[0]), _body(system, h, *state[:2])
     if body is None:
-        return definition(state, sign, rows, every)
+        rows = min(rows, ROWS)
+        good, after, code, columns = definition(state, sign, np.int64(rows), np.int64(every))
+        begun = min(rows, int(good) // every + 1)
+        for column, entries in zip(table, columns, strict=True):
+            column[:begun] = entries[:begun].reshape(begun, column.shape[1])
+        return int(good), after, code
     shape, ends = np.shape(state[0]), [body.place, body.place + body.velocity]
-    tables = np.zeros((rows, ends[0])), np.zeros((rows, body.velocity)), np.zeros((rows, system.constraints))
 
     def unpacked(flat: np.ndarray) -> State:
         q, v, before = np.split(flat, ends)
         return q.reshape(shape), v, before
 
-    flat, total, code = np.concatenate([np.ravel(x) for x in state]), int(rows * every), np.int64(0)
-    done = advance_coordinates(body, flat, float(sign), 0, total, int(every), *tables)
+    flat, total, code = np.concatenate([np.ravel(x) for x in state]), rows * every, np.int64(0)
+    done = advance_coordinates(body, flat, float(sign), 0, total, every, *table)
     while done < total:
         _, after, code, (*_, impulses) = definition(unpacked(flat), sign, np.int64(1), np.int64(1))
-        if done % every == 0:
-            tables[2][done // every] = impulses[0]
         if code:
             break
+        if done % every == 0:
+            table[2][done // every] = impulses[0]
         flat = np.concatenate([np.ravel(x) for x in after])
-        done = advance_coordinates(body, flat, float(sign), done + 1, total, int(every), *tables)
-    return done, unpacked(flat), code, (tables[0].reshape(-1, *shape), *tables[1:])
+        done = advance_coordinates(body, flat, float(sign), done + 1, total, every, *table)
+    return int(done), unpacked(flat), code
 
 
 def decoded(function: Callable[..., Any], system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> list[Any] | None:

@@ -69,10 +69,10 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     """
 
     group: AbstractMatrixGroup
-    discrete_lagrangian: Callable[[Array, Array], Array]
-    constraint_forms: Callable[[Array], Array] | None
-    discrete_constraints: Callable[[Array, Array, Array], Array] | None = None
-    lagrangian: Callable[[Array], Array] | None = dataclasses.field(default=None, kw_only=True)
+    discrete_lagrangian: Callable[[Array, Array], Array] = dataclasses.field(repr=False)
+    constraint_forms: Callable[[Array], Array] | None = dataclasses.field(repr=False)
+    discrete_constraints: Callable[[Array, Array, Array], Array] | None = dataclasses.field(default=None, repr=False)
+    lagrangian: Callable[[Array], Array] | None = dataclasses.field(default=None, kw_only=True, repr=False)
     is_driven: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()
     name: ClassVar[str] = "System with constraints that depend on the pose"

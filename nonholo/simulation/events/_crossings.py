@@ -1,19 +1,18 @@
 """Events of a motion that is already there, and ready events."""
 
-import dataclasses
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
-from nonholo.base.checks import error
+from nonholo.base.checks import error, instance
 from nonholo.base.types import Float
-from nonholo.discrete import Discretization
-from nonholo.orbit import Crossings, Orbit, as_orbit
+from nonholo.orbit import AbstractOrbit, Crossings, Orbit
 from nonholo.simulation.events._event import Event
-from nonholo.simulation.events._watched import searched, watched
+from nonholo.simulation.events._search import Watch, piece_of, search
+from nonholo.simulation.events._watched import watched
 
 
-def crossings(orbit: Orbit, event: Any) -> Crossings:
+def crossings(orbit: AbstractOrbit, event: Any) -> Crossings:
     """Find where an orbit crosses zero of a function of its states.
 
     As `simulate(..., events=[event])`, for an orbit with every single step: consecutive states are compared, and the
@@ -36,12 +35,20 @@ def crossings(orbit: Orbit, event: Any) -> Crossings:
         >>> len(level), bool(np.abs(level.states.configuration[:, 2, 2]).max() < 1e-15)
         (6, True)
     """
-    orbit = as_orbit("crossings(orbit=...)", orbit, "pass states and your own functions otherwise.")
-    if not isinstance(orbit.motion, Discretization) or not orbit.has_every_step:
-        got = "one with steps left out" if isinstance(orbit.motion, Discretization) else "a flow or given poses"
+    orbit = instance("crossings(orbit=...)", orbit, AbstractOrbit, "be an orbit", "Pass what `simulate` returned.")
+    if not orbit.is_discrete or orbit.is_measured or not orbit.has_every_step:
+        got = "a flow or given poses" if orbit.has_every_step else "one with steps left out"
         raise error("crossings(orbit=...)", "have every single step of a discrete run", got, "Pass events= to the run.")
-    watch = watched("crossings", orbit.motion, [event], orbit.branch, orbit.canonical_pose is not None)
-    return searched(watch, dataclasses.replace(orbit, events=None))[0].log()[0]
+    stepper = orbit.motion.stepper(posed=orbit.has_poses)
+    if orbit.branch != stepper.branch:
+        got, remedy = f"branch {orbit.branch!r}", "Look for changes of sign in the states yourself."
+        raise error("crossings(orbit=...)", "have parts of a step", got, remedy)
+    watch, piece = cast(Watch, watched("crossings", stepper, [event])), piece_of(stepper.columns.values())
+    for begun in range(0, max(1, len(orbit) - 1), piece):
+        watch, _ = search(watch, orbit.chosen(slice(begun, begun + piece + 1)))
+        if watch.stopped_by:
+            break
+    return watch.log()[0]
 
 
 def _forward_speed(orbit: Orbit) -> Float[np.ndarray, "K"]:

@@ -9,7 +9,7 @@ from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit, Crossings, EventLog, Orbit
 from nonholo.simulation.events._event import Event, checked_events, values_at
-from nonholo.simulation.events._search import Between, Watch, search
+from nonholo.simulation.events._search import Part, Watch, search
 
 
 def flow_in_coordinates(system: Any, events: Any, **flow: Any) -> Any:
@@ -75,7 +75,7 @@ def check_functions(events: dict[str, Event], first: Orbit) -> None:
         values_at(name, event, first)
 
 
-def _between_times(seen: Orbit, forward: float) -> Between:
+def _between_times(seen: Orbit, forward: float) -> Part:
     """Return the function of states and fractions that gives those on a part of the way to the next."""
     times, spans = forward * seen.time, np.diff(seen.time)
 

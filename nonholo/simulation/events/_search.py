@@ -3,7 +3,7 @@
 import dataclasses
 import math
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -12,9 +12,10 @@ from nonholo.base.types import Bool, Float, Int
 from nonholo.orbit import AbstractOrbit, Crossings, EventLog, joined_crossings
 from nonholo.simulation.events._event import Event, values_at
 
-Between = Callable[[Any, Float[np.ndarray, "K"]], Any]
-"""A function of states and fractions that gives what is reached after these parts of the steps."""
+Part = Callable[[Any, Float[np.ndarray, "K"]], Any]
+"""Gives what is reached from states after fractions of the steps that begin there."""
 
+_PIECE, _NUMBERS = 1 << 14, 1 << 20  # at most in a stretch that is searched at once: states, numbers in an array
 _ROUNDING = 2.0**-54  # of a step, beside its end
 
 
@@ -24,7 +25,7 @@ class Watch:
 
     Attributes:
         events: What is looked for, by name.
-        between: Gives states between two of the motion.
+        part: Gives the states after parts of steps.
         parts: Crossings of every event in each stretch so far that has some, and in the first one.
         counts: How many there are of every event.
         values: Values of the events at the last state, (E, 1); None before the first stretch.
@@ -33,7 +34,7 @@ class Watch:
     """
 
     events: dict[str, Event]
-    between: Between
+    part: Part
     parts: tuple[tuple[Crossings, ...], ...] = ()
     counts: tuple[int, ...] = ()
     values: Float[np.ndarray, "E 1"] | None = None
@@ -52,7 +53,7 @@ class Watch:
         """Return what is known after another stretch."""
         counts = tuple(map(operator.add, self.counts or (0,) * len(found), map(len, found)))
         parts = (*self.parts, found) if not self.parts or any(map(len, found)) else self.parts
-        return Watch(self.events, self.between, parts, counts, values, heading, stopped_by)
+        return Watch(self.events, self.part, parts, counts, values, heading, stopped_by)
 
     def log(self) -> EventLog:
         """Return what has been found."""
@@ -74,7 +75,7 @@ def search(watch: Watch, stretch: AbstractOrbit) -> tuple[Watch, int]:
     ]
     last = min(ends, default=math.inf)
     found = tuple(
-        located(name, event, stretch, row, at[at <= last], watch.between)
+        located(name, event, stretch, row, at[at <= last], watch.part)
         for (name, event), row, at in zip(watch.events.items(), values, places, strict=True)
     )
     stopped, kept = None, len(stretch)
@@ -123,22 +124,22 @@ def located(
     stretch: AbstractOrbit,
     values: Float[np.ndarray, "K"],
     at: Int[np.ndarray, "C"],
-    between: Between,
+    part: Part,
 ) -> Crossings:
     """Return the crossings in the steps from given states of a stretch; a zero at a state is that state."""
     exact = values[at + 1] == 0
     inside = at[~exact]
     fraction, step = np.zeros(len(at)), stretch.step[at] + exact
     base = stretch.chosen(inside)
-    fraction[~exact] = _roots(name, event, base, (values[inside], values[inside + 1]), between)
-    states = stretch.chosen(at[exact] + 1).joined([between(base, fraction[~exact])])
+    fraction[~exact] = _roots(name, event, base, (values[inside], values[inside + 1]), part)
+    states = stretch.chosen(at[exact] + 1).joined([part(base, fraction[~exact])])
     order = np.argsort(np.concatenate([at[exact], inside]))
     direction = np.sign(values[at + 1] - values[at]).astype(np.int64)
     return Crossings(step, fraction, direction, states.chosen(order))
 
 
 def _roots(
-    name: str, event: Event, base: AbstractOrbit, ends: tuple[np.ndarray, np.ndarray], between: Between
+    name: str, event: Event, base: AbstractOrbit, ends: tuple[np.ndarray, np.ndarray], part: Part
 ) -> Float[np.ndarray, "C"]:
     """Return the fractions of steps at which an event is zero, between ends where its signs differ.
 
@@ -150,7 +151,7 @@ def _roots(
         at = which.astype(int)
         known = np.where(fraction == 0, begin[at], end[at])
         inner = (fraction > 0) & (fraction < 1)
-        known[inner] = values_at(name, event, between(base.chosen(at[inner]), fraction[inner])) if inner.any() else 0.0
+        known[inner] = values_at(name, event, part(base.chosen(at[inner]), fraction[inner])) if inner.any() else 0.0
         return known
 
     if not len(base):
@@ -161,3 +162,8 @@ def _roots(
     whole = np.zeros(len(base)), np.ones(len(base))
     found = elementwise.find_root(value, whole, args=(count,), tolerances={"xatol": _ROUNDING})
     return np.maximum(found.x, _ROUNDING)
+
+
+def piece_of(widths: Iterable[int]) -> int:
+    """Return the number of states, with arrays of these widths, that are searched at once."""
+    return max(1, min(_PIECE, _NUMBERS // max(1, *widths)))

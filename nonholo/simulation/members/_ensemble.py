@@ -10,9 +10,9 @@ from nonholo.base.calls import called
 from nonholo.base.checks import choice, count, error, flags, function, refuse_given, shown
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome
-from nonholo.discrete import PRINCIPAL, Discretization, as_discretization
-from nonholo.simulation._simulate import refuse_what_bodies_have
-from nonholo.simulation.events import Event, watched_events
+from nonholo.discrete import Discretization, as_discretization
+from nonholo.simulation._options import check_forces, refuse_too_large
+from nonholo.simulation.events import Event, watched
 from nonholo.simulation.members._events import joined_blocks, watched_block
 from nonholo.simulation.members._families import check_systems
 from nonholo.simulation.members._flows import ensemble_of_flows
@@ -22,8 +22,14 @@ from nonholo.simulation.members._reduce import Reduced, joined
 from nonholo.simulation.members._result import Ensemble
 from nonholo.simulation.members._run import Plan, Report, counting, run_members, states_of
 from nonholo.simulation.members._start import are_others, checked_rows, first_momenta
-from nonholo.simulation.runs import check_forces, refuse_too_large, refuse_too_long
-from nonholo.systems import AbstractCoordinateDiscretization, AbstractSystem, Start, System, in_coordinates
+from nonholo.systems import (
+    AbstractCoordinateDiscretization,
+    AbstractSystem,
+    Start,
+    System,
+    in_coordinates,
+    refuse_in_coordinates,
+)
 
 Watched: TypeAlias = dict[str, Event] | None
 Motions: TypeAlias = tuple[Members, np.ndarray, np.ndarray | None]
@@ -120,8 +126,8 @@ def ensemble(
     how, of_flow = {"backend": backend, "reconstruct": reconstruct}, {"times": times, "rtol": rtol}
     own = {"configuration": configuration, "displacement": displacement}
     if in_coordinates(discrete):
-        starts.pop("restricted_velocity")
-        refuse_what_bodies_have("ensemble", **how, **of_flow, restricted_velocity=restricted_velocity)
+        absent = how | of_flow | {"restricted_velocity": starts.pop("restricted_velocity")}
+        refuse_in_coordinates("ensemble", **{name: (value, _DEFAULTS.get(name)) for name, value in absent.items()})
         return ensemble_in_coordinates(discrete, **starts, **own, **of_steps, **run)
     _refuse("for bodies", "Members start at the identity.", **own)
     if isinstance(discrete, AbstractSystem):
@@ -158,9 +164,10 @@ def _of_steps(
     check_forces("ensemble", discrete, steps, free="backend 'jax'" if backend == "jax" else None)
     plan = Plan(steps, save_every, bool(reconstruct), backend)
     motions = _motions(discrete, start, parameters, plan, whole=reduce is None)
-    watched = None if events is None else watched_events("ensemble", discrete, events, PRINCIPAL.name, plan.posed)
+    watch = watched("ensemble", discrete.stepper(posed=plan.posed), events)
+    wanted = None if watch is None else watch.events
     with progress_bar("members", progress) as show:
-        return _joined(motions, plan, watched, reduce, counting(show, len(motions[0])))
+        return _joined(motions, plan, wanted, reduce, counting(show, len(motions[0])))
 
 
 def _joined(
@@ -179,10 +186,9 @@ def _motions(discrete: Discretization, start: Start, parameters: Any, plan: Plan
     """Return checked members, their first momenta along the constraint, and full ones that they have to have."""
     checked = checked_parameters(discrete, parameters)
     rows = checked_rows(discrete.system, checked, start)
-    compiled = plan.backend != "jax" and discrete.route.compiled is not None
-    refuse_too_long("ensemble", discrete, plan.steps, compiled=compiled, members=len(rows))
-    states = states_of(plan.steps, plan.every)
-    refuse_too_large("ensemble", discrete, states, plan.posed, members=len(rows) if whole else 1)
+    states = states_of(plan.steps, plan.every) * (len(rows) if whole else 1)
+    widths = (discrete.system.rank, discrete.system.rank, plan.posed * discrete.system.group.pose_size)
+    refuse_too_large("ensemble", widths, states)
     members = Members(discrete, checked, len(rows))
     check_systems(members)
     full = rows if start.name == "momentum" and rows.shape[1] != discrete.system.rank else None

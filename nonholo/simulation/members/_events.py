@@ -10,7 +10,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
 from nonholo.groups import SE
 from nonholo.orbit import Crossings, Orbit
-from nonholo.simulation.events import Between, Event, changes, located, values_at
+from nonholo.simulation.events import Event, Part, changes, located, values_at
 from nonholo.simulation.members._event_log import MemberCrossings, MemberEvents
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._result import Ensemble
@@ -27,7 +27,7 @@ class Flat(NamedTuple):
         number: The step of each state.
         values: Values of the events, (E, states).
         at: For every event the states before its crossings.
-        between: Gives states between two of a member.
+        part: Gives the states after parts of steps of a member.
     """
 
     states: Orbit
@@ -35,7 +35,7 @@ class Flat(NamedTuple):
     number: Int[np.ndarray, "K"]
     values: Float[np.ndarray, "E K"]
     at: list[Int[np.ndarray, "C"]]
-    between: Between
+    part: Part
 
 
 def watched_block(events: dict[str, Event], block: Ensemble, every: int | None) -> Ensemble:
@@ -117,7 +117,7 @@ def _firsts(flat: Flat, at: np.ndarray) -> np.ndarray:
 
 def _located(events: dict[str, Event], flat: Flat, event: int, at: np.ndarray) -> Crossings:
     name = tuple(events)[event]
-    return located(name, events[name], flat.states, flat.values[event], at, flat.between)
+    return located(name, events[name], flat.states, flat.values[event], at, flat.part)
 
 
 def _nowhere(block: Ensemble) -> Ensemble:

@@ -8,18 +8,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from nonholo.base.checks import array, count, error, natural, shown
-from nonholo.base.limits import within_a_year, within_memory
+from nonholo.base.limits import within_memory
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
-from nonholo.orbit import Crossings
-from nonholo.simulation.events import blocks_with_events, watched_in_coordinates
+from nonholo.orbit import Crossings, First
+from nonholo.simulation._run import Run, ended
+from nonholo.simulation.events import watched
 from nonholo.simulation.members._event_log import MemberCrossings, MemberEvents
 from nonholo.simulation.members._members import STEP, refused
 from nonholo.simulation.members._reduce import joined
-from nonholo.systems import AbstractCoordinateDiscretization, one_start
+from nonholo.systems import AbstractCoordinateDiscretization, Start, one_start
 
-_SECONDS = 5e-4  # of a member, at least
 _BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
 _ONE = "Pass one row for each member; `simulate` runs a single one."
 
@@ -175,10 +175,9 @@ def ensemble_in_coordinates(
     rows = _rows(discrete, configuration, one_start("ensemble", **starts), starts, parameters)
     members = len(rows[next(iter(rows))])
     if events is not None:
-        watched_in_coordinates("ensemble", discrete, events)
+        watched("ensemble", discrete.stepper(posed=True), events)
     plan = Plan(discrete, steps, save_every, events)
     most = 4 * sum(map(math.prod, discrete.system.shapes)) * (1 if save_every is None else 1 + steps // save_every)
-    within_a_year("ensemble(steps=...)", _SECONDS * members, "Pass fewer members.")
     within_memory("ensemble(steps=...)", 8.0 * most * (members if reduce is None else 1), "Raise save_every.")
     with progress_bar("members", progress) as report:
         done = lambda more: report(more, members)  # noqa: E731
@@ -225,52 +224,28 @@ def _parameters(parameters: Any) -> dict[str, Any]:
 
 def _run(plan: Plan, rows: dict[str, np.ndarray], part: range, report: Callable[[int], None]) -> CoordinateEnsemble:
     """Run some members, after checking the starts of all of them."""
-    opened = [_opened(plan, rows, member) for member in part]
-    found = []
-    for done, blocks in zip(part, opened, strict=True):
-        found.append(_kept(plan, rows, done, blocks))
-        report(done + 1)
+    runs, found = [_opened(plan, rows, member) for member in part], []
+    for member, run in zip(part, runs, strict=True):
+        found.append(ended(*run, whole=plan.every is not None))
+        report(member + 1)
     orbits, steps_done = zip(*found, strict=True)
     own = {STEP: rows[STEP][part.start : part.stop]} if STEP in rows else {}
     ensemble = CoordinateEnsemble(orbits, plan.steps, plan.every, np.array(steps_done), own)
     return ensemble if plan.events is None else dataclasses.replace(ensemble, events=_log(ensemble))
 
 
-def _opened(plan: Plan, rows: dict[str, np.ndarray], member: int, *, every: int | None = None) -> Iterator[Any]:
-    """Return an iterator over the blocks of a member, whose start is checked; with events over a single one."""
+def _opened(plan: Plan, rows: dict[str, np.ndarray], member: int) -> tuple[Run, First]:
+    """Return the run of a member, and its checked start."""
     start = {key: values[member] for key, values in rows.items()}
     discrete: Any = plan.discrete
-    step = start.pop(STEP, discrete.time_step)
-    run: dict[str, Any] = start | {"steps": plan.steps, "throw": False}
     try:
-        discrete = dataclasses.replace(discrete, time_step=step)
-        if plan.events is None:
-            return discrete.iterate(**run, save_every=every or plan.every or plan.steps)
-        watch = watched_in_coordinates("ensemble", discrete, plan.events)
-        return blocks_with_events(discrete, watch, None, **run, save_every=1)
+        discrete = dataclasses.replace(discrete, time_step=start.pop(STEP, discrete.time_step))
+        stepper = discrete.stepper(posed=True)
+        watch = watched("ensemble", stepper, plan.events)
+        first = discrete.first(Start.of("simulate", allowed=discrete.starts, **start), posed=True)
     except ValueError as failure:
         raise refused(member, failure) from None
-
-
-def _kept(plan: Plan, rows: dict[str, np.ndarray], member: int, blocks: Iterator[Any]) -> tuple[Any, int]:
-    """Return the states that a member keeps, and its good steps."""
-    whole, done = _whole(blocks), plan.steps
-    if plan.events is not None:
-        done = max(len(whole) - 1, 0)
-        kept = slice(done, None) if plan.every is None else slice(None, None, plan.every)
-        return dataclasses.replace(whole.chosen(kept), save_every=plan.every or 1), done
-    if whole.outcome != Outcome.successful:
-        done, last = -1, whole
-        for block in _opened(plan, rows, member, every=1):
-            done, last = done + len(block), block.chosen(slice(-1, None)) if len(block) else last
-        whole = dataclasses.replace(last, outcome=whole.outcome) if plan.every is None else whole
-    return (whole.chosen(slice(-1, None)) if plan.every is None else whole), max(done, 0)
-
-
-def _whole(blocks: Iterator[Any]) -> Any:
-    """Return the orbit of blocks."""
-    first, *others = blocks
-    return dataclasses.replace(first.joined(others), outcome=others[-1].outcome) if others else first
+    return Run(stepper, plan.steps, plan.every or plan.steps, watch, throw=False, progress=False), first
 
 
 def _log(ensemble: CoordinateEnsemble) -> MemberEvents:

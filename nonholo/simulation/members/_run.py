@@ -13,13 +13,14 @@ import numpy as np
 from nonholo import kernels
 from nonholo.base.checks import needs
 from nonholo.base.progress import until
-from nonholo.base.results import Outcome
-from nonholo.discrete import Discretization
+from nonholo.discrete import PRINCIPAL, Discretization
 from nonholo.orbit import Orbit
-from nonholo.simulation._simulate import simulate
+from nonholo.simulation._options import stepper_of
+from nonholo.simulation._run import Run, ended
 from nonholo.simulation.members._families import body_of, have_kernel, scalar_members
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._result import Ensemble
+from nonholo.systems import Start
 
 _PART = 8192  # members in a piece of work of one thread, a multiple of what a compiled block holds
 
@@ -174,16 +175,10 @@ def _run_each(members: Members, momenta: np.ndarray, plan: Plan, threads: int, r
 
 def _run_one(discrete: Discretization, momentum: np.ndarray, plan: Plan) -> tuple[Orbit, int]:
     """Return the states that one member keeps as an orbit, and its number of good steps."""
-    start = discrete.system.from_canonical(momentum)
-    run = functools.partial(
-        simulate, discrete, momentum=start, reconstruct=plan.posed, backend=plan.backend, throw=False
-    )
-    orbit, done = run(steps=plan.steps, save_every=plan.every or plan.steps), plan.steps
-    if orbit.outcome != Outcome.successful:
-        every_step = run(steps=plan.steps)
-        done = max(0, len(every_step) - 1)
-        orbit = every_step if plan.every is None else orbit
-    return (orbit[-1:] if plan.every is None else orbit), done
+    stepper = stepper_of(discrete, PRINCIPAL.name, plan.backend, posed=plan.posed)
+    start = Start("simulate", "momentum", discrete.system.from_canonical(momentum))
+    run = Run(stepper, plan.steps, plan.every or plan.steps, None, throw=False, progress=False)
+    return ended(run, discrete.first(start, posed=stepper.has_poses), whole=plan.every is not None)
 
 
 def _filled(kept: list[np.ndarray], states: int) -> np.ndarray:

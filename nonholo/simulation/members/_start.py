@@ -3,7 +3,7 @@
 import numpy as np
 
 from nonholo.base.checks import array, error, shape_of
-from nonholo.base.numerics import applied
+from nonholo.base.numerics import applied, solved
 from nonholo.base.types import Bool, Float
 from nonholo.simulation.members._families import ScalarMembers, have_kernel, scalar_members
 from nonholo.simulation.members._members import Members, refused
@@ -65,8 +65,8 @@ def _momenta_of_part(members: Members, name: str, rows: np.ndarray) -> tuple[np.
 
 def energies(scalar: ScalarMembers, momenta: Float[np.ndarray, "M ... 2"]) -> Float[np.ndarray, "M ..."]:
     """Return the reduced constrained energies of canonical momenta."""
-    inverses = np.linalg.inv(scalar.inertia).reshape(-1, *(1,) * (momenta.ndim - 2), 2, 2)
-    return (momenta * applied(inverses, momenta)).sum(axis=-1) / 2
+    inertia = scalar.inertia.reshape(-1, *(1,) * (momenta.ndim - 2), 2, 2)
+    return (momenta * solved(inertia, momenta)).sum(axis=-1) / 2
 
 
 def are_others(given: Float[np.ndarray, "M dim"], full: Float[np.ndarray, "M dim"]) -> Bool[np.ndarray, "M"]:

@@ -11,7 +11,7 @@ from nonholo.base.progress import interruptibly
 from nonholo.base.types import Array
 from nonholo.discrete import Discretization, ScalarRoute, as_discretization
 from nonholo.discrete.definition import Rollout, in_double, rolled, traceable
-from nonholo.simulation.runs import check_forces, refuse_many_matrices
+from nonholo.simulation._options import check_forces, refuse_many_matrices
 from nonholo.systems import Forced, Start
 
 _rolled = equinox.filter_jit(rolled)

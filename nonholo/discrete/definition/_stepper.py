@@ -1,0 +1,133 @@
+"""Steps by the definition of the map, in JAX: to the principal value or the nearest one, and compositions."""
+
+import dataclasses
+from typing import Any
+
+import equinox
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo.base.numerics import applied
+from nonholo.base.results import Outcome
+from nonholo.base.types import Array
+from nonholo.discrete._scheme import Scheme
+from nonholo.discrete.definition._composition import swept
+from nonholo.discrete.definition._precision import in_double
+from nonholo.discrete.definition._step import nearest_displacement, principal_displacement, pushed
+from nonholo.discrete.routes import AbstractBodyStepper, Compact, keep_row, write_first
+from nonholo.orbit import First, Rows, State
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class DefinitionStepper(AbstractBodyStepper):
+    """Rows are momenta, charts and matrices of poses in the user's frame; a composition is a whole step ahead of them.
+
+    Attributes:
+        motion: The discretization.
+        posed: Whether poses are saved.
+        branch: "principal" or "nearest".
+    """
+
+    motion: Any
+    posed: bool
+    branch: str = "principal"
+    in_threads = False
+
+    @property
+    def columns(self) -> dict[str, int]:  # type: ignore[override]
+        """The names and sizes of what a row holds."""
+        system = self.motion.system
+        return {
+            "reduced_momentum": system.rank,
+            "cayley": len(self.motion.variety.chart),
+            "canonical_pose": system.group.size**2,
+        }
+
+    def start(self, first: First) -> tuple[State, Outcome]:
+        """Solve for the principal displacement, or take the one that is demanded of a run to the nearest value."""
+        system = self.motion.system
+        group, frame, (reduced, pose) = system.group, system.frame, first.numbers
+        r, g = applied(system.inverse_frame_map, reduced), group.matrix_from_pose(pose) @ group.inverse(frame)
+        if self.motion.order > 2:
+            ahead, y, code = in_double(swept, self.motion, r, g)
+            return np.concatenate((r, y, g.ravel(), *self._normal(ahead))), Outcome(int(code))
+        y, begun = np.zeros(len(self.motion.variety.chart)), -1
+        if self.branch == "nearest" and first.demanded is not None and first.demanded.ndim == 2:
+            y, begun = self.motion.variety.coordinates(group.inverse(frame) @ first.demanded @ frame), 0
+        _, code, r, y, g = self._advanced(begun, 0, r, y, g)
+        return np.concatenate((r, y, g.ravel())), Outcome(int(code))
+
+    def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
+        """Take steps from one saved row to the next."""
+        write_first(state, rows)
+        step, done, code = self._composed if self.motion.order > 2 else self._plain, 0, 0
+        while code == 0 and done < steps:
+            good, code = step(state, every)
+            done += good
+            if good == every:
+                write_first(state, tuple(column[done // every :] for column in rows))
+        if done % every == 0:
+            keep_row(state, rows, done // every)
+        return done, code
+
+    def _plain(self, state: State, steps: int) -> tuple[int, int]:
+        k, m = self.motion.system.rank, len(self.motion.variety.chart)
+        good, code, r, y, g = self._advanced(0, steps, state[:k], state[k : k + m], self._matrix(state[k + m :]))
+        state[:] = np.concatenate((r, y, g.ravel()))
+        return int(good), int(code)
+
+    def _composed(self, state: State, steps: int) -> tuple[int, int]:
+        """Take steps one by one: a state is good if the whole step that starts there could be taken."""
+        k, width = self.motion.system.rank, sum(self.columns.values())
+        for done in range(steps):
+            r, g = state[width : width + k].copy(), self._matrix(state[width + k :]).copy()
+            ahead, y, code = in_double(swept, self.motion, r, g)
+            if code != 0:
+                return done, int(code)
+            state[:] = np.concatenate((r, y, g.ravel(), *self._normal(ahead)))
+        return steps, 0
+
+    def decode(self, rows: Rows) -> Compact:
+        """Return canonical momenta, charts and compact poses."""
+        (momenta, charts, poses), system = rows, self.motion.system
+        compact = system.group.pose_from_matrix(self._matrix(poses) @ system.frame)
+        return applied(system.frame_map, momenta), charts, compact
+
+    def _advanced(self, begun: int, steps: int, r: np.ndarray, y: np.ndarray, g: np.ndarray) -> Any:
+        nearest = self.branch == "nearest"
+        return in_double(_advance, self.motion, nearest, np.int64(begun), np.int64(steps), r, y, g)
+
+    def _matrix(self, rows: np.ndarray) -> np.ndarray:
+        size = self.motion.system.group.size
+        return rows.reshape(*rows.shape[:-1], size, size)
+
+    def _normal(self, ahead: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """Return momentum and pose one sweep ahead, the pose freed of rounding errors."""
+        group = self.motion.system.group
+        g = group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(ahead[1])))
+        return ahead[0], g.ravel()
+
+
+@equinox.filter_jit
+def _advance(
+    discrete: Scheme, nearest: bool, begun: Array, steps: Array, r: Array, y: Array, g: Array
+) -> tuple[Array, ...]:
+    """Take steps; before the first one, if `begun` is -1 and y zero, find the displacement with momenta r at g.
+
+    From zero the nearest value is the principal one, and the root is compiled once for both.
+    """
+    group = discrete.system.group
+
+    def body(carry: tuple[Array, ...]) -> tuple[Array, ...]:
+        done, _, *now = carry
+        r, g = pushed(discrete, now[1], now[2])
+        g = group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(g)))
+        r, g = (jnp.where(done < 0, old, new) for new, old in ((r, now[0]), (g, now[2])))
+        y, code = nearest_displacement(discrete, now[1], r) if nearest else principal_displacement(discrete, r, g)
+        code = jnp.where(jnp.all(jnp.isfinite(g)), code, int(Outcome.nonfinite))
+        good = code == 0
+        return done + good, code, *(jnp.where(good, new, old) for new, old in zip((r, y, g), now, strict=True))
+
+    start = (jnp.asarray(begun), jnp.asarray(0), jnp.asarray(r), jnp.asarray(y), jnp.asarray(g))
+    return jax.lax.while_loop(lambda c: (c[0] < steps) & (c[1] == 0), body, start)

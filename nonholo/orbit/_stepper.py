@@ -1,0 +1,106 @@
+"""The interface of every map that runs step by step: rows of columns from a state, which is one flat vector."""
+
+import abc
+from collections.abc import Mapping
+from typing import Any, ClassVar, Generic, NamedTuple, Protocol, TypeAlias
+
+import numpy as np
+
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
+from nonholo.orbit._base import OrbitT
+
+Rows: TypeAlias = tuple[Float[np.ndarray, "K w"], ...]
+"""An array for each column, C-contiguous and writable, the entries of a row flattened."""
+State: TypeAlias = Float[np.ndarray, "L"]
+"""The row of the state, then the numbers of the stepper's own."""
+
+
+class First(NamedTuple):
+    """A checked start in the numbers of its motion, and what the first step must have.
+
+    Attributes:
+        numbers: Of a body its canonical momenta and compact pose, which is empty where none is needed; in coordinates
+            place, velocity and momentum.
+        demanded: The displacement (N, N) or the full momentum (dim,) of the first step; None if the start leaves it.
+    """
+
+    numbers: tuple[np.ndarray, ...]
+    demanded: np.ndarray | None = None
+
+
+class AbstractStepper(abc.ABC, Generic[OrbitT]):
+    """A map with a way to compute its steps.
+
+    Attributes:
+        motion: The discretization.
+        columns: The names of what a saved row holds, with the numbers of each.
+        branch: The name of the branch rule.
+    """
+
+    motion: Any
+    columns: Mapping[str, int]
+    branch: str = "principal"
+    lead: ClassVar[int] = 1
+    """1 if a column belongs to the row that a step leads to; 0 if one belongs to the step ahead, known at its end."""
+    in_threads: bool = True
+    """Whether `advance` releases the interpreter's lock."""
+    pace: ClassVar[int] = 256
+    """Steps of the first call, before the time of any is known."""
+    block: int = 1 << 14
+    """Steps of a block of a store, about a second."""
+
+    @property
+    def has_poses(self) -> bool:
+        """Whether its rows have poses, saved or not."""
+        return self.columns.get("canonical_pose", 1) > 0
+
+    @property
+    def part_refused(self) -> str | None:
+        """Why a step has no parts; None if it has."""
+        return None
+
+    @abc.abstractmethod
+    def start(self, first: First) -> tuple[State, Outcome]:
+        """Solve for the first root; return the state there, and the outcome."""
+
+    @abc.abstractmethod
+    def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
+        """Take up to `steps` steps, in place; return how many were good, and the outcome.
+
+        `rows` has 1 + steps // every places. Place 0 becomes the row of the state as it came, place i the row after
+        i * every good steps. The row in the state is then that of the last place written, and its own numbers stand
+        after the good steps. Columns of the step ahead are NaN at the last place. Bits do not depend on how steps are
+        cut into calls.
+        """
+
+    @abc.abstractmethod
+    def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> OrbitT:
+        """Return rows as an orbit, the first one after `step` steps, the others `every` steps apart."""
+
+
+class DiscreteMotion(Protocol[OrbitT]):
+    """A discretized system: what `simulate`, `iterate` and stores ask of it."""
+
+    starts: ClassVar[tuple[str, ...]]
+    """The names of its starts."""
+
+    @property
+    def system(self) -> Any:
+        """What moves."""
+
+    @property
+    def time_step(self) -> Any:
+        """The time step h."""
+
+    def first(self, start: Any, *, posed: bool) -> First:
+        """Return a checked start, for rows with poses or without."""
+        ...
+
+    def stepper(self, *, posed: bool) -> AbstractStepper[OrbitT]:
+        """Return what takes its steps, and saves poses or not."""
+        ...
+
+    def after_parts(self, states: Any, fractions: Any) -> Any:
+        """Return what is reached from states after fractions of the steps that begin there; NaN where nothing is."""
+        ...

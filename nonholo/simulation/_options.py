@@ -1,0 +1,129 @@
+"""The options of a run, checked, and what takes its steps."""
+
+import dataclasses
+from typing import Any, NamedTuple
+
+from nonholo.base.checks import choice, error, shown, step_counts
+from nonholo.base.limits import within_memory
+from nonholo.discrete import (
+    BranchRule,
+    Discretization,
+    RuleStepper,
+    as_discretization,
+    checked_rule,
+    has_frame,
+    refuse_composition,
+)
+from nonholo.orbit import AbstractStepper
+from nonholo.systems import in_coordinates, refuse_in_coordinates
+
+
+def check_forces(owner: str, discrete: Any, steps: int, *, free: str | None = None, traced: bool = False) -> None:
+    """Refuse what runs with forces do not have, which `free` names, and more steps than their table has rows.
+
+    Traced are numbers alone.
+    """
+    if (forced := discrete.forces) is None:
+        return
+    if free is not None:
+        raise error(f"{owner}(discrete=...)", "have the principal branch under forces", free, "Leave both out.")
+    if traced and forced.needs_function:
+        remedy = "Use Gravity, Friction or a table: what a function does is not traced."
+        raise error(f"{owner}(discrete=...)", "have forces that are numbers", "a Python function", remedy)
+    if forced.table is not None and steps > len(forced.table):
+        remedy = "Pass fewer steps, or a force for each step."
+        raise error(f"{owner}(steps=...)", "be at most one for each row of the forces", f"{steps}", remedy)
+
+
+class RunOptions(NamedTuple):
+    """The options of a run, whatever its start.
+
+    Attributes:
+        stepper: What takes its steps.
+        steps: Number of steps.
+        every: Steps between saved states.
+    """
+
+    stepper: AbstractStepper[Any]
+    steps: int
+    every: int
+
+    @classmethod
+    def of(
+        cls,
+        owner: str,
+        discrete: Any,
+        *,
+        steps: Any,
+        save_every: Any,
+        branch: BranchRule,
+        backend: str,
+        reconstruct: bool,
+    ) -> "RunOptions":
+        """Return checked options that a discretization can be run with."""
+        if in_coordinates(discrete):
+            others = {"branch": (branch, "principal"), "reconstruct": (reconstruct, True), "backend": (backend, "auto")}
+            refuse_in_coordinates(owner, **others)
+        else:
+            as_discretization("simulate(discrete=...)", discrete, composed=True, forced=True)
+        count, every = step_counts(steps, save_every)
+        stepper = stepper_of(discrete, branch, backend, posed=reconstruct)
+        check_forces(owner, discrete, count)
+        return cls(stepper, count, every)
+
+    def refuse_too_large(self, owner: str, states: int) -> None:
+        """Refuse more saved states, or larger poses, than memory holds."""
+        refuse_too_large(owner, tuple(self.stepper.columns.values()), states)
+
+
+def stepper_of(discrete: Any, branch: BranchRule, backend: str, *, posed: bool) -> AbstractStepper[Any]:
+    """Return what takes the steps of a run: the one place that asks for rule, backend and extra."""
+    if in_coordinates(discrete):
+        return discrete.stepper(posed=True)
+    rule = checked_rule("simulate", discrete, branch)
+    if not rule.is_principal:
+        refuse_composition("simulate(branch=...)", discrete, "Leave branch out: each substep takes the principal root.")
+    choice("simulate(backend=...)", backend, ("auto", "numba", "jax"))
+    if discrete.forces is not None and not (rule.is_principal and backend != "jax"):
+        check_forces("simulate", discrete, 0, free=f"branch {rule.name!r} and backend {backend!r}")
+    if rule.is_principal:
+        return _principal(discrete, backend, posed=posed)
+    where = "simulate(backend=...)"
+    if backend == "numba":
+        got, remedy = f"the branch rule {rule.name!r}", "Only 'principal' runs compiled by numba."
+        raise error(where, "be 'auto' or 'jax'", got, remedy)
+    if has_frame(discrete) and backend == "auto":
+        return RuleStepper(discrete, rule, posed)
+    if rule.needs_all_values:
+        raise error(where, "be 'auto'", f"{shown(backend)} with branch {rule.name!r}", "Leave it out.")
+    return _by_definition(discrete, posed=posed, branch=rule.name)
+
+
+def _principal(discrete: Discretization, backend: str, *, posed: bool) -> AbstractStepper[Any]:
+    if backend == "jax":
+        return _by_definition(discrete, posed=posed)
+    if backend == "numba" and discrete.forces is None and discrete.route.compiled is None:
+        remedy = "Pass backend='jax', or difference='matrix'."
+        raise error("simulate(backend=...)", "have a closed form of the step", shown(discrete.difference), remedy)
+    return discrete.stepper(posed=posed)
+
+
+def _by_definition(discrete: Discretization, *, posed: bool, branch: str = "principal") -> AbstractStepper[Any]:
+    defined = dataclasses.replace(discrete, wanted_route="definition")
+    return defined.route.stepper(defined, posed=posed, branch=branch)
+
+
+def refuse_too_large(owner: str, widths: tuple[int, ...], states: int) -> None:
+    """Refuse more saved states, or larger poses, than memory holds; poses are the last of the widths."""
+    *others, pose = 1, *widths
+    what, remedy = ("reconstruct", "Pass reconstruct=False, raise") if pose > sum(others) else ("steps", "Raise")
+    remedy += " save_every, or pass store=... (`simulate`) or reduce=... (`ensemble`)."
+    within_memory(f"{owner}({what}=...)", 8.0 * states * (sum(others) + pose), remedy)
+
+
+def refuse_many_matrices(
+    where: str, discrete: Discretization, states: int, remedy: str, *, derivatives: int = 0
+) -> None:
+    """Refuse more states in matrices, with derivatives of each, than memory holds."""
+    numbers = 2 + discrete.system.rank + discrete.system.group.dim + 2 * discrete.system.group.size**2
+    within_memory(where, 8.0 * states * numbers * (1 + derivatives), remedy)

@@ -1,0 +1,270 @@
+"""The one loop over the steps of a run, whatever steps, in blocks; and the sinks that keep its orbit in memory."""
+
+import dataclasses
+import time
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from nonholo.base.checks import count, error
+from nonholo.base.limits import within_memory
+from nonholo.base.progress import progress_bar
+from nonholo.base.results import Outcome, OutcomeError, finished
+from nonholo.discrete import check_first_state, keep_row
+from nonholo.io import Plan
+from nonholo.orbit import AbstractOrbit, AbstractStepper, First, Rows, State
+from nonholo.simulation.events import Watch, piece_of, search
+
+_PIECE, _SHORT = 1 << 20, 256  # steps of a call at most; of the first searched call, which an event may soon end
+_ROWS, _NUMBERS = 1 << 16, 1 << 22  # at most in a block: saved states, numbers in an array
+_SOON, _LATE = 0.1, 0.3  # seconds: Ctrl-C waits for a call, whose steps are doubled and halved
+
+
+class Run(NamedTuple):
+    """What runs, and how.
+
+    Attributes:
+        stepper: What takes its steps.
+        steps: Steps in total.
+        every: Steps between saved states.
+        watch: What it looks for; None if for nothing.
+        throw: Whether a run that cannot continue raises.
+        progress: Whether a progress bar is shown.
+    """
+
+    stepper: AbstractStepper[Any]
+    steps: int
+    every: int
+    watch: Watch | None
+    throw: bool
+    progress: bool
+
+    def plan(self, rows: int) -> Plan:
+        """Return how the run is cut into blocks of this many saved states."""
+        return Plan(self.steps, self.every, rows, self.stepper.lead)
+
+    def finished(self, orbit: Any, done: int) -> Any:
+        """Return the orbit of the run, or raise if it ended early."""
+        return finished(orbit, float(self.stepper.motion.time_step), done, self.steps, self.throw)
+
+
+class Reached(NamedTuple):
+    """The state of a run between two blocks: good steps, the outcome so far, the state, what was seen of events."""
+
+    done: int
+    outcome: Outcome
+    state: State
+    watch: Watch | None
+
+    @property
+    def is_last(self) -> bool:
+        """Whether the run ended here: it cannot continue, or an event ended it."""
+        return self.outcome != Outcome.successful or (self.watch is not None and self.watch.stopped_by is not None)
+
+
+class Block(NamedTuple):
+    """A block of a run: its number, its orbit (None if it was known), and how the run stands at its end."""
+
+    number: int
+    orbit: Any
+    reached: Reached
+
+
+def opened(run: Run, first: First) -> tuple[Reached, AbstractOrbit | None]:
+    """Begin a run; return how it stands at its start, and the empty orbit of one that cannot continue from there."""
+    state, outcome = run.stepper.start(first)
+    begun = Reached(0, outcome, state, run.watch)
+    if outcome == Outcome.successful and first.demanded is None and run.watch is None:
+        return begun, None
+    there = orbit_at(run.stepper, state, 0)
+    if outcome != Outcome.successful:
+        there = dataclasses.replace(there.chosen(slice(0, 0)), outcome=outcome)
+    elif first.demanded is not None:
+        check_first_state(first.demanded, there.displacement[0], there.momentum[0])
+    if run.watch is not None:
+        watch, _ = search(run.watch, there)
+        begun, there = begun._replace(watch=watch), dataclasses.replace(there, events=watch.log())
+    return begun, None if outcome == Outcome.successful else run.finished(there, 0)
+
+
+def row_of(stepper: AbstractStepper[Any], state: State) -> list[np.ndarray]:
+    """Return the entries of the row of a state, column by column."""
+    return np.split(state, np.cumsum([*stepper.columns.values()]))[:-1]
+
+
+def orbit_at(stepper: AbstractStepper[Any], state: State, done: int) -> Any:
+    """Return the row of a state as an orbit."""
+    rows = tuple(entries[None].copy() for entries in row_of(stepper, state))
+    if stepper.lead == 0:
+        rows[-1].fill(np.nan)  # of a step that may not be taken
+    return stepper.orbit(rows, done, 1, Outcome.successful)
+
+
+class _Table:
+    """The rows of a block: where the steps of a call are written, and which of them are kept."""
+
+    def __init__(self, stepper: AbstractStepper[Any], plan: Plan, number: int, *, fine: bool) -> None:
+        self.widths, self.fine = tuple(stepper.columns.values()), fine
+        self.begun, self.every = plan.begin(number), plan.every
+        self.places = 1 + (plan.stop(number) - self.begun) // self.every
+        self.rows = self.empty(1 if fine else self.places)  # an event may stop the run long before
+
+    def empty(self, places: int) -> Rows:
+        """Return rows to be written."""
+        return tuple(np.empty((places, width)) for width in self.widths)
+
+    def room(self, done: int, most: int) -> tuple[int, int, Rows]:
+        """Return how many steps to take from a step, after how many of them a row is written, and where.
+
+        Whole rows are written in place. A part of a row is written beside them, and so are the single steps that are
+        searched for events.
+        """
+        past = (done - self.begun) % self.every
+        if self.fine:
+            each, count = 1, min(most, piece_of(self.widths))
+        elif past == 0 and most >= self.every:
+            each, count = self.every, most // self.every
+        else:
+            each, count = min(most, self.every - past), 1
+        self._reserve(1 + (done - self.begun + each * count) // self.every)
+        if each != self.every:
+            return each * count, each, self.empty(1 + count)
+        first = (done - self.begun) // each
+        return each * count, each, tuple(column[first : first + count + 1] for column in self.rows)
+
+    def _reserve(self, places: int) -> None:
+        """Have at least this many places."""
+        if places > (have := len(self.rows[0])):
+            longer = self.empty(min(self.places, max(places, 2 * have)))
+            for column, known in zip(longer, self.rows, strict=True):
+                column[:have] = known
+            self.rows = longer
+
+    def take(self, room: Rows, done: int, good: int, each: int) -> None:
+        """Keep the saved states among the rows of a call."""
+        if each == self.every:
+            return  # they are in place
+        past = done - self.begun + each * np.arange(1 + good // each)
+        saved = np.flatnonzero(past % self.every == 0)
+        for column, new in zip(self.rows, room, strict=True):
+            column[past[saved] // self.every] = new[saved]
+
+
+def blocks(
+    run: Run,
+    plan: Plan,
+    begun: Reached,
+    report: Callable[[int, int], object],
+    known: Callable[[int], Reached | None] = lambda _: None,
+) -> Iterator[Block]:
+    """Give the blocks of a run in order, up to the one that ends it; nothing of those that are known is computed."""
+    reached = begun
+    for number in range(plan.blocks):
+        orbit, there = None, known(number)
+        if there is None:
+            orbit, there = computed(run.stepper, plan, number, reached, report)
+        reached = there
+        report(reached.done, plan.steps)
+        yield Block(number, orbit, reached)
+        if reached.is_last:
+            return
+
+
+def computed(
+    stepper: AbstractStepper[Any], plan: Plan, number: int, begun: Reached, report: Callable[[int, int], object]
+) -> tuple[Any, Reached]:
+    """Take the steps of a block: the only loop over steps."""
+    state, watch, done, stop = begun.state.copy(), begun.watch, plan.begin(number), plan.stop(number)
+    table, code, pace = _Table(stepper, plan, number, fine=watch is not None), 0, stepper.pace
+    for column, entries in zip(table.rows, row_of(stepper, state), strict=True):
+        column[0] = entries
+    if watch is not None:  # a block without steps has a log too
+        watch, _ = search(dataclasses.replace(watch, parts=()), orbit_at(stepper, state, done))
+    while code == 0 and done < stop and not (watch and watch.stopped_by):
+        since, most = time.monotonic(), min(pace, stop - done)
+        most = most if watch is None else min(stop - done, max(done, _SHORT))
+        steps, each, room = table.room(done, most)
+        before = state.copy() if each > 1 else state
+        good, code = stepper.advance(state, steps, each, room)
+        if good % each:  # as far as the last good step
+            state = before
+            stepper.advance(state, good, good, table.empty(2))
+        taken = good
+        if watch is not None:
+            seen = tuple(column[: good + 1] for column in room)
+            watch, states = search(watch, stepper.orbit(seen, done, 1, Outcome.successful))
+            taken = states - 1
+            if watch.stopped_by:
+                keep_row(state, room, taken)
+        table.take(room, done, taken, each)
+        done, pace = done + taken, _paced(pace, time.monotonic() - since)
+        report(done, plan.steps)
+    reached = Reached(done, Outcome.successful if watch and watch.stopped_by else Outcome(code), state, watch)
+    return _orbit_of(stepper, table, plan, number, reached), reached
+
+
+def _orbit_of(stepper: AbstractStepper[Any], table: _Table, plan: Plan, number: int, reached: Reached) -> Any:
+    """Return the saved states of a block as an orbit."""
+    last, ends = (reached.done - table.begun) // plan.every, reached.is_last or number == plan.blocks - 1
+    first = int(stepper.lead == 1 and number > 0)
+    if stepper.lead == 0 and ends:
+        table.rows[-1][last] = np.nan  # of a step that belongs to no other state
+    kept = tuple(column[first : last + (stepper.lead or ends)] for column in table.rows)
+    orbit = stepper.orbit(kept, table.begun + first * plan.every, plan.every, reached.outcome)
+    return orbit if reached.watch is None else dataclasses.replace(orbit, events=reached.watch.log())
+
+
+def _paced(pace: int, seconds: float) -> int:
+    """Return how many steps to take next, after that many took so long."""
+    if seconds < _SOON:
+        return min(2 * pace, _PIECE)
+    return max(1, pace // 2) if seconds > _LATE else pace
+
+
+def in_memory(run: Run, first: First) -> Any:
+    """Run in memory; return the orbit."""
+    return run.finished(*ended(run, first, whole=True))
+
+
+def ended(run: Run, first: First, *, whole: bool) -> tuple[Any, int]:
+    """Run in memory; return the saved states, or the last good one alone, as an orbit, and the good steps."""
+    begun, orbit = opened(run, first)
+    if orbit is not None:
+        return orbit, 0
+    with progress_bar("steps", run.progress) as report:
+        ((_, orbit, reached),) = blocks(run, run.plan(1 + run.steps // run.every), begun, report)
+    if whole:
+        return orbit, reached.done
+    last = orbit_at(run.stepper, reached.state, reached.done)
+    return dataclasses.replace(last, outcome=orbit.outcome, events=orbit.events), reached.done
+
+
+def one_by_one(run: Run, first: First, rows: int) -> Iterator[Any]:
+    """Begin a run, before any block is asked for; return the iterator over the orbits of its blocks."""
+    begun, empty = opened(run, first)
+    return iter((empty,)) if empty is not None else _given(run, begun, rows)
+
+
+def _given(run: Run, begun: Reached, rows: int) -> Iterator[Any]:
+    with progress_bar("steps", run.progress) as report:
+        for _, orbit, reached in blocks(run, run.plan(rows), begun, report):
+            if len(orbit) or not run.throw:
+                yield orbit
+            if run.throw and orbit.outcome != Outcome.successful:
+                where = f"Step {reached.done + 1} of {run.steps} (time_step {run.stepper.motion.time_step:g})"
+                raise OutcomeError(orbit.outcome, where, orbit)
+
+
+def rows_of_block(where: str, run: Run, block_steps: int | None) -> int:
+    """Return the number of saved states in a block of this many steps; by default blocks of a few megabytes."""
+    widths = tuple(run.stepper.columns.values())
+    if block_steps is None:
+        least = min(1 + run.steps // run.every, _ROWS, _NUMBERS // max(1, *widths), run.stepper.block // run.every)
+        return max(1, least)
+    asked = count(where, block_steps, "Pass the number of steps.")
+    if asked % run.every:
+        remedy = f"Pass {-(-asked // run.every) * run.every}."
+        raise error(where, f"be a multiple of save_every = {run.every}", str(asked), remedy)
+    within_memory(where, 16.0 * (asked // run.every) * sum(widths), "Pass fewer steps: a block is held whole.")
+    return asked // run.every
