@@ -5,13 +5,14 @@ rows of a block begin with a chunk of their own; what is left of its last chunk 
 """
 
 import dataclasses
-from typing import Any, NamedTuple
+import math
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
-from nonholo.orbit import STATES, Crossings, EventLog, Orbit
+from nonholo.orbit import AbstractOrbit, Crossings, EventLog
 
 EVENTS = "run/events"
 _PLACE = 4  # entries of a row before its state: event, step, fraction, direction
@@ -69,30 +70,30 @@ def rows_of(log: EventLog) -> Float[np.ndarray, "C width"]:
 
 
 def _rows(event: int, found: Crossings) -> np.ndarray:
-    states = [rows for name in STATES if (rows := getattr(found.states, name)) is not None]
+    rows = found.states.rows()
+    states = [rows[name].reshape(len(found), math.prod(rows[name].shape[1:])) for name in rows if name != "step"]
     return np.column_stack([np.full(len(found), event), found.step, found.fraction, found.direction, *states])
 
 
-def log_of(rows: Float[np.ndarray, "C width"], names: tuple[str, ...], orbit: Orbit, by: str | None) -> EventLog:
+def log_of(
+    rows: Float[np.ndarray, "C width"], names: tuple[str, ...], orbit: AbstractOrbit, by: str | None
+) -> EventLog:
     """Return the crossings in rows of an orbit's run, and which event ended it."""
     return EventLog(names, tuple(_found(rows[rows[:, 0] == event], orbit) for event in range(len(names))), by)
 
 
-def _found(rows: np.ndarray, orbit: Orbit) -> Crossings:
-    widths = [_width(getattr(orbit, name)) for name in STATES[:-1]]
-    columns = np.split(rows, np.cumsum([_PLACE, *widths]), axis=1)
+def _found(rows: np.ndarray, orbit: AbstractOrbit) -> Crossings:
+    shapes = {name: column.shape[1:] for name, column in orbit.rows().items() if name not in ("step", "turned")}
+    columns = np.split(rows, np.cumsum([_PLACE, *map(math.prod, shapes.values())]), axis=1)
     place, *states, turned = map(np.ascontiguousarray, columns)
-    kept = {name: None if getattr(orbit, name) is None else part for name, part in zip(STATES, states, strict=False)}
-    kept |= {"time": states[0][:, 0], "turned": turned[:, 0] if turned.shape[1] else None}
+    kept: dict[str, Any] = {
+        name: part.reshape(len(rows), *shapes[name]) for name, part in zip(shapes, states, strict=True)
+    }
     step, direction = (place[:, entry].astype(np.int64) for entry in (1, 3))
-    reached = dataclasses.replace(orbit, outcome=Outcome.successful, save_every=1, events=None, step=step, **kept)
-    return Crossings(step, np.ascontiguousarray(place[:, 2]), direction, reached)
-
-
-def _width(given: np.ndarray | None) -> int:
-    if given is None:
-        return 0
-    return 1 if given.ndim == 1 else given.shape[1]
+    single: Any = dataclasses.replace(cast(Any, orbit), outcome=Outcome.successful, save_every=1, events=None)
+    if single.turned is not None or turned.shape[1]:
+        kept["turned"] = turned[:, 0] if turned.shape[1] else None
+    return Crossings(step, np.ascontiguousarray(place[:, 2]), direction, single.of_rows({**kept, "step": step}))
 
 
 def known(rows: Float[np.ndarray, "D width"], after: int = 0) -> Float[np.ndarray, "C width"]:

@@ -2,13 +2,12 @@
 
 import abc
 import dataclasses
-from collections.abc import Sequence
 from typing import Any, ClassVar, Self
 
 import jax
 import numpy as np
 
-from nonholo.base.checks import error, selection, shown
+from nonholo.base.checks import error, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float, Int
 from nonholo.groups import AbstractMatrixGroup
@@ -76,23 +75,13 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         """False for a discrete orbit, None for a flow."""
         return False if self.is_discrete else None
 
-    def chosen(self, states: slice | np.ndarray) -> Self:
-        """Return some of the states, by a slice, a mask or their numbers; the last one's impulse may be unknown."""
-        at = selection("CoordinateOrbit.chosen(states=...)", states)
-        return self._of_rows({name: rows[at] for name, rows in self._rows().items()})
-
-    def joined(self, others: Sequence[Self]) -> Self:
-        """Return the states with those of other parts of the same motion after them."""
-        parts = [part._rows() for part in (self, *others)]
-        return self._of_rows({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
-
-    def _rows(self) -> dict[str, np.ndarray]:
+    def rows(self) -> dict[str, np.ndarray]:
         """Return the arrays with a row for each state; impulses that are not known are NaN."""
         missing = np.full((len(self) - len(self.multipliers), self.multipliers.shape[1]), np.nan)
         known = {name: rows for name in _ROWS if (rows := getattr(self, name)) is not None}
         return known | {"multipliers": np.concatenate([self.multipliers, missing])}
 
-    def _of_rows(self, rows: dict[str, np.ndarray]) -> Self:
+    def of_rows(self, rows: dict[str, np.ndarray]) -> Self:
         """Return the orbit of such arrays, without the impulse of the last state if it is not known."""
         impulses = rows["multipliers"]
         known = len(impulses) - int(len(impulses) > 0 and bool(np.isnan(impulses[-1]).any()))
@@ -138,7 +127,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         """
         import xarray
 
-        rows, labels = self._rows(), self._labels | _SHARED
+        rows, labels = self.rows(), self._labels | _SHARED
         variables = {
             name: (("step", *dimensions), rows[name], {"long_name": meaning})
             for name, (dimensions, meaning) in labels.items()

@@ -8,7 +8,7 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import LARGEST, error, is_moderate
+from nonholo.base.checks import LARGEST, error, is_moderate, selection
 from nonholo.base.html import table
 from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome
@@ -105,12 +105,22 @@ class AbstractOrbit(abc.ABC):
         """Return the states at any times of the span."""
 
     @abc.abstractmethod
-    def chosen(self: OrbitT, states: slice | np.ndarray) -> OrbitT:
-        """Return some of the states, by a slice, a mask or their numbers."""
+    def rows(self) -> dict[str, np.ndarray]:
+        """Return the arrays with a row for each state; impulses that are not known are NaN."""
 
     @abc.abstractmethod
+    def of_rows(self: OrbitT, rows: dict[str, np.ndarray]) -> OrbitT:
+        """Return the orbit of other rows."""
+
+    def chosen(self: OrbitT, states: slice | np.ndarray) -> OrbitT:
+        """Return some of the states, by a slice, a mask or their numbers, each with the same `save_every` as before."""
+        at = selection(f"{type(self).__name__}.chosen(states=...)", states)
+        return self.of_rows({name: rows[at] for name, rows in self.rows().items()})
+
     def joined(self: OrbitT, others: Sequence[OrbitT]) -> OrbitT:
         """Return the states with those of other parts of the same motion after them."""
+        parts = [part.rows() for part in (self, *others)]
+        return self.of_rows({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
     def with_headings(self: OrbitT, before: float | None) -> OrbitT:
         """Return the states with headings that continue from the given one, where there are any."""

@@ -8,12 +8,11 @@ discretization or a flow must know to decode them.
 import abc
 import dataclasses
 import importlib
-from collections.abc import Sequence
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import error, instance, selection, shown
+from nonholo.base.checks import error, instance, shown
 from nonholo.base.kept import Keeper
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
@@ -189,17 +188,13 @@ class Orbit(AbstractOrbit):
             raise ValueError(f"`Orbit[...]` must be sliced forwards. Got stride {stride}. Reverse the arrays instead.")
         return dataclasses.replace(self.chosen(states), save_every=self.save_every * stride)
 
-    def chosen(self, states: slice | np.ndarray) -> "Orbit":
-        """Return some of the states, by a slice or a mask, each with the same `save_every` as before."""
-        states = selection("Orbit.chosen(states=...)", states)
-        kept = {name: None if (rows := getattr(self, name)) is None else rows[states] for name in _ROWS}
-        return dataclasses.replace(self, **kept)
+    def rows(self) -> dict[str, np.ndarray]:
+        """Return the arrays with a row for each state."""
+        return {name: rows for name in _ROWS if (rows := getattr(self, name)) is not None}
 
-    def joined(self, others: Sequence["Orbit"]) -> "Orbit":
-        """Return the states with those of other parts of the same motion after them."""
-        columns = {name: [getattr(part, name) for part in (self, *others)] for name in _ROWS}
-        kept = {name: None if rows[0] is None else np.concatenate(rows) for name, rows in columns.items()}
-        return dataclasses.replace(self, **kept)
+    def of_rows(self, rows: dict[str, np.ndarray]) -> "Orbit":
+        """Return the orbit of other rows."""
+        return dataclasses.replace(self, **cast(Any, rows))
 
     def with_headings(self, before: float | None) -> "Orbit":
         """Return states of the plane with headings that continue from the given one; others as they are."""

@@ -1,0 +1,126 @@
+"""What works with what: every kind of map in memory, in stores, block by block, extended, and with events in each."""
+
+import dataclasses
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import nonholo as nh
+
+BODY = [[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]
+TOP, SLEIGH = nh.SuslovTop(BODY), nh.ChaplyginSleigh(2.0, 1.0, 0.5, 0.3)
+LORENTZ = nh.MatrixGroup(
+    [[[0, 1, 0], [1, 0, 0], [0, 0, 0]], [[0, 0, 1], [0, 0, 0], [1, 0, 0]], [[0, 0, 0], [0, 0, -1], [0, 1, 0]]]
+)
+STEPS, MORE, H = 14, 5, 0.1
+
+
+def _brake(time: float, g: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    return -0.3 * np.cos(time) * velocity + 0.1 * g[0, :3]
+
+
+def _action(W: Any) -> Any:
+    X = W - jnp.eye(3)
+    return jnp.trace(X @ jnp.asarray(BODY) @ X.T) / (2 * H)
+
+
+def _of_body(system: Any, **how: Any) -> Callable[[], tuple[Any, dict[str, Any]]]:
+    run = {name: how.pop(name) for name in ("branch", "backend") if name in how}
+    return lambda: (nh.discretize(system, H, **how), {"restricted_velocity": (0.6, -0.4), **run})
+
+
+def _of_example(name: str) -> Callable[[], tuple[Any, dict[str, Any]]]:
+    def made() -> tuple[Any, dict[str, Any]]:
+        ready = getattr(nh.examples, name)()
+        start = {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
+        return nh.discretize(ready.system, H), start
+
+    return made
+
+
+KINDS = {
+    "top": _of_body(TOP),
+    "sleigh": _of_body(SLEIGH),
+    "order 4": _of_body(SLEIGH, order=4),
+    "nearest": _of_body(TOP, branch="nearest"),
+    "smallest": _of_body(TOP, branch="smallest"),
+    "force in Python": _of_body(nh.Forced(SLEIGH, force=_brake)),
+    "force in Python, fixed in space": _of_body(nh.Forced(nh.VeselovaTop(BODY), force=_brake)),
+    "table": _of_body(nh.Forced(TOP, force=np.random.default_rng(0).normal(size=(40, 3)))),
+    "particle": _of_example("particle"),
+    "logarithmic": _of_body(TOP, difference="logarithmic"),
+    "custom difference": _of_body(TOP, difference=_action),
+    "own group": _of_body(
+        nh.LLSystem(LORENTZ, constraint_subspace=np.eye(3)[:2], inertia_operator=np.diag([2, 1, 1.5]))
+    ),
+    "by the definition": _of_body(TOP, backend="jax"),
+    "driven sleigh": _of_example("driven_sleigh"),
+    "on a group": _of_example("chaplygin_ball"),
+}
+COMPILED_FOR_LONG = (
+    *("force in Python, fixed in space", "logarithmic", "custom difference", "own group"),
+    *("by the definition", "driven sleigh", "on a group"),
+)
+WITHOUT_PARTS = ("nearest", "smallest")
+EVERY_KIND = pytest.mark.parametrize("kind", KINDS)
+HERE = pytest.mark.profile("routes", cases=COMPILED_FOR_LONG)
+
+
+def _same(one: Any, other: Any) -> bool:
+    mine, theirs = one.rows(), other.rows()
+    return mine.keys() == theirs.keys() and all(
+        np.array_equal(mine[name], theirs[name], equal_nan=True) for name in mine if name != "turned"
+    )
+
+
+def _joined(blocks: list[Any]) -> Any:
+    return blocks[0].joined(blocks[1:])
+
+
+@HERE
+@EVERY_KIND
+def test_memory_store_and_blocks_are_one_run(kind: str, tmp_path: Path) -> None:
+    """The states are the same to the last bit, thinned too, and an extended store is the longer run."""
+    discrete, run = KINDS[kind]()
+    for every, block in ((1, 4), (3, 6)):
+        how, path = {**run, "save_every": every}, tmp_path / f"{every}.zarr"
+        whole = nh.simulate(discrete, steps=STEPS, **how)
+        assert len(whole) == 1 + STEPS // every
+        assert np.array_equal(whole.step, every * np.arange(len(whole)))
+        assert _same(nh.simulate(discrete, steps=STEPS, store=path, checkpoint_every=block, **how), whole)
+        assert _same(_joined(list(nh.iterate(discrete, steps=STEPS, block_steps=block, **how))), whole)
+        longer = nh.simulate(discrete, steps=STEPS + MORE, **how)
+        assert _same(nh.extend(path, MORE, discrete=discrete), longer)
+        assert np.array_equal(longer.rows()["time"][: len(whole)], whole.time)
+
+
+@HERE
+@EVERY_KIND
+def test_events_are_found_wherever_a_run_goes(kind: str, tmp_path: Path) -> None:
+    """Crossings have the same bits in memory, in a store, block by block and in the orbit; other rules have no parts."""
+    discrete, run = KINDS[kind]()
+    plain = nh.simulate(discrete, steps=STEPS, **run)
+    values = plain.configuration.reshape(len(plain), -1)
+    entry = int(np.argmax(np.abs(values[-1] - values[0])))
+    middle = (values[STEPS // 2, entry] + values[STEPS // 2 + 1, entry]) / 2
+    event = nh.Event(lambda orbit: orbit.configuration.reshape(len(orbit), -1)[:, entry] - middle, name="middle")
+    if kind in WITHOUT_PARTS:
+        with pytest.raises(ValueError, match="only the principal branch has them"):
+            nh.simulate(discrete, steps=STEPS, events=[event], **run)
+        return
+    found = nh.simulate(discrete, steps=STEPS, events=[event], **run).events["middle"]
+    assert len(found) > 0
+    assert np.abs(event.function(found.states)).max() < 1e-13
+    stored = nh.simulate(discrete, steps=STEPS, events=[event], store=tmp_path / "a.zarr", checkpoint_every=4, **run)
+    blocks = list(nh.iterate(discrete, steps=STEPS, events=[event], block_steps=4, **run))
+    for other in (
+        stored.events["middle"].states,
+        _joined([block.events["middle"].states for block in blocks]),
+        nh.crossings(dataclasses.replace(plain, events=None), event).states,
+    ):
+        assert np.array_equal(other.time, found.time)
+        assert np.array_equal(other.configuration, found.states.configuration)
