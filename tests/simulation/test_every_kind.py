@@ -101,7 +101,7 @@ def test_memory_store_and_blocks_are_one_run(kind: str, tmp_path: Path) -> None:
 @HERE
 @EVERY_KIND
 def test_events_are_found_wherever_a_run_goes(kind: str, tmp_path: Path) -> None:
-    """Crossings have the same bits in memory, in a store, block by block and in the orbit; other rules have no parts."""
+    """Crossings have the same bits in memory, in a store, block by block and in the orbit; other rules have none."""
     discrete, run = KINDS[kind]()
     plain = nh.simulate(discrete, steps=STEPS, **run)
     values = plain.configuration.reshape(len(plain), -1)

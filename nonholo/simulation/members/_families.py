@@ -3,7 +3,7 @@
 import dataclasses
 import functools
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -25,6 +25,7 @@ class ScalarMembers:
         inertia: Inertias along the constraint in the canonical frame, (m, 2, 2).
         frame_map: C with r_canonical = C r, (m, 2, 2).
         pose: First poses, (m, 4).
+        route: That of all members, whose kernel has units and axes of its own; None where `scale` is all.
     """
 
     table: Callable[[], Float[np.ndarray, "f _"]]
@@ -32,6 +33,7 @@ class ScalarMembers:
     inertia: Float[np.ndarray, "_ 2 2"]
     frame_map: Float[np.ndarray, "_ 2 2"]
     pose: Float[np.ndarray, "_ 4"]
+    route: Any = None
 
     @functools.cached_property
     def fields(self) -> Float[np.ndarray, "f m"]:
@@ -112,14 +114,29 @@ def have_kernel(members: Members) -> bool:
     return run_in_lanes(members.discrete)
 
 
+def in_lanes(members: Members) -> bool:
+    """Tell whether members are computed side by side: those that have a kernel, and those of one closed form."""
+    return have_kernel(members) or (not members.parameters and members.discrete.route.is_scalar)
+
+
 def body_of(members: Members) -> type[Any]:
-    """Return the type of the bodies of members that have a kernel."""
-    return _FAMILIES[type(members.discrete.system)].body
+    """Return the type of the bodies of members that are computed side by side."""
+    family = family_of(members.discrete.system)
+    return type(cast(Any, members.discrete.route).body) if family is None else family.body
 
 
 def scalar_members(members: Members) -> ScalarMembers:
-    """Return the numbers of tops and plane sleighs."""
-    return _FAMILIES[type(members.discrete.system)].numbers(members)
+    """Return the numbers of members that are computed side by side."""
+    family = family_of(members.discrete.system)
+    return _of_one_route(members) if family is None else family.numbers(members)
+
+
+def _of_one_route(members: Members) -> ScalarMembers:
+    """Return the numbers of members that are one body, whatever its class, in the axes of its normal form."""
+    route, system = cast(Any, members.discrete.route), members.discrete.system
+    inertia = np.asarray(system.canonical.constrained_inertia)[None]
+    frame_map, pose = np.asarray(system.frame_map)[None], system.frame_pose[None]
+    return ScalarMembers(lambda: np.array(route.body)[:, None], members.time_step, inertia, frame_map, pose, route)
 
 
 def tangents(

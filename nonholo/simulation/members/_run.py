@@ -17,7 +17,7 @@ from nonholo.discrete import PRINCIPAL, Discretization
 from nonholo.orbit import Orbit
 from nonholo.simulation._options import stepper_of
 from nonholo.simulation._run import Run, ended
-from nonholo.simulation.members._families import body_of, have_kernel, scalar_members
+from nonholo.simulation.members._families import ScalarMembers, body_of, in_lanes, scalar_members
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._result import Ensemble
 from nonholo.systems import Start
@@ -86,7 +86,7 @@ def run_members(
         report: Called with the number of members that are done.
     """
     threads = threads or threads_to_use()
-    if have_kernel(members):
+    if in_lanes(members):
         return _run_scalar(members, momenta, plan, threads, report)
     return _run_each(members, momenta, plan, threads, report)
 
@@ -102,15 +102,29 @@ def _run_scalar(members: Members, momenta: np.ndarray, plan: Plan, threads: int,
     def work(part: slice, stop: np.ndarray) -> None:
         pieces = _unfilled(kernels.MemberRows(*(array[part] for array in rows)))
         scale = np.broadcast_to(scalar.scale, (count,))[part, None]
-        poses = np.array(np.broadcast_to(scalar.pose, (count, 4))[part], order="C")  # never read-only: compiled once
+        first = scalar.pose if scalar.route is None else scalar.route.encode_poses(scalar.pose)
+        poses = np.array(np.broadcast_to(first, (count, 4))[part], order="C")  # never read-only: compiled once
         own = fields if fields.shape[1] == 1 else fields[:, part]
-        advance(own, (momenta[part] * scale, poses), plan, pieces, stop)
-        np.divide(pieces.momenta, scale[:, None], out=pieces.momenta)
+        begun = momenta[part] * scale if scalar.route is None else scalar.route.encode(momenta[part])
+        advance(own, (begun, poses), plan, pieces, stop)
+        if scalar.route is None:
+            np.divide(pieces.momenta, scale[:, None], out=pieces.momenta)
+        else:
+            _decode(scalar, pieces)
 
     if backend == "jax":
         threads = 1  # XLA has its own
     in_threads(work, _parts(count, threads, backend), threads, report)
     return Ensemble(members, steps, every, *rows[:2], rows.poses if posed else None, *rows[3:], momenta)
+
+
+def _decode(scalar: ScalarMembers, pieces: kernels.MemberRows) -> None:
+    """Take rows of a kernel to canonical units and axes, in place."""
+    good, route = np.isfinite(pieces.momenta[..., 0]), scalar.route
+    pieces.momenta[good] = route.decode(pieces.momenta[good])
+    pieces.charts[good] = route.from_kernel(pieces.charts[good])
+    if pieces.poses.shape[1]:
+        pieces.poses[good] = route.decode_poses(pieces.poses[good])
 
 
 def _rows(count: int, states: int, posed: bool) -> kernels.MemberRows:

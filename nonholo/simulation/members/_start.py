@@ -5,7 +5,7 @@ import numpy as np
 from nonholo.base.checks import array, error, shape_of
 from nonholo.base.numerics import applied, solved
 from nonholo.base.types import Bool, Float
-from nonholo.simulation.members._families import ScalarMembers, have_kernel, scalar_members
+from nonholo.simulation.members._families import ScalarMembers, in_lanes, scalar_members
 from nonholo.simulation.members._members import Members, refused
 from nonholo.systems import Start, System
 
@@ -36,7 +36,7 @@ def checked_rows(system: System, parameters: dict[str, np.ndarray], start: Start
 
 def first_momenta(members: Members, name: str, rows: np.ndarray) -> Float[np.ndarray, "M k"]:
     """Return the canonical momenta along the constraint subspace of starts whose shapes are checked."""
-    if not have_kernel(members):
+    if not in_lanes(members):
         return np.array([_of_one(members, member, name, rows[member]) for member in range(len(members))])
     momenta = np.empty((len(members), 2))
     for begin in range(0, len(members), _CHUNK):
