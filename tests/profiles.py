@@ -101,11 +101,9 @@ SOAKS = {"long", "fuzz"}
 MARKED = [DEFAULT, *(name for name, profile in PROFILES.items() if not profile.command)]
 _DALEMBERT = "nonholo.lagrange_dalembert."
 DOCTESTS = {  # examples that compile for long
-    f"{_DALEMBERT}on_groups._discretization.GroupDiscretization.simulate": "routes",
     f"{_DALEMBERT}_orbit.GroupOrbit": "routes",
     f"{_DALEMBERT}on_groups._system.GroupLagrangeDAlembert": "routes",
     f"{_DALEMBERT}on_groups._system.GroupLagrangeDAlembert.flow": "routes",
-    f"{_DALEMBERT}_discretization.CoordinateDiscretization.simulate": "routes",
     f"{_DALEMBERT}_system.LagrangeDAlembert.flow": "routes",
     f"{_DALEMBERT}_orbit.CoordinateOrbit": "routes",
     "nonholo.literature._particle.particle": "routes",

@@ -96,7 +96,7 @@ def test_stopped_sweeps_go_on(name: str, given: bool, stores: Path, tmp_path: Pa
     path, expected = _copied(stores, f"{name}, stopped sweep", tmp_path), _EXPECTED["sweeps"][name]
     with _whatever_versions(), nh.resume(path, task=sweep_of(motions()[name])[0] if given else None) as found:
         numbers = [found[key].values for key in ("final_momentum", "final_pose")]
-    if _same_bits(name):
+    if _same_bits(name) and name != "suslov top":  # whose restricted momenta are sums in another order since
         assert digest(*numbers) == expected["digest"]
     assert np.allclose(numbers[0], expected["final_momentum"], rtol=0, atol=1e-12)  # numbers of order one
 
