@@ -51,7 +51,7 @@ class CoordinateStepper(AbstractStepper[AbstractCoordinateOrbit]):
     def __post_init__(self) -> None:
         equations_of(self.motion.system)  # refused by the system of a store without functions
 
-    @property
+    @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]
         """The names and sizes of what a row holds."""
         (place, rate), system = map(math.prod, self.motion.system.shapes), self.motion.system

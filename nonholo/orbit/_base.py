@@ -2,9 +2,10 @@
 
 import abc
 import dataclasses
+import functools
 import importlib
 from collections.abc import Sequence
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -24,6 +25,13 @@ _COLUMNS = {
 _COLUMNS |= {"reduced_momentum", "cayley", "canonical_pose"}  # compact
 
 OrbitT = TypeVar("OrbitT", bound="AbstractOrbit")
+
+
+@functools.cache
+def _bounds(kind: Any) -> tuple[tuple[str, float], ...]:
+    """Return the columns of a class of orbits that have to be finite, and the largest numbers they may hold."""
+    names = (field.name for field in dataclasses.fields(kind) if field.name in _COLUMNS)
+    return tuple((name, LARGEST if "momentum" in name else np.inf) for name in names)
 
 
 class AbstractOrbit(abc.ABC):
@@ -88,9 +96,8 @@ class AbstractOrbit(abc.ABC):
         Nor with a momentum whose square overflows.
         """
         if self.outcome == Outcome.successful:
-            names = {field.name for field in dataclasses.fields(cast(Any, self))} & _COLUMNS
-            columns = {name: rows for name in names if (rows := getattr(self, name)) is not None}
-            if not all(is_moderate(rows, LARGEST if "momentum" in name else np.inf) for name, rows in columns.items()):
+            columns = ((getattr(self, name), most) for name, most in _bounds(type(self)))
+            if not all(rows is None or is_moderate(rows, most) for rows, most in columns):
                 object.__setattr__(self, "outcome", Outcome.nonfinite)
         if self.step is None or len(self.step) != len(self.time):
             object.__setattr__(self, "step", self.save_every * np.arange(len(self.time)))

@@ -1,6 +1,7 @@
 """The one loop over the steps of a run, whatever steps, in blocks; and the sinks that keep its orbit in memory."""
 
 import dataclasses
+import itertools
 import time
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
@@ -90,7 +91,8 @@ def opened(run: Run, first: First) -> tuple[Reached, AbstractOrbit | None]:
 
 def row_of(stepper: AbstractStepper[Any], state: State) -> list[np.ndarray]:
     """Return the entries of the row of a state, column by column."""
-    return np.split(state, np.cumsum([*stepper.columns.values()]))[:-1]
+    ends = [0, *itertools.accumulate(stepper.columns.values())]
+    return [state[begin:end] for begin, end in itertools.pairwise(ends)]
 
 
 def orbit_at(stepper: AbstractStepper[Any], state: State, done: int) -> Any:

@@ -15,7 +15,7 @@ from nonholo.base.checks import error, instance, is_traced, shape_of, trailing
 from nonholo.base.html import table
 from nonholo.base.kept import Keeper, kept
 from nonholo.base.limits import within_memory
-from nonholo.base.numerics import applied, solved
+from nonholo.base.numerics import Factors, applied, factors_of, solved
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._equilibria import Equilibria, equilibria_of, transverse_rates
@@ -118,6 +118,12 @@ class AbstractSystem(Keeper, abc.ABC):
         if mass_tensor is None:
             return rows @ self.inertia_operator @ rows.T
         return inertia_form(self.group, self.group.hat(rows), mass_tensor)
+
+    @functools.cached_property
+    def inertia_factors(self) -> Factors | None:
+        """The factors of a matrix `inertia_along`; None of others, and of one that is not positive definite."""
+        inertia = self.inertia_along
+        return factors_of(inertia) if isinstance(inertia, np.ndarray) and not is_traced(inertia) else None
 
     @functools.cached_property
     def normal_form(self) -> NormalForm | None:
@@ -338,8 +344,8 @@ class AbstractLLSystem(AbstractSystem):
         """Return the velocity, in rows of the constraint subspace, that has these momenta along it."""
         del configuration
         momentum, inertia = self._along("restricted_momentum", restricted_momentum), self.inertia_along
-        if isinstance(inertia, np.ndarray) and isinstance(momentum, np.ndarray):
-            return solved(inertia, momentum)
+        if isinstance(momentum, np.ndarray) and self.inertia_factors is not None:
+            return solved(self.inertia_factors, momentum)
         return inertia.velocities(momentum) if isinstance(inertia, WideInertia) else _solve(inertia, momentum)
 
     def restricted_momentum(

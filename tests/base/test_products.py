@@ -1,9 +1,11 @@
 """Linear systems of momenta and velocities: as accurate as their bodies are uneven, alone as among others."""
 
+from typing import Any, cast
+
 import mpmath
 import numpy as np
 
-from nonholo.base.numerics import solved
+from nonholo.base.numerics import factors_of, solved
 
 
 def test_energies_of_uneven_bodies_have_all_their_digits() -> None:
@@ -17,7 +19,7 @@ def test_energies_of_uneven_bodies_have_all_their_digits() -> None:
         with mpmath.workdps(60):
             x = mpmath.lu_solve(mpmath.matrix(inertia.tolist()), mpmath.matrix(p.tolist()))
             energy = mpmath.fdot(x, mpmath.matrix(p.tolist()))
-            both = p @ solved(inertia, p[None])[0], p @ np.linalg.inv(inertia) @ p
+            both = p @ solved(cast(Any, factors_of(inertia)), p[None])[0], p @ np.linalg.inv(inertia) @ p
             error[:] = [float(abs(mpmath.mpf(float(value)) - energy) / energy) for value in both]
     assert errors[0].max() < 1e-14  # a few dozen roundings
     assert errors[1].max() > 1e-14
@@ -28,7 +30,8 @@ def test_solutions_of_a_row_are_those_of_many() -> None:
     rng = np.random.default_rng(1)
     A, rows = rng.normal(size=(5, 5)), rng.normal(size=(30, 5))
     A = A @ A.T + np.eye(5)
-    alone = np.concatenate([solved(A, row[None]) for row in rows])
-    assert np.array_equal(solved(A, rows), alone)
-    assert np.array_equal(solved(np.tile(A, (30, 1, 1)), rows), alone)
+    of_one = cast(Any, factors_of(A))
+    alone = np.concatenate([solved(of_one, row[None]) for row in rows])
+    assert np.array_equal(solved(of_one, rows), alone)
+    assert np.array_equal(solved(cast(Any, factors_of(np.tile(A, (30, 1, 1)))), rows), alone)
     assert np.abs(A @ alone[..., None] - rows[..., None]).max() < 1e-13

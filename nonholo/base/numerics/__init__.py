@@ -16,15 +16,17 @@ from nonholo.base.numerics._matrix_functions import (
     of_skew,
     principal_logarithm,
 )
-from nonholo.base.numerics._products import applied, product_and_remainder, solved
+from nonholo.base.numerics._products import Factors, applied, factors_of, product_and_remainder, solved
 
 __all__ = [
+    "Factors",
     "applied",
     "block_diagonal",
     "cayley_increment",
     "cotangent_deficit",
     "double_precision",
     "exponential_increment",
+    "factors_of",
     "half_cotangent",
     "identity_like",
     "integrated_exponential",

@@ -25,36 +25,38 @@ def applied(matrix: Inexact[Array, "... i j"], vectors: Inexact[Array, "... j"])
     return vectors @ matrix.T if matrix.ndim == 2 else (matrix @ vectors[..., None])[..., 0]
 
 
-def solved(matrix: Float[np.ndarray, "... k k"], vectors: Float[np.ndarray, "... k"]) -> Float[np.ndarray, "... k"]:
-    r"""Return the solutions x of A x = v, of a positive definite A or of one for each: the same bits in any company.
+Factors = tuple[Float[np.ndarray, "... k k"], Float[np.ndarray, "... k"]]
+"""T and d with $T A T^T$ the diagonal matrix of d, T lower triangular with ones on the diagonal."""
 
-    By $A = U D U^T$ with Cholesky's factors and substitution, which loses less than a product with the inverse where A
-    is uneven, and nothing where it is diagonal.
 
-    Example:
-        >>> from nonholo.base.numerics import solved
-        >>> solved(np.array([[4.0, 2.0], [2.0, 2.0]]), np.array([[6.0, 4.0], [2.0, 0.0]]))
-        array([[ 1.,  1.],
-               [ 1., -1.]])
-    """
+def factors_of(matrix: Float[np.ndarray, "... k k"]) -> Factors | None:
+    """Return the factors of a positive definite matrix, or of many; None where one is not."""
     try:
         L = np.linalg.cholesky(matrix)
     except np.linalg.LinAlgError:
-        return np.linalg.solve(matrix, vectors[..., None])[..., 0]
-    k, x = L.shape[-1], np.array(np.broadcast_to(vectors, np.broadcast_shapes(L.shape[:-1], vectors.shape)))
-    U, d = L / L.diagonal(axis1=-2, axis2=-1)[..., None, :], np.empty(L.shape[:-1])
+        return None
+    k, U = L.shape[-1], L / L.diagonal(axis1=-2, axis2=-1)[..., None, :]
+    T, d = np.broadcast_to(np.eye(k), L.shape).copy(), np.empty(L.shape[:-1])
     for i in range(k):
-        d[..., i] = matrix[..., i, i] - _dots(U[..., i, :i] ** 2, d[..., :i])
-        x[..., i] -= _dots(U[..., i, :i], x[..., :i])
-    x /= d
-    for i in reversed(range(k)):
-        x[..., i] -= _dots(U[..., i + 1 :, i], x[..., i + 1 :])
-    return x
+        row = np.ascontiguousarray(U[..., i, :i])
+        d[..., i] = matrix[..., i, i] - np.einsum("...j,...j->...", row**2, np.ascontiguousarray(d[..., :i]))
+        T[..., i, :] -= np.einsum("...j,...jl->...l", row, np.ascontiguousarray(T[..., :i, :]))
+    return T, d
 
 
-def _dots(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the inner products of rows, the same bits in any company."""
-    return np.einsum("...j,...j->...", np.ascontiguousarray(a), np.ascontiguousarray(b))
+def solved(factors: Factors, vectors: Float[np.ndarray, "... k"]) -> Float[np.ndarray, "... k"]:
+    r"""Return the solutions x of A x = v, of one matrix or of one for each: the same bits in any company.
+
+    $x = T^T D^{-1} T v$ loses less than the inverse where A is uneven, and nothing where it is diagonal.
+
+    Example:
+        >>> from nonholo.base.numerics import factors_of, solved
+        >>> solved(factors_of(np.array([[4.0, 2.0], [2.0, 2.0]])), np.array([[6.0, 4.0], [2.0, 0.0]]))
+        array([[ 1.,  1.],
+               [ 1., -1.]])
+    """
+    T, d = factors
+    return applied(T.swapaxes(-1, -2), applied(T, vectors) / d)
 
 
 def product_and_remainder(

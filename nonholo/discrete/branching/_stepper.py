@@ -1,6 +1,7 @@
 """Steps of tops and sleighs by a branch rule other than the principal one, in NumPy."""
 
 import dataclasses
+import functools
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,7 +36,7 @@ class RuleStepper(AbstractBodyStepper):
         """The name of the rule."""
         return self.rule.name
 
-    @property
+    @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]
         """The names and sizes of what a row holds."""
         k = self.motion.system.rank

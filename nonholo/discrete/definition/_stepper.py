@@ -1,6 +1,7 @@
 """Steps by the definition of the map, in JAX: to the principal value or the nearest one, and compositions."""
 
 import dataclasses
+import functools
 from typing import Any
 
 import equinox
@@ -34,7 +35,7 @@ class DefinitionStepper(AbstractBodyStepper):
     branch: str = "principal"
     in_threads = False
 
-    @property
+    @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]
         """The names and sizes of what a row holds."""
         system = self.motion.system

@@ -2,6 +2,7 @@
 
 import abc
 import dataclasses
+import functools
 from typing import Any
 
 import numpy as np
@@ -59,7 +60,7 @@ class CompiledStepper(AbstractBodyStepper):
     route: Any
     posed: bool
 
-    @property
+    @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]
         """The names and sizes of what a row holds."""
         momenta, charts, pose = self.route.sizes

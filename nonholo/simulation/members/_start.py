@@ -3,7 +3,7 @@
 import numpy as np
 
 from nonholo.base.checks import array, error, shape_of
-from nonholo.base.numerics import applied, solved
+from nonholo.base.numerics import applied, factors_of, solved
 from nonholo.base.types import Bool, Float
 from nonholo.simulation.members._families import ScalarMembers, in_lanes, scalar_members
 from nonholo.simulation.members._members import Members, refused
@@ -65,8 +65,8 @@ def _momenta_of_part(members: Members, name: str, rows: np.ndarray) -> tuple[np.
 
 def energies(scalar: ScalarMembers, momenta: Float[np.ndarray, "M ... 2"]) -> Float[np.ndarray, "M ..."]:
     """Return the reduced constrained energies of canonical momenta."""
-    inertia = scalar.inertia.reshape(-1, *(1,) * (momenta.ndim - 2), 2, 2)
-    return (momenta * solved(inertia, momenta)).sum(axis=-1) / 2
+    factors = factors_of(scalar.inertia.reshape(-1, *(1,) * (momenta.ndim - 2), 2, 2))
+    return np.full(momenta.shape[:-1], np.nan) if factors is None else (momenta * solved(factors, momenta)).sum(-1) / 2
 
 
 def are_others(given: Float[np.ndarray, "M dim"], full: Float[np.ndarray, "M dim"]) -> Bool[np.ndarray, "M"]:
