@@ -121,14 +121,16 @@ def in_lanes(members: Members) -> bool:
 
 def body_of(members: Members) -> type[Any]:
     """Return the type of the bodies of members that are computed side by side."""
-    family = family_of(members.discrete.system)
-    return type(cast(Any, members.discrete.route).body) if family is None else family.body
+    if have_kernel(members):
+        return _FAMILIES[type(members.discrete.system)].body
+    return type(cast(Any, members.discrete.route).body)
 
 
 def scalar_members(members: Members) -> ScalarMembers:
     """Return the numbers of members that are computed side by side."""
-    family = family_of(members.discrete.system)
-    return _of_one_route(members) if family is None else family.numbers(members)
+    if have_kernel(members):
+        return _FAMILIES[type(members.discrete.system)].numbers(members)
+    return _of_one_route(members)
 
 
 def _of_one_route(members: Members) -> ScalarMembers:

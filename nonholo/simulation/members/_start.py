@@ -55,6 +55,8 @@ def _momenta_of_part(members: Members, name: str, rows: np.ndarray) -> tuple[np.
     with np.errstate(over="ignore", invalid="ignore"):
         if name == "momentum":
             momenta = applied(scalar.frame_map, rows if rows.shape[1] == system.rank else applied(S, rows))
+        elif name == "restricted_velocity" and scalar.route is not None:  # one body, whose own formula it is
+            momenta = system.to_canonical(system.restricted_momentum(rows))
         else:
             if name == "body_velocity":
                 bad = np.abs(rows @ system.annihilator.T).max(axis=1) > _TOLERANCE * np.abs(rows).max(axis=1)
