@@ -111,14 +111,14 @@ def test_gaits_along_sides_are_products_of_exponentials() -> None:
 
 @LONG
 def test_the_momentum_after_a_gait_is_a_quadrature() -> None:
-    """(p cos phi)' = -(J0 / r) cos(phi) phi' psi': against 30 digits, over three periods, from a moving start."""
+    """(p cos phi)' = (J0 / r) cos(phi) phi' psi': against 30 digits, over three periods, from a moving start."""
 
     def gait(time: Array) -> Array:
         return jnp.array([0.9 * jnp.sin(time), 0.2 + 0.6 * jnp.sin(time + 0.4)])
 
     def made(t: Any) -> Any:
         phi = mpmath.mpf("0.2") + 0.6 * mpmath.sin(t + mpmath.mpf("0.4"))
-        return -mpmath.cos(phi) * 0.6 * mpmath.cos(t + mpmath.mpf("0.4")) * 0.9 * mpmath.cos(t) * ROTOR / HALF
+        return mpmath.cos(phi) * 0.6 * mpmath.cos(t + mpmath.mpf("0.4")) * 0.9 * mpmath.cos(t) * ROTOR / HALF
 
     with mpmath.workdps(30):
         gained = 3 * float(str(mpmath.quad(made, mpmath.linspace(0, 2 * mpmath.pi, 9))))
