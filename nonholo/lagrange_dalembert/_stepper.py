@@ -89,8 +89,7 @@ class CoordinateStepper(AbstractStepper[AbstractCoordinateOrbit]):
     def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> AbstractCoordinateOrbit:
         """Return rows as an orbit."""
         q, v, impulses = rows
-        known = len(impulses) - int(len(impulses) > 0 and not np.isfinite(impulses[-1]).sum())
-        return self.states(self._places(q), v, impulses[:known], step, every, outcome)
+        return self.states(self._places(q), v, impulses, step, every, outcome)
 
     def states(
         self, q: np.ndarray, v: np.ndarray, impulses: np.ndarray, step: int, every: int, outcome: Outcome

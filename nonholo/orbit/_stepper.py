@@ -76,7 +76,10 @@ class AbstractStepper(abc.ABC, Generic[OrbitT]):
 
     @abc.abstractmethod
     def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> OrbitT:
-        """Return rows as an orbit, the first one after `step` steps, the others `every` steps apart."""
+        """Return rows as an orbit, the first one after `step` steps, the others `every` steps apart.
+
+        The column of the step ahead is a row shorter where the last row is the end of the run.
+        """
 
 
 class DiscreteMotion(Protocol[OrbitT]):

@@ -98,9 +98,12 @@ def row_of(stepper: AbstractStepper[Any], state: State) -> list[np.ndarray]:
 def orbit_at(stepper: AbstractStepper[Any], state: State, done: int) -> Any:
     """Return the row of a state as an orbit."""
     rows = tuple(entries[None].copy() for entries in row_of(stepper, state))
-    if stepper.lead == 0:
-        rows[-1].fill(np.nan)  # of a step that may not be taken
-    return stepper.orbit(rows, done, 1, Outcome.successful)
+    return stepper.orbit(_ended(stepper, rows), done, 1, Outcome.successful)
+
+
+def _ended(stepper: AbstractStepper[Any], rows: Rows) -> Rows:
+    """Return rows without what belongs to the step ahead of the last one, which may not be taken."""
+    return rows if stepper.lead else (*rows[:-1], rows[-1][:-1])
 
 
 class _Table:
@@ -195,7 +198,7 @@ def computed(
         taken = good
         if watch is not None:
             seen = tuple(column[: good + 1] for column in room)
-            watch, states = search(watch, stepper.orbit(seen, done, 1, Outcome.successful))
+            watch, states = search(watch, stepper.orbit(_ended(stepper, seen), done, 1, Outcome.successful))
             taken = states - 1
             if watch.stopped_by:
                 keep_row(state, room, taken)
@@ -210,9 +213,8 @@ def _orbit_of(stepper: AbstractStepper[Any], table: _Table, plan: Plan, number: 
     """Return the saved states of a block as an orbit."""
     last, ends = (reached.done - table.begun) // plan.every, reached.is_last or number == plan.blocks - 1
     first = int(stepper.lead == 1 and number > 0)
-    if stepper.lead == 0 and ends:
-        table.rows[-1][last] = np.nan  # of a step that belongs to no other state
     kept = tuple(column[first : last + (stepper.lead or ends)] for column in table.rows)
+    kept = _ended(stepper, kept) if ends else kept
     orbit = stepper.orbit(kept, table.begun + first * plan.every, plan.every, reached.outcome)
     return orbit if reached.watch is None else dataclasses.replace(orbit, events=reached.watch.log())
 
