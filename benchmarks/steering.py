@@ -170,8 +170,10 @@ def compare(count: int) -> None:
             forces, gap, is_least = solved(step, begin, steps)
             busy = 1e3 * (time.process_time() - busy) / members
             met = gap < 1e-8
-            effort = np.median(DURATION / steps * (forces[met] ** 2).sum(axis=(1, 2)) / 2)
             print(f"{name}, {steps} steps: {met.sum()} of {members} meet the goal, {is_least.sum()} at a minimum")
+            if not met.any():
+                continue
+            effort = np.median(DURATION / steps * (forces[met] ** 2).sum(axis=(1, 2)) / 2)
             print(f"  {busy:.1f} ms of the processor a problem; median effort {effort:.3f}")
             off = np.abs([off_goal(z) for z in driven(states(begin)[met], forces[met])])
             for part, values in {"pose": off[:, :3], "velocity": off[:, 3:]}.items():

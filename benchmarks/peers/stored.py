@@ -10,7 +10,7 @@ from _command import small
 from peers.problems import Problem, State, by_library, error, in_turns, last, median_ratio, reference
 from peers.solvers import decoded, missing, rates, start
 
-STATES = small(1_000_000, 100_000)
+STATES = small(1_000_000, 200_000)
 HEADER = ("method", "ns per state", "times slower", "error at the end")
 TOLERANCE = 1e-12
 OURS = "nonholo, map of order 2"

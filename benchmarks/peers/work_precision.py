@@ -12,7 +12,7 @@ from peers.solvers import SOLVERS, missing
 
 TARGETS = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 TOLERANCES = [10.0**-k for k in range(3, 15)]
-LARGEST = 1 << small(21, 12)  # steps of the discrete map
+LARGEST = 1 << small(21, 18)  # steps of the discrete map
 HEADER = ("method", *(f"{target:.0e}" for target in TARGETS), "first call")
 
 

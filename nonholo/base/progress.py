@@ -2,6 +2,7 @@
 
 import contextlib
 import contextvars
+import itertools
 import sys
 import threading
 import time
@@ -17,6 +18,8 @@ _LATE = 2.0  # seconds
 Result = TypeVar("Result")
 _over: contextvars.ContextVar[Callable[[], bool]] = contextvars.ContextVar("over", default=lambda: False)
 _told: contextvars.ContextVar[Any] = contextvars.ContextVar("told", default=lambda *_: go_on())
+_overs: dict[int, Callable[[], bool]] = {}
+_numbers = itertools.count()
 _LOOK = 0.2  # seconds between two looks at the keyboard, where a signal does not end the waiting
 
 
@@ -42,6 +45,28 @@ def until(over: Callable[[], bool]) -> Iterator[None]:
 def is_over() -> bool:
     """Tell whether the work is over: see `until`."""
     return _over.get()()
+
+
+@contextlib.contextmanager
+def numbered() -> Iterator[int]:
+    """Give a number by which code of other threads asks `number_is_over` of this work.
+
+    Example:
+        >>> with until(lambda: True), numbered() as number:
+        ...     number_is_over(number)
+        True
+    """
+    number = next(_numbers)
+    _overs[number] = _over.get()
+    try:
+        yield number
+    finally:
+        del _overs[number]
+
+
+def number_is_over(number: int) -> bool:
+    """Tell whether the work of a number is over, from any thread: see `numbered`."""
+    return _overs[int(number)]()
 
 
 def go_on() -> None:

@@ -69,6 +69,11 @@ def _pushed(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
 
 
 @numba.njit
+def _drag(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:  # noqa: ARG001
+    return -1e3 * np.abs(w) * w
+
+
+@numba.njit
 def _well(g: np.ndarray) -> float:
     return 0.2 * g[0, 1] * g[0, 1] + 0.1 * g[1, 2]
 
@@ -76,8 +81,8 @@ def _well(g: np.ndarray) -> float:
 def driven(system: Any) -> Arrays:
     """Run single orbits under functions that are compiled, where compilation is not turned off."""
     found = []
-    for potential, force in ((_well, _pushed), (_well, nh.Friction(np.linspace(0.1, 0.2, system.group.dim)))):
-        discrete = nh.discretize(nh.Forced(system, potential, force), STEP / 10)
+    for force in (_pushed, nh.Friction(np.linspace(0.1, 0.2, system.group.dim)), _drag):
+        discrete = nh.discretize(nh.Forced(system, _well, force), STEP / 10)
         velocity = np.linspace(0.5, -0.3, system.rank)
         orbit = nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS, throw=False)
         found += [orbit.reduced_momentum, orbit.cayley, orbit.pose]

@@ -12,8 +12,10 @@ from typing import Any, NamedTuple, cast
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax.experimental import io_callback
 
 from nonholo import kernels
+from nonholo.base.progress import number_is_over
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.discrete._composition import weights
@@ -26,6 +28,7 @@ from nonholo.discrete.routes import ScalarStep
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import Forced
 
+_MANY = 2048  # steps that take much longer than the question whether they are wanted
 _SHORT = 64  # steps between saved states from which on reverse mode keeps checkpoints alone
 
 
@@ -81,10 +84,12 @@ def rolled(
     controls: Array | None,
     sizes: tuple[int, int],
     forced: Forced | None,
+    work: Array | None = None,
 ) -> Rollout:
     """Return the orbit from a start, which has a name, a value and a pose; `sizes` are `steps` and `save_every`.
 
-    The discretization is that of the free system, `forced` the system with its forces.
+    The discretization is that of the free system, `forced` the system with its forces. `work` is the number by which
+    many steps ask whether they are still wanted; None where they are differentiated.
     """
     (name, value, g), (steps, every), system = start, sizes, discrete.system
     r, g = _along(discrete, name, jnp.asarray(value), jnp.asarray(g)), jnp.asarray(g)
@@ -95,7 +100,7 @@ def rolled(
     else:
         step = _composed_step(discrete, closed) if discrete.order > 2 else _matrix_step(discrete, impulse)
         start, at = (r, g, len(discrete.variety.chart)), _as_it_is
-    nodes = _run(step, start, rows, sizes)
+    nodes = _run(step, start, rows, sizes, work)
     given = value if name == "momentum" and value.shape == (system.group.dim,) else None
     time = discrete.time_step * every * jnp.arange(1 + steps // every)
     states = jax.vmap(at)(nodes)
@@ -224,14 +229,20 @@ def _rectified(group: AbstractMatrixGroup, g: Array) -> Array:
     return g.at[:n, :n].set(R @ (3 * jnp.eye(n, dtype=g.dtype) - square) / 2)
 
 
-def _run(step: _Step, start: tuple[Array, Array, int], controls: Array | None, sizes: tuple[int, int]) -> _Node:
+def _run(
+    step: _Step,
+    start: tuple[Array, Array, int],
+    controls: Array | None,
+    sizes: tuple[int, int],
+    work: Array | None,
+) -> _Node:
     """Return the saved nodes from momenta, a pose and the size of a chart."""
     (m, g, size), (steps, every), advance = start, sizes, _advance_of(step)
     nothing = jnp.zeros(size, m.dtype)
     begin = _Node(m, g, nothing, (m, g), jnp.zeros((), jnp.result_type(int)), jnp.sum(nothing))
 
     def stretch(node: _Node, rows: Array | None) -> tuple[_Node, _Node]:
-        node = advance(node, (rows, None))[0] if every == 1 else _advanced(advance, node, rows, every)
+        node = advance(node, (rows, None))[0] if every == 1 else _advanced(advance, node, rows, every, work)
         return node, node
 
     if every == 1:
@@ -259,7 +270,7 @@ def _advance_of(step: _Step) -> _Advance:
     return jax.checkpoint(advance, prevent_cse=False, policy=kept)
 
 
-def _advanced(advance: _Advance, node: _Node, controls: Array | None, steps: int) -> _Node:
+def _advanced(advance: _Advance, node: _Node, controls: Array | None, steps: int, work: Array | None) -> _Node:
     """Take steps; many of them in stretches whose insides reverse mode computes once more."""
     if steps <= _SHORT:
         return jax.lax.scan(advance, node, (controls, None), length=steps)[0]
@@ -269,7 +280,21 @@ def _advanced(advance: _Advance, node: _Node, controls: Array | None, steps: int
     if controls is not None:
         controls = jnp.pad(controls, ((0, number * each - steps), (0, 0))).reshape(number, each, -1)
     stretch = jax.checkpoint(lambda node, rows: jax.lax.scan(advance, node, rows), prevent_cse=False)
-    return jax.lax.scan(lambda node, rows: (stretch(node, rows)[0], None), node, (controls, acts))[0]
+    inner = _wanted(stretch, work, each)
+    whole = _wanted(lambda node, rows: jax.lax.scan(lambda *part: (inner(*part)[0], None), node, rows), work, steps)
+    return whole(node, (controls, acts))[0]
+
+
+def _wanted(take: _Advance, work: Array | None, steps: int) -> _Advance:
+    """Return a function that takes many steps, or none where nobody wants them any more."""
+    if work is None or steps < _MANY:
+        return take
+
+    def if_wanted(node: _Node, rows: Any) -> tuple[_Node, None]:
+        over = io_callback(lambda number: np.bool_(number_is_over(number)), jax.ShapeDtypeStruct((), bool), work)
+        return jax.lax.cond(over, lambda: (node, None), lambda: take(node, rows))
+
+    return if_wanted
 
 
 def _decoded(

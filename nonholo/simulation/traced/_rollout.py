@@ -5,9 +5,10 @@ from typing import Any, cast
 
 import equinox
 import jax
+import numpy as np
 
 from nonholo.base.checks import array, count, error, is_traced, shape_of
-from nonholo.base.progress import interruptibly
+from nonholo.base.progress import interruptibly, numbered
 from nonholo.base.types import Array
 from nonholo.discrete import Discretization, ScalarRoute, as_discretization
 from nonholo.discrete.definition import Rollout, in_double, rolled, traceable
@@ -103,7 +104,13 @@ def rollout(
     closed = jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None
     arguments = free, closed, (start.name, value, g), controls, sizes, forced
     is_long = sizes[0] >= _MANY and not any(map(is_traced, jax.tree.leaves(arguments)))
-    return interruptibly(lambda: in_double(_rolled, *arguments), is_long)
+    return interruptibly(lambda: _asking(arguments)) if is_long else in_double(_rolled, *arguments)
+
+
+def _asking(arguments: tuple[Any, ...]) -> Rollout:
+    """Return the states; many steps end where nobody wants them any more."""
+    with numbered() as number:
+        return jax.block_until_ready(in_double(_rolled, *arguments, np.asarray(number)))
 
 
 def _checked_start(discrete: Discretization, start: Start) -> tuple[Array, Array]:
