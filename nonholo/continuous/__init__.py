@@ -6,5 +6,3 @@ from nonholo.continuous._members import members_by_series
 from nonholo.continuous._methods import solver_of
 from nonholo.continuous._solution import Solved
 from nonholo.continuous._tangent import flow_tangents
-
-__all__ = ["ContinuousFlow", "Solved", "closed_form", "flow_tangents", "members_by_series", "solver_of", "vector_field"]

@@ -22,30 +22,3 @@ from nonholo.ensembles.designs import (
     Uniform,
 )
 from nonholo.ensembles.stores import SweepStanding, standing_of, sweep_to_csv
-
-__all__ = [
-    "DEFINITIONS",
-    "REDUCTIONS",
-    "AbstractDesign",
-    "AbstractDistribution",
-    "Choice",
-    "Direction",
-    "EnsembleTask",
-    "FamilyTask",
-    "Grid",
-    "LogUniform",
-    "MassTensor",
-    "MemberBlock",
-    "Normal",
-    "RandomDesign",
-    "SweepStanding",
-    "Uniform",
-    "component_name",
-    "dataset",
-    "functions_of",
-    "load_sweep",
-    "resume",
-    "standing_of",
-    "sweep",
-    "sweep_to_csv",
-]

@@ -2,5 +2,3 @@
 
 from nonholo.explorer._explore import Page, explore, orbit_to_html
 from nonholo.explorer._kernel import kernel
-
-__all__ = ["Page", "explore", "kernel", "orbit_to_html"]

@@ -6,15 +6,3 @@ from nonholo.groups._matrix_group import MatrixGroup
 from nonholo.groups._product import ProductGroup
 from nonholo.groups._quaternion import matrix_from_quaternion, quaternion_from_matrix
 from nonholo.groups._translations import Translations
-
-__all__ = [
-    "SE",
-    "SO",
-    "AbstractMatrixGroup",
-    "MatrixGroup",
-    "ProductGroup",
-    "Translations",
-    "components_of",
-    "matrix_from_quaternion",
-    "quaternion_from_matrix",
-]

@@ -17,21 +17,3 @@ with needs("jax", "nonholo.lagrange_dalembert"):
         GroupOrbit,
         mass_tensor_lagrangian,
     )
-
-__all__ = [
-    "AbstractCoordinateOrbit",
-    "CoordinateDiscretization",
-    "CoordinateFlow",
-    "CoordinateOrbit",
-    "GroupDiscretization",
-    "GroupLagrangeDAlembert",
-    "GroupOrbit",
-    "LagrangeDAlembert",
-    "RecordedSystem",
-    "check_forms",
-    "check_value",
-    "checked_state",
-    "equations",
-    "in_double",
-    "mass_tensor_lagrangian",
-]

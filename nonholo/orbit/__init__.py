@@ -5,26 +5,3 @@ from nonholo.orbit._crossings import AbstractEventLog, Crossings, EventLog, join
 from nonholo.orbit._orbit import STATES, AbstractMotion, Orbit, as_orbit
 from nonholo.orbit._poses import AliasingWarning, configurations, poses, turned_near, unwrapped
 from nonholo.orbit._stepper import AbstractStepper, DiscreteMotion, First, Rows, State
-
-__all__ = [
-    "STATES",
-    "AbstractEventLog",
-    "AbstractMotion",
-    "AbstractOrbit",
-    "AbstractStepper",
-    "AliasingWarning",
-    "Crossings",
-    "DiscreteMotion",
-    "EventLog",
-    "First",
-    "Orbit",
-    "OrbitT",
-    "Rows",
-    "State",
-    "as_orbit",
-    "configurations",
-    "joined_crossings",
-    "poses",
-    "turned_near",
-    "unwrapped",
-]

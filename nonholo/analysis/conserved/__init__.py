@@ -6,17 +6,3 @@ from nonholo.analysis.conserved._measure import InvariantMeasure, invariant_meas
 from nonholo.analysis.conserved._momenta import ConservedMomenta, conserved_momenta
 from nonholo.analysis.conserved._step_jacobian import step_jacobians
 from nonholo.analysis.conserved._tangent import lyapunov_exponents, tangent
-
-__all__ = [
-    "ConservedMomenta",
-    "InvariantMeasure",
-    "Invariants",
-    "LyapunovFunction",
-    "conserved_momenta",
-    "invariant_measure",
-    "invariants",
-    "lyapunov_exponents",
-    "lyapunov_function",
-    "step_jacobians",
-    "tangent",
-]

@@ -2,5 +2,3 @@
 
 from nonholo.analysis.inverse._fit import Fit, fit
 from nonholo.analysis.inverse._profile import Profile
-
-__all__ = ["Fit", "Profile", "fit"]

@@ -4,13 +4,3 @@ from nonholo.analysis.locomotion._accessibility import Accessibility, accessibil
 from nonholo.analysis.locomotion._connection import LocalConnection, local_connection
 from nonholo.analysis.locomotion._phase import GeometricPhase, geometric_phase
 from nonholo.analysis.locomotion._shaped_body import ShapedBody
-
-__all__ = [
-    "Accessibility",
-    "GeometricPhase",
-    "LocalConnection",
-    "ShapedBody",
-    "accessibility",
-    "geometric_phase",
-    "local_connection",
-]

@@ -2,5 +2,3 @@
 
 from nonholo.analysis.steering._feedback import Feedback, Tracking, tracking_feedback
 from nonholo.analysis.steering._steer import Steering, steer
-
-__all__ = ["Feedback", "Steering", "Tracking", "steer", "tracking_feedback"]

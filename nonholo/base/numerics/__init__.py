@@ -17,27 +17,3 @@ from nonholo.base.numerics._matrix_functions import (
     principal_logarithm,
 )
 from nonholo.base.numerics._products import Factors, applied, factors_of, product_and_remainder, solved
-
-__all__ = [
-    "Factors",
-    "applied",
-    "block_diagonal",
-    "cayley_increment",
-    "cotangent_deficit",
-    "double_precision",
-    "exponential_increment",
-    "factors_of",
-    "half_cotangent",
-    "identity_like",
-    "integrated_exponential",
-    "inverse_cayley",
-    "inverted",
-    "of_skew",
-    "principal_logarithm",
-    "product_and_remainder",
-    "real_cubic_roots",
-    "real_eigenspaces",
-    "sinc",
-    "solved",
-    "versine",
-]

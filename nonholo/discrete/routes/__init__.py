@@ -21,23 +21,3 @@ from nonholo.discrete.routes._reversal import reversal_defects
 from nonholo.discrete.routes._scalar import ScalarRoute, ScalarStep
 from nonholo.discrete.routes._secular import SecularRoute
 from nonholo.discrete.routes._stepper import AbstractBodyStepper, Compact, CompiledStepper, keep_row, write_first
-
-__all__ = [
-    "AbstractBodyStepper",
-    "AbstractCompiledRoute",
-    "AbstractRoute",
-    "Compact",
-    "CompiledStepper",
-    "ComposedRoute",
-    "DefinitionRoute",
-    "ForcedRoute",
-    "FunctionRoute",
-    "MatrixRoute",
-    "ScalarRoute",
-    "ScalarStep",
-    "SecularRoute",
-    "keep_row",
-    "make_route",
-    "reversal_defects",
-    "write_first",
-]

@@ -4,12 +4,3 @@ from nonholo.kernels.forced._driven import Drive, function_of
 from nonholo.kernels.forced._flat import flat_forced_run
 from nonholo.kernels.forced._kick import Kick, rubbed
 from nonholo.kernels.forced.run import ForcedBody
-
-__all__ = [
-    "Drive",
-    "ForcedBody",
-    "Kick",
-    "flat_forced_run",
-    "function_of",
-    "rubbed",
-]

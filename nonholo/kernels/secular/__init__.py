@@ -3,14 +3,3 @@
 from nonholo.kernels.secular._flat import flat_secular_run
 from nonholo.kernels.secular._root import certain_radius, level_of
 from nonholo.kernels.secular._step import SecularBody, room_for_sums, secular_sleigh, secular_top, term
-
-__all__ = [
-    "SecularBody",
-    "certain_radius",
-    "flat_secular_run",
-    "level_of",
-    "room_for_sums",
-    "secular_sleigh",
-    "secular_top",
-    "term",
-]

@@ -6,15 +6,3 @@ from nonholo.kernels.taylor._flat import flat_arrowhead_run
 from nonholo.kernels.taylor._members import solve_members
 from nonholo.kernels.taylor._solve import revisit_series, solve_series
 from nonholo.kernels.taylor._steps import order_for
-
-__all__ = [
-    "Arrowhead",
-    "Quadratic",
-    "flat_arrowhead_run",
-    "order_for",
-    "revisit_series",
-    "solve_arrowhead",
-    "solve_members",
-    "solve_series",
-    "sparse_products",
-]

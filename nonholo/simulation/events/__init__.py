@@ -5,21 +5,3 @@ from nonholo.simulation.events._event import Event, checked_events, values_at
 from nonholo.simulation.events._flow import check_functions, flow_in_coordinates, flow_with_events
 from nonholo.simulation.events._search import Part, Watch, changes, located, piece_of, search
 from nonholo.simulation.events._watched import watched
-
-__all__ = [
-    "Event",
-    "Part",
-    "Watch",
-    "changes",
-    "check_functions",
-    "checked_events",
-    "crossings",
-    "cusp",
-    "flow_in_coordinates",
-    "flow_with_events",
-    "located",
-    "piece_of",
-    "search",
-    "values_at",
-    "watched",
-]

@@ -7,16 +7,3 @@ from nonholo.simulation.members._in_coordinates import CoordinateEnsemble
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._result import Ensemble
 from nonholo.simulation.members._run import in_one_thread
-
-__all__ = [
-    "CoordinateEnsemble",
-    "Ensemble",
-    "FlowEnsemble",
-    "Members",
-    "ensemble",
-    "have_kernel",
-    "in_one_thread",
-    "run_in_lanes",
-    "scalar_members",
-    "tangents",
-]
