@@ -109,7 +109,7 @@ def described(events: list[dict[str, Any]]) -> str:
         >>> described([{"name": "cusp", "direction": 0, "stop": 0}, {"name": "east", "direction": 1, "stop": 3}])
         "'cusp', 'east' (direction=1, stop=3)"
     """
-    return ", ".join(_described(event) for event in events) or "none"
+    return ", ".join(_described(event) for event in events) or "no events"
 
 
 def _described(event: dict[str, Any]) -> str:

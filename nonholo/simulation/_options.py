@@ -84,7 +84,7 @@ def stepper_of(discrete: Any, branch: BranchRule, backend: str, *, posed: bool) 
     if not rule.is_principal:
         refuse_composition("simulate(branch=...)", discrete, "Leave branch out: each substep takes the principal root.")
     choice("simulate(backend=...)", backend, ("auto", "numba", "jax"))
-    if discrete.forces is not None and not (rule.is_principal and backend != "jax"):
+    if not rule.is_principal or backend == "jax":
         check_forces("simulate", discrete, 0, free=f"branch {rule.name!r} and backend {backend!r}")
     if rule.is_principal:
         return _principal(discrete, backend, posed=posed)

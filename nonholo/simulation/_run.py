@@ -101,8 +101,9 @@ def orbit_at(stepper: AbstractStepper[Any], state: State, done: int) -> Any:
     return stepper.orbit(_ended(stepper, rows), done, 1, Outcome.successful)
 
 
-def _ended(stepper: AbstractStepper[Any], rows: Rows) -> Rows:
+def _ended(stepper: AbstractStepper[Any], rows: Rows, places: int | None = None) -> Rows:
     """Return rows without what belongs to the step ahead of the last one, which may not be taken."""
+    rows = tuple(column[:places] for column in rows)
     return rows if stepper.lead else (*rows[:-1], rows[-1][:-1])
 
 
@@ -111,21 +112,21 @@ class _Table:
 
     def __init__(self, stepper: AbstractStepper[Any], plan: Plan, number: int, *, fine: bool) -> None:
         self.widths, self.fine = tuple(stepper.columns.values()), fine
-        self.begun, self.every = plan.begin(number), plan.every
-        self.places = 1 + (plan.stop(number) - self.begun) // self.every
+        self.begun, self.stop, self.every = plan.begin(number), plan.stop(number), plan.every
+        self.places = 1 + (self.stop - self.begun) // self.every
         self.rows = self.empty(1 if fine else self.places)  # an event may stop the run long before
 
     def empty(self, places: int) -> Rows:
         """Return rows to be written."""
         return tuple(np.empty((places, width)) for width in self.widths)
 
-    def room(self, done: int, most: int) -> tuple[int, int, Rows]:
+    def room(self, done: int, pace: int) -> tuple[int, int, Rows]:
         """Return how many steps to take from a step, after how many of them a row is written, and where.
 
         Whole rows are written in place. A part of a row is written beside them, and so are the single steps that are
         searched for events.
         """
-        past = (done - self.begun) % self.every
+        past, most = (done - self.begun) % self.every, min(max(done, _SHORT) if self.fine else pace, self.stop - done)
         if self.fine:
             each, count = 1, min(most, piece_of(self.widths))
         elif past == 0 and most >= self.every:
@@ -180,33 +181,38 @@ def computed(
     stepper: AbstractStepper[Any], plan: Plan, number: int, begun: Reached, report: Callable[[int, int], object]
 ) -> tuple[Any, Reached]:
     """Take the steps of a block: the only loop over steps."""
-    state, watch, done, stop = begun.state.copy(), begun.watch, plan.begin(number), plan.stop(number)
+    state, watch, done = begun.state.copy(), begun.watch, plan.begin(number)
     table, code, pace = _Table(stepper, plan, number, fine=watch is not None), 0, stepper.pace
     for column, entries in zip(table.rows, row_of(stepper, state), strict=True):
         column[0] = entries
     if watch is not None:  # a block without steps has a log too
         watch, _ = search(dataclasses.replace(watch, parts=()), orbit_at(stepper, state, done))
-    while code == 0 and done < stop and not (watch and watch.stopped_by):
-        since, most = time.monotonic(), min(pace, stop - done)
-        most = most if watch is None else min(stop - done, max(done, _SHORT))
-        steps, each, room = table.room(done, most)
-        before = state.copy() if each > 1 else state
-        good, code = stepper.advance(state, steps, each, room)
-        if good % each:  # as far as the last good step
-            state = before
-            stepper.advance(state, good, good, table.empty(2))
-        taken = good
+    over = watch is not None and watch.stopped_by is not None
+    while code == 0 and done < table.stop and not over:
+        since = time.monotonic()
+        steps, each, room = table.room(done, pace)
+        state, good, code = _advanced(stepper, state, steps, each, room)
         if watch is not None:
-            seen = tuple(column[: good + 1] for column in room)
-            watch, states = search(watch, stepper.orbit(_ended(stepper, seen), done, 1, Outcome.successful))
-            taken = states - 1
-            if watch.stopped_by:
-                keep_row(state, room, taken)
-        table.take(room, done, taken, each)
-        done, pace = done + taken, _paced(pace, time.monotonic() - since)
+            rows = _ended(stepper, room, 1 + good)
+            watch, states = search(watch, stepper.orbit(rows, done, 1, Outcome.successful))
+            good, over = states - 1, watch.stopped_by is not None
+            if over:
+                keep_row(state, room, good)
+        table.take(room, done, good, each)
+        done, pace = done + good, _paced(pace, time.monotonic() - since)
         report(done, plan.steps)
-    reached = Reached(done, Outcome.successful if watch and watch.stopped_by else Outcome(code), state, watch)
+    reached = Reached(done, Outcome.successful if over else Outcome(code), state, watch)
     return _orbit_of(stepper, table, plan, number, reached), reached
+
+
+def _advanced(stepper: AbstractStepper[Any], state: State, steps: int, each: int, room: Rows) -> tuple[State, int, int]:
+    """Return the state after the last good step, how many steps were good, and the outcome."""
+    before = state.copy() if each > 1 else state
+    good, code = stepper.advance(state, steps, each, room)
+    if good % each:  # no row stands there
+        state = before
+        stepper.advance(state, good, good, tuple(np.empty((2, column.shape[1])) for column in room))
+    return state, good, code
 
 
 def _orbit_of(stepper: AbstractStepper[Any], table: _Table, plan: Plan, number: int, reached: Reached) -> Any:

@@ -21,19 +21,18 @@ _SAME = 1e-9  # of 1 + the largest number: rounding of other versions and proces
 
 def watch_of_store(owner: str, stream: "Stream", stepper: AbstractStepper[Any], events: Any) -> Watch | None:
     """Return what the run of a store looks for; refused if it is not what the store says."""
-    stored, where = io.read_attributes(stream.path).get("events"), f"{owner}(events=...)"
-    chosen = [] if events is None else events
-    if stored is None and not checked_events(owner, chosen):
+    text, where = io.read_attributes(stream.path).get("events"), f"{owner}(events=...)"
+    chosen, stored = [] if events is None else events, json.loads(text or "[]")
+    if text is None and not checked_events(owner, chosen):
         return None
-    asked = io.described(json.loads(stored)) if stored is not None else "no events"
-    if events is None and stored != "[]":
+    wanted = f"be the events of the store, {io.described(stored)}"
+    if events is None and stored:
         remedy = "Pass events=[...] again, in that order with these directions and stops: a store holds no functions."
-        raise error(where, f"be the events of the store, {asked}", f"None for '{stream.path}'", remedy)
+        raise error(where, wanted, f"None for '{stream.path}'", remedy)
     watch = watched(owner, stepper, chosen)
-    given = descriptions(watch.events) if watch is not None else []
-    if stored is None or given != json.loads(stored):
-        remedy = "Pass the ones it was run with."
-        raise error(where, f"be the events of the store, {asked}", io.described(given), remedy)
+    passed = [] if watch is None else descriptions(watch.events)
+    if passed != stored:
+        raise error(where, wanted, io.described(passed), "Pass the ones it was run with.")
     if watch is not None:
         _refuse_other_values(where, stream, stepper, watch)
     return watch

@@ -47,12 +47,17 @@ def kinds_of(group: AbstractMatrixGroup, given: Any, time_step: float | None, ea
     most = 1 + min(max(float(time[-1] - time[0]) for time in times) / h, _HUGE)
     within_memory(WHERE, len(tables) * most * each, f"Pass a time_step larger than {h:g}, or other times.")
     kinds = _on_nodes(group, tables, [_nodes(time, h) for time in times])
+    _refuse_other_columns(group, tables, kinds)
+    return kinds, h
+
+
+def _refuse_other_columns(group: AbstractMatrixGroup, tables: list[dict[str, Any]], kinds: Kinds) -> None:
+    """Refuse trials without numbers of any kind, or with numbers of different kinds."""
     seen = np.array([np.isfinite(rows).any(axis=(1, 2)) for rows in kinds.values()])
     if not (seen.any() and (seen == seen[:, :1]).all()):
         remedy = f"Name them {'; '.join(', '.join(choices[0]) for choices in _NAMES[group].values())}."
         got = "different ones" if seen.any() else ", ".join(tables[0])
         raise error(WHERE, f"have the same columns of a motion in {group} in every trial", got, remedy)
-    return kinds, h
 
 
 def _on_nodes(group: AbstractMatrixGroup, tables: list[dict[str, Any]], nodes: list[np.ndarray]) -> Kinds:
