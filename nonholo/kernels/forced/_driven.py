@@ -241,15 +241,18 @@ def driven(drive: Drive, room: Room, node: int, row: int, m: np.ndarray, out: np
         out[i] = kept(drive.kick, m, i) + first[i]
     if not largest(out, out) < math.inf:
         return 5
-    pushed_by_function(drive, room, when, m, out, second)
-    same = True
-    for i in range(len(m)):
-        same = same and first[i] == second[i]
-    if same or midpoint(drive, room, when, m, out, False) == 0:
-        return 0
-    assign(out, m)
-    pushed_by_function(drive, room, when, m, out, second)
-    return midpoint(drive, room, when, m, out, True)
+    code = 0
+    for again in range(2):
+        if again:
+            assign(out, m)
+        pushed_by_function(drive, room, when, m, out, second)
+        same = not again
+        for i in range(len(m)):
+            same = same and first[i] == second[i]
+        code = 0 if same else midpoint(drive, room, when, m, out, again == 1)
+        if code == 0:
+            break
+    return code
 
 
 @inlined
@@ -291,28 +294,17 @@ def midpoint(drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, o
         corrected(out, begun, 1.0, change)
         if small:
             return 0
-        before = left
-        pushed_by_function(drive, room, when, m, out, second)
-        left = gap(drive, room, m, out)
-        if renewed:
-            left = shortened(drive, room, when, m, out, left, before)
-            if not left < before:
-                return 7
+        before, part = left, 1.0
+        while True:
+            pushed_by_function(drive, room, when, m, out, second)
+            left = gap(drive, room, m, out)
+            if left < before or not renewed or part <= _SHORTEST:
+                break
+            part /= 2
+            corrected(out, begun, part, change)
+        if renewed and not left < before:
+            return 7
     return 7
-
-
-@inlined
-def shortened(
-    drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, out: np.ndarray, left: float, before: float
-) -> float:
-    """Halve the correction in the room until less is missed than before it; return the largest of it."""
-    part = 1.0
-    while not left < before and part > _SHORTEST:
-        part /= 2
-        corrected(out, room.momenta[3], part, room.momenta[4])
-        pushed_by_function(drive, room, when, m, out, room.momenta[1])
-        left = gap(drive, room, m, out)
-    return left
 
 
 @inlined
