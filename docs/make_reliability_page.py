@@ -85,7 +85,7 @@ hostile files, with figures; SUNDIALS tells its users by return codes what went 
 | arguments | what is no number, not finite or out of range is refused by name | the fuzzer of the public API |
 | range of scales | numbers whose squares overflow or underflow are refused ([conventions](conventions.md)) or end in an `Outcome`. Bodies with general subspaces may say `not_converged` in units far from 1 | the fuzzer of steps, units from 1e-100 to 1e100 |
 | files of strangers | nothing runs that the caller did not name, nothing outside of the store is written, memory is bounded ([Open a store from elsewhere](how-to/open-a-store-from-elsewhere.md)) | the fuzzer of stores |
-| versions | stores of older schemas are read | stores of schema 1 in `tests/io` |
+| versions | stores of earlier schemas than those of 0.3.0 are refused, with what to do | `tests/io/test_earlier_schemas.py` |
 | indices | compiled code stays within its arrays | profile `bounds` |
 | processes | a run that folds comes back from a pool as an `OutcomeError`; JAX in a process forked after JAX was used is an error in words: start processes by "spawn" | `tests/test_pools.py` |
 | no place to write | where package and home are read-only compiled code lies in a private temporary folder or in memory; damaged code is compiled again | `tests/test_compiled.py` |

@@ -10,8 +10,7 @@ ROOT = Path(__file__).parents[1]
 TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 FOLDERS = ("nonholo", "nonholo_paper", "docs", "tests", "benchmarks", "scenarios")
 READ = (".py", ".pyi", ".md", ".toml", ".j2", ".cff", ".c", ".css")
-OLD_STORES = ("tests/io/schema_", "tests/io/earlier_routes/")
-NOT_READ = ("tests/words.toml", "tests/test_words.py", *OLD_STORES)
+NOT_READ = ("tests/words.toml", "tests/test_words.py")
 QUOTED = {"docs/references.md": r"\*[^*\n]+\*", "CHANGELOG.md": r"(?s)\n## \[\d.*"}  # titles of works, past releases
 QUOTATION = r"“[^”]*”"
 

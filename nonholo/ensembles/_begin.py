@@ -12,14 +12,7 @@ from nonholo.base.checks import count, error, shown
 from nonholo.base.limits import within_disk, within_memory
 from nonholo.base.progress import waiting
 from nonholo.ensembles._block import block_of
-from nonholo.ensembles._describe import (
-    NO_NAME,
-    design_text,
-    differences,
-    function_from,
-    function_name,
-    with_component_names,
-)
+from nonholo.ensembles._describe import NO_NAME, design_text, differences, function_from, function_name
 from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
 from nonholo.ensembles._family_task import FamilyTask, family_task_from, imported_functions
 from nonholo.ensembles._names import Axes, check_dimensions
@@ -94,10 +87,7 @@ def check_same(store: SweepStore, task: Any, design: Design) -> None:
     theirs = store.description
     if isinstance(task, EnsembleTask) and theirs["task"]["kind"] == "EnsembleTask":
         task = task.on_route_of(theirs["task"])
-        theirs["task"]["motion"] = io.motion_text(theirs["task"], task.discrete)
     ours = json.loads(json.dumps(_described(task, design)))
-    for entry in (ours, theirs):
-        entry["design"] = with_component_names(entry["design"])
     found = list(differences(ours, theirs))
     if found:
         remedy = "Pass that task and design, or choose another path."
@@ -133,11 +123,8 @@ def restored_task(store: SweepStore, task: Any, *, trust: bool = False) -> Task:
 
 
 def _as_begun(store: SweepStore, task: Task) -> Task:
-    """Return the task by the route, and with the results, that a store was begun with."""
-    if not isinstance(task, EnsembleTask):
-        return task
-    task = task.on_route_of(store.description["task"])
-    return task.as_of_schema_1() if store.schema == 1 else task
+    """Return the task by the route that a store was begun with."""
+    return task.on_route_of(store.description["task"]) if isinstance(task, EnsembleTask) else task
 
 
 def _refuse_untrusted(store: SweepStore, names: list[str], *, trust: bool) -> None:

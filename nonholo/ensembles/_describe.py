@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.checks import error
-from nonholo.ensembles._names import component_name
 from nonholo.ensembles.designs import DISTRIBUTIONS, Design, Grid, RandomDesign
 from nonholo.io import fields_of
 
@@ -27,22 +26,12 @@ def design_text(design: Design) -> dict[str, Any]:
 
 
 def design_from(text: dict[str, Any], axis: Callable[[str], np.ndarray]) -> Design:
-    """Return the design of a description, with the names that it has there: arrays and random draws go by them."""
+    """Return the design of a description."""
     if text["kind"] == "Grid":
         along = {name: _sound(name, axis(name), digest) for name, digest in text["axes"].items()}
-        design: Design = Grid(along, seed=text["seed"])
-        object.__setattr__(design, "values_along", along)
-        return design
+        return Grid(along, seed=text["seed"])
     drawn = {name: _distribution(dict(entry)) for name, entry in text["distributions"].items()}
-    design = RandomDesign(text["members"], drawn, seed=text["seed"])
-    object.__setattr__(design, "distributions", drawn)
-    return design
-
-
-def with_component_names(text: dict[str, Any]) -> dict[str, Any]:
-    """Return the description of a design with the names that results have now; older ones have brackets."""
-    named = "axes" if text["kind"] == "Grid" else "distributions"
-    return text | {named: {component_name(name): entry for name, entry in text[named].items()}}
+    return RandomDesign(text["members"], drawn, seed=text["seed"])
 
 
 def function_name(function: Callable[..., Any]) -> str:

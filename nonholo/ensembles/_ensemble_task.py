@@ -17,7 +17,7 @@ from nonholo.discrete import Discretization, as_discretization
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._names import OUTCOME, STARTS, start_component
-from nonholo.ensembles._reductions import REDUCTIONS, final_state_of_schema_1
+from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.io import unstored
 from nonholo.simulation import Ensemble, Members, check_forces, ensemble, run_in_lanes
 from nonholo.systems import one_start, refuse_forces
@@ -152,13 +152,6 @@ class EnsembleTask:
         """Return the task by the route that began a store, from the description of that one's task."""
         task = copy.copy(self)
         object.__setattr__(task, "discrete", io.on_route_of(stored, self.discrete))
-        return task
-
-    def as_of_schema_1(self) -> "EnsembleTask":
-        """Return the task with the results of stores of schema 1."""
-        task = copy.copy(self)
-        then = (final_state_of_schema_1 if r == "final_state" else r for r in self.reductions)
-        object.__setattr__(task, "reductions", tuple(then))
         return task
 
     @property

@@ -48,17 +48,6 @@ def start_component(name: str) -> tuple[str, int] | None:
     return part if part and part[0] in STARTS else None
 
 
-def stream_name(name: str) -> str:
-    """Return what the random numbers of a drawn value are made of: components of starts had brackets, and keep theirs.
-
-    Example:
-        >>> stream_name("momentum_0"), stream_name("momentum[0]"), stream_name("a")
-        ('momentum[0]', 'momentum[0]', 'a')
-    """
-    part = start_component(name)
-    return f"{part[0]}[{part[1]}]" if part else name
-
-
 def array_name(where: str, name: Any) -> str:
     """Return the name of an array, refused if no column, no file or no variable can be called so."""
     return checked_name(where, name, TAKEN)

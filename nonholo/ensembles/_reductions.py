@@ -39,14 +39,6 @@ def _final_state(batch: Ensemble) -> Reduced:
     return found
 
 
-def final_state_of_schema_1(batch: Ensemble) -> Reduced:
-    """Return what "final_state" had in stores of schema 1: the pose in the canonical frame."""
-    found, ended = _final_state(batch), _ended(batch)
-    if ended.canonical_pose is not None:
-        found["final_pose"] = ("pose_component",), ended.canonical_pose[:, 0], _labels("compact pose, canonical frame")
-    return found
-
-
 def _energy_drift(batch: Ensemble) -> Reduced:
     begun, ended = batch.first_energy, _ended(batch).energy[:, 0]
     with np.errstate(invalid="ignore"):  # 0/0 at rest, where energy cannot drift

@@ -1,8 +1,8 @@
+from ._attributes import SCHEMA as SCHEMA
 from ._attributes import SWEEP_FORMAT as SWEEP_FORMAT
 from ._attributes import attributes as attributes
 from ._attributes import attributes_of_text as attributes_of_text
 from ._attributes import identity_of as identity_of
-from ._attributes import motion_text as motion_text
 from ._attributes import on_route_of as on_route_of
 from ._attributes import other_versions as other_versions
 from ._attributes import restore_motion as restore_motion

@@ -21,12 +21,8 @@ from nonholo.systems import AbstractCoordinateDiscretization
 
 FORMAT = "nonholo.orbit"
 SWEEP_FORMAT = "nonholo.sweep"
-SCHEMA = 4
-"""Written by this version. Below 4 routes had no names; below 3 there were compact states and energies alone, in 1 no
-groups among parameters."""
-READABLE = (1, 2, 3, 4)
-_EARLIER_ROUTES = {"LLSystem": "matrix"}
-"""The routes of systems before they had names, where they were others than now."""
+SCHEMA = 5
+"""Written by this version, and read. Those below 5 are of before 0.3.0, from which on later versions read stores."""
 _MOTIONS: dict[str, Callable[..., Any]] = {
     **dict.fromkeys(("Discretization", "CoordinateDiscretization", "GroupDiscretization"), discretize),
     "CoordinateFlow": lambda system: importlib.import_module("nonholo.lagrange_dalembert").CoordinateFlow(system),
@@ -96,7 +92,7 @@ def restore_motion(stored: dict[str, Any], motion: Any) -> Any:
     if kind not in _MOTIONS:
         raise error(where, "hold a motion of this version", repr(kind), "Upgrade nonholo.")
     restored = on_route_of(stored, _MOTIONS[kind](system, **options))
-    if type(restored).__name__ != kind or route not in (None, restored.route_name):
+    if type(restored).__name__ != kind or route != restored.route_name:
         raise error(where, "hold a run by a route of this version", repr(route or kind), "Upgrade nonholo.")
     return restored
 
@@ -115,9 +111,8 @@ def system_of(stored: dict[str, Any], where: str, remedy: str, missing: str | No
 def _same(stored: dict[str, Any], motion: Any) -> Any:
     motion = on_route_of(stored, motion)
     for key, value in identity_of(motion).items():
-        theirs = stored[key] if key != "motion" else motion_text(stored, motion)
-        if value != theirs:  # JSON text: floating-point numbers are compared exactly
-            got = f"{key} {value} instead of {theirs}"
+        if value != stored[key]:  # JSON text: floating-point numbers are compared exactly
+            got = f"{key} {value} instead of {stored[key]}"
             raise error("load_orbit(discrete=...)", "be the discretization of the store", got, "Pass that one.")
     return motion
 
@@ -126,17 +121,8 @@ def on_route_of(stored: dict[str, Any], motion: Any) -> Any:
     """Return a motion by the route that began a store, or the next one; the motion itself where that is its own."""
     if motion.route_name is None:
         return motion
-    named = json.loads(stored["motion"]).get("route")
-    other = dataclasses.replace(motion, wanted_route=named or _EARLIER_ROUTES.get(stored["system"]))
+    other = dataclasses.replace(motion, wanted_route=json.loads(stored["motion"]).get("route"))
     return motion if other.route_name == motion.route_name else other
-
-
-def motion_text(stored: dict[str, Any], motion: Any) -> str:
-    """Return what a store says of its motion; of before routes had names, with that of a motion by the same route."""
-    if motion.route_name is None:
-        return stored["motion"]
-    described = json.loads(stored["motion"])
-    return json.dumps({**described, "route": described.get("route", motion.route_name)})
 
 
 def identity_of(motion: Any) -> dict[str, str]:

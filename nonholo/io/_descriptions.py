@@ -11,7 +11,7 @@ from nonholo.groups import SE, SO, AbstractMatrixGroup, MatrixGroup, ProductGrou
 from nonholo.io._in_coordinates import READY, restore_ready
 from nonholo.systems import AbstractSystem, Friction, Gravity
 
-_CALLABLE = "callable"  # schema 1 wrote the same word
+_CALLABLE = "callable"
 _OWN = "of your own"
 _ARGUMENTS = {"given_inertia": "inertia_operator"}  # fields that the constructor calls otherwise
 _FORCES = {"Gravity": Gravity, "Friction": Friction}

@@ -13,7 +13,7 @@ from nonholo.base.checks import error
 from nonholo.base.checks import path as checked_path
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.io._attributes import FORMAT, READABLE, SWEEP_FORMAT, restore_motion
+from nonholo.io._attributes import FORMAT, SCHEMA, SWEEP_FORMAT, restore_motion
 from nonholo.io._chunks import AGAIN, WHERE, DamagedError, checked_array, checked_block, opened_array
 from nonholo.io._metadata import OrbitMetadata, SweepMetadata, check_assertions, check_metadata
 from nonholo.io._plan import Plan
@@ -70,10 +70,9 @@ def _loaded(root: Path, discrete: Any, *, last: bool) -> Any:
     if not last:  # whoever asks for the last block has looked at the others
         check_seals(root, stored)
     rows = {name: arrays.get(array) for name, array in stored_names(shapes, motion.columns).items()}
-    branch = stored.get("branch", "principal")  # stores of before branch rules have none
     total, kept = shapes["time"][0], len(arrays["time"])
     step = arrays[STEP].astype(np.int64) if STEP in arrays else every * np.arange(total - kept, total)
-    orbit = motion.orbit(outcome=outcome, save_every=every, branch=branch, step=step, **rows)
+    orbit = motion.orbit(outcome=outcome, save_every=every, branch=stored["branch"], step=step, **rows)
     if "events" not in stored:
         return orbit
     begin = _begin_of_last(stored, shapes["time"][0]) if last else 0
@@ -87,22 +86,22 @@ def check_seals(root: Path, stored: dict[str, Any]) -> None:
     try:
         if run is None:
             _check_whole(root, stored, arrays)
-        elif run.get("sealed"):
+        else:
             events = len(json.loads(stored["events"])) if "events" in stored else None
             others = (CHECKPOINTS,) if events is None else (CHECKPOINTS, EVENTS)
             arrays |= {name: opened_array(root, name, None) for name in others}
-            Blocks(root, Plan.of(stored), arrays, events, True).check()
+            Blocks(root, Plan.of(stored), arrays, events).check()
     except DamagedError as flaw:
         raise error(WHERE, "hold each chunk in its place", f"{flaw}, in '{root}'", AGAIN) from None
 
 
 def _check_whole(root: Path, stored: dict[str, Any], arrays: dict[str, zarr.Array]) -> None:
-    if stored.get("seal", seal := seal_of_whole(root, arrays)) != seal:
+    if stored.get("seal") != seal_of_whole(root, arrays):
         raise DamagedError("another one")
 
 
 def stored_names(arrays: Container[str], columns: Iterable[str] = STATES) -> dict[str, str]:
-    """Return the names of the arrays of a store that hold the columns of an orbit; older stores have them on top."""
+    """Return the names of the arrays of a store that hold the columns of an orbit: compact ones lie in a group."""
     names = {name: name.removeprefix("canonical_") for name in columns}
     return {name: CANONICAL + array if CANONICAL + array in arrays else array for name, array in names.items()}
 
@@ -127,8 +126,8 @@ def _begin_of_last(stored: dict[str, Any], states: int) -> int:
     return plan.begin((states - 1) // plan.rows)
 
 
-def read_attributes(path: str | Path, expected: str = FORMAT, readable: tuple[int, ...] = READABLE) -> dict[str, Any]:
-    """Return the attributes of a store, after checking that it is one of that format and that its schema is known."""
+def read_attributes(path: str | Path, expected: str = FORMAT, schema: int = SCHEMA) -> dict[str, Any]:
+    """Return the attributes of a store, after checking that they are of that format and schema."""
     where = WHERE if expected == FORMAT else "load_sweep(store=...)"
     check_assertions(where)
     kind = f"be a store of {_KINDS[expected]}"
@@ -143,12 +142,20 @@ def read_attributes(path: str | Path, expected: str = FORMAT, readable: tuple[in
         made = _KINDS.get(str(stored.get("format")))
         got = f"'{path}', " + (f"a store of {made}" if made else "made by another program")
         raise error(where, kind, got, "Pass a store of nonholo that is one.")
-    if stored.get("schema") not in readable:
-        made = f"{stored.get('versions')} wrote it"
-        remedy = f"This version reads schemas up to {readable[-1]}: upgrade nonholo ({made})."
-        raise error(where, f"have a schema of {readable}", f"schema {stored.get('schema')}", remedy)
+    if stored.get("schema") != schema:
+        raise _other_schema(where, stored, schema)
     check_metadata(where, str(path), stored, OrbitMetadata if expected == FORMAT else SweepMetadata)
     return stored
+
+
+def _other_schema(where: str, stored: dict[str, Any], schema: int) -> Exception:
+    """Return what refuses a store of another schema: of a later version, or of before stores were read for good."""
+    number, versions = stored.get("schema"), stored.get("versions")
+    got, remedy = f"schema {number}", f"Upgrade nonholo: {versions} wrote it."
+    if isinstance(number, int) and number < schema:
+        got += ", of before 0.3.0, from which on later versions read stores"
+        remedy = f"Read it with the version that wrote it, {versions}, and save it as CSV, or repeat the run."
+    return error(where, f"have schema {schema}, the one that this version reads", got, remedy)
 
 
 def format_of(path: str | Path) -> str | None:

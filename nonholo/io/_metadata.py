@@ -4,7 +4,6 @@ import errno
 import hashlib
 import json
 import math
-import re
 import unicodedata
 from itertools import chain
 from pathlib import Path
@@ -30,14 +29,13 @@ from nonholo.io._attributes import attributes_of_text
 _MOST, _MOST_CHUNKS = 2**53, 2**26
 TAKEN = frozenset({"run"})
 """Names in a store that no array has."""
-_COMPONENT = re.compile(r"(\[\d+\])+")  # as older sweeps wrote them
 
 Positive = Annotated[int, Field(gt=0, le=_MOST, strict=True)]
 
 
 def _name(text: str) -> str:
-    """Return what is a name, also of an array within a group of ours, or of a component."""
-    plain = _COMPONENT.sub("", text.removeprefix("canonical/"))
+    """Return what is a name, also of an array within a group of ours."""
+    plain = text.removeprefix("canonical/")
     if not is_name(plain) or plain in TAKEN:
         raise ValueError(f"{shown(text)} is no name: a letter, then letters, digits and underscores, all ASCII")
     return text
@@ -65,7 +63,7 @@ class _Run(_Data):
     steps: Positive
     rows: Positive
     reconstruct: bool
-    lead: Literal[0, 1] = 1
+    lead: Literal[0, 1]
     added: Positive | None = None
 
 
@@ -77,9 +75,9 @@ class OrbitMetadata(_About):
     motion: Json[dict[str, Any]]
     save_every: Positive
     arrays: Json[dict[Name, Annotated[Shape, Field(min_length=1)]]]
-    branch: str = "principal"
-    precision: str = "float64"
-    conventions: str = ""
+    branch: str
+    precision: str
+    conventions: str
     outcome: Literal[tuple(Outcome.__members__)] | None = None  # type: ignore[valid-type]
     run: Json[_Run] | None = None
     events: Json[list[dict[str, Any]]] | None = None
@@ -143,7 +141,7 @@ def check_metadata(where: str, path: str, stored: dict[str, Any], kind: type[Bas
     try:
         about = kind.model_validate(stored).model_dump()
         controls = [name for name, value in about.items() if _has_controls(value)]
-        differs = stored.get("checksum", checksum(stored)) != checksum(stored)
+        differs = stored.get("checksum") != checksum(stored)
     except (ValidationError, RecursionError, TypeError, AttributeError) as failure:
         raise error(where, "hold sound attributes", f"'{path}', in which {_problems(failure)}", remedy) from None
     scenario = about["scenario"]

@@ -34,7 +34,7 @@ class Plan(NamedTuple):
     def of(cls, stored: dict[str, Any]) -> "Plan":
         """Return the plan of a store with these attributes."""
         run = json.loads(stored["run"])
-        return cls(run["steps"], stored["save_every"], run["rows"], run.get("lead", 1))
+        return cls(run["steps"], stored["save_every"], run["rows"], run["lead"])
 
     @property
     def blocks(self) -> int:

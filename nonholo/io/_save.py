@@ -238,7 +238,7 @@ def edit_attributes(path: Path, changes: dict[str, Any]) -> None:
     document = json.loads((path / "zarr.json").read_text())
     merged = document["attributes"] | changes
     kept = {name: value for name, value in merged.items() if value is not None}
-    document["attributes"] = kept | ({"checksum": checksum(kept)} if "checksum" in kept else {})
+    document["attributes"] = kept | {"checksum": checksum(kept)}
     document.pop("consolidated_metadata", None)
     write_whole(path / "zarr.json", json.dumps(document), settled=True)
     settle(path)

@@ -1,7 +1,7 @@
 """Seals: a checksum of a chunk does not know its place, so the record of a block holds one number of all its chunks.
 
 Of a run it is the last entry of the checkpoint at the end of the block, of a sweep an entry of the mark of the block,
-of an orbit saved whole an attribute. Older stores have none.
+of an orbit saved whole an attribute.
 """
 
 import contextlib
@@ -55,14 +55,12 @@ class Blocks(NamedTuple):
         plan: How it is cut.
         arrays: All of its arrays by name, of states, checkpoints and crossings.
         events: How many events it looks for; None if it looks for none.
-        sealed: Whether its checkpoints have seals.
     """
 
     path: Path
     plan: Plan
     arrays: Mapping[str, zarr.Array]
     events: int | None
-    sealed: bool
 
     def chunk(self, name: str, number: int, *, with_nan: bool = False) -> np.ndarray:
         """Return one chunk of an array."""
@@ -89,12 +87,12 @@ class Blocks(NamedTuple):
     def _record(self, block: int) -> tuple[Checkpoint, float]:
         """Return the state at the begin of a block and the seal of what comes before it."""
         row = self.chunk(CHECKPOINTS, block)
-        entries, seal = (row[0, :-1], float(row[0, -1])) if self.sealed else (row[0], 0.0)
+        entries, seal = row[0, :-1], float(row[0, -1])
         try:
             reached = unpacked_checkpoint(entries, self.events)
         except (ValueError, OverflowError):
             raise DamagedError(f"no checkpoint, {self._name(CHECKPOINTS, block)}") from None
-        if block == 0 and self.sealed and seal != seal_of(self.path, BEFORE, []):
+        if block == 0 and seal != seal_of(self.path, BEFORE, []):
             raise DamagedError(f"another checkpoint, {self._name(CHECKPOINTS, block)}")
         return reached, seal
 
@@ -113,11 +111,10 @@ class Blocks(NamedTuple):
         That each chunk is sound is looked at where it is read.
         """
         reached, seal = self._record(block + 1)
-        if self.sealed:
-            before = self.checkpoint(block).seen if reached.seen is not None else None
-            chunks = 0 if before is None else before.chunks
-            if seal != self.seal(block, reached, chunks):
-                raise DamagedError(self._broken_seal(block, reached, chunks))
+        before = self.checkpoint(block).seen if reached.seen is not None else None
+        chunks = 0 if before is None else before.chunks
+        if seal != self.seal(block, reached, chunks):
+            raise DamagedError(self._broken_seal(block, reached, chunks))
         return reached
 
     def _broken_seal(self, block: int, reached: Checkpoint, chunks: int) -> str:
@@ -129,7 +126,7 @@ class Blocks(NamedTuple):
 
     def check(self) -> None:
         """Check that every block of a finished run holds the chunks that were written."""
-        for block in range(self.plan.blocks if self.sealed else 0):
+        for block in range(self.plan.blocks):
             if self.ended(block).is_last:
                 break
 

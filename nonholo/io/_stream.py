@@ -40,7 +40,7 @@ from nonholo.io._save import (
 )
 from nonholo.io._seals import BEFORE, CHECKPOINTS, Blocks, seal_of
 from nonholo.io._stored_events import EVENTS, Seen, known, rows_of, seen_nothing
-from nonholo.io.datasets import CANONICAL, HEADED, stored_variables
+from nonholo.io.datasets import HEADED, stored_variables
 from nonholo.orbit import EventLog
 
 
@@ -53,14 +53,12 @@ class Stream:
         plan: How the run is cut.
         reconstruct: Whether poses are kept.
         made: Which one it is: another store at the same path has another number.
-        sealed: Whether checkpoints seal their blocks; those of older stores do not.
     """
 
     path: Path
     plan: Plan
     reconstruct: bool
     made: str | None
-    sealed: bool
 
     @property
     def is_finished(self) -> bool:
@@ -76,10 +74,10 @@ class Stream:
             write_crossings(self._arrays[EVENTS], orbit.events, reached.seen.chunks)
             chunks = reached.seen.chunks - chunks_of(self._arrays[EVENTS], orbit.events)
         first = block * self.plan.rows
-        variables = stored_variables(orbit, self._turn_before(first), older=self._is_older) if len(orbit) else {}
+        variables = stored_variables(orbit, self._turn_before(first)) if len(orbit) else {}
         for name, variable in variables.items():
             self._arrays[name][first : first + len(orbit)] = np.ascontiguousarray(variable.values)
-        seal = [self._blocks.seal(block, reached, chunks)] if self.sealed else []
+        seal = self._blocks.seal(block, reached, chunks)
         self._arrays[CHECKPOINTS][block + 1] = np.append(packed_checkpoint(reached), seal)
 
     def checkpoint(self, block: int) -> Checkpoint:
@@ -145,11 +143,6 @@ class Stream:
         edit_attributes(self.path, metadata)
         consolidate(self.path)
 
-    @functools.cached_property
-    def _is_older(self) -> bool:
-        """Whether the store has compact states and energies alone."""
-        return not any(name.startswith(CANONICAL) for name in self._blocks.names())
-
     def _turn_before(self, row: int) -> np.ndarray | None:
         """Return the heading or the quaternion of the state before a row, on which what follows continues."""
         turned = [name for name in HEADED if name in self._arrays]
@@ -210,7 +203,7 @@ class Stream:
     @functools.cached_property
     def _blocks(self) -> Blocks:
         events = None if self.events is None else len(self.events)
-        return Blocks(self.path, self.plan, self._arrays, events, self.sealed)
+        return Blocks(self.path, self.plan, self._arrays, events)
 
     @functools.cached_property
     def _arrays(self) -> dict[str, zarr.Array]:
@@ -237,7 +230,7 @@ def create_stream(
     with new_beside(path) as part:
         _create(part, first, plan, opening, extra)
         put_in_place(part, target, overwrite=False)
-    return Stream(target, plan, first.has_poses, extra["made"], sealed=True)
+    return Stream(target, plan, first.has_poses, extra["made"])
 
 
 def open_stream(path: str | Path) -> Stream:
@@ -247,9 +240,7 @@ def open_stream(path: str | Path) -> Stream:
         remedy = "Run it again with simulate(..., store=...) to be able to resume."
         raise error("resume(store=...)", "have checkpoints", f"'{path}', which was saved whole", remedy)
     run = json.loads(stored["run"])
-    return Stream(
-        Path(path).resolve(), Plan.of(stored), run["reconstruct"], stored.get("made"), run.get("sealed", False)
-    )
+    return Stream(Path(path).resolve(), Plan.of(stored), run["reconstruct"], stored.get("made"))
 
 
 def writable_array(path: Path, name: str, shape: Sequence[int] | None = None) -> zarr.Array:
@@ -287,7 +278,7 @@ def standing(path: str | Path) -> Standing | None:
 def _create(part: Path, first: Any, plan: Plan, opening: Checkpoint, extra: dict[str, str]) -> None:
     variables, rows = stored_variables(first), 1 + plan.steps // plan.every
     metadata = {name: value for name, value in attributes(first).items() if name != "outcome"}
-    run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.has_poses, "sealed": True, "lead": plan.lead}
+    run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.has_poses, "lead": plan.lead}
     shapes = {name: (rows, *variable.shape[1:]) for name, variable in variables.items()}
     metadata |= {"run": json.dumps(run), "arrays": json.dumps(shapes), **extra}
     group = new_group(part, metadata, OrbitMetadata)

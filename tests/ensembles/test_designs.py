@@ -237,7 +237,7 @@ def test_bad_designs_are_refused(make: Callable[[], Any], match: str) -> None:
 
 
 def test_draws_do_not_depend_on_the_spelling_of_components() -> None:
-    """A component of a start has the random numbers that it had under its older name, with brackets."""
+    """A component of a start has the same random numbers under both of its names."""
     drawn = [
         nh.RandomDesign(5, {name: nh.Uniform(0, 1)}, seed=3).values(0, 5)["momentum_1"]
         for name in ("momentum[1]", "momentum_1")

@@ -109,11 +109,11 @@ def test_metadata_of_inner_groups_are_written_again(group: str, tmp_path: Path) 
 
 
 def test_what_is_written_has_a_checksum(tmp_path: Path) -> None:
-    """Whoever changes an attribute by hand changes the checksum too, or is noticed: number of steps, end, versions."""
+    """Whoever changes an attribute by hand changes the checksum too, or is noticed: rows, end, number of steps."""
     _run(tmp_path / "run.zarr")
     document = json.loads((tmp_path / "run.zarr" / "zarr.json").read_text())
     told = document["attributes"]
-    for name, value in (("schema", 2), ("outcome", "not_converged"), ("run", told["run"].replace("60", "90"))):
+    for name, value in (("save_every", 2), ("outcome", "not_converged"), ("run", told["run"].replace("60", "90"))):
         edited = document | {"attributes": told | {name: value}}
         (tmp_path / "run.zarr" / "zarr.json").write_text(json.dumps(edited))
         for opened in (nh.load_orbit, nh.resume):

@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 import nonholo as nh
 from nonholo.base.checks import is_name
 from nonholo.cli._app import app
+from nonholo.ensembles.stores import SCHEMA
 from nonholo.io import edit_attributes, read_attributes, store_to_csv, table_lines
 from nonholo.lagrange_dalembert import CoordinateOrbit
 
@@ -66,7 +67,7 @@ def test_coordinates_of_a_strangers_store(coordinates: list[str], kept: Path, tm
 def test_names_of_a_strangers_sweep(place: str, name: str, kept: Path, tmp_path: Path) -> None:
     """So do the design, the outputs and the dimensions of a sweep."""
     store = shutil.copytree(kept / "sweep.zarr", tmp_path / "sweep.zarr")
-    content = json.loads(read_attributes(store, "nonholo.sweep", (3,))["sweep"])
+    content = json.loads(read_attributes(store, "nonholo.sweep", SCHEMA)["sweep"])
     match place:
         case "axes":
             content["design"]["axes"] = {name: content["design"]["axes"]["x"]}

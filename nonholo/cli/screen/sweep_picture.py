@@ -20,7 +20,7 @@ def draw_sweep(
 ) -> str | None:
     """Draw a quantity over the design; return the path of the picture, None if there is none."""
     os.environ.setdefault("MPLBACKEND", "agg")
-    quantity, across, up = (None if name is None else _named(result, name) for name in names)
+    quantity, across, up = (None if name is None else _named(name) for name in names)
     try:
         from nonholo import plotting
 
@@ -33,12 +33,11 @@ def draw_sweep(
     return str(picture)
 
 
-def _named(result: "xarray.Dataset", path: str) -> str:
-    """Return the name in a result of a key path; components have had brackets in older ones."""
+def _named(path: str) -> str:
+    """Return the name in a result of a key path."""
     from nonholo.ensembles import component_name
 
-    name = library_name(path)
-    return name if name in result.variables else component_name(name)
+    return component_name(library_name(path))
 
 
 def draw_stored_sweep(

@@ -15,7 +15,7 @@ import numpy as np
 from nonholo.base.checks import count, error, natural, shown
 from nonholo.base.checks import name as checked_name
 from nonholo.base.types import Float
-from nonholo.ensembles._names import OUTCOME, component_name, stream_name
+from nonholo.ensembles._names import OUTCOME, component_name
 from nonholo.ensembles.designs._distributions import AbstractDistribution, listed
 from nonholo.io import TAKEN
 
@@ -179,7 +179,7 @@ class RandomDesign(AbstractDesign):
         """Return the values of some members in order, by name."""
         first, count = _some("RandomDesign", first, count)
         return {
-            name: value.draw(uniform_numbers(self.seed, f"design {stream_name(name)}", first, count, value.width))
+            name: value.draw(uniform_numbers(self.seed, f"design {name}", first, count, value.width))
             for name, value in self.distributions.items()
         }
 

@@ -4,6 +4,7 @@ from nonholo.ensembles.stores._poses_csv import sweep_to_csv
 from nonholo.ensembles.stores._results import OUTCOME, RAISED, Output, Results, Task, attempted, probed
 from nonholo.ensembles.stores._standing import SweepStanding, opened_result, standing_of
 from nonholo.ensembles.stores._store import (
+    SCHEMA,
     Layout,
     Mark,
     SweepStore,

@@ -13,7 +13,6 @@ from nonholo.ensembles._block import MemberBlock, block_of
 from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
 from nonholo.ensembles.stores._standing import standing_of
 from nonholo.ensembles.stores._store import SweepStore, open_store
-from nonholo.simulation import Ensemble, Members
 
 _WHERE = "sweep_to_csv(store=...)"
 _WANTED = ("outcome", "final_time", "final_pose")
@@ -73,22 +72,12 @@ def _rows(store: SweepStore, task: EnsembleTask, block: int) -> np.ndarray:
     members = block_of(store.design, piece.first, piece.count)
     outcome, time, compact = (store.rows(name, piece) for name in _WANTED)
     group = task.discrete.system.group
-    older = store.schema == 1
-    g = _from_canonical(task.members(members), compact) if older else group.matrix_from_pose(compact)
-    pose = io.separate_rows(group, g)
+    pose = io.separate_rows(group, group.matrix_from_pose(compact))
     columns = [members.index, *(values for _, values in _flat(members)), outcome, time, *pose.T]
     rows = np.empty((piece.count, len(columns)), dtype=object)  # whole numbers are written as such
     for place, column in enumerate(columns):
         rows[:, place] = column.tolist()
     return rows
-
-
-def _from_canonical(members: Members, compact: np.ndarray) -> np.ndarray:
-    """Return compact canonical poses as matrices in the user's frame; nothing else of the states is needed."""
-    count = len(members)
-    momenta, none = np.zeros((count, 1, members.discrete.system.rank)), np.zeros(count, dtype=int)
-    states = Ensemble(members, 1, None, momenta, momenta, compact[:, None], none, none, momenta[:, 0])
-    return states.configuration[:, 0]
 
 
 def _flat(block: MemberBlock) -> Iterator[tuple[str, np.ndarray]]:

@@ -85,10 +85,8 @@ def layout_of(sizes: tuple[int, ...], block: int) -> Layout:
 
 
 FORMAT = "nonholo.sweep"
-SCHEMA = 3
-"""Written by this version. Schema 2 had no names of routes; 1 had last poses in the canonical frame, and names of
-components with brackets."""
-READABLE = (1, 2, 3)
+SCHEMA = 4
+"""Written by this version, and read. Those below 4 are of before 0.3.0, from which on later versions read stores."""
 _AGAIN = "Run the sweep again."
 _AXIS = {"long_name": "value of the design"}
 _CODECS = BloscCodec(cname="lz4", clevel=5, shuffle="bitshuffle"), Crc32cCodec()
@@ -96,7 +94,7 @@ _CODECS = BloscCodec(cname="lz4", clevel=5, shuffle="bitshuffle"), Crc32cCodec()
 
 
 class Mark(NamedTuple):
-    """The mark of a finished block; older marks have no seal."""
+    """The mark of a finished block."""
 
     members: int
     outcomes: dict[str, int]
@@ -104,7 +102,7 @@ class Mark(NamedTuple):
     finished: float
     writer: str
     messages: list[Annotated[list[Any], Field(min_length=2, max_length=2)]]
-    seal: int | None = None
+    seal: int = 0
 
 
 _MARK = TypeAdapter(Mark)
@@ -144,11 +142,6 @@ class SweepStore:
     def description(self) -> dict[str, Any]:
         """The task and the design as plain data."""
         return {"task": self._content["task"], "design": self._content["design"]}
-
-    @property
-    def schema(self) -> int:
-        """The schema that it was begun with."""
-        return attributes_of(self.path)["schema"]
 
     @property
     def is_finished(self) -> bool:
@@ -228,7 +221,7 @@ class SweepStore:
         mark = self.mark(block)
         if mark is None:
             raise io.DamagedError(f"no mark {self._mark_file(block).name}")
-        if mark.seal not in (None, self._seal(block)):
+        if mark.seal != self._seal(block):
             flaw = f"a chunk of another place in block {block}, which {self._mark_file(block).name} seals"
             raise io.DamagedError(flaw)
         return mark
@@ -350,8 +343,8 @@ def open_store(path: str | Path) -> SweepStore:
 
 
 def attributes_of(path: str | Path) -> dict[str, Any]:
-    """Return the attributes of the store of a sweep, after checking that it is one of a known schema."""
-    return io.read_attributes(path, FORMAT, READABLE)
+    """Return the attributes of the store of a sweep, after checking that it is one of the schema that is read."""
+    return io.read_attributes(path, FORMAT, SCHEMA)
 
 
 def _create_arrays(group: zarr.Group, design: Design, layout: Layout, outputs: dict[str, Output]) -> None:

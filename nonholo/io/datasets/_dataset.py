@@ -88,25 +88,21 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
     return xarray.Dataset(found, {"step": number}, attributes(orbit)).set_coords("time")
 
 
-def stored_variables(
-    orbit: Any, before: Float[np.ndarray, "1 c"] | None = None, *, older: bool = False
-) -> dict[str, xarray.Variable]:
+def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None) -> dict[str, xarray.Variable]:
     """Return the arrays of a store by name: what a person knows, and compact states in a group of their own.
 
     Args:
         orbit: What to store, an orbit or a block of one.
         before: The heading or the quaternion of the state before the first one, in a row.
-        older: Whether the store is of a schema below 3, which had compact states and energies alone.
     """
     if not orbit.is_compact:
         return _told(orbit)
     compact = {
-        ("" if older else CANONICAL) + name: _variable(orbit, name, getattr(orbit, state))
+        CANONICAL + name: _variable(orbit, name, getattr(orbit, state))
         for name, state in zip(_COMPACT, STATES[1:], strict=True)
         if getattr(orbit, state) is not None
     }
-    names = [name for name in (_STORED[:1] if older else _STORED) if _is_known(orbit, name)]
-    known = {name: _variable(orbit, name) for name in names} | ({} if older else _posed(orbit, before))
+    known = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)} | _posed(orbit, before)
     for variable in known.values():
         variable.attrs["coordinates"] = "time"  # those of the group canonical need none
     return {"time": _variable(orbit, "time")} | known | compact
