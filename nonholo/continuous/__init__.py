@@ -2,9 +2,18 @@
 
 from nonholo.continuous._closed_form import closed_form
 from nonholo.continuous._equations import ContinuousFlow, vector_field
-from nonholo.continuous._members import members_by_series
+from nonholo.continuous._members import has_series, members_by_series
 from nonholo.continuous._methods import solver_of
 from nonholo.continuous._solution import Solved
 from nonholo.continuous._tangent import flow_tangents
 
-__all__ = ["ContinuousFlow", "Solved", "closed_form", "flow_tangents", "members_by_series", "solver_of", "vector_field"]
+__all__ = [
+    "ContinuousFlow",
+    "Solved",
+    "closed_form",
+    "flow_tangents",
+    "has_series",
+    "members_by_series",
+    "solver_of",
+    "vector_field",
+]

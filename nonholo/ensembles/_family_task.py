@@ -35,8 +35,8 @@ class FamilyTask:
     seconds: vary a few values of its constants, and starts at will.
 
     The reduction "final_state" keeps time, configuration, velocity and energy of the last good state, and the number
-    of good steps. A custom function gets the ensemble of members with one system, a `CoordinateEnsemble` or an
-    `Ensemble`, and returns arrays as for `EnsembleTask`.
+    of good steps. A custom function gets the `Ensemble` of members with one system, and returns arrays as for
+    `EnsembleTask`.
 
     Attributes:
         family: `family(**parameters)` -> an `nh.examples.Example`, or anything else with a `system`, a `configuration`

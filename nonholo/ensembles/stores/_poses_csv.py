@@ -86,8 +86,9 @@ def _rows(store: SweepStore, task: EnsembleTask, block: int) -> np.ndarray:
 def _from_canonical(members: Members, compact: np.ndarray) -> np.ndarray:
     """Return compact canonical poses as matrices in the user's frame; nothing else of the states is needed."""
     count = len(members)
-    momenta, none = np.zeros((count, 1, members.discrete.system.rank)), np.zeros(count, dtype=int)
-    states = Ensemble(members, 1, None, momenta, momenta, compact[:, None], none, none, momenta[:, 0])
+    none, momenta = np.zeros(count, dtype=int), np.zeros((count, 1, members.discrete.system.rank))
+    columns = {"reduced_momentum": momenta, "cayley": momenta, "canonical_pose": compact[:, None]}
+    states = Ensemble(members, 1, None, columns, none, none, momenta[:, 0], compact)
     return states.configuration[:, 0]
 
 

@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,9 +13,7 @@ from nonholo.orbit import Crossings, Orbit
 from nonholo.simulation.events import Event, Part, changes, located, values_at
 from nonholo.simulation.members._event_log import MemberCrossings, MemberEvents
 from nonholo.simulation.members._members import Members
-from nonholo.simulation.members._result import Ensemble
-
-_STATES = ("reduced_momentum", "cayley", "canonical_pose")
+from nonholo.simulation.members._result import Ensemble, stacked
 
 
 class Flat(NamedTuple):
@@ -122,42 +120,54 @@ def _located(events: dict[str, Event], flat: Flat, event: int, at: np.ndarray) -
 
 def _nowhere(block: Ensemble) -> Ensemble:
     """Return one state of each member, still unknown."""
-    rows = [getattr(block, name) for name in _STATES]
-    unknown = [None if row is None else np.full((len(block), 1, row.shape[2]), np.nan) for row in rows]
-    states = dict(zip(_STATES, unknown, strict=True))
-    return dataclasses.replace(block, save_every=None, **states, steps_done=np.full(len(block), np.nan))
+    unknown = {name: np.full((len(block), 1, column.shape[2]), np.nan) for name, column in block.columns.items()}
+    return dataclasses.replace(block, save_every=None, columns=unknown, steps_done=np.full(len(block), np.nan))
 
 
 def _fill(states: Ensemble, flat: Flat, found: Crossings, at: np.ndarray) -> None:
     """Write crossings into the states of their members."""
-    who = flat.member[at]
-    states.reduced_momentum[who, 0], states.cayley[who, 0] = found.states.reduced_momentum, found.states.canonical_chart
-    if states.canonical_pose is not None and found.states.canonical_pose is not None:
-        states.canonical_pose[who, 0] = found.states.canonical_pose
+    who, rows = flat.member[at], found.states.rows()
+    for name, column in states.columns.items():
+        column[who, 0] = rows[name]
     states.steps_done[who] = found.step + found.fraction
 
 
 def _thinned(block: Ensemble, every: int | None, end: np.ndarray, stopped: np.ndarray) -> Ensemble:
     """Return the states that are kept of members that end with certain steps."""
-    rows = [getattr(block, name) for name in _STATES]
     if every is None:
-        kept = [None if row is None else np.take_along_axis(row, end[:, None, None], axis=1) for row in rows]
+        kept = {name: np.take_along_axis(rows, end[:, None, None], axis=1) for name, rows in block.columns.items()}
     else:
         late = every * np.arange(block.cayley[:, ::every].shape[1]) > end[:, None]
-        kept = [None if row is None else np.where(late[..., None], np.nan, row[:, ::every]) for row in rows]
+        kept = {name: np.where(late[..., None], np.nan, rows[:, ::every]) for name, rows in block.columns.items()}
     outcome = np.where(stopped, int(Outcome.successful), block.outcome)
-    states = dict(zip(_STATES, kept, strict=True))
-    return dataclasses.replace(block, save_every=every, **states, outcome=outcome, steps_done=end)
+    return dataclasses.replace(block, save_every=every, columns=kept, outcome=outcome, steps_done=end)
+
+
+def log_of(batch: Ensemble, orbits: Sequence[Any]) -> MemberEvents:
+    """Return what the runs of members found."""
+    logs = [orbit.events for orbit in orbits]
+    names, each = logs[0].names, zip(*(log.found for log in logs), strict=True)
+    found = (MemberCrossings(np.array([len(x) for x in own]), *_ends(batch, own)) for own in each)
+    stopped = [names.index(log.stopped_by) if log.stopped_by else -1 for log in logs]
+    return MemberEvents(names, tuple(found), np.array(stopped))
+
+
+def _ends(batch: Ensemble, own: tuple[Crossings, ...]) -> Iterator[Ensemble]:
+    """Give the first crossings of members, and the last ones."""
+    for one in (slice(0, 1), slice(-1, None)):
+        done = np.array([(x.step + x.fraction)[one].sum() if len(x) else np.nan for x in own])
+        columns = stacked([x.states.chosen(one) for x in own], 1)
+        yield dataclasses.replace(batch, save_every=None, columns=columns, steps_done=done)
 
 
 def joined_blocks(whole: Members, blocks: Sequence[Ensemble]) -> Ensemble:
     """Return the ensemble of all members from blocks of them."""
-    names = (*_STATES, "outcome", "steps_done", "first_momentum")
-    columns = {name: [getattr(block, name) for block in blocks] for name in names}
-    arrays = {name: None if rows[0] is None else np.concatenate(rows) for name, rows in columns.items()}
+    names = ("outcome", "steps_done", "first_momentum", "first_pose")
+    arrays = {name: np.concatenate([getattr(block, name) for block in blocks]) for name in names}
+    columns = {name: np.concatenate([block.columns[name] for block in blocks]) for name in blocks[0].columns}
     logs = [block.events for block in blocks if block.events is not None]
     log = _joined_log(whole, logs) if logs else None
-    return dataclasses.replace(blocks[0], members=whole, **arrays, events=log)
+    return dataclasses.replace(blocks[0], members=whole, columns=columns, **arrays, events=log)
 
 
 def _joined_log(whole: Members, logs: Sequence[MemberEvents]) -> MemberEvents:
