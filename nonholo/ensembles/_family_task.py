@@ -16,7 +16,6 @@ from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._names import OUTCOME, component_of
 from nonholo.simulation import ensemble
-from nonholo.systems import in_coordinates
 
 _LITERATURE, _READY, _FINAL = "nonholo.literature", "examples.", "final_state"
 _MEMBER = re.compile(r"This is member (\d+)\.")
@@ -130,8 +129,6 @@ class FamilyTask:
         """Run members with one system."""
         discrete = discretize(system, self.time_step)
         step = starts.pop(_STEP, None)
-        if not in_coordinates(discrete) and np.all(starts["configuration"] == system.group.identity):
-            del starts["configuration"]  # where bodies start anyway
         run = {"steps": self.steps, "save_every": self.save_every}
         try:
             return ensemble(discrete, parameters=None if step is None else {_STEP: step}, **starts, **run)

@@ -1,5 +1,6 @@
 """Ensembles: every member moves as it would alone, whatever the others do, however the work is cut."""
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -306,6 +307,58 @@ def test_members_in_the_air_start_with_their_potential_energy() -> None:
     batch = nh.ensemble(discrete, restricted_velocity=np.ones((3, 2)), configuration=poses, steps=4, save_every=1)
     assert np.ptp(batch.first_energy) > 0.1
     assert np.array_equal(batch.first_energy, batch.energy[:, 0])
+
+
+DRIVEN: dict[str, tuple[Any, dict[str, Any], dict[str, Any]]] = {
+    "heavy tops": (
+        TOP,
+        {"potential": nh.Gravity(force=[0.0, 0.0, -9.81], point=[0.0, 0.0, 0.3])},
+        {"mass_tensor": J * np.array([1.0, 1.2, 0.9])[:, None, None]},
+    ),
+    "sleighs that rub": (
+        SLEIGH,
+        {"force": nh.Friction(0.1 * np.eye(3))},
+        {"a": [0.2, 0.5, -0.3], "mass": [1.0, 2.0, 3.0]},
+    ),
+    "sleighs that are pushed": (
+        SLEIGH,
+        {"force": lambda t, g, w: np.array([np.cos(t), g[0, 0], -w[1]])},
+        {"b": [0.1, 0.2, 0.3]},
+    ),
+    "a table": (SLEIGH, {"force": np.ones((20, 3))}, {"inertia": [1.0, 2.0, 3.0], "time_step": [0.05, 0.1, 0.02]}),
+}
+
+
+@pytest.mark.parametrize("name", DRIVEN)
+def test_bodies_on_which_forces_act_have_parameters(name: str) -> None:
+    """Each member has the bits of the run of the body with its own numbers under the same forces."""
+    inside, forces, parameters = DRIVEN[name]
+    system, w = nh.Forced(inside, **forces), _velocities(3, 0.5)
+    batch = nh.ensemble(
+        nh.discretize(system, 0.1), restricted_velocity=w, parameters=parameters, steps=20, save_every=4
+    )
+    for member in range(3):
+        own = {key: values[member] for key, values in parameters.items()}
+        step = own.pop("time_step", 0.1)
+        body = nh.SuslovTop(**own, axis=TOP.axis) if inside is TOP else dataclasses.replace(SLEIGH, **own)
+        orbit = nh.simulate(
+            nh.discretize(nh.Forced(body, **forces), step), restricted_velocity=w[member], steps=20, save_every=4
+        )
+        for state in ("time", "reduced_momentum", "canonical_pose", "energy"):
+            assert np.array_equal(getattr(batch, state)[member], getattr(orbit, state)), state
+
+
+def test_flows_under_forces_have_parameters() -> None:
+    """Each member is the flow of its own body."""
+    _, forces, parameters = DRIVEN["sleighs that rub"]
+    batch = nh.ensemble(
+        nh.Forced(SLEIGH, **forces), body_velocity=(1.0, 0.5, 0.0), parameters=parameters, times=(0.0, 1.0)
+    )
+    for member, (a, mass) in enumerate(zip(*parameters.values(), strict=True)):
+        body = dataclasses.replace(SLEIGH, a=a, mass=mass)
+        alone = nh.flow(nh.Forced(body, **forces), body_velocity=(1.0, 0.5, 0.0), times=(0.0, 1.0))
+        assert np.array_equal(batch.reduced_momentum[member], alone.reduced_momentum)
+        assert np.array_equal(batch.heading[member], alone.heading)
 
 
 @pytest.mark.parametrize("name", ["top", "sleigh", "suslov 4"])

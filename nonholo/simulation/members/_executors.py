@@ -31,6 +31,7 @@ from nonholo.simulation.members._start import Firsts, are_others
 
 _PART = 8192  # members in a piece of work of one thread, a multiple of what a compiled block holds
 _FLOWS = 1024  # flows in a piece of work,
+_BESIDE = 8  # those that are solved side by side,
 _NUMBERS = 1 << 20  # and the most numbers in their states
 
 _THREADS: contextvars.ContextVar[int | None] = contextvars.ContextVar("threads", default=None)
@@ -266,7 +267,7 @@ def run_by_series(members: Members, starts: Firsts, plan: Plan, threads: int, re
         pieces[part.start] = members_by_series(members.discrete.system, inertias, *places, *given)
 
     numbers = sum(x.shape[1] for x in starts.places) * len(time)
-    size = max(1, min(_FLOWS, _NUMBERS // numbers, -(-count // 8)))
+    size = max(1, min(_FLOWS, _NUMBERS // numbers, max(_BESIDE, -(-count // 8))))
     parts = [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]
     in_threads(work, parts, threads, report)
     states, reached = zip(*(pieces[part.start] for part in parts), strict=True)

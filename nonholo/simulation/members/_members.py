@@ -51,7 +51,7 @@ class Members:
             return self.parameters[name]
         if name == STEP:
             return np.array([self.discrete.time_step], dtype=np.float64)
-        return np.asarray(getattr(self.discrete.system, name))[None]
+        return np.asarray(getattr(_inside(self.discrete.system), name))[None]
 
     def of(self, member: int) -> Any:
         """Return the motion of one member."""
@@ -74,7 +74,14 @@ class Members:
         return Members(self.discrete, kept, len(range(*chosen.indices(self.count))))
 
 
+def _inside(system: Any) -> Any:
+    """Return the body on which forces act, or the system itself."""
+    return system.system if system.is_forced else system
+
+
 def _rebuilt(system: Any, own: dict[str, Any]) -> Any:
+    if system.is_forced:
+        return dataclasses.replace(system, system=_rebuilt(system.system, own))
     kept = {_ARGUMENTS.get(field.name, field.name): getattr(system, field.name) for field in dataclasses.fields(system)}
     return type(system)(**{**kept, **own})
 
@@ -87,7 +94,7 @@ def checked_parameters(motion: Any, parameters: Any) -> dict[str, Any]:
     """Return the parameters of an ensemble as arrays, refused with names that the motion does not have."""
     if parameters is None:
         return {}
-    system = motion.system
+    system = motion.system if in_coordinates(motion) else _inside(motion.system)
     if not isinstance(parameters, Mapping):
         raise error("ensemble(parameters=...)", "be a mapping of names to arrays", shown(parameters), "Pass a dict.")
     fields = [] if in_coordinates(motion) else [_ARGUMENTS.get(name, name) for name in _numbers(system)]
