@@ -71,8 +71,6 @@ Pictures and the live page:
 Many motions:
     ensemble: Run or solve many members of one system, that differ in where they start, in parameters, or in both.
     Ensemble: Motions of M members at K saved states, from `ensemble`: arrays as in an `Orbit`, with a leading ...
-    FlowEnsemble: Continuous motions of M members at K times, from `ensemble` of a system: as `Ensemble`, with no ...
-    CoordinateEnsemble: Motions of M members in coordinates at K saved states: the arrays of their orbits, with a ...
     sweep: Run a task for every member of a design and keep what it returns in one store.
     EnsembleTask: Run the members of a design and keep some numbers of each.
     FamilyTask: Run the members of a family: systems that a function of parameters makes, such as ...
@@ -211,12 +209,10 @@ if TYPE_CHECKING:
     from nonholo.lagrange_dalembert import mass_tensor_lagrangian as mass_tensor_lagrangian
     from nonholo.orbit import AliasingWarning as AliasingWarning
     from nonholo.orbit import Orbit as Orbit
-    from nonholo.simulation import CoordinateEnsemble as CoordinateEnsemble
     from nonholo.simulation import Crossings as Crossings
     from nonholo.simulation import Ensemble as Ensemble
     from nonholo.simulation import Event as Event
     from nonholo.simulation import EventLog as EventLog
-    from nonholo.simulation import FlowEnsemble as FlowEnsemble
     from nonholo.simulation import crossings as crossings
     from nonholo.simulation import cusp as cusp
     from nonholo.simulation import ensemble as ensemble
@@ -246,14 +242,12 @@ _HOMES = {
     "AliasingWarning": "orbit",
     "ChaplyginSleigh": "systems",
     "Choice": "ensembles",
-    "CoordinateEnsemble": "simulation",
     "Crossings": "simulation",
     "Direction": "ensembles",
     "Discretization": "discrete",
     "Ensemble": "simulation",
     "EnsembleTask": "ensembles",
     "FamilyTask": "ensembles",
-    "FlowEnsemble": "simulation",
     "Event": "simulation",
     "EventLog": "simulation",
     "Forced": "systems",

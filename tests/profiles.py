@@ -108,7 +108,6 @@ DOCTESTS = {  # examples that compile for long
     f"{_DALEMBERT}_orbit.CoordinateOrbit": "routes",
     "nonholo.literature._particle.particle": "routes",
     "nonholo.ensembles._family_task.FamilyTask": "routes",
-    "nonholo.simulation.members._in_coordinates.CoordinateEnsemble": "routes",
     "nonholo.discrete._consistency.consistency_defect": "routes",
     "nonholo.literature._robot.two_wheeled_robot": "routes",
     "nonholo.analysis.steering._feedback.tracking_feedback": "routes",

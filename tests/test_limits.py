@@ -248,12 +248,10 @@ GIVEN = "reads what it is given, in room of the same order"
 FEW = {
     **dict.fromkeys(
         (
-            "CoordinateEnsemble",
             "Crossings",
             "Discretization",
             "Ensemble",
             "EventLog",
-            "FlowEnsemble",
             "MemberBlock",
             "Orbit",
             "Outcome",

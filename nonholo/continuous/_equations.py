@@ -17,8 +17,8 @@ from nonholo.base.types import Array, Float
 from nonholo.continuous._forced import forced_field, forced_reaction
 from nonholo.continuous._solution import States
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.orbit import AbstractMotion, Orbit
-from nonholo.systems import AbstractSystem, as_system, inertia_form
+from nonholo.orbit import AbstractMotion, First, Orbit
+from nonholo.systems import AbstractSystem, Start, as_system, inertia_form
 
 Body = tuple[Array, Array, Array]
 r"""Constraint subspace $S$, inertia operator $\mathbb{I}$ and $(S\mathbb{I}S^T)^{-1}S$, which takes r to $\omega$."""
@@ -68,6 +68,22 @@ class ContinuousFlow(AbstractMotion):
     solution: Callable[[Array], States] | None = dataclasses.field(default=None, repr=False, metadata={"stored": False})
     conserves_energy: ClassVar[None] = None
     route_name: ClassVar[None] = None
+    time_step: ClassVar[None] = None
+    starts: ClassVar[tuple[str, ...]] = ("body_velocity", "momentum", "restricted_velocity")
+
+    @property
+    def forces(self) -> Any:
+        """The system with its forces; None of a free one."""
+        return self.system.forces
+
+    def first(self, start: Start, *, posed: bool) -> First:
+        """Return the checked start of a flow with poses or without."""
+        system = self.system
+        g = start.pose(system.group) if system.is_spatial or start.configuration is not None else None
+        reduced = start.momentum(system, g)
+        full = start.name == "momentum" and np.shape(start.value) != (system.rank,)
+        pose = start.canonical_pose(system, g) if posed else np.empty(0)
+        return First((reduced, pose), np.asarray(start.value, dtype=np.float64) if full else None)
 
     def at(self, states: Orbit, times: Any) -> Orbit:
         """Return the states at any times of the span."""

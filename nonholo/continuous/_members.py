@@ -1,20 +1,27 @@
-"""Flows of many motions: by series side by side where the constraint is in the body and nothing acts, or alone."""
-
-from collections.abc import Callable
+"""Flows of many motions: by series side by side, where the constraint is in the body and nothing acts."""
 
 import numpy as np
 
 from nonholo.base.types import Bool, Float, Int
 from nonholo.continuous._series import GUARD, body_equations, body_numbers, is_compact, power_of_two
-from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
+from nonholo.continuous._solution import PLANE, States, first_heading, on_same_turn
 from nonholo.kernels import solve_members
 from nonholo.systems import AbstractSystem
+
+
+def has_series(system: AbstractSystem) -> bool:
+    """Tell whether flows of a system can be solved side by side.
+
+    Example:
+        >>> has_series(nh.ChaplyginSleigh(1.0, 1.0, 0.5)), has_series(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])))
+        (True, False)
+    """
+    return not system.is_spatial and is_compact(system.group) and system.forces is None
 
 
 def members_by_series(
     system: AbstractSystem,
     inertias: Float[np.ndarray, "m dim dim"],
-    each: Callable[[int], Callable[..., Solved]],
     momenta: Float[np.ndarray, "M k"],
     poses: Float[np.ndarray, "M size"],
     elapsed: Float[np.ndarray, "K"],
@@ -24,9 +31,8 @@ def members_by_series(
     """Return the states of members at times since the start, NaN where there is none, and how many each has.
 
     Args:
-        system: A system; those of the members differ from it in numbers only.
+        system: A system that has series; those of the members differ from it in numbers only.
         inertias: Their inertia operators, or with an axis of length 1 that of all.
-        each: Gives what solves for a member alone.
         momenta: First momenta.
         poses: First poses.
         elapsed: Times since the start.
@@ -34,8 +40,6 @@ def members_by_series(
         stop: Ends the work when it becomes true.
     """
     group, S, k = system.group, system.canonical.constraint_subspace, momenta.shape[1]
-    if system.is_spatial or not is_compact(group) or system.forces is not None:
-        return _one_by_one(group == PLANE, each, momenta, poses, elapsed, tolerance, stop)
     velocities, torques = body_numbers(group, S, inertias)
     used = (torques != 0).any(axis=0)
     f = body_equations(group, S, velocities[0], used.astype(np.float64))
@@ -48,26 +52,3 @@ def members_by_series(
     found = group.normalize_pose(rows[..., : poses.shape[1]])
     turned = on_same_turn(rows[..., poses.shape[1]], found) if group == PLANE else None
     return States(rows[..., starts.shape[1] - k :] * units[:, None, None], found, turned), reached
-
-
-def _one_by_one(
-    turns: bool,
-    each: Callable[[int], Callable[..., Solved]],
-    momenta: np.ndarray,
-    poses: np.ndarray,
-    elapsed: np.ndarray,
-    tolerance: float,
-    stop: np.ndarray,
-) -> tuple[States, np.ndarray]:
-    reached = np.zeros(len(momenta), dtype=np.int64)
-    r, g = (np.full((len(momenta), len(elapsed), rows.shape[1]), np.nan) for rows in (momenta, poses))
-    turned = np.full((len(momenta), len(elapsed)), np.nan) if turns else None
-    for member in range(len(momenta)):
-        if stop[0]:
-            break
-        states = each(member)(momenta[member], poses[member], elapsed, (tolerance, 1.0)).states
-        reached[member] = good = len(states.momenta)
-        r[member, :good], g[member, :good] = states.momenta, states.poses
-        if turned is not None:
-            turned[member, :good] = states.turned
-    return States(r, g, turned), reached

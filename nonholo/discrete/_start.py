@@ -11,7 +11,7 @@ from nonholo.discrete._composition import refuse_composition
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete._scheme import Scheme
 from nonholo.discrete._variety import equations_of
-from nonholo.orbit import First
+from nonholo.orbit import First, Orbit
 from nonholo.systems import Start, in_group, of_finite_energy, refuse_forces
 
 _TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in floating point
@@ -45,13 +45,14 @@ def initial_state(
     return start.momentum(system, g), np.asarray(start.value, dtype=np.float64) if full else None
 
 
-def check_first_state(demanded: np.ndarray, displacement: np.ndarray, momentum: np.ndarray) -> None:
-    """Refuse a start whose displacement or full momentum is not that of the principal root."""
-    found, outcome = (
-        (displacement, Outcome.branch_unverified) if demanded.ndim == 2 else (momentum, Outcome.off_momentum_locus)
-    )
+def check_first_state(demanded: np.ndarray, there: Orbit) -> None:
+    """Refuse a start whose displacement or full momentum is not that of the principal root, which is the first one."""
+    if demanded.ndim == 2:
+        found, outcome = there.displacement[0], Outcome.branch_unverified
+    else:
+        found, outcome = there.momentum[0], Outcome.off_momentum_locus
     if np.linalg.norm(demanded - found) > _TOLERANCE * np.linalg.norm(found):
-        raise OutcomeError(outcome, "Start of the run")
+        raise OutcomeError(outcome, "Start of the run", there.chosen(slice(0, 0)))
 
 
 def on_variety(where: str, discrete: Scheme, g: np.ndarray | None, displacement: Any) -> np.ndarray:

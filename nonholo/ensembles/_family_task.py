@@ -16,7 +16,6 @@ from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._names import OUTCOME, component_of
 from nonholo.simulation import ensemble
-from nonholo.systems import in_coordinates
 
 _LITERATURE, _READY, _FINAL = "nonholo.literature", "examples.", "final_state"
 _MEMBER = re.compile(r"This is member (\d+)\.")
@@ -35,8 +34,8 @@ class FamilyTask:
     seconds: vary a few values of its constants, and starts at will.
 
     The reduction "final_state" keeps time, configuration, velocity and energy of the last good state, and the number
-    of good steps. A custom function gets the ensemble of members with one system, a `CoordinateEnsemble` or an
-    `Ensemble`, and returns arrays as for `EnsembleTask`.
+    of good steps. A custom function gets the `Ensemble` of members with one system, and returns arrays as for
+    `EnsembleTask`.
 
     Attributes:
         family: `family(**parameters)` -> an `nh.examples.Example`, or anything else with a `system`, a `configuration`
@@ -130,8 +129,6 @@ class FamilyTask:
         """Run members with one system."""
         discrete = discretize(system, self.time_step)
         step = starts.pop(_STEP, None)
-        if not in_coordinates(discrete) and np.all(starts["configuration"] == system.group.identity):
-            del starts["configuration"]  # where bodies start anyway
         run = {"steps": self.steps, "save_every": self.save_every}
         try:
             return ensemble(discrete, parameters=None if step is None else {_STEP: step}, **starts, **run)

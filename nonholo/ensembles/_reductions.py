@@ -142,10 +142,9 @@ def _ended(batch: Ensemble) -> Ensemble:
     """Return the last good state of each member alone; of one that did not start any row, which is NaN."""
     every, rows = batch.save_every, np.arange(len(batch))
     last = np.zeros_like(rows) if every is None else batch.steps_done // every
-    kept = {name: getattr(batch, name) for name in ("reduced_momentum", "cayley", "canonical_pose")}
-    states = {name: None if array is None else array[rows, last][:, None] for name, array in kept.items()}
+    states = {name: column[rows, last][:, None] for name, column in batch.columns.items()}
     done = batch.steps_done if every is None else last * every
-    return dataclasses.replace(batch, save_every=None, steps_done=done, **states)
+    return dataclasses.replace(batch, save_every=None, steps_done=done, columns=states)
 
 
 def _labels(meaning: str, units: str = "") -> dict[str, str]:

@@ -51,7 +51,7 @@ class CoordinateDiscretization(AbstractLagrangeDAlembertMap[CoordinateOrbit]):
         return self.system.regularity(q, q_next, time_step=self.time_step)
 
     def first(self, start: Start, *, posed: bool) -> First:
-        """Return the checked place, velocity and momentum of a start."""
+        """Return the checked momentum, place and velocity of a start."""
         del posed
         system, h, owner = self.system, np.float64(self.time_step), start.owner
         q = _start.point(owner, system, start.configuration)
@@ -64,4 +64,4 @@ class CoordinateDiscretization(AbstractLagrangeDAlembertMap[CoordinateOrbit]):
         else:
             v = _start.velocity(owner, system, q, start.value)
             p = in_double(momentum, system, q, v)
-        return First((q, v, p))
+        return First((p, q, v))

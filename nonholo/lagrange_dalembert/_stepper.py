@@ -66,7 +66,7 @@ class CoordinateStepper(AbstractStepper[AbstractCoordinateOrbit]):
 
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state at the root next to a velocity."""
-        system, h, (q, v, p) = self.motion.system, np.float64(self.motion.time_step), first.numbers
+        system, h, (p, q, v) = self.motion.system, np.float64(self.motion.time_step), first.numbers
         definition = functools.partial(in_double, set_out, system, h)
         motion, sign, code = compiled.set_out(definition, system, h, q, v, p)
         return self._state(motion, np.ravel(sign)), Outcome(int(code))

@@ -21,7 +21,7 @@ class First(NamedTuple):
 
     Attributes:
         numbers: Of a body its canonical momenta and compact pose, which is empty where none is needed; in coordinates
-            place, velocity and momentum.
+            momentum, place and velocity.
         demanded: The displacement (N, N) or the full momentum (dim,) of the first step; None if the start leaves it.
     """
 

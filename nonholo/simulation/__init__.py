@@ -9,9 +9,7 @@ from nonholo.simulation._simulate import simulate
 from nonholo.simulation._stored import size_in_blocks
 from nonholo.simulation.events import Event, crossings, cusp
 from nonholo.simulation.members import (
-    CoordinateEnsemble,
     Ensemble,
-    FlowEnsemble,
     Members,
     ensemble,
     have_kernel,

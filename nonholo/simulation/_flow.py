@@ -11,7 +11,7 @@ from nonholo.base.limits import within_memory
 from nonholo.base.progress import telling
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, Solved, solver_of
-from nonholo.orbit import Orbit
+from nonholo.orbit import First, Orbit
 from nonholo.simulation.events import Event, check_functions, checked_events, flow_in_coordinates, flow_with_events
 from nonholo.systems import AbstractCoordinateSystem, OrbitT, Start, System, as_system, refuse_in_coordinates
 
@@ -134,22 +134,30 @@ def flow(
     first = _first_state(system, time, start, posed=posed)
     found = None if events is None else checked_events("flow", events)
     with telling("time", progress):
-        return _flowed(system, first, time, tolerances, solve, found, reconstruct)
+        return _flowed(system, first, time, tolerances, solve, found, reconstruct=reconstruct)
 
 
 def _first_state(
     system: System, time: np.ndarray, start: Start, *, posed: bool
 ) -> tuple[np.ndarray, np.ndarray | None]:
     """Return the checked momentum at the first time and the pose, where one is solved for."""
-    group = system.group
-    numbers = system.rank + posed * group.pose_size
+    numbers = system.rank + posed * system.group.pose_size
     remedy = "Ask for fewer times, or for momenta alone: reconstruct=False without a method."
     within_memory("flow(times=...)", 32.0 * len(time) * numbers, remedy)
-    g = start.pose(group) if system.is_spatial or start.configuration is not None else None
-    reduced, pose = start.momentum(system, g), start.canonical_pose(system, g) if posed else None
-    if start.name == "momentum" and np.shape(start.value) != (system.rank,):
-        _check_momentum(start.value, _opening(system, time, (reduced, pose)).momentum[0])
+    first = ContinuousFlow(system).first(start, posed=posed)
+    reduced, pose = first.numbers[0], first.numbers[1] if posed else None
+    if first.demanded is not None:
+        _check_momentum(first.demanded, _opening(system, time, (reduced, pose)).momentum[0])
     return reduced, pose
+
+
+def flow_from(system: System, first: First, time: np.ndarray, rtol: float) -> Orbit:
+    """Return the flow from a checked start with a pose, by the method that is the default."""
+    solver, _ = solver_of(system, None, float(time[0]), reconstruct=True)
+    tolerances = rtol, 1.0
+    solve = functools.partial(solver, tolerances=tolerances)
+    reduced, pose = first.numbers
+    return _flowed(system, (reduced, pose), time, tolerances, solve, None, reconstruct=True)
 
 
 def _opening(system: System, time: np.ndarray, first: tuple[np.ndarray, np.ndarray | None]) -> Orbit:
@@ -164,6 +172,7 @@ def _flowed(
     tolerances: tuple[float, float],
     solve: Callable[..., Solved],
     events: dict[str, Event] | None,
+    *,
     reconstruct: bool,
 ) -> Orbit:
     """Return the orbit from a first state, with what events found."""

@@ -76,19 +76,20 @@ class RunOptions(NamedTuple):
         refuse_too_large(owner, tuple(self.stepper.columns.values()), states)
 
 
-def stepper_of(discrete: Any, branch: BranchRule, backend: str, *, posed: bool) -> AbstractStepper[Any]:
+def stepper_of(
+    discrete: Any, branch: BranchRule, backend: str, *, posed: bool, owner: str = "simulate"
+) -> AbstractStepper[Any]:
     """Return what takes the steps of a run: the one place that asks for rule, backend and extra."""
     if in_coordinates(discrete):
         return discrete.stepper(posed=True)
-    rule = checked_rule("simulate", discrete, branch)
+    rule = checked_rule(owner, discrete, branch)
     if not rule.is_principal:
-        refuse_composition("simulate(branch=...)", discrete, "Leave branch out: each substep takes the principal root.")
-    choice("simulate(backend=...)", backend, ("auto", "numba", "jax"))
+        refuse_composition(f"{owner}(branch=...)", discrete, "Leave branch out: each substep takes the principal root.")
+    choice(where := f"{owner}(backend=...)", backend, ("auto", "numba", "jax"))
     if not rule.is_principal or backend == "jax":
-        check_forces("simulate", discrete, 0, free=f"branch {rule.name!r} and backend {backend!r}")
+        check_forces(owner, discrete, 0, free=f"branch {rule.name!r} and backend {backend!r}")
     if rule.is_principal:
-        return _principal(discrete, backend, posed=posed)
-    where = "simulate(backend=...)"
+        return _principal(where, discrete, backend, posed=posed)
     if backend == "numba":
         got, remedy = f"the branch rule {rule.name!r}", "Only 'principal' runs compiled by numba."
         raise error(where, "be 'auto' or 'jax'", got, remedy)
@@ -99,12 +100,12 @@ def stepper_of(discrete: Any, branch: BranchRule, backend: str, *, posed: bool) 
     return _by_definition(discrete, posed=posed, branch=rule.name)
 
 
-def _principal(discrete: Discretization, backend: str, *, posed: bool) -> AbstractStepper[Any]:
+def _principal(where: str, discrete: Discretization, backend: str, *, posed: bool) -> AbstractStepper[Any]:
     if backend == "jax":
         return _by_definition(discrete, posed=posed)
     if backend == "numba" and discrete.forces is None and discrete.route.compiled is None:
         remedy = "Pass backend='jax', or difference='matrix'."
-        raise error("simulate(backend=...)", "have a closed form of the step", shown(discrete.difference), remedy)
+        raise error(where, "have a closed form of the step", shown(discrete.difference), remedy)
     return discrete.stepper(posed=posed)
 
 

@@ -81,11 +81,11 @@ def opened(run: Run, first: First) -> tuple[Reached, AbstractOrbit | None]:
     there = orbit_at(run.stepper, state, 0)
     if outcome != Outcome.successful:
         there = dataclasses.replace(there.chosen(slice(0, 0)), outcome=outcome)
-    elif first.demanded is not None:
-        check_first_state(first.demanded, there.displacement[0], there.momentum[0])
     if run.watch is not None:
         watch, _ = search(run.watch, there)
         begun, there = begun._replace(watch=watch), dataclasses.replace(there, events=watch.log())
+    if outcome == Outcome.successful and first.demanded is not None:
+        check_first_state(first.demanded, there)
     return begun, None if outcome == Outcome.successful else run.finished(there, 0)
 
 

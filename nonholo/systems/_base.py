@@ -79,6 +79,11 @@ class AbstractSystem(Keeper, abc.ABC):
         """The same body in the canonical frame; the system itself where no frame is better than the user's."""
         return self
 
+    @property
+    def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Shapes of a configuration and of a velocity."""
+        return (self.group.size, self.group.size), (self.group.dim,)
+
     @kept
     def frame(self) -> Float[Array, "... N N"]:
         """The canonical body frame as seen from the user's: a group element that maps the constraint to itself.

@@ -19,6 +19,15 @@ def sleigh(*, a: float = 0.5, speed: float = 1.0, velocity: tuple[float, float] 
     return types.SimpleNamespace(system=nh.ChaplyginSleigh(1.0, 1.0, a), configuration=np.eye(3), body_velocity=start)
 
 
+def placed(*, a: float = 0.5) -> types.SimpleNamespace:
+    """Return a sleigh that does not start at the identity."""
+    return types.SimpleNamespace(
+        system=nh.ChaplyginSleigh(1.0, 1.0, a),
+        configuration=nh.SE(2).exp([0.3, 1.0, -2.0]),
+        body_velocity=np.array([0.4, 1.0, 0.0]),
+    )
+
+
 def ends(batch: nh.Ensemble) -> dict:
     """Return the last headings."""
     return {"turned": batch.heading[:, -1]}
@@ -42,6 +51,15 @@ def test_members_are_runs_of_the_systems_that_the_family_makes(tmp_path: Path) -
     alone = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.05), body_velocity=(0.7, 1.5, 0.0), steps=20)
     assert np.abs(parts.final_configuration.values[0, 0, 0] - alone.configuration[-1]).max() <= 1e-14
     assert parts.final_time.item() == 20 * 0.05
+
+
+def test_bodies_start_where_the_family_puts_them(tmp_path: Path) -> None:
+    """The pose of the family is that of the run."""
+    found = nh.sweep(nh.FamilyTask(placed, 0.1, 20), nh.Grid({"a": [0.2, 0.6]}), tmp_path / "placed.zarr")
+    for a in (0.2, 0.6):
+        start = {"configuration": placed().configuration, "body_velocity": placed().body_velocity}
+        alone = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, a), 0.1), **start, steps=20)
+        assert np.abs(found.sel(a=a).final_configuration.values - alone.configuration[-1]).max() <= 1e-14
 
 
 def test_a_store_names_the_family_and_runs_nothing_of_the_users(tmp_path: Path) -> None:

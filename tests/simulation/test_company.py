@@ -133,7 +133,7 @@ def test_a_body_of_one_closed_form_runs_side_by_side(monkeypatch: pytest.MonkeyP
     def alone(*_: Any) -> None:
         raise AssertionError
 
-    monkeypatch.setattr("nonholo.simulation.members._run._run_each", alone)
+    monkeypatch.setattr("nonholo.simulation.members._executors.run_one_by_one", alone)
     blade = nh.LLSystem(nh.SE(2), nh.ChaplyginSleigh(1.0, 0.8, 0.4, 0.3).homogeneous_mass_tensor, np.eye(3)[:2])
     for system in (WIDER["slanted"](np.random.default_rng(5)), blade):
         batch = nh.ensemble(nh.discretize(system, 0.1), restricted_velocity=[[0.3, 0.2], [0.1, -0.4]], steps=5)

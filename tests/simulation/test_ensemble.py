@@ -1,5 +1,6 @@
 """Ensembles: every member moves as it would alone, whatever the others do, however the work is cut."""
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -9,10 +10,9 @@ from bodies import GENERAL, mass_tensor
 import nonholo as nh
 from nonholo import kernels
 from nonholo.kernels import suslov_body
-from nonholo.simulation.members import _ensemble
+from nonholo.simulation.members import _ensemble, _executors
+from nonholo.simulation.members._families import scalar_members
 from nonholo.simulation.members._members import Members
-from nonholo.simulation.members._run import Plan, run_members
-from nonholo.simulation.members._start import first_momenta, scalar_members
 
 J = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 TOP = nh.SuslovTop(J, axis=(0.6, 0.0, 0.8))
@@ -104,15 +104,16 @@ def test_bits_do_not_depend_on_the_company(system: Any, varied: bool) -> None:
 
 
 @BOTH
-def test_bits_do_not_depend_on_threads(system: Any) -> None:
+def test_bits_do_not_depend_on_threads(system: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """One thread, two and seven give the same bits, also of fast members, some of which fail."""
-    members = Members(nh.discretize(system, 1.0), {}, 700)
-    momenta = first_momenta(members, "restricted_velocity", _velocities(700, 2.0))
-    plan = Plan(steps=100, every=50, posed=True, backend="auto")
-    alone = run_members(members, momenta, plan, threads=1)
-    assert {0} < set(alone.outcome)
-    for threads in (2, 7):
-        _assert_same_bits(run_members(members, momenta, plan, threads=threads), alone)
+    runs = []
+    for threads in (1, 2, 7):
+        monkeypatch.setattr(_executors, "threads_to_use", lambda threads=threads: threads)
+        discrete = nh.discretize(system, 1.0)
+        runs.append(nh.ensemble(discrete, restricted_velocity=_velocities(700, 2.0), steps=100, save_every=50))
+    assert {0} < set(runs[0].outcome)
+    for run in runs[1:]:
+        _assert_same_bits(run, runs[0])
 
 
 @pytest.mark.parametrize("members", [1, 2])
@@ -256,6 +257,124 @@ def test_a_momentum_off_the_locus_spoils_its_member_alone(system: Any) -> None:
     assert np.isnan(batch.energy[:, 0]).tolist() == [False, True, False]
 
 
+PLACED = {"top": TOP, "sleigh": SLEIGH, "suslov 4": GENERAL["suslov 4"][0], "veselova 3": GENERAL["veselova 3"][0]}
+PLACED["plane blade"] = nh.LLSystem(nh.SE(2), SLEIGH.homogeneous_mass_tensor, np.eye(3)[:2])
+
+
+def _poses(system: Any, count: int) -> np.ndarray:
+    return system.group.exp(np.random.default_rng(9).normal(size=(count, system.group.dim)))
+
+
+@pytest.mark.parametrize("start", ["restricted_velocity", "displacement"])
+@pytest.mark.parametrize("name", PLACED)
+def test_members_start_where_they_are_put(name: str, start: str) -> None:
+    """From poses of their own and one of all members move as `simulate` does, from velocities and displacements."""
+    system, poses = PLACED[name], _poses(PLACED[name], 3)
+    discrete, w = nh.discretize(system, 0.1), 0.2 * np.random.default_rng(2).normal(size=(3, system.rank))
+    moved = [
+        nh.simulate(discrete, restricted_velocity=v, configuration=g, steps=1) for v, g in zip(w, poses, strict=True)
+    ]
+    rows = w if start == "restricted_velocity" else np.array([orbit.displacement[0] for orbit in moved])
+    batch = nh.ensemble(discrete, **{start: rows}, configuration=poses, steps=20, save_every=5)
+    assert batch.outcome.tolist() == [0, 0, 0]
+    for member in range(3):
+        own: dict[str, Any] = {start: rows[member], "configuration": poses[member]}
+        orbit = nh.simulate(discrete, **own, steps=20, save_every=5)
+        for quantity in ("configuration", "restricted_momentum", "displacement", "energy"):
+            _assert_close(getattr(batch, quantity)[member], getattr(orbit, quantity), 1e-14)
+        assert batch.first_energy[member] == pytest.approx(orbit.energy[0], rel=1e-14)
+    shared = nh.ensemble(discrete, **{start: rows[0]}, configuration=poses[:1], steps=20, save_every=5)
+    assert np.array_equal(shared.configuration[0], batch.configuration[0])
+
+
+@pytest.mark.parametrize("name", PLACED)
+def test_flows_start_where_they_are_put(name: str) -> None:
+    """Members of flows start at their poses, as `flow` does."""
+    system, poses = PLACED[name], _poses(PLACED[name], 3)
+    w, times = np.random.default_rng(2).normal(size=(3, system.rank)), (0.0, 0.5, 2.0)
+    batch = nh.ensemble(system, restricted_velocity=w, configuration=poses, times=times)
+    for member in range(3):
+        alone = nh.flow(system, restricted_velocity=w[member], configuration=poses[member], times=times)
+        for quantity in ("configuration", "restricted_momentum", "body_velocity"):
+            _assert_close(getattr(batch, quantity)[member], getattr(alone, quantity), 1e-13)
+        assert batch.first_energy[member] == pytest.approx(alone.energy[0], rel=1e-14)
+
+
+def test_members_in_the_air_start_with_their_potential_energy() -> None:
+    """The first energy of members under forces is that at their own poses."""
+    heavy = nh.Forced(TOP, nh.Gravity(force=[0.0, 0.0, -9.81], point=[0.0, 0.0, 0.3]))
+    discrete, poses = nh.discretize(heavy, 0.01), _poses(TOP, 3)
+    batch = nh.ensemble(discrete, restricted_velocity=np.ones((3, 2)), configuration=poses, steps=4, save_every=1)
+    assert np.ptp(batch.first_energy) > 0.1
+    assert np.array_equal(batch.first_energy, batch.energy[:, 0])
+
+
+DRIVEN: dict[str, tuple[Any, dict[str, Any], dict[str, Any]]] = {
+    "heavy tops": (
+        TOP,
+        {"potential": nh.Gravity(force=[0.0, 0.0, -9.81], point=[0.0, 0.0, 0.3])},
+        {"mass_tensor": J * np.array([1.0, 1.2, 0.9])[:, None, None]},
+    ),
+    "sleighs that rub": (
+        SLEIGH,
+        {"force": nh.Friction(0.1 * np.eye(3))},
+        {"a": [0.2, 0.5, -0.3], "mass": [1.0, 2.0, 3.0]},
+    ),
+    "sleighs that are pushed": (
+        SLEIGH,
+        {"force": lambda t, g, w: np.array([np.cos(t), g[0, 0], -w[1]])},
+        {"b": [0.1, 0.2, 0.3]},
+    ),
+    "a table": (SLEIGH, {"force": np.ones((20, 3))}, {"inertia": [1.0, 2.0, 3.0], "time_step": [0.05, 0.1, 0.02]}),
+}
+
+
+@pytest.mark.parametrize("name", DRIVEN)
+def test_bodies_on_which_forces_act_have_parameters(name: str) -> None:
+    """Each member has the bits of the run of the body with its own numbers under the same forces."""
+    inside, forces, parameters = DRIVEN[name]
+    system, w = nh.Forced(inside, **forces), _velocities(3, 0.5)
+    batch = nh.ensemble(
+        nh.discretize(system, 0.1), restricted_velocity=w, parameters=parameters, steps=20, save_every=4
+    )
+    for member in range(3):
+        own = {key: values[member] for key, values in parameters.items()}
+        step = own.pop("time_step", 0.1)
+        body = nh.SuslovTop(**own, axis=TOP.axis) if inside is TOP else dataclasses.replace(SLEIGH, **own)
+        orbit = nh.simulate(
+            nh.discretize(nh.Forced(body, **forces), step), restricted_velocity=w[member], steps=20, save_every=4
+        )
+        for state in ("time", "reduced_momentum", "canonical_pose", "energy"):
+            assert np.array_equal(getattr(batch, state)[member], getattr(orbit, state)), state
+
+
+def test_flows_under_forces_have_parameters() -> None:
+    """Each member is the flow of its own body."""
+    _, forces, parameters = DRIVEN["sleighs that rub"]
+    batch = nh.ensemble(
+        nh.Forced(SLEIGH, **forces), body_velocity=(1.0, 0.5, 0.0), parameters=parameters, times=(0.0, 1.0)
+    )
+    for member, (a, mass) in enumerate(zip(*parameters.values(), strict=True)):
+        body = dataclasses.replace(SLEIGH, a=a, mass=mass)
+        alone = nh.flow(nh.Forced(body, **forces), body_velocity=(1.0, 0.5, 0.0), times=(0.0, 1.0))
+        assert np.array_equal(batch.reduced_momentum[member], alone.reduced_momentum)
+        assert np.array_equal(batch.heading[member], alone.heading)
+
+
+@pytest.mark.parametrize("name", ["top", "sleigh", "suslov 4"])
+def test_a_displacement_of_another_branch_spoils_its_member_alone(name: str) -> None:
+    """A member that would not start on the principal branch has outcome branch_unverified and NaN."""
+    system = PLACED[name]
+    discrete = nh.discretize(system, 0.5)
+    orbit = nh.simulate(discrete, restricted_velocity=np.full(system.rank, 0.3), steps=1)
+    bad = system.group.exp(3.0 * system.constraint_subspace[0])
+    batch = nh.ensemble(discrete, displacement=[orbit.displacement[0], bad], steps=5, save_every=1)
+    assert batch.outcome.tolist() == [0, nh.Outcome.branch_unverified]
+    assert batch.steps_done.tolist() == [5, 0]
+    assert np.isnan(batch.energy[1]).all()
+    assert len(batch.orbit(1)) == 0
+
+
 @BOTH
 def test_jax_agrees_with_the_compiled_loop(system: Any) -> None:
     """States agree to 1e-12 and outcomes exactly, with bodies that differ and members that fail."""
@@ -332,10 +451,22 @@ def test_without_poses_what_needs_them_is_refused() -> None:
 
 ONE = {"restricted_velocity": (0.3, 1.0)}
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
+    "a pose that is none": (
+        {"restricted_velocity": [[1, 0]], "configuration": [np.ones((3, 3))]},
+        "lie in SE.*This is member 0",
+    ),
+    "poses of others": (
+        {"restricted_velocity": np.ones((2, 2)), "configuration": np.eye(3)[None]},
+        "1 of configuration",
+    ),
+    "a displacement off the variety": (
+        {"displacement": [np.eye(3), nh.SE(2).exp([0.0, 0.0, 1.0])]},
+        "lie on the displacement variety.*This is member 1",
+    ),
     "no start": ({}, "exactly one of"),
     "two starts": ({**ONE, "momentum": [[1, 0]]}, "restricted_velocity and momentum"),
     "one row without parameters": (ONE, "`simulate` runs a single one"),
-    "no rows": ({"restricted_velocity": np.empty((0, 2))}, "at least one row"),
+    "no rows": ({"restricted_velocity": np.empty((0, 2))}, "Pass at least one row"),
     "wrong width": ({"body_velocity": np.ones((2, 4))}, r"must have shape \(any, 3\)"),
     "nan": ({"restricted_velocity": [[0.1, np.nan]]}, "must be finite"),
     "forbidden velocity": ({"body_velocity": [[1, 1, 0], [1, 0, 1]]}, "satisfy the constraint.*This is member 1"),
@@ -343,8 +474,8 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
         {"restricted_velocity": [[1, 1], [1e150, 0]], "parameters": {"mass": [1, 1e100], "inertia": [1, 1e100]}},
         "finite energy.*This is member 1",
     ),
-    "lengths of parameters": ({**ONE, "parameters": {"a": [1, 2], "b": [1]}}, "one length. Got 2 of a, 1 of b"),
-    "lengths of starts": ({"momentum": [[1, 0]], "parameters": {"a": [1, 2]}}, "Got 2 values for 1 rows of momentum"),
+    "lengths of parameters": ({**ONE, "parameters": {"a": [1, 2], "b": [1]}}, "one number of rows. Got 2 of a, 1 of b"),
+    "lengths of starts": ({"momentum": [[1, 0]], "parameters": {"a": [1, 2]}}, "Got 2 of a, 1 of momentum"),
     "unknown parameter": ({**ONE, "parameters": {"c": [1, 2]}}, "has mass, inertia, a, b, time_step"),
     "no mapping": ({**ONE, "parameters": [1.0]}, "be a mapping"),
     "nan parameter": ({**ONE, "parameters": {"a": [1, np.nan]}}, "must be finite"),

@@ -8,7 +8,7 @@ from bodies import mass_tensor
 
 import nonholo as nh
 from nonholo.continuous._series import body_numbers, by_series
-from nonholo.simulation.members._families import inertias_and_frames
+from nonholo.simulation.members._families import inertias_of
 from nonholo.simulation.members._members import Members
 from nonholo.systems import AbstractSystem
 
@@ -64,7 +64,7 @@ def test_members_are_flows(name: str, backward: bool) -> None:
     w = np.random.default_rng(1).normal(size=(19, system.rank)) * np.geomspace(1e-3, 3.0, 19)[:, None]
     w[4] = 0.0
     batch = nh.ensemble(system, restricted_velocity=w, times=times)
-    assert isinstance(batch, nh.FlowEnsemble)
+    assert isinstance(batch, nh.Ensemble)
     assert (batch.outcome == nh.Outcome.successful).all()
     scalar = name in ("top", "sleigh")  # whose starts are made for all members at once
     for member, start in enumerate(w):
@@ -97,16 +97,16 @@ def test_members_with_their_own_parameters() -> None:
 
 @pytest.mark.parametrize("name", OWN)
 def test_numbers_of_members_are_those_of_each_alone(name: str) -> None:
-    """Inertias, frames and equations, made for all members in one go, have the bits of one alone; the motions too."""
+    """Inertias, poses and equations, made for all members in one go, have the bits of one alone; the motions too."""
     system, own = OWN[name]
     members = Members(nh.discretize(system, 1.0), own, 7)
-    inertias, frames = inertias_and_frames(members)
+    inertias = inertias_of(members)
     batch = nh.ensemble(system, restricted_velocity=RNG.normal(size=(7, system.rank)), times=(0.0, 2.0), parameters=own)
     for member in range(7):
         alone = members.of(member).system
         seen = alone.canonical
         assert np.array_equal(inertias[member], seen.inertia_operator)
-        assert np.array_equal(frames[member % len(frames)], alone.frame_pose)
+        assert np.array_equal(batch.first_pose[member], alone.frame_pose)
         S, group = seen.constraint_subspace, seen.group
         for made, expected in zip(
             body_numbers(group, S, inertias), body_numbers(group, S, inertias[member]), strict=True
@@ -119,11 +119,11 @@ def test_numbers_of_members_are_those_of_each_alone(name: str) -> None:
 
 def test_reduction_block_by_block(monkeypatch: pytest.MonkeyPatch) -> None:
     """What a function makes of blocks is joined in order."""
-    from nonholo.simulation.members import _flows
+    from nonholo.simulation.members import _ensemble
 
     w = np.random.default_rng(2).normal(size=(50, 2))
     whole = nh.ensemble(TOP, restricted_velocity=w, times=TIMES)
-    monkeypatch.setattr(_flows, "_NUMBERS", 64)
+    monkeypatch.setattr(_ensemble, "_BLOCK", 64)
     last = nh.ensemble(TOP, restricted_velocity=w, times=TIMES, reduce=lambda batch: batch.momentum[:, -1])
     assert np.array_equal(last, whole.momentum[:, -1])
     data = whole.to_dataset()

@@ -194,13 +194,6 @@ def test_members_that_cannot_be_run_are_refused(name: str) -> None:
         nh.ensemble(nh.discretize(FALL, 0.1), **{"configuration": (0.0, 0.0), "steps": 3} | given)
 
 
-def test_members_of_bodies_start_at_the_identity() -> None:
-    """What systems in coordinates take is refused."""
-    sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
-    with pytest.raises(ValueError, match="Members start at the identity"):
-        nh.ensemble(sleigh, restricted_velocity=[[1.0, 0.0]], steps=3, configuration=np.eye(3))
-
-
 @PROFILE
 def test_a_start_off_the_constraint_is_refused_with_its_member() -> None:
     """Before any member runs."""

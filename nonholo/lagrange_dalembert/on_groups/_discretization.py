@@ -31,7 +31,7 @@ class GroupDiscretization(AbstractLagrangeDAlembertMap[GroupOrbit]):
     time_step: float
 
     def first(self, start: Start, *, posed: bool) -> First:
-        """Return the checked pose, velocity and momentum of a start."""
+        """Return the checked momentum, pose and velocity of a start."""
         del posed
         system, h, owner = self.system, np.float64(self.time_step), start.owner
         g = _start.pose(owner, system, start.configuration)
@@ -42,4 +42,4 @@ class GroupDiscretization(AbstractLagrangeDAlembertMap[GroupOrbit]):
             v, p = _start.of_momentum(owner, system, g, start.value)
         else:
             v, p = _start.of_velocity(owner, system, g, start.value)
-        return First((g, v, p))
+        return First((p, g, v))

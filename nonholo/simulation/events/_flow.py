@@ -8,8 +8,8 @@ import numpy as np
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit, Crossings, EventLog, Orbit
-from nonholo.simulation.events._event import Event, checked_events, values_at
-from nonholo.simulation.events._search import Part, Watch, search
+from nonholo.simulation.events._event import Event, checked_events
+from nonholo.simulation.events._search import Part, Watch, search, values_of
 
 
 def flow_in_coordinates(system: Any, events: Any, **flow: Any) -> Any:
@@ -71,8 +71,7 @@ def _searched(orbit: Any, seen: Any, watch: Watch) -> Any:
 
 def check_functions(events: dict[str, Event], first: Orbit) -> None:
     """Refuse events whose functions have no value at the first state."""
-    for name, event in events.items():
-        values_at(name, event, first)
+    values_of(events, first)
 
 
 def _between_times(seen: Orbit, forward: float) -> Part:

@@ -1,10 +1,9 @@
 """The search of a stretch of states for crossings: changes of sign first, then where between two states they are."""
 
 import dataclasses
-import math
 import operator
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -68,46 +67,99 @@ def search(watch: Watch, stretch: AbstractOrbit) -> tuple[Watch, int]:
         What is known now, and how many states of the stretch belong to the motion: all, unless an event ended it.
     """
     stretch = stretch.with_headings(watch.heading)
-    values = _values(watch, stretch)
-    places = [np.flatnonzero(changes(event, row)) for event, row in zip(watch.events.values(), values, strict=True)]
-    ends = [
-        int(at[int(left) - 1]) if left <= len(at) else math.inf for left, at in zip(watch.left, places, strict=True)
-    ]
-    last = min(ends, default=math.inf)
+    values = values_of(watch.events, stretch)
+    if watch.values is not None:  # those of a state that was seen before stay what they were
+        values[:, :1] = watch.values
+    owner, left = np.zeros(len(stretch), dtype=int), np.array([watch.left]).T
+    places = crossed(watch.events, stretch, values, owner, left, watch.part)
     found = tuple(
-        located(name, event, stretch, row, at[at <= last], watch.part)
-        for (name, event), row, at in zip(watch.events.items(), values, places, strict=True)
+        located(name, event, stretch, row, at, watch.part)
+        for (name, event), row, at in zip(watch.events.items(), values, places.at, strict=True)
     )
     stopped, kept = None, len(stretch)
-    if last < math.inf:
-        stopped, found, kept = _cut(watch, found, [event for event, end in enumerate(ends) if end == last])
-        kept -= int(stretch.step[0])
+    if places.stopped[0] >= 0:
+        stopped, kept = tuple(watch.events)[places.stopped[0]], 1 + int(places.end[0] - stretch.step[0])
     heading = float(stretch.turned[-1]) if stretch.turned is not None else None
     return watch.after_stretch(found, values[:, -1:] if len(stretch) else watch.values, heading, stopped), kept
 
 
-def _values(watch: Watch, stretch: AbstractOrbit) -> Float[np.ndarray, "E K"]:
-    """Return the values of all events; those of a state that was seen before stay what they were."""
-    if not len(stretch):
-        return np.empty((len(watch.events), 0))
-    values = np.array([values_at(name, event, stretch) for name, event in watch.events.items()])
-    values = values.reshape(len(watch.events), len(stretch))
-    if watch.values is not None:
-        values[:, :1] = watch.values
-    return values
+def values_of(events: dict[str, Event], states: AbstractOrbit) -> Float[np.ndarray, "E K"]:
+    """Return the values of all events at states."""
+    values = [values_at(name, event, states) if len(states) else np.empty(0) for name, event in events.items()]
+    return np.array(values).reshape(len(events), len(states))
 
 
-def _cut(watch: Watch, found: tuple[Crossings, ...], ending: list[int]) -> tuple[str, tuple[Crossings, ...], int]:
-    """End a motion at the first of the crossings of events that may end it; return what is left of a stretch.
+class Crossed(NamedTuple):
+    """Where some motions cross, up to their ends.
 
-    That is the name of the event, the crossings up to then, and the number of the step after them.
+    Attributes:
+        at: For every event the states before its crossings.
+        stopped: The position of the event that ends each motion, -1 where none does.
+        end: The step with which it ends.
     """
-    lasts = [(found[event], int(watch.left[event]) - 1, event) for event in ending]
-    step, fraction, event = min((int(part.step[at]), float(part.fraction[at]), event) for part, at, event in lasts)
-    kept = tuple(
-        part.chosen((part.step < step) | ((part.step == step) & (part.fraction <= fraction))) for part in found
-    )
-    return tuple(watch.events)[event], kept, 1 + step
+
+    at: list[Int[np.ndarray, "C"]]
+    stopped: Int[np.ndarray, "M"]
+    end: Int[np.ndarray, "M"]
+
+
+def crossed(
+    events: dict[str, Event],
+    states: AbstractOrbit,
+    values: Float[np.ndarray, "E K"],
+    owner: Int[np.ndarray, "K"],
+    left: Float[np.ndarray, "E M"],
+    part: Part,
+) -> Crossed:
+    """Return where motions cross, none of it after a crossing that ends one.
+
+    Args:
+        events: What is looked for, by name.
+        states: Consecutive states of one motion after another.
+        values: Values of the events there.
+        owner: The motion of each state.
+        left: The number of further crossings of every event that ends a motion; infinite if none does.
+        part: Gives the states after parts of steps.
+    """
+    joined, count = owner[1:] == owner[:-1], left.shape[1]
+    at = [np.flatnonzero(changes(event, row) & joined) for event, row in zip(events.values(), values, strict=True)]
+    ending = [x[_rank(owner[x]) == most[owner[x]] - 1] for x, most in zip(at, left, strict=True)]
+    done = Crossed(at, np.full(count, -1), np.zeros(count, dtype=int))
+    return _ended(events, states, values, owner, done, ending, part) if any(map(len, ending)) else done
+
+
+def _rank(owner: Int[np.ndarray, "C"]) -> Int[np.ndarray, "C"]:
+    """Return how many crossings the same motion has before each."""
+    return np.arange(len(owner)) - np.searchsorted(owner, owner)
+
+
+def _ended(
+    events: dict[str, Event],
+    states: AbstractOrbit,
+    values: np.ndarray,
+    owner: np.ndarray,
+    done: Crossed,
+    ending: list[np.ndarray],
+    part: Part,
+) -> Crossed:
+    """Leave out crossings after those that end a motion, by where they are in its last step."""
+    _, stopped, end = done
+    limit, moment = np.full(len(end), len(owner)), np.full(len(end), np.inf)
+    for at in ending:
+        np.minimum.at(limit, owner[at], at)
+    kept = [at[at <= limit[owner[at]]] for at in done.at]
+    within = [at[at == limit[owner[at]]] for at in kept]
+    found = [
+        located(name, event, states, row, at, part)
+        for (name, event), row, at in zip(events.items(), values, within, strict=True)
+    ]
+    gone = [each.step - states.step[at] + each.fraction for each, at in zip(found, within, strict=True)]
+    for event, (at, past) in enumerate(zip(within, gone, strict=True)):
+        ends = np.isin(at, ending[event]) & (past < moment[owner[at]])
+        who = owner[at[ends]]
+        moment[who], stopped[who], end[who] = past[ends], event, found[event].step[ends]
+    late = [at[past > moment[owner[at]]] for at, past in zip(within, gone, strict=True)]
+    return Crossed([np.setdiff1d(at, out) for at, out in zip(kept, late, strict=True)], stopped, end)
 
 
 def changes(event: Event, values: Float[np.ndarray, "... K"]) -> Bool[np.ndarray, "... L"]:

@@ -1,9 +1,7 @@
 """Many motions at once: the members of an ensemble, their starts, their loops, and what is returned."""
 
 from nonholo.simulation.members._ensemble import ensemble
+from nonholo.simulation.members._executors import in_one_thread
 from nonholo.simulation.members._families import have_kernel, run_in_lanes, scalar_members, tangents
-from nonholo.simulation.members._flows import FlowEnsemble
-from nonholo.simulation.members._in_coordinates import CoordinateEnsemble
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._result import Ensemble
-from nonholo.simulation.members._run import in_one_thread

@@ -6,22 +6,46 @@ import numpy as np
 import xarray
 
 from nonholo import io
-from nonholo.orbit import Orbit
 from nonholo.simulation.members._result import Ensemble
 
 _EACH = ("member", "step")
 _AXES = ("row", "column")  # of a parameter that is a matrix
 
 
-def ensemble_to_dataset(ensemble: Ensemble) -> xarray.Dataset:
-    """Return what `orbit_to_dataset` tells of an orbit, with dimensions `member` and `step`, outcomes and parameters.
+def ensemble_to_dataset(ensemble: Ensemble, none: Any) -> xarray.Dataset:
+    """Return what the dataset of an orbit tells, with dimensions `member` and `step`, outcomes and parameters.
 
-    Body velocities and momenta, which are decoded member by member where parameters differ, are left out. The
-    attributes are those of an orbit of the shared system; parameters that differ are variables of their names.
+    Body velocities and momenta of bodies, which are decoded member by member where parameters differ, are left out. The
+    attributes are those of an orbit of the shared motion; parameters that differ are variables of their names.
+
+    Args:
+        ensemble: What to label.
+        none: No state of the shared motion, as an orbit.
     """
-    members = ensemble.members
-    system, posed = members.discrete.system, ensemble.canonical_pose is not None
-    variables: dict[str, Any] = {"time": (_EACH, ensemble.time, {"long_name": "time", "units": "time unit"})}
+    variables = _of_bodies(ensemble) if none.is_compact else _in_coordinates(ensemble, none)
+    variables["time"] = _EACH, ensemble.time, {"long_name": "time", "units": "time unit"}
+    variables["outcome"] = "member", ensemble.outcome, {"long_name": "how the member ended, a nonholo.Outcome"}
+    variables["steps_done"] = "member", ensemble.steps_done, {"long_name": "good steps"}
+    for name, values in ensemble.parameters.items():
+        axes = _AXES[: values.ndim - 1] if values.ndim != 2 else (f"{name}_component",)
+        variables[name] = ("member", *axes), values, {"long_name": "parameter of the member"}
+    labels = (
+        {}
+        if none.is_compact
+        else {str(x): rows for x, rows in none.to_dataset().coords.items() if x not in ("step", "time")}
+    )
+    if ensemble.save_every is not None:
+        labels["step"] = ensemble.save_every * np.arange(ensemble.time.shape[1])
+    kept = io.attributes(none)
+    del kept["outcome"]
+    attributes = {**kept, "format": "nonholo.ensemble", "steps": ensemble.steps}
+    return xarray.Dataset(variables, labels, attributes).set_coords("time")
+
+
+def _of_bodies(ensemble: Ensemble) -> dict[str, Any]:
+    """Return energies, momenta along the constraint and poses."""
+    system, posed = ensemble.members.discrete.system, ensemble.canonical_pose is not None
+    variables: dict[str, Any] = {}
     for name in ("energy", "restricted_momentum"):
         if io.is_known(system, name, posed=posed, discrete=True):
             axes, labels = io.labels_of(system, name)
@@ -29,25 +53,10 @@ def ensemble_to_dataset(ensemble: Ensemble) -> xarray.Dataset:
     if posed:
         poses = io.separate_variables(system.group, ensemble.configuration)
         variables |= {name: ((*_EACH, *axes), values, labels) for name, (axes, values, labels) in poses.items()}
-    variables["outcome"] = "member", ensemble.outcome, {"long_name": "how the member ended, a nonholo.Outcome"}
-    variables["steps_done"] = "member", ensemble.steps_done, {"long_name": "good steps"}
-    for name, values in members.parameters.items():
-        axes = _AXES[: values.ndim - 1] if values.ndim != 2 else (f"{name}_component",)
-        variables[name] = ("member", *axes), values, {"long_name": "parameter of the member"}
-    numbered = {} if ensemble.save_every is None else {"step": ensemble.save_every * np.arange(ensemble.time.shape[1])}
-    return xarray.Dataset(variables, numbered, _attributes(ensemble)).set_coords("time")
+    return variables
 
 
-def _attributes(ensemble: Ensemble) -> dict[str, Any]:
-    none = slice(0, 0)
-    shared = Orbit(
-        ensemble.members.discrete,
-        ensemble.time[0, none],
-        ensemble.reduced_momentum[0, none],
-        ensemble.cayley[0, none],
-        None,
-        save_every=ensemble.save_every or ensemble.steps,
-    )
-    kept = io.attributes(shared)
-    del kept["outcome"]
-    return {**kept, "format": "nonholo.ensemble", "steps": ensemble.steps}
+def _in_coordinates(ensemble: Ensemble, none: Any) -> dict[str, Any]:
+    """Return all that an orbit tells."""
+    told = none.to_dataset().data_vars.items()
+    return {str(name): (("member", *x.dims), getattr(ensemble, str(name)), x.attrs) for name, x in told}

@@ -1,27 +1,26 @@
 """`ensemble`: many motions at once, from checked starts and parameters to decoded results or a user's reduction."""
 
 import functools
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any, TypeAlias
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
 from nonholo.base.calls import called
-from nonholo.base.checks import choice, count, error, flags, function, refuse_given, shown
+from nonholo.base.checks import count, error, flags, flow_times, flow_tolerances, function, refuse_given
+from nonholo.base.limits import within_memory
 from nonholo.base.progress import progress_bar
-from nonholo.base.results import Outcome
-from nonholo.discrete import Discretization, as_discretization
-from nonholo.simulation._options import check_forces, refuse_too_large
-from nonholo.simulation.events import Event, watched
-from nonholo.simulation.members._events import joined_blocks, watched_block
-from nonholo.simulation.members._families import check_systems
-from nonholo.simulation.members._flows import ensemble_of_flows
-from nonholo.simulation.members._in_coordinates import ensemble_in_coordinates
+from nonholo.continuous import ContinuousFlow
+from nonholo.discrete import PRINCIPAL, Discretization, as_discretization
+from nonholo.simulation._options import check_forces, refuse_too_large, stepper_of
+from nonholo.simulation.events import watched
+from nonholo.simulation.members._events import joined_blocks
+from nonholo.simulation.members._executors import Plan, Report, counting, run_members
+from nonholo.simulation.members._families import check_systems, in_lanes
 from nonholo.simulation.members._members import Members, checked_parameters
 from nonholo.simulation.members._reduce import Reduced, joined
 from nonholo.simulation.members._result import Ensemble
-from nonholo.simulation.members._run import Plan, Report, counting, run_members, states_of
-from nonholo.simulation.members._start import are_others, checked_rows, first_momenta
+from nonholo.simulation.members._start import Firsts, are_others, firsts, in_rows
 from nonholo.systems import (
     AbstractCoordinateDiscretization,
     AbstractSystem,
@@ -31,11 +30,7 @@ from nonholo.systems import (
     refuse_in_coordinates,
 )
 
-Watched: TypeAlias = dict[str, Event] | None
-Motions: TypeAlias = tuple[Members, np.ndarray, np.ndarray | None]
-
 _DEFAULTS = {"backend": "auto", "reconstruct": True}
-_KINDS = "A discretization has steps, a system times and rtol."
 _BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
 
 
@@ -67,8 +62,9 @@ def ensemble(
     Of a system in place of a discretization the flows are solved, by the series of `flow`: from one canonical momentum
     each has the bits of a flow alone.
 
-    Systems in coordinates run one member after another, in one thread: each has the bits of its run by `simulate`. All
-    of `configuration` and of the start may come as one row for each member, or once for all.
+    Systems in coordinates run one member after another, in one thread: each has the bits of its run by `simulate`.
+
+    The start and the `configuration` may come as one row for each member, or one may be that of all.
 
     A member that cannot continue keeps its good states: see `Ensemble` for what is where, and `outcome` for why.
 
@@ -76,32 +72,33 @@ def ensemble(
         discrete: The discretized system, or a system whose flow is asked for.
         steps: Number of steps N.
         times: Of a system instead: the times of the states, as in `flow`.
-        configuration: In coordinates where members start, (M, n) or (n,); on a group of a `GroupLagrangeDAlembert`
-            matrices. Other members start at the identity.
-        body_velocity: One row for each member, (M, dim); with `parameters` one row for all, (dim,), will do. Members
-            start at the identity with the principal W_0 that has the same momentum along the constraint.
+        configuration: First poses, matrices (M, N, N), in coordinates (M, n); one alone is that of all members. Bodies
+            start at the identity by default.
+        body_velocity: One row for each member, (M, dim), or one for all. Of bodies members start with the principal
+            W_0 that has the same momentum along the constraint.
         restricted_velocity: The same, in rows of the constraint subspace, (M, k).
-        displacement: In coordinates start with these displacements.
+        displacement: Start with these W_0, matrices (M, N, N), in coordinates (M, n). A member that would not be on the
+            principal branch has outcome `branch_unverified`. Flows have none.
         momentum: Start with these momenta, full ones (M, dim) on the momentum locus or those along the constraint
             subspace, (M, k). A member whose full momentum is not on it has outcome `off_momentum_locus`.
         save_every: Steps between saved states, the first one included; by default only the last state is kept.
         parameters: Arrays with a leading member axis by name: fields of the system that are numbers or tensors (mass,
-            inertia, a, b, mass_tensor, ...), and "time_step". In coordinates "time_step" alone: compiled functions
-            have their constants within.
+            inertia, a, b, mass_tensor, ...), of a `Forced` one those of the system inside, and "time_step". In
+            coordinates "time_step" alone: compiled functions have their constants within.
         reduce: A function of an `Ensemble`, a block of the members in order, that returns an array or a dictionary of
             arrays with a leading member axis. It is called block by block, so that states are never all in memory.
         reconstruct: Also compute poses.
         backend: "numba" (closed forms, compiled), "jax", or "auto" to choose. By JAX tops with n = 3 and plane sleighs
             run in chunks on processors and all at once on accelerators, other systems by the definition.
         events: `Event`s, or functions, whose changes of sign are found at every single step of each member; see
-            `Ensemble.events`. A function sees an `Orbit`: the states of many members one after another, or those of
-            one member where parameters differ. A member that an event stops has no states after that.
+            `Ensemble.events`. A function sees an orbit: the states of many members one after another, or those of
+            one member where parameters differ or members run alone. A member that an event stops has no states after
+            that.
         rtol: Of a system: the relative error of a step, as in `flow`.
         progress: Show a progress bar on standard error.
 
     Returns:
-        The `Ensemble`, of flows a `FlowEnsemble`, in coordinates a `CoordinateEnsemble`; with `reduce` what it gave,
-        blocks joined along the member axis.
+        The `Ensemble`; with `reduce` what it gave, blocks joined along the member axis.
 
     Raises:
         ValueError: A bad argument, before any work.
@@ -120,121 +117,96 @@ def ensemble(
     if reduce is not None:
         function("ensemble(reduce=...)", reduce)
         reduce = functools.partial(called, "ensemble(reduce=...)", reduce)
-    starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
-    run = {"parameters": parameters, "reduce": reduce, "progress": progress}
-    of_steps = {"steps": steps, "save_every": save_every, "events": events}
-    how, of_flow = {"backend": backend, "reconstruct": reconstruct}, {"times": times, "rtol": rtol}
-    own = {"configuration": configuration, "displacement": displacement}
-    if in_coordinates(discrete):
-        absent = how | of_flow | {"restricted_velocity": starts.pop("restricted_velocity")}
-        refuse_in_coordinates("ensemble", **{name: (value, _DEFAULTS.get(name)) for name, value in absent.items()})
-        return ensemble_in_coordinates(discrete, **starts, **own, **of_steps, **run)
-    _refuse("for bodies", "Members start at the identity.", **own)
-    if isinstance(discrete, AbstractSystem):
-        _refuse("for a flow", _KINDS, **of_steps, **how)
-        return ensemble_of_flows(discrete, Start.of("ensemble", **starts), times, rtol, **run)
-    _refuse("for a discretization", _KINDS, **of_flow)
-    discrete = as_discretization("ensemble(discrete=...)", discrete, composed=True, forced=True)
-    return _of_steps(discrete, Start.of("ensemble", **starts), **of_steps, **how, **run)
+    starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity}
+    starts |= {"displacement": displacement, "momentum": momentum}
+    of_steps = {"steps": steps, "save_every": save_every, "events": events, "backend": backend}
+    of_steps["reconstruct"], of_flow = reconstruct, {"times": times, "rtol": rtol}
+    make: Any = _of_times if isinstance(discrete, AbstractSystem) else _of_steps
+    motion, plan, widths = make(discrete, of_flow, of_steps, starts)
+    start = Start.of("ensemble", configuration, allowed=motion.starts, **starts)
+    checked = checked_parameters(motion, parameters)
+    start, several = in_rows(motion, start, checked)
+    members = Members(motion, checked, several)
+    _refuse_too_large(plan, widths, 1 if reduce is not None else several)
+    check_systems(members)
+    begun = firsts(members, start, posed=widths[-1] > 0)
+    if plan.times is not None and begun.demanded is not None:
+        _check_momenta(begun.demanded, run_members(members, begun, plan.at_first).momentum[:, 0])
+    with progress_bar("members", progress) as show:
+        return _joined(members, begun, plan, sum(widths), reduce, counting(show, several))
 
 
-def _refuse(what: str, remedy: str, **given: Any) -> None:
+def _refuse(what: str, **given: Any) -> None:
     """Refuse arguments of another kind of ensemble, unless they are what they are by default."""
-    refuse_given("ensemble", f"be left out {what}", remedy, **{n: (x, _DEFAULTS.get(n)) for n, x in given.items()})
+    given = {name: (value, _DEFAULTS.get(name)) for name, value in given.items()}
+    refuse_given("ensemble", f"be left out {what}", "A discretization has steps, a system times and rtol.", **given)
+
+
+def _of_times(
+    system: System, of_flow: dict[str, Any], of_steps: dict[str, Any], starts: dict[str, Any]
+) -> tuple[Any, Plan, tuple[int, ...]]:
+    """Return the motion of flows, their plan, and how wide their columns are."""
+    _refuse("for a flow", displacement=starts.pop("displacement"), **of_steps)
+    time, rtol = flow_times(of_flow["times"]), 1e-14 if of_flow["rtol"] is None else of_flow["rtol"]
+    plan = Plan(len(time) - 1, 1, times=time, rtol=flow_tolerances(rtol, 1.0)[0])
+    return ContinuousFlow(system), plan, (1, system.rank, system.group.pose_size)
 
 
 def _of_steps(
-    discrete: Discretization,
-    start: Start,
-    *,
-    steps: Any,
-    save_every: Any,
-    events: Any,
-    backend: str,
-    reconstruct: bool,
-    parameters: Any,
-    reduce: Callable[[Ensemble], Any] | None,
-    progress: bool,
-) -> Any:
-    """Run many members of a discretized body."""
+    discrete: Any, of_flow: dict[str, Any], of_steps: dict[str, Any], starts: dict[str, Any]
+) -> tuple[Any, Plan, tuple[int, ...]]:
+    """Return the motion of runs, their plan, and how wide their columns are."""
+    del starts
+    steps, save_every, events, backend, reconstruct = of_steps.values()
+    if in_coordinates(discrete):
+        absent = {"backend": backend, "reconstruct": reconstruct, **of_flow}
+        refuse_in_coordinates("ensemble", **{name: (value, _DEFAULTS.get(name)) for name, value in absent.items()})
+    else:
+        _refuse("for a discretization", **of_flow)
+        as_discretization("ensemble(discrete=...)", discrete, composed=True, forced=True)
     steps = count("ensemble(steps=...)", steps, "Pass the number of steps.")
     if save_every is not None:
         save_every = count("ensemble(save_every=...)", save_every, "Pass the steps between saved states, or None.")
-    _check_backend(discrete, backend)
-    check_forces("ensemble", discrete, steps, free="backend 'jax'" if backend == "jax" else None)
-    plan = Plan(steps, save_every, bool(reconstruct), backend)
-    motions = _motions(discrete, start, parameters, plan, whole=reduce is None)
-    watch = watched("ensemble", discrete.stepper(posed=plan.posed), events)
-    wanted = None if watch is None else watch.events
-    with progress_bar("members", progress) as show:
-        return _joined(motions, plan, wanted, reduce, counting(show, len(motions[0])))
+    stepper = stepper_of(discrete, PRINCIPAL.name, backend, posed=bool(reconstruct), owner="ensemble")
+    check_forces("ensemble", discrete, steps)
+    watch = watched("ensemble", stepper, events)
+    plan = Plan(steps, save_every, bool(reconstruct), backend, None if watch is None else watch.events)
+    return discrete, plan, tuple(stepper.columns.values())
+
+
+def _refuse_too_large(plan: Plan, widths: tuple[int, ...], members: int) -> None:
+    """Refuse more states than memory holds."""
+    if plan.times is None:
+        return refuse_too_large("ensemble", widths, members * plan.states)
+    remedy = "Ask for fewer times, or pass reduce=..."
+    return within_memory("ensemble(times=...)", 16.0 * sum(widths) * members * plan.states, remedy)
+
+
+def _check_momenta(given: np.ndarray, full: np.ndarray) -> None:
+    """Refuse full momenta that no admissible velocity has."""
+    wrong = are_others(given, full)
+    if wrong.any():
+        member = int(np.argmax(wrong))
+        remedy = f"With the same components along the constraint that of member {member} is {full[member].tolist()}."
+        got = f"{given[member].tolist()}"
+        raise error("ensemble(momentum=...)", "belong to admissible velocities", got, remedy)
 
 
 def _joined(
-    motions: Motions, plan: Plan, watched: Watched, reduce: Callable[[Ensemble], Any] | None, report: Report
+    members: Members,
+    starts: Firsts,
+    plan: Plan,
+    width: int,
+    reduce: Callable[[Ensemble], Any] | None,
+    report: Report,
 ) -> Any:
     """Run all members, block by block where only what is found of them is kept, and join that."""
-    if reduce is not None:
-        return joined(len(motions[0]), _blocks(*motions, plan, watched, reduce, report))
-    if watched is None:
-        return _block(*motions, plan, watched, report)
-    blocks = _blocks(*motions, plan, watched, lambda block: block, report)
-    return joined_blocks(motions[0], [block for _, block in blocks])
-
-
-def _motions(discrete: Discretization, start: Start, parameters: Any, plan: Plan, *, whole: bool) -> Motions:
-    """Return checked members, their first momenta along the constraint, and full ones that they have to have."""
-    checked = checked_parameters(discrete, parameters)
-    rows = checked_rows(discrete.system, checked, start)
-    states = states_of(plan.steps, plan.every) * (len(rows) if whole else 1)
-    widths = (discrete.system.rank, discrete.system.rank, plan.posed * discrete.system.group.pose_size)
-    refuse_too_large("ensemble", widths, states)
-    members = Members(discrete, checked, len(rows))
-    check_systems(members)
-    full = rows if start.name == "momentum" and rows.shape[1] != discrete.system.rank else None
-    return members, first_momenta(members, start.name, rows), full
-
-
-def _check_backend(discrete: Discretization, backend: str) -> None:
-    choice("ensemble(backend=...)", backend, ("auto", "numba", "jax"))
-    if backend == "numba" and discrete.route.compiled is None:
-        remedy = "Pass backend='jax', or difference='matrix'."
-        raise error("ensemble(backend=...)", "have a closed form of the step", shown(discrete.difference), remedy)
-
-
-def _block(
-    members: Members, momenta: np.ndarray, full: np.ndarray | None, plan: Plan, events: Watched, report: Report
-) -> Ensemble:
-    """Run a block of members; those whose full momentum is not that of the principal root do not start."""
-    done = run_members(members, momenta, plan if events is None else plan._replace(every=1), report=report)
-    if full is not None:
-        _unstart(done, full, run_members(members, momenta, plan._replace(steps=1, every=1, posed=True)).momentum[:, 0])
-    return done if events is None else watched_block(events, done, plan.every)
-
-
-def _unstart(done: Ensemble, full: np.ndarray, found: np.ndarray) -> None:
-    """Take the states from members that have another full momentum than the one they should start with."""
-    missed = are_others(full, found)
-    done.outcome[missed], done.steps_done[missed] = Outcome.off_momentum_locus, 0
-    for states in (done.reduced_momentum, done.cayley, done.canonical_pose):
-        if states is not None:
-            states[missed] = np.nan
-
-
-def _blocks(
-    members: Members,
-    momenta: np.ndarray,
-    full: np.ndarray | None,
-    plan: Plan,
-    events: Watched,
-    reduce: Callable[[Ensemble], Any],
-    report: Report,
-) -> Iterator[tuple[int, Any]]:
-    """Run block by block; give the number of members of each, and what a function makes of it."""
-    state = 2 * momenta.shape[1] + members.discrete.system.group.pose_size * plan.posed
-    size = max(1, _BLOCK // (state * states_of(plan.steps, plan.every if events is None else 1)))
-    blocks = [slice(begin, begin + size) for begin in range(0, len(members), size)]
-    for part in blocks:
-        rows = momenta[part], None if full is None else full[part]
-        block = _block(members.part(part), *rows, plan, events, report)
-        yield len(block), reduce(block)
+    searched = plan.events is not None and in_lanes(members)  # in every step of a block
+    if reduce is None and not searched:
+        return run_members(members, starts, plan, report=report)
+    size = max(1, _BLOCK // (width * (1 + plan.steps if searched else plan.states)))
+    parts = [slice(begin, begin + size) for begin in range(0, len(members), size)]
+    blocks = (run_members(members.part(part), starts.part(part), plan, report=report) for part in parts)
+    if reduce is None:
+        return joined_blocks(members, list(blocks))
+    return joined(len(members), ((len(block), reduce(block)) for block in blocks))

@@ -3,7 +3,7 @@
 import dataclasses
 import functools
 from collections.abc import Callable
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -105,25 +105,26 @@ def family_of(system: System) -> Family | None:
 
 def run_in_lanes(discrete: Discretization) -> bool:
     """Tell whether the members of an ensemble of a discretization are computed side by side."""
-    route, family = discrete.route.compiled, family_of(discrete.system)
-    return route is not None and route.is_scalar and family is not None and isinstance(route.body, family.body)
+    return have_kernel(Members(discrete, {}, 1))
 
 
 def have_kernel(members: Members) -> bool:
     """Tell whether members are tops (n = 3) or plane sleighs with a step in closed form."""
-    return run_in_lanes(members.discrete)
+    route, family = members.route and members.route.compiled, family_of(members.discrete.system)
+    return route is not None and route.is_scalar and family is not None and isinstance(route.body, family.body)
 
 
 def in_lanes(members: Members) -> bool:
     """Tell whether members are computed side by side: those that have a kernel, and those of one closed form."""
-    return have_kernel(members) or (not members.parameters and members.discrete.route.is_scalar)
+    route = members.route
+    return have_kernel(members) or (not members.parameters and route is not None and route.is_scalar)
 
 
 def body_of(members: Members) -> type[Any]:
     """Return the type of the bodies of members that are computed side by side."""
     if have_kernel(members):
         return _FAMILIES[type(members.discrete.system)].body
-    return type(cast(Any, members.discrete.route).body)
+    return type(members.route.body)
 
 
 def scalar_members(members: Members) -> ScalarMembers:
@@ -135,7 +136,7 @@ def scalar_members(members: Members) -> ScalarMembers:
 
 def _of_one_route(members: Members) -> ScalarMembers:
     """Return the numbers of members that are one body, whatever its class, in the axes of its normal form."""
-    route, system = cast(Any, members.discrete.route), members.discrete.system
+    route, system = members.route, members.discrete.system
     inertia = np.asarray(system.canonical.constrained_inertia)[None]
     frame_map, pose = np.asarray(system.frame_map)[None], system.frame_pose[None]
     return ScalarMembers(lambda: np.array(route.body)[:, None], members.time_step, inertia, frame_map, pose, route)
@@ -152,13 +153,12 @@ def tangents(
     return np.linalg.inv(C) @ canonical @ C
 
 
-def inertias_and_frames(members: Members) -> tuple[Float[np.ndarray, "m dim dim"], Float[np.ndarray, "f size"]]:
-    """Return canonical inertia operators and frames as poses; an axis of length 1 where all members agree."""
+def inertias_of(members: Members) -> Float[np.ndarray, "m dim dim"]:
+    """Return canonical inertia operators; an axis of length 1 where all members agree."""
     if members.parameters and type(members.discrete.system) in _STACKED:
-        stack = members.stacked
-        return stack.canonical.inertia_operator, np.atleast_2d(stack.frame_pose)
+        return members.stacked.canonical.inertia_operator
     systems = [members.of(member).system for member in range(len(members) if members.parameters else 1)]
-    return np.stack([s.canonical.inertia_operator for s in systems]), np.stack([s.frame_pose for s in systems])
+    return np.stack([system.canonical.inertia_operator for system in systems])
 
 
 def check_systems(members: Members) -> None:

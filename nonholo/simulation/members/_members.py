@@ -1,6 +1,7 @@
-"""The members of an ensemble: one discretized system, and the parameters in which each member differs from it."""
+"""The members of an ensemble: one motion, and the parameters in which each member differs from it."""
 
 import dataclasses
+import functools
 from collections.abc import Mapping
 from typing import Any
 
@@ -8,8 +9,8 @@ import numpy as np
 
 from nonholo.base.checks import array, error, shown
 from nonholo.base.types import Float
-from nonholo.discrete import Discretization
-from nonholo.systems import System, unchecked
+from nonholo.discrete import discretize
+from nonholo.systems import System, in_coordinates, unchecked
 
 STEP = "time_step"
 _ARGUMENTS = {"given_inertia": "inertia_operator"}  # fields that the constructor calls otherwise
@@ -17,15 +18,15 @@ _ARGUMENTS = {"given_inertia": "inertia_operator"}  # fields that the constructo
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Members:
-    """Discretized systems that differ by parameters.
+    """Motions that differ by parameters.
 
     Attributes:
-        discrete: The discretized system of all members, but for the parameters.
+        discrete: The discretized system of all members, but for the parameters; of flows their `ContinuousFlow`.
         parameters: Values by name, a field of the system or "time_step", with a leading member axis.
         count: The number M of members.
     """
 
-    discrete: Discretization
+    discrete: Any
     parameters: dict[str, Float[np.ndarray, "M ..."]]
     count: int
 
@@ -34,23 +35,31 @@ class Members:
 
     @property
     def time_step(self) -> Float[np.ndarray, "m"]:
-        """The time step of each member, or that of all as one number."""
+        """The time step of each member, or that of all as one number; NaN of flows."""
         return self.values(STEP)
+
+    @functools.cached_property
+    def route(self) -> Any:
+        """How steps of the shared motion are computed; of a flow those of its map, None in coordinates."""
+        if self.discrete.time_step is None:
+            return discretize(self.discrete.system, 1.0).route  # never stepped: it knows closed forms
+        return getattr(self.discrete, "route", None)
 
     def values(self, name: str) -> Float[np.ndarray, "m ..."]:
         """Return a parameter of each member, or with an axis of length 1 that of all."""
         if name in self.parameters:
             return self.parameters[name]
-        return np.asarray(self.discrete.time_step if name == STEP else getattr(self.discrete.system, name))[None]
+        if name == STEP:
+            return np.array([self.discrete.time_step], dtype=np.float64)
+        return np.asarray(getattr(_inside(self.discrete.system), name))[None]
 
-    def of(self, member: int) -> Discretization:
-        """Return the discretized system of one member."""
-        if not self.parameters:
-            return self.discrete
+    def of(self, member: int) -> Any:
+        """Return the motion of one member."""
         own = {name: values[member] for name, values in self.parameters.items()}
-        step = own.pop(STEP, self.discrete.time_step)
-        system = _rebuilt(self.discrete.system, own) if own else self.discrete.system
-        return dataclasses.replace(self.discrete, system=system, time_step=step)
+        changed = {STEP: own.pop(STEP)} if STEP in own else {}
+        if own:
+            changed["system"] = _rebuilt(self.discrete.system, own)
+        return dataclasses.replace(self.discrete, **changed) if changed else self.discrete
 
     @property
     def stacked(self) -> System:
@@ -65,7 +74,14 @@ class Members:
         return Members(self.discrete, kept, len(range(*chosen.indices(self.count))))
 
 
+def _inside(system: Any) -> Any:
+    """Return the body on which forces act, or the system itself."""
+    return system.system if system.is_forced else system
+
+
 def _rebuilt(system: Any, own: dict[str, Any]) -> Any:
+    if system.is_forced:
+        return dataclasses.replace(system, system=_rebuilt(system.system, own))
     kept = {_ARGUMENTS.get(field.name, field.name): getattr(system, field.name) for field in dataclasses.fields(system)}
     return type(system)(**{**kept, **own})
 
@@ -74,31 +90,33 @@ def _numbers(system: System) -> list[str]:
     return [name for name in system.leaves if getattr(system, name) is not None]
 
 
-def checked_parameters(discrete: Discretization, parameters: Any) -> dict[str, Any]:
-    """Return the parameters of an ensemble as arrays, refused with names that the system does not have."""
+def checked_parameters(motion: Any, parameters: Any) -> dict[str, Any]:
+    """Return the parameters of an ensemble as arrays, refused with names that the motion does not have."""
     if parameters is None:
         return {}
-    system = discrete.system
+    system = motion.system if in_coordinates(motion) else _inside(motion.system)
     if not isinstance(parameters, Mapping):
         raise error("ensemble(parameters=...)", "be a mapping of names to arrays", shown(parameters), "Pass a dict.")
-    known = [*(_ARGUMENTS.get(name, name) for name in _numbers(system)), STEP]
-    checked = {}
+    fields = [] if in_coordinates(motion) else [_ARGUMENTS.get(name, name) for name in _numbers(system)]
+    known, checked = fields if motion.time_step is None else [*fields, STEP], {}
     for name, value in parameters.items():
         if name not in known:
-            remedy = f"{type(system).__name__} has {', '.join(known)}."
-            raise error("ensemble(parameters=...)", "name fields of the system", shown(name), remedy)
+            raise _unknown(name, type(system).__name__, known)
         shape = () if name == STEP else np.shape(getattr(system, name))
         where = f"ensemble(parameters={{{name!r}: ...}})"
         checked[name] = array(where, value, (None, *shape), "Pass one value for each member.")
-    _one_length(checked)
     return checked
 
 
-def _one_length(parameters: dict[str, np.ndarray]) -> None:
-    lengths = {name: len(values) for name, values in parameters.items()}
-    if len(set(lengths.values())) > 1:
-        got = ", ".join(f"{count} of {name}" for name, count in lengths.items())
-        raise error("ensemble(parameters=...)", "have one length", got, "Pass one value for each member.")
+def _unknown(name: str, kind: str, known: list[str]) -> ValueError:
+    """Return the error of a parameter that is none."""
+    requirement, remedy = "name fields of the system", f"{kind} has {', '.join(known)}."
+    if known == [STEP]:
+        requirement = f"name {STEP!r} alone for a system in coordinates"
+        remedy = "A Lagrangian is a function, whose constants cannot be varied: run an ensemble for each, or a sweep."
+    elif name == STEP:
+        remedy = "A flow has no time step."
+    return error("ensemble(parameters=...)", requirement, shown(name), remedy)
 
 
 def refused(member: int, failure: ValueError) -> ValueError:

@@ -1,7 +1,8 @@
-"""The result of `ensemble`: compact states of all members, decoded on access as those of an orbit are."""
+"""The result of `ensemble`: columns of the orbits of all members, decoded on access as those of an orbit are."""
 
 import dataclasses
 import importlib
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,17 +10,15 @@ import numpy as np
 from nonholo.base.checks import error, natural
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
-from nonholo.base.types import Float, Int
-from nonholo.discrete import Discretization
+from nonholo.base.types import Bool, Float, Int
 from nonholo.groups import SE
-from nonholo.orbit import Orbit
 from nonholo.simulation.members._event_log import MemberEvents
 from nonholo.simulation.members._families import family_of, have_kernel, scalar_members
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._start import energies
-from nonholo.systems import System
 
 _OF_FRAME = ("configuration", "pose", "position", "displacement")
+_COUNTED = ("step", "time")  # which follow from the steps done
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -27,19 +26,19 @@ class Ensemble:
     r"""Motions of M members at K saved states, from `ensemble`: arrays as in an `Orbit`, with a leading member axis.
 
     With `save_every=None` K = 1, and the state is the last good one of each member, after `steps_done` steps. Otherwise
-    row j is the state after j `save_every` steps; a member that ends early has NaN in its later rows. A member whose
-    start has no principal root has only NaN. `outcome` tells them apart.
+    row j is the state after j `save_every` steps; of flows that at the j-th time. A member that ends early has NaN in
+    its later rows. A member whose start has no principal root has only NaN. `outcome` tells them apart.
 
     Attributes:
-        members: The discretized system and the parameters.
-        steps: Number of steps N that were asked for.
+        members: What moves, and the parameters.
+        steps: Number of steps N that were asked for; of flows that of the times after the first.
         save_every: Steps between saved states; None if only the last one is kept.
-        reduced_momentum: Compact momenta, canonical frame, shape (M, K, k).
-        cayley: Chart coordinates of the displacements, canonical frame, shape (M, K, m).
-        canonical_pose: Compact poses, canonical frame, shape (M, K, size); None if not reconstructed.
+        columns: The arrays of the orbits by name, shapes (M, K, ...): `reduced_momentum` and others of bodies, what
+            an orbit tells in coordinates.
         outcome: How each member ended, values of `Outcome`, shape (M,).
         steps_done: Good steps of each member, shape (M,); of states at crossings with the fraction of the last one.
-        first_momentum: Compact momenta of the starts, canonical frame, shape (M, k).
+        first_momentum: Momenta of the starts, of bodies compact ones in the canonical frame, shape (M, k).
+        first_pose: Compact poses of the starts of bodies, canonical frame, places in coordinates, shape (M, ...).
         events: What `events=` of the run found, a `MemberEvents`: by name or position how many crossings each member
             has, and the states at the first and the last. None without `events=`.
 
@@ -48,17 +47,23 @@ class Ensemble:
         >>> batch = nh.ensemble(sleigh, restricted_velocity=[[1, 0], [0, 1], [9, -9]], steps=100)
         >>> batch.momentum.shape, batch.steps_done, str(batch.orbit(2).outcome)
         ((3, 1, 3), array([100, 100,   0]), 'no_real_branch')
+
+        Flows know full turns:
+
+        >>> flows = nh.ensemble(sleigh.system, restricted_velocity=[[1, 0], [0, 1]], times=(0.0, 5.0))
+        >>> flows.heading.round(6)
+        array([[0.      , 3.036242],
+               [0.      , 0.      ]])
     """
 
     members: Members
     steps: int
     save_every: int | None
-    reduced_momentum: Float[np.ndarray, "M K k"]
-    cayley: Float[np.ndarray, "M K m"]
-    canonical_pose: Float[np.ndarray, "M K size"] | None
+    columns: dict[str, Float[np.ndarray, "M K ..."]]
     outcome: Int[np.ndarray, "M"]
     steps_done: Int[np.ndarray, "M"] | Float[np.ndarray, "M"]
     first_momentum: Float[np.ndarray, "M k"]
+    first_pose: Float[np.ndarray, "M ..."]
     events: MemberEvents | None = None
 
     def __len__(self) -> int:
@@ -68,77 +73,142 @@ class Ensemble:
         counts = zip(*np.unique(self.outcome, return_counts=True), strict=True)
         ended = ", ".join(f"{count} {Outcome(int(code))}" for code, count in counts)
         kind = type(self.members.discrete.system).__name__
-        return f"<Ensemble of {kind}: {len(self)} members, {self.cayley.shape[1]} states each, {ended}>"
+        return f"<Ensemble of {kind}: {len(self)} members, {self._good.shape[1]} states each, {ended}>"
 
-    def orbit(self, member: int) -> Orbit:
+    def orbit(self, member: int) -> Any:
         """Return the good states of one member as an orbit."""
         member = natural("Ensemble.orbit(member=...)", member, "Pass the number of a member, from 0.")
         if member >= len(self):
             raise error("Ensemble.orbit(member=...)", f"be below {len(self)}", str(member), "Members count from 0.")
-        kept = slice(0, int(np.isfinite(self.reduced_momentum[member, :, 0]).sum()))
-        return self._orbit(member, kept)
+        return self._orbit(member, self._good[member])
 
-    def _orbit(self, member: int, kept: slice | np.ndarray) -> Orbit:
-        states = self._states(self.members.of(member), self.time[member, kept], (member, kept))
-        every, width = self.save_every or self.steps or 1, self.cayley.shape[1]
-        done = np.array(self.steps_done[member : member + 1] if self.save_every is None else every * np.arange(width))
-        step = np.nan_to_num(done)[kept].astype(np.int64)
-        return dataclasses.replace(states, outcome=Outcome(int(self.outcome[member])), save_every=every, step=step)
+    def _orbit(self, member: int, kept: Bool[np.ndarray, "K"]) -> Any:
+        done = self._done[member][kept]
+        about = {"save_every": self.save_every or self.steps or 1, "step": np.nan_to_num(done).astype(np.int64)}
+        outcome = Outcome(int(self.outcome[member]))
+        return self._states(self.members.of(member), (member, kept), outcome=outcome, **about)
 
-    def _states(self, discrete: Discretization, time: np.ndarray, rows: Any) -> Orbit:
+    def _states(self, motion: Any, rows: Any, **about: Any) -> Any:
         """Return some rows of the states as an orbit."""
-        pose = None if self.canonical_pose is None else self.canonical_pose[rows]
-        return Orbit(discrete, time, self.reduced_momentum[rows], self.cayley[rows], pose)
+        kept = {"time": self.time[rows]} | {name: column[rows] for name, column in self.columns.items()}
+        return motion.orbit(branch="principal", **{name: kept.get(name) for name in motion.columns}, **about)
+
+    @property
+    def _good(self) -> Bool[np.ndarray, "M K"]:
+        """Where members have states: there the first column is finite."""
+        lead = next(iter(self.columns.values()))
+        return np.asarray(np.isfinite(lead.reshape(*lead.shape[:2], -1)).all(-1))
+
+    @property
+    def _done(self) -> Int[np.ndarray, "M K"] | Float[np.ndarray, "M K"]:
+        """How many steps lead to each state."""
+        if self.save_every is None:
+            return self.steps_done[:, None]
+        lead = next(iter(self.columns.values()))
+        return np.broadcast_to(self.save_every * np.arange(lead.shape[1]), lead.shape[:2])
+
+    @property
+    def reduced_momentum(self) -> Float[np.ndarray, "M K k"]:
+        """Compact momenta of bodies, canonical frame."""
+        return self._decoded("reduced_momentum")
+
+    @property
+    def cayley(self) -> Float[np.ndarray, "M K m"]:
+        """Chart coordinates of the displacements of bodies, canonical frame; refused of flows, which have none."""
+        return self._decoded("canonical_chart" if "cayley" not in self.columns else "cayley")
+
+    @property
+    def canonical_pose(self) -> Float[np.ndarray, "M K size"] | None:
+        """Compact poses of bodies, canonical frame; None if not reconstructed."""
+        return self.columns.get("canonical_pose")
+
+    @property
+    def turned(self) -> Float[np.ndarray, "M K"] | None:
+        """Headings on SE(2), unwrapped, where they are known without saved states: of flows."""
+        return self.columns.get("turned")
+
+    @property
+    def orbits(self) -> tuple[Any, ...]:
+        """The good states of each member as an orbit."""
+        return tuple(self.orbit(member) for member in range(len(self)))
+
+    @property
+    def parameters(self) -> dict[str, Float[np.ndarray, "M ..."]]:
+        """Values in which members differ, by name."""
+        return self.members.parameters
 
     @property
     def time(self) -> Float[np.ndarray, "M K"]:
         """Times of the states; with `save_every=None` that of each member's last good one."""
-        if self.save_every is None:
-            return (self.members.time_step * self.steps_done)[:, None]
-        done = self.save_every * np.arange(self.cayley.shape[1])
-        return np.broadcast_to(self.members.time_step[:, None] * done, self.cayley.shape[:2])
+        known = self.columns.get("time")
+        return self.members.time_step[:, None] * self._done if known is None else known
+
+    @property
+    def times(self) -> Float[np.ndarray, "K"]:
+        """Times of the states of the first member, of flows those of all."""
+        return self.time[0]
 
     @property
     def restricted_momentum(self) -> Float[np.ndarray, "M K k"]:
-        """Momenta along the rows of the constraint subspace; spatial ones for a right-invariant constraint."""
+        """Momenta along admissible directions, of bodies along the rows of the constraint subspace.
+
+        Spatial ones for a right-invariant constraint.
+        """
         if not have_kernel(self.members):
             return self._decoded("restricted_momentum")
         return applied(np.linalg.inv(scalar_members(self.members).frame_map)[:, None], self.reduced_momentum)
 
     @property
     def energy(self) -> Float[np.ndarray, "M K"]:
-        """Reduced constrained energies."""
+        """Energies; of bodies reduced constrained ones."""
         if not have_kernel(self.members):
             return self._decoded("energy")
         return energies(scalar_members(self.members), self.reduced_momentum)
 
     @property
     def first_energy(self) -> Float[np.ndarray, "M"]:
-        """Reduced constrained energies of the starts."""
+        """Reduced constrained energies of the starts of bodies."""
         if have_kernel(self.members):
             return energies(scalar_members(self.members), self.first_momentum)
-        systems = [self.members.of(member).system for member in range(len(self))]
-        return np.array([_first_energy(s, r) for s, r in zip(systems, self.first_momentum, strict=True)])
+        if "reduced_momentum" not in self.columns:
+            got, remedy = type(self.members.discrete.system).__name__, "Save every state, and take energy[:, 0]."
+            raise error("Ensemble.first_energy", "be asked of bodies on a group", got, remedy)
+        rows = {"reduced_momentum": self.first_momentum[:, None], "canonical_pose": self.first_pose[:, None]}
+        rows = {name: column for name, column in rows.items() if column.shape[2]}
+        return dataclasses.replace(self, columns=rows, save_every=1).energy[:, 0]
 
     @property
     def momentum(self) -> Float[np.ndarray, "M K dim"]:
-        """Body momenta; decoded member by member where parameters differ, some 50 us each."""
+        """Momenta, of bodies in the body; decoded member by member where parameters differ, some 50 us each."""
         return self._decoded("momentum")
 
     @property
     def body_velocity(self) -> Float[np.ndarray, "M K dim"]:
-        """Admissible body velocities whose momenta along the constraint are those of the states."""
+        """Admissible velocities whose momenta along the constraint are those of the states.
+
+        In coordinates those of the steps from the states.
+        """
         return self._decoded("body_velocity")
 
     @property
-    def displacement(self) -> Float[np.ndarray, "M K N N"]:
-        """Displacements W_k of single steps at the saved states."""
+    def displacement(self) -> Float[np.ndarray, "M K ..."]:
+        """Displacements of single steps at the saved states, of bodies matrices W_k."""
         return self._decoded("displacement")
 
     @property
-    def configuration(self) -> Float[np.ndarray, "M K N N"]:
-        """Poses as matrices; every member starts at the identity."""
+    def configuration(self) -> Float[np.ndarray, "M K ..."]:
+        """Poses as matrices (M, K, N, N), or coordinates (M, K, n)."""
         return self._decoded("configuration")
+
+    @property
+    def multipliers(self) -> Float[np.ndarray, "M K s"]:
+        """Impulses of constraint in the steps from the states, forces of flows; NaN where a step was not taken."""
+        return self._decoded("multipliers")
+
+    @property
+    def constraint_residual(self) -> Float[np.ndarray, "M K"]:
+        """Largest residuals of the constraint in coordinates."""
+        return self._decoded("constraint_residual")
 
     @property
     def pose(self) -> Float[np.ndarray, "M K size"] | None:
@@ -162,50 +232,60 @@ class Ensemble:
     def heading(self) -> Float[np.ndarray, "M K"]:
         """Angles of the body on SE(2): between saved states the shorter turn is assumed, from 0 at the start.
 
-        With `save_every=None` nothing is known of full turns, and the angle is between -pi and pi.
+        Flows know full turns. With `save_every=None` nothing is known of them, and the angle is between -pi and pi.
         """
         group = self.members.discrete.system.group
         if group != SE(2) or self.canonical_pose is None:
             got = f"{group}" if group != SE(2) else "reconstruct=False"
             raise error("Ensemble.heading", "have poses in the plane", got, "Use configuration, or reconstruct=True.")
+        if self.turned is not None:
+            return self.turned
         return np.unwrap(np.arctan2(self.canonical_pose[..., 1], self.canonical_pose[..., 0]), axis=1)
 
     def to_dataset(self) -> Any:
         """Return the states as a labeled `xarray.Dataset` with dimensions `member` and `step`."""
-        return importlib.import_module("nonholo.simulation.members._dataset").ensemble_to_dataset(self)
+        every = self.save_every or self.steps
+        none = self._states(self.members.discrete, np.zeros_like(self._good), save_every=every)
+        return importlib.import_module("nonholo.simulation.members._dataset").ensemble_to_dataset(self, none)
 
     def _decoded(self, name: str) -> np.ndarray:
         """Return a quantity of orbits, NaN after a member's end; in one go where it is the same function for all."""
-        sound = np.asarray(np.isfinite(self.reduced_momentum).all(-1) & np.isfinite(self.cayley).all(-1))
+        if name in self.columns:
+            return self.columns[name]
+        good = self._good
         if self._is_shared(name):
-            states = self._states(self.members.discrete, np.zeros(sound.sum()), sound)
-            return _spread(getattr(states, name), sound)
-        each = (getattr(self._orbit(member, sound[member]), name) for member in range(len(self)))
-        return np.stack([_spread(found, rows) for found, rows in zip(each, sound, strict=True)])
+            return _spread(getattr(self._states(self.members.discrete, good), name), good)
+        each = (getattr(self._orbit(member, good[member]), name) for member in range(len(self)))
+        return np.stack([_spread(found, rows) for found, rows in zip(each, good, strict=True)])
 
     def _is_shared(self, name: str) -> bool:
         """Tell whether a quantity is the same function of the state for all members."""
-        discrete = self.members.discrete
-        if discrete.forces is not None:
+        motion, route = self.members.discrete, self.members.route
+        if name == "multipliers" or motion.forces is not None:
             return False
-        composed = discrete.order > 2 and name == "displacement"
+        composed = name == "displacement" and route is not None and route.order > 2
         same = set() if name == "momentum" or composed else {"time_step"}
-        family = family_of(discrete.system)
+        family = family_of(motion.system)
         if name in _OF_FRAME and not composed and family is not None:
             same |= family.keeps_frame
         return self.members.parameters.keys() <= same
 
 
 def _spread(found: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Return what belongs to some of the rows in its place among all of them, NaN in the others."""
+    """Return what belongs to the first of the rows in its place among all of them, NaN in the others."""
     whole = np.full((*rows.shape, *found.shape[1:]), np.nan)
-    whole[rows] = found
+    places = tuple(numbers[: len(found)] for numbers in np.nonzero(rows))
+    whole[places] = found
     return whole
 
 
-def _first_energy(system: System, reduced: np.ndarray) -> float:
-    """Return the energy of a canonical momentum at the identity; NaN of a member that has none."""
-    if not np.isfinite(reduced).all():
-        return np.nan
-    kinetic, g = system.canonical.constrained_energy(reduced, system.group.identity), system.group.identity
-    return float(kinetic if system.forces is None else kinetic + system.forces.potential_energy(g))
+def stacked(orbits: Sequence[Any], states: int) -> dict[str, np.ndarray]:
+    """Return the rows of the orbits of all members, column by column in one array, NaN where a member has none."""
+    rows = [orbit.rows() for orbit in orbits]
+    shapes = {name: own.shape[1:] for each in rows for name, own in each.items() if name not in _COUNTED}
+    whole = {name: np.full((len(rows), states, *shape), np.nan) for name, shape in shapes.items()}
+    for name, column in whole.items():
+        for place, each in zip(column, rows, strict=True):
+            if (own := each.get(name)) is not None:
+                place[: len(own)] = own
+    return whole

@@ -1,51 +1,134 @@
-"""The starts of the members of an ensemble, and the numbers of tops and plane sleighs for all members in one go."""
+"""The starts of the members of an ensemble, of tops and plane sleighs for all members in one go."""
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from nonholo.base.checks import array, error, shape_of
 from nonholo.base.numerics import applied, factors_of, solved
 from nonholo.base.types import Bool, Float
+from nonholo.orbit import First
 from nonholo.simulation.members._families import ScalarMembers, in_lanes, scalar_members
 from nonholo.simulation.members._members import Members, refused
-from nonholo.systems import Start, System
+from nonholo.systems import Start, in_group
 
 _CHUNK = 1 << 16  # members whose starts are made at once: what it takes between is not kept
 _TOLERANCE = 1e-9  # relative, for velocities and momenta that a user computed in floating point
+_ONE = "Pass one row for each member, or one for all; `simulate` runs a single one."
 
 
-def checked_rows(system: System, parameters: dict[str, np.ndarray], start: Start) -> np.ndarray:
-    """Return the rows of a start, one for each member."""
-    where, name, value, k, dim = start.where, start.name, start.value, system.rank, system.group.dim
-    lengths = {"body_velocity": (dim,), "restricted_velocity": (k,), "momentum": (k, dim)}[name]
-    shape = shape_of(value)
-    size = shape[-1] if shape and shape[-1] in lengths else lengths[-1]
-    if len(shape) == 1 and parameters:
-        count = len(next(iter(parameters.values())))
-        return np.broadcast_to(array(where, value, (size,)), (count, size))
-    rows = array(where, value, (None, size), "Pass one row for each member; `simulate` runs a single one.")
-    if not len(rows):
-        raise error(where, "have at least one row", "none", "Pass one row for each member.")
-    for other, values in parameters.items():
-        if len(values) != len(rows):
-            got = f"{len(values)} values for {len(rows)} rows of {name}"
-            raise error(
-                f"ensemble(parameters={{{other!r}: ...}})", "have one value for each member", got, "Match them."
-            )
-    return rows
+class Firsts(NamedTuple):
+    """The checked starts of members: as `First`, with an axis of members in front of all arrays."""
+
+    numbers: tuple[Float[np.ndarray, "M ..."], ...]
+    demanded: Float[np.ndarray, "M ..."] | None
+
+    def of(self, member: int) -> First:
+        """Return the start of one member."""
+        return First(tuple(x[member] for x in self.numbers), None if self.demanded is None else self.demanded[member])
+
+    @property
+    def places(self) -> tuple[Float[np.ndarray, "M k"], Float[np.ndarray, "M ..."]]:
+        """Momenta, and poses or places."""
+        return self.numbers[0], self.numbers[1]
+
+    @property
+    def free(self) -> "Firsts":
+        """The same starts, which demand nothing of the first step."""
+        return self._replace(demanded=None)
+
+    def part(self, chosen: slice) -> "Firsts":
+        """Return the starts of some members."""
+        return Firsts(tuple(x[chosen] for x in self.numbers), None if self.demanded is None else self.demanded[chosen])
 
 
-def first_momenta(members: Members, name: str, rows: np.ndarray) -> Float[np.ndarray, "M k"]:
-    """Return the canonical momenta along the constraint subspace of starts whose shapes are checked."""
-    if not in_lanes(members):
-        return np.array([_of_one(members, member, name, rows[member]) for member in range(len(members))])
+def in_rows(motion: Any, start: Start, parameters: Mapping[str, np.ndarray]) -> tuple[Start, int]:
+    """Return a start with a row for each member, and the number of members.
+
+    The start and the pose may be one for all members where something else has a row for each.
+    """
+    pose, velocity = motion.system.shapes
+    shapes = {"configuration": pose, start.name: _shape(motion, start, pose, velocity)}
+    given = {"configuration": start.configuration, start.name: start.value}
+    given = {name: value for name, value in given.items() if value is not None}
+    several = [name for name, value in given.items() if len(shape_of(value)) != len(shapes[name])]
+    rows = {
+        name: array(
+            f"{start.owner}({name}=...)", value, (None, *shapes[name]) if name in several else shapes[name], _ONE
+        )
+        for name, value in given.items()
+    }
+    count = _common({name: len(values) for name, values in parameters.items()} | {n: len(rows[n]) for n in several})
+    whole = {n: x if n in several else np.broadcast_to(x, (count, *x.shape)) for n, x in rows.items()}
+    return dataclasses.replace(start, value=whole[start.name], configuration=whole.get("configuration")), count
+
+
+def _shape(motion: Any, start: Start, pose: tuple[int, ...], velocity: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the shape of the start of one member."""
+    if start.name == "displacement":
+        return pose
+    if start.name == "body_velocity" or "restricted_velocity" not in motion.starts:
+        return velocity
+    along = (motion.system.rank,)
+    return along if start.name == "restricted_velocity" or shape_of(start.value)[-1:] == along else velocity
+
+
+def _common(lengths: dict[str, int]) -> int:
+    """Return the number of members, refused if there is none or several."""
+    if not lengths or not all(lengths.values()):
+        got, remedy = ("no rows", "Pass at least one row.") if lengths else ("one start", _ONE)
+        raise error("ensemble(...)", "have a row for each member", got, remedy)
+    if len(set(lengths.values())) > 1:
+        got = ", ".join(f"{length} of {name}" for name, length in lengths.items())
+        raise error("ensemble(...)", "have one number of rows", got, "Pass one value for each member, or one for all.")
+    return next(iter(lengths.values()))
+
+
+def firsts(members: Members, start: Start, *, posed: bool) -> Firsts:
+    """Return the checked starts of all members, with poses or without, from one that has rows."""
+    if start.name == "displacement" or not in_lanes(members):
+        return _one_by_one(members, start, posed=posed)
     momenta = np.empty((len(members), 2))
     for begin in range(0, len(members), _CHUNK):
         part = slice(begin, begin + _CHUNK)
-        momenta[part], bad = _momenta_of_part(members.part(part), name, rows[part])
+        momenta[part], bad = _momenta_of_part(members.part(part), start.name, start.value[part])
         if bad.any():
-            member = begin + int(np.argmax(bad))
-            _of_one(members, member, name, rows[member])
-    return momenta
+            _of_one(members, start, begin + int(np.argmax(bad)), posed=posed)
+    full = start.name == "momentum" and start.value.shape[1] != 2
+    return Firsts((momenta, _poses(members, start)), start.value if full else None)
+
+
+def _one_by_one(members: Members, start: Start, *, posed: bool) -> Firsts:
+    each = [_of_one(members, start, member, posed=posed) for member in range(len(members))]
+    numbers = tuple(np.stack(column) for column in zip(*(first.numbers for first in each), strict=True))
+    demanded = None if each[0].demanded is None else np.stack([np.asarray(first.demanded) for first in each])
+    return Firsts(numbers, demanded)
+
+
+def _of_one(members: Members, start: Start, member: int, *, posed: bool) -> First:
+    """Return the checked start of one member, refused with its number."""
+    pose = None if start.configuration is None else start.configuration[member]
+    own = dataclasses.replace(start, value=start.value[member], configuration=pose)
+    try:
+        return members.of(member).first(own, posed=posed)
+    except ValueError as failure:
+        raise refused(member, failure) from None
+
+
+def _poses(members: Members, start: Start) -> Float[np.ndarray, "M 4"]:
+    """Return the first poses of members in closed form, in the canonical frame."""
+    system, pose = members.discrete.system, scalar_members(members).pose
+    if start.configuration is None:
+        return np.broadcast_to(pose, (len(members), pose.shape[1]))
+    for member, g in enumerate(start.configuration):
+        try:
+            in_group(f"{start.owner}(configuration=...)", system.group, g)
+        except ValueError as failure:
+            raise refused(member, failure) from None
+    frames = system.frame if len(pose) == 1 else system.group.matrix_from_pose(pose)
+    return system.group.pose_from_matrix(start.configuration @ frames)
 
 
 def _momenta_of_part(members: Members, name: str, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -71,15 +154,7 @@ def energies(scalar: ScalarMembers, momenta: Float[np.ndarray, "M ... 2"]) -> Fl
     return np.full(momenta.shape[:-1], np.nan) if factors is None else (momenta * solved(factors, momenta)).sum(-1) / 2
 
 
-def are_others(given: Float[np.ndarray, "M dim"], full: Float[np.ndarray, "M dim"]) -> Bool[np.ndarray, "M"]:
-    """Tell which full momenta that were given are not those with which the members start."""
+def are_others(given: Float[np.ndarray, "M ..."], full: Float[np.ndarray, "M ..."]) -> Bool[np.ndarray, "M"]:
+    """Tell which momenta or displacements that were given are not those with which the members start."""
+    given, full = given.reshape(len(given), -1), full.reshape(len(full), -1)
     return np.linalg.norm(given - full, axis=1) > _TOLERANCE * np.linalg.norm(full, axis=1)
-
-
-def _of_one(members: Members, member: int, name: str, row: np.ndarray) -> np.ndarray:
-    """Return the canonical momentum at which one member starts, refused with its number."""
-    system = members.of(member).system
-    try:
-        return Start("ensemble", name, row).momentum(system, system.group.identity)
-    except ValueError as failure:
-        raise refused(member, failure) from None

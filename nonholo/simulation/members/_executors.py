@@ -1,0 +1,319 @@
+"""What runs a block of members: lanes of a closed form, series of flows, or one by one; pieces of work in threads."""
+
+import contextlib
+import contextvars
+import dataclasses
+import functools
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from typing import Any, NamedTuple, TypeAlias, cast
+
+import numba
+import numpy as np
+
+from nonholo import kernels
+from nonholo.base.checks import needs
+from nonholo.base.progress import until
+from nonholo.base.results import Outcome, OutcomeError
+from nonholo.base.types import Float
+from nonholo.continuous import has_series, members_by_series
+from nonholo.discrete import PRINCIPAL
+from nonholo.orbit import AbstractStepper, First
+from nonholo.simulation._flow import flow_from
+from nonholo.simulation._options import stepper_of
+from nonholo.simulation._run import Run, ended
+from nonholo.simulation.events import Event, Watch
+from nonholo.simulation.members._events import log_of, watched_block
+from nonholo.simulation.members._families import ScalarMembers, body_of, in_lanes, inertias_of, scalar_members
+from nonholo.simulation.members._members import Members
+from nonholo.simulation.members._result import Ensemble, stacked
+from nonholo.simulation.members._start import Firsts, are_others
+
+_PART = 8192  # members in a piece of work of one thread, a multiple of what a compiled block holds
+_FLOWS = 1024  # flows in a piece of work,
+_BESIDE = 8  # those that are solved side by side,
+_NUMBERS = 1 << 20  # and the most numbers in their states
+
+_THREADS: contextvars.ContextVar[int | None] = contextvars.ContextVar("threads", default=None)
+
+Report: TypeAlias = Callable[[int], None]
+Starts: TypeAlias = tuple[np.ndarray, np.ndarray]  # scaled momenta and poses
+
+
+@contextlib.contextmanager
+def in_one_thread() -> Iterator[None]:
+    """Run ensembles inside in one thread, for callers that run several of them at a time."""
+    token = _THREADS.set(1)
+    try:
+        yield
+    finally:
+        _THREADS.reset(token)
+
+
+def threads_to_use() -> int:
+    """Return one `in_one_thread`, else as many as numba may use."""
+    return _THREADS.get() or int(numba.config.NUMBA_NUM_THREADS)  # pyright: ignore
+
+
+def counting(show: Callable[[int, int], None], total: int) -> Report:
+    """Return a function that adds up how many members are done, and shows it."""
+    done = 0
+
+    def report(more: int) -> None:
+        nonlocal done
+        done += more
+        show(done, total)
+
+    return report
+
+
+class Plan(NamedTuple):
+    """The work on every member.
+
+    Attributes:
+        steps: Number of steps; of a flow the number of times after the first.
+        every: Steps between saved states; None for the last one alone.
+        posed: Whether to compute poses.
+        backend: "auto", "numba" or "jax".
+        events: What the runs look for, by name; None if for nothing.
+        times: Those of a flow.
+        rtol: The relative error of its steps.
+    """
+
+    steps: int
+    every: int | None
+    posed: bool = True
+    backend: str = "auto"
+    events: dict[str, Event] | None = None
+    times: Float[np.ndarray, "K"] | None = None
+    rtol: float = 0.0
+
+    @property
+    def at_first(self) -> "Plan":
+        """The plan of flows at the first time alone."""
+        return self._replace(steps=0, times=None if self.times is None else self.times[:1])
+
+    @property
+    def states(self) -> int:
+        """How many states of each member are kept."""
+        return 1 if self.every is None else 1 + self.steps // self.every
+
+
+def run_members(members: Members, starts: Firsts, plan: Plan, report: Report = lambda _: None) -> Ensemble:
+    """Run a block of members.
+
+    Args:
+        members: Who runs.
+        starts: Their checked starts.
+        plan: What to do.
+        report: Called with the number of members that are done.
+    """
+    return executor_of(members, plan)(members, starts, plan, threads_to_use(), report)
+
+
+def executor_of(members: Members, plan: Plan) -> Callable[..., Ensemble]:
+    """Return what runs members: side by side where their closed form or their series allows it, else one by one."""
+    if plan.times is not None:
+        return run_by_series if has_series(members.discrete.system) else run_one_by_one
+    return run_in_lanes if in_lanes(members) else run_one_by_one
+
+
+def run_in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
+    """Run members of a closed form side by side; events are sought in all of their steps."""
+    if plan.events is None:
+        return _in_lanes(members, starts, plan, threads, report)
+    return watched_block(plan.events, _in_lanes(members, starts, plan._replace(every=1), threads, report), plan.every)
+
+
+def _in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
+    """Run members of a closed form, 32 at a time, or by JAX."""
+    scalar, count, (momenta, first) = scalar_members(members), len(members), starts.numbers
+    rows = _rows(count, plan.states, posed=plan.posed)
+    fields, run = scalar.fields, _advance_by_jax if plan.backend == "jax" else _advance
+    advance = functools.partial(run, body_of(members))
+
+    def work(part: slice, stop: np.ndarray) -> None:
+        pieces = _unfilled(kernels.MemberRows(*(array[part] for array in rows)))
+        scale = np.broadcast_to(scalar.scale, (count,))[part, None]
+        own = first[part] if scalar.route is None else scalar.route.encode_poses(first[part])
+        poses = np.array(own, order="C")  # never read-only: compiled once
+        own = fields if fields.shape[1] == 1 else fields[:, part]
+        begun = momenta[part] * scale if scalar.route is None else scalar.route.encode(momenta[part])
+        advance(own, (begun, poses), plan, pieces, stop)
+        if scalar.route is None:
+            np.divide(pieces.momenta, scale[:, None], out=pieces.momenta)
+        else:
+            _decode(scalar, pieces)
+
+    if plan.backend == "jax":
+        threads = 1  # XLA has its own
+    in_threads(work, _parts(count, threads, plan.backend), threads, report)
+    columns = {"reduced_momentum": rows.momenta, "cayley": rows.charts}
+    columns |= {"canonical_pose": rows.poses} if plan.posed else {}
+    batch = Ensemble(members, plan.steps, plan.every, columns, *rows[3:], *starts.places)
+    if starts.demanded is not None:
+        probe = plan._replace(steps=1, every=1, posed=True)
+        _refuse_other_starts(batch, starts.demanded, _in_lanes(members, starts.free, probe, threads, lambda _: None))
+    return batch
+
+
+def _refuse_other_starts(batch: Ensemble, demanded: np.ndarray, probe: Ensemble) -> None:
+    """Take the states from members that start with another full momentum or displacement than they should."""
+    outcome = Outcome.off_momentum_locus if demanded.ndim == 2 else Outcome.branch_unverified
+    missed = are_others(demanded, (probe.momentum if demanded.ndim == 2 else probe.displacement)[:, 0])
+    batch.outcome[missed], batch.steps_done[missed] = outcome, 0
+    for column in batch.columns.values():
+        column[missed] = np.nan
+
+
+def _decode(scalar: ScalarMembers, pieces: kernels.MemberRows) -> None:
+    """Take rows of a kernel to canonical units and axes, in place."""
+    good, route = np.isfinite(pieces.momenta[..., 0]), scalar.route
+    pieces.momenta[good] = route.decode(pieces.momenta[good])
+    pieces.charts[good] = route.from_kernel(pieces.charts[good])
+    if pieces.poses.shape[1]:
+        pieces.poses[good] = route.decode_poses(pieces.poses[good])
+
+
+def _rows(count: int, states: int, *, posed: bool) -> kernels.MemberRows:
+    """Return rows for the states of members, not yet NaN: threads that run a part of them touch its memory first."""
+    empty = (np.empty((count, kept, size)) for kept, size in ((states, 2), (states, 2), (states * posed, 4)))
+    return kernels.MemberRows(*empty, *np.zeros((2, count), dtype=np.int64))
+
+
+def _unfilled(rows: kernels.MemberRows) -> kernels.MemberRows:
+    """Return rows whose states are NaN, as those of members that do not get there stay."""
+    for states in rows[:3]:
+        states.fill(np.nan)
+    return rows
+
+
+def _advance(
+    body: Any, fields: np.ndarray, starts: Starts, plan: Plan, rows: kernels.MemberRows, stop: np.ndarray
+) -> None:
+    """Run members by the compiled loop."""
+    one = body(*(float(x) for x in fields[:, 0]))
+    tables = None if fields.shape[1] == 1 else kernels.tables_of(fields)
+    kernels.advance_members(one, tables, *starts, plan.steps, plan.every or 0, rows, stop)
+
+
+def _advance_by_jax(
+    body: Any, fields: np.ndarray, starts: Starts, plan: Plan, rows: kernels.MemberRows, stop: np.ndarray
+) -> None:
+    """Run members by JAX, and those whose roots are not certain by the compiled loop."""
+    with needs("jax", "ensemble(backend='jax')"):
+        from nonholo.simulation.members._by_jax import advance_by_jax
+
+    uncertain = advance_by_jax(body(*fields), *starts, plan.steps, plan.every or 0, rows)
+    again = np.flatnonzero(uncertain)
+    if again.size:
+        found = _unfilled(_rows(len(again), rows.momenta.shape[1], posed=plan.posed))
+        own, (momenta, poses) = fields if fields.shape[1] == 1 else fields[:, again], starts
+        _advance(body, own, (momenta[again], poses[again]), plan, found, stop)
+        for array, values in zip(rows, found, strict=True):
+            array[again] = values
+
+
+def run_one_by_one(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
+    """Run members alone, each as it runs by `simulate` or `flow`."""
+    count, orbits, done = len(members), {}, np.zeros(len(members), dtype=np.int64)
+    alone = _run_alone if plan.times is None else _flow_alone
+
+    def work(part: slice, stop: np.ndarray) -> None:
+        with until(lambda: bool(stop[0])):
+            for member in range(part.start, part.stop):
+                orbits[member], done[member] = alone(members.of(member), starts.of(member), plan)
+
+    together = plan.times is not None or _stepper_of(members.discrete, plan).in_threads
+    in_threads(work, [slice(i, i + 1) for i in range(count)], threads if together else 1, report)
+    each = [orbits[member] for member in range(count)]
+    codes = np.array([int(orbit.outcome) for orbit in each])
+    columns = stacked(each, plan.states) | _times(plan, count)
+    batch = Ensemble(members, plan.steps, plan.every, columns, codes, done, *starts.places)
+    return batch if plan.events is None else dataclasses.replace(batch, events=log_of(batch, each))
+
+
+def _stepper_of(motion: Any, plan: Plan) -> AbstractStepper[Any]:
+    return stepper_of(motion, PRINCIPAL.name, plan.backend, posed=plan.posed)
+
+
+def _run_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
+    """Return the states that one member keeps as an orbit, and its number of good steps."""
+    stepper = _stepper_of(motion, plan)
+    watch = None if plan.events is None else Watch(plan.events, motion.after_parts)
+    run = Run(stepper, plan.steps, plan.every or plan.steps, watch, throw=False, progress=False)
+    try:
+        return ended(run, first, whole=plan.every is not None)
+    except OutcomeError as refused:
+        return dataclasses.replace(cast(Any, refused.orbit), outcome=refused.outcome), 0
+
+
+def _flow_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
+    """Return the flow of one member up to its end, and the number of good times after the first."""
+    try:
+        orbit = flow_from(motion.system, first, cast(np.ndarray, plan.times), plan.rtol)
+    except OutcomeError as early:
+        orbit = cast(Any, early.orbit)
+    return orbit, len(orbit) - 1
+
+
+def run_by_series(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
+    """Solve for the flows of members side by side."""
+    count, pieces, time = len(members), {}, cast(np.ndarray, plan.times)
+
+    def work(part: slice, stop: np.ndarray) -> None:
+        given = time - time[0], plan.rtol, stop
+        inertias, places = inertias_of(members.part(part)), starts.part(part).places
+        pieces[part.start] = members_by_series(members.discrete.system, inertias, *places, *given)
+
+    numbers = sum(x.shape[1] for x in starts.places) * len(time)
+    size = max(1, min(_FLOWS, _NUMBERS // numbers, max(_BESIDE, -(-count // 8))))
+    parts = [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]
+    in_threads(work, parts, threads, report)
+    states, reached = zip(*(pieces[part.start] for part in parts), strict=True)
+    names = {"reduced_momentum": "momenta", "canonical_pose": "poses", "turned": "turned"}
+    columns = {
+        name: np.concatenate([getattr(part, own) for part in states])
+        for name, own in names.items()
+        if getattr(states[0], own) is not None
+    }
+    good = np.concatenate(reached)
+    codes = np.where(good == len(time), int(Outcome.successful), int(Outcome.not_converged))
+    return Ensemble(members, plan.steps, plan.every, columns | _times(plan, count), codes, good - 1, *starts.places)
+
+
+def _times(plan: Plan, count: int) -> dict[str, np.ndarray]:
+    """Return the times of flows as a column."""
+    return {} if plan.times is None else {"time": np.broadcast_to(plan.times, (count, len(plan.times)))}
+
+
+def _parts(count: int, threads: int, backend: str) -> list[slice]:
+    """Cut members into pieces of work: whole blocks of the kernel, some for each thread, or what JAX takes at once."""
+    if backend == "jax":
+        with needs("jax", "ensemble(backend='jax')"):
+            from nonholo.simulation.members._by_jax import chunk
+
+        size = chunk() or count
+    else:
+        blocks = -(-count // kernels.LANES)
+        size = kernels.LANES * max(1, min(_PART // kernels.LANES, blocks // (4 * threads)))
+    return [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]
+
+
+def in_threads(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int, report: Report) -> None:
+    """Do all pieces of work, which release the interpreter's lock, and report each."""
+    for part in _finished(work, parts, threads):
+        report(part.stop - part.start)
+
+
+def _finished(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int) -> Iterator[slice]:
+    """Give pieces of work as they are done; what ends this thread, Ctrl-C among it, soon ends the others."""
+    pool, stop = ThreadPoolExecutor(threads), np.zeros(1, dtype=np.bool_)
+    try:
+        waiting = {pool.submit(work, part, stop): part for part in parts}
+        for future in as_completed(waiting):
+            future.result()
+            yield waiting[future]
+    finally:
+        stop[0] = True
+        pool.shutdown(cancel_futures=True)
