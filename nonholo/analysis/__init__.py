@@ -15,7 +15,6 @@ from nonholo.analysis.conserved import (
     invariants,
     lyapunov_exponents,
     lyapunov_function,
-    step_jacobians,
     tangent,
 )
 from nonholo.analysis.energies import (
@@ -87,6 +86,5 @@ __all__ = [
     "lyapunov_function",
     "momentum_locus",
     "single_valued_region",
-    "step_jacobians",
     "tangent",
 ]

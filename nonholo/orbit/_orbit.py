@@ -7,6 +7,7 @@ discretization or a flow must know to decode them.
 
 import abc
 import dataclasses
+import functools
 import importlib
 from typing import Any, ClassVar, cast
 
@@ -19,7 +20,8 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.orbit._base import AbstractOrbit
-from nonholo.orbit._poses import configurations, poses, unwrapped
+from nonholo.orbit._decoder import AbstractDecoder, decoder_of
+from nonholo.orbit._poses import poses, unwrapped
 from nonholo.systems import System
 
 STATES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
@@ -44,6 +46,11 @@ class AbstractMotion(Keeper, abc.ABC):
     """Whether poses were given, and everything else follows from them."""
     columns: ClassVar[tuple[str, ...]] = STATES
     """The arrays of its orbits, as stores keep them."""
+
+    @functools.cached_property
+    def decoder(self) -> AbstractDecoder:
+        """What decodes the momenta and poses of its orbits."""
+        return decoder_of(self.system)
 
     @property
     @abc.abstractmethod
@@ -333,19 +340,13 @@ class Orbit(AbstractOrbit):
     @remembered
     def configuration(self) -> Float[np.ndarray, "K N N"]:
         """Poses as matrices."""
-        return configurations(self.system, self._posed())
+        self._posed()
+        return self.motion.decoder.configuration(self)
 
     @remembered
     def body_velocity(self) -> Float[np.ndarray, "K dim"]:
         """Admissible body velocities whose momenta along the constraint are those of the states."""
-        system = self.system
-        if system.is_spatial:
-            g = self.configuration
-            spatial = applied(system.constraint_subspace.T, system.restricted_velocity(self.reduced_momentum, g))
-            return applied(system.group.adjoint(system.group.inverse(g)), spatial)
-        body = system.canonical
-        velocity = applied(body.constraint_subspace.T, body.restricted_velocity(self.reduced_momentum))
-        return velocity if body is system else applied(system.group.adjoint(system.frame), velocity)
+        return self.motion.decoder.body_velocity(self)
 
     @remembered
     def spatial_momentum(self) -> Float[np.ndarray, "K dim"]:
@@ -359,7 +360,8 @@ class Orbit(AbstractOrbit):
         group = self.system.group
         if not group.is_affine:
             raise ValueError(f"`Orbit.position` needs a group of motions. Got {group}. Use configuration.")
-        return self.configuration[:, :-1, -1]
+        self._posed()
+        return self.motion.decoder.position(self)
 
     @remembered
     def heading(self) -> Float[np.ndarray, "K"]:
@@ -374,12 +376,9 @@ class Orbit(AbstractOrbit):
     @remembered
     def energy(self) -> Float[np.ndarray, "K"]:
         """Reduced constrained energy; with the potential energy under forces, that of the nodes."""
-        system, forced = self.system, self.system.forces
+        forced = self.system.forces
         potential = None if forced is None or forced.potential is None else forced.potential_energy(self.configuration)
-        if system.is_spatial:
-            kinetic = system.constrained_energy(self.reduced_momentum, self.configuration)
-        else:
-            kinetic = system.canonical.constrained_energy(self.reduced_momentum)
+        kinetic = self.motion.decoder.kinetic_energy(self)
         return kinetic if potential is None else kinetic + potential
 
     @remembered
