@@ -15,7 +15,6 @@ from nonholo.analysis.conserved import (
     invariants,
     lyapunov_exponents,
     lyapunov_function,
-    step_jacobians,
     tangent,
 )
 from nonholo.analysis.energies import (

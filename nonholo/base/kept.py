@@ -1,6 +1,7 @@
 """Properties that are computed once, and are no part of what is copied or pickled."""
 
 import functools
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,9 +24,33 @@ class Keeper:
         return {name: own[name] for name in own if name not in computed}
 
 
+def read_only(value: Any) -> Any:
+    """Return a view of an array that nobody writes to; anything else as it is."""
+    if isinstance(value, np.ndarray):
+        value = value.view()
+        value.flags.writeable = False
+    return value
+
+
 if TYPE_CHECKING:
-    kept = property
+    kept = remembered = property
 else:
+
+    class remembered(functools.cached_property):  # noqa: N801
+        """A property of a `Keeper` that is computed once, whatever its size; its array is read-only.
+
+        Example:
+            >>> class Row(Keeper):
+            ...     @remembered
+            ...     def squares(self) -> np.ndarray:
+            ...         return np.arange(3.0) ** 2
+            >>> row = Row()
+            >>> row.squares is row.squares, row.squares.flags.writeable
+            (True, False)
+        """
+
+        def __init__(self, compute: Callable[[Any], Any]) -> None:
+            super().__init__(functools.wraps(compute)(lambda owner: read_only(compute(owner))))
 
     class kept(property):  # noqa: N801
         """A property of a system, computed once; small arrays are kept, and given as copies.

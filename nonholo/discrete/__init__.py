@@ -2,6 +2,7 @@
 
 from nonholo.discrete._composition import refuse_composition, weights
 from nonholo.discrete._consistency import consistency_defect
+from nonholo.discrete._decoder import momentum_slope, step_jacobians
 from nonholo.discrete._discrete_legendre import discrete_legendre
 from nonholo.discrete._discretization import Discretization, as_discretization, discretize
 from nonholo.discrete._legendre import legendre

@@ -11,7 +11,8 @@ from nonholo.base.checks import choice, error, needs, scale, shown, trailing
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.discrete._composition import checked_order, refuse_composition, weights
-from nonholo.discrete._legendre import legendre, legendre_of_chart
+from nonholo.discrete._decoder import AbstractDisplacementDecoder, displacement_decoder
+from nonholo.discrete._legendre import legendre
 from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Difference, Scheme
 from nonholo.discrete._start import first_of_run
@@ -64,6 +65,11 @@ class Discretization(Scheme, AbstractMotion):
     def route(self) -> AbstractRoute:
         """The way in which steps are computed; chosen on first use and kept."""
         return make_route(self, self.wanted_route)
+
+    @functools.cached_property
+    def displacement_decoder(self) -> AbstractDisplacementDecoder:
+        """What decodes the displacements of its single steps."""
+        return displacement_decoder(self, self.decoder)
 
     def stepper(self, *, posed: bool) -> AbstractBodyStepper:
         """Return what takes the steps of the principal branch, and saves poses or not."""
@@ -123,8 +129,8 @@ class Discretization(Scheme, AbstractMotion):
     def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Return the elements of the variety, in the user's frame, with canonical chart coordinates."""
         where, size = "Discretization.displaced(cayley=...)", len(self.variety.chart)
-        y, frame = trailing(where, cayley, (size,), f"Pass {size} chart coordinates.", real=True), self.system.frame
-        return frame @ self.variety.displaced(y) @ self.system.group.inverse(frame)
+        charts = trailing(where, cayley, (size,), f"Pass {size} chart coordinates.", real=True)
+        return self.displacement_decoder.displacement(charts)
 
     def displacements(self, states: Orbit) -> Float[np.ndarray, "K N N"]:
         """Return the displacements of whole steps; spatial ones for a right-invariant constraint."""
@@ -201,12 +207,14 @@ class Discretization(Scheme, AbstractMotion):
             after = self.after_parts(before, np.ones(len(before)))
         known = states.has_every_step or self.forces is not None
         charts = after.canonical_chart if known else self.route.next_charts(before)
+        if self.forces is None and not self.system.is_spatial:
+            return self.displacement_decoder.multipliers(before.canonical_chart, charts)
         arriving = self._momentum(before, before.canonical_chart, "right")
         if self.forces is not None:
             arriving = arriving + self._impulses(after, 0) + self._impulses(after, -1)
         group, to_multipliers = self.system.group, np.linalg.pinv(self.system.annihilator).T
         if not self.system.is_spatial:
-            return applied(to_multipliers, legendre_of_chart(self, charts, "left") - arriving)
+            return applied(to_multipliers, self.displacement_decoder.momentum(charts, "left") - arriving)
         g = self.displaced(before.canonical_chart) @ before.configuration
         jump = _in_body(self, charts, g, "left") - arriving
         return applied(to_multipliers, group.coadjoint(group.inverse(g), jump))
@@ -221,7 +229,7 @@ class Discretization(Scheme, AbstractMotion):
     def _momentum(self, states: Orbit, cayley: np.ndarray, side: str) -> np.ndarray:
         if self.system.is_spatial:
             return _in_body(self, cayley, states.configuration, side)
-        return legendre_of_chart(self, cayley, side)
+        return self.displacement_decoder.momentum(cayley, side)
 
 
 def _in_body(discrete: Discretization, cayley: np.ndarray, g: np.ndarray, side: str) -> np.ndarray:

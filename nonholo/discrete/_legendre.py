@@ -43,14 +43,3 @@ def matrix_legendre(
     arm = xp.asarray(tensor, dtype=X.dtype) @ group.form_adjoint(X)
     carried = arm + X @ arm if side == "left" else arm + arm @ X
     return group.coordinates.dual_vector(xp.swapaxes(carried, -1, -2))
-
-
-def legendre_of_chart(discrete: Scheme, cayley: Float[Array, "... k"], side: str) -> Float[Array, "... dim"]:
-    """Return the momenta, in the user's body frame, of displacements given by canonical Cayley coordinates."""
-    system = discrete.system
-    group, canonical, back = system.group, system.canonical, system.group.inverse(system.frame)
-    X = discrete.variety.increment(cayley)
-    if discrete.difference == "matrix":
-        reduced = matrix_legendre(group, canonical.homogeneous_mass_tensor, X, side) / discrete.time_step
-        return reduced if canonical is system else group.coadjoint(back, reduced)
-    return legendre(discrete, system.frame @ X @ back, side)

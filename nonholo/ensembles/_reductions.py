@@ -6,13 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo.analysis import step_jacobians
 from nonholo.analysis.limits import turn_of_flow
 from nonholo.base.checks import error, shown
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.discrete import displacements_over, has_frame
+from nonholo.discrete import displacements_over, has_frame, step_jacobians
 from nonholo.simulation import Ensemble, have_kernel, scalar_members, tangents
 from nonholo.systems import AbstractSystem
 

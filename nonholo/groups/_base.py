@@ -37,6 +37,8 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
     """Numbers in a compact pose."""
     is_rigid: bool
     """Whether the group moves the points of a body, SO(n) or SE(n)."""
+    curvature: float | None = None
+    """Of the surface whose motions it has: 1 of the sphere, SO(3); 0 of the plane, SE(2); None of other groups."""
     form: np.ndarray | None = None
     """G of a quadratic group, whose inverse is G^-1 W^T G; None for SO(n), where it is the identity, and all others."""
 

@@ -27,6 +27,7 @@ class SpecialEuclidean2(AbstractRodriguesGroup):
         ]
     )
     coordinates: ClassVar[AbstractCoordinates] = coordinates_of(basis)
+    curvature: ClassVar[float] = 0.0
 
     def __repr__(self) -> str:
         return "SE(2)"

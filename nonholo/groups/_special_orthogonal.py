@@ -28,6 +28,7 @@ class SpecialOrthogonal3(AbstractRodriguesGroup):
         ]
     )
     coordinates: ClassVar[AbstractCoordinates] = coordinates_of(basis)
+    curvature: ClassVar[float] = 1.0
 
     def __repr__(self) -> str:
         return "SO(3)"

@@ -11,6 +11,7 @@ import numpy as np
 
 from nonholo.base.checks import LARGEST, error, is_moderate, selection
 from nonholo.base.html import table
+from nonholo.base.kept import Keeper, remembered
 from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
@@ -34,7 +35,12 @@ def _bounds(kind: Any) -> tuple[tuple[str, float], ...]:
     return tuple((name, LARGEST if "momentum" in name else np.inf) for name in names)
 
 
-class AbstractOrbit(abc.ABC):
+def _are_near(gaps: np.ndarray, h: float) -> bool:
+    """Tell what `np.allclose` tells, with fewer arrays in between."""
+    return bool((np.abs(gaps - h) <= 1e-8 + 1e-5 * abs(h)).all())
+
+
+class AbstractOrbit(Keeper, abc.ABC):
     """A motion at K saved states, of whatever system: times, configurations, momenta, energies, and how it ended.
 
     Attributes:
@@ -138,11 +144,11 @@ class AbstractOrbit(abc.ABC):
     def to_dataset(self) -> Any:
         """Return the orbit as a labeled `xarray.Dataset`."""
 
-    @property
+    @remembered
     def has_every_step(self) -> bool:
         """Whether each state but the first is one step after the one before."""
         h = self.time_step
-        return bool((np.diff(self.step) == 1).all()) and (h is None or np.allclose(np.diff(self.time), h))
+        return bool((np.diff(self.step) == 1).all()) and (h is None or _are_near(np.diff(self.time), h))
 
     @property
     @abc.abstractmethod
@@ -160,7 +166,7 @@ class AbstractOrbit(abc.ABC):
         if (gaps < 0).any() or not np.allclose(np.diff(self.time), gaps * (self.time_step or np.nan)):
             got = "others, under a force for each step"
             raise error(where, "have states at steps of one run, in their order", got, remedy)
-        size = sum(each.nbytes for each in vars(self).values() if isinstance(each, np.ndarray)) / len(self)
+        size = sum(each.nbytes for each in self.rows().values()) / len(self)
         within_memory(where, 2.0 * size * gaps.sum(), "Ask it of a part of the orbit.")
         last, parts = self.chosen(slice(0, -1)), []
         for taken in range(1, gaps.max(initial=1)):

@@ -7,19 +7,21 @@ discretization or a flow must know to decode them.
 
 import abc
 import dataclasses
+import functools
 import importlib
 from typing import Any, ClassVar, cast
 
 import numpy as np
 
 from nonholo.base.checks import error, instance, shown
-from nonholo.base.kept import Keeper
+from nonholo.base.kept import Keeper, remembered
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.orbit._base import AbstractOrbit
-from nonholo.orbit._poses import configurations, poses, unwrapped
+from nonholo.orbit._decoder import AbstractDecoder, decoder_of
+from nonholo.orbit._poses import poses, unwrapped
 from nonholo.systems import System
 
 STATES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
@@ -44,6 +46,11 @@ class AbstractMotion(Keeper, abc.ABC):
     """Whether poses were given, and everything else follows from them."""
     columns: ClassVar[tuple[str, ...]] = STATES
     """The arrays of its orbits, as stores keep them."""
+
+    @functools.cached_property
+    def decoder(self) -> AbstractDecoder:
+        """What decodes the momenta and poses of its orbits."""
+        return decoder_of(self.system)
 
     @property
     @abc.abstractmethod
@@ -95,11 +102,11 @@ class AbstractMotion(Keeper, abc.ABC):
 class Orbit(AbstractOrbit):
     r"""A motion at K saved states, from `simulate` or `flow`.
 
-    What an orbit tells is in the user's body frame, momenta in physical units; the compact states that it is made of
-    are in the canonical frame of the system, where it says so. In a discrete orbit $W_k = g_k^{-1} g_{k+1}$ is the
-    displacement and $P_k$ the momentum at $W_k$; with `save_every` > 1 displacements and multipliers are those of the
-    single steps at the saved k. Of a composition (order > 2) the momentum is that at the first substep, the
-    displacement that of the whole step.
+    What an orbit tells is in the user's body frame, momenta in physical units, and remembered: its arrays are
+    read-only. The compact states that it is made of are in the canonical frame of the system, where it says so. In a
+    discrete orbit $W_k = g_k^{-1} g_{k+1}$ is the displacement and $P_k$ the momentum at $W_k$; with `save_every` > 1
+    displacements and multipliers are those of the single steps at the saved k. Of a composition (order > 2) the
+    momentum is that at the first substep, the displacement that of the whole step.
 
     Attributes:
         motion: The discretization or flow that made it.
@@ -264,7 +271,7 @@ class Orbit(AbstractOrbit):
         """Whether poses were reconstructed."""
         return self.canonical_pose is not None
 
-    @property
+    @remembered
     def restricted_momentum(self) -> Float[np.ndarray, "K k"]:
         """Momenta along the rows of the constraint subspace; spatial ones for a right-invariant constraint."""
         return self.system.from_canonical(self.reduced_momentum)
@@ -279,7 +286,7 @@ class Orbit(AbstractOrbit):
             raise ValueError("`Orbit.displacement` needs a discrete orbit. Got a continuous flow. Use `simulate`.")
         return self.cayley
 
-    @property
+    @remembered
     def chart(self) -> Float[np.ndarray, "K k"]:
         """Coordinates of the displacements in rows S of the constraint subspace.
 
@@ -293,17 +300,17 @@ class Orbit(AbstractOrbit):
         back = np.linalg.pinv(system.constraint_subspace)
         return applied(back.T, system.group.vee((D - system.group.inverse(D)) / 2))
 
-    @property
+    @remembered
     def momentum(self) -> Float[np.ndarray, "K dim"]:
         """Body momenta."""
         return self.motion.full_momentum(self)
 
-    @property
+    @remembered
     def multipliers(self) -> Float[np.ndarray, "L s"]:
         """Impulses between the states of a discrete orbit, (K - 1, s), or forces at the times of a flow, (K, s)."""
         return self.motion.multipliers(self)
 
-    @property
+    @remembered
     def displacement(self) -> Float[np.ndarray, "K N N"]:
         """Displacements W_k = g_k^-1 g_(k+1) of single steps at the saved states."""
         D = self.motion.displacements(self)
@@ -312,7 +319,7 @@ class Orbit(AbstractOrbit):
         g = self.configuration
         return self.system.group.inverse(g) @ D @ g
 
-    @property
+    @remembered
     def spatial_displacement(self) -> Float[np.ndarray, "K N N"]:
         """Displacements U_k = g_(k+1) g_k^-1 seen from space; on the variety for a right-invariant constraint."""
         D = self.motion.displacements(self)
@@ -321,7 +328,7 @@ class Orbit(AbstractOrbit):
         g = self.configuration
         return g @ D @ self.system.group.inverse(g)
 
-    @property
+    @remembered
     def pose(self) -> Float[np.ndarray, "K size"] | None:
         """Compact poses of the group in the user's body frame; None if not reconstructed.
 
@@ -330,38 +337,33 @@ class Orbit(AbstractOrbit):
         """
         return None if self.canonical_pose is None else poses(self.system, self.canonical_pose)
 
-    @property
+    @remembered
     def configuration(self) -> Float[np.ndarray, "K N N"]:
         """Poses as matrices."""
-        return configurations(self.system, self._posed())
+        self._posed()
+        return self.motion.decoder.configuration(self)
 
-    @property
+    @remembered
     def body_velocity(self) -> Float[np.ndarray, "K dim"]:
         """Admissible body velocities whose momenta along the constraint are those of the states."""
-        system = self.system
-        if system.is_spatial:
-            g = self.configuration
-            spatial = applied(system.constraint_subspace.T, system.restricted_velocity(self.reduced_momentum, g))
-            return applied(system.group.adjoint(system.group.inverse(g)), spatial)
-        body = system.canonical
-        velocity = applied(body.constraint_subspace.T, body.restricted_velocity(self.reduced_momentum))
-        return velocity if body is system else applied(system.group.adjoint(system.frame), velocity)
+        return self.motion.decoder.body_velocity(self)
 
-    @property
+    @remembered
     def spatial_momentum(self) -> Float[np.ndarray, "K dim"]:
         """Momenta carried to space, the plain transpose of Ad at the inverse pose."""
         group = self.system.group
         return group.coadjoint(group.inverse(self.configuration), self.momentum)
 
-    @property
+    @remembered
     def position(self) -> Float[np.ndarray, "K n"]:
         """Translation parts of the poses; for groups of motions."""
         group = self.system.group
         if not group.is_affine:
             raise ValueError(f"`Orbit.position` needs a group of motions. Got {group}. Use configuration.")
-        return self.configuration[:, :-1, -1]
+        self._posed()
+        return self.motion.decoder.position(self)
 
-    @property
+    @remembered
     def heading(self) -> Float[np.ndarray, "K"]:
         """Unwrapped angle of the body on SE(2); between saved states the shorter turn is assumed unless it is known."""
         if self.turned is not None:
@@ -371,18 +373,15 @@ class Orbit(AbstractOrbit):
             raise ValueError(f"`Orbit.heading` needs motions of the plane. Got {self.system.group}.")
         return unwrapped(pose)
 
-    @property
+    @remembered
     def energy(self) -> Float[np.ndarray, "K"]:
         """Reduced constrained energy; with the potential energy under forces, that of the nodes."""
-        system, forced = self.system, self.system.forces
+        forced = self.system.forces
         potential = None if forced is None or forced.potential is None else forced.potential_energy(self.configuration)
-        if system.is_spatial:
-            kinetic = system.constrained_energy(self.reduced_momentum, self.configuration)
-        else:
-            kinetic = system.canonical.constrained_energy(self.reduced_momentum)
+        kinetic = self.motion.decoder.kinetic_energy(self)
         return kinetic if potential is None else kinetic + potential
 
-    @property
+    @remembered
     def work(self) -> Float[np.ndarray, "K"]:
         r"""Work of the force on the motion since the first state, by the trapezoidal rule; zero without one.
 
@@ -406,7 +405,7 @@ class Orbit(AbstractOrbit):
         forced = self.system.forces
         return forced is not None and forced.table is not None and not self.has_every_step
 
-    @property
+    @remembered
     def tangent(self) -> Float[np.ndarray, "L k k"]:
         """Derivatives of restricted momenta after each step of a discrete orbit by those before it, (K - 1, k, k).
 

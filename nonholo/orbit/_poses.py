@@ -28,7 +28,7 @@ class AliasingWarning(UserWarning):
 def configurations(system: System, pose: Float[np.ndarray, "K size"]) -> Float[np.ndarray, "K N N"]:
     """Return the matrices, in the user's body frame, of compact poses in the canonical one."""
     g = system.group.matrix_from_pose(pose)
-    if _is_own_frame(system):
+    if is_own_frame(system):
         return g.copy() if np.may_share_memory(g, pose) else g
     return g @ system.group.inverse(system.frame)
 
@@ -41,12 +41,12 @@ def poses(system: System, canonical_pose: Float[np.ndarray, "K size"]) -> Float[
         >>> poses(ChaplyginSleigh(1.0, 1.0, 0.5, b=0.25), np.array([[1.0, 0.0, 3.0, 0.25]]))
         array([[1., 0., 3., 0.]])
     """
-    if _is_own_frame(system):
+    if is_own_frame(system):
         return canonical_pose
     return system.group.pose_from_matrix(configurations(system, canonical_pose))
 
 
-def _is_own_frame(system: System) -> bool:
+def is_own_frame(system: System) -> bool:
     """Tell whether the user's body frame is the canonical one."""
     return system.canonical is system or np.array_equal(np.asarray(system.frame), system.group.identity)
 

@@ -1,9 +1,10 @@
-"""What a system computes once: copies of small arrays, large ones each time, nothing that is traced."""
+"""What is computed once: of systems copies of small arrays, nothing that is traced; of orbits all that is read."""
 
 import copy
 import pickle
 
 import numpy as np
+import pytest
 
 import nonholo as nh
 
@@ -42,3 +43,36 @@ def test_what_is_traced_is_not_kept() -> None:
 
     assert jax.grad(energy)(0.5) == 3.0
     assert all(set(kept) == {"mass", "inertia", "a", "b"} for kept in seen)
+
+
+READINGS = [
+    *("body_velocity", "chart", "configuration", "displacement", "energy", "heading", "momentum", "multipliers"),
+    *("pose", "position", "restricted_momentum", "spatial_displacement", "spatial_momentum", "tangent", "work"),
+]
+
+
+@pytest.mark.parametrize("name", READINGS)
+def test_an_orbit_remembers_what_was_read(name: str) -> None:
+    """A second reading is the same array, which nobody can write to; the columns of the orbit stay as they were."""
+    orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 2.0, 0.5), 0.1), momentum=(0.5, 1.0), steps=5)
+    first = getattr(orbit, name)
+    assert getattr(orbit, name) is first
+    with pytest.raises(ValueError, match="read-only"):
+        first[...] = 0.0
+    assert all(rows.flags.writeable for rows in orbit.rows().values())
+    assert len(getattr(orbit[1:3], name)) in {1, 2}  # parts remember nothing of the whole
+
+
+def test_what_an_orbit_remembers_is_its_own() -> None:
+    """Copies and pickles are as small as before the reading, and a dataset can be written to."""
+    orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 2.0, 0.5), 0.1), momentum=(0.5, 1.0), steps=5)
+    size = len(pickle.dumps(orbit))
+    dataset, energy = orbit.to_dataset(decoded=True), orbit.energy.copy()
+    assert {*READINGS} & {*vars(orbit)}
+    assert len(pickle.dumps(orbit)) == size
+    assert not {*READINGS} & {*vars(copy.copy(orbit))}
+    for variable in dataset.data_vars.values():
+        variable.values[...] = 0.0
+    dataset["time"].values[...] = 0.0
+    assert np.array_equal(orbit.energy, energy)
+    assert orbit.time[-1] == 5 * 0.1

@@ -8,7 +8,7 @@ import pytest
 from bodies import GENERAL
 
 import nonholo as nh
-from nonholo.analysis import step_jacobians
+from nonholo.discrete import step_jacobians
 from nonholo.ensembles import REDUCTIONS
 from nonholo.simulation import tangents
 

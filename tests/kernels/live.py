@@ -99,6 +99,14 @@ def nearest(system: Any) -> Arrays:
     return found
 
 
+def read(system: Any) -> Arrays:
+    """Return what is read of a motion."""
+    names = ["body_velocity", "energy", "momentum", "configuration", "displacement", "multipliers", "tangent"]
+    names += ["position"] if system.has_blade else []
+    orbit = nh.simulate(nh.discretize(system, STEP), restricted_velocity=(0.4, -0.7), steps=STEPS)
+    return [getattr(orbit, name) for name in names]
+
+
 def past_pi() -> Arrays:
     """Return a step whose principal path passes angle pi, where all unknowns are followed."""
     tensor = [
@@ -181,6 +189,8 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     "nearest values of a top": lambda: nearest(TOP),
     "nearest values of a sleigh": lambda: nearest(SLEIGH),
     "a top past angle pi": lambda: past_pi(),
+    "what is read of a top": lambda: read(TOP),
+    "what is read of a sleigh": lambda: read(nh.ChaplyginSleigh(2.0, 0.7, -0.5, 0.3)),
     "flow of a top": lambda: flows(TOP),
     "flow of a sleigh": lambda: flows(SLEIGH),
     "momenta of a sleigh on SE(200)": lambda: momenta_of_flows(

@@ -2,14 +2,13 @@
 
 import numpy as np
 
-from nonholo.analysis.conserved._step_jacobian import step_jacobians
 from nonholo.base.checks import error, shown
 from nonholo.base.types import Float
 from nonholo.continuous import ContinuousFlow, flow_tangents
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit, as_orbit
 
-_WHERE = "Orbit.tangent"
+_WHERE, _REMEDY = "Orbit.tangent", "one in coordinates has none."
 
 
 def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
@@ -36,7 +35,7 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
         array([[0.961, 0.   ],
                [0.   , 1.   ]])
     """
-    as_orbit(_WHERE, orbit, "one in coordinates has none.")
+    as_orbit(_WHERE, orbit, _REMEDY)
     discrete, system = orbit.motion, orbit.system
     if isinstance(discrete, ContinuousFlow) and not system.is_spatial and not system.is_forced:
         return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
@@ -45,7 +44,7 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
         raise error(_WHERE, "be asked of a map with closed derivatives", shown(discrete), remedy)
     if not orbit.has_every_step:
         raise error(_WHERE, "have every step", f"{len(orbit)} states with others between", "Run with save_every=1.")
-    return step_jacobians(discrete, orbit.displacement[:-1])
+    return discrete.displacement_decoder.tangent(orbit.canonical_chart[:-1])
 
 
 def lyapunov_exponents(orbit: Orbit) -> Float[np.ndarray, "k"]:
@@ -70,7 +69,7 @@ def lyapunov_exponents(orbit: Orbit) -> Float[np.ndarray, "k"]:
         >>> nh.lyapunov_exponents(nh.simulate(sleigh, restricted_velocity=(0.0, 1.0), steps=200)).round(3) + 0.0
         array([ 0. , -0.4])
     """
-    steps = tangent(orbit)
+    steps = as_orbit(_WHERE, orbit, _REMEDY).tangent
     if not len(steps):
         raise error("lyapunov_exponents(orbit=...)", "have a step", "one state", "Run longer.")
     frame, growth = np.eye(steps.shape[-1]), np.zeros(steps.shape[-1])

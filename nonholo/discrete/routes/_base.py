@@ -225,4 +225,4 @@ def matrices_of(states: Orbit) -> Float[np.ndarray, "K size"] | None:
     """Return poses as rows of matrix entries where the step depends on them, for right-invariant constraints."""
     if not states.system.is_spatial:
         return None
-    return np.ascontiguousarray(states.configuration.reshape(len(states), states.system.group.size**2))
+    return states.configuration.reshape(len(states), states.system.group.size**2).copy()  # kernels write to none

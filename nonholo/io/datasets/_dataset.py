@@ -85,7 +85,7 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
         missing = np.full((len(orbit) - len(rows), rows.shape[1]), np.nan)
         found["multipliers"] = _variable(orbit, "multipliers", np.concatenate([rows, missing]))
     number = ("step", orbit.step, {"long_name": "number of the step", "units": "1"})
-    return xarray.Dataset(found, {"step": number}, attributes(orbit)).set_coords("time")
+    return xarray.Dataset(found, {"step": number}, attributes(orbit)).set_coords("time").copy(deep=True)
 
 
 def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None) -> dict[str, xarray.Variable]:

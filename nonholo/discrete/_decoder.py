@@ -1,0 +1,148 @@
+r"""Decoders of displacements: rows of canonical chart coordinates as what a user reads, in the user's frame.
+
+A row has the same bits alone and among others. `DisplacementDecoder` is for any left-invariant constraint, by NumPy;
+`ClosedDisplacementDecoder` for the difference "matrix" where a Cayley image with two coordinates on SO(3) or SE(2) is
+all of the variety, compiled. With $F(W) = P(W)|_\mathfrak{d}$ a step takes $r = F(W)$ to $r' = -F(W^{-1})$.
+"""
+
+import abc
+import dataclasses
+
+import numpy as np
+
+from nonholo import kernels
+from nonholo.base.numerics import applied
+from nonholo.base.types import Float
+from nonholo.discrete._legendre import legendre, matrix_legendre
+from nonholo.discrete._scheme import Scheme
+from nonholo.orbit import AbstractDecoder
+
+
+class AbstractDisplacementDecoder(abc.ABC):
+    """What is read of the displacements of single steps."""
+
+    @abc.abstractmethod
+    def momentum(self, charts: Float[np.ndarray, "K m"], side: str) -> Float[np.ndarray, "K dim"]:
+        """Return the momenta that set out (side "left") or arrive ("right")."""
+
+    @abc.abstractmethod
+    def displacement(self, charts: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
+        """Return the displacements as matrices."""
+
+    @abc.abstractmethod
+    def multipliers(
+        self, charts: Float[np.ndarray, "K m"], following: Float[np.ndarray, "K m"]
+    ) -> Float[np.ndarray, "K s"]:
+        """Return the impulses between displacements and those that follow."""
+
+    @abc.abstractmethod
+    def tangent(self, charts: Float[np.ndarray, "K m"]) -> Float[np.ndarray, "K k k"]:
+        """Return the derivatives of restricted momenta after a step by those before it."""
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class DisplacementDecoder(AbstractDisplacementDecoder):
+    """The decoder of any left-invariant map."""
+
+    discrete: Scheme
+
+    def momentum(self, charts: Float[np.ndarray, "K m"], side: str) -> Float[np.ndarray, "K dim"]:
+        """Return the momenta that set out (side "left") or arrive ("right")."""
+        discrete, system = self.discrete, self.discrete.system
+        group, canonical, back = system.group, system.canonical, system.group.inverse(system.frame)
+        X = discrete.variety.increment(charts)
+        if discrete.difference == "matrix":
+            reduced = matrix_legendre(group, canonical.homogeneous_mass_tensor, X, side) / discrete.time_step
+            return reduced if canonical is system else group.coadjoint(back, reduced)
+        return legendre(discrete, system.frame @ X @ back, side)
+
+    def displacement(self, charts: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
+        """Return the displacements as matrices."""
+        frame = self.discrete.system.frame
+        return frame @ self.discrete.variety.displaced(charts) @ self.discrete.system.group.inverse(frame)
+
+    def multipliers(
+        self, charts: Float[np.ndarray, "K m"], following: Float[np.ndarray, "K m"]
+    ) -> Float[np.ndarray, "K s"]:
+        """Return the impulses between displacements and those that follow."""
+        jump = self.momentum(following, "left") - self.momentum(charts, "right")
+        return applied(np.linalg.pinv(self.discrete.system.annihilator).T, jump)
+
+    def tangent(self, charts: Float[np.ndarray, "K m"]) -> Float[np.ndarray, "K k k"]:
+        """Return the derivatives of restricted momenta after a step by those before it, for the difference "matrix"."""
+        return step_jacobians(self.discrete, self.displacement(charts))
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class ClosedDisplacementDecoder(AbstractDisplacementDecoder):
+    """The decoder of closed forms."""
+
+    numbers: kernels.Reading
+    time_step: float
+
+    def momentum(self, charts: Float[np.ndarray, "K 2"], side: str) -> Float[np.ndarray, "K 3"]:
+        """Return the momenta that set out (side "left") or arrive ("right")."""
+        sign = 1.0 if side == "left" else -1.0
+        return kernels.read(kernels.write_momenta, self.numbers, (charts,), (3,), sign, self.time_step)
+
+    def displacement(self, charts: Float[np.ndarray, "... 2"]) -> Float[np.ndarray, "... 3 3"]:
+        """Return the displacements as matrices."""
+        found = kernels.read(kernels.write_displacements, self.numbers, (charts.reshape(-1, 2),), (3, 3))
+        return found.reshape(*charts.shape[:-1], 3, 3)
+
+    def multipliers(
+        self, charts: Float[np.ndarray, "K 2"], following: Float[np.ndarray, "K 2"]
+    ) -> Float[np.ndarray, "K 1"]:
+        """Return the impulses between displacements and those that follow."""
+        return kernels.read(kernels.write_multipliers, self.numbers, (charts, following), (1,), self.time_step)
+
+    def tangent(self, charts: Float[np.ndarray, "K 2"]) -> Float[np.ndarray, "K 2 2"]:
+        """Return the derivatives of restricted momenta after a step by those before it."""
+        return kernels.read(kernels.write_tangents, self.numbers, (charts,), (2, 2))
+
+
+def displacement_decoder(discrete: Scheme, body: AbstractDecoder) -> AbstractDisplacementDecoder:
+    """Return the decoder of the displacements of a map of order 2, whose body has a decoder."""
+    numbers = body.numbers if discrete.difference == "matrix" else None
+    if numbers is None or not discrete.variety.exact or discrete.variety.exponential:
+        return DisplacementDecoder(discrete)
+    return ClosedDisplacementDecoder(numbers, float(discrete.time_step))
+
+
+def step_jacobians(discrete: Scheme, W: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "... k k"]:
+    r"""Return the derivatives of restricted momenta after a step by those before it, at each displacement.
+
+    Where the constraint is no chart, $(W - W^{-1})/2 \in \mathfrak{d}$ ties the directions of Cayley coordinates.
+    """
+    group, system = discrete.system.group, discrete.system
+    if discrete.variety.exact:
+        after, before = (momentum_slope(discrete, V) for V in (group.inverse(W), W))
+        return after @ np.linalg.inv(before)
+    (after, _), tied = (_all_slopes(discrete, V) for V in (group.inverse(W), W))
+    return after @ np.linalg.inv(np.concatenate(tied, axis=-2))[..., : system.rank]
+
+
+def _all_slopes(discrete: Scheme, W: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the derivatives of hF and of the forbidden part of (W - W^-1)/2 in all directions."""
+    group = discrete.system.group
+    sum_, inverse = (W + group.identity)[..., None, :, :], group.inverse(W)[..., None, :, :]
+    dW = sum_ @ group.basis @ sum_ / 2
+    forbidden = group.vee((dW + inverse @ dW @ inverse) / 2) @ discrete.system.annihilator.T
+    return momentum_slope(discrete, W, group.basis), np.swapaxes(forbidden, -1, -2)
+
+
+def momentum_slope(
+    discrete: Scheme, W: Float[np.ndarray, "... N N"], directions: Float[np.ndarray, "m N N"] | None = None
+) -> Float[np.ndarray, "... k m"]:
+    r"""Return the derivative of hF by the definition, in directions of Cayley coordinates, by default those of d.
+
+    From $W = (I - Y)^{-1}(I + Y)$ follows $dW = \tfrac12(W + I)\,dY\,(W + I)$, and
+    $h\langle P, x\rangle = \mathrm{tr}(\hat x W\mathbb{J}(W - I)^*)$.
+    """
+    system, star = discrete.system, discrete.system.group.form_adjoint
+    rows, tensor = system.group.hat(system.constraint_subspace), np.asarray(system.homogeneous_mass_tensor)
+    sum_, X = (W + system.group.identity)[..., None, :, :], W - system.group.identity
+    dW = sum_ @ (rows if directions is None else directions) @ sum_ / 2
+    arm = dW @ tensor @ star(X)[..., None, :, :]
+    turned = (W @ tensor)[..., None, :, :] @ star(dW)
+    return np.einsum("iab,...jba->...ij", rows, arm + turned)
