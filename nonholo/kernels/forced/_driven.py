@@ -278,7 +278,7 @@ def midpoint(drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, o
     corrections until less is missed than before. Those lead to the root that a half impulse over a growing time comes
     to, unless it has met another one.
     """
-    second, begun, change, used = room.momenta[1], room.momenta[3], room.momenta[4], room.slopes[1]
+    begun, change, used = room.momenta[3], room.momenta[4], room.slopes[1]
     left = gap(drive, room, m, out)
     for step in range(_MOST if renewed else _ITERATIONS):
         if step == 0 or renewed:
@@ -294,17 +294,27 @@ def midpoint(drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, o
         corrected(out, begun, 1.0, change)
         if small:
             return 0
-        before, part = left, 1.0
-        while True:
-            pushed_by_function(drive, room, when, m, out, second)
-            left = gap(drive, room, m, out)
-            if left < before or not renewed or part <= _SHORTEST:
-                break
-            part /= 2
-            corrected(out, begun, part, change)
+        before = left
+        left = shortened(drive, room, when, m, out, before, renewed)
         if renewed and not left < before:
             return 7
     return 7
+
+
+@inlined
+def shortened(
+    drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, out: np.ndarray, before: float, renewed: bool
+) -> float:
+    """Return what momenta miss after a correction; if slopes are renewed, it is halved until they miss less."""
+    part = 1.0
+    while True:
+        pushed_by_function(drive, room, when, m, out, room.momenta[1])
+        left = gap(drive, room, m, out)
+        if left < before or not renewed or part <= _SHORTEST:
+            break
+        part /= 2
+        corrected(out, room.momenta[3], part, room.momenta[4])
+    return left
 
 
 @inlined
