@@ -1,18 +1,6 @@
 """The compiled steps: scalar arithmetic written once for numba and JAX, the matrix step for any body, the loops."""
 
 from nonholo.kernels._composition import ComposedBody, whole_steps
-from nonholo.kernels._decode import (
-    Reading,
-    read,
-    write_displacements,
-    write_energies,
-    write_matrices,
-    write_momenta,
-    write_multipliers,
-    write_positions,
-    write_tangents,
-    write_velocities,
-)
 from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged, flat_run
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
@@ -68,7 +56,6 @@ __all__ = [
     "MemberRows",
     "NearestBody",
     "Quadratic",
-    "Reading",
     "SecularBody",
     "SleighBody",
     "SuslovBody",
@@ -92,7 +79,6 @@ __all__ = [
     "inertia",
     "move",
     "order_for",
-    "read",
     "residual",
     "revisit_series",
     "rubbed",
@@ -111,12 +97,4 @@ __all__ = [
     "tables_of",
     "tangent",
     "whole_steps",
-    "write_displacements",
-    "write_energies",
-    "write_matrices",
-    "write_momenta",
-    "write_multipliers",
-    "write_positions",
-    "write_tangents",
-    "write_velocities",
 ]
