@@ -5,44 +5,22 @@ A row has the same bits alone and among others. `DisplacementDecoder` is for any
 all of the variety, compiled. With $F(W) = P(W)|_\mathfrak{d}$ a step takes $r = F(W)$ to $r' = -F(W^{-1})$.
 """
 
-import abc
 import dataclasses
+from typing import TypeAlias
 
 import numpy as np
 
-from nonholo import kernels
 from nonholo.base.numerics import applied
 from nonholo.base.types import Float
 from nonholo.discrete._legendre import legendre, matrix_legendre
 from nonholo.discrete._scheme import Scheme
-from nonholo.orbit import AbstractDecoder
-
-
-class AbstractDisplacementDecoder(abc.ABC):
-    """What is read of the displacements of single steps."""
-
-    @abc.abstractmethod
-    def momentum(self, charts: Float[np.ndarray, "K m"], side: str) -> Float[np.ndarray, "K dim"]:
-        """Return the momenta that set out (side "left") or arrive ("right")."""
-
-    @abc.abstractmethod
-    def displacement(self, charts: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
-        """Return the displacements as matrices."""
-
-    @abc.abstractmethod
-    def multipliers(
-        self, charts: Float[np.ndarray, "K m"], following: Float[np.ndarray, "K m"]
-    ) -> Float[np.ndarray, "K s"]:
-        """Return the impulses between displacements and those that follow."""
-
-    @abc.abstractmethod
-    def tangent(self, charts: Float[np.ndarray, "K m"]) -> Float[np.ndarray, "K k k"]:
-        """Return the derivatives of restricted momenta after a step by those before it."""
+from nonholo.kernels import decoding
+from nonholo.orbit import Decoder
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class DisplacementDecoder(AbstractDisplacementDecoder):
-    """The decoder of any left-invariant map."""
+class DisplacementDecoder:
+    """What is read of the displacements of single steps of any left-invariant map."""
 
     discrete: Scheme
 
@@ -74,34 +52,37 @@ class DisplacementDecoder(AbstractDisplacementDecoder):
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class ClosedDisplacementDecoder(AbstractDisplacementDecoder):
-    """The decoder of closed forms."""
+class ClosedDisplacementDecoder:
+    """The same of closed forms."""
 
-    numbers: kernels.Reading
+    numbers: decoding.Reading
     time_step: float
 
     def momentum(self, charts: Float[np.ndarray, "K 2"], side: str) -> Float[np.ndarray, "K 3"]:
         """Return the momenta that set out (side "left") or arrive ("right")."""
         sign = 1.0 if side == "left" else -1.0
-        return kernels.read(kernels.write_momenta, self.numbers, (charts,), (3,), sign, self.time_step)
+        return decoding.read(decoding.write_momenta, self.numbers, (charts,), (3,), sign, self.time_step)
 
     def displacement(self, charts: Float[np.ndarray, "... 2"]) -> Float[np.ndarray, "... 3 3"]:
         """Return the displacements as matrices."""
-        found = kernels.read(kernels.write_displacements, self.numbers, (charts.reshape(-1, 2),), (3, 3))
+        found = decoding.read(decoding.write_displacements, self.numbers, (charts.reshape(-1, 2),), (3, 3))
         return found.reshape(*charts.shape[:-1], 3, 3)
 
     def multipliers(
         self, charts: Float[np.ndarray, "K 2"], following: Float[np.ndarray, "K 2"]
     ) -> Float[np.ndarray, "K 1"]:
         """Return the impulses between displacements and those that follow."""
-        return kernels.read(kernels.write_multipliers, self.numbers, (charts, following), (1,), self.time_step)
+        return decoding.read(decoding.write_multipliers, self.numbers, (charts, following), (1,), self.time_step)
 
     def tangent(self, charts: Float[np.ndarray, "K 2"]) -> Float[np.ndarray, "K 2 2"]:
         """Return the derivatives of restricted momenta after a step by those before it."""
-        return kernels.read(kernels.write_tangents, self.numbers, (charts,), (2, 2))
+        return decoding.read(decoding.write_tangents, self.numbers, (charts,), (2, 2))
 
 
-def displacement_decoder(discrete: Scheme, body: AbstractDecoder) -> AbstractDisplacementDecoder:
+AnyDisplacementDecoder: TypeAlias = DisplacementDecoder | ClosedDisplacementDecoder
+
+
+def displacement_decoder(discrete: Scheme, body: Decoder) -> AnyDisplacementDecoder:
     """Return the decoder of the displacements of a map of order 2, whose body has a decoder."""
     numbers = body.numbers if discrete.difference == "matrix" else None
     if numbers is None or not discrete.variety.exact or discrete.variety.exponential:

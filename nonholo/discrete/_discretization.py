@@ -11,7 +11,7 @@ from nonholo.base.checks import choice, error, needs, scale, shown, trailing
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.discrete._composition import checked_order, refuse_composition, weights
-from nonholo.discrete._decoder import AbstractDisplacementDecoder, displacement_decoder
+from nonholo.discrete._decoder import AnyDisplacementDecoder, displacement_decoder
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Difference, Scheme
@@ -67,7 +67,7 @@ class Discretization(Scheme, AbstractMotion):
         return make_route(self, self.wanted_route)
 
     @functools.cached_property
-    def displacement_decoder(self) -> AbstractDisplacementDecoder:
+    def displacement_decoder(self) -> AnyDisplacementDecoder:
         """What decodes the displacements of its single steps."""
         return displacement_decoder(self, self.decoder)
 
@@ -199,25 +199,29 @@ class Discretization(Scheme, AbstractMotion):
         """
         remedy = "Impulses of substeps at different poses do not add up to one of the step: run with order=2."
         refuse_composition("Orbit.multipliers", self, remedy)
-        if not states.has_every_step and states.branch != "principal":
-            got = f"branch {states.branch!r} and {len(states)} states with others between, which are not known"
-            raise error("Orbit.multipliers", "have every step, or the principal branch", got, "Run with save_every=1.")
         before, after = states.chosen(slice(None, -1)), states.chosen(slice(1, None))
-        if not states.has_every_step and self.forces is not None:
-            after = self.after_parts(before, np.ones(len(before)))
-        known = states.has_every_step or self.forces is not None
-        charts = after.canonical_chart if known else self.route.next_charts(before)
+        if not states.has_every_step:
+            after = self._computed(before, after)
         if self.forces is None and not self.system.is_spatial:
-            return self.displacement_decoder.multipliers(before.canonical_chart, charts)
+            return self.displacement_decoder.multipliers(before.canonical_chart, after.canonical_chart)
         arriving = self._momentum(before, before.canonical_chart, "right")
         if self.forces is not None:
             arriving = arriving + self._impulses(after, 0) + self._impulses(after, -1)
         group, to_multipliers = self.system.group, np.linalg.pinv(self.system.annihilator).T
         if not self.system.is_spatial:
-            return applied(to_multipliers, self.displacement_decoder.momentum(charts, "left") - arriving)
+            return applied(to_multipliers, self.displacement_decoder.momentum(after.canonical_chart, "left") - arriving)
         g = self.displaced(before.canonical_chart) @ before.configuration
-        jump = _in_body(self, charts, g, "left") - arriving
+        jump = _in_body(self, after.canonical_chart, g, "left") - arriving
         return applied(to_multipliers, group.coadjoint(group.inverse(g), jump))
+
+    def _computed(self, before: Orbit, after: Orbit) -> Orbit:
+        """Return the states one step after others, whose displacements count, instead of those that were saved."""
+        if before.branch != "principal":
+            got = f"branch {before.branch!r} and {len(before) + 1} states with others between, which are not known"
+            raise error("Orbit.multipliers", "have every step, or the principal branch", got, "Run with save_every=1.")
+        if self.forces is not None:
+            return self.after_parts(before, np.ones(len(before)))
+        return dataclasses.replace(after, cayley=self.route.next_charts(before))
 
     def _impulses(self, states: Orbit, shift: int) -> Float[np.ndarray, "K dim"]:
         """Return the half impulses at nodes of the steps that begin there, or with shift -1 of those that end there."""

@@ -1,24 +1,10 @@
 """The compiled steps: scalar arithmetic written once for numba and JAX, the matrix step for any body, the loops."""
 
 from nonholo.kernels._composition import ComposedBody, whole_steps
-from nonholo.kernels._decode import (
-    Reading,
-    read,
-    write_displacements,
-    write_energies,
-    write_matrices,
-    write_momenta,
-    write_multipliers,
-    write_positions,
-    write_tangents,
-    write_velocities,
-)
 from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged, flat_run
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
 from nonholo.kernels._interface import Body, certified, correction, increment, inertia, move, residual, tangent
-from nonholo.kernels._nearest import NearestBody
-from nonholo.kernels._nearest import advance as advance_to_nearest
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
 from nonholo.kernels.forced import Drive, ForcedBody, Kick, flat_forced_run, function_of, rubbed
@@ -36,6 +22,8 @@ from nonholo.kernels.general.coordinates import (
     set_out_coordinates,
 )
 from nonholo.kernels.secular import SecularBody, flat_secular_run, secular_sleigh, secular_top
+from nonholo.kernels.secular.nearest import NearestBody
+from nonholo.kernels.secular.nearest import advance as advance_to_nearest
 from nonholo.kernels.taylor import (
     Arrowhead,
     Quadratic,

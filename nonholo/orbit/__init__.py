@@ -2,7 +2,7 @@
 
 from nonholo.orbit._base import AbstractOrbit, OrbitT
 from nonholo.orbit._crossings import AbstractEventLog, Crossings, EventLog, joined_crossings
-from nonholo.orbit._decoder import AbstractDecoder
+from nonholo.orbit._decoder import Decoder
 from nonholo.orbit._orbit import STATES, AbstractMotion, Orbit, as_orbit
 from nonholo.orbit._poses import AliasingWarning, configurations, poses, turned_near, unwrapped
 from nonholo.orbit._stepper import AbstractStepper, DiscreteMotion, First, Rows, State

@@ -4,50 +4,24 @@ r"""Decoders: rows of canonical momenta and poses as what a user reads, a row wi
 compiled. What displacements tell is decoded by the motion that made them.
 """
 
-import abc
 import dataclasses
-from typing import Any
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
-from nonholo import kernels
 from nonholo.base.numerics import applied
 from nonholo.base.types import Float
+from nonholo.kernels import decoding
 from nonholo.orbit._poses import configurations, is_own_frame
 from nonholo.systems import System
 
 
-class AbstractDecoder(abc.ABC):
-    """What is read of the momenta and poses of orbits of a system.
-
-    Attributes:
-        numbers: Those of a body that compiled loops read; None of others.
-    """
-
-    numbers: kernels.Reading | None = None
-
-    @abc.abstractmethod
-    def configuration(self, orbit: Any) -> Float[np.ndarray, "K N N"]:
-        """Return poses as matrices, in the user's body frame."""
-
-    @abc.abstractmethod
-    def position(self, orbit: Any) -> Float[np.ndarray, "K n"]:
-        """Return the translation parts of the poses of a group of motions."""
-
-    @abc.abstractmethod
-    def body_velocity(self, orbit: Any) -> Float[np.ndarray, "K dim"]:
-        """Return the admissible body velocities that have the momenta."""
-
-    @abc.abstractmethod
-    def kinetic_energy(self, orbit: Any) -> Float[np.ndarray, "K"]:
-        """Return the energies of these velocities."""
-
-
 @dataclasses.dataclass(frozen=True, eq=False)
-class BodyDecoder(AbstractDecoder):
-    """The decoder of any system."""
+class BodyDecoder:
+    """What is read of the momenta and poses of orbits of any system."""
 
     system: System
+    numbers: ClassVar[None] = None
 
     def configuration(self, orbit: Any) -> Float[np.ndarray, "K N N"]:
         """Return poses as matrices, in the user's body frame."""
@@ -76,35 +50,42 @@ class BodyDecoder(AbstractDecoder):
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class ClosedDecoder(AbstractDecoder):
-    """The decoder of a body with two admissible directions on SO(3) or SE(2)."""
+class ClosedDecoder:
+    """The same of a body with two admissible directions on SO(3) or SE(2).
 
-    numbers: kernels.Reading
+    Attributes:
+        numbers: What the compiled loops read it with.
+    """
+
+    numbers: decoding.Reading
 
     def configuration(self, orbit: Any) -> Float[np.ndarray, "K 3 3"]:
         """Return poses as matrices, in the user's body frame."""
-        return kernels.read(kernels.write_matrices, self.numbers, (orbit.canonical_pose,), (3, 3))
+        return decoding.read(decoding.write_matrices, self.numbers, (orbit.canonical_pose,), (3, 3))
 
     def position(self, orbit: Any) -> Float[np.ndarray, "K 2"]:
         """Return the translation parts of the poses of a group of motions."""
-        return kernels.read(kernels.write_positions, self.numbers, (orbit.canonical_pose,), (2,))
+        return decoding.read(decoding.write_positions, self.numbers, (orbit.canonical_pose,), (2,))
 
     def body_velocity(self, orbit: Any) -> Float[np.ndarray, "K 3"]:
         """Return the admissible body velocities that have the momenta."""
-        return kernels.read(kernels.write_velocities, self.numbers, (orbit.reduced_momentum,), (3,))
+        return decoding.read(decoding.write_velocities, self.numbers, (orbit.reduced_momentum,), (3,))
 
     def kinetic_energy(self, orbit: Any) -> Float[np.ndarray, "K"]:
         """Return the energies of these velocities."""
-        return kernels.read(kernels.write_energies, self.numbers, (orbit.reduced_momentum,), ())
+        return decoding.read(decoding.write_energies, self.numbers, (orbit.reduced_momentum,), ())
 
 
-def decoder_of(system: System) -> AbstractDecoder:
+Decoder: TypeAlias = BodyDecoder | ClosedDecoder
+
+
+def decoder_of(system: System) -> Decoder:
     """Return the decoder of a system."""
     numbers = _reading_of(system)
     return BodyDecoder(system) if numbers is None else ClosedDecoder(numbers)
 
 
-def _reading_of(system: System) -> kernels.Reading | None:
+def _reading_of(system: System) -> decoding.Reading | None:
     """Return the numbers of a body that has two admissible directions on SO(3) or SE(2); None of others."""
     group = system.group
     if group.curvature is None or system.is_spatial:
@@ -115,7 +96,7 @@ def _reading_of(system: System) -> kernels.Reading | None:
     T, d = system.canonical.inertia_factors
     own, arms, (across,) = is_own_frame(system), system.canonical.constraint_subspace.T, system.annihilator
     arms = arms if own else group.adjoint(frame) @ arms
-    return kernels.Reading(
+    return decoding.Reading(
         curvature=group.curvature,
         arms=_flat(arms),
         pulls=_flat(system.inertia_operator @ arms),

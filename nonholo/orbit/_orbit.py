@@ -20,7 +20,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.orbit._base import AbstractOrbit
-from nonholo.orbit._decoder import AbstractDecoder, decoder_of
+from nonholo.orbit._decoder import Decoder, decoder_of
 from nonholo.orbit._poses import poses, unwrapped
 from nonholo.systems import System
 
@@ -48,7 +48,7 @@ class AbstractMotion(Keeper, abc.ABC):
     """The arrays of its orbits, as stores keep them."""
 
     @functools.cached_property
-    def decoder(self) -> AbstractDecoder:
+    def decoder(self) -> Decoder:
         """What decodes the momenta and poses of its orbits."""
         return decoder_of(self.system)
 
