@@ -131,7 +131,7 @@ def ensemble(
     check_systems(members)
     begun = firsts(members, start, posed=widths[-1] > 0)
     if plan.times is not None and begun.demanded is not None:
-        _check_momenta(begun.demanded, run_members(members, begun, plan.at_first).momentum[:, 0])
+        _check_momenta(begun.demanded, members, begun, plan._replace(steps=0, times=plan.times[:1]))
     with progress_bar("members", progress) as show:
         return _joined(members, begun, plan, sum(widths), reduce, counting(show, several))
 
@@ -182,8 +182,9 @@ def _refuse_too_large(plan: Plan, widths: tuple[int, ...], members: int) -> None
     return within_memory("ensemble(times=...)", 16.0 * sum(widths) * members * plan.states, remedy)
 
 
-def _check_momenta(given: np.ndarray, full: np.ndarray) -> None:
+def _check_momenta(given: np.ndarray, members: Members, starts: Firsts, at_first: Plan) -> None:
     """Refuse full momenta that no admissible velocity has."""
+    full = run_members(members, starts, at_first).momentum[:, 0]
     wrong = are_others(given, full)
     if wrong.any():
         member = int(np.argmax(wrong))

@@ -89,11 +89,6 @@ class Plan(NamedTuple):
     rtol: float = 0.0
 
     @property
-    def at_first(self) -> "Plan":
-        """The plan of flows at the first time alone."""
-        return self._replace(steps=0, times=None if self.times is None else self.times[:1])
-
-    @property
     def states(self) -> int:
         """How many states of each member are kept."""
         return 1 if self.every is None else 1 + self.steps // self.every
@@ -152,8 +147,8 @@ def _in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, report
     columns |= {"canonical_pose": rows.poses} if plan.posed else {}
     batch = Ensemble(members, plan.steps, plan.every, columns, *rows[3:], *starts.places)
     if starts.demanded is not None:
-        probe = plan._replace(steps=1, every=1, posed=True)
-        _refuse_other_starts(batch, starts.demanded, _in_lanes(members, starts.free, probe, threads, lambda _: None))
+        free, probe = starts._replace(demanded=None), plan._replace(steps=1, every=1, posed=True)
+        _refuse_other_starts(batch, starts.demanded, _in_lanes(members, free, probe, threads, lambda _: None))
     return batch
 
 

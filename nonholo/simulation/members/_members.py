@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.checks import array, error, shown
+from nonholo.base.kept import Keeper
 from nonholo.base.types import Float
 from nonholo.discrete import discretize
 from nonholo.systems import System, in_coordinates, unchecked
@@ -17,7 +18,7 @@ _ARGUMENTS = {"given_inertia": "inertia_operator"}  # fields that the constructo
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Members:
+class Members(Keeper):
     """Motions that differ by parameters.
 
     Attributes:

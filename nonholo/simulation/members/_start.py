@@ -34,11 +34,6 @@ class Firsts(NamedTuple):
         """Momenta, and poses or places."""
         return self.numbers[0], self.numbers[1]
 
-    @property
-    def free(self) -> "Firsts":
-        """The same starts, which demand nothing of the first step."""
-        return self._replace(demanded=None)
-
     def part(self, chosen: slice) -> "Firsts":
         """Return the starts of some members."""
         return Firsts(tuple(x[chosen] for x in self.numbers), None if self.demanded is None else self.demanded[chosen])
