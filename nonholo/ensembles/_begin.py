@@ -19,7 +19,7 @@ from nonholo.ensembles._names import Axes, check_dimensions
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles.datasets import DatasetTask, dataset_task_from
 from nonholo.ensembles.designs import Design, Grid, RandomDesign, axis_dimensions
-from nonholo.ensembles.stores import Layout, Output, SweepStore, Task, create_store, layout_of, open_store, probed
+from nonholo.ensembles.stores import Output, SweepStore, Task, create_store, layout_of, open_store, probed
 from nonholo.simulation import in_one_thread
 
 _BLOCK = 4096  # most members of a block of a task that does not say how many
@@ -61,7 +61,7 @@ def _block(task: Task, members: int) -> int:
     return min(most, max(least, -(-members // _PIECES)))
 
 
-def _refuse_too_large(layout: Layout, outputs: dict[str, Output], path: Path) -> None:
+def _refuse_too_large(layout: io.Layout, outputs: dict[str, Output], path: Path) -> None:
     """Refuse blocks that memory does not hold, and results that the disk does not: numbers, and files of each block."""
     each = sum(math.prod(o.shape) * np.dtype(o.dtype).itemsize for o in outputs.values())
     held = 2.0 * each * math.prod(layout.chunk)

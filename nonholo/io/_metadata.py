@@ -54,7 +54,7 @@ class _About(_Data):
     format: str
     schema_: Annotated[int, Field(alias="schema", strict=True)]
     versions: Json[dict[str, str]]
-    made: str | None = None
+    made: str
     scenario: str | None = None
     scenario_sha256: str | None = None
 
@@ -83,7 +83,6 @@ class OrbitMetadata(_About):
     events: Json[list[dict[str, Any]]] | None = None
     crossings: Json[list[NonNegativeInt]] | None = None
     stopped_by: str | None = None
-    seal: NonNegativeInt | None = None
 
     @model_validator(mode="after")
     def _have_one_length(self) -> "OrbitMetadata":
@@ -163,7 +162,7 @@ def _has_controls(value: Any) -> bool:
     return isinstance(value, list | tuple) and any(map(_has_controls, value))
 
 
-def require_identity(path: Path, made: str | None) -> None:
+def require_identity(path: Path, made: str) -> None:
     """Refuse to continue writing where another store has taken the place of the one that was opened.
 
     Raises:

@@ -6,8 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from nonholo.base.results import Outcome
-from nonholo.base.types import Float
-from nonholo.io._stored_events import Seen, packed, packed_size, unpacked
+from nonholo.io._stored_events import Seen
 
 
 class Plan(NamedTuple):
@@ -71,18 +70,3 @@ class Checkpoint(NamedTuple):
     def is_stopped(self) -> bool:
         """Whether an event ended the run here."""
         return self.seen is not None and self.seen.stopped >= 0
-
-
-def packed_checkpoint(reached: Checkpoint) -> Float[np.ndarray, "L"]:
-    """Return a checkpoint as one row of numbers."""
-    seen = () if reached.seen is None else packed(reached.seen)
-    return np.concatenate(([reached.done, int(reached.outcome)], reached.vector, seen))
-
-
-def unpacked_checkpoint(row: Float[np.ndarray, "L"], events: int | None) -> Checkpoint:
-    """Return the checkpoint in a row of numbers of a run that looks for this many events; None if it looks for none."""
-    done, outcome, numbers = int(row[0]), Outcome(int(row[1])), row[2:]
-    if events is None:
-        return Checkpoint(done, outcome, numbers)
-    vector, seen = np.split(numbers, [-packed_size(events)])
-    return Checkpoint(done, outcome, vector, unpacked(seen))

@@ -2,35 +2,26 @@
 
 import contextlib
 import errno
-import json
-import os
 import re
 import shutil
-import threading
-import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import xarray
-import zarr
-from pydantic import BaseModel
-from zarr.codecs import BloscCodec, Crc32cCodec
 
 from nonholo.base.checks import error, flags, instance
 from nonholo.base.checks import path as checked_path
 from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
-from nonholo.io._beside import new_beside, sibling
+from nonholo.io._beside import new_beside
 from nonholo.io._load import format_of
 from nonholo.io._lock import owner_of, remove_remains
-from nonholo.io._metadata import OrbitMetadata, check_assertions, check_metadata, checksum
-from nonholo.io._seals import seal_of_whole
-from nonholo.io.datasets import CANONICAL, steps_apart, stored_variables
+from nonholo.io._metadata import check_assertions
+from nonholo.io.blocks import new_blocks
+from nonholo.io.datasets import steps_apart, stored_variables
 from nonholo.orbit import AbstractOrbit
 
 _ROWS = 100_000  # states in one chunk
-_FILTERS = threading.Lock()  # warning filters belong to the whole process
 _NETCDF, _CSV = "use orbit.to_dataset().to_netcdf(path)", "use orbit.to_csv(path)"
 _OTHER_FORMATS = {
     **dict.fromkeys((".nc", ".nc4", ".netcdf", ".h5", ".hdf5"), _NETCDF),
@@ -40,7 +31,8 @@ _OTHER_FORMATS = {
     **dict.fromkeys((".gif", ".json", ".toml", ".npy", ".npz", ".mat", ".pkl", ".zip"), ""),
 }
 """Suffixes that no store may have, and what writes such files."""
-_OWN = re.compile(r"(?:[^/]+/)*(?:zarr\.json|c(?:/\d+)*|\.[^/]+\.partial)|run/(?:lock|lock\.json|blocks/\d+\.json)")
+_OWN_RUN = r"run/(?:lock|lock\.json|blocks/(?:start|\d+)\.json)"
+_OWN = re.compile(rf"(?:[^/]+/)*(?:zarr\.json|c(?:/\d+)*|\.[^/]+\.partial)|{_OWN_RUN}")
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -74,6 +66,15 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
         metadata = attributes(orbit) | ({} if scenario is None else attributes_of_text(scenario))
         _write(stored_variables(orbit) | steps_apart(orbit), metadata, part)
         put_in_place(part, target, overwrite=overwrite)
+
+
+def _write(variables: dict[str, xarray.Variable], metadata: dict[str, Any], path: Path) -> None:
+    rows = len(variables["time"])
+    store = new_blocks(path, metadata, variables, rows, max(1, min(_ROWS, rows)))
+    for block in range(store.layout.blocks):
+        (part,) = store.layout.piece(block).place
+        store.write(block, {name: variable.values[part] for name, variable in variables.items()}, {})
+    store.finish({})
 
 
 @contextlib.contextmanager
@@ -135,113 +136,6 @@ def _foreign_file(store: Path) -> str | None:
 
 def _exists(path: str | Path, remedy: str, where: str = "save_orbit(path=...)") -> FileExistsError:
     return FileExistsError(f"`{where}` must be new. Got '{path}', which exists. {remedy}")
-
-
-def _write(variables: dict[str, xarray.Variable], metadata: dict[str, Any], path: Path) -> None:
-    shapes = {name: variable.shape for name, variable in variables.items()}
-    group = new_group(path, metadata | {"arrays": json.dumps(shapes)}, OrbitMetadata)
-    create_groups(group, variables)
-    arrays = {name: _write_array(group, name, variable) for name, variable in variables.items()}
-    edit_attributes(path, {"seal": seal_of_whole(path, arrays)})
-    consolidate(path)
-
-
-def create_groups(group: zarr.Group, names: Iterable[str]) -> None:
-    """Make the group of compact states, where arrays lie in it."""
-    if any(name.startswith(CANONICAL) for name in names):
-        group.create_group(CANONICAL.rstrip("/"))
-
-
-def new_group(path: Path, metadata: dict[str, Any], kind: type[BaseModel]) -> zarr.Group:
-    """Make a store with attributes, refused if they could not be read again, and their checksum."""
-    metadata |= {"checksum": checksum(metadata)}
-    check_metadata("store=...", str(path), json.loads(json.dumps(metadata)), kind)
-    return zarr.create_group(path, zarr_format=3, attributes=metadata)
-
-
-def consolidate(path: Path) -> None:
-    """Gather the metadata of a complete store in one file, and wait until all of them are on the disk.
-
-    Those of inner groups say nothing, and are written again.
-    """
-    for inner in filter(Path.is_dir, (path / "canonical", path / "run")):
-        write_whole(inner / "zarr.json", json.dumps({"attributes": {}, "zarr_format": 3, "node_type": "group"}))
-    with _FILTERS, warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # zarr: consolidated metadata are not in the specification yet
-        zarr.consolidate_metadata(path)
-    for files in map(path.glob, ("zarr.json", "*/zarr.json", "*/*/zarr.json")):
-        for file in files:
-            settle(file)
-            settle(file.parent)
-    settle(path.parent)
-
-
-def _write_array(group: zarr.Group, name: str, variable: xarray.Variable) -> zarr.Array:
-    """Write an array one chunk after the other, so that a failure leaves no writer behind."""
-    rows = len(variable)
-    array = create_array(group, name, variable, rows, max(1, min(_ROWS, rows)))
-    for first in range(0, rows, _ROWS):
-        array[first : first + _ROWS] = np.ascontiguousarray(variable.values[first : first + _ROWS])
-    return array
-
-
-def create_array(group: zarr.Group, name: str, variable: xarray.Variable, rows: int, chunk: int) -> zarr.Array:
-    """Make the array of a variable for this many rows, this many in a chunk; rows that are not written are NaN.
-
-    Chunks are compressed, then get a checksum of what is on disk.
-    """
-    with zarr.config.set({"array.write_empty_chunks": True}):
-        return group.create_array(
-            name,
-            shape=(rows, *variable.shape[1:]),
-            dtype="float64",
-            chunks=(chunk, *(max(1, size) for size in variable.shape[1:])),
-            compressors=(BloscCodec(cname="zstd", clevel=3, shuffle="shuffle"), Crc32cCodec()),
-            fill_value=float("nan"),
-            dimension_names=[str(dimension) for dimension in variable.dims],
-            attributes=variable.attrs,
-        )
-
-
-def settle(path: Path) -> None:
-    """Wait until a file, or the names in a folder, are on the disk: a power cut does not take them back."""
-    with contextlib.suppress(PermissionError):  # Windows opens no folders
-        opened = os.open(path, os.O_RDONLY)
-        try:
-            os.fsync(opened)
-        finally:
-            os.close(opened)
-
-
-def remove_partials(store: Path) -> None:
-    """Remove what killed writers left in a store."""
-    for folder, _, files in os.walk(store):
-        for file in files:
-            if file.endswith(".partial"):
-                Path(folder, file).unlink(missing_ok=True)
-
-
-def write_whole(path: Path, text: str, *, settled: bool = False) -> None:
-    """Write a small file at once: a reader sees the old one or the new one, and a killed writer leaves a `.partial`."""
-    part = sibling(path, "partial")
-    try:
-        part.write_text(text)
-        if settled:
-            settle(part)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
-
-
-def edit_attributes(path: Path, changes: dict[str, Any]) -> None:
-    """Change attributes (None removes one) and drop the consolidated metadata, in one atomic write."""
-    document = json.loads((path / "zarr.json").read_text())
-    merged = document["attributes"] | changes
-    kept = {name: value for name, value in merged.items() if value is not None}
-    document["attributes"] = kept | {"checksum": checksum(kept)}
-    document.pop("consolidated_metadata", None)
-    write_whole(path / "zarr.json", json.dumps(document), settled=True)
-    settle(path)
 
 
 def put_in_place(part: Path, target: Path, *, overwrite: bool) -> None:

@@ -26,41 +26,12 @@ class Seen(NamedTuple):
         values: Values at the last state.
         heading: The heading there; 0 where there is none.
         stopped: Position of the event that ended the run, -1 if none did.
-        chunks: Chunks of crossings so far.
     """
 
     counts: Int[np.ndarray, "E"]
     values: Float[np.ndarray, "E"]
     heading: float
     stopped: int
-    chunks: int
-
-
-def seen_nothing(events: int) -> Seen:
-    """Return what is kept of this many events before the first state."""
-    return Seen(np.zeros(events, dtype=np.int64), np.zeros(events), 0.0, -1, 0)
-
-
-def packed(seen: Seen) -> Float[np.ndarray, "L"]:
-    """Return it as one row of numbers."""
-    return np.concatenate((seen.counts, seen.values, [seen.heading, seen.stopped, seen.chunks]))
-
-
-def unpacked(row: Float[np.ndarray, "L"]) -> Seen:
-    """Return what a row of numbers means.
-
-    Example:
-        >>> unpacked(packed(Seen(np.array([3, 1]), np.array([0.5, -2.0]), 1.25, -1, 2)))
-        Seen(counts=array([3, 1]), values=array([ 0.5, -2. ]), heading=1.25, stopped=-1, chunks=2)
-    """
-    count = (len(row) - 3) // 2
-    heading, stopped, chunks = row[2 * count :]
-    return Seen(row[:count].astype(np.int64), row[count : 2 * count], float(heading), int(stopped), int(chunks))
-
-
-def packed_size(events: int) -> int:
-    """Return the number of entries of such a row."""
-    return 2 * events + 3
 
 
 def rows_of(log: EventLog) -> Float[np.ndarray, "C width"]:

@@ -47,7 +47,7 @@ def _refuse_other_values(where: str, stream: "Stream", stepper: AbstractStepper[
     if first.seen is None:
         return
     seen, _ = search(watch, orbit_at(stepper, first.vector, 0))
-    for name, now, then in zip(watch.events, seen_by(seen, 0).values, first.seen.values, strict=True):
+    for name, now, then in zip(watch.events, seen_by(seen).values, first.seen.values, strict=True):
         if abs(now - then) > _SAME * (1 + abs(then)):
             got = f"another one of {name!r}: {now:.17g} instead of {then:.17g} at the first state"
             raise error(where, "be the functions of the store", got, "Pass those it was run with.")
@@ -68,8 +68,8 @@ def refuse_other_functions(owner: str, stream: "Stream", run: Run) -> None:
     )
     tolerance = _SAME if io.other_versions(io.read_attributes(stream.path)) else 0.0
     pairs = {
-        name: (rows.values, stream.rows(name, block * plan.rows, len(orbit)))
-        for name, rows in io.stored_variables(orbit).items()
+        name: (rows, stream.rows(name, block * plan.rows, len(orbit)))
+        for name, rows in stream.columns(orbit, block * plan.rows).items()
     }
     pairs["the last step"] = np.array(again.done), np.array(plan.steps)
     if again.done == reached.done:  # of the row, which is among the variables, nothing is asked

@@ -41,7 +41,7 @@ def into_store(run: Run, first: First, path: Path, checkpoint_every: int | None,
     remedy = "Raise save_every to keep fewer states."
     numbers = 1 + sum(run.stepper.columns.values())
     within_disk("simulate(store=...)", 8.0 * (1 + run.steps // run.every) * numbers, path, remedy)
-    stream = io.create_stream(path, there, plan, _checkpoint(begun, 0), events, scenario)
+    stream = io.create_stream(path, there, plan, _checkpoint(begun), events, scenario)
     with io.locked(stream.path):
         return continued(run, stream)
 
@@ -76,19 +76,17 @@ def _completed(run: Run, stream: "Stream") -> Checkpoint:
         sound = _sound(stream, number) if number <= marked else None
         return None if sound is None else _reached(run, sound)
 
-    begin, end = known(0) or _reached(run, _first(stream)), None
+    begin, end, number = known(0) or _reached(run, _first(stream)), None, 0
     with progress_bar("steps", run.progress) as report:
         for number, orbit, reached in blocks(run, stream.plan, begin, report, known):
             if orbit is None:
                 end = stream.checkpoint(number + 1)
                 continue
-            before = (end or _first(stream)).seen
-            chunks = 0 if before is None else stream.chunks_after(before.chunks, orbit.events)
-            is_computed, end = True, _checkpoint(reached, chunks)
+            is_computed, end = True, _checkpoint(reached)
             stream.write(number, orbit, end)
     end = end or _first(stream)
     if is_computed:
-        stream.finish(end)
+        stream.finish(end, number)
     return end
 
 
@@ -130,17 +128,17 @@ def descriptions(events: dict[str, Event]) -> list[dict[str, Any]]:
     ]
 
 
-def _checkpoint(reached: Reached, chunks: int) -> Checkpoint:
-    """Return what a store keeps of a run between two blocks, with the number of its chunks of crossings."""
-    seen = None if reached.watch is None else seen_by(reached.watch, chunks)
+def _checkpoint(reached: Reached) -> Checkpoint:
+    """Return what a store keeps of a run between two blocks."""
+    seen = None if reached.watch is None else seen_by(reached.watch)
     return Checkpoint(reached.done, reached.outcome, reached.state, seen)
 
 
-def seen_by(watch: Watch, chunks: int) -> Seen:
+def seen_by(watch: Watch) -> Seen:
     """Return what a checkpoint keeps of what is known of a motion."""
     values = np.empty(0) if watch.values is None else watch.values[:, 0]
     stopped = -1 if watch.stopped_by is None else tuple(watch.events).index(watch.stopped_by)
-    return Seen(np.array(watch.counts, dtype=np.int64), values, watch.heading or 0.0, stopped, chunks)
+    return Seen(np.array(watch.counts, dtype=np.int64), values, watch.heading or 0.0, stopped)
 
 
 def _reached(run: Run, kept: Checkpoint) -> Reached:

@@ -99,7 +99,7 @@ def begin(address: str, store: pathlib.Path) -> subprocess.Popen[bytes]:
 def done(store: pathlib.Path) -> list[str]:
     """Return who wrote each finished block."""
     marks = (store / "run" / "blocks").glob("*.json")
-    return [json.loads(mark.read_text().partition(" ")[2])["writer"] for mark in marks]
+    return [json.loads(mark.read_text().partition(" ")[2])["about"]["writer"] for mark in marks]
 
 
 if __name__ == "__main__":

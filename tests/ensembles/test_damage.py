@@ -176,7 +176,9 @@ def test_a_mark_is_data(tmp_path: Path) -> None:
     """A mark of other entries is damaged, whatever its checksum says; what a task said cannot control a terminal."""
     path = tmp_path / "run.zarr"
     swept(path)
-    for text in ('{"members": 1}', "[" * 100_000, "7"):
+    written = (path / "run" / "blocks" / "0.json").read_text().partition(" ")[2]
+    others = json.dumps(json.loads(written) | {"about": {"members": 1}})
+    for text in (others, '{"members": 1}', "[" * 100_000, "7"):
         (path / "run" / "blocks" / "0.json").write_text(f"{zlib.crc32(text.encode()):08x} {text}")
         assert standing_of(path).done == 4
         with pytest.raises(ValueError, match=r"mark 0\.json is damaged"):

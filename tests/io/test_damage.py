@@ -40,8 +40,8 @@ def _run(store: Path, **more: Any) -> nh.Orbit:
         ("canonical/pose/c/2/0", "canonical/pose/c/3/0"),
         ("time/c/1", "time/c/2"),
         ("energy/c/2", "heading/c/2"),
-        ("run/checkpoints/c/2/0", "run/checkpoints/c/4/0"),
-        ("run/checkpoints/c/0/0", "run/checkpoints/c/1/0"),
+        ("run/blocks/1.json", "run/blocks/3.json"),
+        ("run/blocks/start.json", "run/blocks/0.json"),
         ("run/events/c/0/0", "run/events/c/1/0"),
     ],
 )
@@ -58,7 +58,7 @@ def test_a_chunk_in_the_place_of_another_is_refused(one: str, other: str, tmp_pa
     with stopped_at(6):
         _run(unfinished, events=[NORTH])
     _swap(unfinished, one, other)
-    if "checkpoints/c/0" in one:
+    if "start" in one:
         with pytest.raises(ValueError, match="start of the run"):
             nh.resume(unfinished, events=[NORTH])
         return
@@ -78,12 +78,12 @@ def test_an_orbit_that_was_saved_whole_is_sealed(tmp_path: Path) -> None:
             opened(tmp_path / "orbit.zarr")
 
 
-def test_a_damaged_checkpoint_exports_no_other_table(tmp_path: Path) -> None:
+def test_a_damaged_mark_exports_no_other_table(tmp_path: Path) -> None:
     """Poses of an unfinished run are those of its finished blocks; which these are is not guessed."""
     store = tmp_path / "run.zarr"
     with stopped_at(4):
         _run(store)
-    (store / "run" / "checkpoints" / "c" / "4" / "0").write_bytes(b"")
+    (store / "run" / "blocks" / "3.json").write_bytes(b"")
     with pytest.raises(ValueError, match="must hold sound blocks"):
         store_to_csv(store, tmp_path / "poses.csv")
 
@@ -153,13 +153,13 @@ def test_deep_metadata_are_refused(tmp_path: Path) -> None:
 
 
 def test_marked_blocks_are_listed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Many blocks are not asked one by one whether they are there; folders without a chunk do not count."""
+    """Many blocks are not asked one by one whether they are there; files of other names do not count."""
     store = tmp_path / "run.zarr"
     with stopped_at(4):
         _run(store)
-    folder = store / "run" / "checkpoints" / "c"
-    (folder / "77").mkdir()
-    shutil.copytree(folder / "2", folder / "99")
+    folder = store / "run" / "blocks"
+    for name in ("98.json", "77.txt", "-5.json", "2.json.partial"):
+        shutil.copy(folder / "2.json", folder / name)
     stream, seen = open_stream(store), []
     listed: Callable[..., list[str]] = os.listdir
     monkeypatch.setattr(os, "listdir", lambda *folders: seen.append(folders) or listed(*folders))

@@ -69,7 +69,7 @@ def _kill_often(name: str, store: Path, kills: int) -> int:
     nh.simulate(discrete, **run | {"steps": 100}, events=events)  # compiled before the first fork
 
     def done() -> int:
-        return len(list((store / "run" / "checkpoints" / "c").glob("*")))
+        return len(list((store / "run" / "blocks").glob("*.json")))
 
     for _ in range(kills):
         enough, ended = done() + chance.choice([0, 1, 2, 5, 12]), 0

@@ -88,7 +88,7 @@ def begun(path: Path | None, events: list[Any], steps: int = 600, **options: Any
 
 
 def cut(path: Path, monkeypatch: pytest.MonkeyPatch, block: int, late: bool, run: Callable[[], object]) -> None:
-    """Let a run be interrupted before it writes a block or, late, when all of it but its checkpoint is written."""
+    """Let a run be interrupted before it writes a block or, late, when all of it but its mark is written."""
     write = Stream.write
 
     def interrupted(*_: Any) -> None:
@@ -96,7 +96,9 @@ def cut(path: Path, monkeypatch: pytest.MonkeyPatch, block: int, late: bool, run
 
     def failing(self: Stream, number: int, *rest: Any) -> None:
         if number == block:
-            patch.setattr("nonholo.io._stream.packed_checkpoint" if late else "nonholo.io.Stream._remove", interrupted)
+            patch.setattr(
+                f"nonholo.io.blocks._block_store.{'write_whole' if late else 'require_identity'}", interrupted
+            )
         write(self, number, *rest)
 
     with monkeypatch.context() as patch:
@@ -193,17 +195,17 @@ def test_extended_run_has_the_crossings_of_the_long_run(lengths: tuple[int, ...]
 
 
 @pytest.mark.profile("faults", keep=["flipped-run/events*", "missing-canonical/pose*"])
-@pytest.mark.parametrize("chunk", ["run/events/c/2/0", "run/checkpoints/c/4/0", "canonical/pose/c/3/0"])
+@pytest.mark.parametrize("chunk", ["run/events/c/2/0", "run/blocks/3.json", "canonical/pose/c/3/0"])
 @pytest.mark.parametrize("damage", ["missing", "flipped"])
 def test_damaged_block_is_computed_again(chunk: str, damage: str, tmp_path: Path) -> None:
-    """A missing or changed chunk of crossings, of a checkpoint or of states is named, and the run is whole again."""
+    """A missing or changed chunk of crossings or of states, or a mark, is named, and the run is whole again."""
     path = tmp_path / "run.zarr"
     whole, file = begun(path, [TURNS, entry]), path / chunk
     content = bytearray(file.read_bytes())
     content[len(content) // 2] ^= 1
     file.unlink() if damage == "missing" else file.write_bytes(content)
-    array, key = chunk.split("/c/")
-    with pytest.warns(RuntimeWarning, match=f"chunk c/{key} of the array {array}"):
+    array, _, key = chunk.partition("/c/")
+    with pytest.warns(RuntimeWarning, match=f"chunk c/{key} of the array {array}" if key else r"mark 3\.json"):
         again = nh.resume(path, events=[TURNS, entry])
     assert same(again, whole)
     assert same(nh.load_orbit(path), whole)
@@ -232,7 +234,7 @@ def test_failed_run_keeps_its_crossings(tmp_path: Path) -> None:
 
 def test_many_crossings_fill_several_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Crossings of a block that do not fit in one chunk of three rows are kept in several, those of none in none."""
-    monkeypatch.setattr("nonholo.io._stream._MOST", 3)
+    monkeypatch.setattr("nonholo.io._orbit_store._MOST", 3)
     path, rare = tmp_path / "run.zarr", nh.Event(lambda orbit: orbit.heading - 200.0, name="rare")
     for name, events in (("many", [TURNS, entry]), ("few", [rare])):
         stored = begun(path / name, events)

@@ -161,17 +161,18 @@ def test_full_disk_leaves_a_valid_store(tmp_path: Path) -> None:
 
 @pytest.mark.profile(
     "faults",
-    keep=["flipped-run/checkpoints", "missing-run/checkpoints", "flipped-energy", "missing-*pose", "empty-heading"],
+    keep=["flipped-run/blocks", "missing-run/blocks", "flipped-energy", "missing-*pose", "empty-heading"],
 )
-@pytest.mark.parametrize("array", ["time", "energy", "x", "heading", *COMPACT, "run/checkpoints"])
+@pytest.mark.parametrize("array", ["time", "energy", "x", "heading", *COMPACT, "run/blocks"])
 @pytest.mark.parametrize("damage", ["missing", "flipped", "cut", "empty"])
 def test_damaged_chunk_is_named_and_computed_again(array: str, damage: str, tmp_path: Path) -> None:
-    """A missing, changed or cut chunk of a finished block is reported by name, and the orbit is whole again."""
+    """A missing, changed or cut chunk of a finished block, or its mark, is named, and the orbit is whole again."""
     path = tmp_path / "run.zarr"
     orbit = _begun(path)
     key = "c/4" if array in ("time", "energy", "x", "heading") else "c/4/0"
+    key = "3.json" if array == "run/blocks" else key
     _damage(path / array / key, damage)
-    with pytest.warns(RuntimeWarning, match=f"chunk {key} of the array {array}"):
+    with pytest.warns(RuntimeWarning, match=f"mark {key}|chunk {key} of the array {array}"):
         again = nh.resume(path)
     assert _same(again, orbit)
     assert _same(nh.resume(path), orbit)
@@ -190,7 +191,7 @@ def test_lost_start_is_refused(tmp_path: Path) -> None:
     """Where the first block and the state before it are both gone, nothing is invented."""
     path = tmp_path / "run.zarr"
     _begun(path)
-    for chunk in ("time/c/0", "run/checkpoints/c/0/0"):
+    for chunk in ("time/c/0", "run/blocks/start.json"):
         (path / chunk).unlink()
     with pytest.warns(RuntimeWarning, match="c/0"), pytest.raises(ValueError, match=r"hold the start.*run it again"):
         nh.resume(path)

@@ -5,7 +5,6 @@ from nonholo.ensembles.stores._results import OUTCOME, RAISED, Output, Results, 
 from nonholo.ensembles.stores._standing import SweepStanding, opened_result, standing_of
 from nonholo.ensembles.stores._store import (
     SCHEMA,
-    Layout,
     Mark,
     SweepStore,
     attributes_of,

@@ -4,13 +4,10 @@ Writes are atomic, so whoever writes can be killed at any moment. What a block h
 the design, so two writers of one block write the same.
 """
 
-import asyncio
 import dataclasses
 import functools
 import json
-import math
 import uuid
-import zlib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
@@ -20,7 +17,6 @@ import xarray
 import zarr
 from pydantic import Field, TypeAdapter, ValidationError
 from zarr.codecs import BloscCodec, Crc32cCodec
-from zarr.core.sync import sync
 
 from nonholo import io
 from nonholo.base.checks import error, printable
@@ -29,59 +25,18 @@ from nonholo.ensembles.designs import Design, axis_dimensions
 from nonholo.ensembles.stores._results import Output, Results
 
 
-class Piece(NamedTuple):
-    """A block: its number, where it lies in the arrays, its first member and how many it has."""
-
-    number: int
-    place: tuple[slice, ...]
-    first: int
-    count: int
-
-
-class Layout(NamedTuple):
-    """The lengths of the dimensions of a design and of a block.
+def layout_of(sizes: tuple[int, ...], block: int) -> io.Layout:
+    """Cut a design in blocks of `block` members at most: whole last dimensions, a part of one, one of those before.
 
     Example:
-        >>> layout = layout_of((3, 5), block=2)
-        >>> layout, layout.blocks
-        (Layout(sizes=(3, 5), chunk=(1, 2)), 9)
-        >>> layout.piece(5)
-        Piece(number=5, place=(slice(1, 2, None), slice(4, 5, None)), first=9, count=1)
+        >>> layout_of((3, 5), block=2)
+        Layout(sizes=(3, 5), chunk=(1, 2))
     """
-
-    sizes: tuple[int, ...]
-    chunk: tuple[int, ...]
-
-    @property
-    def blocks(self) -> int:
-        """Number of blocks."""
-        return math.prod(self.counts)
-
-    @property
-    def counts(self) -> tuple[int, ...]:
-        """Numbers of blocks along each dimension."""
-        return tuple(-(-size // chunk) for size, chunk in zip(self.sizes, self.chunk, strict=True))
-
-    def index(self, block: int) -> tuple[int, ...]:
-        """Return where a block stands among the blocks."""
-        return tuple(int(at) for at in np.unravel_index(block, self.counts))
-
-    def piece(self, block: int) -> Piece:
-        """Return a block."""
-        begins = [at * chunk for at, chunk in zip(self.index(block), self.chunk, strict=True)]
-        ends = [min(begin + chunk, size) for begin, chunk, size in zip(begins, self.chunk, self.sizes, strict=True)]
-        place = tuple(slice(begin, end) for begin, end in zip(begins, ends, strict=True))
-        first = int(np.ravel_multi_index(begins, self.sizes))
-        return Piece(block, place, first, math.prod(s.stop - s.start for s in place))
-
-
-def layout_of(sizes: tuple[int, ...], block: int) -> Layout:
-    """Cut a design in blocks of `block` members at most: whole last dimensions, a part of one, one of those before."""
     chunk, room = [], block
     for size in reversed(sizes):
         chunk.append(max(1, min(size, room)))
         room //= chunk[-1] if chunk[-1] == size else room
-    return Layout(sizes, tuple(reversed(chunk)))
+    return io.Layout(sizes, tuple(reversed(chunk)))
 
 
 FORMAT = "nonholo.sweep"
@@ -94,7 +49,7 @@ _CODECS = BloscCodec(cname="lz4", clevel=5, shuffle="bitshuffle"), Crc32cCodec()
 
 
 class Mark(NamedTuple):
-    """The mark of a finished block."""
+    """What the mark of a finished block says."""
 
     members: int
     outcomes: dict[str, int]
@@ -102,7 +57,6 @@ class Mark(NamedTuple):
     finished: float
     writer: str
     messages: list[Annotated[list[Any], Field(min_length=2, max_length=2)]]
-    seal: int = 0
 
 
 _MARK = TypeAdapter(Mark)
@@ -124,9 +78,9 @@ class SweepStore:
         return SweepStore, (self.path, self.made)
 
     @functools.cached_property
-    def layout(self) -> Layout:
+    def layout(self) -> io.Layout:
         """The cut of members into blocks."""
-        return Layout(*(tuple(sizes) for sizes in self._content["layout"]))
+        return io.Layout(*(tuple(sizes) for sizes in self._content["layout"]))
 
     @functools.cached_property
     def outputs(self) -> dict[str, Output]:
@@ -149,26 +103,9 @@ class SweepStore:
         document = json.loads((self.path / "zarr.json").read_text())
         return document["attributes"]["finished"] and "consolidated_metadata" in document
 
-    def write(self, piece: Piece, results: Results, mark: Mark) -> None:
+    def write(self, piece: io.Piece, results: Results, mark: Mark) -> None:
         """Write the chunks of a block, then its mark."""
-        io.require_identity(self.path, self.made)
-        self._mark_file(piece.number).unlink(missing_ok=True)
-        for name in results.arrays:
-            self._chunk_file(name, piece.number).unlink(missing_ok=True)  # zarr would read a damaged one first
-        sync(self._write_chunks(piece, results))
-        text = json.dumps(mark._replace(seal=self._seal(piece.number))._asdict())
-        io.write_whole(self._mark_file(piece.number), f"{zlib.crc32(text.encode()):08x} {text}")
-
-    async def _write_chunks(self, piece: Piece, results: Results) -> None:
-        """Write the chunks of a block side by side, which takes half of the time; a failure leaves no writer behind."""
-        lengths = tuple(s.stop - s.start for s in piece.place)
-        writes = [
-            self._arrays[name].async_array.setitem(piece.place, rows.reshape(*lengths, *rows.shape[1:]))
-            for name, rows in results.arrays.items()
-        ]
-        for failure in await asyncio.gather(*writes, return_exceptions=True):
-            if isinstance(failure, BaseException):
-                raise failure
+        self._blocks.write(piece.number, results.arrays, mark._asdict())
 
     def mark(self, block: int) -> Mark | None:
         """Return the mark of a block, None if the block is not finished.
@@ -176,29 +113,12 @@ class SweepStore:
         Raises:
             DamagedError: The mark cannot be read, or is not the one that was written.
         """
-        try:
-            written = self._mark_file(block).read_text()
-        except FileNotFoundError:
-            return None
-        except UnicodeDecodeError:
-            raise io.DamagedError(f"the mark {self._mark_file(block).name} cannot be read") from None
-        check, _, text = written.partition(" ")
-        try:
-            mark = _MARK.validate_json(text)
-        except ValidationError:
-            check, mark = "", None
-        if mark is None or check != f"{zlib.crc32(text.encode()):08x}":
-            raise io.DamagedError(f"the mark {self._mark_file(block).name} is damaged")
-        return mark._replace(
-            outcomes={printable(name): count for name, count in mark.outcomes.items()},
-            writer=printable(mark.writer),
-            messages=[[member, printable(str(message).replace("\n", " "))] for member, message in mark.messages],
-        )
+        mark = self._blocks.mark(block)
+        return None if mark is None else _mark_of(block, mark.about)
 
     def marks(self) -> Iterator[tuple[int, Mark]]:
         """Return the numbers of finished blocks in order with their marks, those that can be read."""
-        files = (self.path / "run" / "blocks").glob("*.json")
-        for block in sorted(int(file.stem) for file in files if file.stem.isdecimal()):
+        for block in sorted(self._blocks.marked()):
             try:
                 mark = self.mark(block)
             except io.DamagedError:
@@ -212,22 +132,7 @@ class SweepStore:
         Raises:
             DamagedError: One is not, or the mark is not; the message says which, and how.
         """
-        for name, array in self._arrays.items():
-            index = self._index(name, block)
-            try:
-                io.read_chunk(self.path, name, array, index, with_nan=True)
-            except io.DamagedError as wrong:
-                raise io.DamagedError(f"{wrong}, {io.chunk_name(name, array, index)}") from None
-        mark = self.mark(block)
-        if mark is None:
-            raise io.DamagedError(f"no mark {self._mark_file(block).name}")
-        if mark.seal != self._seal(block):
-            flaw = f"a chunk of another place in block {block}, which {self._mark_file(block).name} seals"
-            raise io.DamagedError(flaw)
-        return mark
-
-    def _seal(self, block: int) -> int:
-        return io.seal_of(self.path, block, (self._chunk_file(name, block) for name in sorted(self._arrays)))
+        return _mark_of(block, self._blocks.sound(block).about)
 
     def check(self, where: str, blocks: Iterable[int]) -> None:
         """Refuse a store of which one of these blocks, or an axis, is damaged."""
@@ -239,31 +144,19 @@ class SweepStore:
             remedy = f"nonholo.resume({str(self.path)!r}) computes its block again."
             raise error(where, "be sound", f"'{self.path}', in which there is {flaw}", remedy) from None
 
-    def rows(self, name: str, piece: Piece) -> np.ndarray:
+    def rows(self, name: str, piece: io.Piece) -> np.ndarray:
         """Return an array of a block, one row for each member."""
-        found = np.asarray(self._arrays[name][piece.place])
+        found = self._blocks.rows(name, piece.place)
         return found.reshape(piece.count, *found.shape[len(piece.place) :])
 
     def prepare(self) -> None:
         """Remove what killed writers left and show that every array can be opened."""
-        (self.path / "run" / "blocks").mkdir(exist_ok=True)  # what copies stores may leave out empty folders
-        io.remove_partials(self.path)
-        _ = self._arrays, self.design
+        self._blocks.prepare()
+        _ = self.design
 
     def finish(self) -> None:
         """Say that the sweep came to its end, and consolidate the metadata."""
-        io.require_identity(self.path, self.made)
-        io.edit_attributes(self.path, {"finished": True})
-        io.consolidate(self.path)
-
-    def _index(self, name: str, block: int) -> tuple[int, ...]:
-        return (*self.layout.index(block), *(0,) * len(self.outputs[name].shape))
-
-    def _chunk_file(self, name: str, block: int) -> Path:
-        return io.chunk_path(self.path, name, self._arrays[name], self._index(name, block))
-
-    def _mark_file(self, block: int) -> Path:
-        return self.path / "run" / "blocks" / f"{block}.json"
+        self._blocks.finish({"finished": True})
 
     def _axis(self, name: str) -> np.ndarray:
         array = io.writable_array(self.path, name)
@@ -282,11 +175,11 @@ class SweepStore:
         return json.loads(attributes_of(self.path)["sweep"])
 
     @functools.cached_property
-    def _arrays(self) -> dict[str, zarr.Array]:
-        opened = {name: io.writable_array(self.path, name) for name in self.outputs}
-        for name, array in opened.items():
+    def _blocks(self) -> io.BlockStore:
+        arrays = {name: io.writable_array(self.path, name) for name in self.outputs}
+        for name, array in arrays.items():
             self._check_described(name, array)
-        return {name: array.with_config({"write_empty_chunks": True}) for name, array in opened.items()}
+        return io.BlockStore(self.path, self.made, self.layout, arrays, holds_nan=True)
 
     def _check_described(self, name: str, array: zarr.Array) -> None:
         """Refuse an array that is not the one of the description, of which the attributes have a checksum."""
@@ -300,6 +193,19 @@ class SweepStore:
             raise error("resume(store=...)", f"hold the array {name} of its description", got, _AGAIN)
 
 
+def _mark_of(block: int, about: dict[str, Any]) -> Mark:
+    """Return what a mark says, as data, with texts that control no terminal."""
+    try:
+        mark = _MARK.validate_python(about)
+    except ValidationError:
+        raise io.DamagedError(f"the mark {block}.json is damaged") from None
+    return mark._replace(
+        outcomes={printable(name): count for name, count in mark.outcomes.items()},
+        writer=printable(mark.writer),
+        messages=[[member, printable(str(message).replace("\n", " "))] for member, message in mark.messages],
+    )
+
+
 @functools.lru_cache(maxsize=16)
 def store_of(store: SweepStore) -> SweepStore:
     """Return the store of this process that stands for one that was sent: its arrays are opened once."""
@@ -310,7 +216,7 @@ def create_store(
     path: Path,
     description: dict[str, Any],
     design: Design,
-    layout: Layout,
+    layout: io.Layout,
     outputs: dict[str, Output],
     extra: dict[str, Any],
 ) -> SweepStore:
@@ -323,7 +229,7 @@ def create_store(
     with io.new_beside(path) as part:
         group = io.new_group(part, about | {"versions": io.versions_text()} | extra, io.SweepMetadata)
         _create_arrays(group, design, layout, outputs)
-        (part / "run" / "blocks").mkdir()
+        io.make_marks(group, part)
         try:
             io.put_in_place(part, target, overwrite=False)
         except FileExistsError:
@@ -347,7 +253,7 @@ def attributes_of(path: str | Path) -> dict[str, Any]:
     return io.read_attributes(path, FORMAT, SCHEMA)
 
 
-def _create_arrays(group: zarr.Group, design: Design, layout: Layout, outputs: dict[str, Output]) -> None:
+def _create_arrays(group: zarr.Group, design: Design, layout: io.Layout, outputs: dict[str, Output]) -> None:
     for name, values in design.axes.items():
         variable = xarray.Variable(axis_dimensions(name, values), values, _AXIS)
         io.create_array(group, name, variable, len(values), len(values))[:] = values
@@ -362,4 +268,3 @@ def _create_arrays(group: zarr.Group, design: Design, layout: Layout, outputs: d
             dimension_names=[*design.sizes, *output.dimensions],
             attributes=output.attributes,
         )
-    group.create_group("run")  # or xarray would wonder what that folder is
