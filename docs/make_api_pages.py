@@ -156,9 +156,9 @@ def _room(value: Any) -> str:
 
 
 def _named_by(room: str) -> list[str]:
-    """Return what a room exports."""
+    """Return what a room exports: what it lists, or else what it imports."""
     module = getattr(nh, room) if room in OPEN else import_module(f"nonholo.{room}")
-    return getattr(module, "__all__", [])
+    return getattr(module, "__all__", [name for name in vars(module) if not name.startswith("_")])
 
 
 _READY = """\

@@ -133,11 +133,18 @@ def _protected(argument: Any, compiled: bool) -> Any:
         return argument
     argument = copy.copy(argument)
     for field in dataclasses.fields(argument):
-        if isinstance(rows := getattr(argument, field.name), np.ndarray):
-            rows = rows.view()
-            rows.flags.writeable = False
-            object.__setattr__(argument, field.name, rows)
+        object.__setattr__(argument, field.name, _read_only(getattr(argument, field.name)))
     return argument
+
+
+def _read_only(rows: Any) -> Any:
+    """Return arrays, in a dictionary too, as views that are read-only."""
+    if isinstance(rows, dict):
+        return {name: _read_only(column) for name, column in rows.items()}
+    if isinstance(rows, np.ndarray):
+        rows = rows.view()
+        rows.flags.writeable = False
+    return rows
 
 
 def _bytes(argument: Any) -> Any:
