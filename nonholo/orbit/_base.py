@@ -25,7 +25,8 @@ _COLUMNS = {
 }  # in coordinates; multipliers may be unknown
 _COLUMNS |= {"reduced_momentum", "cayley", "canonical_pose"}  # compact
 
-OrbitT = TypeVar("OrbitT", bound="AbstractOrbit")
+OrbitT = TypeVar("OrbitT")
+SelfT = TypeVar("SelfT", bound="AbstractOrbit")
 
 
 @functools.cache
@@ -122,20 +123,20 @@ class AbstractOrbit(Keeper, abc.ABC):
         """Return the arrays with a row for each state; impulses that are not known are NaN."""
 
     @abc.abstractmethod
-    def of_rows(self: OrbitT, rows: dict[str, np.ndarray]) -> OrbitT:
+    def of_rows(self: SelfT, rows: dict[str, np.ndarray]) -> SelfT:
         """Return the orbit of other rows."""
 
-    def chosen(self: OrbitT, states: slice | np.ndarray) -> OrbitT:
+    def chosen(self: SelfT, states: slice | np.ndarray) -> SelfT:
         """Return some of the states, by a slice, a mask or their numbers, each with the same `save_every` as before."""
         at = selection(f"{type(self).__name__}.chosen(states=...)", states)
         return self.of_rows({name: rows[at] for name, rows in self.rows().items()})
 
-    def joined(self: OrbitT, others: Sequence[OrbitT]) -> OrbitT:
+    def joined(self: SelfT, others: Sequence[SelfT]) -> SelfT:
         """Return the states with those of other parts of the same motion after them."""
         parts = [part.rows() for part in (self, *others)]
         return self.of_rows({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
-    def with_headings(self: OrbitT, before: float | None) -> OrbitT:
+    def with_headings(self: SelfT, before: float | None) -> SelfT:
         """Return the states with headings that continue from the given one, where there are any."""
         del before
         return self
@@ -155,7 +156,7 @@ class AbstractOrbit(Keeper, abc.ABC):
     def lacks_forces(self) -> bool:
         """Whether a table has forces of steps between the states."""
 
-    def with_every_step(self: OrbitT) -> OrbitT:
+    def with_every_step(self: SelfT) -> SelfT:
         """Return the motion at every step from the first state to the last; those left out are computed again.
 
         Raises:

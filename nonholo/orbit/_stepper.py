@@ -2,7 +2,7 @@
 
 import abc
 from collections.abc import Mapping
-from typing import Any, ClassVar, Generic, NamedTuple, Protocol, TypeAlias
+from typing import Any, ClassVar, Generic, NamedTuple, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.orbit._base import OrbitT
 
-Rows: TypeAlias = tuple[Float[np.ndarray, "K w"], ...]
+Rows: TypeAlias = tuple[Float[np.ndarray, "_ _"], ...]
 """An array for each column, C-contiguous and writable, the entries of a row flattened."""
 State: TypeAlias = Float[np.ndarray, "L"]
 """The row of the state, then the numbers of the stepper's own."""
@@ -82,6 +82,7 @@ class AbstractStepper(abc.ABC, Generic[OrbitT]):
         """
 
 
+@runtime_checkable
 class DiscreteMotion(Protocol[OrbitT]):
     """A discretized system: what `simulate`, `iterate` and stores ask of it."""
 

@@ -460,7 +460,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
         "1 of configuration",
     ),
     "a displacement off the variety": (
-        {"displacement": [np.eye(3), nh.SE(2).exp([0.0, 0.0, 1.0])]},
+        {"displacement": [np.eye(3), nh.SE(2).exp(np.array([0.0, 0.0, 1.0]))]},
         "lie on the displacement variety.*This is member 1",
     ),
     "no start": ({}, "exactly one of"),
