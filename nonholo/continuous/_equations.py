@@ -102,7 +102,7 @@ class ContinuousFlow(AbstractMotion):
         rows: dict[str, Any] = {"reduced_momentum": found.momenta}
         if states.canonical_pose is not None:
             rows |= {"canonical_pose": found.poses, "turned": found.turned}
-        return dataclasses.replace(states, time=time, **rows, save_every=1, events=None, step=None)
+        return dataclasses.replace(states, time=time, **rows, save_every=1, events=None, step=np.arange(len(time)))
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         r"""Return the momenta $p = \mathbb{I}\omega$."""

@@ -202,7 +202,7 @@ def parts_by(
     So the bits of each do not depend on the others.
     """
     poses = route.encode_poses(poses) if poses.size else poses
-    given = route.encode(states.reduced_momentum), poses, states.time, states.step, fractions
+    given = route.encode(states.reduced_momentum), poses, states.time, states.step.tolist(), fractions
     nowhere = tuple(np.full(size, np.nan) for size in (*route.sizes[:2], poses.shape[1]))
     found = (part(*row) or nowhere for row in zip(*given, strict=True))
     momenta, charts, moved = (np.array(column) for column in zip(*found, strict=True))

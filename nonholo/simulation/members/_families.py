@@ -12,7 +12,7 @@ from nonholo.base.checks import error
 from nonholo.base.types import Bool, Float
 from nonholo.discrete import Discretization
 from nonholo.simulation.members._members import STEP, Members, refused
-from nonholo.systems import ChaplyginSleigh, LLSystem, RigidBody, SuslovTop, System
+from nonholo.systems import ChaplyginSleigh, LLSystem, RigidBody, SuslovTop
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -98,7 +98,7 @@ _STACKED = (ChaplyginSleigh, SuslovTop, RigidBody, LLSystem)
 """Systems whose formulas allow for an axis of members in front of all numbers."""
 
 
-def family_of(system: System) -> Family | None:
+def family_of(system: Any) -> Family | None:
     """Return what is known of a family, whatever n; None of others."""
     return _FAMILIES.get(type(system))
 
