@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.checks import error, real_or_complex, shown
+from nonholo.base.kept import read_only
 from nonholo.base.types import Array
 
 _FEW = 8  # numbers that are shown together
@@ -133,18 +134,8 @@ def _protected(argument: Any, compiled: bool) -> Any:
         return argument
     argument = copy.copy(argument)
     for field in dataclasses.fields(argument):
-        object.__setattr__(argument, field.name, _read_only(getattr(argument, field.name)))
+        object.__setattr__(argument, field.name, read_only(getattr(argument, field.name)))
     return argument
-
-
-def _read_only(rows: Any) -> Any:
-    """Return arrays, in a dictionary too, as views that are read-only."""
-    if isinstance(rows, dict):
-        return {name: _read_only(column) for name, column in rows.items()}
-    if isinstance(rows, np.ndarray):
-        rows = rows.view()
-        rows.flags.writeable = False
-    return rows
 
 
 def _bytes(argument: Any) -> Any:

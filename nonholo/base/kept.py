@@ -25,7 +25,9 @@ class Keeper:
 
 
 def read_only(value: Any) -> Any:
-    """Return a view of an array that nobody writes to; anything else as it is."""
+    """Return views of arrays, in a dictionary too, to which nobody writes; anything else as it is."""
+    if isinstance(value, dict):
+        return {name: read_only(entry) for name, entry in value.items()}
     if isinstance(value, np.ndarray):
         value = value.view()
         value.flags.writeable = False

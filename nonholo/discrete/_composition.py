@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.checks import choice, error
+from nonholo.base.kept import read_only
 from nonholo.base.types import Float
 from nonholo.discrete._scheme import Scheme
 
@@ -44,9 +45,7 @@ def weights(order: int) -> Float[np.ndarray, "S"]:
         [0.414, 0.414, -0.658, 0.414, 0.414]
     """
     half = np.array([float(text) for text in WEIGHTS.get(order, ())])
-    found = np.concatenate([half, [1 - 2 * half.sum()], half[::-1]])
-    found.flags.writeable = False
-    return found
+    return read_only(np.concatenate([half, [1 - 2 * half.sum()], half[::-1]]))
 
 
 def checked_order(order: Any, difference: object, constraint: object) -> int:

@@ -36,11 +36,6 @@ def _bounds(kind: Any) -> tuple[tuple[str, float], ...]:
     return tuple((name, LARGEST if "momentum" in name else np.inf) for name in names)
 
 
-def _are_near(gaps: np.ndarray, h: float) -> bool:
-    """Tell what `np.allclose` tells, with fewer arrays in between."""
-    return bool((np.abs(gaps - h) <= 1e-8 + 1e-5 * abs(h)).all())
-
-
 class AbstractOrbit(Keeper, abc.ABC):
     """A motion at K saved states, of whatever system: times, configurations, momenta, energies, and how it ended.
 
@@ -149,7 +144,7 @@ class AbstractOrbit(Keeper, abc.ABC):
     def has_every_step(self) -> bool:
         """Whether each state but the first is one step after the one before."""
         h = self.time_step
-        return bool((np.diff(self.step) == 1).all()) and (h is None or _are_near(np.diff(self.time), h))
+        return bool((np.diff(self.step) == 1).all()) and (h is None or np.allclose(np.diff(self.time), h))
 
     @property
     @abc.abstractmethod

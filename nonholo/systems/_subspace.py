@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.checks import array, dimension, error, is_traced
+from nonholo.base.kept import read_only
 from nonholo.base.limits import within_memory
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
@@ -73,10 +74,10 @@ def subspace_and_annihilator(owner: str, dim: int, subspace: Any, annihilator: A
         raise error(f"{owner}(constraint_subspace=...)", "be given, or annihilator=", "neither", remedy)
     if annihilator is None:
         rows = independent_rows(f"{owner}(constraint_subspace=...)", subspace, dim)
-        return rows, _read_only(complement(rows))
+        return rows, read_only(complement(rows))
     covectors = independent_rows(f"{owner}(annihilator=...)", annihilator, dim)
     if subspace is None:
-        return _read_only(complement(covectors)), covectors
+        return read_only(complement(covectors)), covectors
     rows = independent_rows(f"{owner}(constraint_subspace=...)", subspace, dim)
     _refuse_inconsistent(f"{owner}(annihilator=...)", rows, covectors)
     return rows, covectors
@@ -155,8 +156,3 @@ def _from_axes(rows: Float[np.ndarray, "k dim"]) -> Float[np.ndarray, "k dim"]:
             residual = residual - chosen.T @ (chosen @ residual)
             chosen = np.concatenate([chosen, residual[None, :] / np.linalg.norm(residual)])
     return chosen
-
-
-def _read_only(rows: np.ndarray) -> np.ndarray:
-    rows.setflags(write=False)
-    return rows

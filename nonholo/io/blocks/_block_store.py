@@ -161,14 +161,14 @@ class BlockStore:
 
     def _write_log(self, begin: int, rows: np.ndarray) -> int:
         """Write rows into whole chunks of the log from one on; return the number of the first one after them."""
-        assert self.log is not None  # noqa: S101
-        size, width = self.log.chunks
+        log = self._array(EVENTS)
+        size, width = log.chunks
         end = begin - (-len(rows) // size)
         full = np.full(((end - begin) * size, width), np.nan)
         full[: len(rows)] = rows
-        if self.log.shape[0] < end * size:
-            self.log.resize((end * size, width))
-        self.log[begin * size : end * size] = full
+        if log.shape[0] < end * size:
+            log.resize((end * size, width))
+        log[begin * size : end * size] = full
         return end
 
     def mark(self, block: int) -> BlockMark | None:

@@ -47,14 +47,20 @@ class NearestBody(NamedTuple):
 
 
 @njit()
+def _sums(p: NearestBody, x: np.ndarray) -> tuple[float, float, float]:
+    """Return the coupling along a point, the square of its length, and how far it slides."""
+    along = square = 0.0
+    for i in range(len(p.coupling)):
+        along += p.coupling[i] * x[1 + i]
+        square += x[1 + i] * x[1 + i]
+    return along, square, x[len(p.coupling) + 1] if p.slides else 0.0
+
+
+@njit()
 def residual(p: NearestBody, goal: np.ndarray, x: np.ndarray, out: np.ndarray) -> None:
     """Write the equations, whose right-hand sides are the goal."""
     k = len(p.stiffness)
-    along = square = 0.0
-    for i in range(k):
-        along += p.coupling[i] * x[1 + i]
-        square += x[1 + i] * x[1 + i]
-    u = x[k + 1] if p.slides else 0.0
+    along, square, u = _sums(p, x)
     for i in range(k):
         turned = x[0] * p.stiffness[i] * x[1 + i] + square * p.coupling[i] - along * x[1 + i]
         out[i, 0] = turned + p.arm / 2 * u * x[1 + i] - goal[i]
@@ -67,10 +73,7 @@ def residual(p: NearestBody, goal: np.ndarray, x: np.ndarray, out: np.ndarray) -
 def slope(p: NearestBody, x: np.ndarray, J: np.ndarray) -> None:
     """Write the derivative of the equations."""
     k, m = len(p.stiffness), len(x)
-    along = 0.0
-    for i in range(k):
-        along += p.coupling[i] * x[1 + i]
-    u = x[k + 1] if p.slides else 0.0
+    along, _, u = _sums(p, x)
     J[:] = 0.0
     for i in range(k):
         J[i, 0] = p.stiffness[i] * x[1 + i]
@@ -90,11 +93,7 @@ def slope(p: NearestBody, x: np.ndarray, J: np.ndarray) -> None:
 def kicked(p: NearestBody, goal: np.ndarray, x: np.ndarray, out: np.ndarray) -> None:
     """Write the goal of the step after a point."""
     k = len(p.stiffness)
-    along = square = 0.0
-    for i in range(k):
-        along += p.coupling[i] * x[1 + i]
-        square += x[1 + i] * x[1 + i]
-    u = x[k + 1] if p.slides else 0.0
+    along, square, u = _sums(p, x)
     for i in range(k):
         out[i] = goal[i] + 2 * (along * x[1 + i] - square * p.coupling[i]) - p.arm * u * x[1 + i]
     if p.slides:
