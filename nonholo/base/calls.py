@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.checks import error, real_or_complex, shown
-from nonholo.base.kept import read_only
-from nonholo.base.types import Array
+from nonholo.base.types import Array, read_only
 
 _FEW = 8  # numbers that are shown together
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from nonholo.base.checks import is_traced
+from nonholo.base.types import read_only
 
 _SMALL = 1 << 15  # bytes; larger arrays take longer to compute than anyone saves by keeping them
 
@@ -22,16 +23,6 @@ class Keeper:
         kind, own = type(self), vars(self)
         computed = {x for x in own if "." in x or isinstance(getattr(kind, x, None), functools.cached_property)}
         return {name: own[name] for name in own if name not in computed}
-
-
-def read_only(value: Any) -> Any:
-    """Return views of arrays, in a dictionary too, to which nobody writes; anything else as it is."""
-    if isinstance(value, dict):
-        return {name: read_only(entry) for name, entry in value.items()}
-    if isinstance(value, np.ndarray):
-        value = value.view()
-        value.flags.writeable = False
-    return value
 
 
 if TYPE_CHECKING:

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.checks import choice, error
-from nonholo.base.kept import read_only
-from nonholo.base.types import Float
+from nonholo.base.types import Float, read_only
 from nonholo.discrete._scheme import Scheme
 
 WEIGHTS = {
