@@ -154,7 +154,7 @@ def memory(names: list[str], members: int, steps: int) -> None:
     """Print the largest memory of processes that sweep, or call `ensemble` with a reduction, and nothing else."""
     print(f"\nlargest memory, {members:,} members x {steps} steps")
     for name in names:
-        for what in ("import", "sweep", "rows", "bare"):
+        for what in small(("import", "sweep", "rows", "bare"), ("import", "bare")):
             command = [
                 sys.executable,
                 __file__,

@@ -181,8 +181,12 @@ def _gust(time: float, g: np.ndarray, w: np.ndarray) -> Any:
     return 0.0 * g[0, 0], (0.96 if time == 0 else 0.0) * w[1] * w[1], 0.0
 
 
-@pytest.mark.parametrize("compiled", [True, False], ids=["numba", "python"])
-@pytest.mark.parametrize("fixed", ["in the body", "in space"])
+@pytest.mark.profile("routes", cases=["in space-*"])
+@pytest.mark.parametrize(
+    ("fixed", "compiled"),
+    [("in the body", True), ("in the body", False), ("in space", False)],  # constraints fixed in space: in Python
+    ids=["in the body-numba", "in the body-python", "in space-python"],
+)
 def test_half_impulses_that_exist_are_found(fixed: str, compiled: bool) -> None:
     """Half an impulse of drag turns u into x with u - x = a (u + x)^2, a = h/16 here, whatever the step.
 
@@ -193,8 +197,6 @@ def test_half_impulses_that_exist_are_found(fixed: str, compiled: bool) -> None:
     system = (
         straight if fixed == "in the body" else nh.LRSystem(nh.SE(2), straight.homogeneous_mass_tensor, np.eye(3)[:2])
     )
-    if fixed == "in space" and compiled:
-        pytest.skip("constraints that are fixed in space have a route in Python")
     force, h, known = numba.njit(_drag) if compiled else _drag, 0.8, [8.0]
     a = 0.5 * h / 2 / 4
     for _ in range(2):
