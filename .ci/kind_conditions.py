@@ -1,7 +1,7 @@
 """Conditions on a kind of motion: attributes and functions that answer a bool and are asked in more than two rooms.
 
-`python .ci/kind_conditions.py` prints their names, with how often each is asked and in how many rooms, and the sum. An attribute of
-the same name that answers something else (`poses`, `exists`) counts too.
+`python .ci/kind_conditions.py` prints their names, with how often each is asked and in how many rooms, and the sum.
+An attribute of the same name that answers something else (`poses`, `exists`) counts too.
 """
 
 import ast

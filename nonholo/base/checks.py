@@ -118,14 +118,14 @@ def _too_large(where: str, value: np.ndarray, remedy: str) -> ValueError:
 
 def is_moderate(value: np.ndarray, most: float) -> bool:
     """Tell whether every number is finite and at most as large."""
-    if value.flags.c_contiguous and np.vdot(value, value).real <= _LARGEST_SUM:
+    if value.flags.c_contiguous and float(np.vdot(value, value).real) <= _LARGEST_SUM:
         return True  # by one sum of squares, without copies
     return bool((np.isfinite(value) & (np.abs(value) <= most)).all())
 
 
 def _is_moderate(value: np.ndarray) -> bool:
     """Tell by one sum of squares that no number lies beyond the largest; False says nothing."""
-    return value.size < _FEW and bool(np.vdot(value, value).real <= _LARGEST_SUM)
+    return value.size < _FEW and float(np.vdot(value, value).real) <= _LARGEST_SUM
 
 
 def _check_finite(where: str, value: np.ndarray, remedy: str) -> None:
