@@ -29,11 +29,11 @@ HOMES = {
     "in_one_thread": "nonholo.simulation",
     "kernels": "nonholo",
     "loop_in_jax": "nonholo.lagrange_dalembert._stepper:_advance",
-    "in_double_precision": "nonholo.lagrange_dalembert._precision:in_double",
+    "in_double_precision": "nonholo.lagrange_dalembert._room:in_double",
     "located": "nonholo.discrete.certificate._certificate",
     "Located": "nonholo.discrete.certificate._certificate",
-    "problem_of": "nonholo.discrete.certificate._problem",
-    "programs": "nonholo.lagrange_dalembert.compiled._programs",
+    "problem_of": "nonholo.discrete.certificate._roots",
+    "programs": "nonholo.lagrange_dalembert.compiled._run",
     "transcription": "nonholo.analysis.steering:_transcription",
 }
 

@@ -96,8 +96,8 @@ def one_orbit(both: tuple, name: str, system: nh.SuslovTop | nh.ChaplyginSleigh,
         return run
 
     def kernel(rows: tuple, every: int) -> None:
-        _, state = kernels.start(step.body, first, unit)
-        kernels.advance(step.body, state, STEPS, every, rows)
+        _, state = kernels.runs_of(step.body).start(step.body, first, unit)
+        kernels.runs_of(step.body).advance(step.body, state, STEPS, every, *rows)
 
     def call() -> nh.Orbit:
         return nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS)
@@ -147,8 +147,8 @@ def many_dimensions(both: tuple, n: int, slides: bool) -> None:
         ends["c"] = m
 
     def library() -> None:
-        _, state = kernels.start(step.body, first, np.empty(0))
-        done, _ = kernels.advance(step.body, state, steps, steps + 1, empty)
+        _, state = kernels.runs_of(step.body).start(step.body, first, np.empty(0))
+        done, _ = kernels.runs_of(step.body).advance(step.body, state, steps, steps + 1, *empty)
         assert done == steps
         ends["library"] = state[:k]
 

@@ -106,9 +106,9 @@ def main() -> None:
             ends = {}
             for _ in range(given.rounds + 1):
                 for kind, body in bodies.items():
-                    _, state = kernels.start(body, *start)
+                    _, state = kernels.runs_of(body).start(body, *start)
                     begun, count = time.process_time(), counts.get(kind, given.steps)
-                    done = kernels.advance(body, state, count, 1, rows)
+                    done = kernels.runs_of(body).advance(body, state, count, 1, *rows)
                     taken[kind].append((time.process_time() - begun) / count * 1e9)
                     if done != (count, 0):
                         raise RuntimeError(f"{name}, {kind}: {done}")

@@ -20,6 +20,7 @@ from nonholo.base.types import Array
 Kind = TypeVar("Kind")
 _LEAST_RTOL = 1e-14
 LARGEST = 1e150  # what a number may be; squares of larger ones overflow
+_LARGEST_SUM = LARGEST**2  # of squares
 _SMALLEST = 1 / LARGEST  # mass, inertia and time step, so that squares do not underflow
 _MOST = 2**53  # the integers up to it are floats too
 _MOST_INDEX = 2**63 - 1
@@ -117,14 +118,14 @@ def _too_large(where: str, value: np.ndarray, remedy: str) -> ValueError:
 
 def is_moderate(value: np.ndarray, most: float) -> bool:
     """Tell whether every number is finite and at most as large."""
-    if value.flags.c_contiguous and float(abs(np.vdot(value, value))) <= LARGEST**2:
+    if value.flags.c_contiguous and float(np.vdot(value, value).real) <= _LARGEST_SUM:
         return True  # by one sum of squares, without copies
     return bool((np.isfinite(value) & (np.abs(value) <= most)).all())
 
 
 def _is_moderate(value: np.ndarray) -> bool:
     """Tell by one sum of squares that no number lies beyond the largest; False says nothing."""
-    return value.size < _FEW and float(abs(np.vdot(value, value))) <= LARGEST**2
+    return value.size < _FEW and float(np.vdot(value, value).real) <= _LARGEST_SUM
 
 
 def _check_finite(where: str, value: np.ndarray, remedy: str) -> None:
@@ -143,6 +144,8 @@ def _check_size(where: str, value: np.ndarray, remedy: str) -> None:
 
 
 def _fits(actual: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
+    if actual == wanted:
+        return True
     return len(actual) == len(wanted) and all(w in (None, a) for a, w in zip(actual, wanted, strict=True))
 
 
@@ -240,6 +243,8 @@ def check_scale(where: str, value: Array) -> None:
 
 def count(where: str, value: Any, remedy: str) -> int:
     """Return a strictly positive Python integer."""
+    if type(value) is int and 0 < value <= _MOST:
+        return value
     return _integer(where, value, (1, _MOST), "be a positive integer", remedy)
 
 
@@ -355,8 +360,9 @@ def pair(where: str, value: Any) -> tuple[Any, Any]:
 
 def flags(owner: str, **values: Any) -> None:
     """Refuse arguments of an owner that are neither True nor False."""
-    for name in (name for name, value in values.items() if type(value) is not bool):
-        flag(f"{owner}({name}=...)", values[name])
+    for name, value in values.items():
+        if type(value) is not bool:
+            flag(f"{owner}({name}=...)", value)
 
 
 def path(where: str, value: Any) -> Path:

@@ -71,7 +71,7 @@ def number_is_over(number: int) -> bool:
 
 def go_on() -> None:
     """Raise `CancelledError` where the work is over."""
-    if is_over():
+    if _over.get()():
         raise CancelledError
 
 
@@ -98,6 +98,9 @@ def interruptibly(work: Callable[[], Result], is_long: bool = True) -> Result:
     return found.result()
 
 
+_SILENT = contextlib.nullcontext(lambda *_: go_on())
+
+
 class _Rate(ProgressColumn):
     """The number done in a second."""
 
@@ -113,7 +116,7 @@ def progress_bar(title: str, wanted: bool) -> contextlib.AbstractContextManager[
         >>> with progress_bar("steps", wanted=False) as report:
         ...     report(3, 10)
     """
-    return _shown_bar(title) if wanted else contextlib.nullcontext(lambda *_: go_on())
+    return _shown_bar(title) if wanted else _SILENT
 
 
 @contextlib.contextmanager

@@ -35,6 +35,8 @@ class Outcome(enum.IntEnum):
         return _MESSAGES[self]
 
 
+OUTCOMES = tuple(Outcome)
+"""By number."""
 _MESSAGES = {
     Outcome.successful: "Every step succeeded.",
     Outcome.no_real_branch: (

@@ -4,10 +4,10 @@ from nonholo.discrete._composition import refuse_composition, weights
 from nonholo.discrete._consistency import consistency_defect
 from nonholo.discrete._decoder import momentum_slope, step_jacobians
 from nonholo.discrete._discrete_legendre import discrete_legendre, moser_veselov_displacement
-from nonholo.discrete._discretization import Discretization, as_discretization, discretize
+from nonholo.discrete._discretization import Discretization, as_discretization, check_first_state, initial_state
+from nonholo.discrete._discretize import discretize
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete._measured import MeasuredMotion, orbit_of_poses
-from nonholo.discrete._start import check_first_state, initial_state
 from nonholo.discrete.branching import (
     PRINCIPAL,
     AbstractBranchRule,
@@ -29,4 +29,4 @@ from nonholo.discrete.branching import (
     inverse_discrete_legendre,
     landscape,
 )
-from nonholo.discrete.routes import AbstractCompiledRoute, ScalarRoute, keep_row, reversal_defects
+from nonholo.discrete.routes import AbstractCompiledRoute, ScalarRoute, reversal_defects

@@ -1,35 +1,26 @@
-"""A discretization: a system, a time step, a discrete Lagrangian and a displacement variety."""
+"""A discretization: a system, a time step, a discrete Lagrangian and a displacement variety; its checked starts."""
 
 import dataclasses
 import functools
-from collections.abc import Callable
-from typing import Any, ClassVar, cast, overload
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import choice, error, needs, scale, shown, trailing
+from nonholo.base.checks import error, needs, shape_of, shown, trailing
 from nonholo.base.numerics import applied
+from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
-from nonholo.discrete._composition import checked_order, refuse_composition, weights
+from nonholo.discrete._composition import refuse_composition, weights
 from nonholo.discrete._decoder import AnyDisplacementDecoder, displacement_decoder
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Difference, Scheme
-from nonholo.discrete._start import first_of_run
-from nonholo.discrete._variety import Constraint, checked_constraint, equations_of
+from nonholo.discrete._variety import Constraint, equations_of
 from nonholo.discrete.routes import AbstractBodyStepper, AbstractRoute, make_route
 from nonholo.orbit import AbstractMotion, First, Orbit, turned_near
-from nonholo.systems import (
-    AbstractCoordinateSystem,
-    AbstractSystem,
-    DiscretizationT,
-    Forced,
-    Start,
-    System,
-    as_system,
-    refuse_forces,
-    refuse_in_coordinates,
-)
+from nonholo.systems import Forced, Start, System, in_group, of_finite_energy, refuse_forces
+
+_TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in floating point
 
 
 @pytree
@@ -71,15 +62,23 @@ class Discretization(Scheme, AbstractMotion):
         """What decodes the displacements of its single steps."""
         return displacement_decoder(self, self.decoder)
 
+    @functools.cached_property
+    def _steppers(self) -> tuple[AbstractBodyStepper, ...]:
+        return tuple(self.route.stepper(self, posed=posed) for posed in (False, True))
+
     def stepper(self, *, posed: bool) -> AbstractBodyStepper:
         """Return what takes the steps of the principal branch, and saves poses or not."""
-        return self.route.stepper(self, posed=posed)
+        return self._steppers[posed]
 
     def first(self, start: Start, *, posed: bool) -> First:
-        """Return the checked start of a run whose rows have poses or not."""
-        return first_of_run(self, start, posed=posed)
+        """Return the checked start of a run whose rows have poses or not: one may be large."""
+        system, g = self.system, None
+        if start.configuration is not None or (posed and system.is_spatial):
+            g = start.pose(system.group)
+        reduced, demanded = initial_state(self, start, g if posed else None)
+        return First((reduced, start.canonical_pose(system, g) if posed else np.empty(0)), demanded)
 
-    @property
+    @functools.cached_property
     def forces(self) -> Forced | None:
         """The system with its forces; None of a free one."""
         return self.system.forces
@@ -252,113 +251,49 @@ def as_discretization(where: str, value: Any, *, composed: bool = False, forced:
     return value
 
 
-@overload
-def discretize(
-    system: System,
-    time_step: Array,
-    difference: Difference | None = None,
-    constraint: Constraint | Callable[[Array], Array] | None = None,
-    order: int = 2,
-) -> Discretization: ...
-@overload
-def discretize(system: AbstractCoordinateSystem[DiscretizationT, Any], time_step: Array) -> DiscretizationT: ...
-def discretize(
-    system: System | AbstractCoordinateSystem,
-    time_step: Array,
-    difference: Difference | None = None,
-    constraint: Constraint | Callable[[Array], Array] | None = None,
-    order: int = 2,
-) -> Any:
-    r"""Discretize a system: choose the discrete Lagrangian and the variety that displacements lie on.
+def initial_state(
+    discrete: Scheme, start: Start, g: Float[np.ndarray, "N N"] | None
+) -> tuple[Float[np.ndarray, "k"], Float[np.ndarray, "N N"] | Float[np.ndarray, "dim"] | None]:
+    """Return the canonical restricted momentum of a start, and what the first state must reproduce, if anything.
 
-    $$ l_d(W) = h\, l\bigl((W - I)/h\bigr) \ \text{(matrix)}, \qquad l_d(W) = h\, l(\log W/h)\ \text{(logarithmic)}, $$
-
-    with $h$ the time step and, for matrices, $l(X) = \tfrac12\mathrm{tr}(X\,\mathbb{J}\,X^*)$. With "matrix" and "skew"
-    the step of a left-invariant system conserves the reduced constrained energy exactly, whatever the constraint
-    subspace; with any other choice it does not (`Discretization.conserves_energy` tells).
-
-    Reference: [fedorov-zenkov-2004], section 3; docs/theory/energy-theorem.md.
-
-    A `LagrangeDAlembert` has its own rule, and takes no other argument than the time step.
-
-    Args:
-        system: What moves.
-        time_step: h > 0.
-        difference: "matrix", "logarithmic" or a callable $L_d(W)$ of a JAX matrix that includes the factor h. By
-            default "matrix" where it is defined, for a mass tensor, and "logarithmic" elsewhere.
-        constraint: "skew", (W - W^-1)/2 in d on the irreducible analytic component through the identity;
-            "exponential", exp d; "naive", W - I projected to the algebra, in d; or functions f_j(W) of a JAX matrix,
-            zero on the variety. By default "skew" where it is defined, on SO(n), SE(n) and groups with a form, and
-            "exponential" elsewhere.
-        order: 2, or 4, 6, 8: a symmetric composition of 5, 9, 15 steps of order 2 with time steps of either sign. It
-            needs difference "matrix" or "logarithmic" and constraint "skew" or "exponential". See
-            docs/theory/compositions.md for what momenta and displacements of its orbits are.
-
-    Returns:
-        The discretization; of a system in coordinates a `nonholo.lagrange_dalembert.CoordinateDiscretization`.
-
-    Raises:
-        ValueError: A time step that is not positive and real, an unknown choice, a difference or a constraint that is
-            not defined for the system, functions that do not fit d at the identity,
-            an order that cannot be had.
-
-    Example:
-        >>> discretize(ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), time_step=0.1).difference
-        'matrix'
+    A displacement or a full momentum determines W_0 or P_0 completely; the run checks that the principal root agrees.
     """
-    if isinstance(system, AbstractCoordinateSystem):
-        refuse_in_coordinates(
-            "discretize", difference=(difference, None), constraint=(constraint, None), order=(order, 2)
-        )
-        return system.discretize(time_step)
-    as_system("discretize(system=...)", system)
-    step = scale("discretize(time_step=...)", time_step, "Pass a positive real time step.")
-    chosen = _difference(system, difference)
-    variety = _constraint(system, constraint)
-    made = Discretization(system, step, chosen, variety, checked_order(order, chosen, variety))
-    if made.forces is not None:
-        make_route(made)  # refused here where there is none
-    return made
+    system = discrete.system
+    if start.name == "displacement":
+        remedy = "A whole step does not lie on the variety: start from a momentum or a velocity."
+        refuse_composition(start.where, discrete, remedy)
+        refuse_forces(start.where, discrete.system)
+        W = on_variety(start.where, discrete, g, start.value)
+        momentum = legendre(discrete, W - system.group.identity, "left")
+        return of_finite_energy(start.owner, system, g, system.restrict_at(momentum, g)), W
+    full = start.name == "momentum" and shape_of(start.value) != (system.rank,)
+    return start.momentum(system, g), np.asarray(start.value, dtype=np.float64) if full else None
 
 
-def _difference(system: AbstractSystem, difference: Difference | None) -> Difference:
-    where, defined = "discretize(difference=...)", system.is_wide or system.homogeneous_mass_tensor is not None
-    if difference is None:
-        return "matrix" if defined else "logarithmic"
-    if callable(difference):
-        return _scalar(where, system, difference)
-    choice(where, difference, ("matrix", "logarithmic"), "Or pass a callable L_d(W).")
-    if difference == "matrix" and not defined:
-        got = "a kinetic energy given by an inertia operator, which says nothing of W - I outside the algebra"
-        remedy = "Pass 'logarithmic', or build the system of a mass tensor, on SO(n), SE(n) or MatrixGroup(form=...)."
-        raise error(where, "be defined for the system", got, remedy)
-    return difference
+def check_first_state(demanded: np.ndarray, there: Orbit) -> None:
+    """Refuse a start whose displacement or full momentum is not that of the principal root, which is the first one."""
+    if demanded.ndim == 2:
+        found, outcome = there.displacement[0], Outcome.branch_unverified
+    else:
+        found, outcome = there.momentum[0], Outcome.off_momentum_locus
+    if np.linalg.norm(demanded - found) > _TOLERANCE * np.linalg.norm(found):
+        raise OutcomeError(outcome, "Start of the run", there.chosen(slice(0, 0)))
 
 
-def _scalar(where: str, system: AbstractSystem, difference: Callable[[Array], Array]) -> Callable[[Array], Array]:
-    """Refuse a discrete Lagrangian that is not a finite number with finite derivatives at the identity."""
-    with needs("jax", where):
-        from nonholo.discrete.definition import value_and_slope
-
-    try:
-        value, slope = value_and_slope(difference, system.group)
-    except Exception as failure:
-        got = f"{type(failure).__name__}: {f'{failure}'.splitlines()[0]}"
-        remedy = "Write L_d(W) with jax.numpy, returning one number."
-        raise error(where, "be a real scalar function of a JAX matrix", got, remedy) from failure
-    if not (np.isfinite(value) and np.all(np.isfinite(slope))):
-        raise error(where, "be differentiable at the identity", f"value {value}, slope {slope}", "Avoid 0/0 there.")
-    return difference
-
-
-def _constraint(system: AbstractSystem, constraint: object) -> Constraint:
-    defined = system.group.has_skew_part
-    if constraint is None:
-        return "skew" if defined else "exponential"
-    where = "discretize(constraint=...)"
-    checked = checked_constraint(where, system, constraint)
-    if checked == "skew" and not defined:
-        got = f"{system.group}, where (W - W^-1)/2 need not lie in the algebra"
-        remedy = "Pass 'exponential' or, if the group preserves a form G, build it as MatrixGroup(basis, form=G)."
-        raise error(where, "be defined on the group", got, remedy)
-    return checked
+def on_variety(where: str, discrete: Scheme, g: np.ndarray | None, displacement: Any) -> np.ndarray:
+    """Return a displacement whose place on the variety is checked, refused with its forbidden part."""
+    system, group = discrete.system, discrete.system.group
+    W = in_group(where, group, displacement)
+    seen = g @ W @ group.inverse(g) if system.is_spatial else W
+    logarithm = group.log(seen)
+    if discrete.variety.exact:
+        forbidden, what = system.annihilator @ logarithm, "a logarithm with forbidden part"
+        remedy = "Build it as `group.exp(x)` with x admissible."
+    else:
+        frame = system.frame
+        forbidden, what = equations_of(discrete.variety, group.inverse(frame) @ seen @ frame), "equations with residual"
+        remedy = "Start from a velocity, or take a row of `orbit.displacement`: exp d is not this variety."
+    if np.linalg.norm(forbidden) > _TOLERANCE * max(1.0, float(np.linalg.norm(logarithm))):
+        got = f"{what} {np.array2string(forbidden, precision=6)}"
+        raise error(where, "lie on the displacement variety", got, remedy)
+    return W

@@ -37,13 +37,12 @@ from ._orbit_store import create_stream as create_stream
 from ._orbit_store import open_stream as open_stream
 from ._orbit_store import standing as standing
 from ._orbit_store import writable_array as writable_array
-from ._plan import Checkpoint as Checkpoint
-from ._plan import Plan as Plan
 from ._save import check_suffix as check_suffix
 from ._save import check_target as check_target
 from ._save import put_in_place as put_in_place
 from ._save import reporting_how_to_resume as reporting_how_to_resume
 from ._save import save_orbit as save_orbit
+from ._stored_events import Checkpoint as Checkpoint
 from ._stored_events import Seen as Seen
 from ._stored_events import described as described
 from .blocks._block_store import BlockStore as BlockStore

@@ -16,11 +16,10 @@ from nonholo.base.types import Float
 from nonholo.io._attributes import FORMAT, SCHEMA, SWEEP_FORMAT, restore_motion
 from nonholo.io._chunks import AGAIN, WHERE, DamagedError, checked_array, checked_block, opened_array
 from nonholo.io._metadata import OrbitMetadata, SweepMetadata, check_assertions, check_metadata
-from nonholo.io._plan import Plan
 from nonholo.io._stored_events import EVENTS, known, log_of
 from nonholo.io.blocks import BlockStore, Layout, checkpoint_of
 from nonholo.io.datasets import CANONICAL, STEP
-from nonholo.orbit import STATES, EventLog, Orbit
+from nonholo.orbit import STATES, EventLog, Orbit, Plan
 
 _KINDS = {FORMAT: "an orbit", SWEEP_FORMAT: "a sweep", "nonholo.ensemble": "an ensemble"}
 
@@ -87,12 +86,18 @@ def check_seals(root: Path, stored: dict[str, Any]) -> None:
     layout = Layout(arrays["time"].shape, arrays["time"].chunks)
     store = BlockStore(root, stored["made"], layout, arrays, log)
     try:
-        for block in range(Plan.of(stored).blocks if "run" in stored else layout.blocks):
+        for block in range(plan_of(stored).blocks if "run" in stored else layout.blocks):
             about = store.ended(block).about
             if "run" in stored and checkpoint_of(about, events).is_last:
                 break
     except DamagedError as flaw:
         raise error(WHERE, "hold each chunk in its place", f"{flaw}, in '{root}'", AGAIN) from None
+
+
+def plan_of(stored: dict[str, Any]) -> Plan:
+    """Return the plan of a store with these attributes."""
+    run = json.loads(stored["run"])
+    return Plan(run["steps"], stored["save_every"], run["rows"], run["lead"])
 
 
 def stored_names(arrays: Container[str], columns: Iterable[str] = STATES) -> dict[str, str]:
@@ -117,7 +122,7 @@ def _events(root: Path, stored: dict[str, Any], orbit: Orbit, begin: int) -> Eve
 
 def _begin_of_last(stored: dict[str, Any], states: int) -> int:
     """Return the step at which the last block of states begins."""
-    plan = Plan.of(stored)
+    plan = plan_of(stored)
     return plan.begin((states - 1) // plan.rows)
 
 

@@ -20,12 +20,11 @@ from nonholo.base.checks import error
 from nonholo.io._attributes import attributes, attributes_of_text
 from nonholo.io._beside import new_beside
 from nonholo.io._chunks import DamagedError
-from nonholo.io._load import read_attributes
+from nonholo.io._load import plan_of, read_attributes
 from nonholo.io._lock import owner_of
 from nonholo.io._metadata import check_array
-from nonholo.io._plan import Checkpoint, Plan
 from nonholo.io._save import check_target, put_in_place
-from nonholo.io._stored_events import EVENTS, rows_of
+from nonholo.io._stored_events import EVENTS, Checkpoint, rows_of
 from nonholo.io.blocks import (
     BEFORE,
     BlockStore,
@@ -37,6 +36,7 @@ from nonholo.io.blocks import (
     said_of,
 )
 from nonholo.io.datasets import HEADED, stored_variables
+from nonholo.orbit import Plan
 
 
 @dataclasses.dataclass(frozen=True)
@@ -189,7 +189,7 @@ def open_stream(path: str | Path) -> Stream:
         remedy = "Run it again with simulate(..., store=...) to be able to resume."
         raise error("resume(store=...)", "have checkpoints", f"'{path}', which was saved whole", remedy)
     run = json.loads(stored["run"])
-    return Stream(Path(path).resolve(), Plan.of(stored), run["reconstruct"], stored["made"])
+    return Stream(Path(path).resolve(), plan_of(stored), run["reconstruct"], stored["made"])
 
 
 def writable_array(path: Path, name: str, shape: Sequence[int] | None = None) -> zarr.Array:

@@ -1,4 +1,4 @@
-"""Crossings as rows of numbers, and what a run has seen of its events at a checkpoint.
+"""Crossings as rows of numbers, and checkpoints: the state of a run between two blocks, with what its events saw.
 
 A row of `run/events` is the position of the event, the step, the fraction, the direction, then the state there. The
 rows of a block begin with a chunk of their own; what is left of its last chunk is NaN. The functions are not stored.
@@ -32,6 +32,25 @@ class Seen(NamedTuple):
     values: Float[np.ndarray, "E"]
     heading: float
     stopped: int
+
+
+class Checkpoint(NamedTuple):
+    """The state of a run: the last good step, the outcome so far, the vector to continue from, what its events saw."""
+
+    done: int
+    outcome: Outcome
+    vector: np.ndarray
+    seen: Seen | None = None
+
+    @property
+    def is_last(self) -> bool:
+        """Whether the run ended here: it cannot continue, or an event ended it."""
+        return self.outcome != Outcome.successful or self.is_stopped
+
+    @property
+    def is_stopped(self) -> bool:
+        """Whether an event ended the run here."""
+        return self.seen is not None and self.seen.stopped >= 0
 
 
 def rows_of(log: EventLog) -> Float[np.ndarray, "C width"]:

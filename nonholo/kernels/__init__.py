@@ -3,7 +3,7 @@
 from nonholo.kernels._composition import ComposedBody, whole_steps
 from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged, flat_run
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
-from nonholo.kernels._entry import AnyBody, advance, chart_of, sizes, start, step_each
+from nonholo.kernels._entry import AnyBody, runs_of, sizes, step_each
 from nonholo.kernels._interface import Body, certified, correction, increment, inertia, move, residual, tangent
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table

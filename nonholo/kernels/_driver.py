@@ -34,6 +34,17 @@ def start(p: Body, momentum: np.ndarray, pose: np.ndarray, state: np.ndarray) ->
     return code
 
 
+def first_state(p: Body, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
+    """Return the outcome of the first root, and the state of a run that begins with scaled momenta and a pose."""
+    state = np.zeros(STATE_SIZE)
+    return start(p, momentum, pose, state), state
+
+
+def chart_in(_p: Body, state: np.ndarray) -> np.ndarray:
+    """Return the coordinates of the displacement in a state."""
+    return state[4:6]
+
+
 @njit(nogil=True, **COMPILED)
 def advance(
     p: Body, state: np.ndarray, steps: int, every: int, momenta: np.ndarray, charts: np.ndarray, poses: np.ndarray

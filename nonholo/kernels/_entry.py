@@ -20,8 +20,16 @@ AnyBody = PlainBody | ComposedBody | ForcedBody
 Rows = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
-class _Runs(NamedTuple):
-    """The functions of a kind of body, with the arguments of those below."""
+class Runs(NamedTuple):
+    """The functions of a kind of body, each of which takes the body first.
+
+    Attributes:
+        sizes: Gives the numbers of momenta, chart coordinates and pose entries of a state.
+        start: Gives the outcome of the first root and the state of a run, from scaled momenta and a pose.
+        chart_of: Gives the chart coordinates of the displacement in a state.
+        advance: Takes up to `steps` steps into rows of momenta, charts and poses; gives the good ones and the outcome.
+        step_each: Takes single steps, see `kernels.step_each`; None where that has no meaning.
+    """
 
     sizes: Callable[[Any], tuple[int, int, int]]
     start: Callable[[Any, np.ndarray, np.ndarray], tuple[int, np.ndarray]]
@@ -30,45 +38,26 @@ class _Runs(NamedTuple):
     step_each: Callable[..., Rows] | None
 
 
-def _runs(body: AnyBody) -> _Runs:
+def runs_of(body: AnyBody) -> Runs:
+    """Return the functions of the kind of a body."""
     return _RUNS.get(type(body), _SCALAR)
 
 
 def sizes(body: AnyBody) -> tuple[int, int, int]:
     """Return the numbers of momenta, chart coordinates and pose entries of a state."""
-    return _runs(body).sizes(body)
-
-
-def start(body: AnyBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
-    """Return the outcome of the first root and the state of a run that begins with scaled momenta and a pose."""
-    return _runs(body).start(body, np.array(momentum), np.array(pose))
-
-
-def chart_of(body: AnyBody, state: np.ndarray) -> np.ndarray:
-    """Return the chart coordinates of the displacement in a state."""
-    return _runs(body).chart_of(body, state)
-
-
-def advance(body: AnyBody, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
-    """Take up to `steps` steps into rows of momenta, charts and poses; return how many were good and the outcome."""
-    return _runs(body).advance(body, state, steps, every, *rows)
+    return runs_of(body).sizes(body)
 
 
 def step_each(
     body: PlainBody, states: tuple[np.ndarray, np.ndarray, np.ndarray | None], guesses: np.ndarray, principal_only: bool
 ) -> Rows:
     """Take one step from each row of momenta, charts and, for right-invariant constraints, poses as matrices."""
-    each = _runs(body).step_each
+    each = runs_of(body).step_each
     if each is None:
         raise TypeError(f"`step_each` needs a plain body. Got {type(body).__name__}. Use `whole_steps`.")
     momenta, charts, poses = states
     rows = (np.ascontiguousarray(part) for part in (momenta, charts))  # one layout, or each is compiled for two
     return each(body, *rows, poses, np.ascontiguousarray(guesses), principal_only)
-
-
-def _scalar_start(body: Body, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
-    state = np.zeros(_driver.STATE_SIZE)
-    return _driver.start(body, momentum, pose, state), state
 
 
 def _without_poses(step_each: Callable[..., Rows]) -> Callable[..., Rows]:
@@ -114,10 +103,10 @@ def _forced_chart(body: ForcedBody, state: np.ndarray) -> np.ndarray:
 
 
 _EACH, _SECULAR_EACH = _without_poses(_driver.step_each), _without_poses(secular_run.step_each)
-_SCALAR = _Runs(lambda _: (2, 2, 4), _scalar_start, lambda _, state: state[4:6], _driver.advance, _EACH)
-_RUNS: dict[type, _Runs] = {
-    SecularBody: _Runs(_secular_sizes, secular_run.start, secular_run.chart_in, secular_run.advance, _SECULAR_EACH),
-    GeneralBody: _Runs(_general_sizes, general_run.start, _general_chart, general_run.advance, _general_each),
-    ComposedBody: _Runs(lambda body: sizes(body.body), _composition.start, _composed_chart, _composed_advance, None),
-    ForcedBody: _Runs(lambda body: sizes(body.body), _forced_start, _forced_chart, forced_run.advance, None),
+_SCALAR = Runs(lambda _: (2, 2, 4), _driver.first_state, _driver.chart_in, _driver.advance, _EACH)
+_RUNS: dict[type, Runs] = {
+    SecularBody: Runs(_secular_sizes, secular_run.start, secular_run.chart_in, secular_run.advance, _SECULAR_EACH),
+    GeneralBody: Runs(_general_sizes, general_run.start, _general_chart, general_run.advance, _general_each),
+    ComposedBody: Runs(lambda body: sizes(body.body), _composition.start, _composed_chart, _composed_advance, None),
+    ForcedBody: Runs(lambda body: sizes(body.body), _forced_start, _forced_chart, forced_run.advance, None),
 }

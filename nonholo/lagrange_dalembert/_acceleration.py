@@ -14,8 +14,7 @@ from nonholo.base.checks import error
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations
 from nonholo.lagrange_dalembert._equations import solve_bordered
-from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._room import equations_of, places
+from nonholo.lagrange_dalembert._room import equations_of, in_double, places
 
 _ROWS = 1024  # states whose powers are computed at once: one size, one compilation
 

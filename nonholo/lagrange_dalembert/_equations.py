@@ -17,11 +17,6 @@ from nonholo.lagrange_dalembert._tracing import TwoPoint, takes_time
 _CORRECTIONS = 8  # of a velocity that belongs to a momentum: Newton's, one where L is quadratic
 
 
-def place(system: LagrangeDAlembert, q: Array, time: Any) -> Array:
-    """Return where a system is: its configuration, of a driven one with the time."""
-    return np.append(q, time) if system.is_driven else q
-
-
 def _called(function: Any, system: LagrangeDAlembert, x: Array, *velocity: Array) -> Array:
     """Return the value of a user's function at a place, with the time if it takes it."""
     time = (x[-1],) if takes_time(function, 1 + len(velocity)) else ()

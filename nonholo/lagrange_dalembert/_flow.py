@@ -3,8 +3,7 @@
 Imported on first use: diffrax loads slowly.
 """
 
-from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -16,32 +15,30 @@ from nonholo.base.progress import interruptibly
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._acceleration import acceleration, bordered_solution
-from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._room import configurations, equations_of, places
+from nonholo.lagrange_dalembert._discretization import checked_state
+from nonholo.lagrange_dalembert._motion import ORBITS
+from nonholo.lagrange_dalembert._room import configurations, equations_of, in_double, places
 
-OrbitT = TypeVar("OrbitT")
 State = tuple[Array, Array]
 """Configuration and velocity."""
 
 
 def flow(
-    kind: Callable[..., OrbitT],
     system: Any,
-    start: Callable[..., State],
     configuration: Any,
     starts: dict[str, Any],
     times: Any,
     rtol: float,
     atol: float,
-) -> OrbitT:
-    """Check the arguments, solve the equations and return the orbit of a kind, whose start is checked by a function."""
+) -> Any:
+    """Check the arguments, solve the equations and return the orbit."""
     time, errors = flow_times(times), flow_tolerances(rtol, atol)
-    first = start(system, configuration, starts, time[0])
+    first = checked_state(system, configuration, starts, time[0])
     rest, good = interruptibly(lambda: in_double(_sweep, system, first, padded(time), errors))
     rows = reached(first, rest, good, len(time))
     count = len(rows[0])
     outcome = Outcome.successful if count == len(time) else Outcome.not_converged
-    orbit = _orbit(kind, system, time[:count], rows, outcome)
+    orbit = _orbit(system, time[:count], rows, outcome)
     if outcome != Outcome.successful:
         rtol, atol = errors
         where = f"Flow from time {time[count - 1]:g} to {time[count]:g} (rtol {rtol:g}, atol {atol:g})"
@@ -49,9 +46,7 @@ def flow(
     return orbit
 
 
-def flowed(
-    kind: Callable[..., OrbitT], system: Any, states: Any, times: np.ndarray, rtol: float, atol: float
-) -> OrbitT:
+def flowed(system: Any, states: Any, times: np.ndarray, rtol: float, atol: float) -> Any:
     """Return states of a flow carried on, each to a later time of its own."""
     x, spans = places(system, states.configuration, states.time), np.stack([states.time, times], axis=1)
     ends = [
@@ -59,14 +54,12 @@ def flowed(
         for *first, span in zip(x, states.body_velocity, spans, strict=True)
     ]
     rows = [np.stack([np.where(good[0], rest[which][0], np.nan) for rest, good in ends]) for which in (0, 1)]
-    return _orbit(kind, system, times, rows, Outcome.successful)
+    return _orbit(system, times, rows, Outcome.successful)
 
 
-def _orbit(
-    kind: Callable[..., OrbitT], system: Any, time: np.ndarray, rows: list[np.ndarray], outcome: Outcome
-) -> OrbitT:
+def _orbit(system: Any, time: np.ndarray, rows: list[np.ndarray], outcome: Outcome) -> Any:
     columns = (x[: len(time)] for x in in_double(_decode, system, *map(padded, rows)))
-    return kind(time, configurations(system, rows[0]), None, rows[1], *columns, outcome, system)
+    return ORBITS[system.orbits](time, configurations(system, rows[0]), None, rows[1], *columns, outcome, system)
 
 
 def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array]) -> tuple[State, Array]:

@@ -9,7 +9,7 @@ from nonholo.lagrange_dalembert._orbit import AbstractCoordinateOrbit, Coordinat
 from nonholo.lagrange_dalembert._room import room
 from nonholo.systems import AbstractCoordinateSystem
 
-ORBITS = {orbit.__name__: orbit for orbit in (CoordinateOrbit, GroupOrbit)}
+ORBITS: dict[str, Any] = {orbit.__name__: orbit for orbit in (CoordinateOrbit, GroupOrbit)}
 
 
 class CoordinateMotion:
@@ -103,9 +103,8 @@ class RecordedSystem(AbstractCoordinateSystem):
 
     def discretize(self, time_step: Any) -> Any:
         """Return the map of the store, which cannot run."""
-        if "group" in self.known:
-            return room("on_groups").GroupDiscretization(self, time_step)
-        return room("_discretization").CoordinateDiscretization(self, time_step)
+        kind = "GroupDiscretization" if "group" in self.known else "CoordinateDiscretization"
+        return getattr(room("_discretization"), kind)(self, time_step)
 
     def flow(self, **given: Any) -> Any:
         """Refuse: there are no functions."""

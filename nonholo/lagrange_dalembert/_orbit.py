@@ -12,8 +12,7 @@ from nonholo.base.kept import remembered
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float, Int
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._room import equations_of, places, room
+from nonholo.lagrange_dalembert._room import equations_of, in_double, places, room
 from nonholo.orbit import AbstractOrbit
 
 Labels = dict[str, tuple[tuple[str, ...], str]]

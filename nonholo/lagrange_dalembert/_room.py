@@ -1,9 +1,26 @@
-"""Modules of this room that are imported when they are needed."""
+"""What all files of this room share: modules imported when they are needed, places, and calls of JAX.
 
+Every call of JAX is compiled, runs in a local 64-bit scope and gives NumPy arrays.
+"""
+
+import contextlib
+import functools
 import importlib
+import os
+import sys
+import threading
+from collections.abc import Callable, Iterator
 from typing import Any
 
+import jax
 import numpy as np
+
+from nonholo.base.numerics import double_precision
+
+_PATIENCE = 1.0  # seconds of silence
+_compiled = functools.cache(functools.partial(jax.jit, static_argnums=0))
+_called: set[tuple[Any, Any]] = set()
+_told: set[Any] = set()
 
 
 def room(name: str) -> Any:
@@ -24,3 +41,37 @@ def configurations(system: Any, places: Any) -> Any:
 def places(system: Any, configurations: Any, time: Any) -> Any:
     """Return the places of configurations at these times."""
     return np.column_stack([configurations, time]) if system.is_driven else configurations
+
+
+def place(system: Any, q: Any, time: Any) -> Any:
+    """Return where a system is: its configuration, of a driven one with the time."""
+    return np.append(q, time) if system.is_driven else q
+
+
+def in_double(function: Callable[..., Any], system: Any, *arguments: Any) -> Any:
+    """Call a JAX function of a system, for which it is compiled, with 64-bit numbers; return NumPy arrays."""
+    with double_precision(), contextlib.nullcontext() if (function, system) in _called else compiling(system):
+        found = jax.tree.map(np.asarray, _compiled(function)(system, *arguments))
+    _called.add((function, system))
+    return found
+
+
+@contextlib.contextmanager
+def compiling(system: Any) -> Iterator[None]:
+    """Say on standard error what is waited for, once for a system: JAX compiles at the first call of each function."""
+    kept = os.environ.get("JAX_COMPILATION_CACHE_DIR")
+    remedy = "" if kept else "; set JAX_COMPILATION_CACHE_DIR to a folder to keep what is compiled"
+    text = f"compiling a system in coordinates, once{remedy} ..."
+
+    def say() -> None:
+        if system not in _told:
+            _told.add(system)
+            sys.stderr.write(f"{text}\n")
+
+    timer = threading.Timer(_PATIENCE, say)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()

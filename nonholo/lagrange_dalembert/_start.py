@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import array, error, is_traced, scale
+from nonholo.base.checks import array, error, scale
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._equations import (
@@ -15,27 +15,16 @@ from nonholo.lagrange_dalembert._equations import (
     forms,
     inverse_legendre,
     lagrangian,
-    place,
 )
 from nonholo.lagrange_dalembert._newton import orientation
-from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._room import equations_of
+from nonholo.lagrange_dalembert._room import equations_of, in_double, place
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-from nonholo.systems import inadmissible, one_start
+from nonholo.systems import inadmissible
 
 _TOLERANCE = 1e-9  # relative, for velocities and displacements that a user computed in floating point
 DEGENERATE = 1e-10  # least singular value of scaled matrices, below which they are called singular
 _CONSISTENT = 1e-7  # relative; looser, since the functions may difference numerically
 _CORRECTIONS = 8  # of a displacement
-
-
-def fixed_time_step(value: Any) -> float:
-    """Return a positive time step that is a number."""
-    where = "discretize(time_step=...)"
-    if is_traced(value):
-        remedy = "Runs in coordinates are compiled by themselves: call them outside jax.jit and jax.grad."
-        raise error(where, "be a number", "a traced value", remedy)
-    return float(scale(where, value, "Pass a positive real time step."))
 
 
 def point(owner: str, system: LagrangeDAlembert, configuration: Any, time: float = 0.0) -> Float[np.ndarray, "x"]:
@@ -73,16 +62,6 @@ def unit_rows(rows: Float[np.ndarray, "s n"]) -> Float[np.ndarray, "s n"]:
 def least_value(rows: Float[np.ndarray, "s n"]) -> float:
     """Return the least singular value of rows of length one."""
     return float(np.linalg.svd(unit_rows(rows), compute_uv=False)[-1]) if len(rows) else 1.0
-
-
-def of_flow(
-    system: LagrangeDAlembert, configuration: Any, starts: dict[str, Any], time: float, owner: str = "flow"
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the checked start of a flow, or another place and velocity."""
-    q = point(owner, system, configuration, time)
-    if one_start(owner, **starts) == "momentum":
-        return q, velocity_of_momentum(owner, system, q, starts["momentum"])[1]
-    return q, velocity(owner, system, q, starts["body_velocity"])
 
 
 def consistent(system: LagrangeDAlembert, q: Float[np.ndarray, "n"], h: Any) -> None:
@@ -133,17 +112,17 @@ def regular(system: LagrangeDAlembert, q: np.ndarray, v: np.ndarray) -> None:
         raise error(what, "determine the accelerations", got, "Give every admissible direction a kinetic energy.")
 
 
-def velocity_of_momentum(
+def of_momentum(
     owner: str, system: LagrangeDAlembert, q: np.ndarray, given: Any
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return a checked momentum and the admissible velocity that has the same components along the constraint."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return a checked momentum, the place and the admissible velocity that has its part along the constraint."""
     n = system.dimension
     where = f"{owner}(momentum=...)"
     p = array(where, given, (n,), f"Pass the {n} momenta; only their action on admissible velocities counts.")
     regular(system, q, np.zeros(n))
     v = in_double(inverse_legendre, system, q, p)
     regular(system, q, v)
-    return p, v
+    return p, q, v
 
 
 def velocity_of_displacement(system: LagrangeDAlembert, q: np.ndarray, given: Any, h: float) -> np.ndarray:

@@ -20,8 +20,7 @@ from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._motion import ORBITS
 from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._orbit import AbstractCoordinateOrbit
-from nonholo.lagrange_dalembert._precision import in_double
-from nonholo.lagrange_dalembert._room import configurations, equations_of, places
+from nonholo.lagrange_dalembert._room import configurations, equations_of, in_double, places
 from nonholo.lagrange_dalembert.compiled import ROWS
 from nonholo.orbit import AbstractStepper, First, Rows, State
 

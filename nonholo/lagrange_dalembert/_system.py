@@ -10,6 +10,7 @@ import numpy as np
 
 from nonholo.base.calls import called
 from nonholo.base.checks import array, choice, count, error, names, shown, text
+from nonholo.base.kept import kept
 from nonholo.base.limits import within_memory
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
@@ -109,6 +110,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     heading: str | None = dataclasses.field(default=None, kw_only=True, compare=False)
     outline: Any = dataclasses.field(default=(), kw_only=True, compare=False, repr=False, metadata={"stored": False})
     _equations: ClassVar[str] = "_equations"
+    _start: ClassVar[str] = "_start"
 
     def __post_init__(self) -> None:
         dimension = count(_named("dimension"), self.dimension, "Pass the number of coordinates.")
@@ -183,7 +185,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         arguments = ((self.dimension,), *(() for _ in self._time("constraint_forms", 1)))
         return count_of(self.constraint_forms, *arguments) + len(self.prescribed)
 
-    @property
+    @kept
     def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Shapes of a configuration and of a velocity."""
         return (self.dimension,), (self.dimension,)
@@ -292,14 +294,13 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             remedy = "Discretize the system, or pass a function of time."
             raise error("flow(system=...)", "have forces at times", "one force for each step", remedy)
         starts = {"body_velocity": body_velocity, "momentum": momentum}
-        kind, start = room("_orbit").CoordinateOrbit, room("_start").of_flow
-        return room("_flow").flow(kind, self, start, configuration, starts, times, rtol, atol)
+        return room("_flow").flow(self, configuration, starts, times, rtol, atol)
 
     def flowed(
         self, states: "CoordinateOrbit", times: Float[np.ndarray, "K"], *, rtol: float, atol: float
     ) -> "CoordinateOrbit":
         """Return states of a flow carried on, each to a later time of its own; NaN where the solver fails."""
-        return room("_flow").flowed(room("_orbit").CoordinateOrbit, self, states, times, rtol, atol)
+        return room("_flow").flowed(self, states, times, rtol, atol)
 
 
 def _with_potential(lagrangian: Callable[..., Array], potential: Any) -> Callable[..., Array]:

@@ -5,4 +5,4 @@ from nonholo.orbit._crossings import AbstractEventLog, Crossings, EventLog, join
 from nonholo.orbit._decoder import Decoder
 from nonholo.orbit._orbit import STATES, AbstractMotion, Orbit, as_orbit
 from nonholo.orbit._poses import AliasingWarning, configurations, poses, turned_near, unwrapped
-from nonholo.orbit._stepper import AbstractStepper, DiscreteMotion, First, Rows, State
+from nonholo.orbit._stepper import AbstractStepper, DiscreteMotion, First, Plan, Rows, State, keep_row, write_first

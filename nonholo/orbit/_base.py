@@ -98,9 +98,10 @@ class AbstractOrbit(Keeper, abc.ABC):
         Nor with a momentum whose square overflows.
         """
         if self.outcome == Outcome.successful:
-            columns = ((getattr(self, name), most) for name, most in _bounds(type(self)))
-            if not all(rows is None or is_moderate(rows, most) for rows, most in columns):
-                object.__setattr__(self, "outcome", Outcome.nonfinite)
+            for name, most in _bounds(type(self)):
+                rows = getattr(self, name)
+                if rows is not None and not is_moderate(rows, most):
+                    object.__setattr__(self, "outcome", Outcome.nonfinite)
         if self.step is None or len(self.step) != len(self.time):
             object.__setattr__(self, "step", self.save_every * np.arange(len(self.time)))
 

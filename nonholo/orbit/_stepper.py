@@ -1,6 +1,7 @@
 """The interface of every map that runs step by step: rows of columns from a state, which is one flat vector."""
 
 import abc
+import functools
 from collections.abc import Mapping
 from typing import Any, ClassVar, Generic, NamedTuple, Protocol, TypeAlias, runtime_checkable
 
@@ -29,6 +30,49 @@ class First(NamedTuple):
     demanded: np.ndarray | None = None
 
 
+class Plan(NamedTuple):
+    """The blocks of a run: block b holds the saved states b * rows to (b + 1) * rows - 1.
+
+    Attributes:
+        steps: Steps in total.
+        every: Steps between saved states.
+        rows: Saved states in a block.
+        lead: Saved states before a block at which its computation begins: one, or none where rows need the step after.
+
+    Example:
+        >>> plan = Plan(steps=100, every=10, rows=4)
+        >>> plan.blocks, [(plan.begin(b), plan.stop(b)) for b in range(3)]
+        (3, [(0, 30), (30, 70), (70, 100)])
+    """
+
+    steps: int
+    every: int
+    rows: int
+    lead: int = 1
+
+    @property
+    def blocks(self) -> int:
+        """Number of blocks."""
+        return -(-(1 + self.steps // self.every) // self.rows)
+
+    def begin(self, block: int) -> int:
+        """Return the step at which the computation of a block begins."""
+        return max(0, (block * self.rows - self.lead) * self.every)
+
+    def stop(self, block: int) -> int:
+        """Return the step at which it ends; the last block also takes the steps after the last saved state."""
+        return self.stretch(block)[1]
+
+    def stretch(self, block: int) -> tuple[int, int, bool]:
+        """Return where the computation of a block begins and ends, and whether it is the last one."""
+        is_last = block == self.blocks - 1
+        return self.begin(block), self.steps if is_last else self.begin(block + 1), is_last
+
+    def has_rows(self, block: int, done: int) -> bool:
+        """Tell whether a block has saved states if the run stands at a step: it may fail before the first one."""
+        return block * self.rows <= done // self.every
+
+
 class AbstractStepper(abc.ABC, Generic[OrbitT]):
     """A map with a way to compute its steps.
 
@@ -50,10 +94,15 @@ class AbstractStepper(abc.ABC, Generic[OrbitT]):
     block: int = 1 << 14
     """Steps of a block of a store, about a second."""
 
-    @property
+    @functools.cached_property
     def has_poses(self) -> bool:
         """Whether its rows have poses, saved or not."""
         return self.columns.get("canonical_pose", 1) > 0
+
+    @functools.cached_property
+    def width(self) -> int:
+        """How many numbers a row has."""
+        return sum(self.columns.values())
 
     @property
     def part_refused(self) -> str | None:
@@ -80,6 +129,19 @@ class AbstractStepper(abc.ABC, Generic[OrbitT]):
 
         The column of the step ahead is a row shorter where the last row is the end of the run.
         """
+
+
+def write_first(state: State, rows: Rows) -> int:
+    """Write the row of a state to the first place of rows; return its width."""
+    begin = 0
+    for column in rows:
+        column[0], begin = state[begin : begin + column.shape[1]], begin + column.shape[1]
+    return begin
+
+
+def keep_row(state: State, rows: Rows, place: int) -> None:
+    """Write the row at a place of rows into a state."""
+    np.concatenate([column[place] for column in rows], out=state[: sum(column.shape[1] for column in rows)])
 
 
 @runtime_checkable

@@ -2,10 +2,9 @@
 
 from nonholo.orbit import Crossings, EventLog
 from nonholo.simulation._flow import flow
-from nonholo.simulation._iterate import iterate
 from nonholo.simulation._options import check_forces, refuse_many_matrices
 from nonholo.simulation._resume import extend, resume_run
-from nonholo.simulation._simulate import simulate
+from nonholo.simulation._simulate import iterate, simulate
 from nonholo.simulation._stored import size_in_blocks
 from nonholo.simulation.events import Event, crossings, cusp
 from nonholo.simulation.members import (

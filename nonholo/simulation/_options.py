@@ -1,9 +1,9 @@
 """The options of a run, checked, and what takes its steps."""
 
 import dataclasses
-from typing import Any, NamedTuple
+from typing import Any
 
-from nonholo.base.checks import choice, error, shown, step_counts
+from nonholo.base.checks import choice, error, flags, shown, step_counts
 from nonholo.base.limits import within_memory
 from nonholo.discrete import (
     BranchRule,
@@ -15,7 +15,11 @@ from nonholo.discrete import (
     refuse_composition,
 )
 from nonholo.orbit import AbstractStepper
-from nonholo.systems import in_coordinates, refuse_in_coordinates
+from nonholo.simulation._run import Run
+from nonholo.simulation.events import watched
+from nonholo.systems import AbstractCoordinateDiscretization, refuse_in_coordinates
+
+FEW = 1 << 16  # numbers that fit into any memory
 
 
 def check_forces(owner: str, discrete: Any, steps: int, *, free: str | None = None, traced: bool = False) -> None:
@@ -35,53 +39,46 @@ def check_forces(owner: str, discrete: Any, steps: int, *, free: str | None = No
         raise error(f"{owner}(steps=...)", "be at most one for each row of the forces", f"{steps}", remedy)
 
 
-class RunOptions(NamedTuple):
-    """The options of a run, whatever its start.
-
-    Attributes:
-        stepper: What takes its steps.
-        steps: Number of steps.
-        every: Steps between saved states.
-    """
-
-    stepper: AbstractStepper[Any]
-    steps: int
-    every: int
-
-    @classmethod
-    def of(
-        cls,
-        owner: str,
-        discrete: Any,
-        *,
-        steps: Any,
-        save_every: Any,
-        branch: BranchRule,
-        backend: str,
-        reconstruct: bool,
-    ) -> "RunOptions":
-        """Return checked options that a discretization can be run with."""
-        if in_coordinates(discrete):
-            others = {"branch": (branch, "principal"), "reconstruct": (reconstruct, True), "backend": (backend, "auto")}
-            refuse_in_coordinates(owner, **others)
-        else:
-            as_discretization("simulate(discrete=...)", discrete, composed=True, forced=True)
-        count, every = step_counts(steps, save_every)
-        stepper = stepper_of(discrete, branch, backend, posed=reconstruct)
+def checked_run(
+    owner: str,
+    discrete: Any,
+    *,
+    steps: Any,
+    save_every: Any,
+    branch: BranchRule,
+    backend: str,
+    reconstruct: bool,
+    events: Any,
+    throw: bool,
+    progress: bool,
+) -> Run:
+    """Return a run with checked options, whatever its start."""
+    flags(owner, reconstruct=reconstruct, throw=throw, progress=progress)
+    count, every = step_counts(steps, save_every)
+    if isinstance(discrete, AbstractCoordinateDiscretization):
+        others = {"branch": (branch, "principal"), "reconstruct": (reconstruct, True), "backend": (backend, "auto")}
+        refuse_in_coordinates(owner, **others)
+    stepper = stepper_of(discrete, branch, backend, posed=reconstruct)
+    if discrete.forces is not None:
         check_forces(owner, discrete, count)
-        return cls(stepper, count, every)
-
-    def refuse_too_large(self, owner: str, states: int) -> None:
-        """Refuse more saved states, or larger poses, than memory holds."""
-        refuse_too_large(owner, tuple(self.stepper.columns.values()), states)
+    return Run(stepper, count, every, None if events is None else watched(owner, stepper, events), throw, progress)
 
 
 def stepper_of(
     discrete: Any, branch: BranchRule, backend: str, *, posed: bool, owner: str = "simulate"
 ) -> AbstractStepper[Any]:
     """Return what takes the steps of a run: the one place that asks for rule, backend and extra."""
-    if in_coordinates(discrete):
+    if isinstance(discrete, AbstractCoordinateDiscretization):
         return discrete.stepper(posed=True)
+    as_discretization("simulate(discrete=...)", discrete, composed=True, forced=True)
+    if isinstance(branch, str) and isinstance(backend, str) and (branch, backend) == ("principal", "auto"):
+        return discrete.stepper(posed=posed)
+    return _other_stepper(owner, discrete, branch, backend, posed=posed)
+
+
+def _other_stepper(
+    owner: str, discrete: Discretization, branch: BranchRule, backend: str, *, posed: bool
+) -> AbstractStepper[Any]:
     rule = checked_rule(owner, discrete, branch)
     if not rule.is_principal:
         refuse_composition(f"{owner}(branch=...)", discrete, "Leave branch out: each substep takes the principal root.")

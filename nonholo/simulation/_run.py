@@ -1,7 +1,6 @@
 """The one loop over the steps of a run, whatever steps, in blocks; and the sinks that keep its orbit in memory."""
 
 import dataclasses
-import itertools
 import time
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
@@ -11,10 +10,9 @@ import numpy as np
 from nonholo.base.checks import count, error
 from nonholo.base.limits import within_memory
 from nonholo.base.progress import progress_bar
-from nonholo.base.results import Outcome, OutcomeError, finished
-from nonholo.discrete import check_first_state, keep_row
-from nonholo.io import Plan
-from nonholo.orbit import AbstractOrbit, AbstractStepper, First, Rows, State
+from nonholo.base.results import OUTCOMES, Outcome, OutcomeError, finished
+from nonholo.discrete import check_first_state
+from nonholo.orbit import AbstractOrbit, AbstractStepper, First, Plan, Rows, State, keep_row, write_first
 from nonholo.simulation.events import Watch, piece_of, search
 
 _PIECE, _SHORT = 1 << 20, 256  # steps of a call at most; of the first searched call, which an event may soon end
@@ -89,21 +87,25 @@ def opened(run: Run, first: First) -> tuple[Reached, AbstractOrbit | None]:
     return begun, None if outcome == Outcome.successful else run.finished(there, 0)
 
 
-def row_of(stepper: AbstractStepper[Any], state: State) -> list[np.ndarray]:
-    """Return the entries of the row of a state, column by column."""
-    ends = [0, *itertools.accumulate(stepper.columns.values())]
-    return [state[begin:end] for begin, end in itertools.pairwise(ends)]
-
-
 def orbit_at(stepper: AbstractStepper[Any], state: State, done: int) -> Any:
     """Return the row of a state as an orbit."""
-    rows = tuple(entries[None].copy() for entries in row_of(stepper, state))
+    rows = empty_rows(stepper, 1)
+    write_first(state, rows)
     return stepper.orbit(_ended(stepper, rows), done, 1, Outcome.successful)
 
 
-def _ended(stepper: AbstractStepper[Any], rows: Rows, places: int | None = None) -> Rows:
+def empty_rows(stepper: AbstractStepper[Any], places: int) -> Rows:
+    """Return rows to be written."""
+    return tuple([np.empty((places, width)) for width in stepper.columns.values()])
+
+
+def part_of(rows: Rows, begin: int, end: int) -> Rows:
+    """Return the places of rows from one to another."""
+    return rows if begin == 0 and end >= len(rows[0]) else tuple([column[begin:end] for column in rows])
+
+
+def _ended(stepper: AbstractStepper[Any], rows: Rows) -> Rows:
     """Return rows without what belongs to the step ahead of the last one, which may not be taken."""
-    rows = tuple(column[:places] for column in rows)
     return rows if stepper.lead else (*rows[:-1], rows[-1][:-1])
 
 
@@ -111,14 +113,10 @@ class _Table:
     """The rows of a block: where the steps of a call are written, and which of them are kept."""
 
     def __init__(self, stepper: AbstractStepper[Any], plan: Plan, number: int, *, fine: bool) -> None:
-        self.widths, self.fine = tuple(stepper.columns.values()), fine
-        self.begun, self.stop, self.every = plan.begin(number), plan.stop(number), plan.every
+        self.stepper, self.every, self.fine = stepper, plan.every, fine
+        self.number, self.begun, self.stop, self.ends = number, *plan.stretch(number)
         self.places = 1 + (self.stop - self.begun) // self.every
-        self.rows = self.empty(1 if fine else self.places)  # an event may stop the run long before
-
-    def empty(self, places: int) -> Rows:
-        """Return rows to be written."""
-        return tuple(np.empty((places, width)) for width in self.widths)
+        self.rows = empty_rows(stepper, 1 if fine else self.places)  # an event may stop the run long before
 
     def room(self, done: int, pace: int) -> tuple[int, int, Rows]:
         """Return how many steps to take from a step, after how many of them a row is written, and where.
@@ -128,29 +126,27 @@ class _Table:
         """
         past, most = (done - self.begun) % self.every, min(max(done, _SHORT) if self.fine else pace, self.stop - done)
         if self.fine:
-            each, count = 1, min(most, piece_of(self.widths))
+            each, count = 1, min(most, piece_of(self.stepper.columns.values()))
+            self._reserve(1 + (done - self.begun + count) // self.every)
         elif past == 0 and most >= self.every:
             each, count = self.every, most // self.every
         else:
             each, count = min(most, self.every - past), 1
-        self._reserve(1 + (done - self.begun + each * count) // self.every)
         if each != self.every:
-            return each * count, each, self.empty(1 + count)
+            return each * count, each, empty_rows(self.stepper, 1 + count)
         first = (done - self.begun) // each
-        return each * count, each, tuple(column[first : first + count + 1] for column in self.rows)
+        return each * count, each, part_of(self.rows, first, first + count + 1)
 
     def _reserve(self, places: int) -> None:
         """Have at least this many places."""
         if places > (have := len(self.rows[0])):
-            longer = self.empty(min(self.places, max(places, 2 * have)))
+            longer = empty_rows(self.stepper, min(self.places, max(places, 2 * have)))
             for column, known in zip(longer, self.rows, strict=True):
                 column[:have] = known
             self.rows = longer
 
     def take(self, room: Rows, done: int, good: int, each: int) -> None:
-        """Keep the saved states among the rows of a call."""
-        if each == self.every:
-            return  # they are in place
+        """Keep the saved states among the rows of a call, if they are not in place."""
         past = done - self.begun + each * np.arange(1 + good // each)
         saved = np.flatnonzero(past % self.every == 0)
         for column, new in zip(self.rows, room, strict=True):
@@ -162,16 +158,17 @@ def blocks(
     plan: Plan,
     begun: Reached,
     report: Callable[[int, int], object],
-    known: Callable[[int], Reached | None] = lambda _: None,
+    known: Callable[[int], Reached | None] | None = None,
 ) -> Iterator[Block]:
     """Give the blocks of a run in order, up to the one that ends it; nothing of those that are known is computed."""
     reached = begun
     for number in range(plan.blocks):
-        orbit, there = None, known(number)
+        orbit, there = None, None if known is None else known(number)
         if there is None:
             orbit, there = computed(run.stepper, plan, number, reached, report)
+        else:
+            report(there.done, plan.steps)
         reached = there
-        report(reached.done, plan.steps)
         yield Block(number, orbit, reached)
         if reached.is_last:
             return
@@ -181,10 +178,8 @@ def computed(
     stepper: AbstractStepper[Any], plan: Plan, number: int, begun: Reached, report: Callable[[int, int], object]
 ) -> tuple[Any, Reached]:
     """Take the steps of a block: the only loop over steps."""
-    state, watch, done = begun.state.copy(), begun.watch, plan.begin(number)
-    table, code, pace = _Table(stepper, plan, number, fine=watch is not None), 0, stepper.pace
-    for column, entries in zip(table.rows, row_of(stepper, state), strict=True):
-        column[0] = entries
+    table, watch = _Table(stepper, plan, number, fine=begun.watch is not None), begun.watch
+    state, done, code, pace = begun.state.copy(), table.begun, 0, stepper.pace
     if watch is not None:  # a block without steps has a log too
         watch, _ = search(dataclasses.replace(watch, parts=()), orbit_at(stepper, state, done))
     over = watch is not None and watch.stopped_by is not None
@@ -193,16 +188,17 @@ def computed(
         steps, each, room = table.room(done, pace)
         state, good, code = _advanced(stepper, state, steps, each, room)
         if watch is not None:
-            rows = _ended(stepper, room, 1 + good)
+            rows = _ended(stepper, part_of(room, 0, 1 + good))
             watch, states = search(watch, stepper.orbit(rows, done, 1, Outcome.successful))
             good, over = states - 1, watch.stopped_by is not None
             if over:
                 keep_row(state, room, good)
-        table.take(room, done, good, each)
+        if each != plan.every:
+            table.take(room, done, good, each)
         done, pace = done + good, _paced(pace, time.monotonic() - since)
         report(done, plan.steps)
-    reached = Reached(done, Outcome.successful if over else Outcome(code), state, watch)
-    return _orbit_of(stepper, table, plan, number, reached), reached
+    reached = Reached(done, Outcome.successful if over else OUTCOMES[code], state, watch)
+    return _orbit_of(stepper, table, plan, reached), reached
 
 
 def _advanced(stepper: AbstractStepper[Any], state: State, steps: int, each: int, room: Rows) -> tuple[State, int, int]:
@@ -211,15 +207,17 @@ def _advanced(stepper: AbstractStepper[Any], state: State, steps: int, each: int
     good, code = stepper.advance(state, steps, each, room)
     if good % each:  # no row stands there
         state = before
-        stepper.advance(state, good, good, tuple(np.empty((2, column.shape[1])) for column in room))
+        stepper.advance(state, good, good, empty_rows(stepper, 2))
     return state, good, code
 
 
-def _orbit_of(stepper: AbstractStepper[Any], table: _Table, plan: Plan, number: int, reached: Reached) -> Any:
+def _orbit_of(stepper: AbstractStepper[Any], table: _Table, plan: Plan, reached: Reached) -> Any:
     """Return the saved states of a block as an orbit."""
-    last, ends = (reached.done - table.begun) // plan.every, reached.is_last or number == plan.blocks - 1
-    first = int(stepper.lead == 1 and number > 0)
-    kept = tuple(column[first : last + (stepper.lead or ends)] for column in table.rows)
+    last, ends = (reached.done - table.begun) // plan.every, table.ends or reached.is_last
+    first = int(stepper.lead == 1 and table.number > 0)
+    if reached.done == table.begun:  # no step was taken
+        write_first(reached.state, table.rows)
+    kept = part_of(table.rows, first, last + (stepper.lead or ends))
     kept = _ended(stepper, kept) if ends else kept
     orbit = stepper.orbit(kept, table.begun + first * plan.every, plan.every, reached.outcome)
     return orbit if reached.watch is None else dataclasses.replace(orbit, events=reached.watch.log())
@@ -243,7 +241,7 @@ def ended(run: Run, first: First, *, whole: bool) -> tuple[Any, int]:
     if orbit is not None:
         return orbit, 0
     with progress_bar("steps", run.progress) as report:
-        ((_, orbit, reached),) = blocks(run, run.plan(1 + run.steps // run.every), begun, report)
+        orbit, reached = computed(run.stepper, run.plan(1 + run.steps // run.every), 0, begun, report)
     if whole:
         return orbit, reached.done
     last = orbit_at(run.stepper, reached.state, reached.done)
@@ -268,13 +266,13 @@ def _given(run: Run, begun: Reached, rows: int) -> Iterator[Any]:
 
 def rows_of_block(where: str, run: Run, block_steps: int | None) -> int:
     """Return the number of saved states in a block of this many steps; by default blocks of a few megabytes."""
-    widths = tuple(run.stepper.columns.values())
     if block_steps is None:
-        least = min(1 + run.steps // run.every, _ROWS, _NUMBERS // max(1, *widths), run.stepper.block // run.every)
+        widest = max(1, *run.stepper.columns.values())
+        least = min(1 + run.steps // run.every, _ROWS, _NUMBERS // widest, run.stepper.block // run.every)
         return max(1, least)
     asked = count(where, block_steps, "Pass the number of steps.")
     if asked % run.every:
         remedy = f"Pass {-(-asked // run.every) * run.every}."
         raise error(where, f"be a multiple of save_every = {run.every}", str(asked), remedy)
-    within_memory(where, 16.0 * (asked // run.every) * sum(widths), "Pass fewer steps: a block is held whole.")
+    within_memory(where, 16.0 * (asked // run.every) * run.stepper.width, "Pass fewer steps: a block is held whole.")
     return asked // run.every

@@ -1,15 +1,15 @@
-"""`simulate`: an orbit of the discrete map, from a checked start to a decoded result."""
+"""`simulate`: an orbit of the discrete map, from a checked start to a decoded result; `iterate`: the same by blocks."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from nonholo.base.checks import error, flags, path, shown
+from nonholo.base.checks import error, path, shown
 from nonholo.discrete import BranchRule
 from nonholo.orbit import DiscreteMotion, OrbitT
-from nonholo.simulation._options import RunOptions
-from nonholo.simulation._run import Run, in_memory
+from nonholo.simulation._options import FEW, checked_run, refuse_too_large
+from nonholo.simulation._run import in_memory, one_by_one, rows_of_block
 from nonholo.simulation._stored import into_store
-from nonholo.simulation.events import watched
 from nonholo.systems import Start
 
 
@@ -94,19 +94,19 @@ def simulate(
         >>> float(np.ptp(orbit.energy)) < 1e-14
         True
     """
-    flags("simulate", reconstruct=reconstruct, throw=throw, progress=progress)
-    how = {"branch": branch, "reconstruct": reconstruct, "backend": backend}
-    options = RunOptions.of("simulate", discrete, steps=steps, save_every=save_every, **how)
+    how = {"branch": branch, "reconstruct": reconstruct, "backend": backend, "events": events}
+    how |= {"steps": steps, "save_every": save_every, "throw": throw, "progress": progress}
+    run = checked_run("simulate", discrete, **how)
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity}
     starts |= {"displacement": displacement, "momentum": momentum}
     start = Start.of("simulate", configuration, allowed=discrete.starts, **starts)
-    watch = watched("simulate", options.stepper, events)
-    if store is None:
+    if store is None and (checkpoint_every is not None or scenario is not None):
         _refuse_without_store(checkpoint_every=checkpoint_every, scenario=scenario)
-    if store is not None or watch is None:  # an event may stop a run in memory long before
-        options.refuse_too_large("simulate", 1 if store is not None else 1 + options.steps // options.every)
-    run = Run(*options, watch, throw, progress)
-    first = discrete.first(start, posed=options.stepper.has_poses)
+    if store is not None or run.watch is None:  # an event may stop a run in memory long before
+        states = 1 if store is not None else 1 + run.steps // run.every
+        if states * run.stepper.width > FEW:
+            refuse_too_large("simulate", tuple(run.stepper.columns.values()), states)
+    first = discrete.first(start, posed=run.stepper.has_poses)
     if store is None:
         return in_memory(run, first)
     return into_store(run, first, path("simulate(store=...)", store), checkpoint_every, scenario)
@@ -118,3 +118,67 @@ def _refuse_without_store(**given: Any) -> None:
         if value is not None:
             got, remedy = f"{shown(value)} without a store", "Pass store='run.zarr' too, or leave it out."
             raise error(f"simulate({name}=...)", "come with a store", got, remedy)
+
+
+def iterate(
+    discrete: DiscreteMotion[OrbitT],
+    *,
+    steps: int,
+    block_steps: int | None = None,
+    body_velocity: Any = None,
+    restricted_velocity: Any = None,
+    displacement: Any = None,
+    momentum: Any = None,
+    configuration: Any = None,
+    save_every: int = 1,
+    branch: BranchRule = "principal",
+    reconstruct: bool = True,
+    backend: str = "auto",
+    events: Any = None,
+    throw: bool = True,
+    progress: bool = False,
+) -> Iterator[OrbitT]:
+    """Run the discrete map as `simulate` does, and give its orbit block by block, in bounded memory.
+
+    The blocks together are the orbit of `simulate`, bit for bit: no state is given twice, the first state of a block
+    follows the last one of the block before.
+
+    Args:
+        discrete: The discretized system.
+        steps: Number of steps N.
+        block_steps: Steps of a block, a multiple of `save_every`; by default blocks of a few megabytes.
+        body_velocity: As in `simulate`, and so are the others.
+        restricted_velocity: See `simulate`.
+        displacement: See `simulate`.
+        momentum: See `simulate`.
+        configuration: See `simulate`.
+        save_every: Steps between saved states.
+        branch: As in `simulate`.
+        reconstruct: Also compute poses.
+        backend: As in `simulate`.
+        events: As in `simulate`; the `events` of a block are those after the last step of the block before. The block
+            in which an event stops the run is the last one.
+        throw: Raise if the run cannot continue, after its last good block; otherwise that block's outcome says so.
+        progress: Show a progress bar on standard error.
+
+    Returns:
+        An iterator over orbits of `block_steps // save_every` states, the last one of those that are left.
+
+    Raises:
+        ValueError: A bad argument, before any work.
+        OutcomeError: As in `simulate`; with `throw` its `orbit` is the last block.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        >>> [len(block) for block in nh.iterate(sleigh, body_velocity=(1, 0, 0), steps=1000, block_steps=400)]
+        [400, 400, 201]
+    """
+    how = {"branch": branch, "reconstruct": reconstruct, "backend": backend, "events": events}
+    how |= {"steps": steps, "save_every": save_every, "throw": throw, "progress": progress}
+    run = checked_run("iterate", discrete, **how)
+    starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
+    starts |= {"restricted_velocity": restricted_velocity}
+    start = Start.of("iterate", configuration, allowed=discrete.starts, **starts)
+    refuse_too_large("iterate", tuple(run.stepper.columns.values()), 1)
+    rows = rows_of_block("iterate(block_steps=...)", run, block_steps)
+    return one_by_one(run, discrete.first(start, posed=run.stepper.has_poses), rows)

@@ -39,7 +39,7 @@ def into_store(run: Run, first: First, path: Path, checkpoint_every: int | None,
     if begun.watch is not None:
         there, events = dataclasses.replace(there, events=begun.watch.log()), descriptions(begun.watch.events)
     remedy = "Raise save_every to keep fewer states."
-    numbers = 1 + sum(run.stepper.columns.values())
+    numbers = 1 + run.stepper.width
     within_disk("simulate(store=...)", 8.0 * (1 + run.steps // run.every) * numbers, path, remedy)
     stream = io.create_stream(path, there, plan, _checkpoint(begun), events, scenario)
     with io.locked(stream.path):
@@ -116,7 +116,7 @@ def _first(stream: "Stream") -> Checkpoint:
 def _loaded(run: Run, stream: "Stream", reached: Checkpoint) -> Any:
     """Return the orbit, of one that would fill the memory the last block."""
     states = 1 + reached.done // run.every + (0 if reached.seen is None else int(reached.seen.counts.sum()))
-    if states * (2 + sum(run.stepper.columns.values())) <= _LOADED:
+    if states * (2 + run.stepper.width) <= _LOADED:
         return io.load_orbit(stream.path, discrete=run.stepper.motion)
     return io.load_last_block(stream.path, run.stepper.motion)
 
@@ -155,5 +155,5 @@ def size_in_blocks(discrete: Any, branch: BranchRule, steps: int, every: int) ->
     """Return the bytes of all states of a run if it can go into a store block by block and takes several, else 0."""
     run = Run(stepper_of(discrete, branch, "auto", posed=True), steps, every, None, throw=False, progress=False)
     states = 1 + steps // every
-    numbers = 8 * states * sum(run.stepper.columns.values())
+    numbers = 8 * states * run.stepper.width
     return numbers if states > rows_of_block("", run, None) else 0

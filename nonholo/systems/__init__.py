@@ -18,7 +18,6 @@ from nonholo.systems._coordinate_system import (
     DiscretizationT,
     OrbitT,
     in_coordinates,
-    refuse_in_coordinates,
 )
 from nonholo.systems._displacements import in_exp_d, trace_constraints
 from nonholo.systems._drift import gyroscopic_form
@@ -32,7 +31,7 @@ from nonholo.systems._mass import (
     mass_tensor_from_inertia,
 )
 from nonholo.systems._normal_form import NormalForm
-from nonholo.systems._start import Start, in_group, inadmissible, of_finite_energy, one_start
+from nonholo.systems._start import Start, in_group, inadmissible, of_finite_energy, one_start, refuse_in_coordinates
 from nonholo.systems._subspace import null_space, reference_point_subspace, spanned
 from nonholo.systems._symmetric_pair import is_symmetric_pair, symmetric_complement
 from nonholo.systems.families import (

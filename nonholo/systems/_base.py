@@ -163,7 +163,7 @@ class AbstractSystem(Keeper, abc.ABC):
         """The frame as a compact pose: the canonical pose of a body at the identity."""
         return self.group.pose_from_matrix(self.frame)
 
-    @kept
+    @functools.cached_property
     def rank(self) -> int:
         """The number k of rows of the constraint subspace."""
         inertia = self.inertia_along

@@ -3,7 +3,7 @@
 import abc
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
-from nonholo.base.checks import error, refuse_given
+from nonholo.base.checks import error
 from nonholo.base.kept import Keeper
 
 if TYPE_CHECKING:
@@ -13,7 +13,7 @@ OrbitT = TypeVar("OrbitT")
 DiscretizationT = TypeVar("DiscretizationT")
 
 
-class AbstractCoordinateDiscretization(abc.ABC, Generic[OrbitT]):
+class AbstractCoordinateDiscretization(Keeper, abc.ABC, Generic[OrbitT]):
     """A discretized system in coordinates."""
 
     system: Any
@@ -38,6 +38,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         described: What stores say of it in place of its fields: a name and parameters.
     """
 
+    leaves: ClassVar[tuple[str, ...]] = ()
     has_functions: ClassVar[bool] = True
     """Whether it has its Lagrangian: one from a store need not."""
 
@@ -80,14 +81,3 @@ def in_coordinates(discrete: Any) -> "TypeIs[AbstractCoordinateDiscretization]":
         (True, False)
     """
     return isinstance(discrete, AbstractCoordinateDiscretization)
-
-
-def refuse_in_coordinates(owner: str, **given: tuple[Any, Any]) -> None:
-    """Refuse arguments that only systems on a group have: each comes with its default.
-
-    Example:
-        >>> from nonholo.systems._coordinate_system import refuse_in_coordinates
-        >>> refuse_in_coordinates("discretize", order=(2, 2))
-    """
-    remedy = "Leave it out: only tops, sleighs and other LL and LR systems have it."
-    refuse_given(owner, "keep its default for a Lagrange-d'Alembert system", remedy, **given)

@@ -5,11 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import array, error, shape_of
+from nonholo.base.checks import array, error, refuse_given, shape_of
 from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._base import System
-from nonholo.systems._coordinate_system import refuse_in_coordinates
 
 _TOLERANCE = 1e-9  # relative, for matrices and velocities that a user computed in floating point
 
@@ -41,8 +40,9 @@ class Start:
         cls, owner: str, configuration: Any = None, allowed: tuple[str, ...] | None = None, **starts: Any
     ) -> "Start":
         """Return the start of a call, refused if it names none or several, or one that the motion does not have."""
-        for other in [name for name in starts if allowed is not None and name not in allowed]:
-            refuse_in_coordinates(owner, **{other: (starts.pop(other), None)})
+        if allowed is not None and len(allowed) < len(starts):
+            for other in [name for name in starts if name not in allowed]:
+                refuse_in_coordinates(owner, **{other: (starts.pop(other), None)})
         name = one_start(owner, **starts)
         return cls(owner, name, starts[name], configuration)
 
@@ -65,6 +65,17 @@ class Start:
         """Return the canonical momentum along the constraint that a velocity or a momentum has at a pose."""
         along = {"momentum": _of_momentum, "body_velocity": _of_velocity}.get(self.name, _of_coordinates)
         return along(self, system, g)
+
+
+def refuse_in_coordinates(owner: str, **given: tuple[Any, Any]) -> None:
+    """Refuse arguments that only systems on a group have: each comes with its default.
+
+    Example:
+        >>> from nonholo.systems import refuse_in_coordinates
+        >>> refuse_in_coordinates("discretize", order=(2, 2))
+    """
+    remedy = "Leave it out: only tops, sleighs and other LL and LR systems have it."
+    refuse_given(owner, "keep its default for a Lagrange-d'Alembert system", remedy, **given)
 
 
 def one_start(owner: str, **starts: Any) -> str:

@@ -11,7 +11,7 @@ from sturm import real_roots
 import nonholo as nh
 from nonholo.discrete import Discretization
 from nonholo.discrete.certificate._certificate import located
-from nonholo.discrete.certificate._problem import problem_of
+from nonholo.discrete.certificate._roots import problem_of
 
 _TENSOR = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 _TURNED = nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]) + 0.2, (0.6, 0, 0.8))

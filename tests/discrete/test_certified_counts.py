@@ -12,8 +12,7 @@ from nonholo.discrete import Discretization
 from nonholo.discrete.certificate import _roots as certificate_roots
 from nonholo.discrete.certificate._certificate import located
 from nonholo.discrete.certificate._families import _secular
-from nonholo.discrete.certificate._problem import Problem, problem_of
-from nonholo.discrete.certificate._roots import isolated, sharpened
+from nonholo.discrete.certificate._roots import Problem, isolated, problem_of, sharpened
 
 _X = fmpz_poly([0, 1])
 _HUGE = fmpz(10) ** 40

@@ -182,10 +182,10 @@ def test_a_run_can_stop_and_go_on(name: str) -> None:
     pose = np.eye(system.group.size).ravel() if size != 4 else np.array([1.0, 0.0, 0.0, 0.0])
     found = []
     for parts in ((10,), (4, 6)):
-        _, state = kernels.start(body, 0.05 * velocity, pose)
+        _, state = kernels.runs_of(body).start(body, 0.05 * velocity, pose)
         rows = np.empty((10, k)), np.empty((10, m)), np.empty((10, len(pose)))
         for steps in parts:
-            kernels.advance(body, state, steps, 1, rows)
+            kernels.runs_of(body).advance(body, state, steps, 1, *rows)
         found.append(state)
     assert np.array_equal(*found)
 

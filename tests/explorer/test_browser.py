@@ -293,10 +293,10 @@ def test_ten_thousand(visit: Callable, files: dict, name: str) -> None:
         page.page.fill("#scrub", str(step))
         for k in (0, 137, 9999):
             member = page.page.evaluate(f"nonholo.crowd.member({k})")
-            code, state = kernels.start(body, np.array(member["first"]), np.array([1.0, 0.0, 0.0, 0.0]))
+            code, state = kernels.runs_of(body).start(body, np.array(member["first"]), np.array([1.0, 0.0, 0.0, 0.0]))
             assert code == 0
             rows = np.empty((1, 2)), np.empty((1, 2)), np.empty((1, 4))
-            kernels.advance(body, state, step, step, rows)
+            kernels.runs_of(body).advance(body, state, step, step, *rows)
             assert (member["now"], member["outcome"], member["step"]) == (rows[0][0].tolist(), 0, step)
     assert page.errors == []
 

@@ -27,11 +27,11 @@ def _sleigh(rng: np.random.Generator) -> kernels.SleighBody:
 
 
 def _native(body: kernels.AnyBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, int, np.ndarray]:
-    code, state = kernels.start(body, momentum, pose)
+    code, state = kernels.runs_of(body).start(body, momentum, pose)
     rows = tuple(np.empty((_STEPS, size)) for size in kernels.sizes(body))
     done = 0
     if code == 0:
-        done, code = kernels.advance(body, state, _STEPS, 1, rows)
+        done, code = kernels.runs_of(body).advance(body, state, _STEPS, 1, *rows)
     return done, code, np.hstack(rows)[:done]
 
 

@@ -14,7 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from nonholo.io import Plan, locked, owner_of
+from nonholo.io import locked, owner_of
+from nonholo.orbit import Plan
 
 
 @pytest.fixture

@@ -104,13 +104,13 @@ def test_the_loop_has_the_bits_of_plain_python(name: str, kind: str) -> None:
     pose = route.encode_poses(np.asarray(system.frame_pose))
     wanted = [np.array(column) for column in zip(*_run(route.body, m, pose, STEPS), strict=True)]
     for pieces in ((STEPS,), (1, 7, RENEWED - 9, STEPS - RENEWED + 1)):
-        code, state = kernels.start(route.body, m, pose)
+        code, state = kernels.runs_of(route.body).start(route.body, m, pose)
         assert code == 0
-        assert np.array_equal(kernels.chart_of(route.body, state), wanted[1][0])
+        assert np.array_equal(kernels.runs_of(route.body).chart_of(route.body, state), wanted[1][0])
         found, done = tuple(np.empty((STEPS, width)) for width in route.sizes), 0
         for piece in pieces:
             room = (found[0][done:], found[1][done:], found[2][done:])
-            assert kernels.advance(route.body, state, piece, 1, room) == (piece, 0)
+            assert kernels.runs_of(route.body).advance(route.body, state, piece, 1, *room) == (piece, 0)
             done += piece
         for mine, theirs in zip(found, wanted, strict=True):
             assert np.array_equal(mine, theirs[1:])
@@ -123,8 +123,8 @@ def test_the_second_correction_leaves_an_error_of_third_order(name: str) -> None
     route = nh.discretize(system, 0.4).route.compiled
     assert route is not None
     m = route.encode(np.asarray(system.to_canonical(system.restricted_momentum(velocity))))
-    _, state = kernels.start(route.body, m, route.encode_poses(np.asarray(system.frame_pose)))
-    root, left = kernels.chart_of(route.body, state), []
+    _, state = kernels.runs_of(route.body).start(route.body, m, route.encode_poses(np.asarray(system.frame_pose)))
+    root, left = kernels.runs_of(route.body).chart_of(route.body, state), []
     for off in (1e-2, 1e-3):
         guess = root + off * np.array([0.6, -0.8])
         found = np.reshape(corrections(route.body, *m, *guess), (2, 2))

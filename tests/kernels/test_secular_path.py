@@ -120,7 +120,10 @@ def test_the_end_of_a_chart_is_no_fold() -> None:
     assert int(nh.step(discrete, MOMENTUM).outcome) == nh.Outcome.branch_unverified
     step = make_route(discrete, "matrix")
     assert step is not None
-    assert kernels.start(step.body, step.scale * MOMENTUM, np.eye(4).ravel())[0] == nh.Outcome.branch_unverified
+    assert (
+        kernels.runs_of(step.body).start(step.body, step.scale * MOMENTUM, np.eye(4).ravel())[0]
+        == nh.Outcome.branch_unverified
+    )
     assert int(nh.step(discrete, 20 * MOMENTUM[::-1]).outcome) == nh.Outcome.no_real_branch
 
 
@@ -334,4 +337,6 @@ def test_the_general_step_sees_tiny_folds(share: float) -> None:
     step = make_route(nh.discretize(nh.SuslovTop(tensor), 1.0), "matrix").compiled
     assert step is not None
     momentum = share * 0.04532060048 * np.array([-0.9221329, -0.0006786948, -0.001358454])
-    assert (kernels.start(step.body, step.scale * momentum, np.eye(4).ravel())[0] == 0) == (share < 1)
+    assert (kernels.runs_of(step.body).start(step.body, step.scale * momentum, np.eye(4).ravel())[0] == 0) == (
+        share < 1
+    )

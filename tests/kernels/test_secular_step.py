@@ -43,11 +43,15 @@ def equal_steps(system: nh.SuslovTop | nh.MultidimensionalSleigh, h: float, rows
     general, secular = make_route(discrete, "matrix"), discrete.route
     start = np.zeros_like(rows)
     for r in rows:
-        code, state = kernels.start(general.body, general.scale * r, np.eye(system.group.size).ravel())
-        other, same = kernels.start(secular.body, secular.encode(r), np.empty(0))
+        code, state = kernels.runs_of(general.body).start(
+            general.body, general.scale * r, np.eye(system.group.size).ravel()
+        )
+        other, same = kernels.runs_of(secular.body).start(secular.body, secular.encode(r), np.empty(0))
         assert code == other == 0
-        chart = kernels.chart_of(general.body, state)
-        assert np.allclose(secular.from_kernel(kernels.chart_of(secular.body, same)), chart, rtol=0, atol=1e-13)
+        chart = kernels.runs_of(general.body).chart_of(general.body, state)
+        assert np.allclose(
+            secular.from_kernel(kernels.runs_of(secular.body).chart_of(secular.body, same)), chart, rtol=0, atol=1e-13
+        )
         one, _, _ = kernels.step_each(general.body, (general.scale * r[None], chart[None], None), start[:1], True)
         turned = secular.to_kernel(chart[None])
         two, _, _ = kernels.step_each(secular.body, (secular.encode(r)[None], turned, None), start[:1], True)

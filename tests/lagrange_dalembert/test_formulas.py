@@ -12,9 +12,9 @@ from jax import lax
 
 from nonholo.base.numerics import double_precision
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.lagrange_dalembert.compiled import _programs, _run
-from nonholo.lagrange_dalembert.compiled._machine import machine_code
+from nonholo.lagrange_dalembert.compiled import _run
 from nonholo.lagrange_dalembert.compiled._operations import LOGIC, OPERATIONS
+from nonholo.lagrange_dalembert.compiled._run import machine_code
 from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError
 
 EPS = np.finfo(float).eps
@@ -59,7 +59,7 @@ DERIVATIVES: dict[str, Callable[..., Any]] = {
 
 def computed(function: Callable[..., Any], *arrays: np.ndarray) -> tuple[np.ndarray, float]:
     """Return the values of a function by its formulas, and their doubt."""
-    program = _programs.program(function, *(array.shape for array in arrays))
+    program = _run.program(function, *(array.shape for array in arrays))
     numbers, results = np.concatenate([np.ravel(x) for x in arrays]), np.empty(len(program.results) + 1)
     machine_code(program.inputs, [*program.results, program.doubt])(numbers.ctypes, results.ctypes)
     return results[:-1], results[-1]
@@ -88,7 +88,7 @@ def test_primitives(order: str, name: str) -> None:
 def test_what_has_no_formulas_is_refused(name: str) -> None:
     """Loops, linear solvers and computed indices are left to JAX."""
     with pytest.raises(UntranslatableError):
-        _programs.program(OTHERS[name], (3,), (3,))
+        _run.program(OTHERS[name], (3,), (3,))
 
 
 def test_constants_have_the_values_of_the_code() -> None:
@@ -122,12 +122,12 @@ def test_zeros_are_doubted_where_a_factor_may_not_be_finite() -> None:
     assert [value[0] for value, _ in logarithms] == [0.0, 0.0, 0.0]
     assert [doubt == 0 for _, doubt in logarithms] == [True, False, False]
     assert [computed(lambda x: 0.0 / x, point[None])[1] == 0 for point in points] == [True, True, False]
-    assert _programs.program(lambda x: 0.0 * jnp.sin(x), (1,)).doubt.value == 0.0
+    assert _run.program(lambda x: 0.0 * jnp.sin(x), (1,)).doubt.value == 0.0
 
 
 def test_a_number_is_computed_once() -> None:
     """What is written twice, and in derivatives again, has one operation."""
-    program = _programs.program(lambda x: (jnp.sin(x) * jnp.sin(x), jax.grad(jnp.cos)(x) + jnp.sin(x)), ())
+    program = _run.program(lambda x: (jnp.sin(x) * jnp.sin(x), jax.grad(jnp.cos)(x) + jnp.sin(x)), ())
     square, difference = program.results
     assert square.arguments[0] is square.arguments[1] is difference.arguments[1]
 
@@ -190,7 +190,7 @@ def _runs_as_by_jax(seed: int, time_step: float, monkeypatch: pytest.MonkeyPatch
     steps = 100 if time_step < 0.1 else 30  # large steps of random systems are chaotic
     run = functools.partial(system.discretize(time_step).simulate, **start, steps=steps, throw=False)
     compiled = run()
-    assert _programs.programs(system, (system.dimension + system.is_driven,), system.dimension) is not None
+    assert _run.programs(system, (system.dimension + system.is_driven,), system.dimension) is not None
     left_to_jax(monkeypatch)
     orbit = run()
     assert compiled.outcome == orbit.outcome or (time_step > 0.1 and compiled.outcome and orbit.outcome)

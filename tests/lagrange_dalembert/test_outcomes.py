@@ -11,7 +11,7 @@ import pytest
 import nonholo as nh
 from nonholo.lagrange_dalembert import LagrangeDAlembert, _stepper
 from nonholo.lagrange_dalembert._newton import solve
-from nonholo.lagrange_dalembert._precision import in_double
+from nonholo.lagrange_dalembert._room import in_double
 
 FORCE = 0.15
 

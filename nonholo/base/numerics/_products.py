@@ -20,8 +20,9 @@ def applied(matrix: Inexact[Array, "... i j"], vectors: Inexact[Array, "... j"])
                [6., 3.]])
     """
     if isinstance(matrix, np.ndarray) and isinstance(vectors, np.ndarray):
-        kind = np.result_type(matrix, vectors)
-        return np.einsum("...ij,...j->...i", *(np.ascontiguousarray(each, kind) for each in (matrix, vectors)))
+        kind = matrix.dtype if matrix.dtype is vectors.dtype else np.result_type(matrix, vectors)
+        matrix, vectors = np.ascontiguousarray(matrix, kind), np.ascontiguousarray(vectors, kind)
+        return np.einsum("...ij,...j->...i", matrix, vectors)
     return vectors @ matrix.T if matrix.ndim == 2 else (matrix @ vectors[..., None])[..., 0]
 
 

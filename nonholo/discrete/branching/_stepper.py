@@ -10,8 +10,8 @@ from nonholo.base.results import Outcome
 from nonholo.discrete.branching._equations import Frame, frame_of
 from nonholo.discrete.branching._rules import AbstractBranchRule
 from nonholo.discrete.branching._steps import Place, clear_places, first_place, goal_of, next_place
-from nonholo.discrete.routes import AbstractBodyStepper, Compact, keep_row, write_first
-from nonholo.orbit import First, Rows, State
+from nonholo.discrete.routes import AbstractBodyStepper, Compact
+from nonholo.orbit import First, Rows, State, keep_row, write_first
 
 _BATCH = 256  # steps to the nearest value between two poses that are freed of their rounding errors
 
@@ -59,7 +59,7 @@ class RuleStepper(AbstractBodyStepper):
         """Take steps by the rule, and carry the pose along."""
         write_first(state, rows)
         frame, group, done, code = self._frame, self.motion.system.group, 0, Outcome.successful
-        width, often = sum(self.columns.values()), _BATCH if self.rule.is_nearest else 1
+        width, often = self.width, _BATCH if self.rule.is_nearest else 1
         now = self._now(frame, state)
         while code == 0 and done < steps:
             code, ahead, goal = self._following(frame, now, min(steps - done, often - now.step % often))
@@ -102,7 +102,7 @@ class RuleStepper(AbstractBodyStepper):
     def _now(self, frame: Frame, state: State) -> "_Now":
         """Return the numbers of a state."""
         k, size = self.motion.system.rank, self.motion.system.group.size
-        own, goal = state[sum(self.columns.values()) :], len(self._begun(frame, state[:k])[0])
+        own, goal = state[self.width :], len(self._begun(frame, state[:k])[0])
         point, goals, begin, g, (step,) = np.split(
             own, np.cumsum([len(own) - goal - k - size**2 - 1, goal, k, size**2])
         )

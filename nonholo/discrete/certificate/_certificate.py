@@ -13,8 +13,7 @@ from flint import acb, acb_poly, ctx, fmpz_poly
 
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete.certificate._families import Family, UncertainError, families
-from nonholo.discrete.certificate._problem import Lever, Problem, problem_of
-from nonholo.discrete.certificate._roots import PRECISIONS, isolated, sharpened
+from nonholo.discrete.certificate._roots import PRECISIONS, Lever, Problem, isolated, problem_of, sharpened
 from nonholo.systems import NormalForm
 
 _SHARP = 2.0**-48  # relative radius that ends the search for more digits

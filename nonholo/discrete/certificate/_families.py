@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from flint import fmpq_mat, fmpq_poly, fmpz, fmpz_mat, fmpz_poly
 
-from nonholo.discrete.certificate._problem import Problem
+from nonholo.discrete.certificate._roots import Problem
 
 _X = fmpz_poly([0, 1])
 _ONE = fmpz_poly([1])

@@ -20,13 +20,35 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.discrete._composition import weights
 from nonholo.discrete._scheme import Scheme
-from nonholo.discrete.definition._marks import marked
 from nonholo.discrete.definition._principal import ON_LOCUS, closed_step_of, kernel_root, principal_of
 from nonholo.discrete.definition._root import ROOT
 from nonholo.discrete.definition._step import displaced, momentum_of, restricted
 from nonholo.discrete.routes import ScalarStep
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import Forced
+
+_HUGE = 1e300
+
+
+@jax.custom_jvp
+def marked(value: Array, cause: Array, good: Array) -> Array:
+    """Return a finite value where it is good, and NaN elsewhere.
+
+    There the derivative is NaN along whatever moves the value or the cause of the failure; cotangents that are zero
+    stay zero, since what comes later depends on nothing there.
+    """
+    del cause
+    return jnp.where(good, value, jnp.nan)
+
+
+@marked.defjvp
+def _tangent(primals: tuple[Array, ...], tangents: tuple[Array, ...]) -> tuple[Array, Array]:
+    (value, cause, good), (moved, caused, _) = primals, tangents
+    many, none = jnp.where(good, 1.0, _HUGE).astype(value.dtype), jnp.where(good, 1.0, 0.0).astype(value.dtype)
+    moved = moved + jnp.where(good, 0.0, 1.0).astype(value.dtype) * caused
+    overflown = moved * many * many  # zero or infinite where it is not good, and so is the transpose
+    return marked(value, cause, good), overflown * none * many * many
+
 
 _MANY = 2048  # steps that take much longer than the question whether they are wanted
 _SHORT = 64  # steps between saved states from which on reverse mode keeps checkpoints alone

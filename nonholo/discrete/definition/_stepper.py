@@ -1,8 +1,8 @@
-"""Steps by the definition of the map, in JAX: to the principal value or the nearest one, and compositions."""
+"""Steps by the definition, in JAX: to the principal value or the nearest one, of compositions, and parts of steps."""
 
 import dataclasses
 import functools
-from typing import Any
+from typing import Any, cast
 
 import equinox
 import jax
@@ -11,13 +11,58 @@ import numpy as np
 
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
-from nonholo.base.types import Array
+from nonholo.base.types import Array, Float
+from nonholo.discrete._composition import weights
 from nonholo.discrete._scheme import Scheme
-from nonholo.discrete.definition._composition import swept
 from nonholo.discrete.definition._precision import in_double
-from nonholo.discrete.definition._step import nearest_displacement, principal_displacement, pushed
-from nonholo.discrete.routes import AbstractBodyStepper, Compact, keep_row, write_first
-from nonholo.orbit import First, Rows, State
+from nonholo.discrete.definition._step import (
+    displaced,
+    momentum_of,
+    nearest_displacement,
+    principal_displacement,
+    pushed,
+    restricted,
+)
+from nonholo.discrete.routes import AbstractBodyStepper, Compact
+from nonholo.orbit import First, Orbit, Rows, State, keep_row, write_first
+
+
+def _substep(discrete: Scheme, weight: Array, r: Array, g: Array) -> tuple[Array, Array, Array, Array]:
+    """Return momentum and pose after a substep, the chart of its displacement and the outcome."""
+    part: Any = dataclasses.replace(cast(Any, discrete), time_step=weight * discrete.time_step, order=2)
+    y, code = principal_displacement(part, r, g)
+    W = displaced(part, y)
+    after = discrete.system.moved(g, W)
+    return restricted(part, momentum_of(part, y, g, "right"), after), after, y, code
+
+
+def _sweep(discrete: Scheme, r: Array, g: Array) -> tuple[tuple[Array, Array], Array, Array]:
+    """Return momentum and pose after a whole step, the chart of its first substep and the outcome."""
+
+    def advance(carry: tuple[Array, ...], weight: Array) -> tuple[tuple[Array, ...], Array]:
+        *now, code = carry
+        *ahead, y, found = _substep(discrete, weight, *now)
+        good = (code == 0) & (found == 0)
+        chosen = (jnp.where(good, new, old) for new, old in zip(ahead, now, strict=True))
+        return (*chosen, jnp.where(code == 0, found, code)), y
+
+    start = (r, g, jnp.zeros((), dtype=jnp.result_type(int)))
+    (*state, code), charts = jax.lax.scan(advance, start, jnp.asarray(weights(discrete.order)))
+    return (state[0], state[1]), charts[0], code
+
+
+swept = equinox.filter_jit(_sweep)
+_swept_each = equinox.filter_jit(jax.vmap(_sweep, in_axes=(None, 0, 0)))
+
+
+def whole_steps_by_definition(
+    discrete: Scheme, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Take one step from each row of canonical momenta and poses; return both after it, and the outcomes."""
+    system = discrete.system
+    (after, moved), _, codes = in_double(_swept_each, discrete, applied(system.inverse_frame_map, momenta), np.array(g))
+    bad, after = codes != Outcome.successful, applied(system.frame_map, after)
+    return np.where(bad[:, None], np.nan, after), np.where(bad[:, None, None], np.nan, moved), codes
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -80,7 +125,7 @@ class DefinitionStepper(AbstractBodyStepper):
 
     def _composed(self, state: State, steps: int) -> tuple[int, int]:
         """Take steps one by one: a state is good if the whole step that starts there could be taken."""
-        k, width = self.motion.system.rank, sum(self.columns.values())
+        k, width = self.motion.system.rank, self.width
         for done in range(steps):
             r, g = state[width : width + k].copy(), self._matrix(state[width + k :]).copy()
             ahead, y, code = in_double(swept, self.motion, r, g)
@@ -132,3 +177,33 @@ def _advance(
 
     start = (jnp.asarray(begun), jnp.asarray(0), jnp.asarray(r), jnp.asarray(y), jnp.asarray(g))
     return jax.lax.while_loop(lambda c: (c[0] < steps) & (c[1] == 0), body, start)
+
+
+_root = equinox.filter_jit(principal_displacement)
+_moved = equinox.filter_jit(pushed)
+
+
+def parts_by_definition(
+    discrete: Scheme, states: Orbit, poses: np.ndarray, fractions: Float[np.ndarray, "K"]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return canonical momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
+    group, frame, C = discrete.system.group, discrete.system.frame, discrete.system.frame_map
+    g = group.matrix_from_pose(poses) @ group.inverse(frame)
+    r = applied(discrete.system.inverse_frame_map, states.reduced_momentum)
+    found = [_partial_step(discrete, *row) for row in zip(fractions, r, g, strict=True)]
+    momenta, charts, moved = (np.array(column) for column in zip(*found, strict=True))
+    return applied(C, momenta), charts, group.pose_from_matrix(moved @ frame)
+
+
+def _partial_step(
+    discrete: Scheme, fraction: float, r: np.ndarray, g: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return momentum, chart and pose after a fraction of a step from a momentum and a pose, in the user's frame."""
+    order = cast(Any, discrete).order
+    one, parts = dataclasses.replace(cast(Any, discrete), order=2), weights(order)
+    for part in fraction * parts:
+        y, code = in_double(_root, one, part * r, g)
+        r, g = in_double(_moved, one, y, g)
+        r, g = (np.where(code == 0, x, np.nan) for x in (r / part, g))
+    y, code = in_double(_root, one, parts[0] * r, g)
+    return r, np.where(code == 0, y, np.nan), g

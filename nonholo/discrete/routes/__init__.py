@@ -11,7 +11,13 @@
 | `FunctionRoute` | the definition of the impulses, for constraints fixed in space |
 """
 
-from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute
+from nonholo.discrete.routes._base import (
+    AbstractBodyStepper,
+    AbstractCompiledRoute,
+    AbstractRoute,
+    Compact,
+    CompiledStepper,
+)
 from nonholo.discrete.routes._choice import make_route
 from nonholo.discrete.routes._composed import ComposedRoute
 from nonholo.discrete.routes._definition import DefinitionRoute
@@ -20,4 +26,3 @@ from nonholo.discrete.routes._matrix import MatrixRoute
 from nonholo.discrete.routes._reversal import reversal_defects
 from nonholo.discrete.routes._scalar import ScalarRoute, ScalarStep
 from nonholo.discrete.routes._secular import SecularRoute
-from nonholo.discrete.routes._stepper import AbstractBodyStepper, Compact, CompiledStepper, keep_row, write_first

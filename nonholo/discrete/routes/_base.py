@@ -1,20 +1,113 @@
-"""The interface of every route, and what compiled ones share: units and axes of a kernel, runs, single steps."""
+"""The interface of every route and of its stepper, and what compiled ones share: units, axes, runs, single steps."""
 
 import abc
+import dataclasses
+import functools
 from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
 
 from nonholo import kernels
-from nonholo.base.results import Outcome, OutcomeError
+from nonholo.base.numerics import applied
+from nonholo.base.results import OUTCOMES, Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.discrete._composition import weights
-from nonholo.discrete.routes._stepper import AbstractBodyStepper, CompiledStepper
-from nonholo.orbit import Orbit
+from nonholo.groups import AbstractMatrixGroup
+from nonholo.orbit import AbstractStepper, First, Orbit, Rows, State
 from nonholo.systems import System
 
-Rows = tuple[np.ndarray, np.ndarray, np.ndarray]
+Compact = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Canonical momenta and charts, and compact canonical poses, of which each is empty where there are none."""
+
+
+class AbstractBodyStepper(AbstractStepper[Orbit]):
+    """The steps of a map on a group: rows are momenta, charts and poses in numbers of its own.
+
+    Attributes:
+        motion: The discretization.
+        posed: Whether poses are saved.
+    """
+
+    motion: Any
+    posed: bool
+
+    @property
+    def part_refused(self) -> str | None:
+        """Why a step has no parts; None if it has."""
+        if self.branch != "principal":
+            return f"branch {self.branch!r}: only the principal branch has them"
+        if self.motion.step_needs_pose and not self.posed:
+            return "a step that depends on the pose, without reconstruct=True"
+        return None
+
+    @abc.abstractmethod
+    def decode(self, rows: Rows) -> Compact:
+        """Return rows as canonical momenta, charts and poses."""
+
+    def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> Orbit:
+        """Return rows as an orbit."""
+        momenta, charts, poses = self.decode(rows)
+        number, kept = np.arange(step, step + every * len(momenta), every), poses if self.posed else None
+        time = self.motion.time_step * number
+        return Orbit(self.motion, time, momenta, charts, kept, outcome, every, branch=self.branch, step=number)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class CompiledStepper(AbstractBodyStepper):
+    """The steps of a route with a kernel: rows are as the kernel has them.
+
+    Attributes:
+        motion: The discretization.
+        route: The route.
+        posed: Whether poses are saved.
+    """
+
+    motion: Any
+    route: Any
+    posed: bool
+
+    @functools.cached_property
+    def columns(self) -> dict[str, int]:  # type: ignore[override]
+        """The names and sizes of what a row holds."""
+        momenta, charts, pose = self.route.sizes
+        pose = pose if self.posed or self.route.needs_pose else 0
+        return {"reduced_momentum": momenta, "cayley": charts, "canonical_pose": pose}
+
+    @property
+    def in_threads(self) -> bool:  # type: ignore[override]
+        """Whether `advance` releases the interpreter's lock."""
+        return self.route.compiled is not None
+
+    @property
+    def block(self) -> int:  # type: ignore[override]
+        """Steps of a block of a store, about a second."""
+        return 1 << 23 if self.in_threads else 1 << 14
+
+    def start(self, first: First) -> tuple[State, Outcome]:
+        """Return the state at the first root."""
+        reduced, pose = first.numbers
+        getattr(self.route, "said", {}).clear()  # of the run before
+        scaled = self.route.encode(reduced)
+        coded = self.route.encode_poses(pose) if pose.size else pose
+        code, chart, kernel = self.route.start(scaled, coded)
+        return np.concatenate((scaled, chart, coded, kernel)), OUTCOMES[code]
+
+    def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
+        """Take steps with the state of the kernel."""
+        width, begin = self.width, 0
+        for column, size in zip(rows, self.columns.values(), strict=True):
+            column[0], begin = state[begin : begin + size], begin + size
+        good, code = self.route.advance(state[width:], steps, every, tuple([column[1:] for column in rows]))
+        place = good // every
+        np.concatenate([column[place] for column in rows], out=state[:width])
+        return good, code
+
+    def decode(self, rows: Rows) -> Compact:
+        """Return rows of the kernel in canonical numbers."""
+        momenta, charts, poses = rows
+        decoded = self.route.decode_poses(poses) if self.posed else poses
+        return self.route.decode(momenta), self.route.from_kernel(charts), decoded
 
 
 class AbstractRoute(abc.ABC):
@@ -50,14 +143,14 @@ class AbstractRoute(abc.ABC):
         """Return the displacements that follow, one step of order 2 from each state."""
 
     @abc.abstractmethod
-    def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Rows:
+    def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Compact:
         """Take one step from each row of momenta and poses of the user's frame; return both after it, and the outcomes.
 
-        Rows that cannot continue are NaN.
+        Compact that cannot continue are NaN.
         """
 
     @abc.abstractmethod
-    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Rows:
+    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Compact:
         """Return momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
 
 
@@ -116,34 +209,36 @@ class AbstractCompiledRoute(AbstractRoute):
         """The route itself."""
         return self
 
+    @functools.cached_property
+    def runs(self) -> Any:
+        """The functions of the kernel, `kernels.runs_of`."""
+        return kernels.runs_of(self.body)
+
     @property
     def sizes(self) -> tuple[int, int, int]:
         """Numbers of momenta, chart coordinates and pose entries of the kernel."""
-        return kernels.sizes(self.body)
+        return self.runs.sizes(self.body)
 
-    def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
-        """Return the outcome of the first root, and the state of a run, from the kernel's momenta and pose."""
-        return kernels.start(self.body, momenta, pose)
+    def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
+        """Return the outcome of the first root, its chart and the state of a run, in numbers of the kernel."""
+        code, state = self.runs.start(self.body, np.array(momenta), np.array(pose))
+        return code, self.runs.chart_of(self.body, state), state
 
-    def chart_of(self, state: np.ndarray) -> np.ndarray:
-        """Return the kernel's chart coordinates of the displacement in the state of a run."""
-        return kernels.chart_of(self.body, state)
-
-    def advance(self, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
+    def advance(self, state: np.ndarray, steps: int, every: int, rows: Compact) -> tuple[int, int]:
         """Take up to `steps` steps into rows of the kernel; return how many were good and the outcome."""
-        return kernels.advance(self.body, state, steps, every, rows)
+        return self.runs.advance(self.body, state, steps, every, *rows)
 
     def step_each(
         self, states: tuple[np.ndarray, np.ndarray, np.ndarray | None], guesses: np.ndarray, *, principal_only: bool
-    ) -> Rows:
+    ) -> Compact:
         """Take one step from each of the kernel's momenta, charts and poses; return momenta, charts and outcomes."""
         return kernels.step_each(self.single.body, states, guesses, principal_only)
 
     def first_root(self, momenta: np.ndarray) -> tuple[Outcome, np.ndarray]:
         """Return the outcome of the principal root over canonical momenta, and its canonical chart coordinates."""
         one = self.single
-        code, state = one.start(one.encode(momenta), one.encode_poses(self.system.frame_pose))
-        return Outcome(code), one.from_kernel(one.chart_of(state))
+        code, chart, _ = one.start(one.encode(momenta), one.encode_poses(self.system.frame_pose))
+        return Outcome(code), one.from_kernel(chart)
 
     def stepper(self, motion: Any, *, posed: bool, branch: str = "principal") -> CompiledStepper:
         """Return what takes the steps with the kernel, to the principal value."""
@@ -159,7 +254,7 @@ class AbstractCompiledRoute(AbstractRoute):
             raise OutcomeError(Outcome(int(codes.max())), "Step after a saved state")
         return self.from_kernel(following)
 
-    def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Rows:
+    def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Compact:
         """Take one step from each row of momenta and poses; return both after it, and the outcomes."""
         group, frame = self.system.group, self.system.frame
         poses = self.encode_poses(group.pose_from_matrix(g @ frame))
@@ -168,23 +263,22 @@ class AbstractCompiledRoute(AbstractRoute):
         ahead = group.matrix_from_pose(self.decode_poses(moved)) @ group.inverse(frame)
         return self.decode(after), ahead, codes
 
-    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Rows:
+    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Compact:
         """Return momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
         return parts_by(self, self._part, posed(states, needed=self.needs_pose), states, fractions)
 
-    def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Rows | None:
+    def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Compact | None:
         """Return the kernel's momenta, chart and pose after a fraction of a step; None where there is no such step."""
         del time, step  # a free step is the same at all times
         (after,), (moved,), (code,) = self.parts_of_steps(m[None], pose[None], fraction)
         return self.ahead(after, moved) if code == 0 else None
 
-    def ahead(self, m: np.ndarray, pose: np.ndarray, pushed: np.ndarray | None = None) -> Rows:
+    def ahead(self, m: np.ndarray, pose: np.ndarray, pushed: np.ndarray | None = None) -> Compact:
         """Return the kernel's momenta, the chart of the step from them, or from pushed ones, and the pose."""
-        code, state = self.start(m if pushed is None else pushed, pose)
-        chart = self.chart_of(state)
+        code, chart, _ = self.start(m if pushed is None else pushed, pose)
         return m, chart if code == 0 else np.full(len(chart), np.nan), pose
 
-    def parts_of_steps(self, momenta: np.ndarray, poses: np.ndarray, fraction: float = 1.0) -> Rows:
+    def parts_of_steps(self, momenta: np.ndarray, poses: np.ndarray, fraction: float = 1.0) -> Compact:
         """Take a fraction of a step from each of the kernel's momenta and poses; return both, and the outcomes."""
         parts = kernels.ComposedBody(self.single.body, fraction * weights(self.order))
         return kernels.whole_steps(parts, momenta, poses)
@@ -192,11 +286,11 @@ class AbstractCompiledRoute(AbstractRoute):
 
 def parts_by(
     route: AbstractCompiledRoute,
-    part: Callable[[np.ndarray, np.ndarray, float, int, float], Rows | None],
+    part: Callable[[np.ndarray, np.ndarray, float, int, float], Compact | None],
     poses: np.ndarray,
     states: Orbit,
     fractions: Float[np.ndarray, "K"],
-) -> Rows:
+) -> Compact:
     """Return canonical momenta, charts and poses after parts of steps, taken one by one with the numbers of a kernel.
 
     So the bits of each do not depend on the others.
@@ -226,3 +320,46 @@ def matrices_of(states: Orbit) -> Float[np.ndarray, "K size"] | None:
     if not states.system.is_spatial:
         return None
     return states.configuration.reshape(len(states), states.system.group.size**2).copy()  # kernels write to none
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Axes:
+    """A change of the body frame and of the rows along the constraint; nothing is computed where there is none.
+
+    Attributes:
+        group: The group.
+        frame: The axes of the kernel as seen from the canonical frame; None where they are the same.
+        rows: C with m = C r for canonical momenta r, and y_canonical = y C for charts; None where rows are the same.
+    """
+
+    group: AbstractMatrixGroup
+    frame: Float[np.ndarray, "N N"] | None
+    rows: Float[np.ndarray, "k k"] | None
+
+    def momenta(self, canonical: np.ndarray) -> np.ndarray:
+        """Return momenta along the kernel's rows."""
+        return canonical if self.rows is None else applied(self.rows, canonical)
+
+    def canonical_momenta(self, momenta: np.ndarray) -> np.ndarray:
+        """Return momenta along the canonical rows."""
+        return momenta if self.rows is None else applied(self._inverse, momenta)
+
+    def charts(self, canonical: np.ndarray) -> np.ndarray:
+        """Return charts along the kernel's rows."""
+        return canonical if self.rows is None else applied(self._inverse.T, canonical)
+
+    def canonical_charts(self, charts: np.ndarray) -> np.ndarray:
+        """Return charts along the canonical rows."""
+        return charts if self.rows is None else applied(self.rows.T, charts)
+
+    def turned(self, g: np.ndarray) -> np.ndarray:
+        """Return matrices of poses of the kernel's axes."""
+        return g if self.frame is None else g @ self.frame
+
+    def turned_back(self, g: np.ndarray) -> np.ndarray:
+        """Return matrices of poses of the canonical axes."""
+        return g if self.frame is None else g @ self.group.inverse(self.frame)
+
+    @functools.cached_property
+    def _inverse(self) -> np.ndarray:
+        return np.linalg.inv(np.asarray(self.rows))

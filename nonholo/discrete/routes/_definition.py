@@ -10,8 +10,7 @@ from nonholo.base.types import Array, Float
 from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Difference, Scheme
 from nonholo.discrete._variety import Constraint
-from nonholo.discrete.routes._base import AbstractRoute, Rows, posed
-from nonholo.discrete.routes._stepper import AbstractBodyStepper
+from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractRoute, Compact, posed
 from nonholo.orbit import Orbit
 from nonholo.systems import System
 
@@ -47,14 +46,14 @@ class DefinitionRoute(Scheme, AbstractRoute):
 
         return next_charts_by_definition(self, states)
 
-    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Rows:
+    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Compact:
         """Return momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
         with needs("jax", "A part of a step that is not compiled"):
             from nonholo.discrete.definition import parts_by_definition
 
         return parts_by_definition(self, states, posed(states, needed=True), fractions)
 
-    def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Rows:
+    def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Compact:
         """Take one step from each row of momenta and poses; return both after it, and the outcomes."""
         with needs("jax", "A step that is not compiled"):
             from nonholo.discrete.definition import whole_steps_by_definition

@@ -13,8 +13,8 @@ from nonholo.base.calls import FunctionError, UndefinedError, noted
 from nonholo.base.checks import error
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
-from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Rows, parts_by, posed
-from nonholo.discrete.routes._outer import AbstractOuterRoute
+from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Compact, parts_by, posed
+from nonholo.discrete.routes._composed import AbstractOuterRoute
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
 from nonholo.systems import Forced
@@ -51,7 +51,7 @@ class AbstractForcedRoute(AbstractRoute):
         """The name of the route inside."""
         return self.free.name
 
-    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Rows:
+    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Compact:
         r"""Return momenta, charts and poses after fractions s of the steps from states; NaN where none starts.
 
         Half the impulse of the part acts at each of its ends, at times t and t + s h, both of the row of the step. So
@@ -59,7 +59,7 @@ class AbstractForcedRoute(AbstractRoute):
         """
         return parts_by(self.free, self._part, posed(states, needed=True), states, fractions)
 
-    def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Rows | None:
+    def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Compact | None:
         half, free = float(self.free.time_step) / 2, self.free
         end = time + fraction * 2 * half
 
@@ -152,18 +152,17 @@ class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
             self.free.body, kernels.Kick(np.zeros((0, 0)), np.zeros(0), np.zeros((n, 0)), np.zeros((1, n)))
         )
 
-    def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
-        """Return the outcome of the first root and the state of a run."""
-        with contextlib.suppress(OutcomeError):  # the midpoint rule of a half impulse may say so
-            code, state = kernels.start(self.body, momenta + self._impulse(0, 0, momenta, pose), pose)
-            return code, np.append(state, 0.0)
-        return Outcome.no_half_impulse, np.append(kernels.start(self.body, momenta, pose)[1], 0.0)
+    def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
+        """Return the outcome of the first root, its chart and the state of a run."""
+        said, pushed = None, np.array(momenta)
+        try:  # the midpoint rule of a half impulse may fail
+            pushed += self._impulse(0, 0, momenta, pose)
+        except OutcomeError:
+            said = Outcome.no_half_impulse
+        code, state = self.runs.start(self.body, pushed, np.array(pose))
+        return said or code, self.runs.chart_of(self.body, state), np.append(state, 0.0)
 
-    def chart_of(self, state: np.ndarray) -> np.ndarray:
-        """Return the kernel's chart coordinates of the first displacement."""
-        return kernels.chart_of(self.body, state[:-1])
-
-    def advance(self, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
+    def advance(self, state: np.ndarray, steps: int, every: int, rows: Compact) -> tuple[int, int]:
         """Take steps one by one, into rows of the kernel."""
         n, width, size = self.free.sizes
         room = np.empty((1, n)), np.empty((1, width)), np.empty((1, size))
@@ -173,7 +172,7 @@ class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
                 place = ahead[2 * n : 2 * n + size].copy()
                 m = ahead[:n] + self._impulse(number + 1, number, ahead[:n], place)
                 ahead[:n] = m + self._impulse(number + 1, number + 1, m, place)
-                _, code = kernels.advance(self.body, ahead, 1, 1, room)
+                _, code = self.runs.advance(self.body, ahead, 1, 1, *room)
                 if code != 0:
                     return done, code
                 state[:] = np.append(ahead, number + 1)

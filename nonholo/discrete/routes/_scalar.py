@@ -8,8 +8,7 @@ import numpy as np
 
 from nonholo import kernels
 from nonholo.base.types import Array, Float
-from nonholo.discrete.routes._axes import Axes
-from nonholo.discrete.routes._base import AbstractCompiledRoute
+from nonholo.discrete.routes._base import AbstractCompiledRoute, Axes
 from nonholo.discrete.routes._closed_forms import ClosedForm
 from nonholo.systems import NormalForm, System
 
@@ -46,7 +45,7 @@ class ScalarRoute(AbstractCompiledRoute):
         """The numbers of the body."""
         return self.closed.body(self.form)
 
-    @property
+    @functools.cached_property
     def scale(self) -> Array:
         """The part of the time step that is the unit of the kernel's momenta."""
         return self.time_step * self.closed.share

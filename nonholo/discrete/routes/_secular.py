@@ -11,8 +11,7 @@ import numpy as np
 
 from nonholo import kernels
 from nonholo.base.types import Array, Float
-from nonholo.discrete.routes._axes import Axes
-from nonholo.discrete.routes._base import AbstractCompiledRoute
+from nonholo.discrete.routes._base import AbstractCompiledRoute, Axes
 from nonholo.systems import NormalForm, System
 
 

@@ -7,8 +7,7 @@ import numpy as np
 
 from nonholo.base.results import Outcome
 from nonholo.io._chunks import DamagedError
-from nonholo.io._plan import Checkpoint
-from nonholo.io._stored_events import Seen
+from nonholo.io._stored_events import Checkpoint, Seen
 
 _NONE = "a mark without the state of a run"
 

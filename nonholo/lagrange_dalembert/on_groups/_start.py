@@ -8,7 +8,7 @@ import numpy as np
 from nonholo.base.checks import array, error
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._newton import root
-from nonholo.lagrange_dalembert._precision import in_double
+from nonholo.lagrange_dalembert._room import in_double
 from nonholo.lagrange_dalembert._start import (
     DEGENERATE,
     admissible,
@@ -19,44 +19,37 @@ from nonholo.lagrange_dalembert._start import (
 )
 from nonholo.lagrange_dalembert.on_groups import _equations as equations
 from nonholo.lagrange_dalembert.on_groups._system import GroupLagrangeDAlembert
-from nonholo.systems import in_group, one_start
+from nonholo.systems import in_group
 
 _TOLERANCE = 1e-9  # relative, for matrices and velocities that a user computed in floating point
 _SMALL = 1e-6  # length of the displacement at which l_d is compared with its limit
 _CLOSE = 1e-4  # what the comparison must reach: far above rounding and the error of the limit
 
 
-def pose(owner: str, system: GroupLagrangeDAlembert, configuration: Any) -> Float[np.ndarray, "N N"]:
+def point(
+    owner: str, system: GroupLagrangeDAlembert, configuration: Any, time: float = 0.0
+) -> Float[np.ndarray, "N N"]:
     """Return a configuration at which the constraint forms are finite and independent."""
+    del time
     group = system.group
     g = group.identity if configuration is None else in_group(f"{owner}(configuration=...)", group, configuration)
     check_rows("GroupLagrangeDAlembert(constraint_forms=...)", in_double(equations.forms, system, g), g)
     return g
 
 
-def of_flow(
-    system: GroupLagrangeDAlembert, configuration: Any, starts: dict[str, Any], _time: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the checked start of a flow."""
-    given = one_start("flow", **starts)
-    g = pose("flow", system, configuration)
-    of = of_momentum if given == "momentum" else of_velocity
-    return g, of("flow", system, g, starts[given])[0]
-
-
-def of_velocity(owner: str, system: GroupLagrangeDAlembert, g: np.ndarray, given: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Return a velocity that satisfies the constraint, at which the Lagrangian is regular, and its momentum."""
+def velocity(owner: str, system: GroupLagrangeDAlembert, g: np.ndarray, given: Any) -> Float[np.ndarray, "dim"]:
+    """Return a velocity that satisfies the constraint, at which the Lagrangian is regular."""
     where = f"{owner}(body_velocity=...)"
     w = array(where, given, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
-    p = regular(system, g, w)
+    regular(system, g, w)
     A = in_double(equations.forms, system, g)
-    return admissible(where, A, w, A @ w), p
+    return admissible(where, A, w, A @ w)
 
 
 def of_momentum(
     owner: str, system: GroupLagrangeDAlembert, g: np.ndarray, momentum: Any
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the admissible velocity that has the same momenta along the constraint, and the checked momentum."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return a checked momentum, the pose and the admissible velocity with the same components along the constraint."""
     where, n = f"{owner}(momentum=...)", system.group.dim
     p = array(where, momentum, (n,), f"Pass the {n} momenta; only their action on admissible velocities counts.")
     regular(system, g, np.zeros(n))
@@ -64,24 +57,22 @@ def of_momentum(
     if code:
         raise error(where, "belong to a velocity", f"{p.tolist()}", "Start with body_velocity= instead.")
     regular(system, g, w)
-    return w, p
+    return p, g, w
 
 
-def of_displacement(
-    system: GroupLagrangeDAlembert, g: np.ndarray, given: Any, h: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return log(W)/h and P(W) of a displacement that satisfies the discrete constraint."""
+def velocity_of_displacement(system: GroupLagrangeDAlembert, g: np.ndarray, given: Any, h: float) -> np.ndarray:
+    """Return log(W)/h of a displacement that satisfies the discrete constraint."""
     where = "simulate(displacement=...)"
     v = system.group.log(in_group(where, system.group, given)) / h
     missed, slope = in_double(constraint_slope, system, g, v, h)
     if not np.all(np.abs(missed) <= _TOLERANCE * (np.abs(slope) @ np.abs(v))):
         got = f"residual {np.array2string(missed, precision=6)}"
         raise error(where, "satisfy the discrete constraint", got, "Start with body_velocity= instead.")
-    return v, in_double(equations.momenta, system, g, v, h)[0]
+    return v
 
 
-def regular(system: GroupLagrangeDAlembert, g: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """Return the momentum of a velocity; refuse Lagrangians that are irregular there or contradict each other."""
+def regular(system: GroupLagrangeDAlembert, g: np.ndarray, w: np.ndarray) -> None:
+    """Refuse Lagrangians that are irregular there or contradict each other."""
     kind = "lagrangian" if system.lagrangian is not None else "discrete_lagrangian"
     what, at = f"GroupLagrangeDAlembert({kind}=...)", f"at velocity {w.tolist()}"
     p, matrix = in_double(_limits, system, g, w)
@@ -94,7 +85,6 @@ def regular(system: GroupLagrangeDAlembert, g: np.ndarray, w: np.ndarray) -> np.
         raise error(what, "determine the accelerations", got, "Give every admissible direction a kinetic energy.")
     if np.any(w):
         _tends(system, g, w, p)
-    return p
 
 
 def _tends(system: GroupLagrangeDAlembert, g: np.ndarray, w: np.ndarray, p: np.ndarray) -> None:

@@ -17,8 +17,8 @@ from nonholo.lagrange_dalembert._tracing import check_forms, check_value, count_
 from nonholo.systems import AbstractCoordinateSystem, checked_group, group_mass_tensor, inertia_form
 
 if TYPE_CHECKING:
+    from nonholo.lagrange_dalembert._discretization import GroupDiscretization
     from nonholo.lagrange_dalembert._orbit import GroupOrbit
-    from nonholo.lagrange_dalembert.on_groups._discretization import GroupDiscretization
 
 
 @dataclasses.dataclass(frozen=True)
@@ -79,6 +79,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     orbits: ClassVar[str] = "GroupOrbit"
     recorded: ClassVar[tuple[str, ...]] = ("constraints", "coordinates", "is_driven", "name", "orbits", "shapes")
     _equations: ClassVar[str] = "on_groups._equations"
+    _start: ClassVar[str] = "on_groups._start"
 
     def __post_init__(self) -> None:
         remedy = "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
@@ -125,7 +126,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
             >>> GroupLagrangeDAlembert(nh.SO(3), action, None).discretize(0.1).time_step
             0.1
         """
-        return room("on_groups").GroupDiscretization(self, time_step)
+        return room("_discretization").GroupDiscretization(self, time_step)
 
     def flow(
         self,
@@ -167,12 +168,11 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
             [-1. -1.  1.]
         """
         starts = {"body_velocity": body_velocity, "momentum": momentum}
-        kind, start = room("on_groups").GroupOrbit, room("on_groups._start").of_flow
-        return room("_flow").flow(kind, self, start, configuration, starts, times, rtol, atol)
+        return room("_flow").flow(self, configuration, starts, times, rtol, atol)
 
     def flowed(self, states: "GroupOrbit", times: Float[np.ndarray, "K"], *, rtol: float, atol: float) -> "GroupOrbit":
         """Return states of a flow carried on, each to a later time of its own; NaN where the solver fails."""
-        return room("_flow").flowed(room("on_groups").GroupOrbit, self, states, times, rtol, atol)
+        return room("_flow").flowed(self, states, times, rtol, atol)
 
 
 def _named(argument: str) -> str:

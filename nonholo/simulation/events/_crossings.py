@@ -6,10 +6,20 @@ import numpy as np
 
 from nonholo.base.checks import error, instance
 from nonholo.base.types import Float
-from nonholo.orbit import AbstractOrbit, Crossings, Orbit
-from nonholo.simulation.events._event import Event
+from nonholo.orbit import AbstractOrbit, AbstractStepper, Crossings, Orbit
+from nonholo.simulation.events._event import Event, checked_events
 from nonholo.simulation.events._search import Watch, piece_of, search
-from nonholo.simulation.events._watched import watched
+
+
+def watched(owner: str, stepper: AbstractStepper[Any], events: Any) -> Watch | None:
+    """Return what a run looks for, refused where parts of its steps are not defined; None without events."""
+    if events is None:
+        return None
+    named = checked_events(owner, events)
+    if stepper.part_refused is not None:
+        remedy = "Look for changes of sign in the states yourself."
+        raise error(f"{owner}(events=...)", "have parts of a step", stepper.part_refused, remedy)
+    return Watch(named, stepper.motion.after_parts)
 
 
 def crossings(orbit: AbstractOrbit, event: Any) -> Crossings:
