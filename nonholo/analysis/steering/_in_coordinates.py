@@ -20,6 +20,7 @@ from nonholo.lagrange_dalembert import (
     checked_state,
     equations,
     in_double,
+    place,
 )
 
 
@@ -87,7 +88,7 @@ def coordinate_problem(
 ) -> Problem:
     """Return the problem of a system in coordinates, from place and velocity at the start and a goal."""
     ((x, v), goal), system, n = ends, discrete.system, discrete.system.dimension
-    last = equations.place(system, x[:n].copy(), steps * discrete.time_step)
+    last = place(system, x[:n].copy(), steps * discrete.time_step)
     last[list(goal.coordinates)] = list(goal.coordinates.values())
     nodes = _nodes(discrete, way, last, goal.velocity)
     first = np.append(x, in_double(equations.momentum, system, x, v))
@@ -126,9 +127,7 @@ def _missed(program: Program, goal: Goal, way: Way, orbit: CoordinateOrbit) -> f
     if len(orbit) <= len(program.rows):
         return np.inf
     off = [abs(q[-1, i] - number) for i, number in goal.coordinates.items()]
-    off += np.abs(
-        program.missed(np.append(equations.place(system, q[-1], orbit.time[-1]), orbit.momentum[-1]))
-    ).tolist()
+    off += np.abs(program.missed(np.append(place(system, q[-1], orbit.time[-1]), orbit.momentum[-1]))).tolist()
     off.append(way.outside(np.concatenate([orbit.body_velocity[:-1], q[1:]], axis=1)))
     if way.outline.shape[-1]:
         at = planar_points(system, q, np.zeros((1, 2)))[:, 0]
@@ -155,6 +154,6 @@ def _unknowns(nodes: CoordinateNodes, q: np.ndarray, forces: np.ndarray) -> np.n
     """Return unknowns whose velocities are those of a path; impulses of constraint are zero."""
     system, steps, h = nodes.system, len(forces), float(nodes.time_step)
     times, v = h * np.arange(steps + 1), np.diff(q, axis=0) / h
-    places = np.array([equations.place(system, each, time) for each, time in zip(q, times, strict=True)])
+    places = np.array([place(system, each, time) for each, time in zip(q, times, strict=True)])
     momenta = np.array([in_double(equations.momentum, system, *each) for each in zip(places[:-1], v, strict=True)])
     return np.concatenate([v, np.zeros((steps, system.constraints)), forces, places[1:], momenta], axis=1).ravel()
