@@ -180,7 +180,8 @@ _INDEX = """\
 
 `import nonholo as nh`; `help(nh)` shows the same list. A name leads to its formula, its arguments and an example. The
 letters of the paper have [their own table](../reference/symbols.md); so have
-[commands](../reference/command-line.md) and [keys of scenarios](../reference/scenarios.md).
+[commands](../reference/command-line.md) and [keys of scenarios](../reference/scenarios.md);
+[what works with what](../reference/what-works-with-what.md) crosses abilities with kinds of motion.
 
 {tables}
 
@@ -188,6 +189,7 @@ letters of the paper have [their own table](../reference/symbols.md); so have
 :hidden:
 
 ../reference/symbols
+../reference/what-works-with-what
 ../reference/command-line
 ../reference/scenarios
 ```

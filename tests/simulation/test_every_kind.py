@@ -1,21 +1,17 @@
-"""What works with what: every kind of map in memory, in stores, block by block, extended, and with events in each."""
+"""Kinds of map beside those of tests/matrix: in memory, in stores, block by block, extended, with events in each."""
 
 import dataclasses
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import nonholo as nh
 
 BODY = [[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]
-TOP, SLEIGH = nh.SuslovTop(BODY), nh.ChaplyginSleigh(2.0, 1.0, 0.5, 0.3)
-LORENTZ = nh.MatrixGroup(
-    [[[0, 1, 0], [1, 0, 0], [0, 0, 0]], [[0, 0, 1], [0, 0, 0], [1, 0, 0]], [[0, 0, 0], [0, 0, -1], [0, 1, 0]]]
-)
+TOP = nh.SuslovTop(BODY)
 STEPS, MORE, H = 14, 5, 0.1
 
 
@@ -23,49 +19,19 @@ def _brake(time: float, g: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     return -0.3 * np.cos(time) * velocity + 0.1 * g[0, :3]
 
 
-def _action(W: Any) -> Any:
-    X = W - jnp.eye(3)
-    return jnp.trace(X @ jnp.asarray(BODY) @ X.T) / (2 * H)
-
-
 def _of_body(system: Any, **how: Any) -> Callable[[], tuple[Any, dict[str, Any]]]:
     run = {name: how.pop(name) for name in ("branch", "backend") if name in how}
     return lambda: (nh.discretize(system, H, **how), {"restricted_velocity": (0.6, -0.4), **run})
 
 
-def _of_example(name: str) -> Callable[[], tuple[Any, dict[str, Any]]]:
-    def made() -> tuple[Any, dict[str, Any]]:
-        ready = getattr(nh.examples, name)()
-        start = {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
-        return nh.discretize(ready.system, H), start
-
-    return made
-
-
 KINDS = {
-    "top": _of_body(TOP),
-    "sleigh": _of_body(SLEIGH),
-    "order 4": _of_body(SLEIGH, order=4),
-    "nearest": _of_body(TOP, branch="nearest"),
     "smallest": _of_body(TOP, branch="smallest"),
-    "force in Python": _of_body(nh.Forced(SLEIGH, force=_brake)),
-    "force in Python, fixed in space": _of_body(nh.Forced(nh.VeselovaTop(BODY), force=_brake)),
     "table": _of_body(nh.Forced(TOP, force=np.random.default_rng(0).normal(size=(40, 3)))),
-    "particle": _of_example("particle"),
-    "logarithmic": _of_body(TOP, difference="logarithmic"),
-    "custom difference": _of_body(TOP, difference=_action),
-    "own group": _of_body(
-        nh.LLSystem(LORENTZ, constraint_subspace=np.eye(3)[:2], inertia_operator=np.diag([2, 1, 1.5]))
-    ),
+    "force in Python, fixed in space": _of_body(nh.Forced(nh.VeselovaTop(BODY), force=_brake)),
     "by the definition": _of_body(TOP, backend="jax"),
-    "driven sleigh": _of_example("driven_sleigh"),
-    "on a group": _of_example("chaplygin_ball"),
 }
-COMPILED_FOR_LONG = (
-    *("force in Python, fixed in space", "logarithmic", "custom difference", "own group"),
-    *("by the definition", "driven sleigh", "on a group"),
-)
-WITHOUT_PARTS = ("nearest", "smallest")
+COMPILED_FOR_LONG = ("force in Python, fixed in space", "by the definition")
+WITHOUT_PARTS = ("smallest",)
 EVERY_KIND = pytest.mark.parametrize("kind", KINDS)
 HERE = pytest.mark.profile("routes", cases=COMPILED_FOR_LONG)
 

@@ -164,6 +164,10 @@ def inertias_of(members: Members) -> Float[np.ndarray, "m dim dim"]:
 def check_systems(members: Members) -> None:
     """Refuse parameters of which no system can be made; tops and sleighs are looked through in one go."""
     step = members.parameters.get(STEP)
+    if step is not None and callable(getattr(members.discrete, "difference", None)):
+        where, got = "ensemble(parameters={'time_step': ...})", "a function"
+        remedy = "Run `simulate` for each: your own discrete Lagrangian includes its time step."
+        raise error(where, "go with a difference by name", got, remedy)
     if step is not None and not np.all(step > 0):
         at = int(np.argmax(~(step > 0)))
         remedy = f"Pass positive time steps. This is member {at}."

@@ -1,0 +1,91 @@
+"""What must work: every cell but those of a few rules, each with its reason and the words of its refusal."""
+
+import dataclasses
+import fnmatch
+
+from matrix.abilities import ABILITIES
+from matrix.kinds import KINDS
+
+
+@dataclasses.dataclass(frozen=True)
+class Rule:
+    """Cells that do not work, and why.
+
+    Attributes:
+        abilities: A pattern of abilities, with | between several.
+        kinds: A trait, or the names of kinds with | between.
+        reason: Why, for people.
+        refusal: A pattern of the words of the library.
+        is_broken: Whether it should work.
+    """
+
+    abilities: str
+    kinds: str
+    reason: str
+    refusal: str
+    is_broken: bool = False
+
+    def holds(self, kind: str, ability: str) -> bool:
+        """Tell whether a cell is one of the rule."""
+        is_one = bool({*KINDS[kind].traits, kind} & set(self.kinds.split("|")))
+        return is_one and any(fnmatch.fnmatchcase(ability, each) for each in self.abilities.split("|"))
+
+
+RULES: tuple[Rule, ...] = (
+    Rule(
+        "multipliers",
+        "composition",
+        "A composition has no multipliers: the impulses of its substeps act at places between its states.",
+        "multipliers",
+    ),
+    Rule(
+        "flow*",
+        "table",
+        "A table has a force for each step; between steps there is none, so there is no flow.",
+        "one force for each step",
+    ),
+    Rule("gradient", "opaque", "No derivative goes through a Python or compiled function.", "forces that are numbers"),
+    Rule(
+        "multipliers|checks|page|gradient",
+        "wide",
+        "SO(300) has 44,850 dimensions: its basis takes 32 GB, the complement of the constraint 16 GB.",
+        "must (fit into memory|have matrices)",
+    ),
+    Rule("scenario file", "wide", "Scenario files hold matrices.", "cannot be run"),
+    Rule(
+        "events|events in *|crossings",
+        "rule",
+        "Parts of a step are known of the principal branch alone.",
+        "parts of a step",
+        is_broken=True,
+    ),
+    Rule("ensemble*|sweep", "rule", "Members take the principal branch.", "unexpected keyword", is_broken=True),
+    Rule("flow ensemble", "wide", "Members of flows have poses.", "be left out for a flow", is_broken=True),
+    Rule(
+        "ensemble of time steps|sweep",
+        "own difference",
+        "A discrete Lagrangian of the user's own includes its time step.",
+        "includes its time step",
+    ),
+    Rule("film", "no film", "Films show bodies of the plane and of space.", "must move on", is_broken=True),
+    Rule("film", "on a group", "Films of bodies on groups by functions are not there.", "Got", is_broken=True),
+    Rule("multipliers|checks", "on a group", "No checks for systems on groups by functions.", "Got", is_broken=True),
+    Rule("flow ensemble", "coordinates", "Members in coordinates are maps.", "be left out", is_broken=True),
+    Rule("scenario file", "function", "A file holds numbers, not the functions of a user.", "cannot be run"),
+    Rule("scenario file", "ready system", "Ready systems have no scenario files yet.", "cannot be run"),
+    Rule(
+        "ensemble of parameters|flow at other times|gradient",
+        "coordinates",
+        "Systems in coordinates have constants inside their functions; parameters, states between and derivatives"
+        " come later.",
+        "must (name|be)",
+    ),
+)
+
+
+def rule_of(kind: str, ability: str) -> Rule | None:
+    """Return the rule by which a cell does not work; None where it works."""
+    return next((rule for rule in RULES if rule.holds(kind, ability)), None)
+
+
+CELLS = {(kind, ability): rule_of(kind, ability) for kind in KINDS for ability in ABILITIES}
