@@ -8,7 +8,7 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
 from matrix.abilities import ABILITIES  # noqa: E402
 from matrix.kinds import KINDS  # noqa: E402
-from matrix.verdicts import CELLS, RULES, rule_of  # noqa: E402
+from matrix.verdicts import CELLS, RULES, Rule  # noqa: E402
 
 _LETTERS = dict(zip(KINDS, string.ascii_uppercase, strict=False))
 
@@ -32,13 +32,13 @@ def page() -> str:
 
 def _row(ability: str) -> str:
     about = (ABILITIES[ability].__doc__ or "").strip()
-    cells = (rule_of(kind, ability) for kind in KINDS)
+    cells = (CELLS[kind, ability] for kind in KINDS)
     marks = " | ".join("+" if rule is None else f"{_number(rule)}" for rule in cells)
     return f"| **{ability}**: {about} | {marks} |"
 
 
-def _number(rule: object) -> int:
-    return 1 + [id(each) for each in RULES].index(id(rule))
+def _number(rule: Rule) -> int:
+    return 1 + RULES.index(rule)
 
 
 _PAGE = """# What works with what

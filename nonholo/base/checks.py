@@ -243,8 +243,6 @@ def check_scale(where: str, value: Array) -> None:
 
 def count(where: str, value: Any, remedy: str) -> int:
     """Return a strictly positive Python integer."""
-    if type(value) is int and 0 < value <= _MOST:
-        return value
     return _integer(where, value, (1, _MOST), "be a positive integer", remedy)
 
 
@@ -269,6 +267,8 @@ def is_integer(value: Any) -> bool:
 
 def _integer(where: str, value: Any, bounds: tuple[int, int], requirement: str, remedy: str) -> int:
     """Return an integer between two bounds."""
+    if type(value) is int and bounds[0] <= value <= bounds[1]:
+        return value
     if not is_integer(value) or (number := int(value)) < bounds[0]:
         raise error(where, requirement, shown(value), remedy)
     if number > bounds[1]:

@@ -71,7 +71,7 @@ def number_is_over(number: int) -> bool:
 
 def go_on() -> None:
     """Raise `CancelledError` where the work is over."""
-    if _over.get()():
+    if is_over():
         raise CancelledError
 
 

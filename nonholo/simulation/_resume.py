@@ -33,11 +33,10 @@ def watch_of_store(owner: str, stream: "Stream", stepper: AbstractStepper[Any], 
         remedy = "Pass events=[...] again, in that order with these directions and stops: a store holds no functions."
         raise error(where, wanted, f"None for '{stream.path}'", remedy)
     watch = watched(owner, stepper, chosen)
-    passed = [] if watch is None else descriptions(watch.events)
+    passed = descriptions(watch.events)
     if passed != stored:
         raise error(where, wanted, io.described(passed), "Pass the ones it was run with.")
-    if watch is not None:
-        _refuse_other_values(where, stream, stepper, watch)
+    _refuse_other_values(where, stream, stepper, watch)
     return watch
 
 
@@ -99,10 +98,6 @@ def _last_sound(stream: "Stream") -> int | None:
         except io.DamagedError:
             continue  # whoever computes it again says so
     return None
-
-
-if TYPE_CHECKING:
-    from nonholo.io import Stream
 
 
 def resume_run(store: str | Path, *, discrete: Any, events: Any, throw: bool, progress: bool) -> Any:

@@ -17,6 +17,7 @@ from stopping import stopped_at
 from typer.testing import CliRunner
 
 import nonholo as nh
+from nonholo.cli.scenario.files import toml_text
 
 ABILITIES: dict[str, Callable[["Case", Path], None]] = {}
 _PARTS = {"checkpoint_every": 5}
@@ -106,12 +107,7 @@ class Case:
         }
 
 
-def case(name: str) -> Case:
-    """Return a kind with its runs."""
-    return _case(name)
-
-
-_case = functools.lru_cache(maxsize=2)(Case)
+case = functools.lru_cache(maxsize=2)(Case)
 
 
 def ability(check: Callable[[Case, Path], None]) -> Callable[[Case, Path], None]:
@@ -137,7 +133,8 @@ def assert_close(one: Any, other: Any, tolerance: float = 1e-13) -> None:
         np.testing.assert_allclose(getattr(one, name), getattr(other, name), 0, tolerance, err_msg=name)
 
 
-def _joined(parts: list[Any]) -> Any:
+def joined(parts: list[Any]) -> Any:
+    """Return blocks as one orbit."""
     return parts[0].joined(parts[1:])
 
 
@@ -164,13 +161,13 @@ def thinned(c: Case, folder: Path) -> None:
         np.testing.assert_array_equal(getattr(thin, name), getattr(wanted, name), name)
     assert_same(c.simulated(save_every=3, store=folder / "a.zarr", checkpoint_every=6), thin)
     thinned = nh.iterate(c.discrete, steps=STEPS, save_every=3, block_steps=6, **c.start, **c.run)
-    assert_same(_joined(list(thinned)), thin)
+    assert_same(joined(list(thinned)), thin)
 
 
 @ability
 def iterate(c: Case, _: Path) -> None:
     """Blocks are the run."""
-    assert_same(_joined(list(nh.iterate(c.discrete, steps=STEPS, block_steps=5, **c.start, **c.run))), c.orbit)
+    assert_same(joined(list(nh.iterate(c.discrete, steps=STEPS, block_steps=5, **c.start, **c.run))), c.orbit)
 
 
 @ability
@@ -225,7 +222,7 @@ def events_in_stores(c: Case, folder: Path) -> None:
 def events_in_iterators(c: Case, _: Path) -> None:
     """Blocks have the crossings of the run."""
     blocks = nh.iterate(c.discrete, steps=STEPS, block_steps=5, events=[c.event()[0]], **c.start, **c.run)
-    assert_same(_joined([block.events["middle"].states for block in blocks]), c.crossings.states)
+    assert_same(joined([block.events["middle"].states for block in blocks]), c.crossings.states)
 
 
 @ability
@@ -509,15 +506,4 @@ def scenario_text(c: Case) -> str:
         "run": {"time_step": H, "steps": STEPS, **c.kind.how, **c.run},
         "forces": c.kind.forces,
     }
-    lines = [
-        f"[{table}]\n" + "".join(f"{key} = {_toml(value)}\n" for key, value in rows.items())
-        for table, rows in tables.items()
-        if rows
-    ]
-    return "\n".join(lines)
-
-
-def _toml(value: Any) -> str:
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{key} = {_toml(each)}" for key, each in value.items()) + "}"
-    return json.dumps(value)
+    return toml_text(c.kind.about, tables)

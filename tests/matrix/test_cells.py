@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 import pytest
 from matrix.abilities import ABILITIES, case
 from matrix.kinds import KINDS
-from matrix.verdicts import CELLS, RULES, rule_of
+from matrix.verdicts import CELLS, RULES
 from scripts import ROOT, script
 
 CHEAP = ["top, n = 3-*", "sleigh, SE(2)-*", "particle-*"]
@@ -20,7 +20,7 @@ def test_cell(
     kind: str, ability: str, tmp_path: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It works; what is impossible, and what is broken still, is refused in words of the library."""
-    rule = rule_of(kind, ability)
+    rule = CELLS[kind, ability]
     if "wide" in KINDS[kind].traits:  # on every machine
         monkeypatch.setattr("nonholo.base.limits.memory_limit", lambda: 8e9)
     if rule is not None and rule.is_broken:

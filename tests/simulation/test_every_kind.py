@@ -7,16 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matrix.abilities import assert_same, joined
+from matrix.kinds import brake
 
 import nonholo as nh
 
 BODY = [[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]
 TOP = nh.SuslovTop(BODY)
 STEPS, MORE, H = 14, 5, 0.1
-
-
-def _brake(time: float, g: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-    return -0.3 * np.cos(time) * velocity + 0.1 * g[0, :3]
 
 
 def _of_body(system: Any, **how: Any) -> Callable[[], tuple[Any, dict[str, Any]]]:
@@ -27,24 +25,13 @@ def _of_body(system: Any, **how: Any) -> Callable[[], tuple[Any, dict[str, Any]]
 KINDS = {
     "smallest": _of_body(TOP, branch="smallest"),
     "table": _of_body(nh.Forced(TOP, force=np.random.default_rng(0).normal(size=(40, 3)))),
-    "force in Python, fixed in space": _of_body(nh.Forced(nh.VeselovaTop(BODY), force=_brake)),
+    "force in Python, fixed in space": _of_body(nh.Forced(nh.VeselovaTop(BODY), force=brake)),
     "by the definition": _of_body(TOP, backend="jax"),
 }
 COMPILED_FOR_LONG = ("force in Python, fixed in space", "by the definition")
 WITHOUT_PARTS = ("smallest",)
 EVERY_KIND = pytest.mark.parametrize("kind", KINDS)
 HERE = pytest.mark.profile("routes", cases=COMPILED_FOR_LONG)
-
-
-def _same(one: Any, other: Any) -> bool:
-    mine, theirs = one.rows(), other.rows()
-    return mine.keys() == theirs.keys() and all(
-        np.array_equal(mine[name], theirs[name], equal_nan=True) for name in mine if name != "turned"
-    )
-
-
-def _joined(blocks: list[Any]) -> Any:
-    return blocks[0].joined(blocks[1:])
 
 
 @HERE
@@ -57,10 +44,10 @@ def test_memory_store_and_blocks_are_one_run(kind: str, tmp_path: Path) -> None:
         whole = nh.simulate(discrete, steps=STEPS, **how)
         assert len(whole) == 1 + STEPS // every
         assert np.array_equal(whole.step, every * np.arange(len(whole)))
-        assert _same(nh.simulate(discrete, steps=STEPS, store=path, checkpoint_every=block, **how), whole)
-        assert _same(_joined(list(nh.iterate(discrete, steps=STEPS, block_steps=block, **how))), whole)
+        assert_same(nh.simulate(discrete, steps=STEPS, store=path, checkpoint_every=block, **how), whole)
+        assert_same(joined(list(nh.iterate(discrete, steps=STEPS, block_steps=block, **how))), whole)
         longer = nh.simulate(discrete, steps=STEPS + MORE, **how)
-        assert _same(nh.extend(path, MORE, discrete=discrete), longer)
+        assert_same(nh.extend(path, MORE, discrete=discrete), longer)
         assert np.array_equal(longer.rows()["time"][: len(whole)], whole.time)
 
 
@@ -85,7 +72,7 @@ def test_events_are_found_wherever_a_run_goes(kind: str, tmp_path: Path) -> None
     blocks = list(nh.iterate(discrete, steps=STEPS, events=[event], block_steps=4, **run))
     for other in (
         stored.events["middle"].states,
-        _joined([block.events["middle"].states for block in blocks]),
+        joined([block.events["middle"].states for block in blocks]),
         nh.crossings(dataclasses.replace(plain, events=None), event).states,
     ):
         assert np.array_equal(other.time, found.time)

@@ -146,7 +146,7 @@ class AbstractRoute(abc.ABC):
     def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Compact:
         """Take one step from each row of momenta and poses of the user's frame; return both after it, and the outcomes.
 
-        Compact that cannot continue are NaN.
+        Rows that cannot continue are NaN.
         """
 
     @abc.abstractmethod

@@ -1,6 +1,6 @@
 """Events of a motion that is already there, and ready events."""
 
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -11,10 +11,8 @@ from nonholo.simulation.events._event import Event, checked_events
 from nonholo.simulation.events._search import Watch, piece_of, search
 
 
-def watched(owner: str, stepper: AbstractStepper[Any], events: Any) -> Watch | None:
-    """Return what a run looks for, refused where parts of its steps are not defined; None without events."""
-    if events is None:
-        return None
+def watched(owner: str, stepper: AbstractStepper[Any], events: Any) -> Watch:
+    """Return what a run looks for, refused where parts of its steps are not defined."""
     named = checked_events(owner, events)
     if stepper.part_refused is not None:
         remedy = "Look for changes of sign in the states yourself."
@@ -53,7 +51,7 @@ def crossings(orbit: AbstractOrbit, event: Any) -> Crossings:
     if orbit.branch != stepper.branch:
         got, remedy = f"branch {orbit.branch!r}", "Look for changes of sign in the states yourself."
         raise error("crossings(orbit=...)", "have parts of a step", got, remedy)
-    watch, piece = cast(Watch, watched("crossings", stepper, [event])), piece_of(stepper.columns.values())
+    watch, piece = watched("crossings", stepper, [event]), piece_of(stepper.columns.values())
     for begun in range(0, max(1, len(orbit) - 1), piece):
         watch, _ = search(watch, orbit.chosen(slice(begun, begun + piece + 1)))
         if watch.stopped_by:

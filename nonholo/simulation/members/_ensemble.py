@@ -169,7 +169,7 @@ def _of_steps(
         save_every = count("ensemble(save_every=...)", save_every, "Pass the steps between saved states, or None.")
     stepper = stepper_of(discrete, PRINCIPAL.name, backend, posed=bool(reconstruct), owner="ensemble")
     check_forces("ensemble", discrete, steps)
-    watch = watched("ensemble", stepper, events)
+    watch = None if events is None else watched("ensemble", stepper, events)
     plan = Plan(steps, save_every, bool(reconstruct), backend, None if watch is None else watch.events)
     return discrete, plan, tuple(stepper.columns.values())
 
