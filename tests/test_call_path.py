@@ -12,7 +12,7 @@ import jax.numpy as jnp
 import nonholo as nh
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
-_FILES, _CHANGES, _IN_COORDINATES, _SHARED = 16, 29, 17, 10
+_FILES, _CHANGES, _IN_COORDINATES, _SHARED = 16, 28, 17, 10
 """The first three may only fall."""
 _LIBRARY = Path(nh.__file__).parent
 

@@ -13,8 +13,8 @@ import pytest
 from numba.core import config
 
 import nonholo as nh
-from nonholo.base import compiled
-from nonholo.base.compiled import njit, private_folder
+from nonholo.base.compiled import by_numba, njit
+from nonholo.base.compiled.by_numba import private_folder
 
 DAMAGE: dict[str, Callable[[bytes], bytes]] = {
     "cut": lambda content: content[: len(content) // 2],
@@ -70,7 +70,7 @@ def test_code_of_another_closure_is_not_used(folder: Path) -> None:
 def test_code_of_other_kernels_is_not_used(monkeypatch: pytest.MonkeyPatch) -> None:
     """A changed text of any kernel, which may be inlined in any other, makes all code stale."""
     assert not used_cache(times(3.0))
-    monkeypatch.setattr(compiled, "text_of_kernels", lambda: b"another text")
+    monkeypatch.setattr(by_numba, "text_of_kernels", lambda: b"another text")
     assert not used_cache(times(3.0))
 
 
@@ -80,7 +80,7 @@ def test_full_disk(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: Any) -> Any:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(compiled._Files, "_open_for_write", full)
+    monkeypatch.setattr(by_numba._Files, "_open_for_write", full)
     assert not used_cache(times(3.0))
     assert not list(folder.rglob("*.nbc"))
 
@@ -112,14 +112,14 @@ def test_the_private_folder_is_private(tmp_path: Path, monkeypatch: pytest.Monke
         private_folder()
 
 
-@pytest.mark.parametrize(("places", "said"), [([compiled._Private], "is kept in"), ([], "is not kept")])
+@pytest.mark.parametrize(("places", "said"), [([by_numba._Private], "is kept in"), ([], "is not kept")])
 def test_no_place_for_code(
     places: list[Any], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Where nothing else can be written code lies in a private folder or nowhere, and that is said once."""
-    monkeypatch.setattr(compiled._Places, "_locator_classes", places)
+    monkeypatch.setattr(by_numba._Places, "_locator_classes", places)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    compiled._say.cache_clear()
+    by_numba._say.cache_clear()
     assert not used_cache(times(3.0))
     kernel = times(3.0)
     assert kernel(2.0) == 6.0

@@ -15,7 +15,7 @@ import llvmlite.binding as llvm
 import numba
 from numba import types
 
-from nonholo.base.compiled import kept_bytes
+from nonholo.base.compiled.by_numba import kept_bytes
 from nonholo.explorer._object import module_of
 from nonholo.kernels import SleighBody, SuslovBody, flat_arrowhead_run, flat_forced_run, flat_run, flat_secular_run
 

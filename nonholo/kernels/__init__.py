@@ -1,13 +1,13 @@
 """The compiled steps: scalar arithmetic written once for numba and JAX, the matrix step for any body, the loops."""
 
 from nonholo.kernels._composition import ComposedBody, whole_steps
-from nonholo.kernels._driver import CORRECTIONS, SETTLED, converged, flat_run
+from nonholo.kernels._driver import CHART, CORRECTIONS, SETTLED, STATE_SIZE, converged, flat_run, start
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, runs_of, sizes, step_each
 from nonholo.kernels._interface import Body, certified, correction, increment, inertia, move, residual, tangent
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
-from nonholo.kernels.forced import Drive, ForcedBody, Kick, flat_forced_run, function_of, rubbed
+from nonholo.kernels.forced import Drive, ForcedBody, Kick, flat_forced_run, rubbed
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.general.coordinates import (
     CONTRACTION,
@@ -16,7 +16,6 @@ from nonholo.kernels.general.coordinates import (
     TOLERANCE,
     CoordinateBody,
     advance_coordinates,
-    coordinate_body,
     each_root,
     each_row,
     set_out_coordinates,

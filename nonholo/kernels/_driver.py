@@ -9,8 +9,6 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba.np.numpy_support import carray
-from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from nonholo.base.compiled import njit
 from nonholo.kernels._interface import Body, certified, correction, increment, move, principal
@@ -18,6 +16,7 @@ from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import assign
 
 STATE_SIZE = 14
+CHART = slice(4, 6)  # where the coordinates of the displacement stand in a state
 SETTLED = 1e-150  # of one momentum to the other; squares below it underflow
 CORRECTIONS = 8  # of a guess, before the root is followed from momentum zero
 
@@ -42,7 +41,7 @@ def first_state(p: Body, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, n
 
 def chart_in(_p: Body, state: np.ndarray) -> np.ndarray:
     """Return the coordinates of the displacement in a state."""
-    return state[4:6]
+    return state[CHART]
 
 
 @njit(nogil=True, **COMPILED)
@@ -154,6 +153,9 @@ def flat_run(kind: type[Body]) -> Callable[..., int]:
     The outcome is written behind the state.
     """
     count = len(kind._fields)  # pyright: ignore[reportAttributeAccessIssue]
+
+    from numba.np.numpy_support import carray
+    from numba.np.unsafe.ndarray import to_fixed_tuple
 
     def run(body: Any, state: Any, steps: int, momenta: Any, charts: Any, poses: Any) -> int:
         p = kind(*to_fixed_tuple(carray(body, count), count))  # pyright: ignore

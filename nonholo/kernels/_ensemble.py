@@ -8,11 +8,9 @@ arithmetic is strict, its bits are those that it has in `_driver`.
 
 from typing import Any, NamedTuple, TypeAlias
 
-import numba
 import numpy as np
-from numba.extending import overload
 
-from nonholo.base.compiled import njit
+from nonholo.base.compiled import njit, overload
 from nonholo.kernels import _driver
 from nonholo.kernels._interface import Body, certified, correction, increment, move, principal
 from nonholo.kernels._scalar import COMPILED, scalar
@@ -69,9 +67,14 @@ def _own(body: type[Body]) -> Any:
     return own
 
 
+def _is_none(kind: Any) -> bool:
+    """Tell whether a type of numba is that of None."""
+    return str(kind) == "none"
+
+
 @overload(member, jit_options=COMPILED, strict=False)
 def _compiled_member(p: Any, table: Any, j: Any) -> Any:
-    if isinstance(table, numba.types.NoneType):
+    if _is_none(table):
         return _shared
     return _own(p.instance_class)
 
@@ -89,7 +92,7 @@ def _compiled_table_of(tables: Any, block: Any) -> Any:
     def row(tables: Any, block: Any) -> Any:
         return tables[block]
 
-    return none if isinstance(tables, numba.types.NoneType) else row
+    return none if _is_none(tables) else row
 
 
 @njit(nogil=True, **COMPILED)

@@ -8,8 +8,7 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any, TypeAlias
 
-from numba.extending import overload
-
+from nonholo.base.compiled import overload
 from nonholo.kernels._scalar import COMPILED
 
 Body: TypeAlias = tuple[Any, ...]

@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from numba.extending import overload, register_jitable
+from nonholo.base.compiled import jitable, overload
 
 COMPILED: Any = {"error_model": "numpy"}
 """Options of the scalar kernels: no exceptions on division; arithmetic is strict (docs/conventions.md, "Bits")."""
@@ -21,11 +21,11 @@ INLINED: Any = {**BORROWING, "forceinline": True}
 PIECES = 100_000
 """Most pieces of a path that is followed: some tens are usual, and no loop of a kernel is without end."""
 
-scalar = register_jitable(**COMPILED)
+scalar = jitable(**COMPILED)
 """Mark a scalar function: numba inlines it, plain Python and JAX call it as it is."""
 
 
-inlined = register_jitable(**INLINED)
+inlined = jitable(**INLINED)
 """Mark a function that writes to arrays of its callers likewise, with the options INLINED."""
 
 

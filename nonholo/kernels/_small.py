@@ -7,8 +7,8 @@ the order of the loops.
 import numpy as np
 
 from nonholo.base.compiled import njit
-from nonholo.kernels._lanes import FOUR, load, spread, store
 from nonholo.kernels._scalar import BORROWING
+from nonholo.kernels.lanes import FOUR, load, spread, store
 
 
 @njit(**BORROWING)

@@ -8,9 +8,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba.extending import overload
 
-from nonholo.base.compiled import njit
+from nonholo.base.compiled import njit, overload
 from nonholo.kernels._driver import _solve
 from nonholo.kernels._interface import Body, increment, move
 from nonholo.kernels._scalar import COMPILED

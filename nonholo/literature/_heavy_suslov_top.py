@@ -2,7 +2,6 @@
 
 import functools
 
-import numba
 import numpy as np
 
 from nonholo.base.types import Array, Float
@@ -61,6 +60,8 @@ def heavy_suslov_top(
         "of the first axis": functools.partial(kept, turning=0, tilting=1),
         "of the second axis": functools.partial(kept, turning=1, tilting=0),
     }
+
+    import numba
 
     @numba.njit
     def potential(g: Float[np.ndarray, "3 3"]) -> np.float64:

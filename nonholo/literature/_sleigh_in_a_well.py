@@ -1,6 +1,5 @@
 """The Chaplygin sleigh in a potential well."""
 
-import numba
 import numpy as np
 
 from nonholo.base.checks import number
@@ -51,6 +50,8 @@ def sleigh_in_a_well(
     m, J = positives(name, mass=mass, inertia=inertia)
     given = {"a": a, "stiffness": stiffness, "speed": speed, "turning": turning}
     a, k, u, omega = (float(number(f"examples.{name}({what}=...)", value)) for what, value in given.items())
+
+    import numba
 
     @numba.njit
     def potential(g: Float[np.ndarray, "3 3"]) -> np.float64:

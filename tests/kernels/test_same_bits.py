@@ -1,4 +1,4 @@
-"""The same bits from the process that compiles a kernel, from those that load it later, in any number of threads."""
+"""The same bits from the library and from numba, in the process that compiles and in later ones, in any threads."""
 
 import ast
 import json
@@ -43,12 +43,26 @@ def _printed(*arguments: str, **variables: str) -> Any:
 @pytest.mark.profile("long", keep=["sleighs"])
 @pytest.mark.parametrize("names", [(), ("sleighs",)], ids=["all", "sleighs"])
 def test_bits_of_a_fresh_cache(names: tuple[str, ...], tmp_path: Path) -> None:
-    """Live motions have the same bits where kernels are compiled and where they are loaded, in 1 and in 7 threads."""
-    compiled, loaded = (
-        _printed("bits", *names, NUMBA_CACHE_DIR=str(tmp_path), NUMBA_NUM_THREADS=n, OPENBLAS_NUM_THREADS=n)
-        for n in "17"
+    """Live motions have the bits of the library where numba compiles and where it loads, in 1 and in 7 threads."""
+    library, compiled, loaded = (
+        _printed(
+            "bits",
+            *names,
+            NONHOLO_KERNELS=way,
+            NUMBA_CACHE_DIR=str(tmp_path),
+            NUMBA_NUM_THREADS=n,
+            OPENBLAS_NUM_THREADS=n,
+        )
+        for way, n in (("library", "1"), ("numba", "1"), ("numba", "7"))
     )
-    assert loaded == compiled
+    assert loaded == compiled == library
+
+
+@pytest.mark.profile("routes", instead="test_bits_of_a_fresh_cache")
+def test_bits_of_the_library() -> None:
+    """All live motions have the bits of numba in the library."""
+    library, compiled = (_printed("bits", NONHOLO_KERNELS=way) for way in ("library", "numba"))
+    assert library == compiled
 
 
 def _compiles(mark: ast.expr) -> bool:

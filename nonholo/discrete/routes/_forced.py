@@ -234,10 +234,12 @@ def half_drive(free: AbstractCompiledRoute, forced: Forced, said: dict[str, str]
     moves, weights = forced.differences
     force, potential = _in_python(forced, said)
     if forced.is_jitted:
+        from nonholo.kernels.forced.addresses import function_of
+
         shape = (group.size, group.dim)
         _check_compiled(forced)
-        force = kernels.function_of(forced.function, shape, 3) if has[0] else 0
-        potential = kernels.function_of(forced.potential, shape, 1) if has[1] else 0
+        force = function_of(forced.function, shape, 3) if has[0] else 0
+        potential = function_of(forced.potential, shape, 1) if has[1] else 0
     return kernels.Drive(
         kick=kick,
         planar=(2 if group == SE(2) else 3) if free.is_scalar else 0,

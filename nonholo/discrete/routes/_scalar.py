@@ -60,6 +60,11 @@ class ScalarRoute(AbstractCompiledRoute):
         """Its data for JAX."""
         return ScalarStep(self.body, self.scale, self._axes.rows)
 
+    def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
+        """Return the outcome of the first root, its chart and the state of a run, in numbers of the kernel."""
+        state = np.zeros(kernels.STATE_SIZE)
+        return kernels.start(self.body, momenta, pose, state), state[kernels.CHART], state
+
     def encode(self, momenta: np.ndarray) -> np.ndarray:
         """Return the momenta of the kernel from canonical ones."""
         return self.scale * self._axes.momenta(momenta)

@@ -1,6 +1,6 @@
 """Steps under forces: half impulses, linear or of functions, and the loops over steps."""
 
-from nonholo.kernels.forced._driven import Drive, function_of
+from nonholo.kernels.forced._driven import Drive
 from nonholo.kernels.forced._flat import flat_forced_run
 from nonholo.kernels.forced._kick import Kick, rubbed
 from nonholo.kernels.forced.run import ForcedBody

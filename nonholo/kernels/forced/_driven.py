@@ -10,19 +10,14 @@ Functions are addresses in compiled code, so that one loop serves all of them, a
 whose loop is the same.
 """
 
-import functools
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
-from llvmlite import ir
-from numba import types
-from numba.extending import intrinsic, overload
-from numba.np.numpy_support import carray
 
-from nonholo.kernels._scalar import INLINED, inlined, scalar
+from nonholo.base.compiled import compiled_in
+from nonholo.kernels._scalar import inlined, scalar
 from nonholo.kernels._small import assign, eliminate, multiply
 from nonholo.kernels.forced._kick import Kick, kept, linear, pulled_by_weight, seen
 
@@ -30,8 +25,6 @@ _ITERATIONS = 30  # of Newton's method with one slope
 _MOST, _SHORTEST = 100, 1e-12  # with new slopes; part of a correction
 _ROUNDING = 1e-12  # relative, before the last correction
 _DIFFERENCE = 1e-7  # relative, of a momentum
-_ROW = types.CPointer(types.float64)
-_SIGNATURE = types.void(types.float64, _ROW, _ROW, _ROW)
 
 
 class Drive(NamedTuple):
@@ -65,7 +58,7 @@ class Drive(NamedTuple):
     potential: Any
 
 
-class Room(NamedTuple):
+class DriveRoom(NamedTuple):
     """What a half impulse writes to.
 
     Attributes:
@@ -88,12 +81,14 @@ class Room(NamedTuple):
 
 
 @scalar
-def room_for_drive(drive: Drive) -> Room:
+def room_for_drive(drive: Drive) -> DriveRoom:
     """Return room for the half impulses of one run."""
     (k, dim), n = drive.along.shape, len(drive.turn)
     poses = np.zeros((2, n, n))
     rows = poses.reshape(2, n * n)
-    return Room(np.zeros(k), poses, rows, np.zeros((3, dim)), np.zeros((5, k)), np.zeros((k, 1)), np.zeros((2, k, k)))
+    return DriveRoom(
+        np.zeros(k), poses, rows, np.zeros((3, dim)), np.zeros((5, k)), np.zeros((k, 1)), np.zeros((2, k, k))
+    )
 
 
 def function_at(address: Callable[..., None], time: float, g: np.ndarray, w: np.ndarray, out: np.ndarray) -> None:
@@ -101,66 +96,11 @@ def function_at(address: Callable[..., None], time: float, g: np.ndarray, w: np.
     address(time, g, w, out)
 
 
-@intrinsic
-def _call(typing: Any, address: Any, time: Any, g: Any, w: Any, out: Any) -> Any:
-    """Call the function at an address, with pointers to arrays."""
-    del typing
-
-    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        number = ir.DoubleType()
-        kind = ir.FunctionType(ir.VoidType(), [number] + 3 * [number.as_pointer()])
-        data = (
-            context.make_array(each)(context, builder, array).data
-            for each, array in zip(signature.args[2:], arguments[2:], strict=True)
-        )
-        builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), [arguments[1], *data])
-        return context.get_dummy_value()
-
-    return types.void(address, time, g, w, out), code
-
-
-@overload(function_at, jit_options=INLINED, strict=False)
-def _compiled_function_at(address: Any, time: Any, g: Any, w: Any, out: Any) -> Any:
-    return lambda address, time, g, w, out: _call(address, time, g, w, out)  # pyright: ignore
-
-
-@functools.cache
-def function_of(function: Any, shape: tuple[int, int], arguments: int) -> int:
-    """Return the address of a function that numba compiled, of time, pose and velocity or of a pose alone.
-
-    Where it raises, or returns another number of numbers, what it writes is NaN. It is kept as long as the process.
-    """
-    size, dim = shape
-
-    if arguments == 1:
-
-        @numba.cfunc(_SIGNATURE)
-        def call(time: Any, g: Any, w: Any, out: Any) -> None:  # pyright: ignore
-            found = carray(out, dim)
-            found[0] = np.nan
-            found[0] = function(carray(g, (size, size)))
-
-    else:
-
-        @numba.cfunc(_SIGNATURE)
-        def call(time: Any, g: Any, w: Any, out: Any) -> None:
-            found = carray(out, dim)
-            found[:] = np.nan
-            value = function(time, carray(g, (size, size)), carray(w, dim))
-            if len(value) == dim:
-                for i in range(dim):
-                    found[i] = value[i]
-
-    _KEPT.append(call)
-    return int(call.address or 0)
-
-
-_KEPT: list[Any] = []
-"""Functions whose addresses are known."""
+compiled_in("nonholo.kernels.forced.addresses")
 
 
 @inlined
-def place(drive: Drive, room: Room, pose: np.ndarray) -> None:
+def place(drive: Drive, room: DriveRoom, pose: np.ndarray) -> None:
     """Write the user's pose from that of the kernel."""
     P, n = room.poses[1], drive.planar
     if n == 0:
@@ -176,7 +116,7 @@ def place(drive: Drive, room: Room, pose: np.ndarray) -> None:
 
 
 @inlined
-def pulled_by_functions(drive: Drive, room: Room, pose: np.ndarray) -> None:
+def pulled_by_functions(drive: Drive, room: DriveRoom, pose: np.ndarray) -> None:
     """Write what the weight and the potential add to momenta at a pose."""
     place(drive, room, pose)
     g, other, force = room.poses[0], room.poses[1], room.force
@@ -198,7 +138,7 @@ def pulled_by_functions(drive: Drive, room: Room, pose: np.ndarray) -> None:
 
 @inlined
 def pushed_by_function(
-    drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, after: np.ndarray, out: np.ndarray
+    drive: Drive, room: DriveRoom, when: tuple[float, int], m: np.ndarray, after: np.ndarray, out: np.ndarray
 ) -> None:
     """Write what the force at the velocity of the mean of two momenta, and all else, add to what friction leaves.
 
@@ -227,7 +167,7 @@ def largest(a: np.ndarray, b: np.ndarray) -> float:
 
 
 @inlined
-def driven(drive: Drive, room: Room, node: int, row: int, m: np.ndarray, out: np.ndarray) -> int:
+def driven(drive: Drive, room: DriveRoom, node: int, row: int, m: np.ndarray, out: np.ndarray) -> int:
     """Write the momenta after half an impulse; return the outcome: 7 if it is not found, 5 if it is not finite.
 
     A force that does not depend on the velocity is asked twice: then the momenta are explicit.
@@ -256,7 +196,7 @@ def driven(drive: Drive, room: Room, node: int, row: int, m: np.ndarray, out: np
 
 
 @inlined
-def see_slopes(drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, out: np.ndarray) -> None:
+def see_slopes(drive: Drive, room: DriveRoom, when: tuple[float, int], m: np.ndarray, out: np.ndarray) -> None:
     """Write the slopes of m' - A m - j((m + m') / 2), by differences from the second impulse on the way."""
     first, second, third, slopes = room.momenta[0], room.momenta[1], room.momenta[2], room.slopes[0]
     size = largest(m, first)
@@ -271,7 +211,9 @@ def see_slopes(drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray,
 
 
 @inlined
-def midpoint(drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, out: np.ndarray, renewed: bool) -> int:
+def midpoint(
+    drive: Drive, room: DriveRoom, when: tuple[float, int], m: np.ndarray, out: np.ndarray, renewed: bool
+) -> int:
     """Solve m' = A m + j((m + m') / 2) by Newton's method; return the outcome.
 
     It has one slope, from the explicit momenta and their impulse; or new slopes, from what stands there, and halves
@@ -303,7 +245,7 @@ def midpoint(drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, o
 
 @inlined
 def shortened(
-    drive: Drive, room: Room, when: tuple[float, int], m: np.ndarray, out: np.ndarray, before: float, renewed: bool
+    drive: Drive, room: DriveRoom, when: tuple[float, int], m: np.ndarray, out: np.ndarray, before: float, renewed: bool
 ) -> float:
     """Return what momenta miss after a correction; if slopes are renewed, it is halved until they miss less."""
     part = 1.0
@@ -325,7 +267,7 @@ def corrected(out: np.ndarray, begun: np.ndarray, part: float, change: np.ndarra
 
 
 @inlined
-def gap(drive: Drive, room: Room, m: np.ndarray, out: np.ndarray) -> float:
+def gap(drive: Drive, room: DriveRoom, m: np.ndarray, out: np.ndarray) -> float:
     """Write what momenta miss whose impulse stands in the room; return the largest of it."""
     for i in range(len(m)):
         room.missed[i, 0] = kept(drive.kick, m, i) + room.momenta[1, i] - out[i]

@@ -4,9 +4,6 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from numba.np.numpy_support import carray
-from numba.np.unsafe.ndarray import to_fixed_tuple
-
 from nonholo.kernels._interface import Body
 from nonholo.kernels.forced._kick import rubbed
 from nonholo.kernels.forced._two import Numbers, advance_numbers
@@ -28,6 +25,9 @@ def flat_forced_run(kind: type[Body]) -> Callable[..., int]:
     Before the steps it is then at the node after the start.
     """
     count = len(kind._fields)  # pyright: ignore[reportAttributeAccessIssue]
+
+    from numba.np.numpy_support import carray
+    from numba.np.unsafe.ndarray import to_fixed_tuple
 
     def run(body: Any, state: Any, steps: int, momenta: Any, charts: Any, poses: Any) -> int:
         f = carray(body, TABLE)

@@ -15,9 +15,8 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba.extending import overload
 
-from nonholo.base.compiled import njit
+from nonholo.base.compiled import njit, overload
 from nonholo.kernels._driver import SETTLED, _compensated
 from nonholo.kernels._scalar import COMPILED, INLINED
 from nonholo.kernels._small import assign

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.compiled import njit
-from nonholo.kernels._lanes import EIGHT, load, spread, store
 from nonholo.kernels._scalar import BORROWING
+from nonholo.kernels.lanes import EIGHT, load, spread, store
 
 _SPLIT = 2.0**27 + 1  # halves the digits of a number
 

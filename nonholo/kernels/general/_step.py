@@ -21,10 +21,10 @@ from typing import NamedTuple
 import numpy as np
 
 from nonholo.base.compiled import njit
-from nonholo.kernels._lanes import EIGHT
 from nonholo.kernels._scalar import BORROWING, COMPILED, INLINED
 from nonholo.kernels._small import assign, eliminate, multiply, paired, transpose
 from nonholo.kernels.general._rows import add_slopes, pair_twice, put
+from nonholo.kernels.lanes import EIGHT
 
 LOST = 1e12  # turning of a displacement of an iteration that runs away
 

@@ -60,19 +60,6 @@ class CoordinateBody(NamedTuple):
     velocity: int
 
 
-def coordinate_body(
-    functions: tuple[Any, Any, Any], settled: int, place: int, velocity: int, constraints: int, h: float
-) -> CoordinateBody:
-    """Return a system with a time step and numbers that settle, of a place, velocities and constraints."""
-    size = velocity + constraints
-    departure, arrival = np.full(place + velocity + 1, h), np.full(place + 2 * velocity + 2, h)
-    given, equations = np.zeros(settled + size), np.zeros(size * size + 2 * size + 2)
-    matrix, missed, units, _ = np.split(equations, np.cumsum([size * size, size, size]))
-    solution = np.zeros((size, size + 1))
-    parts = given[settled:], equations, matrix.reshape(size, size), missed, units, solution
-    return CoordinateBody(*functions, departure, arrival, given, *parts, place, velocity)
-
-
 @njit(**BORROWING)
 def _settle(body: CoordinateBody, near: np.ndarray, before: np.ndarray) -> None:
     """Write what is settled at the place of arrival, and the guess."""

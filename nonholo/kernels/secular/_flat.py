@@ -4,8 +4,6 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from numba.np.numpy_support import carray
-
 from nonholo.kernels._small import assign
 from nonholo.kernels.secular import run as secular
 from nonholo.kernels.secular._step import SecularBody
@@ -20,6 +18,8 @@ def flat_secular_run(k: int) -> Callable[..., int]:
     and the chart of the last good step.
     """
     begin, size = 2 * k + 7, 2 * k + 7 + (k + 1) ** 2
+
+    from numba.np.numpy_support import carray
 
     def run(body: Any, state: Any, steps: int, momenta: Any, charts: Any, poses: Any) -> int:
         f, s = carray(body, 2 * k + 1), carray(state, size + 1 + k)

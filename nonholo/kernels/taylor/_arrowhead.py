@@ -18,9 +18,9 @@ import numpy as np
 from nonholo.base.compiled import njit
 from nonholo.base.progress import tell
 from nonholo.base.types import Float
-from nonholo.kernels._lanes import ONE
 from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import assign
+from nonholo.kernels.lanes import ONE
 from nonholo.kernels.taylor._solve import since
 from nonholo.kernels.taylor._steps import root
 

@@ -14,12 +14,12 @@ import threading
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba.extending import overload
 
+from nonholo.base.compiled import overload
 from nonholo.base.types import Int
-from nonholo.kernels._lanes import EIGHT, load, spread, store
 from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import eliminate
+from nonholo.kernels.lanes import EIGHT, load, spread, store
 
 _SMALL = 128  # components, below which rooms are kept
 

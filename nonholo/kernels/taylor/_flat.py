@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from typing import Any
 
-from numba.np.numpy_support import carray
-
 from nonholo.kernels.taylor._arrowhead import Arrowhead, room_for_steps, take_step, terms_for
 
 
@@ -16,6 +14,8 @@ def flat_arrowhead_run(size: int, tolerance: float) -> Callable[..., int]:
     written. The last address is not used.
     """
     terms = terms_for(tolerance)
+
+    from numba.np.numpy_support import carray
 
     def run(body: Any, state: Any, count: int, times: Any, rows: Any, _: Any) -> int:
         f, s = carray(body, 2 * size + 1), carray(state, (2, size + 1))

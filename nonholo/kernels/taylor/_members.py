@@ -10,9 +10,9 @@ import numpy as np
 
 from nonholo.base.compiled import njit
 from nonholo.base.types import Bool, Float, Int
-from nonholo.kernels._lanes import EIGHT
 from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import assign
+from nonholo.kernels.lanes import EIGHT
 from nonholo.kernels.taylor._expansion import Quadratic, Room, expand, make_room, sparse_products
 from nonholo.kernels.taylor._solve import move, read
 from nonholo.kernels.taylor._steps import order_for, write_steps

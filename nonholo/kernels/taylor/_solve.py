@@ -12,9 +12,9 @@ import numpy as np
 from nonholo.base.compiled import njit
 from nonholo.base.progress import tell
 from nonholo.base.types import Float
-from nonholo.kernels._lanes import EIGHT, ONE, load, spread, store
 from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import assign_rows
+from nonholo.kernels.lanes import EIGHT, ONE, load, spread, store
 from nonholo.kernels.taylor._expansion import Quadratic, Room, expand, kept_room
 from nonholo.kernels.taylor._steps import order_for, write_steps
 

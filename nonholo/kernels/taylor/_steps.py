@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 
-from nonholo.kernels._lanes import load, spread, store
 from nonholo.kernels._scalar import scalar
+from nonholo.kernels.lanes import load, spread, store
 from nonholo.kernels.taylor._expansion import Quadratic, Room
 
 _STRETCH = 0.8  # of the logarithm of the tolerance

@@ -3,7 +3,6 @@
 The equations of a system become C functions, made of the definitions of this room, without a loop or a branch.
 """
 
-import ctypes
 import functools
 import math
 from collections.abc import Callable
@@ -16,12 +15,12 @@ from llvmlite import ir
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
 
+from nonholo.base.compiled import FUNCTION
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array
 from nonholo.kernels import (
     CoordinateBody,
     advance_coordinates,
-    coordinate_body,
     each_root,
     each_row,
     set_out_coordinates,
@@ -36,7 +35,6 @@ from nonholo.lagrange_dalembert.compiled._windows import array_of
 State = tuple[Any, Any, Any]
 ROWS = 1024
 """Saved states of one call of JAX: one size of table, one compilation."""
-_CALLED = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
 
 
 class Program(NamedTuple):
@@ -157,7 +155,7 @@ def machine_code(inputs: list[Scalar], results: list[Scalar]) -> Any:
     _write(ir.IRBuilder(function.append_basic_block()), function.args, inputs, results)
     library.add_ir_module(module)
     library.finalize()
-    called: Any = _CALLED(library.get_pointer_to_function(function.name))
+    called: Any = FUNCTION(library.get_pointer_to_function(function.name))
     called.memory = library  # which lives as long as the function
     return called
 
@@ -184,9 +182,16 @@ def _write(builder: ir.IRBuilder, arrays: Any, inputs: list[Scalar], results: li
 
 
 def _body(system: Any, h: Any, q: Any, v: Any, *, at_node: bool = False) -> CoordinateBody | None:
-    place, n = np.shape(q), len(v)
-    code = programs(system, place, n, at_node=at_node)
-    return code and coordinate_body(code[:3], code.settled, math.prod(place), n, system.constraints, float(h))
+    """Return a system at a time step, with room for its numbers; None if JAX must solve its equations."""
+    code, place, n = programs(system, np.shape(q), len(v), at_node=at_node), np.size(q), len(v)
+    if code is None:
+        return None
+    size = n + system.constraints
+    departure, arrival = np.full(place + n + 1, float(h)), np.full(place + 2 * n + 2, float(h))
+    given, equations = np.zeros(code.settled + size), np.zeros(size * size + 2 * size + 2)
+    matrix, missed, units, _ = np.split(equations, np.cumsum([size * size, size, size]))
+    parts = given[code.settled :], equations, matrix.reshape(size, size), missed, units, np.zeros((size, size + 1))
+    return CoordinateBody(*code[:3], departure, arrival, given, *parts, place, n)
 
 
 def set_out(definition: Callable[..., Any], system: Any, h: Any, q: Any, v: Any, p: Any) -> Any:
@@ -197,8 +202,6 @@ def set_out(definition: Callable[..., Any], system: Any, h: Any, q: Any, v: Any,
     with compiling(system):
         body = _body(system, h, q, v)
         sign = set_out_coordinates(body, *map(np.array, (np.ravel(q), p, v))) if body else 0.0  # one type of arrays
-        if body:
-            advance_coordinates(body, np.empty(0), sign, 0, 0, 1, *3 * [np.empty((0, 0))])  # which compiles it now
     if body is None or sign == 0:
         return definition(q, v, p)
     first = body.root[: len(v)].copy()

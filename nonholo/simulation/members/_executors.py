@@ -4,11 +4,11 @@ import contextlib
 import contextvars
 import dataclasses
 import functools
+import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from typing import Any, NamedTuple, TypeAlias, cast
 
-import numba
 import numpy as np
 
 from nonholo import kernels
@@ -51,8 +51,13 @@ def in_one_thread() -> Iterator[None]:
 
 
 def threads_to_use() -> int:
-    """Return one `in_one_thread`, else as many as numba may use."""
-    return _THREADS.get() or int(numba.config.NUMBA_NUM_THREADS)  # pyright: ignore
+    """Return one `in_one_thread`, else as many as `NUMBA_NUM_THREADS` says, else one for each core."""
+    asked = os.environ.get("NUMBA_NUM_THREADS", "")
+    return _THREADS.get() or (int(asked) if asked.isdigit() and int(asked) > 0 else _cores())
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def counting(show: Callable[[int, int], None], total: int) -> Report:

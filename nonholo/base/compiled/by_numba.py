@@ -1,4 +1,4 @@
-"""The kernels' decorator, and their compiled code on disk.
+"""Kernels by numba, and their compiled code on disk.
 
 numba's cache ends a program where no folder can be written, where a file is cut, and where the disk is full, and it
 takes code as fresh whose callees in other files have changed. Here a file that is not whole, or not of this text of the
@@ -19,35 +19,24 @@ from typing import Any
 
 import llvmlite
 import numba
-from numba.core import caching, config, dispatcher, serialize
+from numba.core import caching, config, serialize, types
+from numba.extending import typeof_impl
 
-_FOLDERS = ("kernels", "base/numerics")
+from nonholo.base import compiled
+from nonholo.base.compiled import library
+
 _DIGEST = 32
 _REMEDY = "Set NUMBA_CACHE_DIR to a folder that can be written."
 
 
-def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Compile a kernel when it is first called, and keep the code on disk where that is possible.
-
-    Example:
-        >>> @njit(error_model="numpy")
-        ... def inverse(x: float) -> float:
-        ...     return 1 / x
-        >>> float(inverse(4.0))
-        0.25
-    """
-
-    def decorate(function: Callable[..., Any]) -> Any:
-        options["no_cfunc_wrapper"] = True  # nothing calls kernels from C
-        made = numba.njit(**options)(function)
-        if isinstance(made, dispatcher.Dispatcher):  # NUMBA_DISABLE_JIT leaves the function as it is
-            try:
-                made._cache = _Cache(function)  # pyright: ignore
-            except RuntimeError:  # numba has tried all places
-                _say(f"Compiled code is not kept on disk: each process compiles for itself. {_REMEDY}")
-        return made
-
-    return decorate
+def dispatcher_of(function: Callable[..., Any], options: dict[str, Any]) -> Any:
+    """Compile a kernel when it is first called, and keep the code on disk where that is possible."""
+    made: Any = numba.njit(**options, no_cfunc_wrapper=True)(function)  # pyright: ignore  # nothing calls it from C
+    try:
+        made._cache = _Cache(function)  # pyright: ignore
+    except RuntimeError:  # numba has tried all places
+        _say(f"Compiled code is not kept on disk: each process compiles for itself. {_REMEDY}")
+    return made
 
 
 @functools.cache
@@ -58,11 +47,8 @@ def _say(text: str) -> None:
 @functools.cache
 def text_of_kernels() -> bytes:
     """Return a digest of all that compiled code depends on beside the types of its arguments and the processor."""
-    digest = hashlib.sha256(f"{numba.__version__} {config.BOUNDSCHECK}".encode())  # pyright: ignore
-    for folder in _FOLDERS:
-        for file in sorted((Path(__file__).parents[1] / folder).rglob("*.py")):
-            digest.update(file.read_bytes())
-    return digest.digest()
+    of_numba = f"{numba.__version__} {config.BOUNDSCHECK}".encode()  # pyright: ignore
+    return hashlib.sha256(library.digest_of_kernels() + of_numba).digest()
 
 
 class _OfUser(caching.UserWideCacheLocator):
@@ -177,3 +163,12 @@ class _Files(caching.IndexDataCacheFile):
 
     def _digest(self, payload: bytes) -> bytes:
         return hashlib.sha256(self._source_stamp + payload).digest()
+
+
+@typeof_impl.register(compiled.Kernel)
+def _type_of_kernel(kernel: compiled.Kernel, _: Any) -> types.Dispatcher:
+    """Let compiled code call a kernel as it calls functions of numba's own decorator."""
+    return types.Dispatcher(kernel.dispatcher)
+
+
+compiled.tell_numba()

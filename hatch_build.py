@@ -1,0 +1,71 @@
+"""The build hook: kernels that are compiled ahead go into wheels, and beside the kernels of a checkout."""
+
+import contextlib
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any, cast
+
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+_ROOT = Path(__file__).parent
+_NEEDS = ["jaxtyping>=0.3", "lazy-loader>=0.4", "numba>=0.62", "numpy>=2.1"]
+
+
+class KernelsHook(BuildHookInterface):  # pyright: ignore[reportMissingTypeArgument]
+    """Compile the kernels once for each text of them; what was compiled is kept in the user's cache."""
+
+    PLUGIN_NAME = "custom"
+
+    def dependencies(self) -> list[str]:
+        """Return what compiles: nothing where the library of this text is there."""
+        if self.target_name == "sdist" or _library().place():
+            return []
+        has_linker = any(map(shutil.which, ("ld", "ld.lld")))
+        return _NEEDS if has_linker else [*_NEEDS, "ziglang>=0.13"]
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """Put the library beside the kernels, compiled now unless there is one."""
+        if self.target_name != "wheel":
+            return
+        library = _library()
+        folder, cache, there = _ROOT / "nonholo" / "kernels", library.cache_folder(), library.place()
+        if there is None:
+            command = [sys.executable, "-m", "nonholo.base.compiled.build", str(folder)]
+            environment = {**os.environ, "PYTHONPATH": str(_ROOT)}
+            subprocess.run(command, env=environment, check=True, cwd=_ROOT)  # noqa: S603
+        elif there.parent != folder:
+            _put(there, folder)
+        for file in folder.glob("kernels-*.so"):
+            if file.name != library.name_of_library():
+                file.unlink()
+        with contextlib.suppress(OSError):  # a home that cannot be written
+            _put(folder / library.name_of_library(), cache)
+        if version != "editable":
+            build_data["artifacts"].append("nonholo/kernels/kernels-*.so")
+            build_data.update(pure_python=False, infer_tag=False, tag=f"py3-none-{_platform()}")
+
+
+def _library() -> Any:
+    """Return the module that says where the library lies; the package is not there yet."""
+    spec = importlib.util.spec_from_file_location("library", _ROOT / "nonholo" / "base" / "compiled" / "library.py")
+    module = importlib.util.module_from_spec(cast(Any, spec))
+    cast(Any, spec).loader.exec_module(module)
+    return module
+
+
+def _put(file: Path, folder: Path) -> None:
+    """Copy a library into a folder in one go: runs from the old one continue."""
+    folder.mkdir(parents=True, exist_ok=True)
+    part = folder / f".{os.getpid()}.part"
+    shutil.copy(file, part)
+    part.replace(folder / file.name)
+
+
+def _platform() -> str:
+    from packaging.tags import platform_tags
+
+    return next(iter(platform_tags()))

@@ -1,0 +1,25 @@
+"""Kernels: by the library that is compiled ahead, by numba, or as they are."""
+
+from nonholo.base.compiled._kernel import (
+    ABOUT,
+    AXES,
+    DATA,
+    FLAGS,
+    FUNCTION,
+    LETTER,
+    NAMES,
+    ORDER,
+    ORDERED,
+    SHAPE,
+    Kernel,
+    Library,
+    compiled_in,
+    jitable,
+    key_of,
+    library_of_kernels,
+    njit,
+    overload,
+    symbol_of,
+    tell_numba,
+    tokens,
+)

@@ -1,0 +1,374 @@
+"""The kernels' decorator: a kernel runs from the library that was compiled ahead, else by numba, else as it is.
+
+What kernels tell numba about themselves waits until numba is needed: a process that the library serves never loads it.
+"""
+
+import ctypes
+import functools
+import hashlib
+import importlib
+import itertools
+import operator
+import os
+import struct
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from nonholo.base.compiled import library
+
+FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
+"""A compiled function that kernels call, of two addresses."""
+_SCALARS = {
+    float: "d",
+    np.float64: "d",
+    int: "q",
+    np.int64: "q",
+    bool: "?",
+    np.bool_: "?",
+    type(None): "n",
+    FUNCTION: "f",
+}
+_FORMATS = {"f": "q", "d": "d", "q": "q", "?": "?7x", "n": ""}
+_REFUSED = object()
+_OTHER = "o"  # what the library takes no argument of
+_DTYPES = {"d": np.float64, "q": np.int64, "?": np.bool_}
+NAMES = {"d": "d", "q": "lq", "?": "?"}
+"""What NumPy calls the numbers of arrays, by their kind."""
+DATA, AXES, SHAPE, ABOUT, FLAGS = 16, 24, 32, 56, 64
+"""Where an array, and what it says about its numbers, have their fields: part of NumPy's binary interface."""
+LETTER, ORDER = 25, 26
+ORDERED = 0x101  # in C order, and aligned
+
+
+def njit(**options: Any) -> "Callable[[Callable[..., Any]], Kernel]":
+    """Make a function a kernel, with the options of `numba.njit`.
+
+    Example:
+        >>> @njit(error_model="numpy")
+        ... def inverse(x: float) -> float:
+        ...     return 1 / x
+        >>> inverse(4.0)
+        0.25
+    """
+    return functools.partial(Kernel, options)
+
+
+class Kernel:
+    """A function of numbers, arrays and tuples of them.
+
+    Where the library has it for arguments of these kinds it runs from there. Else numba compiles it, and keeps the code
+    on disk; without numba it runs as it is. Its bits are the same by all three ways.
+    """
+
+    def __init__(self, options: dict[str, Any], function: Callable[..., Any]) -> None:
+        functools.update_wrapper(self, function)
+        self.py_func, self.options = function, options
+        self._entries: dict[Any, Entry | None] = {}
+        self._body: tuple[Any, Any, list[Any]] = (), None, []
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Run it by the first way that there is."""
+        known = library_of_kernels()
+        if known is None:
+            return self.dispatcher(*arguments)
+        classes, words = self._spread(arguments)
+        entry = self._entries.get(classes)
+        result = _REFUSED if entry is None else entry(words)
+        if result is not _REFUSED:
+            return result
+        key = key_of(arguments)
+        if key not in self._entries:
+            self._entries[key] = known.entry(self, key)
+        entry = self._entries[classes] = self._entries[key]
+        return self.dispatcher(*arguments) if entry is None else entry(words)
+
+    def _spread(self, arguments: tuple[Any, ...]) -> tuple[Any, list[Any]]:
+        """Return the classes and words of arguments; those of a body that comes first are kept for the next call."""
+        words: list[Any] = []
+        if not arguments or not isinstance(arguments[0], tuple):
+            return spread(arguments, words), words
+        body, kinds, numbers = self._body
+        if body is not arguments[0]:
+            body, numbers = arguments[0], []
+            kinds = type(body), spread(body, numbers)
+            self._body = body, kinds, numbers
+        words += numbers
+        return (kinds, spread(arguments[1:], words)), words
+
+    @functools.cached_property
+    def dispatcher(self) -> Any:
+        """The same function by numba; without numba the function as it is."""
+        if way_of_kernels() == "python":
+            return self.py_func
+        try:
+            from nonholo.base.compiled import by_numba
+        except ImportError:
+            return self.py_func
+        return by_numba.dispatcher_of(self.py_func, self.options)
+
+    def __getattr__(self, name: str) -> Any:
+        """Answer numba as its own dispatchers do."""
+        if name.startswith("__") or name == "dispatcher":
+            raise AttributeError(name)
+        return getattr(self.dispatcher, name)
+
+    def __reduce__(self) -> str:
+        return self.__qualname__
+
+
+def spread(values: tuple[Any, ...], words: list[Any]) -> Any:
+    """Append the words of arguments that a compiled function takes, numbers and arrays; return their classes."""
+    classes: list[Any] = []
+    for value in values:
+        kind = type(value)
+        if kind is np.ndarray:
+            words.append(id(value))
+        elif isinstance(value, tuple):
+            kind = kind, spread(value, words)
+        elif kind is FUNCTION:
+            words.append(ctypes.cast(value, ctypes.c_void_p).value)
+        elif value is not None:
+            words.append(value)
+        classes.append(kind)
+    return tuple(classes)
+
+
+def key_of(values: tuple[Any, ...]) -> str:
+    """Return the kinds of arguments, letter by letter: see `tokens`.
+
+    Example:
+        >>> key_of((1.0, (2, None), np.zeros((3, 3)), np.zeros((3, 3)).T))
+        'd(qn)d2o2'
+    """
+    return "".join(map(_kind_of, values))
+
+
+def _kind_of(value: Any) -> str:
+    kind = type(value)
+    if kind is np.ndarray:
+        names = (letter for letter, names in NAMES.items() if value.dtype.char in names and value.dtype.isnative)
+        return (next(names, _OTHER) if _is_readable(value) else _OTHER) + str(value.ndim)
+    if isinstance(value, tuple):
+        return ("(" if kind is tuple else f"{kind.__name__}(") + key_of(value) + ")"
+    return _SCALARS.get(kind, _OTHER)
+
+
+def _is_readable(value: np.ndarray) -> bool:
+    return value.flags.c_contiguous and value.flags.aligned
+
+
+class Entry:
+    """A function of the library for arguments of one kind.
+
+    It takes two addresses: of the words of its arguments, and of a word that becomes 1 with what it returns after it.
+    """
+
+    def __init__(self, function: Any, key: str, returns: str, release: Any) -> None:
+        function.restype, function.argtypes = None, (ctypes.c_char_p, ctypes.c_void_p)
+        shape = tokens(returns)
+        self._function, self._made = function, _made_by(shape, release)
+        self._arguments = struct.Struct("".join(_FORMATS.get(each, "q" * _is_array(each)) for each in tokens(key)))
+        self._results = struct.Struct("q" + "".join(map(_result_format, shape)))
+        self._room = ctypes.c_char * self._results.size
+
+    def __call__(self, words: list[Any]) -> Any:
+        """Return what it returns, or what is written in place of that where arrays are of another kind."""
+        room = self._room()
+        self._function(self._arguments.pack(*words), room)
+        values = self._results.unpack(room)
+        return self._made(values) if values[0] else _REFUSED
+
+
+def _made_by(shape: list[str], release: Any) -> Callable[[tuple[Any, ...]], Any]:
+    """Return what makes a result of the words behind the first one."""
+    if shape == ["n"]:
+        return lambda _: None
+    if shape[0] in _FORMATS:
+        return operator.itemgetter(1)
+    if shape[0] == "(" and all(each in _FORMATS and each != "n" for each in shape[1:-1]):
+        return operator.itemgetter(slice(1, None))
+    return lambda values: _nested(iter(shape), iter(values[1:]), release)[0]
+
+
+def _nested(kinds: Iterator[str], words: Iterator[Any], release: Any) -> list[Any]:
+    """Return numbers, arrays and tuples up to the bracket that ends a tuple, or to the end."""
+    made: list[Any] = []
+    for kind in kinds:
+        if kind == ")":
+            break
+        if kind.endswith("("):
+            parts = _nested(kinds, words, release)
+            made.append(tuple(parts) if kind == "(" else _class_of(kind[:-1])(*parts))
+        elif kind == "n":
+            made.append(None)
+        else:
+            made.append(next(words) if kind in _FORMATS else _array(kind, words, release))
+    return made
+
+
+def _class_of(name: str) -> Any:
+    """Return the named tuple of a name and its module."""
+    own, module = name.split("@")
+    return getattr(importlib.import_module(module), own)
+
+
+def _array(kind: str, words: Iterator[Any], release: Any) -> np.ndarray:
+    """Return an array that a function made, copied out of its block."""
+    block, address, *shape = itertools.islice(words, 2 + int(kind[1]))
+    array = np.empty(shape, _DTYPES[kind[0]])
+    ctypes.memmove(array.ctypes.data, address, array.nbytes)
+    release(block)
+    return array
+
+
+def _is_array(token: str) -> bool:
+    return token[1:].isdigit()
+
+
+def _result_format(token: str) -> str:
+    return "q" * (2 + int(token[1])) if _is_array(token) else _FORMATS.get(token, "")
+
+
+def tokens(key: str) -> list[str]:
+    """Return the kinds of a key one by one: numbers, arrays with how many axes, and tuples by their brackets.
+
+    Example:
+        >>> tokens("Body(dd)d2q(?n)")
+        ['Body(', 'd', 'd', ')', 'd2', 'q', '(', '?', 'n', ')']
+    """
+    found: list[str] = []
+    at = 0
+    while at < len(key):
+        end = at + 1
+        if key[at].isupper() or key[at] == "_":
+            end = key.index("(", at) + 1
+        elif end < len(key) and key[end].isdigit():
+            end += 1
+        found.append(key[at:end])
+        at = end
+    return found
+
+
+class Library:
+    """The functions that were compiled ahead for this processor."""
+
+    def __init__(self, path: Path) -> None:
+        self.path, self._code = path, ctypes.CDLL(str(path))
+        self._release = self._code.nonholo_release
+        self._release.restype, self._release.argtypes = None, (ctypes.c_void_p,)
+        self._variants = ("_wide", "") if _is_wide() else ("",)
+
+    def entry(self, kernel: Kernel, key: str) -> Entry | None:
+        """Return what runs a kernel for arguments of a kind; None if the library does not have it."""
+        name = symbol_of(f"{kernel.__module__}.{kernel.__qualname__}", key)
+        for variant in self._variants:
+            try:
+                function = self._code[name + variant]
+            except AttributeError:
+                continue
+            returns = ctypes.string_at(ctypes.addressof(ctypes.c_char.in_dll(self._code, f"{name}_returns")))
+            return Entry(function, key, returns.decode(), self._release)
+        return None
+
+
+def symbol_of(name: str, key: str) -> str:
+    """Return the name that a function has in the library for arguments of a kind."""
+    return "nonholo_" + hashlib.sha256(f"{name} {key}".encode()).hexdigest()[:24]
+
+
+def _is_wide() -> bool:
+    """Tell whether the processor has vectors of eight numbers."""
+    try:
+        return "avx512f" in Path("/proc/cpuinfo").read_text(encoding="utf-8")
+    except OSError:
+        return False
+
+
+@functools.cache
+def way_of_kernels() -> str:
+    """Return the first way by which kernels run: "library", "numba" or "python", as `NONHOLO_KERNELS` says.
+
+    Settings of numba that ask for other code than that of the library leave the library out.
+    """
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":
+        return "python"
+    if os.environ.get("NUMBA_BOUNDSCHECK", "0") != "0":
+        return "numba"
+    return os.environ.get("NONHOLO_KERNELS", "library")
+
+
+@functools.cache
+def library_of_kernels() -> Library | None:
+    """Return the library of the kernels of this text, beside them or in the user's cache; None if there is none."""
+    if way_of_kernels() != "library":
+        return None
+    file = library.place()
+    return Library(file) if file and _has_known_arrays() else None
+
+
+def _has_known_arrays() -> bool:
+    """Tell whether arrays have their fields where the library looks for them; another Python may not."""
+    array = np.zeros((2, 3))
+    fields = ctypes.cast(id(array), ctypes.POINTER(ctypes.c_int64))
+    axes = ctypes.c_int32.from_address(id(array) + AXES).value
+    about = fields[ABOUT // 8] == id(array.dtype)
+    shape = ctypes.cast(fields[SHAPE // 8], ctypes.POINTER(ctypes.c_int64))
+    letter = ctypes.c_char.from_address(id(array.dtype) + LETTER).value
+    same = (fields[DATA // 8], axes, letter) == (array.ctypes.data, 2, b"d")
+    return about and same and (shape[0], shape[1]) == array.shape
+
+
+_waiting: list[Callable[[], Any]] = []
+_numba_is_here = False
+
+
+def for_numba(tell: Callable[[], Any]) -> None:
+    """Tell numba something about kernels: once it is needed, or now if it is there."""
+    if _numba_is_here:
+        tell()
+    else:
+        _waiting.append(tell)
+
+
+def tell_numba() -> None:
+    """Tell numba all that waits."""
+    global _numba_is_here  # the state of the process
+    _numba_is_here = True
+    while _waiting:
+        _waiting.pop(0)()
+
+
+def overload(function: Callable[..., Any], **options: Any) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Let what is decorated choose, for numba, what compiled code calls in place of a function."""
+
+    def decorate(choose: Callable[..., Any]) -> Callable[..., Any]:
+        def tell() -> None:
+            from numba.extending import overload
+
+            overload(function, **options)(choose)
+
+        for_numba(tell)
+        return choose
+
+    return decorate
+
+
+def jitable(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Mark a function that compiled code calls, with the options of `numba.njit`, plain Python elsewhere."""
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        def choose(*_: Any, **__: Any) -> Any:
+            return function
+
+        overload(function, jit_options=options, strict=False)(choose)
+        return function
+
+    return decorate
+
+
+def compiled_in(module: str) -> None:
+    """Name the module that tells numba how it compiles the functions of another one."""
+    for_numba(lambda: importlib.import_module(module))

@@ -1,0 +1,297 @@
+r"""The kernels compiled ahead: a library for a processor, for arguments of known kinds.
+
+`ahead.txt` names them, a kernel and the kinds of its arguments a line, as `nonholo.base.compiled.spread` gives them.
+numba types and lowers each as it does for a process of its own; llvmlite makes objects of that, a linker a library.
+Arithmetic is strict everywhere, so the numbers are the same to the last bit.
+
+    python -m nonholo.base.compiled.build FOLDER
+"""
+
+import concurrent.futures
+import functools
+import importlib
+import itertools
+import multiprocessing
+import os
+import pkgutil
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import llvmlite.binding as llvm
+import numba
+from llvmlite import ir
+from numba import typeof, types
+from numba.core import cgutils
+from numba.extending import intrinsic
+from numba.np.arrayobj import populate_array
+
+from nonholo.base import compiled
+from nonholo.base.compiled.library import name_of_library
+
+_KERNELS = Path(__file__).parents[2] / "kernels"
+_WORD, _INT, _ADDRESS = ir.IntType(64), ir.IntType(32), types.CPointer(types.int64)
+_KINDS: dict[str, Any] = {"d": types.float64, "q": types.int64, "?": types.boolean, "n": types.none}
+_LETTERS = {kind: letter for letter, kind in _KINDS.items()}
+_OF_THIS_MACHINE = r'(?m)"(?:target-cpu|target-features|probe-stack)"="[^"]*"|^target (?:triple|datalayout) = .*$'
+_FUNCTION = compiled.FUNCTION(0)  # one of the kind that kernels call
+_WIDE = "ensemble"  # what is worth a second variant, for vectors of eight numbers
+_RUNTIME = Path(__file__).with_name("runtime.ll")
+_ENTRY = """
+declare void @abort() noreturn
+define void @{symbol}(ptr %words, ptr %room) {{
+  %result = alloca ptr
+  %raised = alloca ptr
+  %status = call i32 @{own}(ptr %result, ptr %raised, ptr %words, ptr %room)
+  %failed = icmp ne i32 %status, 0
+  br i1 %failed, label %bad, label %good
+bad:
+  call void @abort()
+  unreachable
+good:
+  ret void
+}}
+
+@{symbol}_returns = constant [{length} x i8] c"{returns}\\00"
+"""
+
+
+def kind_of(tokens: Iterator[str], classes: dict[str, Any]) -> list[Any]:
+    """Return the types of numba for kinds, up to the bracket that ends a tuple or to their end."""
+    found = []
+    for each in tokens:
+        if each == ")":
+            break
+        if each.endswith("("):
+            parts = kind_of(tokens, classes)
+            found.append(types.BaseTuple.from_types(parts, classes[each[:-1]] if each != "(" else None))
+        elif each == "f":
+            found.append(typeof(_FUNCTION))
+        elif len(each) == 2:
+            found.append(types.Array(_KINDS[each[0]], int(each[1]), "C"))
+        else:
+            found.append(_KINDS[each])
+    return found
+
+
+def letters(kind: Any) -> str:
+    """Return the kinds of what a function returns."""
+    if isinstance(kind, types.BaseTuple):
+        own = getattr(kind, "instance_class", tuple)
+        name = "" if own is tuple else f"{own.__name__}@{own.__module__}"
+        return f"{name}({''.join(letters(each) for each in _parts(kind))})"
+    return f"{_LETTERS[kind.dtype]}{kind.ndim}" if isinstance(kind, types.Array) else _LETTERS[kind]
+
+
+def _parts(kind: Any) -> list[Any]:
+    """Return the types in a tuple."""
+    return list(kind)
+
+
+def flat(kernel: compiled.Kernel, kinds: list[Any]) -> tuple[Any, list[str]]:
+    """Return a kernel as a function of two addresses, for numba to compile, and where it says what it returns."""
+    returns: list[str] = []
+    options: Any = {name: option for name, option in kernel.options.items() if name != "inline"}
+    function: Any = numba.njit(**options)(kernel.py_func) if "inline" in kernel.options else kernel
+    given = types.BaseTuple.from_types(kinds)
+
+    @intrinsic
+    def fits(_typing: Any, words: Any) -> Any:
+        def code(_context: Any, builder: Any, _signature: Any, values: Any) -> Any:
+            return _fits(builder, given, _words(builder, values[0]))
+
+        return types.boolean(words), code
+
+    @intrinsic
+    def arguments(_typing: Any, words: Any) -> Any:
+        def code(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
+            return _value(context, builder, given, _words(builder, values[0]))
+
+        return given(words), code  # pyright: ignore
+
+    @intrinsic
+    def give(_typing: Any, room: Any, result: Any) -> Any:
+        returns[:] = [letters(result)]
+
+        def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            builder.store(_WORD(1), values[0])
+            for place, word in enumerate(_results(context, builder, signature.args[1], values[1]), 1):
+                target = builder.gep(values[0], [_WORD(place)])
+                builder.store(word, builder.bitcast(target, word.type.as_pointer()))
+            return context.get_dummy_value()
+
+        return types.none(room, result), code
+
+    def run(words: Any, room: Any) -> None:
+        if fits(words):  # pyright: ignore
+            give(room, function(*arguments(words)))  # pyright: ignore
+
+    return run, returns
+
+
+def _words(builder: Any, begin: Any) -> Callable[[], Any]:
+    """Return a function that loads one word after another."""
+    places = itertools.count()
+    return lambda: builder.load(builder.gep(begin, [_WORD(next(places))]))
+
+
+def _field(builder: Any, record: Any, at: int, kind: Any) -> Any:
+    """Load a field of a record, the address of which is a word."""
+    return builder.load(builder.inttoptr(builder.add(record, _WORD(at)), kind.as_pointer()))
+
+
+def _fits(builder: Any, kind: Any, word: Callable[[], Any]) -> Any:
+    """Tell whether arrays have the axes, numbers and order that a kernel is compiled for."""
+    if isinstance(kind, types.BaseTuple):
+        each = [_fits(builder, part, word) for part in _parts(kind)]
+        return functools.reduce(builder.and_, each, ir.IntType(1)(1))
+    if kind == types.none:
+        return ir.IntType(1)(1)
+    array = word()
+    if not isinstance(kind, types.Array):
+        return ir.IntType(1)(1)
+    flags = builder.and_(_field(builder, array, compiled.FLAGS, _INT), _INT(compiled.ORDERED))
+    about = _field(builder, array, compiled.ABOUT, _WORD)
+    letter, order = (_field(builder, about, at, ir.IntType(8)) for at in (compiled.LETTER, compiled.ORDER))
+    axes = builder.icmp_unsigned("==", _field(builder, array, compiled.AXES, _INT), _INT(kind.ndim))
+    ordered = builder.icmp_unsigned("==", flags, _INT(compiled.ORDERED))
+    named = [
+        builder.icmp_unsigned("==", letter, letter.type(ord(each))) for each in compiled.NAMES[_LETTERS[kind.dtype]]
+    ]
+    native = builder.icmp_unsigned("!=", order, order.type(ord(">")))
+    return functools.reduce(builder.and_, [axes, ordered, functools.reduce(builder.or_, named), native])
+
+
+def _value(context: Any, builder: Any, kind: Any, word: Callable[[], Any]) -> Any:
+    """Return the value of an argument from its words."""
+    if isinstance(kind, types.BaseTuple):
+        return context.make_tuple(builder, kind, [_value(context, builder, each, word) for each in _parts(kind)])
+    if isinstance(kind, types.Array):
+        array = context.make_array(kind)(context, builder)
+        record = word()
+        data = builder.inttoptr(_field(builder, record, compiled.DATA, _WORD), array.data.type)
+        lengths = _field(builder, record, compiled.SHAPE, _WORD)
+        shape = [_field(builder, lengths, 8 * axis, _WORD) for axis in range(kind.ndim)]
+        size = context.get_abi_sizeof(context.get_data_type(kind.dtype))
+        strides = [_WORD(size)]
+        for length in shape[:0:-1]:
+            strides.insert(0, builder.mul(strides[0], length))
+        populate_array(array, data, shape, strides[-kind.ndim :] if kind.ndim else [], _WORD(size), None)
+        return array._getvalue()  # pyright: ignore
+    if kind == types.none:
+        return context.get_dummy_value()
+    if isinstance(kind, types.ExternalFunctionPointer):
+        return builder.inttoptr(word(), context.get_value_type(kind))
+    if kind == types.float64:
+        return builder.bitcast(word(), ir.DoubleType())
+    return builder.icmp_unsigned("!=", word(), _WORD(0)) if kind == types.boolean else word()
+
+
+def _results(context: Any, builder: Any, kind: Any, value: Any) -> Iterator[Any]:
+    """Give the words of a result: of an array its block, which is kept, its address and its shape."""
+    if isinstance(kind, types.BaseTuple):
+        for each, part in zip(_parts(kind), cgutils.unpack_tuple(builder, value, len(_parts(kind))), strict=True):
+            yield from _results(context, builder, each, part)
+    elif isinstance(kind, types.Array):
+        array = context.make_array(kind)(context, builder, value)
+        context.nrt.incref(builder, kind, value)
+        yield from (builder.ptrtoint(each, _WORD) for each in (array.meminfo, array.data))
+        yield from cgutils.unpack_tuple(builder, array.shape, kind.ndim)
+    elif kind != types.none:
+        yield builder.zext(value, _WORD) if kind == types.boolean else value
+
+
+def text_of(line: str, classes: dict[str, Any]) -> str:
+    """Return the LLVM text of a line of the list."""
+    name, key = line.split(" ")
+    module, _, function = name.rpartition(".")
+    kernel = getattr(importlib.import_module(module), function)
+    run, returns = flat(kernel, kind_of(iter(compiled.tokens(key)), classes))
+    made: Any = numba.njit(nogil=True, error_model="numpy")(run)
+    made.compile((_ADDRESS, _ADDRESS))
+    (code,) = made.overloads.values()
+    text = re.sub(_OF_THIS_MACHINE, "", code.library.get_llvm_str())
+    symbol = compiled.symbol_of(name, key)
+    filled = {"symbol": symbol, "own": code.fndesc.llvm_func_name, "returns": returns[0], "length": len(returns[0]) + 1}
+    return text + _ENTRY.format(**filled)
+
+
+def objects_of(line: str, triple: str, folder: str) -> list[str]:
+    """Compile a line of the list into objects in a folder; return their files."""
+    text, files = text_of(line, _classes()), []
+    symbol = compiled.symbol_of(*line.split(" "))
+    for variant, processor in (("", "x86-64" if triple.startswith("x86") else "generic"), ("_wide", "x86-64-v4")):
+        if variant and not (_WIDE in line and triple.startswith("x86")):
+            continue
+        own = text.replace(symbol, symbol + variant) if variant else text
+        file = Path(folder) / f"{symbol}{variant}.o"
+        file.write_bytes(_object(own, triple, processor, symbol))
+        files.append(str(file))
+    return files
+
+
+def _object(text: str, triple: str, processor: str, public: str) -> bytes:
+    """Compile LLVM text with what it asks of numba's runtime; only names that begin as the public one are seen."""
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    machine = llvm.Target.from_triple(triple).create_target_machine(cpu=processor, opt=3, reloc="pic")
+    code = llvm.parse_assembly(text)
+    code.link_in(llvm.parse_assembly(_RUNTIME.read_text(encoding="utf-8")))
+    code.triple, code.data_layout = triple, str(machine.target_data)
+    for item in (*code.functions, *code.global_variables):
+        if not item.is_declaration and not item.name.startswith(public):
+            item.linkage = "internal"
+    passes = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=2))
+    passes.getModulePassManager().run(code, passes)
+    return machine.emit_object(code)
+
+
+def _classes() -> dict[str, Any]:
+    """Return the named tuples of all kernels by their names."""
+    found: dict[str, Any] = {}
+    for about in pkgutil.walk_packages([str(_KERNELS)], "nonholo.kernels."):
+        for name, each in vars(importlib.import_module(about.name)).items():
+            if isinstance(each, type) and issubclass(each, tuple) and found.setdefault(name, each) is not each:
+                raise NameError(f"Two named tuples of kernels are called {name}.")
+    return found
+
+
+def lines() -> list[str]:
+    """Return the list of what is compiled."""
+    return (_KERNELS / "ahead.txt").read_text(encoding="utf-8").split("\n")[:-1]
+
+
+def linker() -> list[str]:
+    """Return the command of a linker, that of the package `ziglang` where the machine has none."""
+    own = next(filter(None, map(shutil.which, ("ld", "ld.lld"))), None)
+    return [own] if own else [sys.executable, "-m", "ziglang", "cc", "-nostdlib"]
+
+
+def build(target: Path, triple: str = "") -> Path:
+    """Compile and link the library of a triple of LLVM, by default that of this machine, into a folder."""
+    os.environ["NONHOLO_KERNELS"] = "numba"
+    triple = triple or llvm.get_process_triple()
+    context = multiprocessing.get_context("spawn")
+    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ProcessPoolExecutor(mp_context=context) as pool:
+        files = [f"{folder}/release.o"]
+        Path(files[0]).write_bytes(_object("", triple, "generic", "nonholo_release"))
+        for done, made in enumerate(
+            pool.map(objects_of, *zip(*((line, triple, folder) for line in lines()), strict=True))
+        ):
+            files += made
+            if sys.stderr.isatty():
+                print(f"\rkernels compiled: {done + 1} of {len(lines())}", end="", file=sys.stderr)  # noqa: T201
+        target.mkdir(parents=True, exist_ok=True)
+        file, part = target / name_of_library(), target / f".{os.getpid()}.part"
+        subprocess.run([*linker(), "-shared", "-o", str(part), *files], check=True)  # noqa: S603
+        part.replace(file)  # in one go: runs from an old one continue
+    return file
+
+
+if __name__ == "__main__":
+    build(Path(sys.argv[1]))

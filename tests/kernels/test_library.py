@@ -1,0 +1,116 @@
+"""The library of kernels that are compiled ahead: what it has, what it leaves to numba, and when it is not used."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from nonholo.base import compiled
+from nonholo.base.compiled import key_of, library, library_of_kernels, tokens
+from nonholo.kernels import SleighBody, _driver, _small
+from nonholo.kernels.secular import _step
+
+LINES = Path(library.__file__).parents[2].joinpath("kernels", "ahead.txt").read_text(encoding="utf-8").splitlines()
+RUN = """
+import json, sys
+import nonholo as nh
+from nonholo.base.compiled import library_of_kernels
+orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), body_velocity=(1, 0.3, 0), steps=20)
+rows = orbit.momentum.tolist(), orbit.pose.tolist()
+print(json.dumps([library_of_kernels() is not None, "numba" in sys.modules, rows]))
+"""
+
+
+def _ran(**variables: str) -> Any:
+    environment = {**os.environ, **variables}
+    done = subprocess.run([sys.executable, "-c", RUN], env=environment, stdout=subprocess.PIPE, check=True)  # noqa: S603
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="module")
+def known() -> compiled.Library:
+    """Return the library of this text."""
+    found = library_of_kernels()
+    assert found is not None, "Compile it: python -m nonholo.base.compiled.build nonholo/kernels"
+    return found
+
+
+def test_all_that_is_listed_is_there(known: compiled.Library) -> None:
+    """Every line of the list is a function of the library, and the list is sorted, without doubles."""
+    assert sorted(set(LINES)) == LINES
+    absent = []
+    for line in LINES:
+        name, key = line.split(" ")
+        module, _, function = name.rpartition(".")
+        kernel = getattr(sys.modules.get(module) or __import__(module, fromlist=[function]), function)
+        absent += [] if known.entry(kernel, key) else [line]
+    assert absent == []
+
+
+def test_three_ways_have_the_same_bits() -> None:
+    """A sleigh runs from the library without numba, by numba, and as plain Python: the same numbers."""
+    by_library, by_numba, by_python = (_ran(NONHOLO_KERNELS=way) for way in ("library", "numba", "python"))
+    assert by_library[:2] == [True, False]
+    assert by_numba[:2] == [False, True]
+    assert by_python[:2] == [False, False]
+    assert by_library[2] == by_numba[2] == by_python[2]
+
+
+def test_a_library_of_another_text_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is found by a digest of the text: a changed kernel has none until it is compiled."""
+    monkeypatch.setattr(library, "_PACKAGE", tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    for folder in ("kernels", "base/numerics", "nonholo"):
+        (tmp_path / folder).mkdir(parents=True)
+    for file in ("kernels/one.py", "kernels/ahead.txt"):
+        (tmp_path / file).write_text("one")
+    library.digest_of_kernels.cache_clear()
+    assert library.place() is None
+    file = tmp_path / "nonholo" / library.name_of_library()
+    file.write_bytes(b"")
+    assert library.place() == file
+    (tmp_path / "kernels/one.py").write_text("another")
+    library.digest_of_kernels.cache_clear()
+    assert library.place() is None
+    library.digest_of_kernels.cache_clear()
+
+
+def test_arrays_of_another_kind_go_to_numba(known: compiled.Library) -> None:
+    """Arrays that are not in C order, or hold other numbers, have no function in the library: the results are right."""
+    del known
+    rows = np.arange(12.0).reshape(3, 4)
+    for source in (rows[1], rows.T[1], np.arange(3), np.arange(4.0).astype(">f8")[:4]):
+        target = np.zeros(len(source))
+        if source.dtype.isnative:
+            _small.assign(target, source)
+            np.testing.assert_array_equal(target, source)
+        else:
+            assert "o" in key_of((target, source))
+
+
+def test_results_of_every_kind(known: compiled.Library) -> None:
+    """Numbers, truth values, arrays, and named tuples of them come back as from numba."""
+    body = SleighBody(1.0, 1.0, 0.5)
+    code, first, second = _driver._solve(body, 0.1, 0.2, 0.0, 0.0)
+    assert (type(code), type(first), type(second)) == (int, float, float)
+    assert known.entry(_driver._solve, key_of((body, 0.1, 0.2, 0.0, 0.0)))
+    room = _step.room_for_sums()
+    assert room.flags.owndata
+    assert room.shape == _step.room_for_sums.dispatcher().shape
+    rows = np.array([[0.1, 0.2], [0.3, -0.1]])
+    results = _driver.step_each(body, rows, rows, rows, True)
+    for own, other in zip(results, _driver.step_each.dispatcher(body, rows, rows, rows, True), strict=True):
+        np.testing.assert_array_equal(own, other)
+
+
+def test_kinds_of_arguments() -> None:
+    """A key says the kinds of all numbers, and which tuples hold them."""
+    key = key_of((SleighBody(1.0, 1.0, 0.5), 3, None, True, (np.zeros((2, 2)), 1.0), "text", np.zeros(2, dtype=int)))
+    assert key == "SleighBody(ddd)qn?(d2d)oq1"
+    assert "".join(tokens(key)) == key
+    assert tokens(key)[:3] == ["SleighBody(", "d", "d"]
