@@ -17,7 +17,7 @@ from nonholo.base.progress import until
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.continuous import has_series, members_by_series
-from nonholo.discrete import PRINCIPAL
+from nonholo.discrete import PRINCIPAL, BranchRule
 from nonholo.orbit import AbstractStepper, First
 from nonholo.simulation._flow import flow_from
 from nonholo.simulation._options import stepper_of
@@ -25,7 +25,7 @@ from nonholo.simulation._run import Run, ended
 from nonholo.simulation.events import Event, Watch
 from nonholo.simulation.members._events import log_of, watched_block
 from nonholo.simulation.members._families import ScalarMembers, body_of, in_lanes, inertias_of, scalar_members
-from nonholo.simulation.members._members import Members
+from nonholo.simulation.members._members import Members, refused
 from nonholo.simulation.members._result import Ensemble, stacked
 from nonholo.simulation.members._start import Firsts, are_others
 
@@ -74,6 +74,7 @@ class Plan(NamedTuple):
         steps: Number of steps; of a flow the number of times after the first.
         every: Steps between saved states; None for the last one alone.
         posed: Whether to compute poses.
+        branch: The branch rule.
         backend: "auto", "numba" or "jax".
         events: What the runs look for, by name; None if for nothing.
         times: Those of a flow.
@@ -83,6 +84,7 @@ class Plan(NamedTuple):
     steps: int
     every: int | None
     posed: bool = True
+    branch: BranchRule = PRINCIPAL.name
     backend: str = "auto"
     events: dict[str, Event] | None = None
     times: Float[np.ndarray, "K"] | None = None
@@ -110,7 +112,12 @@ def executor_of(members: Members, plan: Plan) -> Callable[..., Ensemble]:
     """Return what runs members: side by side where their closed form or their series allows it, else one by one."""
     if plan.times is not None:
         return run_by_series if has_series(members.discrete.system) else run_one_by_one
-    return run_in_lanes if in_lanes(members) else run_one_by_one
+    return run_in_lanes if are_side_by_side(members, plan) else run_one_by_one
+
+
+def are_side_by_side(members: Members, plan: Plan) -> bool:
+    """Tell whether members are computed side by side, in numbers of their closed form."""
+    return plan.branch == PRINCIPAL.name and in_lanes(members)
 
 
 def run_in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
@@ -217,19 +224,24 @@ def run_one_by_one(members: Members, starts: Firsts, plan: Plan, threads: int, r
     def work(part: slice, stop: np.ndarray) -> None:
         with until(lambda: bool(stop[0])):
             for member in range(part.start, part.stop):
-                orbits[member], done[member] = alone(members.of(member), starts.of(member), plan)
+                try:
+                    orbits[member], done[member] = alone(members.of(member), starts.of(member), plan)
+                except ValueError as failure:
+                    raise refused(member, failure) from failure
 
-    together = plan.times is not None or _stepper_of(members.discrete, plan).in_threads
-    in_threads(work, [slice(i, i + 1) for i in range(count)], threads if together else 1, report)
+    stepper = None if plan.times is not None else _stepper_of(members.discrete, plan)
+    beside = threads if stepper is None or stepper.in_threads else 1
+    in_threads(work, [slice(i, i + 1) for i in range(count)], beside, report)
     each = [orbits[member] for member in range(count)]
     codes = np.array([int(orbit.outcome) for orbit in each])
     columns = stacked(each, plan.states) | _times(plan, count)
-    batch = Ensemble(members, plan.steps, plan.every, columns, codes, done, *starts.places)
+    branch = PRINCIPAL.name if stepper is None else stepper.branch
+    batch = Ensemble(members, plan.steps, plan.every, columns, codes, done, *starts.places, branch=branch)
     return batch if plan.events is None else dataclasses.replace(batch, events=log_of(batch, each))
 
 
 def _stepper_of(motion: Any, plan: Plan) -> AbstractStepper[Any]:
-    return stepper_of(motion, PRINCIPAL.name, plan.backend, posed=plan.posed)
+    return stepper_of(motion, plan.branch, plan.backend, posed=plan.posed, owner="ensemble")
 
 
 def _run_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:

@@ -27,7 +27,7 @@ class Ensemble:
 
     With `save_every=None` K = 1, and the state is the last good one of each member, after `steps_done` steps. Otherwise
     row j is the state after j `save_every` steps; of flows that at the j-th time. A member that ends early has NaN in
-    its later rows. A member whose start has no principal root has only NaN. `outcome` tells them apart.
+    its later rows. A member that cannot start has only NaN. `outcome` tells them apart.
 
     Attributes:
         members: What moves, and the parameters.
@@ -41,6 +41,7 @@ class Ensemble:
         first_pose: Compact poses of the starts of bodies, canonical frame, places in coordinates, shape (M, ...).
         events: What `events=` of the run found, a `MemberEvents`: by name or position how many crossings each member
             has, and the states at the first and the last. None without `events=`.
+        branch: The branch rule of the steps, as in `Orbit`.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
@@ -65,6 +66,7 @@ class Ensemble:
     first_momentum: Float[np.ndarray, "M k"]
     first_pose: Float[np.ndarray, "M ..."]
     events: MemberEvents | None = None
+    branch: str = "principal"
 
     def __len__(self) -> int:
         return len(self.members)
@@ -91,7 +93,7 @@ class Ensemble:
     def _states(self, motion: Any, rows: Any, **about: Any) -> Any:
         """Return some rows of the states as an orbit."""
         kept = {"time": self.time[rows]} | {name: column[rows] for name, column in self.columns.items()}
-        return motion.orbit(branch="principal", **{name: kept.get(name) for name in motion.columns}, **about)
+        return motion.orbit(branch=self.branch, **{name: kept.get(name) for name in motion.columns}, **about)
 
     @property
     def _good(self) -> Bool[np.ndarray, "M K"]:

@@ -10,7 +10,7 @@ from nonholo.base.checks import array, error, shape_of
 from nonholo.base.numerics import applied, factors_of, solved
 from nonholo.base.types import Bool, Float
 from nonholo.orbit import First
-from nonholo.simulation.members._families import ScalarMembers, in_lanes, scalar_members
+from nonholo.simulation.members._families import ScalarMembers, scalar_members
 from nonholo.simulation.members._members import Members, refused
 from nonholo.systems import Start, in_group
 
@@ -81,9 +81,12 @@ def _common(lengths: dict[str, int]) -> int:
     return next(iter(lengths.values()))
 
 
-def firsts(members: Members, start: Start, *, posed: bool) -> Firsts:
-    """Return the checked starts of all members, with poses or without, from one that has rows."""
-    if start.name == "displacement" or not in_lanes(members):
+def firsts(members: Members, start: Start, *, posed: bool, at_once: bool) -> Firsts:
+    """Return the checked starts of all members, with poses or without, from one that has rows.
+
+    Those that are computed side by side start at once.
+    """
+    if start.name == "displacement" or not at_once:
         return _one_by_one(members, start, posed=posed)
     momenta = np.empty((len(members), 2))
     for begin in range(0, len(members), _CHUNK):
