@@ -24,7 +24,7 @@ from nonholo.simulation._options import stepper_of
 from nonholo.simulation._run import Run, ended
 from nonholo.simulation.events import Event, Watch
 from nonholo.simulation.members._events import log_of, watched_block
-from nonholo.simulation.members._families import ScalarMembers, body_of, in_lanes, inertias_of, scalar_members
+from nonholo.simulation.members._families import ScalarMembers, in_lanes, inertias_of
 from nonholo.simulation.members._members import Members, refused
 from nonholo.simulation.members._result import Ensemble, stacked
 from nonholo.simulation.members._start import Firsts, are_others
@@ -129,23 +129,20 @@ def run_in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, rep
 
 def _in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
     """Run members of a closed form, 32 at a time, or by JAX."""
-    scalar, count, (momenta, first) = scalar_members(members), len(members), starts.numbers
+    scalar, count, (momenta, first) = ScalarMembers(members), len(members), starts.numbers
     rows = _rows(count, plan.states, posed=plan.posed)
     fields, run = scalar.fields, _advance_by_jax if plan.backend == "jax" else _advance
-    advance = functools.partial(run, body_of(members))
+    advance = functools.partial(run, scalar.body)
 
     def work(part: slice, stop: np.ndarray) -> None:
         pieces = _unfilled(kernels.MemberRows(*(array[part] for array in rows)))
         scale = np.broadcast_to(scalar.scale, (count,))[part, None]
-        own = first[part] if scalar.route is None else scalar.route.encode_poses(first[part])
-        poses = np.array(own, order="C")  # never read-only: compiled once
+        axes = scalar.axes.at(part)
+        poses = np.array(axes.poses(first[part]), order="C")  # never read-only: compiled once
         own = fields if fields.shape[1] == 1 else fields[:, part]
-        begun = momenta[part] * scale if scalar.route is None else scalar.route.encode(momenta[part])
-        advance(own, (begun, poses), plan, pieces, stop)
-        if scalar.route is None:
-            np.divide(pieces.momenta, scale[:, None], out=pieces.momenta)
-        else:
-            _decode(scalar, pieces)
+        advance(own, (scale * axes.momenta(momenta[part]), poses), plan, pieces, stop)
+        np.divide(pieces.momenta, scale[:, None], out=pieces.momenta)
+        _decode(axes, pieces)
 
     if plan.backend == "jax":
         threads = 1  # XLA has its own
@@ -168,13 +165,15 @@ def _refuse_other_starts(batch: Ensemble, demanded: np.ndarray, probe: Ensemble)
         column[missed] = np.nan
 
 
-def _decode(scalar: ScalarMembers, pieces: kernels.MemberRows) -> None:
-    """Take rows of a kernel to canonical units and axes, in place."""
-    good, route = np.isfinite(pieces.momenta[..., 0]), scalar.route
-    pieces.momenta[good] = route.decode(pieces.momenta[good])
-    pieces.charts[good] = route.from_kernel(pieces.charts[good])
-    if pieces.poses.shape[1]:
-        pieces.poses[good] = route.decode_poses(pieces.poses[good])
+def _decode(axes: Any, pieces: kernels.MemberRows) -> None:
+    """Take rows of a kernel to canonical axes, in place."""
+    if axes.rows is not None:
+        beside = axes.beside(1)
+        pieces.momenta[:] = beside.canonical_momenta(pieces.momenta)
+        pieces.charts[:] = beside.canonical_charts(pieces.charts)
+    if axes.frame is not None and pieces.poses.shape[1]:
+        good = np.isfinite(pieces.momenta[..., 0])
+        pieces.poses[good] = axes.at(np.nonzero(good)[0]).canonical_poses(pieces.poses[good])
 
 
 def _rows(count: int, states: int, *, posed: bool) -> kernels.MemberRows:

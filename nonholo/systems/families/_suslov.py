@@ -59,6 +59,7 @@ class SuslovTop(AbstractLLSystem):
     axis: Array = dataclasses.field(default=None, kw_only=True)
     leaves: ClassVar[tuple[str, ...]] = ("mass_tensor",)
     structure: ClassVar[tuple[str, ...]] = ("axis",)
+    stacked = unchecked
 
     def __post_init__(self) -> None:
         where = "SuslovTop(mass_tensor=...)"
