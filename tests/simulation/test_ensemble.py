@@ -211,6 +211,27 @@ def test_numbers_of_all_members_are_those_of_each(system: Any) -> None:
             assert scalar.fields[:, member].tolist() == [own.mass, own.inertia, own.a]
 
 
+@pytest.mark.parametrize("name", ["top", "suslov 4", "any d on SE(3)", "flow", "rule"])
+def test_little_work_starts_no_threads(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Members that are soon done run in the calling thread, all others beside it, where Ctrl-C ends them."""
+    system, w = GENERAL.get(name, (TOP, np.ones(2)))
+    run: dict[str, Any] = {"restricted_velocity": 0.1 * w * np.ones((10, 1))}
+    motion: Any = system if name == "flow" else nh.discretize(system, 0.1)
+    little, much = (
+        ({"times": (0.0, 1.0)}, {"times": (0.0, 1e3)}) if name == "flow" else ({"steps": 10}, {"steps": 10**5})
+    )
+    run |= {"branch": "nearest"} if name == "rule" else {}
+
+    def refused(*_: Any) -> None:
+        raise RuntimeError
+
+    monkeypatch.setattr(_executors, "ThreadPoolExecutor", refused)
+    assert nh.ensemble(motion, **run, **little).outcome.tolist() == [0] * 10
+    if name != "rule":  # of which Ctrl-C is answered between its steps
+        with pytest.raises(RuntimeError):
+            nh.ensemble(motion, **run, **much)
+
+
 BY_MATRICES = {
     "top": nh.LLSystem(nh.SO(3), J, annihilator=[[0.0, 0.0, 1.0]]),
     "oblique top": nh.LLSystem(nh.SO(3), J, annihilator=[[0.6, -0.2, 0.8]]),

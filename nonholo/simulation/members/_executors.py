@@ -33,6 +33,9 @@ _PART = 8192  # members in a piece of work of one thread, a multiple of what a c
 _FLOWS = 1024  # flows in a piece of work,
 _BESIDE = 8  # those that are solved side by side,
 _NUMBERS = 1 << 20  # and the most numbers in their states
+_SOON = 1 << 16  # steps of the compiled loop over members that take a few milliseconds, less than threads,
+_SOON_ALONE = 1 << 12  # those of other compiled loops,
+_SOON_TURNED = 1 << 9  # and the units of time in which a body moves by one that its series take
 
 _THREADS: contextvars.ContextVar[int | None] = contextvars.ContextVar("threads", default=None)
 
@@ -146,6 +149,8 @@ def _in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, report
 
     if plan.backend == "jax":
         threads = 1  # XLA has its own
+    elif count * plan.steps <= _SOON:
+        threads = 0
     in_threads(work, _parts(count, threads, plan.backend), threads, report)
     columns = {"reduced_momentum": rows.momenta, "cayley": rows.charts}
     columns |= {"canonical_pose": rows.poses} if plan.posed else {}
@@ -220,17 +225,17 @@ def run_one_by_one(members: Members, starts: Firsts, plan: Plan, threads: int, r
     count, orbits, done = len(members), {}, np.zeros(len(members), dtype=np.int64)
     alone = _run_alone if plan.times is None else _flow_alone
 
-    def work(part: slice, stop: np.ndarray) -> None:
-        with until(lambda: bool(stop[0])):
-            for member in range(part.start, part.stop):
-                try:
-                    orbits[member], done[member] = alone(members.of(member), starts.of(member), plan)
-                except ValueError as failure:
-                    raise refused(member, failure) from failure
+    def work(part: slice, _: np.ndarray) -> None:
+        for member in range(part.start, part.stop):
+            try:
+                orbits[member], done[member] = alone(members.of(member), starts.of(member), plan)
+            except ValueError as failure:
+                raise refused(member, failure) from failure
 
     stepper = None if plan.times is not None else _stepper_of(members.discrete, plan)
-    beside = threads if stepper is None or stepper.in_threads else 1
-    in_threads(work, [slice(i, i + 1) for i in range(count)], beside, report)
+    if stepper is not None and (not stepper.in_threads or count * plan.steps <= _SOON_ALONE):
+        threads = 0
+    in_threads(work, [slice(i, i + 1) for i in range(count)], threads, report)
     each = [orbits[member] for member in range(count)]
     codes = np.array([int(orbit.outcome) for orbit in each])
     columns = stacked(each, plan.states) | _times(plan, count)
@@ -274,6 +279,8 @@ def run_by_series(members: Members, starts: Firsts, plan: Plan, threads: int, re
 
     numbers = sum(x.shape[1] for x in starts.places) * len(time)
     size = max(1, min(_FLOWS, _NUMBERS // numbers, max(_BESIDE, -(-count // 8))))
+    if count <= _FLOWS and count * numbers <= _SOON and count * _turned(members, starts, time) <= _SOON_TURNED:
+        size, threads = count, 0
     parts = [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]
     in_threads(work, parts, threads, report)
     states, reached = zip(*(pieces[part.start] for part in parts), strict=True)
@@ -286,6 +293,15 @@ def run_by_series(members: Members, starts: Firsts, plan: Plan, threads: int, re
     good = np.concatenate(reached)
     codes = np.where(good == len(time), int(Outcome.successful), int(Outcome.not_converged))
     return Ensemble(members, plan.steps, plan.every, columns | _times(plan, count), codes, good - 1, *starts.places)
+
+
+def _turned(members: Members, starts: Firsts, time: np.ndarray) -> float:
+    """Return by how much a body at most moves, in its algebra, and more where its inertia is uneven."""
+    inertia, S = inertias_of(members), members.discrete.system.canonical.constraint_subspace
+    velocity = np.linalg.solve(S @ inertia @ S.T, starts.numbers[0][..., None])[..., 0] @ S
+    return (
+        float(np.abs(velocity).max(initial=0.0)) * float(abs(time[-1] - time[0])) * float(np.linalg.cond(inertia).max())
+    )
 
 
 def _times(plan: Plan, count: int) -> dict[str, np.ndarray]:
@@ -302,21 +318,39 @@ def _parts(count: int, threads: int, backend: str) -> list[slice]:
         size = chunk() or count
     else:
         blocks = -(-count // kernels.LANES)
-        size = kernels.LANES * max(1, min(_PART // kernels.LANES, blocks // (4 * threads)))
+        size = kernels.LANES * max(1, min(_PART // kernels.LANES, blocks // (4 * threads) if threads else blocks))
     return [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]
 
 
 def in_threads(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int, report: Report) -> None:
-    """Do all pieces of work, which release the interpreter's lock, and report each."""
+    """Do all pieces of work and report each.
+
+    Args:
+        work: Does a piece; beside others it releases the interpreter's lock, and ends soon when the array becomes true.
+        parts: The pieces.
+        threads: How many; 0 for this one, which Ctrl-C reaches only between calls of compiled code.
+        report: Called with the number of members of a piece.
+    """
     for part in _finished(work, parts, threads):
         report(part.stop - part.start)
 
 
 def _finished(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int) -> Iterator[slice]:
     """Give pieces of work as they are done; what ends this thread, Ctrl-C among it, soon ends the others."""
-    pool, stop = ThreadPoolExecutor(threads), np.zeros(1, dtype=np.bool_)
+    stop = np.zeros(1, dtype=np.bool_)
+    if not threads:
+        for part in parts:
+            work(part, stop)
+            yield part
+        return
+
+    def begun(part: slice) -> None:
+        with until(lambda: bool(stop[0])):
+            work(part, stop)
+
+    pool = ThreadPoolExecutor(threads)
     try:
-        waiting = {pool.submit(work, part, stop): part for part in parts}
+        waiting = {pool.submit(begun, part): part for part in parts}
         for future in as_completed(waiting):
             future.result()
             yield waiting[future]
