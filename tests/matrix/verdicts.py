@@ -59,7 +59,6 @@ RULES: tuple[Rule, ...] = (
         "parts of a step",
         is_broken=True,
     ),
-    Rule("flow ensemble", "wide", "Members of flows have poses.", "be left out for a flow", is_broken=True),
     Rule(
         "ensemble of time steps|sweep",
         "own difference",

@@ -77,6 +77,19 @@ def test_members_are_flows(name: str, backward: bool) -> None:
     assert np.array_equal(few.canonical_pose, batch.canonical_pose[7:9])
 
 
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_members_without_poses_are_flows_without_them(name: str) -> None:
+    """With the bits of `flow(reconstruct=False)`, which of tops and sleighs solves for the momenta alone."""
+    system, w = SYSTEMS[name], np.random.default_rng(1).normal(size=(3, SYSTEMS[name].rank))
+    batch = nh.ensemble(system, restricted_velocity=w, times=TIMES, reconstruct=False)
+    assert batch.canonical_pose is None
+    assert batch.pose is None
+    for member, start in enumerate(w):
+        alone = nh.flow(system, restricted_velocity=start, times=TIMES, reconstruct=False)
+        assert not batch.orbit(member).has_poses
+        assert _same(batch.orbit(member), alone, bits=True)
+
+
 def test_members_with_their_own_parameters() -> None:
     """Arms of both signs and none, in any company; the sum of kinds is that of flows."""
     own = {"a": [0.1, -0.2, 0.0, 0.5], "b": [0.0, 0.1, 0.2, 0.3], "mass": [1.0, 2.0, 3.0, 4.0]}
@@ -152,7 +165,7 @@ def test_a_member_that_cannot_go_on_has_no_later_states() -> None:
         ({"save_every": 1}, r"ensemble\(save_every=...\)` must be left out"),
         ({"backend": "jax"}, r"ensemble\(backend=...\)` must be left out"),
         ({"events": [nh.cusp]}, r"ensemble\(events=...\)` must be left out"),
-        ({"reconstruct": False}, r"ensemble\(reconstruct=...\)` must be left out"),
+        ({"branch": "nearest"}, r"ensemble\(branch=...\)` must be left out"),
         ({"times": None}, r"flow\(times=...\)"),
         ({"times": (1.0, 1.0)}, r"flow\(times=...\)"),
         ({"rtol": 1e-16}, r"flow\(rtol=...\)"),

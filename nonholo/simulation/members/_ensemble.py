@@ -10,7 +10,7 @@ from nonholo.base.calls import called
 from nonholo.base.checks import count, error, flags, flow_times, flow_tolerances, function, refuse_given
 from nonholo.base.limits import within_memory
 from nonholo.base.progress import progress_bar
-from nonholo.continuous import ContinuousFlow
+from nonholo.continuous import ContinuousFlow, solver_of
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
 from nonholo.simulation._options import check_forces, refuse_too_large, stepper_of
 from nonholo.simulation.events import watched
@@ -90,7 +90,7 @@ def ensemble(
         reduce: A function of an `Ensemble`, a block of the members in order, that returns an array or a dictionary of
             arrays with a leading member axis. It is called block by block, so that states are never all in memory.
         branch: Which value of the map a step takes, a name or a function, as in `simulate`.
-        reconstruct: Also compute poses.
+        reconstruct: Also compute poses. Flows without them run one by one, as `flow` solves for momenta alone.
         backend: "numba" (closed forms, compiled), "jax", or "auto" to choose. By JAX tops with n = 3 and plane sleighs
             run in chunks on processors and all at once on accelerators, other systems by the definition.
         events: `Event`s, or functions, whose changes of sign are found at every single step of each member; see
@@ -148,10 +148,12 @@ def _of_times(
     system: System, of_flow: dict[str, Any], of_steps: dict[str, Any], starts: dict[str, Any]
 ) -> tuple[Any, Plan, tuple[int, ...]]:
     """Return the motion of flows, their plan, and how wide their columns are."""
+    reconstruct = bool(of_steps.pop("reconstruct"))
     _refuse("for a flow", displacement=starts.pop("displacement"), **of_steps)
     time, rtol = flow_times(of_flow["times"]), 1e-14 if of_flow["rtol"] is None else of_flow["rtol"]
-    plan = Plan(len(time) - 1, 1, times=time, rtol=flow_tolerances(rtol, 1.0)[0])
-    return ContinuousFlow(system), plan, (1, system.rank, system.group.pose_size)
+    plan = Plan(len(time) - 1, 1, reconstruct, times=time, rtol=flow_tolerances(rtol, 1.0)[0])
+    posed = solver_of(system, None, float(time[0]), reconstruct=reconstruct)[1]
+    return ContinuousFlow(system), plan, (1, system.rank, system.group.pose_size * posed)
 
 
 def _of_steps(

@@ -114,7 +114,7 @@ def run_members(members: Members, starts: Firsts, plan: Plan, report: Report = l
 def executor_of(members: Members, plan: Plan) -> Callable[..., Ensemble]:
     """Return what runs members: side by side where their closed form or their series allows it, else one by one."""
     if plan.times is not None:
-        return run_by_series if has_series(members.discrete.system) else run_one_by_one
+        return run_by_series if plan.posed and has_series(members.discrete.system) else run_one_by_one
     return run_in_lanes if are_side_by_side(members, plan) else run_one_by_one
 
 
@@ -262,7 +262,8 @@ def _run_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
 def _flow_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
     """Return the flow of one member up to its end, and the number of good times after the first."""
     try:
-        orbit = flow_from(motion.system, first, cast(np.ndarray, plan.times), plan.rtol)
+        times = cast(np.ndarray, plan.times)
+        orbit = flow_from(motion.system, first, times, plan.rtol, reconstruct=plan.posed)
     except OutcomeError as early:
         orbit = cast(Any, early.orbit)
     return orbit, len(orbit) - 1
