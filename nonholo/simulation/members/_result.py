@@ -267,8 +267,9 @@ class Ensemble:
             return False
         composed = name == "displacement" and route is not None and route.order > 2
         same = set() if name == "momentum" or composed else {"time_step"}
-        if name in _OF_FRAME and not composed and self.members.keep_frame:
-            same |= self.members.of_system
+        varied = self.members.of_system
+        if varied and name in _OF_FRAME and not composed and self.members.keep_frame:
+            same |= varied
         return self.members.parameters.keys() <= same
 
 
